@@ -1,0 +1,59 @@
+/* What was recorded, how, and where: everything about the echoes but the samples themselves. */
+#ifndef SASBENCH_ACQUISITION_H
+#define SASBENCH_ACQUISITION_H
+
+#include <complex.h>
+#include <stdbool.h>
+
+#include "status.h"
+
+/* A point or a direction in space. x runs along the track (azimuth), y across it; pixels lie at (x, r, 0). */
+struct vector {
+    double x, y, z;
+};
+
+/* Owner: whoever made it (a scene or an echo file), freed with acquisition_free. Plans only read it and may keep the
+   pointer until they are destroyed. All arrays are ping-major. */
+struct acquisition {
+    double sound_speed;             /* c, m/s, > 0 */
+    double fc;                      /* carrier frequency, Hz, > 0; echo phase is exp(-j 2 pi fc tau) */
+    double fs;                      /* sampling rate of the complex baseband, Hz, >= bandwidth */
+    double bandwidth;               /* B, Hz, > 0 */
+    int samples;                    /* N: fast-time samples of a record, >= 2 */
+    int receivers;                  /* M >= 1 */
+    int pings;                      /* P >= 1 */
+    double *t0;                     /* [pings] s: time of each record's first sample after emission */
+    struct vector *tx;              /* [pings] m: transmitter at emission */
+    struct vector *rx;              /* [pings][receivers] m: receivers at the transmitter's emission */
+    struct vector *velocity;        /* [pings] m/s: of the receivers during propagation; zero = stop-and-hop */
+    double tx_length, rx_length;    /* m: element lengths along the track; 0 = unknown */
+    double aperture_limit;          /* back projection sums pairs with |sin theta_t| <= this only; INFINITY = all */
+    bool compressed;                /* the samples are range compressed: a unit target peaks at 1 */
+    int pulse_length;               /* K: samples of the replica; 0 if compressed */
+    double complex *pulse;          /* [pulse_length] replica at fs, beginning at emission; NULL if compressed */
+};
+
+/* Allocate the arrays for `samples`, `receivers`, `pings` (set beforehand) and `pulse_length`, zeroed. Errors:
+   STATUS_FAILED without memory. acquisition_free releases them and clears the struct; it accepts a zeroed struct. */
+enum status acquisition_allocate(struct acquisition *acquisition);
+void acquisition_free(struct acquisition *acquisition);
+
+/* Check every promise made above (ranges, finite numbers, |velocity| < c, phase precise enough: 8 pi fc tau eps <= 1e-3).
+   `place` (a file name) begins the message. Errors: STATUS_INVALID. */
+enum status acquisition_check(const struct acquisition *acquisition, const char *place);
+
+/* Unit vector along the track at ping p: the difference of the neighbouring transmitter positions; the velocity's
+   direction for a single ping; +x where both vanish. theta_t is measured from the plane normal to it. */
+struct vector acquisition_heading(const struct acquisition *acquisition, int ping);
+
+/* A uniform straight track: tx(p).x = x_first + p spacing, rx(p, m).x - tx(p).x = offset(m), y = z = 0, one velocity
+   (speed, 0, 0) and one t0, all within lambda/1000 (offset(m) is read from the first ping). */
+struct straight_track {
+    double x_first, spacing;        /* m; spacing may be negative, never 0 with more than one ping */
+    double speed;                   /* m/s along +x, of the receivers during propagation */
+};
+
+/* True when the track is uniform and straight; fills *track (may be NULL). */
+bool acquisition_is_straight(const struct acquisition *acquisition, struct straight_track *track);
+
+#endif

@@ -1,0 +1,48 @@
+/* Linearly upsampled back projection: beta points are inserted between samples by linear interpolation, then the
+   nearest is taken (BP22 Eqs. (6)-(8)):  Q = floor(q (beta+1) + 1/2),  s(q) = (1-f) s[i] + f s[i+1],
+   i + f = Q/(beta+1). The grid is absolute, t = n/(fs (beta+1)).
+
+   Cost: the upsampled record is never stored; the rounded fraction selects one of beta+1 pairs of weights. Error: the
+   grid's phase pi B/(2 fs (beta+1)) falls with beta, linear interpolation's own loss at high frequencies does not: a floor
+   at beta about 4, about 0.07 (point) and 0.12 (speckle) at fs = 2B, falling as (B/fs)^2. */
+#include "bp.h"
+
+struct options {
+    struct bp_options bp;
+    int beta;
+};
+
+static const struct param params[] = {
+    {.name = "beta", .summary = "points inserted between two samples", .type = PARAM_INTEGER,
+     .offset = offsetof(struct options, beta), .initial = 8, .min = 0, .max = 1024, .sweep = "0 1 2 4 8 16 32"},
+    BP_PARAMS,
+    {.name = NULL},
+};
+
+static void weights(const void *options, double fraction, double *w)
+{
+    (void)options;
+    w[0] = 1 - fraction;
+    w[1] = fraction;
+}
+
+static enum status plan(const struct problem *problem, const void *options, void **plan)
+{
+    int beta = ((const struct options *)options)->beta;
+    const struct interpolator linear = {.upsample = 1, .phases = beta + 1, .taps = 2, .weights = weights,
+                                        .beta = beta, .factor = beta + 1};
+    return bp_plan(problem, &linear, options, plan);
+}
+
+const struct algorithm bp_linear = {
+    .name = "bp_linear",
+    .summary = "back projection, linear upsampling by beta, then the nearest",
+    .reference = "BP22 Eqs. (6)-(8)",
+    .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT,
+    .options_size = sizeof(struct options),
+    .params = params,
+    .plan = plan,
+    .execute = bp_execute,
+    .work = bp_work,
+    .destroy = bp_destroy,
+};

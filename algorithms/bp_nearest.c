@@ -1,0 +1,30 @@
+/* Nearest-neighbour back projection: s(q) = s[floor(q + 1/2)]  (BP22 Eq. (8) with the midpoint 0.5 (x0 + x1) in place
+   of the printed 0.5 (x1 - x0); ZP15's "non-interpolated" method).
+
+   Cost: one complex product and sum a pair. Error: the envelope's phase, at most pi B/(2 fs) at the band edge; relative
+   L2 about 0.10 for a point and 0.33 for speckle at fs = 2B. */
+#include "bp.h"
+
+static const struct param params[] = {
+    BP_PARAMS,
+    {.name = NULL},
+};
+
+static enum status plan(const struct problem *problem, const void *options, void **plan)
+{
+    const struct interpolator nearest = {.upsample = 1, .phases = 1, .taps = 1, .factor = 1};
+    return bp_plan(problem, &nearest, options, plan);
+}
+
+const struct algorithm bp_nearest = {
+    .name = "bp_nearest",
+    .summary = "back projection, nearest sample",
+    .reference = "BP22 Eq. (8), ZP15",
+    .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT,
+    .options_size = sizeof(struct bp_options),
+    .params = params,
+    .plan = plan,
+    .execute = bp_execute,
+    .work = bp_work,
+    .destroy = bp_destroy,
+};

@@ -1,0 +1,52 @@
+/* The inner sums of the translation-invariant engine: one image row from tables, built for each precision and
+   instruction set; chosen at run time by bp_invariant.c. */
+#ifndef SASBENCH_BP_ROW_H
+#define SASBENCH_BP_ROW_H
+
+#include "bp_sum.h"
+
+/* A block of columns is 1 to BP_BLOCK_VECTORS vectors of 16 bytes (baseline), 32 (v3) or 64 (v4); a row of sums has room
+   for BP_LANES_MOST values beyond its last column. */
+enum { BP_BLOCK_VECTORS = 3, BP_LANES_MOST = 16 };
+
+/* Compressed records of some receivers, pings contiguous: value (receiver g, row i, ping p) at
+   [g receiver_stride + i ping_stride + lead + p]. Row i is the record's sample i - guard; upsampled records keep `width`
+   of their `upsample` phases from `phase` on: row (f / upsample) width + f % upsample - phase for fine sample f. */
+struct bp_slab {
+    const void *re, *im;            /* real; 0 in the lead and behind the last ping */
+    size_t receiver_stride;
+    int ping_stride, lead;
+    int phase, width;
+};
+
+/* One patch seen from the track: ping p lies at x_first + p spacing, column n at n/ratio spacings from the grid's
+   beginning, so that delay and phase depend on (row, receiver, n mod ratio, p - n div ratio) only. */
+struct bp_raster {
+    double x_first, spacing;        /* m, spacing > 0 */
+    int pings;
+    double speed, t0;               /* m/s, s */
+    int ratio;                      /* azimuth steps to a ping spacing */
+    double grid_first, grid_step;   /* m */
+    int columns, blocks;            /* of the grid; ceil(columns/ratio) */
+    double limit;                   /* aperture limit */
+};
+
+/* Scratch of one thread, for at most `entries` shifts. */
+struct bp_row_scratch {
+    double *leg, *q, *f;            /* [entries] */
+    int *shift;                     /* [entries] p - n div ratio, rising */
+    int *offset;                    /* [entries] where the first tap's value for ping `shift` lies in the receiver's slab */
+    void *wr, *wi, *weights;        /* real [entries], [entries], [entries][taps] */
+};
+
+/* Add `count` receivers, `offsets[g]` metres ahead of the transmitter, to one image row at range r: sums hold
+   [ratio][stride] values re, then im, of column rho + ratio j at [rho][j]; stride >= blocks + BP_LANES_MOST, the most of one vector. */
+typedef void bp_row_function(const struct bp_medium *medium, const struct bp_table *table, const struct bp_raster *raster,
+                             const struct bp_slab *slab, double r, const double *offsets, int count,
+                             const struct bp_row_scratch *scratch, void *re, void *im, int stride);
+
+bp_row_function bp_row_float_baseline, bp_row_double_baseline;
+bp_row_function bp_row_float_v3, bp_row_double_v3;  /* x86-64-v3: AVX2, FMA */
+bp_row_function bp_row_float_v4, bp_row_double_v4;  /* x86-64-v4: AVX-512 */
+
+#endif

@@ -1,0 +1,55 @@
+/* Truncated-sinc back projection, BP22's "traditional BP" (kernel length 8, rectangular) and ZP15's "truncated
+   interpolation":  s(q) = sum of s[floor(q) + k] sinc(q - floor(q) - k) w(.),  k = -taps/2+1 .. taps/2.
+
+   Cost: 4 taps + 8 FLOPs a pair. Error at fs = 2B, 8 taps: 2.4e-3 for a point, 0.05 for speckle (the rectangular
+   kernel's ripple); a Kaiser window (beta = 5) on the same taps is 40 to 50 times more accurate. */
+#include "bp.h"
+
+enum window { WINDOW_NONE, WINDOW_KAISER };
+
+struct options {
+    struct bp_options bp;
+    int taps, window;
+};
+
+static const char *const windows[] = {"none", "kaiser", NULL};
+
+static const struct param params[] = {
+    {.name = "taps", .summary = "kernel length in samples, even", .type = PARAM_INTEGER,
+     .offset = offsetof(struct options, taps), .initial = 8, .min = 2, .max = 64, .sweep = "4 8 16 32"},
+    {.name = "window", .summary = "taper of the kernel: none (the papers') or Kaiser with beta = 5",
+     .type = PARAM_CHOICE, .offset = offsetof(struct options, window), .initial = WINDOW_NONE, .max = WINDOW_KAISER,
+     .choices = windows, .sweep = "none kaiser"},
+    BP_PARAMS,
+    {.name = NULL},
+};
+
+static void weights(const void *options, double fraction, double *w)
+{
+    const struct options *o = options;
+    sinc_weights(o->taps, o->window == WINDOW_KAISER ? 5 : 0, fraction, w);
+}
+
+static enum status plan(const struct problem *problem, const void *options, void **plan)
+{
+    int taps = ((const struct options *)options)->taps;
+    *plan = NULL;
+    if (taps % 2)
+        return status_set(STATUS_UNSUPPORTED, "bp_sinc: taps is %d, must be even", taps);
+    const struct interpolator sinc = {.upsample = 1, .taps = taps, .first = 1 - taps / 2, .weights = weights,
+                                      .kernel = taps, .factor = taps};
+    return bp_plan(problem, &sinc, options, plan);
+}
+
+const struct algorithm bp_sinc = {
+    .name = "bp_sinc",
+    .summary = "back projection, truncated sinc kernel",
+    .reference = "BP22 section 4 (traditional BP), ZP15",
+    .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT,
+    .options_size = sizeof(struct options),
+    .params = params,
+    .plan = plan,
+    .execute = bp_execute,
+    .work = bp_work,
+    .destroy = bp_destroy,
+};

@@ -1,0 +1,10 @@
+#ifndef SASBENCH_FFT_LENGTH_H
+#define SASBENCH_FFT_LENGTH_H
+
+/* The smallest length >= n whose prime factors FFTW handles best (2, 3, 5, 7); 0 when it exceeds INT_MAX. */
+int fft_length(long long n);
+
+/* FLOPs of one complex transform, 5 n log2 n: the count that both papers and FFTW's own benchmark use. */
+double fft_flops(double n);
+
+#endif

@@ -1,0 +1,434 @@
+/* Range migration at one azimuth wavenumber: receivers' spectra in, focused rows out (rma.h: bulk to focus). Compiled once
+   for each precision and instruction set (BP_ISA names it).
+
+   The corrections of a group of receivers are quadratic in the receiver's number, so that a cell costs two complex products
+   a receiver and three sines and cosines a group; frequencies lie side by side in vectors. */
+#include <string.h>
+
+#include "rma_engine.h"
+#include "turn.h"
+
+typedef real vec __attribute__((vector_size(RMA_ALIGNMENT), may_alias));
+enum {
+    LANES = RMA_ALIGNMENT / sizeof(real),
+    SPAN = 256                      /* bins whose phases are made at a time: they stay in the first-level cache */
+};
+
+/* What one thread works on. */
+struct work_place {
+    const struct rma *rma;
+    char *scratch;
+    double *seconds, mark;
+    struct rma_line line;
+    int q;
+};
+
+static void *buffer(const struct work_place *w, enum rma_buffer which)
+{
+    return w->scratch + w->rma->scratch_at[which];
+}
+
+static void stage_end(struct work_place *w, enum rma_stage stage)
+{
+    double now = seconds_now();
+    w->seconds[stage] += now - w->mark;
+    w->mark = now;
+}
+
+/* exp(j 2 pi poly(y)) of n bins. */
+static void rotors(const double *poly, const double *restrict y, int n, real *restrict re, real *restrict im)
+{
+    const double p0 = poly[0], p1 = poly[1], p2 = poly[2], p3 = poly[3], p4 = poly[4], p5 = poly[5];
+#pragma omp simd
+    for (int k = 0; k < n; k++) {
+        double f = p0 + y[k] * (p1 + y[k] * (p2 + y[k] * (p3 + y[k] * (p4 + y[k] * p5))));
+        turn(f - floor(f + 0.5), &re[k], &im[k]);
+    }
+}
+
+/* The group's receivers (rows of `in`) times their corrections: added up into `out`, or stored row by row. */
+static inline __attribute__((always_inline)) void group_apply(const real *restrict in, size_t row, int count, int n,
+    real rotor[restrict 6][SPAN], bool add, real *restrict out)
+{
+    for (int b = 0; b < n; b += LANES) {
+        vec wr = *(vec *)&rotor[0][b], wi = *(vec *)&rotor[1][b], sr = *(vec *)&rotor[2][b], si = *(vec *)&rotor[3][b];
+        const vec kr = *(vec *)&rotor[4][b], ki = *(vec *)&rotor[5][b];
+        const real *x = in + 2 * b;
+        real *z = out + 2 * b;
+        vec sum_r = *(vec *)z, sum_i = *(vec *)(z + LANES);
+        for (int i = 0; i < count; i++, x += row) {
+            vec xr = *(const vec *)x, xi = *(const vec *)(x + LANES), t;
+            vec pr = xr * wr - xi * wi, pi = xr * wi + xi * wr;
+            if (add) {
+                sum_r += pr;
+                sum_i += pi;
+            } else {
+                *(vec *)(z + (size_t)i * row) = pr;
+                *(vec *)(z + (size_t)i * row + LANES) = pi;
+            }
+            t = wr * sr - wi * si;
+            wi = wr * si + wi * sr;
+            wr = t;
+            t = sr * kr - si * ki;
+            si = sr * ki + si * kr;
+            sr = t;
+        }
+        if (add) {
+            *(vec *)z = sum_r;
+            *(vec *)(z + LANES) = sum_i;
+        }
+    }
+}
+
+/* Receivers times exp(j 2 pi (correction at r less the one at `less`)), by recurrence. `in` and `out` are rows; all are
+   added up into one where `add`. */
+static void correct_by_recurrence(const struct work_place *w, const real *in, double r, double less, bool add, real *out)
+{
+    const struct rma *rma = w->rma;
+    struct rma_ramp *ramps = buffer(w, RMA_RAMPS);
+    const double *y = buffer(w, RMA_ABSCISSAS);
+    size_t row = 2 * (size_t)rma->row;
+    int groups = rma_ramps(rma, &w->line, r, less, ramps), begin = w->line.begin / LANES * LANES;
+    real rotor[6][SPAN] __attribute__((aligned(RMA_ALIGNMENT)));
+    for (int k = begin; k < rma->row; k += SPAN) {
+        int n = rma->row - k < SPAN ? rma->row - k : SPAN;
+        for (const struct rma_ramp *g = ramps; g < ramps + groups; g++) {
+            rotors(g->first, y + k, n, rotor[0], rotor[1]);
+            rotors(g->step, y + k, n, rotor[2], rotor[3]);
+            rotors(g->curve, y + k, n, rotor[4], rotor[5]);
+            const real *x = in + (size_t)g->begin * row + 2 * k;
+            if (add && g->count == RMA_GROUP)
+                group_apply(x, row, RMA_GROUP, n, rotor, true, out + 2 * k);
+            else if (add)
+                group_apply(x, row, g->count, n, rotor, true, out + 2 * k);
+            else
+                group_apply(x, row, g->count, n, rotor, false, out + (size_t)g->begin * row + 2 * k);
+        }
+    }
+}
+
+/* The same by the formula and libm for each cell: for uneven arrays, and to check the recurrence. */
+static void correct_by_libm(const struct work_place *w, const real *in, double r, double less, bool add, real *out)
+{
+    const struct rma *rma = w->rma;
+    for (int m = 0; m < rma->receivers; m++)
+        for (int k = w->line.begin; k < rma->band; k++) {
+            double frequency = rma_frequency(rma, k), cycles = rma_correction(rma, m, r, frequency, w->line.nu);
+            if (less > 0)
+                cycles -= rma_correction(rma, m, less, frequency, w->line.nu);
+            double angle = 2 * M_PI * (cycles - floor(cycles + 0.5));
+            real wr = (real)cos(angle), wi = (real)sin(angle);
+            size_t at = 2 * (size_t)(k / LANES * LANES) + (size_t)(k % LANES), row = (size_t)m * 2 * (size_t)rma->row;
+            real xr = in[row + at], xi = in[row + at + LANES], *z = out + at + (add ? 0 : row);
+            z[0] = (add ? z[0] : 0) + xr * wr - xi * wi;
+            z[LANES] = (add ? z[LANES] : 0) + xr * wi + xi * wr;
+        }
+}
+
+static void correct(const struct work_place *w, const real *in, double r, double less, bool add, real *out)
+{
+    const struct rma *rma = w->rma;
+    size_t row = 2 * (size_t)rma->row;
+    memset(out, 0, (add ? 1 : (size_t)rma->receivers) * row * sizeof *out);
+    if (rma->even && rma->options.phases == RMA_RECURRENCE)
+        correct_by_recurrence(w, in, r, less, add, out);
+    else
+        correct_by_libm(w, in, r, less, add, out);
+}
+
+/* Bins that are evanescent, and those that only fill the last vector, read zero. */
+static void mask(const struct work_place *w, real *row)
+{
+    const struct rma *rma = w->rma;
+    for (int k = 0; k < rma->row; k++)
+        if (k < w->line.begin || k >= rma->band)
+            row[2 * (k / LANES * LANES) + k % LANES] = row[2 * (k / LANES * LANES) + k % LANES + LANES] = 0;
+}
+
+/* Where the samples from `centre` on lie: the block's number at its centre, fractions between, ends held. */
+static void places(const struct work_place *w, real *restrict place)
+{
+    const struct rma *rma = w->rma;
+    const int length = rma->length, last = rma->block_count - 1;
+    const double from = rma->block_from, scale = 1 / rma->block_width, slowness = w->line.slowness;
+    const bool inverse = rma->options.spacing == RMA_INVERSE;
+#pragma omp simd
+    for (int j = 0; j < length; j++) {
+        int n = rma->centre + (j < length - length / 2 ? j : j - length);
+        double delay = fmax(rma->t0 + n / rma->fs, 1e-9), range = delay / slowness;
+        double b = ((inverse ? 1 / range : range) - from) * scale;
+        place[j] = (real)(b > 0 ? b < last ? b : last : 0);
+    }
+}
+
+/* Range IFFT of a row of spectra, and what belongs to the block added to the cut. */
+static void add_block(const struct work_place *w, const real *row, int block, const real *place, real *cut)
+{
+    const struct rma *rma = w->rma;
+    const int length = rma->length;
+    real *wave = buffer(w, RMA_WAVE);
+    memset(wave, 0, 2 * (size_t)length * sizeof *wave);
+    for (int k = 0; k < rma->band; k++) {
+        int bin = (rma->band_first + k + length) % length, at = 2 * (k / LANES * LANES) + k % LANES;
+        wave[2 * bin] = row[at];
+        wave[2 * bin + 1] = row[at + LANES];
+    }
+    FFTW(execute_dft)(rma->range_inverse, (complex_real *)wave, (complex_real *)wave);
+    int from = (rma->centre % length + length) % length;
+    for (int half = 0; half < 2; half++) {          /* sample (centre + j) mod length, without the division */
+        int begin = half ? length - from : 0, end = half ? length : length - from;
+        const real *x = wave + 2 * (half ? -begin : from);
+        if (!rma->cuts)
+            for (int j = begin; j < end; j++) {
+                cut[2 * j] += x[2 * j];
+                cut[2 * j + 1] += x[2 * j + 1];
+            }
+        else
+            for (int j = begin; j < end; j++) {
+                real away = (real)fabs(place[j] - (real)block);
+                real weight = rma->options.blend ? (away < 1 ? 1 - away : 0) : place[j] + (real)0.5 >= (real)block
+                              && place[j] + (real)0.5 < (real)(block + 1);
+                cut[2 * j] += weight * x[2 * j];
+                cut[2 * j + 1] += weight * x[2 * j + 1];
+            }
+    }
+}
+
+/* The cut's spectrum in rising frequency with RMA_GUARD bins of the next period at either end; its samples count from
+   `centre`. */
+static void spectrum(const struct work_place *w, real *cut, real *out)
+{
+    const struct rma *rma = w->rma;
+    const size_t length = (size_t)rma->length, low = length / 2;     /* low: bins below fc */
+    const real *scale = rma->apodization;
+    for (size_t j = 0; j < length; j++) {
+        cut[2 * j] *= scale[j];
+        cut[2 * j + 1] *= scale[j];
+    }
+    FFTW(execute_dft)(rma->range_forward, (complex_real *)cut, (complex_real *)cut);
+    memcpy(out + 2 * RMA_GUARD, cut + 2 * (length - low), 2 * low * sizeof *out);
+    memcpy(out + 2 * (RMA_GUARD + low), cut, 2 * (length - low) * sizeof *out);
+    for (size_t k = 0; k < 2 * RMA_GUARD; k++) {
+        out[k] = out[2 * length + k];
+        out[2 * (RMA_GUARD + length) + k] = out[2 * RMA_GUARD + k];
+    }
+}
+
+/* Values of the spectrum between its bins; position counts from the first guard bin. `taps` is a constant where this is
+   inlined. */
+static inline __attribute__((always_inline)) void interpolate(const real *restrict spectrum, const real *restrict kernel,
+    int taps, int n, const double *restrict position, real *restrict re, real *restrict im)
+{
+    for (int j = 0; j < n; j++) {
+        int bin = (int)position[j];
+        double interval = (position[j] - bin) * RMA_INTERVALS;
+        const real *a = kernel + (size_t)(int)interval * (size_t)taps, *b = a + taps;
+        const real *x = spectrum + 2 * (bin + 1 - taps / 2);
+        real u = (real)(interval - (int)interval), vr = 0, vi = 0;
+        for (int k = 0; k < taps; k++) {
+            real weight = a[k] + u * (b[k] - a[k]);
+            vr += weight * x[2 * k];
+            vi += weight * x[2 * k + 1];
+        }
+        re[j] = vr;
+        im[j] = vi;
+    }
+}
+
+/* Rows of a patch from K = j 2 pi/(length step): interpolation (LBF21 Eq. (16) for the exact K), bulk focusing at the
+   first row, weight, IFFT. */
+static void focus_interpolated(struct work_place *w, const struct rma_patch *patch, const real *z, real *stored)
+{
+    const struct rma *rma = w->rma;
+    const double c = rma->setting.sound_speed, fc = rma->setting.fc, beta = rma->setting.speed / c;
+    const double b1 = (1 - beta) * (1 + beta), half = c * w->line.nu / 2, bin = rma->fs / rma->length;
+    const double low = fmax(fc - rma->length / 2 * bin, w->line.lowest);
+    const double high = fc + (rma->length - rma->length / 2 - 1) * bin;
+    const double k_step = 2 * M_PI / (patch->length * patch->step), r = patch->grid.r_first;
+    const double t_centre = rma->t0 + rma->centre / rma->fs, to_fc = rma->length / 2 + RMA_GUARD;
+    const long long first = (long long)ceil(spectrum_monostatic(&rma->setting, low, w->line.nu) / k_step);
+    const long long last = (long long)floor(spectrum_monostatic(&rma->setting, high, w->line.nu) / k_step);
+    real *wave = buffer(w, RMA_WAVE);
+    memset(wave, 0, 2 * (size_t)patch->length * sizeof *wave);
+    double position[SPAN], cycles[SPAN];
+    real weight[SPAN], re[SPAN], im[SPAN], wr[SPAN], wi[SPAN];
+    for (long long j0 = first; j0 <= last; j0 += SPAN) {
+        int n = last - j0 + 1 < SPAN ? (int)(last - j0 + 1) : SPAN;
+#pragma omp simd
+        for (int i = 0; i < n; i++) {
+            double k = (double)(j0 + i) * k_step, kappa = c / (4 * M_PI) * k;
+            double root = sqrt(half * half + b1 * kappa * kappa), frequency = beta * half + root;
+            double s = sqrt((frequency - half) * (frequency + half)), offset = frequency - fc;
+            position[i] = offset / bin + to_fc;
+            /* F sqrt(c/2) S^-3/2, dF/dK dK/fs */
+            weight[i] = (real)(frequency * sqrt(c / (2 * s)) / s * (b1 * kappa * c / (4 * M_PI) / root) * k_step / rma->fs);
+            double f = k * r / (2 * M_PI) - offset * t_centre + 0.125;
+            cycles[i] = f - floor(f + 0.5);
+        }
+        switch (rma->taps) {
+        case 4: interpolate(z, rma->kernel, 4, n, position, re, im); break;
+        case 8: interpolate(z, rma->kernel, 8, n, position, re, im); break;
+        default: interpolate(z, rma->kernel, rma->taps, n, position, re, im); break;
+        }
+        stage_end(w, RMA_STOLT);
+#pragma omp simd
+        for (int i = 0; i < n; i++) {
+            turn(cycles[i], &wr[i], &wi[i]);
+            wr[i] *= weight[i];
+            wi[i] *= weight[i];
+        }
+        int at = (int)(j0 % patch->length);
+        for (int i = 0; i < n; i++) {
+            wave[2 * at] += re[i] * wr[i] - im[i] * wi[i];
+            wave[2 * at + 1] += re[i] * wi[i] + im[i] * wr[i];
+            if (++at == patch->length)
+                at = 0;
+        }
+        stage_end(w, RMA_FOCUS);
+    }
+    FFTW(execute_dft)(patch->focus_plan, (complex_real *)wave, (complex_real *)wave);
+    for (int i = 0; i < patch->grid.r_count; i++) {
+        stored[2 * RMA_TILE * i] = wave[2 * i];
+        stored[2 * RMA_TILE * i + 1] = wave[2 * i + 1];
+    }
+    stage_end(w, RMA_FOCUS);
+}
+
+/* The same without interpolation: every bin of the band at every row. `z` are vectors of the band's bins whose samples
+   count from time `origin`. */
+static void focus_direct(struct work_place *w, const struct rma_patch *patch, const real *z, double origin, real *stored)
+{
+    const struct rma *rma = w->rma;
+    const double c = rma->setting.sound_speed, half = c * w->line.nu / 2;
+    const int rows = patch->grid.r_count;
+    real *parts = buffer(w, RMA_PARTS);
+    memset(parts, 0, (size_t)rows * 2 * LANES * sizeof *parts);
+    for (int k = w->line.begin / LANES * LANES; k < rma->band; k += LANES) {
+        double k_cycles[LANES], origin_cycles[LANES], weight[LANES];
+        real zr[LANES], zi[LANES], wr[LANES], wi[LANES], sr[LANES], si[LANES];
+        for (int l = 0; l < LANES; l++) {
+            bool exists = k + l >= w->line.begin && k + l < rma->band;
+            double frequency = rma_frequency(rma, exists ? k + l : rma->band - 1);
+            double s = sqrt((frequency - half) * (frequency + half));
+            k_cycles[l] = spectrum_monostatic(&rma->setting, frequency, w->line.nu) / (2 * M_PI);
+            origin_cycles[l] = 0.125 - (frequency - rma->setting.fc) * origin;
+            weight[l] = exists ? frequency * sqrt(c / (2 * s)) / s / rma->length : 0;
+            double step = k_cycles[l] * patch->grid.r_step;
+            turn(step - floor(step + 0.5), &sr[l], &si[l]);
+        }
+        for (int i0 = 0; i0 < rows; i0 += RMA_STEPS) {
+            int n = rows - i0 < RMA_STEPS ? rows - i0 : RMA_STEPS;
+            for (int l = 0; l < LANES; l++) {
+                double f = k_cycles[l] * (patch->grid.r_first + i0 * patch->grid.r_step) + origin_cycles[l];
+                turn(f - floor(f + 0.5), &wr[l], &wi[l]);
+                zr[l] = z[2 * k + l] * (real)weight[l];
+                zi[l] = z[2 * k + LANES + l] * (real)weight[l];
+            }
+            for (int i = 0; i < n; i++) {
+                real *part = parts + (size_t)(i0 + i) * 2 * LANES;
+#pragma omp simd
+                for (int l = 0; l < LANES; l++) {
+                    part[l] += zr[l] * wr[l] - zi[l] * wi[l];
+                    part[LANES + l] += zr[l] * wi[l] + zi[l] * wr[l];
+                    real t = wr[l] * sr[l] - wi[l] * si[l];
+                    wi[l] = wr[l] * si[l] + wi[l] * sr[l];
+                    wr[l] = t;
+                }
+            }
+        }
+    }
+    for (int i = 0; i < rows; i++) {
+        real re = 0, im = 0;
+        for (int l = 0; l < LANES; l++) {
+            re += parts[(size_t)i * 2 * LANES + (size_t)l];
+            im += parts[(size_t)i * 2 * LANES + LANES + (size_t)l];
+        }
+        stored[2 * RMA_TILE * i] = re;
+        stored[2 * RMA_TILE * i + 1] = im;
+    }
+    stage_end(w, RMA_FOCUS);
+}
+
+/* The receivers' spectra at this wavenumber, without conversion or after it, block by block, as one monostatic row:
+   in `cut` as samples; in `sums` where nothing has to be cut and a direct sum reads the spectrum itself. */
+static void convert(struct work_place *w, real *sums, real *cut)
+{
+    const struct rma *rma = w->rma;
+    const size_t row = 2 * (size_t)rma->row;
+    int turns = w->q - rma->wavenumbers / 2, period = rma->period;
+    int column = ((rma->spacing < 0 ? -turns : turns) % period + period) % period;
+    const real *data = (const real *)rma->data + (size_t)column * (size_t)rma->receivers * row;
+    const bool after = rma->options.sum == RMA_SUM_AFTER, needs_cut = rma->cuts || after || rma->taps > 0;
+    const int summed = after ? rma->receivers : 1;
+    real *place = buffer(w, RMA_PLACES), *corrected = buffer(w, RMA_CONVERTED);
+    if (needs_cut)
+        memset(cut, 0, 2 * (size_t)rma->length * sizeof *cut);
+    if (!rma->converts) {
+        memcpy(sums, data, row * sizeof *sums);
+        stage_end(w, RMA_BULK);
+    } else {
+        double *y = buffer(w, RMA_ABSCISSAS);
+        for (int k = 0; k < rma->row; k++)
+            y[k] = fmax((rma_frequency(rma, k) - w->line.middle) / w->line.half, -1);
+        correct(w, data, rma->reference, 0, !rma->cuts && !after, rma->cuts ? corrected : sums);
+        stage_end(w, RMA_BULK);
+    }
+    if (rma->cuts)
+        places(w, place);
+    for (int n = 0; n < rma->needed; n++) {
+        int block = rma->blocks[n];
+        if (rma->cuts) {
+            correct(w, corrected, rma_block_range(rma, block), rma->reference, !after, sums);
+            stage_end(w, RMA_DIFFERENTIAL);
+        }
+        for (int m = 0; m < summed; m++) {
+            mask(w, sums + (size_t)m * row);
+            if (needs_cut)
+                add_block(w, sums + (size_t)m * row, block, place, cut);
+        }
+        stage_end(w, RMA_RECONSTRUCT);
+    }
+}
+
+static void column(struct work_place *w, real *stored)
+{
+    const struct rma *rma = w->rma;
+    real *sums = buffer(w, RMA_SUMS), *cut = buffer(w, RMA_CUT), *z = buffer(w, RMA_SPECTRUM);
+    const bool direct = rma->taps == 0, from_sums = direct && !rma->cuts && rma->options.sum == RMA_SUM_BEFORE;
+    convert(w, sums, cut);
+    if (!from_sums)
+        spectrum(w, cut, z);
+    if (direct && !from_sums) {
+        int first = rma->band_first + rma->length / 2 + RMA_GUARD;
+        for (int k = 0; k < rma->row; k++)
+            for (int part = 0; part < 2; part++)
+                sums[2 * (k / LANES * LANES) + k % LANES + part * LANES] = k < rma->band ? z[2 * (first + k) + part] : 0;
+        mask(w, sums);
+    }
+    stage_end(w, RMA_RECONSTRUCT);
+    for (int p = 0; p < rma->patch_count; p++) {
+        const struct rma_patch *patch = &rma->patches[p];
+        real *out = stored + 2 * RMA_TILE * patch->row;
+        if (direct)
+            focus_direct(w, patch, sums, rma->t0 + (from_sums ? 0 : rma->centre) / rma->fs, out);
+        else
+            focus_interpolated(w, patch, z, out);
+    }
+}
+
+void REAL_ISA_NAME(rma_column)(const struct rma *rma, int thread, int q, double seconds[RMA_STAGES])
+{
+    struct work_place w = {.rma = rma, .scratch = (char *)rma->scratch + (size_t)thread * rma->scratch_bytes,
+                           .seconds = seconds, .mark = seconds_now()};
+    real *stored = buffer(&w, RMA_STORED), *focused = rma->focused;
+    memset(stored, 0, 2 * RMA_TILE * rma->rows * sizeof *stored);
+    for (int n = 0; n < RMA_TILE && q + n < rma->wavenumbers; n++) {
+        w.q = q + n;
+        w.line = rma_line(rma, q + n);
+        if (w.line.begin < rma->band)
+            column(&w, stored + 2 * n);
+    }
+    for (size_t i = 0; i < rma->rows; i++)
+        memcpy(focused + 2 * (i * rma->columns + (size_t)q), stored + 2 * RMA_TILE * i, 2 * RMA_TILE * sizeof *stored);
+    stage_end(&w, RMA_FOCUS);
+}

@@ -1,0 +1,144 @@
+/* A range migration's plan, shared by rma.c (geometry, blocks, order of work), rma_transform.c (transforms along range
+   and azimuth, for each precision) and rma_column.c (one azimuth wavenumber from the receivers' spectra to focused
+   rows, for each precision and instruction set). Pointers without a type hold values of the plan's precision. */
+#ifndef SASBENCH_RMA_ENGINE_H
+#define SASBENCH_RMA_ENGINE_H
+
+#include <math.h>
+#include <stdbool.h>
+
+#include "rma.h"
+
+enum {
+    RMA_ALIGNMENT = 64,             /* bytes: a vector, and a line of the cache */
+    RMA_DEGREE = 5,                 /* of the phases' polynomials in frequency */
+    RMA_GROUP = 8,                  /* receivers of one recurrence: short, so that float stays at 1e-7 */
+    RMA_TILE = 8,                   /* neighbouring wavenumbers whose rows are stored together */
+    RMA_GUARD = 16,                 /* bins repeated beyond a spectrum's ends: the longest kernel */
+    RMA_INTERVALS = 1024,           /* of the Stolt kernel's table, linear inside each */
+    RMA_STEPS = 16                  /* range rows between fresh phases of a direct sum */
+};
+
+/* Scratch of a thread; all but the first two hold values of the plan's precision. */
+enum rma_buffer {
+    RMA_RAMPS,                      /* struct rma_ramp [groups] */
+    RMA_ABSCISSAS,                  /* double [row]: y of each bin */
+    RMA_CONVERTED,                  /* [receivers][row]: spectra after the bulk correction */
+    RMA_SUMS,                       /* [1 or receivers][row]: a block's spectra */
+    RMA_WAVE,                       /* complex [longest transform] */
+    RMA_CUT,                        /* complex [length]: the blocks put together, from sample `centre` on */
+    RMA_PLACES,                     /* real [length]: position of those samples in blocks */
+    RMA_SPECTRUM,                   /* complex [RMA_GUARD + length + RMA_GUARD] in rising frequency */
+    RMA_PARTS,                      /* [most rows of a patch]: vectors of a direct sum's re and im */
+    RMA_STORED,                     /* complex [rows][RMA_TILE] */
+    RMA_BUFFERS
+};
+
+/* Phases of a group of receivers in cycles: receiver i of it has  first + i step + i(i-1)/2 curve. Each is a polynomial
+   in y = (F - middle)/half, lowest power first. */
+struct rma_ramp {
+    int begin, count;               /* receivers */
+    double first[RMA_DEGREE + 1], step[RMA_DEGREE + 1], curve[RMA_DEGREE + 1];
+};
+
+/* One wavenumber: what of its band exists, and how far ranges are delayed. */
+struct rma_line {
+    double nu;                      /* cycles/m */
+    double lowest;                  /* Hz: the least F that is used; below it lies the evanescent part */
+    int begin;                      /* first bin of the band from there on; `band` if there is none */
+    double middle, half;            /* Hz: the polynomials' interval */
+    double slowness;                /* s/m: delay over range, (1/2 pi) dK/dF at fc */
+};
+
+struct rma_patch {
+    struct grid grid;
+    int length;                     /* of the range IFFT onto the grid's rows: K = j 2 pi/(length step) */
+    double step;                    /* m: the grid's r_step; a range bin for a single row */
+    size_t row;                     /* of its first row among all patches' rows */
+    int chirp;                      /* length of the azimuth transform's convolution */
+    void *before, *kernel, *after;  /* complex [wavenumbers], [chirp], [x_count]: the azimuth transform's chirps */
+    void *focus_plan, *chirp_forward, *chirp_inverse;
+};
+
+struct rma {
+    struct problem problem;
+    struct rma_method method;
+    struct rma_options options;
+    struct spectrum_setting setting;
+    struct work work;
+
+    /* track: ping k is emitted at x_first + k spacing, receiver m is offset[m] ahead */
+    double x_first, spacing, t0, fs;
+    int receivers, pings, samples;
+    double *offset;                 /* [receivers] m */
+    bool even;                      /* evenly spaced receivers: recurrences apply */
+    bool converts;                  /* false: one receiver, at the transmitter */
+
+    /* azimuth: wavenumber q is (q - wavenumbers/2)/(period spacing) */
+    int period;                     /* pings and zeros after them */
+    int wavenumbers;                /* receivers x period: the full rate */
+
+    /* range: bin k is at (band_first + k) fs/length from fc */
+    int length;                     /* of the range transforms */
+    int band_first, band, row;      /* bins, and bins of a stored row (a multiple of the vector) */
+    double loss;                    /* energy of the compressed pulse outside the band, relative */
+
+    /* blocks: centre n of block_count at `from + n width` in r or 1/r */
+    int block_count, *blocks, needed;       /* [needed] the blocks that are computed */
+    double block_from, block_width, reference;      /* reference: m, where the bulk correction is exact */
+    bool cuts;                      /* more than one block */
+
+    /* Stolt: the interpolated signal is centred on sample `centre`, the middle of all rows */
+    int taps, centre;               /* taps 0: direct sum */
+    double shape, widest;           /* the Kaiser kernel's parameter; widest offset from `centre` in lengths */
+
+    int patch_count;
+    struct rma_patch *patches;
+    size_t rows;                    /* of all patches */
+    double chebyshev[RMA_DEGREE + 1], powers[RMA_DEGREE + 1][RMA_DEGREE + 1];   /* nodes; values there to coefficients */
+
+    int threads;
+    size_t scratch_at[RMA_BUFFERS]; /* bytes: where each buffer of a thread begins */
+    size_t scratch_bytes;           /* of a thread */
+    void *scratch;                  /* [threads] */
+    void *filter;                   /* complex [band]: conj(replica)/energy */
+    void *data;                     /* [period][receivers][row]: spectra, vectors of re and im in turn */
+    void *apodization;              /* real [length]: 1/transform of the Stolt kernel, 1/length included */
+    void *kernel;                   /* real [RMA_INTERVALS + 2][taps] of the Stolt interpolation */
+    void *focused;                  /* complex [rows][columns]: columns = wavenumbers rounded up to RMA_TILE */
+    size_t columns;
+    void *range_forward, *range_inverse, *azimuth_forward;
+};
+
+static inline double rma_frequency(const struct rma *rma, int bin)
+{
+    return rma->setting.fc + (rma->band_first + bin) * rma->fs / rma->length;
+}
+
+/* Correction of receiver m at range r, in cycles: -(phi + r K)/2 pi. */
+double rma_correction(const struct rma *rma, int receiver, double r, double frequency, double nu);
+struct rma_line rma_line(const struct rma *rma, int q);
+/* Fit the correction at `r` less the one at `less` (0: nothing is taken off) for all groups; returns their number. */
+int rma_ramps(const struct rma *rma, const struct rma_line *line, double r, double less, struct rma_ramp *ramps);
+/* Range of a block's centre, m. */
+double rma_block_range(const struct rma *rma, int block);
+
+/* ---- rma_transform.c ---- */
+struct rma_transform {
+    enum status (*plan)(struct rma *rma);       /* memory, tables and FFT plans */
+    void (*destroy)(struct rma *rma);           /* accepts what `plan` left unfinished */
+    void (*compress)(const struct rma *rma, const void *samples);
+    void (*spread)(const struct rma *rma);
+    void (*inverse)(const struct rma *rma, int patch, void *pixels);
+};
+extern const struct rma_transform rma_transform_float, rma_transform_double;
+
+/* ---- rma_column.c ---- */
+enum rma_stage { RMA_BULK, RMA_DIFFERENTIAL, RMA_RECONSTRUCT, RMA_STOLT, RMA_FOCUS, RMA_STAGES };
+/* Wavenumbers [q, q + RMA_TILE) of all rows into `focused`; seconds of each stage are added. */
+typedef void rma_column_function(const struct rma *rma, int thread, int q, double seconds[RMA_STAGES]);
+rma_column_function rma_column_float_baseline, rma_column_double_baseline;
+rma_column_function rma_column_float_v3, rma_column_double_v3;
+rma_column_function rma_column_float_v4, rma_column_double_v4;
+
+#endif

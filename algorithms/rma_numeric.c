@@ -1,0 +1,33 @@
+/* Range migration with the exact spectrum: the chain of rma_lbf, but the phase of each pair is found numerically, by
+   Newton's method on the exact delay (LBF21 Eqs. (8) and (9), which uses bisection):
+
+       phi = -2 pi (F tau(u) + nu u),   F tau'(u) = -nu
+
+   Error: none of its own; what is left comes from the method of stationary phase and from the width of the blocks. */
+#include "rma.h"
+
+static const struct param params[] = {
+    RMA_PARAMS,
+    {.name = NULL},
+};
+
+static enum status plan(const struct problem *problem, const void *options, void **plan)
+{
+    static const struct rma_method method = {
+        .name = "rma_numeric", .spectrum = spectrum_exact,
+        .source = "LBF21 Eq. (20)", .range = {2, 2}, .azimuth = {1, 1}, .products = {2, 2}, .interpolations = 1,
+    };
+    return rma_plan(problem, &method, options, plan);
+}
+
+const struct algorithm rma_numeric = {
+    .name = "rma_numeric",
+    .summary = "range migration with the exact spectrum, found numerically",
+    .reference = "LBF21 Eqs. (8) and (9), section IV",
+    .options_size = sizeof(struct rma_options),
+    .params = params,
+    .plan = plan,
+    .execute = rma_execute,
+    .work = rma_work,
+    .destroy = rma_destroy,
+};

@@ -1,0 +1,32 @@
+/* Range migration after reference range history. The method itself (LBF21 reference [22]) was not available; this is a
+   working definition: the abeam delay of each receiver, exact and for each range, less that of the reference receiver
+   M/2, corrected together with the PCA phase of the reference receiver (spectrum.h).
+
+   Error: that of PCA, as both take targets to be abeam; less only where d^4/r^3 counts. */
+#include "rma.h"
+
+static const struct param params[] = {
+    RMA_PARAMS,
+    {.name = NULL},
+};
+
+static enum status plan(const struct problem *problem, const void *options, void **plan)
+{
+    static const struct rma_method method = {
+        .name = "rma_wu", .spectrum = spectrum_wu,
+        .source = "LBF21 Eq. (22)", .range = {4, 2}, .azimuth = {0, 2}, .products = {2, 2}, .interpolations = 1,
+    };
+    return rma_plan(problem, &method, options, plan);
+}
+
+const struct algorithm rma_wu = {
+    .name = "rma_wu",
+    .summary = "range migration after reference range history (a working definition of Wu's method)",
+    .reference = "LBF21 [22], section IV",
+    .options_size = sizeof(struct rma_options),
+    .params = params,
+    .plan = plan,
+    .execute = rma_execute,
+    .work = rma_work,
+    .destroy = rma_destroy,
+};

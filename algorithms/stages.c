@@ -1,0 +1,31 @@
+/* The clock and the stage times of algorithm.h. */
+#include <string.h>
+#include <time.h>
+
+#include "algorithm.h"
+
+double seconds_now(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+void stages_begin(struct stages *stages)
+{
+    *stages = (struct stages){.mark = seconds_now()};
+}
+
+void stages_end(struct stages *stages, const char *name)
+{
+    double now = seconds_now(), seconds = now - stages->mark;
+    int last = (int)(sizeof stages->stage / sizeof stages->stage[0]) - 1, i = 0;
+    stages->mark = now;
+    while (i < stages->count && strcmp(stages->stage[i].name, name) != 0)
+        i++;
+    if (i > last)
+        i = last;                   /* a contributor with more stages sees the rest summed in the last one */
+    else if (i == stages->count)
+        stages->stage[stages->count++].name = name;
+    stages->stage[i].seconds += seconds;
+}

@@ -1,0 +1,12 @@
+/* The control: the plainest possible back projection, timed in every run so that machines and noise divide out. */
+#ifndef SASBENCH_CONTROL_H
+#define SASBENCH_CONTROL_H
+
+#include "../algorithms/algorithm.h"
+
+/* Seconds that one pixel-pulse pair takes the control loop: nearest neighbour, one pair at a time, delay by double
+   square roots, phase by libm's sin and cos, float sums, one thread, compiled with -O2 and without vectorisation. Timed
+   over about a million pairs spread evenly over the problem (some 30 ms). `echoes`: float samples, read as they are. */
+double control_seconds_per_pair(const struct problem *problem, const struct echoes *echoes);
+
+#endif

@@ -1,0 +1,145 @@
+/* Image grids: parsing, checks, and whether a grid meets any record. */
+#include <errno.h>
+#include <float.h>
+#include <limits.h>
+#include <locale.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "../algorithms/delay.h"
+#include "scene.h"
+
+#define BYTES_MAX 0x1p40            /* of a patch in double */
+
+/* One "first:step:count", ended by `end`; NULL if it is not one. */
+static const char *axis_parse(const char *text, char end, double *first, double *step, int *count)
+{
+    char *rest;
+    *first = strtod(text, &rest);
+    if (rest == text || *rest != ':') {
+        return NULL;
+    }
+    text = rest + 1;
+    *step = strtod(text, &rest);
+    if (rest == text || *rest != ':') {
+        return NULL;
+    }
+    text = rest + 1;
+    errno = 0;
+    long number = strtol(text, &rest, 10);
+    if (rest == text || *rest != end || errno == ERANGE || number < 1 || number > INT_MAX) {
+        return NULL;
+    }
+    *count = (int)number;
+    return rest + (end != '\0');
+}
+
+enum status grid_parse(const char *text, struct grid *grid)
+{
+    locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    if (!c_locale) {
+        return status_set(STATUS_FAILED, "out of memory for the grid");
+    }
+    locale_t before = uselocale(c_locale);
+    const char *rest = axis_parse(text, ',', &grid->x_first, &grid->x_step, &grid->x_count);
+    rest = rest ? axis_parse(rest, '\0', &grid->r_first, &grid->r_step, &grid->r_count) : NULL;
+    uselocale(before);
+    freelocale(c_locale);
+    return rest ? grid_check(grid, "grid")
+                : status_set(STATUS_INVALID, "grid '%.200s': must be xmin:xstep:xcount,rmin:rstep:rcount, lengths in "
+                             "m and counts from 1 to %d", text, INT_MAX);
+}
+
+enum status grid_check(const struct grid *grid, const char *place)
+{
+    const struct {
+        const char *name;
+        double first, step;
+        int count;
+    } axes[] = {{"x", grid->x_first, grid->x_step, grid->x_count}, {"r", grid->r_first, grid->r_step, grid->r_count}};
+    for (int i = 0; i < 2; i++) {
+        const char *name = axes[i].name;
+        double first = axes[i].first, step = axes[i].step, last = first + (axes[i].count - 1.0) * step;
+        if (axes[i].count < 1) {
+            return status_set(STATUS_INVALID, "%s: grid has %d pixels along %s, must be at least 1", place,
+                              axes[i].count, name);
+        }
+        if (!(step > 0 && step <= COORDINATE_MAX_M)) {
+            return status_set(STATUS_INVALID, "%s: grid step along %s is %g m, must be > 0 and <= %g m", place, name,
+                              step, COORDINATE_MAX_M);
+        }
+        if (!(first >= -COORDINATE_MAX_M && last <= COORDINATE_MAX_M)) {
+            return status_set(STATUS_INVALID, "%s: grid along %s spans %g to %g m, must stay within +-%g m", place,
+                              name, first, last, COORDINATE_MAX_M);
+        }
+        if (!(fmax(fabs(first), fabs(last)) * 4 * DBL_EPSILON < step)) {
+            return status_set(STATUS_INVALID, "%s: grid step along %s is %g m, must be > %g m for pixels at %g m to "
+                              "differ", place, name, step, fmax(fabs(first), fabs(last)) * 4 * DBL_EPSILON, last);
+        }
+    }
+    double pixels = (double)grid->x_count * grid->r_count, most = BYTES_MAX / sizeof(double complex);
+    if (!(pixels <= most)) {
+        return status_set(STATUS_INVALID, "%s: grid has %d x %d pixels, must be at most %.10g", place, grid->x_count,
+                          grid->r_count, most);
+    }
+    return STATUS_OK;
+}
+
+/* One pair and one patch; the delays met on the way are kept for the message. */
+struct search {
+    const struct acquisition *acquisition;
+    const struct grid *grid;
+    int ping;
+    struct vector rx;
+    double shortest_s, longest_s;
+};
+
+/* Does a pixel of rows i0..i1 and columns j0..j1 meet the record? Exact: a block is given up only when no delay in it
+   can, because |grad tau| <= 2/(c - |v|) bounds how far they differ from the delay of its middle. */
+static bool block_meets(struct search *search, int i0, int i1, int j0, int j1)
+{
+    const struct acquisition *a = search->acquisition;
+    const struct grid *grid = search->grid;
+    int i = i0 + (i1 - i0) / 2, j = j0 + (j1 - j0) / 2;
+    struct vector p = {grid->x_first + j * grid->x_step, grid->r_first + i * grid->r_step, 0};
+    struct vector v = a->velocity[search->ping];
+    double tau = delay_exact(a->tx[search->ping], search->rx, v, p, a->sound_speed);
+    double q = (tau - a->t0[search->ping]) * a->fs, last = a->samples - 1;
+    search->shortest_s = fmin(search->shortest_s, tau);
+    search->longest_s = fmax(search->longest_s, tau);
+    if (q >= 0 && q <= last) {
+        return true;
+    }
+    double high = (i1 - i) * grid->r_step, wide = (j1 - j) * grid->x_step;  /* the middle is rounded down */
+    double slope = 2 / (a->sound_speed - sqrt(v.x * v.x + v.y * v.y + v.z * v.z));
+    double reach = hypot(high, wide) * slope * a->fs * (1 + 1e-9) + 1e-6;
+    if ((i0 == i1 && j0 == j1) || !(q + reach >= 0 && q - reach <= last)) {
+        return false;
+    }
+    return high > wide ? block_meets(search, i0, i, j0, j1) || block_meets(search, i + 1, i1, j0, j1)
+                       : block_meets(search, i0, i1, j0, j) || block_meets(search, i0, i1, j + 1, j1);
+}
+
+enum status grid_meets_records(const struct acquisition *acquisition, int patch_count, const struct grid *patches,
+                               const char *place)
+{
+    const struct acquisition *a = acquisition;
+    double first_s = INFINITY, last_s = -INFINITY, shortest_s = INFINITY, longest_s = -INFINITY;
+    for (int p = 0; p < a->pings; p++) {
+        first_s = fmin(first_s, a->t0[p]);
+        last_s = fmax(last_s, a->t0[p] + (a->samples - 1) / a->fs);
+        for (int m = 0; m < a->receivers; m++) {
+            for (int k = 0; k < patch_count; k++) {
+                struct search search = {a, &patches[k], p, a->rx[(size_t)p * (size_t)a->receivers + (size_t)m],
+                                        shortest_s, longest_s};
+                if (block_meets(&search, 0, patches[k].r_count - 1, 0, patches[k].x_count - 1)) {
+                    return STATUS_OK;
+                }
+                shortest_s = search.shortest_s;
+                longest_s = search.longest_s;
+            }
+        }
+    }
+    return status_set(STATUS_INVALID, "%s: no pixel meets any record: delays of about %.6g to %.6g s, must lie in "
+                      "the records' %.6g to %.6g s after emission", place, shortest_s, longest_s, first_s, last_s);
+}

@@ -1,0 +1,124 @@
+/* The commands `simulate` and `image`. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "echo_data.h"
+#include "matfile.h"
+#include "simulate.h"
+#include "task.h"
+
+enum status command_simulate(const struct task *task)
+{
+    struct scene scene;
+    struct echoes echoes;
+    if (!task->output)
+        return status_set(STATUS_INVALID, "simulate: -o FILE.mat is missing");
+    enum status status = scene_load(task->names[0], SCENE_DIRECTORY, &scene);
+    if (status != STATUS_OK)
+        return status;
+    status = scene_simulate(&scene, &echoes);
+    if (status == STATUS_OK) {
+        status = echo_file_write(task->output, &echoes, scene.description);
+        echoes_free(&echoes);
+    }
+    scene_free(&scene);
+    return status;
+}
+
+/* Echoes of a scene or of a file, with what must outlive them. */
+struct source {
+    struct scene scene;                 /* zeroed with --echoes */
+    struct acquisition recorded;        /* zeroed with --scene */
+    struct echoes echoes;               /* double */
+};
+
+static void source_free(struct source *source)
+{
+    echoes_free(&source->echoes);
+    acquisition_free(&source->recorded);
+    scene_free(&source->scene);
+}
+
+static enum status source_open(const struct task *task, struct source *source)
+{
+    *source = (struct source){0};
+    if (task->echoes)
+        return echo_file_read(task->echoes, &source->recorded, &source->echoes);
+    struct scene *scene = &source->scene;
+    enum status status = scene_load(task->scene, SCENE_DIRECTORY, scene);
+    return status == STATUS_OK ? scene_simulate(scene, &source->echoes) : status;
+}
+
+static enum status form_image(const struct spec *spec, const struct problem *problem, const struct echoes *from,
+                              struct image *image)
+{
+    struct echoes echoes;
+    struct stages stages;
+    void *plan = NULL;
+    enum status status = spec->algorithm->plan(problem, spec->options, &plan);
+    if (status != STATUS_OK)
+        return status;
+    status = echoes_convert(from, spec->precision, &echoes);
+    if (status == STATUS_OK) {
+        status = image_allocate(problem->patch_count, problem->patches, spec->precision, image);
+        if (status == STATUS_OK) {
+            stages_begin(&stages);
+            status = spec->algorithm->execute(plan, &echoes, image, &stages);
+            if (status == STATUS_OK && !image_is_finite(image))
+                status = status_set(STATUS_FAILED, "the image holds values that are not finite: the echoes are too large "
+                                    "for precision=%s", precision_name(spec->precision));
+            if (status != STATUS_OK)
+                image_free(image);
+        }
+        echoes_free(&echoes);
+    }
+    spec->algorithm->destroy(plan);
+    return status;
+}
+
+static enum status check_usage(const struct task *task)
+{
+    if (!task->scene == !task->echoes)
+        return status_set(STATUS_INVALID, "image: exactly one of --scene SCENE and --echoes FILE.mat is needed");
+    if (task->echoes && !task->grid)
+        return status_set(STATUS_INVALID, "image: --echoes %s needs --grid xmin:xstep:xcount,rmin:rstep:rcount",
+                          task->echoes);
+    if (task->spec_count != 1)
+        return status_set(STATUS_INVALID, "image: %d --algorithm SPEC given, exactly one is needed",
+                          task->spec_count);
+    if (!task->output)
+        return status_set(STATUS_INVALID, "image: -o FILE.mat is missing");
+    return STATUS_OK;
+}
+
+enum status command_image(const struct task *task)
+{
+    struct grid grid;
+    struct source source;
+    struct image image;
+    enum status status = check_usage(task);
+    if (status == STATUS_OK && task->grid)
+        status = grid_parse(task->grid, &grid);
+    if (status != STATUS_OK)
+        return status;
+    status = source_open(task, &source);
+    if (status == STATUS_OK) {
+        const struct spec *spec = &task->specs[0];
+        struct problem problem = {source.echoes.acquisition, source.scene.patch_count, source.scene.patches,
+                                  spec->precision};
+        if (task->grid) {
+            problem.patch_count = 1;
+            problem.patches = &grid;
+            status = grid_meets_records(problem.acquisition, 1, &grid, task->grid);
+        }
+        if (status == STATUS_OK)
+            status = form_image(spec, &problem, &source.echoes, &image);
+        if (status == STATUS_OK) {
+            status = image_file_write(task->output, &image, spec->algorithm->name, spec->text,
+                                      task->scene ? source.scene.name : task->echoes);
+            image_free(&image);
+        }
+    }
+    source_free(&source);
+    return status;
+}

@@ -1,0 +1,180 @@
+/* The command line: one table of commands, one of options. */
+#include <getopt.h>
+#include <limits.h>
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "task.h"
+
+struct command {
+    const char *name, *arguments, *summary;
+    const char *options;                /* the letters of the options it takes */
+    int names_least, names_most;
+    enum status (*run)(const struct task *task);
+};
+
+static const struct command commands[] = {
+    {"list", "", "the algorithms, with summary, reference and traits", "", 0, 0, command_list},
+    {"info", "NAME", "one algorithm's parameters, with default, bounds and sweep", "", 1, 1, command_info},
+    {"simulate", "SCENE -o FILE.mat", "write a scene's echoes", "ot", 1, 1, command_simulate},
+    {"image", "(--scene SCENE | --echoes FILE.mat --grid GRID) --algorithm SPEC -o FILE.mat", "form one image",
+     "oseagt", 0, 0, command_image},
+    {"run", "[SCENE ...] [--algorithm SPEC ...] [-o DIR]", "compare algorithms on scenes", "oat", 0, INT_MAX,
+     command_run},
+};
+
+static const struct option long_options[] = {
+    {"output", required_argument, NULL, 'o'}, {"scene", required_argument, NULL, 's'},
+    {"echoes", required_argument, NULL, 'e'}, {"algorithm", required_argument, NULL, 'a'},
+    {"grid", required_argument, NULL, 'g'},   {"threads", required_argument, NULL, 't'},
+    {"help", no_argument, NULL, 'h'},         {NULL, 0, NULL, 0},
+};
+
+static const char *const option_texts[] = {
+    "-o, --output PATH     where the result goes",
+    "-s, --scene SCENE     a path, or a name below scenes/ without .cfg",
+    "-e, --echoes FILE     recorded echoes in MATLAB format",
+    "-a, --algorithm SPEC  NAME or NAME:key=value,...; every algorithm takes precision=float|double",
+    "-g, --grid GRID       xmin:xstep:xcount,rmin:rstep:rcount in metres",
+    "-t, --threads N       OpenMP threads, 1 to 1024",
+};
+
+static void help(void)
+{
+    printf("sasbench: imaging algorithms for multi-receiver synthetic aperture sonar, compared on identical "
+           "echoes\n\nUsage: sasbench COMMAND [OPTIONS]\n\n");
+    for (size_t k = 0; k < sizeof commands / sizeof *commands; k++)
+        printf("  %s %s\n        %s\n", commands[k].name, commands[k].arguments, commands[k].summary);
+    printf("  test\n        verify this build (of the ./sasbench script)\n\nOptions:\n");
+    for (size_t k = 0; k < sizeof option_texts / sizeof *option_texts; k++)
+        printf("  %s\n", option_texts[k]);
+    printf("\nExit status: 0 done, 1 a run failed, 2 bad usage or bad input.\n");
+}
+
+static enum status threads_parse(const char *text)
+{
+    char *end;
+    long threads = strtol(text, &end, 10);
+    if (end == text || *end || threads < 1 || threads > 1024)
+        return status_set(STATUS_INVALID, "--threads is '%s', must be a whole number from 1 to 1024", text);
+    omp_set_num_threads((int)threads);
+    return STATUS_OK;
+}
+
+static enum status option_unknown(const struct command *command, const char *option, const char *fault)
+{
+    char accepted[160] = "";
+    for (const struct option *o = long_options; o->name; o++)
+        if (strchr(command->options, o->val)) {
+            size_t used = strlen(accepted);
+            snprintf(accepted + used, sizeof accepted - used, "%s--%s", used ? ", " : "", o->name);
+        }
+    return status_set(STATUS_INVALID, "%s: option '%s' %s; accepted: %s", command->name, option, fault,
+                      *accepted ? accepted : "none");
+}
+
+static enum status spec_add(struct task *task, const char *text)
+{
+    struct spec *specs = realloc(task->specs, ((size_t)task->spec_count + 1) * sizeof *specs);
+    if (!specs)
+        return status_set(STATUS_FAILED, "no memory for --algorithm %s", text);
+    task->specs = specs;
+    enum status status = spec_parse(text, &specs[task->spec_count]);
+    task->spec_count += status == STATUS_OK;
+    return status;
+}
+
+/* Arguments after the command's name. */
+static enum status parse(const struct command *command, int argc, char **argv, struct task *task, bool *helped)
+{
+    const char *threads = NULL;
+    const struct { int letter; const char **field; } texts[] = {
+        {'o', &task->output}, {'s', &task->scene}, {'e', &task->echoes}, {'g', &task->grid}, {'t', &threads}};
+    enum status status = STATUS_OK;
+    opterr = 0;
+    for (int letter; status == STATUS_OK && (letter = getopt_long(argc, argv, ":o:s:e:a:g:t:h", long_options, NULL)) != -1;) {
+        const char *word = argv[optind - 1];
+        if (letter == 'h') {
+            *helped = true;
+            return STATUS_OK;
+        }
+        if (letter == ':')
+            return option_unknown(command, word, "needs a value");
+        if (letter == '?' || !strchr(command->options, letter)) {
+            char given[3] = {'-', (char)(letter == '?' ? optopt : letter), 0};
+            return option_unknown(command, optopt || letter != '?' ? given : word, "is not one of this command");
+        }
+        for (size_t k = 0; k < sizeof texts / sizeof *texts; k++)
+            if (texts[k].letter == letter) {
+                if (*texts[k].field)
+                    return option_unknown(command, (char[]){'-', (char)letter, 0}, "is given twice");
+                *texts[k].field = optarg;
+            }
+        if (letter == 'a')
+            status = spec_add(task, optarg);
+    }
+    task->names = (const char *const *)argv + optind;
+    task->name_count = argc - optind;
+    if (status == STATUS_OK && threads)
+        status = threads_parse(threads);
+    if (status == STATUS_OK && task->name_count < command->names_least)
+        return status_set(STATUS_INVALID, "%s: an argument is missing: sasbench %s %s", command->name, command->name,
+                          command->arguments);
+    if (status == STATUS_OK && task->name_count > command->names_most)
+        return status_set(STATUS_INVALID, "%s: '%s' is one argument too many: sasbench %s %s", command->name,
+                          task->names[command->names_most], command->name, command->arguments);
+    return status;
+}
+
+static enum status command_find(const char *name, const struct command **found)
+{
+    char names[160] = "";
+    for (size_t k = 0; k < sizeof commands / sizeof *commands; k++) {
+        if (strcmp(commands[k].name, name) == 0) {
+            *found = &commands[k];
+            return STATUS_OK;
+        }
+        size_t used = strlen(names);
+        snprintf(names + used, sizeof names - used, "%s, ", commands[k].name);
+    }
+    return status_set(STATUS_INVALID, "'%s' is not a command; accepted: %stest, --help", name, names);
+}
+
+/* One line, whatever the arguments that it quotes hold. */
+static void print_error(const char *message)
+{
+    fputs("sasbench: ", stderr);
+    for (; *message; message++)
+        fputc((unsigned char)*message < ' ' ? '?' : *message, stderr);
+    fputc('\n', stderr);
+}
+
+int main(int argc, char **argv)
+{
+    const char *name = argc < 2 ? "" : argv[1];
+    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0) {
+        help();
+        return STATUS_OK;
+    }
+    const struct command *command = NULL;
+    struct task task = {0};
+    bool helped = false;
+    enum status status = command_find(name, &command);
+    if (status == STATUS_OK)
+        status = parse(command, argc - 1, argv + 1, &task, &helped);
+    if (status == STATUS_OK && helped)
+        help();
+    else if (status == STATUS_OK)
+        status = command->run(&task);
+    if (status == STATUS_OK && (fflush(stdout) != 0 || ferror(stdout)))
+        status = status_set(STATUS_FAILED, "standard output cannot be written");
+    for (int k = 0; k < task.spec_count; k++)
+        spec_free(&task.specs[k]);
+    free(task.specs);
+    if (status == STATUS_OK)
+        return 0;
+    print_error(status_message());
+    return status == STATUS_FAILED ? 1 : 2;
+}

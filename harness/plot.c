@@ -1,0 +1,379 @@
+/* Pictures through gnuplot: data files and a short preamble of variables go to a temporary folder, then one of the
+   scripts in plots/ draws them. The PNG is drawn beside its place and renamed when whole. */
+#include "plot.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <math.h>
+#include <spawn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "echo_data.h"
+
+enum {
+    PANELS_MAX = 8,             /* more do not fit a picture */
+    PIXELS_MAX = 900            /* of a panel, along each axis: about what the screen shows */
+};
+static const double floor_db = -200;    /* stands for zero power, far below what is shown */
+
+extern char **environ;
+
+/* One picture in the making. */
+struct plot {
+    char directory[PATH_MAX];   /* temporary, with everything in it */
+    char output[PATH_MAX];      /* the PNG until it is whole */
+    const char *path;           /* the PNG */
+    FILE *preamble;             /* sets the script's variables */
+};
+
+static void file_path(const struct plot *plot, const char *name, char path[PATH_MAX + 32])
+{
+    snprintf(path, PATH_MAX + 32, "%s/%.30s", plot->directory, name);
+}
+
+static enum status file_failed(const char *path)
+{
+    return status_set(STATUS_FAILED, "plot: cannot write '%s': %s", path, strerror(errno));
+}
+
+/* A gnuplot string: nothing but the single quote is special between single quotes. */
+static void text_write(FILE *file, const char *text)
+{
+    fputc('\'', file);
+    for (; *text; text++) {
+        if (*text == '\'')
+            fputc('\'', file);
+        fputc((unsigned char)*text < ' ' ? ' ' : *text, file);
+    }
+    fputc('\'', file);
+}
+
+static void variable_write(FILE *file, const char *name, const char *text)
+{
+    fprintf(file, "%s = ", name);
+    text_write(file, text);
+    fputc('\n', file);
+}
+
+static void array_begin(FILE *file, const char *name, int count)
+{
+    fprintf(file, "array %s[%d]\n", name, count);
+}
+
+static void array_write(FILE *file, const char *name, int index, const char *text)
+{
+    fprintf(file, "%s[%d] = ", name, index + 1);
+    text_write(file, text);
+    fputc('\n', file);
+}
+
+static enum status plot_begin(struct plot *plot, const char *path)
+{
+    const char *temporary = getenv("TMPDIR");
+    if (!temporary || !*temporary)
+        temporary = "/tmp";
+    *plot = (struct plot){.path = path};
+
+    /* gnuplot takes an output that begins with '|' for a command. */
+    int length = snprintf(plot->output, sizeof plot->output, "%s%s.%ld.tmp", *path == '/' ? "" : "./", path,
+                          (long)getpid());
+    char directory[PATH_MAX];
+    int directory_length = snprintf(directory, sizeof directory, "%s/sasbench-plot-XXXXXX", temporary);
+    if (length >= (int)sizeof plot->output || directory_length >= (int)sizeof directory)
+        return status_set(STATUS_FAILED, "plot: the path '%.200s' or '%.200s' is too long", path, temporary);
+    if (!mkdtemp(directory))
+        return file_failed(directory);
+    memcpy(plot->directory, directory, sizeof directory);
+
+    char name[PATH_MAX + 32];
+    file_path(plot, "run.gp", name);
+    plot->preamble = fopen(name, "w");
+    return plot->preamble ? STATUS_OK : file_failed(name);
+}
+
+/* Removes what is left; accepts a plot whose beginning failed. */
+static void plot_end(struct plot *plot)
+{
+    if (plot->preamble)
+        fclose(plot->preamble);
+    unlink(plot->output);
+    DIR *directory = *plot->directory ? opendir(plot->directory) : NULL;
+    if (!directory)
+        return;
+    for (struct dirent *entry; (entry = readdir(directory));)
+        unlinkat(dirfd(directory), entry->d_name, 0);
+    closedir(directory);
+    rmdir(plot->directory);
+}
+
+/* The first line that gnuplot printed and that says something, for the message. */
+static void complaint_read(const char *log, char *text, size_t size)
+{
+    snprintf(text, size, "no message");
+    FILE *file = fopen(log, "r");
+    if (!file)
+        return;
+    char line[512];
+    while (fgets(line, sizeof line, file)) {
+        line[strcspn(line, "\r\n")] = '\0';
+        const char *start = line + strspn(line, " \t^");
+        if (*start) {
+            snprintf(text, size, "%s", start);
+            break;
+        }
+    }
+    fclose(file);
+}
+
+/* Run gnuplot on the preamble; what it prints goes to `log`. *exit_status is as waitpid gives it. */
+static enum status gnuplot_run(const char *preamble, const char *log, int *exit_status)
+{
+    /* --default-settings: the user's own gnuplot start-up files stay out. */
+    char *arguments[] = {"gnuplot", "--default-settings", (char *)preamble, NULL};
+    posix_spawn_file_actions_t actions;
+    int error = posix_spawn_file_actions_init(&actions);
+    if (error)
+        return status_set(STATUS_FAILED, "plot: cannot run gnuplot: %s", strerror(error));
+    pid_t child;
+    error = posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    if (!error)
+        error = posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log, O_WRONLY | O_CREAT, 0600);
+    if (!error)
+        error = posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+    if (!error)
+        error = posix_spawnp(&child, "gnuplot", &actions, NULL, arguments, environ);
+    posix_spawn_file_actions_destroy(&actions);
+    if (error)
+        return status_set(STATUS_FAILED, "plot: cannot run gnuplot (Debian: gnuplot-nox): %s", strerror(error));
+    while (waitpid(child, exit_status, 0) < 0)
+        if (errno != EINTR)
+            return status_set(STATUS_FAILED, "plot: cannot wait for gnuplot: %s", strerror(errno));
+    return STATUS_OK;
+}
+
+/* Draw with plots_directory/script, and put the picture in its place. */
+static enum status plot_draw(struct plot *plot, const char *plots_directory, const char *script)
+{
+    char preamble[PATH_MAX + 32], log[PATH_MAX + 32];
+    file_path(plot, "run.gp", preamble);
+    file_path(plot, "log", log);
+    variable_write(plot->preamble, "output", plot->output);
+    variable_write(plot->preamble, "plots", plots_directory);
+    fprintf(plot->preamble, "load plots.'/%s'\n", script);
+    bool written = !ferror(plot->preamble);
+    written &= fclose(plot->preamble) == 0;
+    plot->preamble = NULL;
+    if (!written)
+        return file_failed(preamble);
+
+    int exit_status;
+    enum status status = gnuplot_run(preamble, log, &exit_status);
+    if (status != STATUS_OK)
+        return status;
+    if (exit_status != 0) {
+        char complaint[400];
+        complaint_read(log, complaint, sizeof complaint);
+        return status_set(STATUS_FAILED, "plot: gnuplot failed on '%s' with %s/%s: %s", plot->path, plots_directory,
+                          script, complaint);
+    }
+    return rename(plot->output, plot->path) == 0 ? STATUS_OK : file_failed(plot->path);
+}
+
+/* One axis of a patch as it is drawn: blocks of pixels. */
+struct drawn_axis {
+    int count, pixels, block;   /* drawn values; pixels of the image; pixels of a drawn value */
+    double first, step;         /* m */
+};
+
+static struct drawn_axis axis_reduce(double first, double step, int pixels)
+{
+    int block = (pixels - 1) / PIXELS_MAX + 1;
+    struct drawn_axis axis = {
+        .count = (pixels - 1) / block + 1, .pixels = pixels, .block = block,
+        .first = first + 0.5 * (block - 1) * step, .step = block * step,
+    };
+    if (axis.count == 1) {
+        /* gnuplot demands two values: the one pixel as two halves. */
+        axis.count = 2;
+        axis.first -= 0.25 * axis.step;
+        axis.step *= 0.5;
+    }
+    return axis;
+}
+
+/* First pixel of a drawn value. */
+static int axis_pixel(const struct drawn_axis *axis, int k)
+{
+    return axis->pixels == 1 ? 0 : k * axis->block;
+}
+
+static double power(double complex z)
+{
+    return creal(z) * creal(z) + cimag(z) * cimag(z);
+}
+
+/* Largest power of the whole image, and how many pixels are not finite. */
+static double image_peak(const struct image *image, long *not_finite)
+{
+    double peak = 0;
+    *not_finite = 0;
+    for (int p = 0; p < image->patch_count; p++)
+        for (int i = 0; i < image->patches[p].r_count; i++)
+            for (int j = 0; j < image->patches[p].x_count; j++) {
+                double value = power(image_pixel(image, p, i, j));
+                if (isfinite(value))
+                    peak = fmax(peak, value);
+                else
+                    ++*not_finite;
+            }
+    return peak;
+}
+
+/* The brightest finite pixel of a block in dB; NAN if there is none. */
+static float block_db(const struct image *image, int patch, const struct drawn_axis *r, int i,
+                      const struct drawn_axis *x, int j, double peak)
+{
+    double largest = NAN;
+    int i_first = axis_pixel(r, i), j_first = axis_pixel(x, j);
+    for (int m = i_first; m < i_first + r->block && m < r->pixels; m++)
+        for (int n = j_first; n < j_first + x->block && n < x->pixels; n++) {
+            double value = power(image_pixel(image, patch, m, n));
+            if (isfinite(value))
+                largest = fmax(largest, value);
+        }
+    if (isnan(largest))
+        return NAN;
+    return largest > 0 ? (float)fmax(10 * log10(largest / peak), floor_db) : (float)floor_db;
+}
+
+/* One patch as gnuplot's `binary matrix`. */
+static enum status panel_write(const char *path, const struct image *image, int patch, double peak)
+{
+    const struct grid *grid = &image->patches[patch];
+    struct drawn_axis x = axis_reduce(grid->x_first, grid->x_step, grid->x_count);
+    struct drawn_axis r = axis_reduce(grid->r_first, grid->r_step, grid->r_count);
+    FILE *file = fopen(path, "wb");
+    if (!file)
+        return file_failed(path);
+    float row[PIXELS_MAX + 1] = {(float)x.count};
+    for (int j = 0; j < x.count; j++)
+        row[j + 1] = (float)(x.first + j * x.step);
+    fwrite(row, sizeof *row, (size_t)x.count + 1, file);
+    for (int i = 0; i < r.count; i++) {
+        row[0] = (float)(r.first + i * r.step);
+        for (int j = 0; j < x.count; j++)
+            row[j + 1] = block_db(image, patch, &r, i, &x, j, peak);
+        fwrite(row, sizeof *row, (size_t)x.count + 1, file);
+    }
+    bool written = !ferror(file);
+    written &= fclose(file) == 0;
+    return written ? STATUS_OK : file_failed(path);
+}
+
+static enum status image_write(const struct plot *plot, const struct image *image, const char *title)
+{
+    long not_finite;
+    double peak = image_peak(image, &not_finite);
+    int shown = image->patch_count < PANELS_MAX ? image->patch_count : PANELS_MAX;
+    char notes[200] = "", full_title[600];
+    size_t length = 0;
+    if (!(peak > 0))
+        length += (size_t)snprintf(notes + length, sizeof notes - length, " (all zero)");
+    if (not_finite > 0)
+        length += (size_t)snprintf(notes + length, sizeof notes - length, " (%ld %s not finite)", not_finite,
+                                   not_finite == 1 ? "pixel" : "pixels");
+    if (shown < image->patch_count)
+        snprintf(notes + length, sizeof notes - length, " (first %d of %d patches)", shown, image->patch_count);
+    snprintf(full_title, sizeof full_title, "%.390s%s", title, notes);
+    variable_write(plot->preamble, "title", full_title);
+
+    array_begin(plot->preamble, "panels", shown);
+    for (int p = 0; p < shown; p++) {
+        char name[32], path[PATH_MAX + 32];
+        snprintf(name, sizeof name, "panel%d", p);
+        file_path(plot, name, path);
+        enum status status = panel_write(path, image, p, peak);
+        if (status != STATUS_OK)
+            return status;
+        array_write(plot->preamble, "panels", p, path);
+    }
+    return STATUS_OK;
+}
+
+enum status plot_image(const char *path, const char *plots_directory, const struct image *image, const char *title)
+{
+    struct plot plot;
+    enum status status = plot_begin(&plot, path);
+    if (status == STATUS_OK)
+        status = image_write(&plot, image, title);
+    if (status == STATUS_OK)
+        status = plot_draw(&plot, plots_directory, "image.gp");
+    plot_end(&plot);
+    return status;
+}
+
+static enum status lines_write(const struct plot *plot, const char *title, int panel_count,
+                               const char *const *panel_titles, int line_count, const struct slice_line *lines)
+{
+    int shown = panel_count < PANELS_MAX ? panel_count : PANELS_MAX;
+    char full_title[600], path[PATH_MAX + 32];
+    int length = snprintf(full_title, sizeof full_title, "%.500s", title);
+    if (shown < panel_count)
+        snprintf(full_title + length, sizeof full_title - (size_t)length, " (first %d of %d panels)", shown,
+                 panel_count);
+    file_path(plot, "slices", path);
+    variable_write(plot->preamble, "title", full_title);
+    variable_write(plot->preamble, "data", path);
+    array_begin(plot->preamble, "panels", shown);
+    for (int p = 0; p < shown; p++)
+        array_write(plot->preamble, "panels", p, panel_titles[p]);
+    array_begin(plot->preamble, "lines", line_count);
+    for (int l = 0; l < line_count; l++)
+        array_write(plot->preamble, "lines", l, lines[l].label);
+
+    FILE *file = fopen(path, "w");
+    if (!file)
+        return file_failed(path);
+    for (int b = 0; b < shown * line_count; b++) {
+        /* A block without a row would not count, and shift the ones behind it. */
+        fprintf(file, "0 NaN\n");
+        for (int k = 0; k < lines[b].count; k++)
+            fprintf(file, "%.9g %.6g\n", lines[b].position_m[k], fmax(lines[b].power_db[k], floor_db));
+        fprintf(file, "\n\n");
+    }
+    bool written = !ferror(file);
+    written &= fclose(file) == 0;
+    return written ? STATUS_OK : file_failed(path);
+}
+
+static enum status lines_draw(const char *path, const char *plots_directory, const char *script, const char *title,
+                              int panel_count, const char *const *panel_titles, int line_count,
+                              const struct slice_line *lines)
+{
+    struct plot plot;
+    enum status status = plot_begin(&plot, path);
+    if (status == STATUS_OK)
+        status = lines_write(&plot, title, panel_count, panel_titles, line_count, lines);
+    if (status == STATUS_OK)
+        status = plot_draw(&plot, plots_directory, script);
+    plot_end(&plot);
+    return status;
+}
+
+enum status plot_slices(const char *path, const char *plots_directory, const char *title, int panel_count,
+                        const char *const *panel_titles, int line_count, const struct slice_line *lines)
+{
+    return lines_draw(path, plots_directory, "slices.gp", title, panel_count, panel_titles, line_count, lines);
+}
+
+enum status plot_phase(const char *path, const char *plots_directory, const char *title, int panel_count,
+                       const char *const *panel_titles, int line_count, const struct slice_line *lines)
+{
+    return lines_draw(path, plots_directory, "phase.gp", title, panel_count, panel_titles, line_count, lines);
+}

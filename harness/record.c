@@ -1,0 +1,489 @@
+/* The results folder: two CSV files that are appended to row by row and taken up again after a cut. */
+#include "record.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "csv.h"
+
+#define METRIC(name, unit, title, better, absolute, relative) \
+    {#name, unit, title, better, absolute, relative, offsetof(struct measurement, name)}
+
+const struct metric metrics[] = {
+    METRIC(run_s, "s", "Run time", BETTER_LOWER, 0, 0.05),
+    METRIC(flops, "FLOP", "Operations", BETTER_LOWER, 0, 0),
+    METRIC(pairs, "pairs", "Pixel-pulse pairs", BETTER_NONE, 0, 0),
+    METRIC(bytes, "B", "Memory of the plan", BETTER_LOWER, 0, 0),
+    METRIC(error, "1", "Error", BETTER_LOWER, 1e-9, 0.02),
+    METRIC(error_gain, "1", "Error after one gain", BETTER_LOWER, 1e-9, 0.02),
+    METRIC(phase_rms_rad, "rad", "Phase error, rms", BETTER_LOWER, 1e-9, 0.02),
+    METRIC(width_m, "m", "-3 dB width", BETTER_LOWER, 0, 0.002),
+    METRIC(pslr_db, "dB", "PSLR", BETTER_LOWER, 0.02, 0),
+    METRIC(islr_db, "dB", "ISLR", BETTER_LOWER, 0.02, 0),
+    {.name = NULL},
+};
+
+/* One column: where the value lies in the row's struct. Header, writer and reader all come from these tables. */
+struct column {
+    const char *name;                   /* NULL ends the table */
+    enum { COLUMN_TEXT, COLUMN_INTEGER, COLUMN_REAL } type;
+    size_t offset;
+};
+
+#define M_TEXT(name) {#name, COLUMN_TEXT, offsetof(struct measurement, name)}
+#define M_INTEGER(name) {#name, COLUMN_INTEGER, offsetof(struct measurement, name)}
+#define M_REAL(name) {#name, COLUMN_REAL, offsetof(struct measurement, name)}
+#define T_TEXT(name) {#name, COLUMN_TEXT, offsetof(struct target_row, name)}
+#define T_INTEGER(name) {#name, COLUMN_INTEGER, offsetof(struct target_row, name)}
+#define T_REAL(name) {#name, COLUMN_REAL, offsetof(struct target_row, name)}
+
+/* Both tables begin with the columns that tell one measurement from another. */
+#define KEY_COLUMNS 4
+
+static const struct column measurement_columns[] = {
+    M_TEXT(scene), M_TEXT(algorithm), M_TEXT(options), M_TEXT(precision), M_INTEGER(threads), M_TEXT(engine),
+    M_TEXT(status), M_TEXT(reason), M_TEXT(skipped), M_REAL(plan_s), M_REAL(run_s), M_REAL(run_min_s),
+    M_INTEGER(runs), M_REAL(control_s), M_TEXT(stages), M_REAL(flops_published), M_REAL(flops), M_REAL(pairs),
+    M_REAL(bytes), M_REAL(error), M_REAL(error_gain), M_REAL(phase_rms_rad), M_REAL(width_m), M_REAL(pslr_db),
+    M_REAL(islr_db), {.name = NULL},
+};
+
+static const struct column target_columns[] = {
+    T_TEXT(scene), T_TEXT(algorithm), T_TEXT(options), T_TEXT(precision), T_INTEGER(target), T_TEXT(axis),
+    T_TEXT(definition), T_REAL(extent_m), T_REAL(position_error_m), T_REAL(phase_error_rad), T_REAL(width_m),
+    T_REAL(pslr_db), T_REAL(islr_db), {.name = NULL},
+};
+
+enum { SHEET_MEASUREMENTS, SHEET_TARGETS, SHEETS };
+
+static const struct sheet {
+    const char *file, *format;          /* the format is the first line: by it we know a file as ours */
+    const struct column *columns;
+} sheets[SHEETS] = {
+    {"measurements.csv", "sasbench measurements 1", measurement_columns},
+    {"targets.csv", "sasbench targets 1", target_columns},
+};
+
+static const struct {
+    const char *key;
+    size_t offset;
+} notes[] = {
+    {"machine", offsetof(struct provenance, machine)},     {"compiler", offsetof(struct provenance, compiler)},
+    {"flags", offsetof(struct provenance, flags)},         {"libraries", offsetof(struct provenance, libraries)},
+    {"commit", offsetof(struct provenance, commit)},       {"program", offsetof(struct provenance, program)},
+    {"date", offsetof(struct provenance, date)},
+};
+
+struct scene_hash {
+    char *scene;
+    uint64_t hash;
+};
+
+struct record {
+    struct provenance provenance;
+    char *paths[SHEETS];
+    FILE *files[SHEETS];                /* open for appending */
+    struct scene_hash *scenes;          /* content of every scene that has rows */
+    int scene_count;
+    struct csv earlier;                 /* measurements.csv as the earlier run left it; rows point into it */
+    struct measurement *rows;           /* [earlier.row_count] */
+    bool *dropped;                      /* [earlier.row_count] the scene's content has changed since */
+};
+
+/* --- Writing ------------------------------------------------------------------------------------------------- */
+
+static void row_write(FILE *file, const struct column *columns, const void *row)
+{
+    for (const struct column *column = columns; column->name; column++) {
+        const void *field = (const char *)row + column->offset;
+        if (column != columns)
+            fputc(',', file);
+        if (column->type == COLUMN_TEXT)
+            csv_write_text(file, *(const char *const *)field);
+        else if (column->type == COLUMN_REAL)
+            csv_write_number(file, *(const double *)field);
+        else if (*(const int *)field >= 0)
+            fprintf(file, "%d", *(const int *)field);
+    }
+    fputc('\n', file);
+}
+
+/* A comment is one line, whatever a name holds. */
+static void comment_write(FILE *file, const char *key, const char *name, const char *value)
+{
+    const char *parts[] = {"# ", key, name, ": ", value};
+    for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
+        for (const char *at = parts[k]; *at; at++)
+            fputc((unsigned char)*at < ' ' ? '?' : *at, file);
+    fputc('\n', file);
+}
+
+static void head_write(FILE *file, const struct record *record, const struct sheet *sheet)
+{
+    fprintf(file, "# %s\n", sheet->format);
+    for (size_t k = 0; k < sizeof notes / sizeof *notes; k++)
+        comment_write(file, notes[k].key, "", (const char *)&record->provenance + notes[k].offset);
+    fprintf(file, "# threads: %d\n", record->provenance.threads);
+    for (int k = 0; k < record->scene_count; k++) {
+        char hash[17];
+        snprintf(hash, sizeof hash, "%016" PRIx64, record->scenes[k].hash);
+        comment_write(file, "scene ", record->scenes[k].scene, hash);
+    }
+    for (const struct column *column = sheet->columns; column->name; column++)
+        fprintf(file, "%s%s", column == sheet->columns ? "" : ",", column->name);
+    fputc('\n', file);
+}
+
+static enum status flush_check(FILE *file, const char *path)
+{
+    if (fflush(file) != 0 || ferror(file))
+        return status_set(STATUS_FAILED, "%s: cannot be written: %s", path, strerror(errno));
+    return STATUS_OK;
+}
+
+static char *text_join(const char *a, const char *b)
+{
+    size_t size = strlen(a) + strlen(b) + 1;
+    char *joined = malloc(size);
+    if (joined)
+        snprintf(joined, size, "%s%s", a, b);
+    return joined;
+}
+
+static bool key_equal(const struct csv *a, int row_a, const struct csv *b, int row_b)
+{
+    for (int k = 0; k < KEY_COLUMNS; k++)
+        if (strcmp(csv_cell(a, row_a, k), csv_cell(b, row_b, k)) != 0)
+            return false;
+    return true;
+}
+
+static bool measurement_present(const struct csv *measurements, const struct csv *csv, int row)
+{
+    for (int k = 0; k < measurements->row_count; k++)
+        if (key_equal(measurements, k, csv, row))
+            return true;
+    return false;
+}
+
+/* One file anew from the rows of `old`, without those of `scene_except` (NULL: of none) and without rows of targets
+   whose measurement is missing, made beside the old file and renamed when whole. */
+static enum status sheet_write(const struct record *record, int sheet, const struct csv old[SHEETS],
+                               const char *scene_except)
+{
+    char *path = record->paths[sheet], *beside = text_join(path, ".part");
+    FILE *file = beside ? fopen(beside, "w") : NULL;
+    if (!file) {
+        enum status status = status_set(STATUS_INVALID, "%s: cannot be written: %s; name a folder that can", path,
+                                        strerror(errno));
+        free(beside);
+        return status;
+    }
+    head_write(file, record, &sheets[sheet]);
+    for (int row = 0; row < old[sheet].row_count; row++) {
+        if (scene_except && strcmp(csv_cell(&old[sheet], row, 0), scene_except) == 0)
+            continue;
+        if (!measurement_present(&old[SHEET_MEASUREMENTS], &old[sheet], row))
+            continue;
+        for (int k = 0; k < old[sheet].column_count; k++) {
+            if (k)
+                fputc(',', file);
+            csv_write_text(file, csv_cell(&old[sheet], row, k));
+        }
+        fputc('\n', file);
+    }
+    enum status status = flush_check(file, beside);
+    fclose(file);
+    if (!status && rename(beside, path) != 0)
+        status = status_set(STATUS_INVALID, "%s: cannot be replaced: %s", path, strerror(errno));
+    if (status)
+        remove(beside);
+    free(beside);
+    return status;
+}
+
+/* Both files anew. The measurements come first: a cut between the two leaves targets without a measurement, which the
+   next run drops. */
+static enum status record_rewrite(struct record *record, const struct csv old[SHEETS], const char *scene_except)
+{
+    for (int k = 0; k < SHEETS; k++) {
+        if (record->files[k])
+            fclose(record->files[k]);
+        record->files[k] = NULL;
+        enum status status = sheet_write(record, k, old, scene_except);
+        if (status)
+            return status;
+        record->files[k] = fopen(record->paths[k], "a");
+        if (!record->files[k])
+            return status_set(STATUS_INVALID, "%s: cannot be written: %s", record->paths[k], strerror(errno));
+    }
+    return STATUS_OK;
+}
+
+/* --- Taking up an earlier run -------------------------------------------------------------------------------- */
+
+static struct scene_hash *scene_hash_find(const struct record *record, const char *scene)
+{
+    for (int k = 0; k < record->scene_count; k++)
+        if (strcmp(record->scenes[k].scene, scene) == 0)
+            return &record->scenes[k];
+    return NULL;
+}
+
+static enum status scene_hash_set(struct record *record, const char *scene, uint64_t hash)
+{
+    struct scene_hash *known = scene_hash_find(record, scene);
+    if (known) {
+        known->hash = hash;
+        return STATUS_OK;
+    }
+    struct scene_hash *scenes = realloc(record->scenes, ((size_t)record->scene_count + 1) * sizeof *scenes);
+    char *name = strdup(scene);
+    if (scenes)
+        record->scenes = scenes;
+    if (!scenes || !name) {
+        free(name);
+        return status_set(STATUS_FAILED, "no memory for the scene %s", scene);
+    }
+    scenes[record->scene_count++] = (struct scene_hash){name, hash};
+    return STATUS_OK;
+}
+
+/* The comments "scene NAME: HEX"; what does not read as one is no hash, and the scene's rows are measured again. */
+static enum status scene_hashes_read(struct record *record, const struct csv *csv)
+{
+    enum status status = STATUS_OK;
+    for (int k = 0; k < csv->comment_count && !status; k++) {
+        char *name = strdup(csv->comments[k]), *value = name ? strrchr(name, ':') : NULL, *end = NULL;
+        if (!name)
+            return status_set(STATUS_FAILED, "%s: no memory", csv->path);
+        if (value && strncmp(name, "scene ", strlen("scene ")) == 0) {
+            *value++ = '\0';
+            uint64_t hash = strtoull(value, &end, 16);
+            if (end != value && !*end)
+                status = scene_hash_set(record, name + strlen("scene "), hash);
+        }
+        free(name);
+    }
+    return status;
+}
+
+static enum status cell_parse(const struct csv *csv, int row, int index, const struct column *column, void *out)
+{
+    const char *cell = csv_cell(csv, row, index);
+    void *field = (char *)out + column->offset;
+    double value = NAN;
+    bool integer = column->type == COLUMN_INTEGER;
+    if (column->type == COLUMN_TEXT) {
+        *(const char **)field = cell;
+        return STATUS_OK;
+    }
+    if (!csv_number(cell, &value) || (integer && *cell && !(value >= 0 && value <= 1e9 && value == floor(value))))
+        return status_set(STATUS_INVALID, "%s:%d: %s is '%s'; %s or nothing is needed", csv->path, csv->lines[row],
+                          column->name, cell, integer ? "a whole number" : "a number");
+    if (integer)
+        *(int *)field = *cell ? (int)value : -1;
+    else
+        *(double *)field = value;
+    return STATUS_OK;
+}
+
+/* Read one file of an earlier run, if there is one. Errors: STATUS_INVALID when it is not ours. */
+static enum status sheet_read(const char *path, const struct sheet *sheet, struct csv *csv)
+{
+    struct stat info;
+    *csv = (struct csv){0};
+    if (lstat(path, &info) != 0 && errno == ENOENT)
+        return STATUS_OK;
+    enum status status = csv_read(path, CSV_TAIL_DROP, csv);
+    if (status)
+        return status;
+    if (csv->comment_count > 0 && strcmp(csv->comments[0], sheet->format) == 0)
+        return STATUS_OK;
+    csv_free(csv);
+    return status_set(STATUS_INVALID, "%s:1: not a file of ours, whose first line is '# %s'; it is left as it is, "
+                      "name another folder", path, sheet->format);
+}
+
+static bool same_run(const struct csv *csv, const struct provenance *provenance)
+{
+    const char *commit = csv_comment(csv, "commit"), *program = csv_comment(csv, "program");
+    const char *threads = csv_comment(csv, "threads");
+    return commit && program && threads && strcmp(commit, provenance->commit) == 0
+           && strcmp(program, provenance->program) == 0 && strtol(threads, NULL, 10) == provenance->threads;
+}
+
+static enum status header_check(const struct csv *csv, const struct sheet *sheet)
+{
+    int count = 0;
+    bool equal = true;
+    for (; sheet->columns[count].name; count++)
+        equal &= csv_column(csv, sheet->columns[count].name) == count;
+    if (!equal || count != csv->column_count)
+        return status_set(STATUS_INVALID, "%s: the header line does not name our %d columns from %s to %s in their "
+                          "order; name another folder", csv->path, count, sheet->columns[0].name,
+                          sheet->columns[count - 1].name);
+    return STATUS_OK;
+}
+
+static enum status rows_parse(struct record *record)
+{
+    const struct csv *csv = &record->earlier;
+    if (csv->row_count == 0)
+        return STATUS_OK;
+    record->rows = calloc((size_t)csv->row_count, sizeof *record->rows);
+    record->dropped = calloc((size_t)csv->row_count, sizeof *record->dropped);
+    enum status status = STATUS_OK;
+    if (!record->rows || !record->dropped)
+        status = status_set(STATUS_FAILED, "%s: no memory for %d rows", csv->path, csv->row_count);
+    for (int row = 0; row < csv->row_count; row++)
+        for (int k = 0; !status && measurement_columns[k].name; k++)
+            status = cell_parse(csv, row, k, &measurement_columns[k], &record->rows[row]);
+    return status;
+}
+
+enum status directory_make(const char *directory)
+{
+    struct stat info;
+    char *path = strdup(directory);
+    if (!path)
+        return status_set(STATUS_FAILED, "%s: no memory", directory);
+    for (char *at = path; *at; at++) {
+        if (*at == '/' && at != path) {
+            *at = '\0';
+            mkdir(path, 0777);          /* the last one tells whether it went well */
+            *at = '/';
+        }
+    }
+    enum status status = STATUS_OK;
+    if (mkdir(path, 0777) != 0 && (errno != EEXIST || stat(path, &info) != 0 || !S_ISDIR(info.st_mode)))
+        status = status_set(STATUS_INVALID, "%s: cannot be made: %s; name a folder that can be written", directory,
+                            strerror(errno));
+    free(path);
+    return status;
+}
+
+static enum status record_begin(struct record *record, const char *directory)
+{
+    struct csv old[SHEETS] = {0};
+    enum status status = directory_make(directory);
+    char *prefix = text_join(directory, "/");
+    bool resume = true;
+    for (int k = 0; k < SHEETS && !status; k++) {
+        record->paths[k] = prefix ? text_join(prefix, sheets[k].file) : NULL;
+        status = record->paths[k] ? sheet_read(record->paths[k], &sheets[k], &old[k])
+                                  : status_set(STATUS_FAILED, "%s: no memory", directory);
+        resume &= !status && same_run(&old[k], &record->provenance);
+    }
+    free(prefix);
+    for (int k = 0; k < SHEETS && !status; k++) {
+        if (resume)
+            status = header_check(&old[k], &sheets[k]);
+        else
+            csv_free(&old[k]);
+    }
+    /* All of it is read before anything is written, so that a file with a fault is left as it is. */
+    record->earlier = old[SHEET_MEASUREMENTS];
+    if (!status)
+        status = scene_hashes_read(record, &record->earlier);
+    if (!status)
+        status = rows_parse(record);
+    if (!status)
+        status = record_rewrite(record, old, NULL);
+    csv_free(&old[SHEET_TARGETS]);
+    return status;
+}
+
+enum status record_open(const char *directory, const struct provenance *provenance, struct record **record)
+{
+    *record = calloc(1, sizeof **record);
+    if (!*record)
+        return status_set(STATUS_FAILED, "%s: no memory", directory);
+    (*record)->provenance = *provenance;
+    enum status status = record_begin(*record, directory);
+    if (status) {
+        record_close(*record);
+        *record = NULL;
+    }
+    return status;
+}
+
+enum status record_scene(struct record *record, const char *scene, uint64_t hash)
+{
+    struct csv now[SHEETS] = {0};
+    struct scene_hash *known = scene_hash_find(record, scene);
+    if (known && known->hash == hash)
+        return STATUS_OK;
+    for (int row = 0; row < record->earlier.row_count; row++)
+        if (strcmp(record->rows[row].scene, scene) == 0)
+            record->dropped[row] = true;
+    enum status status = scene_hash_set(record, scene, hash);
+    for (int k = 0; k < SHEETS && !status; k++) {
+        status = csv_read(record->paths[k], CSV_TAIL_DROP, &now[k]);
+        if (!status)
+            status = header_check(&now[k], &sheets[k]);
+    }
+    if (!status)
+        status = record_rewrite(record, now, scene);
+    for (int k = 0; k < SHEETS; k++)
+        csv_free(&now[k]);
+    return status;
+}
+
+const struct measurement *record_find(const struct record *record, const char *scene, const char *algorithm,
+                                      const char *options, const char *precision)
+{
+    for (int row = 0; row < record->earlier.row_count; row++) {
+        const struct measurement *found = &record->rows[row];
+        if (!record->dropped[row] && strcmp(found->scene, scene) == 0 && strcmp(found->algorithm, algorithm) == 0
+            && strcmp(found->options, options) == 0 && strcmp(found->precision, precision) == 0)
+            return found;
+    }
+    return NULL;
+}
+
+static enum status rows_append(struct record *record, int sheet, const void *rows, int count, size_t row_size)
+{
+    FILE *file = record->files[sheet];
+    if (!file)
+        return status_set(STATUS_FAILED, "%s: no row can be added, since the file could not be rewritten before",
+                          record->paths[sheet]);
+    for (int k = 0; k < count; k++)
+        row_write(file, sheets[sheet].columns, (const char *)rows + (size_t)k * row_size);
+    return flush_check(file, record->paths[sheet]);
+}
+
+enum status record_targets(struct record *record, const struct target_row *rows, int count)
+{
+    return rows_append(record, SHEET_TARGETS, rows, count, sizeof *rows);
+}
+
+enum status record_add(struct record *record, const struct measurement *row)
+{
+    return rows_append(record, SHEET_MEASUREMENTS, row, 1, sizeof *row);
+}
+
+void record_close(struct record *record)
+{
+    if (!record)
+        return;
+    for (int k = 0; k < SHEETS; k++) {
+        if (record->files[k])
+            fclose(record->files[k]);
+        free(record->paths[k]);
+    }
+    for (int k = 0; k < record->scene_count; k++)
+        free(record->scenes[k].scene);
+    free(record->scenes);
+    free(record->rows);
+    free(record->dropped);
+    csv_free(&record->earlier);
+    free(record);
+}

@@ -1,0 +1,67 @@
+/* Results on disk: measurements.csv and targets.csv, written row by row, and found again after a cut. */
+#ifndef SASBENCH_RECORD_H
+#define SASBENCH_RECORD_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "../algorithms/algorithm.h"
+
+/* One row of measurements.csv. Texts are borrowed for the call; NAN and negative counts become empty fields. */
+struct measurement {
+    const char *scene, *algorithm, *options, *precision;
+    int threads;
+    const char *engine, *status, *reason, *skipped;     /* status: ok, unsupported, failed */
+    double plan_s, run_s, run_min_s;
+    int runs;
+    double control_s;
+    const char *stages;                                 /* "compress=0.1;focus=0.9" */
+    double flops_published, flops, pairs, bytes;
+    double error, error_gain, phase_rms_rad;
+    double width_m, pslr_db, islr_db;                   /* null definition, azimuth, medians over the targets */
+};
+
+/* One row of targets.csv. */
+struct target_row {
+    const char *scene, *algorithm, *options, *precision;
+    int target;                                         /* index from 0 */
+    const char *axis, *definition;
+    double extent_m, position_error_m, phase_error_rad, width_m, pslr_db, islr_db;
+};
+
+/* The one metric table: CSV header, terminal table, plot labels and the regression gate come from it. */
+struct metric {
+    const char *name, *unit, *title;
+    enum { BETTER_NONE, BETTER_LOWER, BETTER_HIGHER } better;
+    double absolute_slack, relative_slack;              /* a change within either is no change */
+    size_t offset;                                      /* of the double in struct measurement */
+};
+extern const struct metric metrics[];                   /* name NULL ends the table */
+
+/* What makes rows comparable: written as `# key: value` lines ahead of the rows. */
+struct provenance {
+    char machine[128], compiler[160], flags[256], libraries[160], commit[80], program[32], date[32];
+    int threads;
+};
+void provenance_fill(struct provenance *provenance, int threads);
+
+struct record;
+/* Open (make) the folder and its two files. Rows left by an earlier run are kept when commit, program and threads are
+   the same; otherwise the files are begun anew. A last line that was cut short is dropped. Errors: STATUS_INVALID for
+   a place that cannot be written or a CSV that is not ours (naming file and line). */
+enum status record_open(const char *directory, const struct provenance *provenance, struct record **record);
+/* Declare a scene before its rows: rows kept from other content (hash) of the same name are dropped. */
+enum status record_scene(struct record *record, const char *scene, uint64_t hash);
+/* The finished row of an earlier run, or NULL; belongs to the record, valid until record_close. */
+const struct measurement *record_find(const struct record *record, const char *scene, const char *algorithm,
+                                      const char *options, const char *precision);
+/* Append and flush. The rows of a measurement's targets are added before the measurement itself: when that is there,
+   all of it is. Target rows without their measurement are dropped by the next run. Errors: STATUS_FAILED. */
+enum status record_targets(struct record *record, const struct target_row *rows, int count);
+enum status record_add(struct record *record, const struct measurement *row);
+void record_close(struct record *record);
+
+/* Make a folder and those above it, like mkdir -p; one that exists is fine. Errors: STATUS_INVALID naming it. */
+enum status directory_make(const char *directory);
+
+#endif

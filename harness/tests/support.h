@@ -1,0 +1,26 @@
+/* What several tests need: a scene with its echoes, and one image of it. */
+#ifndef SASBENCH_TEST_SUPPORT_H
+#define SASBENCH_TEST_SUPPORT_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "../echo_data.h"
+#include "../scene.h"
+#include "../spec.h"
+
+/* Load a shipped scene; the test fails where that fails. */
+void support_scene(const char *name, struct scene *scene);
+/* Its echoes in double. */
+void support_echoes(const struct scene *scene, struct echoes *echoes);
+/* Image a problem by SPEC (the SPEC's precision replaces the problem's) from double echoes. *image is allocated here. */
+enum status support_image(const char *spec, struct problem problem, const struct echoes *echoes, struct image *image);
+/* |a - b|_2 / |b|_2 over all pixels of two images of the same patches; |a|_2 when b is all zero. */
+double support_difference(const struct image *a, const struct image *b);
+double support_peak(const struct image *image);
+
+#endif

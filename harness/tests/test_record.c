@@ -1,0 +1,605 @@
+/* CSV files, the results folder through cuts and changes, and the terminal's table. */
+#include <locale.h>
+#include <math.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "../csv.h"
+#include "../record.h"
+#include "../table.h"
+
+#define MEASUREMENT_HEADER \
+    "scene,algorithm,options,precision,threads,engine,status,reason,skipped,plan_s,run_s,run_min_s,runs,control_s," \
+    "stages,flops_published,flops,pairs,bytes,error,error_gain,phase_rms_rad,width_m,pslr_db,islr_db\n"
+#define TARGET_HEADER \
+    "scene,algorithm,options,precision,target,axis,definition,extent_m,position_error_m,phase_error_rad,width_m," \
+    "pslr_db,islr_db\n"
+
+/* assert_float_equal takes NAN for equal to anything. */
+static void assert_close(double value, double wanted, double slack)
+{
+    if (!(fabs(value - wanted) <= slack))
+        fail_msg("%.12g is not %.12g +- %.3g", value, wanted, slack);
+}
+
+/* --- A folder of its own for every test ---------------------------------------------------------------------- */
+
+static char folder[256], measurements_path[300], targets_path[300];
+
+static int folder_make(void **state)
+{
+    (void)state;
+    const char *base = getenv("TMPDIR");
+    snprintf(folder, sizeof folder, "%s/sasbench-XXXXXX", base ? base : "/tmp");
+    if (!mkdtemp(folder))
+        return -1;
+    snprintf(measurements_path, sizeof measurements_path, "%s/measurements.csv", folder);
+    snprintf(targets_path, sizeof targets_path, "%s/targets.csv", folder);
+    return 0;
+}
+
+static int folder_remove(void **state)
+{
+    (void)state;
+    remove(measurements_path);
+    remove(targets_path);
+    return rmdir(folder);               /* fails when a temporary file was left behind */
+}
+
+static void file_write(const char *path, const char *mode, const char *text)
+{
+    FILE *file = fopen(path, mode);
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+}
+
+static char *file_text(const char *path)
+{
+    static char text[1 << 16];
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    size_t size = fread(text, 1, sizeof text - 1, file);
+    text[size] = '\0';
+    fclose(file);
+    return text;
+}
+
+/* --- CSV ----------------------------------------------------------------------------------------------------- */
+
+static void test_csv_read(void **state)
+{
+    (void)state;
+    struct csv csv;
+    file_write(measurements_path, "w",
+               "# key: first\r\n# other: x: y\na,\"b,c\",\r\n1,\"say \"\"hi\"\",\nthere\",\n\n#between: rows\n"
+               "\"# no comment\",,3\n,\"\",\"last\"");
+    assert_int_equal(csv_read(measurements_path, CSV_TAIL_KEEP, &csv), STATUS_OK);
+    assert_int_equal(csv.column_count, 3);
+    assert_int_equal(csv_column(&csv, "b,c"), 1);
+    assert_int_equal(csv_column(&csv, "none"), -1);
+    assert_int_equal(csv.row_count, 3);
+    assert_string_equal(csv_cell(&csv, 0, 1), "say \"hi\",\nthere");
+    assert_string_equal(csv_cell(&csv, 0, 2), "");
+    assert_string_equal(csv_cell(&csv, 1, 0), "# no comment");
+    assert_string_equal(csv_cell(&csv, 1, 2), "3");
+    assert_string_equal(csv_cell(&csv, 2, 2), "last");
+    assert_int_equal(csv.lines[0], 4);
+    assert_int_equal(csv.lines[1], 8);
+    assert_int_equal(csv.comment_count, 3);
+    assert_string_equal(csv_comment(&csv, "key"), "first");
+    assert_string_equal(csv_comment(&csv, "other"), "x: y");
+    assert_string_equal(csv_comment(&csv, "between"), "rows");
+    assert_null(csv_comment(&csv, "ke"));
+    csv_free(&csv);
+    assert_int_equal(csv_read(measurements_path, CSV_TAIL_DROP, &csv), STATUS_OK);
+    assert_int_equal(csv.row_count, 2);
+    csv_free(&csv);
+    file_write(measurements_path, "w", "");
+    assert_int_equal(csv_read(measurements_path, CSV_TAIL_KEEP, &csv), STATUS_OK);
+    assert_int_equal(csv.column_count + csv.row_count, 0);
+    csv_free(&csv);
+}
+
+static void test_csv_faults(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *place;
+    } faults[] = {
+        {"a,b\n1,2\n3\n", ":3: 1 fields"},      {"a,b\n1,2,3\n", ":2: 3 fields"},
+        {"a\n\"x\ny\n\"z\n", ":4: stray"},      {"a\n1\n\"x\n2\n", ":3: a quoted field never ends"},
+        {"a\nx\"y\n", ":2: stray"},             {"a\nx\ry\n", ":2: stray"},
+    };
+    struct csv csv;
+    for (size_t k = 0; k < sizeof faults / sizeof *faults; k++) {
+        file_write(measurements_path, "w", faults[k].text);
+        assert_int_equal(csv_read(measurements_path, CSV_TAIL_KEEP, &csv), STATUS_INVALID);
+        assert_non_null(strstr(status_message(), measurements_path));
+        assert_non_null(strstr(status_message(), faults[k].place));
+        assert_null(csv.text);
+    }
+    FILE *file = fopen(measurements_path, "w");
+    assert_non_null(file);
+    fwrite("a\n1\0\n", 1, 5, file);
+    fclose(file);
+    assert_int_equal(csv_read(measurements_path, CSV_TAIL_KEEP, &csv), STATUS_INVALID);
+    assert_int_equal(csv_read(folder, CSV_TAIL_KEEP, &csv), STATUS_INVALID);
+    assert_int_equal(csv_read(targets_path, CSV_TAIL_KEEP, &csv), STATUS_INVALID);
+    assert_int_equal(csv_read("/dev/zero", CSV_TAIL_KEEP, &csv), STATUS_INVALID);
+}
+
+/* A text cut at every byte: what is left are its whole lines. */
+static void test_csv_cut(void **state)
+{
+    (void)state;
+    static const char head[] = "# c \" d\na,b\n", row_1[] = "1,\"x\"\"\ny,\"\n", comment[] = "#\"\n";
+    static const char row_2[] = "\"\",2\n";
+    char text[128];
+    snprintf(text, sizeof text, "%s%s%s%s", head, row_1, comment, row_2);
+    int whole = (int)strlen(text), first = (int)(strlen(head) + strlen(row_1));
+    struct csv csv;
+    for (int length = 0; length <= whole; length++) {
+        char cut[sizeof text];
+        snprintf(cut, sizeof cut, "%.*s", length, text);
+        file_write(measurements_path, "w", cut);
+        assert_int_equal(csv_read(measurements_path, CSV_TAIL_DROP, &csv), STATUS_OK);
+        assert_int_equal(csv.row_count, (length >= first) + (length >= whole));
+        csv_free(&csv);
+    }
+}
+
+static void test_csv_numbers(void **state)
+{
+    (void)state;
+    double value;
+    assert_true(csv_number("", &value) && isnan(value));
+    assert_true(csv_number("-1.5e-3", &value) && value == -1.5e-3);
+    assert_true(csv_number("inf", &value) && isinf(value));
+    assert_false(csv_number("1,5", &value));
+    assert_false(csv_number(" 1", &value));
+    assert_false(csv_number("1 ", &value));
+    assert_false(csv_number("x", &value));
+    /* A decimal comma of the caller's locale changes nothing (where such a locale is installed). */
+    setlocale(LC_ALL, "de_DE.UTF-8");
+    char text[64] = "";
+    FILE *file = fmemopen(text, sizeof text, "w");
+    assert_non_null(file);
+    csv_write_number(file, 0.1234567891234);
+    csv_write_text(file, ",");
+    csv_write_number(file, NAN);
+    csv_write_text(file, NULL);
+    fclose(file);
+    assert_string_equal(text, "0.123456789\",\"");
+    assert_true(csv_number("0.5", &value) && value == 0.5);
+    setlocale(LC_ALL, "C");
+}
+
+/* --- The results folder -------------------------------------------------------------------------------------- */
+
+static struct provenance provenance_of(const char *commit, int threads)
+{
+    struct provenance provenance = {.machine = "a machine", .compiler = "gcc\n12", .program = "0123", .date = "today",
+                                    .threads = threads};
+    snprintf(provenance.commit, sizeof provenance.commit, "%s", commit);
+    return provenance;
+}
+
+static struct measurement measurement_of(const char *scene, const char *algorithm)
+{
+    return (struct measurement){
+        .scene = scene, .algorithm = algorithm, .options = "taps=8,window=none", .precision = "float", .threads = 2,
+        .engine = "general", .status = "ok", .reason = "", .skipped = "half \"of\" it,\nand more", .plan_s = 0.25,
+        .run_s = 1.0 / 3, .run_min_s = 0.3, .runs = 5, .control_s = 2, .stages = "compress=0.1;focus=0.9",
+        .flops_published = NAN, .flops = 1e12, .pairs = 12345678901.0, .bytes = 4096, .error = 1e-7,
+        .error_gain = NAN, .phase_rms_rad = 0.001, .width_m = 0.0384, .pslr_db = -13.3, .islr_db = -10.4};
+}
+
+static struct target_row target_of(const char *scene, const char *algorithm)
+{
+    return (struct target_row){scene, algorithm, "taps=8,window=none", "float", 3, "azimuth", "null", 3, 1e-5, NAN,
+                               0.0384, -13.3, -10.4};
+}
+
+static struct record *open_ok(const char *commit, int threads)
+{
+    struct provenance provenance = provenance_of(commit, threads);
+    struct record *record = NULL;
+    assert_int_equal(record_open(folder, &provenance, &record), STATUS_OK);
+    assert_non_null(record);
+    return record;
+}
+
+static void add_ok(struct record *record, const char *scene, const char *algorithm)
+{
+    struct target_row target = target_of(scene, algorithm);
+    struct measurement row = measurement_of(scene, algorithm);
+    assert_int_equal(record_targets(record, &target, 1), STATUS_OK);
+    assert_int_equal(record_add(record, &row), STATUS_OK);
+}
+
+static const struct measurement *find(const struct record *record, const char *scene, const char *algorithm)
+{
+    return record_find(record, scene, algorithm, "taps=8,window=none", "float");
+}
+
+static int rows_of(const char *path)
+{
+    struct csv csv;
+    assert_int_equal(csv_read(path, CSV_TAIL_KEEP, &csv), STATUS_OK);
+    int rows = csv.row_count;
+    csv_free(&csv);
+    return rows;
+}
+
+static void test_round_trip(void **state)
+{
+    (void)state;
+    struct record *record = open_ok("c1", 2);
+    assert_int_equal(record_scene(record, "folder/a,\"b\"", 0xabcdef), STATUS_OK);
+    add_ok(record, "folder/a,\"b\"", "bp_sinc");
+    const char *text = file_text(measurements_path);
+    assert_int_equal(strncmp(text, "# sasbench measurements 1\n# machine: a machine\n# compiler: gcc?12\n", 62), 0);
+    assert_non_null(strstr(text, "\n# commit: c1\n"));
+    assert_non_null(strstr(text, "\n# threads: 2\n"));
+    assert_non_null(strstr(text, "\n# scene folder/a,\"b\": 0000000000abcdef\n"));
+    assert_non_null(strstr(text, "\n" MEASUREMENT_HEADER
+        "\"folder/a,\"\"b\"\"\",bp_sinc,\"taps=8,window=none\",float,2,general,ok,,"
+        "\"half \"\"of\"\" it,\nand more\",0.25,0.333333333,0.3,5,2,compress=0.1;focus=0.9,,1e+12,"
+        "1.23456789e+10,4096,1e-07,,0.001,0.0384,-13.3,-10.4\n"));
+    text = file_text(targets_path);
+    assert_int_equal(strncmp(text, "# sasbench targets 1\n", 21), 0);
+    assert_non_null(strstr(text, "\n" TARGET_HEADER "\"folder/a,\"\"b\"\"\",bp_sinc,\"taps=8,window=none\",float,3,"
+                           "azimuth,null,3,1e-05,,0.0384,-13.3,-10.4\n"));
+    record_close(record);
+
+    record = open_ok("c1", 2);
+    assert_int_equal(record_scene(record, "folder/a,\"b\"", 0xabcdef), STATUS_OK);
+    const struct measurement *row = find(record, "folder/a,\"b\"", "bp_sinc");
+    assert_non_null(row);
+    assert_string_equal(row->skipped, "half \"of\" it,\nand more");
+    assert_string_equal(row->reason, "");
+    assert_int_equal(row->runs, 5);
+    assert_close(row->run_s, 1.0 / 3, 1e-9);
+    assert_close(row->islr_db, -10.4, 0);
+    assert_true(isnan(row->flops_published) && isnan(row->error_gain));
+    assert_null(find(record, "folder/a,\"b\"", "bp_linear"));
+    assert_null(record_find(record, "folder/a,\"b\"", "bp_sinc", "taps=8,window=none", "double"));
+    assert_null(record_find(record, "folder/a,\"b\"", "bp_sinc", "taps=4,window=none", "float"));
+    add_ok(record, "folder/a,\"b\"", "bp_linear");
+    record_close(record);
+    assert_int_equal(rows_of(measurements_path), 2);
+    assert_int_equal(rows_of(targets_path), 2);
+}
+
+static void test_undefined_fields(void **state)
+{
+    (void)state;
+    struct record *record = open_ok("c1", 2);
+    struct measurement row = measurement_of("s", "rma_wu");
+    row.status = "unsupported";
+    row.reason = "the track is curved";
+    row.runs = -1;
+    row.run_s = row.plan_s = NAN;
+    row.stages = NULL;
+    assert_int_equal(record_scene(record, "s", 1), STATUS_OK);
+    assert_int_equal(record_add(record, &row), STATUS_OK);
+    record_close(record);
+    assert_non_null(strstr(file_text(measurements_path), "and more\",,,0.3,,2,,,1e+12"));
+    record = open_ok("c1", 2);
+    const struct measurement *found = find(record, "s", "rma_wu");
+    assert_non_null(found);
+    assert_string_equal(found->status, "unsupported");
+    assert_string_equal(found->stages, "");
+    assert_int_equal(found->runs, -1);
+    assert_true(isnan(found->run_s));
+    record_close(record);
+}
+
+/* Rows of another commit, program or number of threads do not count; the files are begun anew. */
+static void test_other_run(void **state)
+{
+    (void)state;
+    for (int change = 0; change < 3; change++) {
+        struct record *record = open_ok("c1", 2);
+        assert_int_equal(record_scene(record, "s", 1), STATUS_OK);
+        add_ok(record, "s", "bp_sinc");
+        record_close(record);
+        struct provenance other = provenance_of(change == 0 ? "c2" : "c1", change == 1 ? 3 : 2);
+        if (change == 2)
+            strcpy(other.program, "4567");
+        assert_int_equal(record_open(folder, &other, &record), STATUS_OK);
+        assert_null(find(record, "s", "bp_sinc"));
+        record_close(record);
+        assert_int_equal(rows_of(measurements_path), 0);
+        assert_int_equal(rows_of(targets_path), 0);
+        assert_null(strstr(file_text(measurements_path), "# scene"));
+    }
+}
+
+static void test_changed_scene(void **state)
+{
+    (void)state;
+    struct record *record = open_ok("c1", 2);
+    assert_int_equal(record_scene(record, "s", 1), STATUS_OK);
+    add_ok(record, "s", "bp_sinc");
+    assert_int_equal(record_scene(record, "s: 2", 2), STATUS_OK);
+    add_ok(record, "s: 2", "bp_sinc");
+    record_close(record);
+    record = open_ok("c1", 2);
+    assert_int_equal(record_scene(record, "s: 2", 2), STATUS_OK);
+    assert_int_equal(record_scene(record, "s", 3), STATUS_OK);
+    assert_null(find(record, "s", "bp_sinc"));
+    assert_non_null(find(record, "s: 2", "bp_sinc"));
+    assert_int_equal(rows_of(measurements_path), 1);
+    assert_int_equal(rows_of(targets_path), 1);
+    assert_null(strstr(file_text(measurements_path), "# scene s: 0000000000000001"));
+    assert_non_null(strstr(file_text(measurements_path), "# scene s: 0000000000000003"));
+    add_ok(record, "s", "bp_sinc");
+    record_close(record);
+    record = open_ok("c1", 2);
+    assert_int_equal(record_scene(record, "s", 3), STATUS_OK);
+    assert_non_null(find(record, "s", "bp_sinc"));
+    record_close(record);
+}
+
+/* The measurements cut at every byte of their last row: whole rows are kept, and targets without one go. */
+static void test_cut_row(void **state)
+{
+    (void)state;
+    struct record *record = open_ok("c1", 2);
+    assert_int_equal(record_scene(record, "s", 1), STATUS_OK);
+    add_ok(record, "s", "first");
+    struct stat before, after;
+    assert_int_equal(stat(measurements_path, &before), 0);
+    add_ok(record, "s", "second");
+    record_close(record);
+    assert_int_equal(stat(measurements_path, &after), 0);
+    for (off_t size = after.st_size - 1; size >= before.st_size; size--) {
+        assert_int_equal(truncate(measurements_path, size), 0);
+        record = open_ok("c1", 2);
+        assert_int_equal(record_scene(record, "s", 1), STATUS_OK);
+        assert_non_null(find(record, "s", "first"));
+        assert_null(find(record, "s", "second"));
+        assert_int_equal(rows_of(targets_path), 1);
+        add_ok(record, "s", "second");
+        record_close(record);
+        assert_int_equal(rows_of(measurements_path), 2);
+        assert_int_equal(rows_of(targets_path), 2);
+    }
+    /* Targets whose measurement was never finished. */
+    file_write(targets_path, "a", "s,third,\"taps=8,window=none\",float,0,azimuth,null,,,,,,\ns,third,\"ta");
+    record_close(open_ok("c1", 2));
+    assert_int_equal(rows_of(targets_path), 2);
+    assert_null(strstr(file_text(targets_path), "third"));
+}
+
+static void check_refused(const char *place)
+{
+    struct provenance provenance = provenance_of("c1", 2);
+    struct record *record = (struct record *)&provenance;
+    static char before[65536];
+    snprintf(before, sizeof before, "%s", file_text(measurements_path));
+    assert_int_equal(record_open(folder, &provenance, &record), STATUS_INVALID);
+    assert_null(record);
+    assert_non_null(strstr(status_message(), place));
+    assert_string_equal(file_text(measurements_path), before);
+}
+
+static void test_foreign_files(void **state)
+{
+    (void)state;
+    file_write(measurements_path, "w", "my,own\ndata,1\n");
+    check_refused("measurements.csv:1: not a file of ours");
+    file_write(measurements_path, "w", "");
+    check_refused("measurements.csv:1: not a file of ours");
+    file_write(measurements_path, "w", "# sasbench measurements 2\na\n");
+    check_refused("measurements.csv:1: not a file of ours");
+    file_write(measurements_path, "w", "# sasbench measurements 1\na,b\n1\n");
+    check_refused("measurements.csv:3: 1 fields");
+    file_write(measurements_path, "w", "# sasbench measurements 1\n# commit: c1\n# program: 0123\n# threads: 2\n"
+               MEASUREMENT_HEADER "s,a,,float,2,,ok,,,1,1,1,x,,,,,,,,,,,,\n");
+    file_write(targets_path, "w", "# sasbench targets 1\n# commit: c1\n# program: 0123\n# threads: 2\n"
+               TARGET_HEADER);
+    check_refused("measurements.csv:6: runs is 'x'");
+    file_write(measurements_path, "w", "# sasbench measurements 1\n# commit: c1\n# program: 0123\n# threads: 2\n"
+               "scene,algorithm\n");
+    check_refused("measurements.csv: the header line");
+    remove(measurements_path);
+    record_close(open_ok("c1", 2));
+    file_write(targets_path, "w", "notes\n");
+    check_refused("targets.csv:1: not a file of ours");
+}
+
+static void test_unwritable(void **state)
+{
+    (void)state;
+    struct provenance provenance = provenance_of("c1", 2);
+    struct record *record;
+    char below[320];
+    file_write(measurements_path, "w", "a file\n");
+    snprintf(below, sizeof below, "%s/folder", measurements_path);
+    assert_int_equal(record_open(below, &provenance, &record), STATUS_INVALID);
+    assert_non_null(strstr(status_message(), below));
+    assert_int_equal(record_open(measurements_path, &provenance, &record), STATUS_INVALID);
+    assert_int_equal(record_open("/proc/sasbench", &provenance, &record), STATUS_INVALID);
+    assert_int_equal(record_open("/proc", &provenance, &record), STATUS_INVALID);
+    assert_null(record);
+}
+
+static void test_folder_made(void **state)
+{
+    (void)state;
+    struct provenance provenance = provenance_of("c1", 2);
+    struct record *record;
+    char outer[300], inner[320], path[360];
+    snprintf(outer, sizeof outer, "%s/outer", folder);
+    snprintf(inner, sizeof inner, "%s/inner", outer);
+    snprintf(path, sizeof path, "%s//", inner);
+    assert_int_equal(record_open(path, &provenance, &record), STATUS_OK);
+    record_close(record);
+    snprintf(path, sizeof path, "%s/measurements.csv", inner);
+    assert_int_equal(remove(path), 0);
+    snprintf(path, sizeof path, "%s/targets.csv", inner);
+    assert_int_equal(remove(path), 0);
+    assert_int_equal(rmdir(inner), 0);
+    assert_int_equal(rmdir(outer), 0);
+}
+
+/* A full disk, acted by a limit of the file size: said at once, and the next run finds whole rows only. */
+static void test_full_disk(void **state)
+{
+    (void)state;
+    struct record *record = open_ok("c1", 2);
+    assert_int_equal(record_scene(record, "s", 1), STATUS_OK);
+    add_ok(record, "s", "first");
+    struct stat info;
+    struct rlimit before, limit;
+    assert_int_equal(stat(measurements_path, &info), 0);
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    limit = before;
+    limit.rlim_cur = (rlim_t)info.st_size + 20;
+    signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
+    struct measurement row = measurement_of("s", "second");
+    enum status status = record_add(record, &row);
+    limit.rlim_cur = 100;
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
+    enum status scene_status = record_scene(record, "t", 2);
+    enum status add_status = record_add(record, &row);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+    signal(SIGXFSZ, SIG_DFL);
+    assert_int_equal(status, STATUS_FAILED);
+    assert_int_not_equal(scene_status, STATUS_OK);
+    assert_int_equal(add_status, STATUS_FAILED);
+    record_close(record);
+    record = open_ok("c1", 2);
+    assert_non_null(find(record, "s", "first"));
+    assert_null(find(record, "s", "second"));
+    record_close(record);
+    assert_int_equal(rows_of(measurements_path), 1);
+}
+
+/* --- What is written into the files -------------------------------------------------------------------------- */
+
+static void test_provenance(void **state)
+{
+    (void)state;
+    struct provenance a, b;
+    provenance_fill(&a, 7);
+    provenance_fill(&b, 7);
+    assert_int_equal(a.threads, 7);
+    assert_int_equal(strlen(a.program), 16);
+    assert_string_equal(a.program, b.program);
+    assert_non_null(strstr(a.machine, " GiB"));
+    assert_non_null(strstr(a.libraries, "fftw-3."));
+    assert_non_null(strstr(a.libraries, "matio-1."));
+    assert_non_null(strstr(a.libraries, "libconfig-1."));
+    assert_true(*a.compiler && *a.flags && *a.commit);
+    assert_int_equal(strlen(a.date), strlen("2000-01-01T00:00:00Z"));
+}
+
+/* The metric table names columns of the CSV and points to their values. */
+static void test_metric_table(void **state)
+{
+    (void)state;
+    struct measurement row = measurement_of("s", "a");
+    int count = 0;
+    for (const struct metric *metric = metrics; metric->name; metric++, count++) {
+        char column[64];
+        snprintf(column, sizeof column, ",%s", metric->name);
+        assert_non_null(strstr(MEASUREMENT_HEADER, column));
+        assert_true(metric->unit && metric->title && metric->absolute_slack >= 0 && metric->relative_slack >= 0);
+        double value = *(const double *)((const char *)&row + metric->offset);
+        if (strcmp(metric->name, "pslr_db") == 0)
+            assert_close(value, -13.3, 0);
+        if (strcmp(metric->name, "run_s") == 0)
+            assert_close(value, 1.0 / 3, 0);
+    }
+    assert_int_equal(count, 10);
+}
+
+static void test_table(void **state)
+{
+    (void)state;
+    static char text[8192];
+    FILE *stream = fmemopen(text, sizeof text, "w");
+    assert_non_null(stream);
+    struct measurement row = measurement_of("bp22/table3", "bp_sinc");
+    table_header(stream);
+    table_row(stream, &row);
+    row.algorithm = "bp_linear";
+    row.options = "beta=8";
+    row.precision = "double";
+    row.run_s = 2.5e-5;
+    row.pairs = 0;
+    row.flops = 1e6;
+    row.phase_rms_rad = NAN;
+    table_row(stream, &row);
+    row.options = "";
+    row.run_s = NAN;
+    row.pairs = NAN;
+    table_row(stream, &row);
+    row.algorithm = "rma_lbf";
+    row.options = "variant=corrected,blocks=8,spacing=inverse,blend=linear,stolt=8";
+    row.run_s = 1234.4;
+    table_row(stream, &row);
+    row.scene = "study/point";
+    row.status = "unsupported";
+    row.reason = "the track is not uniform and straight, which range migration needs: ping 17 lies 0.0123 m away "
+                 "from its place in the line through all the others, 0.00001 m are accepted";
+    table_row(stream, &row);
+    fclose(stream);
+    int headings = 0;
+    for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n")) {
+        if (strlen(line) > 110)
+            fail_msg("%zu columns: %s", strlen(line), line);
+        headings += strcmp(line, "bp22/table3") == 0 || strcmp(line, "study/point") == 0;
+        if (strncmp(line, "  bp_sinc:taps=8,window=none ", 29) == 0) {
+            assert_non_null(strstr(line, " 333 ms "));
+            assert_non_null(strstr(line, " 6x "));
+            assert_non_null(strstr(line, " 37 Gp/s "));
+            assert_non_null(strstr(line, " 38.40 -13.30 -10.40"));
+        }
+        if (strncmp(line, "  bp_linear:beta=8,precision=double ", 36) == 0)
+            assert_true(strstr(line, " 25 us ") && strstr(line, " 40 GF/s "));
+        if (strncmp(line, "  bp_linear:precision=double ", 29) == 0)
+            assert_non_null(strstr(line, "  -        -         - "));
+        headings += 10 * (strstr(line, " 1234 s ") != NULL) + 100 * (strstr(line, "0.00001 m are accepted") != NULL);
+    }
+    assert_int_equal(headings, 112);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_csv_read, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(test_csv_faults, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(test_csv_cut, folder_make, folder_remove),
+        cmocka_unit_test(test_csv_numbers),
+        cmocka_unit_test_setup_teardown(test_round_trip, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(test_undefined_fields, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(test_other_run, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(test_changed_scene, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(test_cut_row, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(test_foreign_files, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(test_unwritable, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(test_folder_made, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(test_full_disk, folder_make, folder_remove),
+        cmocka_unit_test(test_provenance),
+        cmocka_unit_test(test_metric_table),
+        cmocka_unit_test(test_table),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,35 @@
+# The one style of every picture: terminal, fonts, lines, grid, tics and colour map. Load it before anything else.
+#
+# Variables:  width, height   of the picture in pixels (default 1200 x 900)
+
+if (!exists("width")) width = 1200
+if (!exists("height")) height = 900
+set encoding utf8
+set terminal pngcairo noenhanced size width,height font "DejaVu Sans,13" background "#ffffff"
+
+# Lines that can be told apart in greyscale and by the colour-blind: lightness, dash and point all differ. The first
+# is broad and pale, so that a reference stays visible below the lines that lie on it.
+set linetype 1 linecolor "#b8b8b8" linewidth 5.0 dashtype 1 pointtype 0
+set linetype 2 linecolor "#000000" linewidth 1.4 dashtype 1 pointtype 7 pointsize 1.0
+set linetype 3 linecolor "#0072b2" linewidth 1.8 dashtype (12,4) pointtype 4 pointsize 1.3
+set linetype 4 linecolor "#d55e00" linewidth 1.8 dashtype (6,3) pointtype 8 pointsize 1.5
+set linetype 5 linecolor "#009e73" linewidth 1.8 dashtype (12,3,3,3) pointtype 6 pointsize 1.3
+set linetype 6 linecolor "#cc79a7" linewidth 1.8 dashtype (3,3) pointtype 12 pointsize 1.5
+set linetype 7 linecolor "#56b4e9" linewidth 1.8 dashtype (16,4,2,4,2,4) pointtype 2 pointsize 1.3
+set linetype 8 linecolor "#e69f00" linewidth 1.8 dashtype (2,4) pointtype 1 pointsize 1.3
+set linetype cycle 8
+
+set border linecolor "#404040"
+set grid linecolor "#d0d0d0" linewidth 1 dashtype 1
+set tics nomirror out
+set key Left reverse samplen 4 spacing 1.2
+
+# A step of 1, 2 or 5 times a power of ten that divides `extent` into about five.
+tic_decade(extent) = 10**floor(log10(extent/5.0))
+tic_step(extent) = tic_decade(extent)*(extent < 7.5*tic_decade(extent) ? 1 : extent < 15*tic_decade(extent) ? 2 : \
+    extent < 37.5*tic_decade(extent) ? 5 : 10)
+
+# Perceptually uniform, and monotone in lightness so that it reads in greyscale (viridis).
+set palette defined ( \
+    0 "#440154", 1 "#482878", 2 "#3e4989", 3 "#31688e", 4 "#26828e", 5 "#1f9e89", \
+    6 "#35b779", 7 "#6ece58", 8 "#b5de2b", 9 "#fde725")
