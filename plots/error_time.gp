@@ -16,11 +16,10 @@ names = system(sprintf("grep '^%s,' '%s' | cut -d, -f2 | awk '!seen[$0]++'", sce
 machine = system(sprintf("sed -n 's/^# machine: //p' '%s'", csv))
 mine(row_scene, name, row_name, value) = row_scene eq scene && row_name eq name && value > 0 ? value : NaN
 set logscale xy
-set format y "10^{%T}"
+set format y "1e%T"
 set xlabel "median run time, raw echoes to image (s)"
 set ylabel "relative L2 error against the exact image"
 set title scene." on ".machine
-set offsets graph 0.05, graph 0.05, graph 0.05, graph 0.05
 set key outside right top
 plot for [k = 1:words(names)] csv using (column("run_s")): \
     (mine(strcol("scene"), word(names, k), strcol("algorithm"), column("error"))) \

@@ -33,12 +33,18 @@ static const struct expected pins[] = {
 };
 static const struct expected gotcha[] = {{-20, 20, 14.0, -16.2, 0.1, 70}};
 
+/* The recordings are not ours to ship: SASBENCH_DATA names their folder. */
+static bool recording_find(const char *file, char *path, size_t size)
+{
+    const char *directory = getenv("SASBENCH_DATA");
+    snprintf(path, size, "%s/%s", directory ? directory : SASBENCH_ROOT "/../shared/data", file);
+    return access(path, R_OK) == 0;
+}
+
 static void recording_open(struct recording *recording)
 {
     char path[4096];
-    const char *directory = getenv("SASBENCH_DATA");
-    snprintf(path, sizeof path, "%s/%s", directory ? directory : SASBENCH_ROOT "/../shared/data", recording->file);
-    if (access(path, R_OK) != 0) {
+    if (!recording_find(recording->file, path, sizeof path)) {
         print_message("%s is not there: set SASBENCH_DATA to the folder of the recordings\n", path);
         skip();
     }
@@ -173,5 +179,9 @@ int main(void)
         cmocka_unit_test(pins_in_water_focus),
         cmocka_unit_test(gotcha_focuses),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    char path[4096];
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    bool any = recording_find("pins_in_water.mat", path, sizeof path)
+               || recording_find("gotcha_4deg.mat", path, sizeof path);
+    return failed || any ? failed : 77;     /* meson shows it as skipped */
 }
