@@ -16,6 +16,7 @@ enum {
     SLAB_BYTES = 24 << 20,          /* receivers are taken together up to this: it stays in the shared cache */
     SLAB_MOST = 128 << 20,          /* one receiver's upsampled records: beyond it their phases are taken in passes */
     TILE = 16,                      /* pings compressed together: one cache line of each fine sample */
+    BLOCK = 16,                     /* rows of the slab that are filled together */
     ROWS = 4                        /* image rows of one task */
 };
 
@@ -209,18 +210,28 @@ static enum status invariant_plan(struct bp *bp)
     return STATUS_OK;
 }
 
-/* Scatter a tile of compressed pings, complex [count][length], into the slab: row by row, pings contiguous. */
+/* Scatter a tile of compressed pings, complex [count][length], into the slab: pings contiguous. In blocks of rows, so that
+   each cache line of the slab is filled while it is near. */
 #define SPREAD(real) \
     do { \
         const real *from = (const real *)tile; \
         real *re = (real *)in->slab_re + base, *im = (real *)in->slab_im + base; \
-        for (size_t i = 0; i < in->slab_rows; i++) { \
-            size_t at = upsample == 1 ? i : guard + i / width * upsample + i % width + phase; \
-            bool inside = at < length - (upsample == 1 ? 0 : guard); \
-            for (size_t p = 0; p < (size_t)count; p++) { \
-                re[i * stride + p] = inside ? from[2 * (p * length + at)] : 0; \
-                im[i * stride + p] = inside ? from[2 * (p * length + at) + 1] : 0; \
+        for (size_t i = 0; i < in->slab_rows; i += BLOCK) { \
+            size_t at[BLOCK], rows = in->slab_rows - i < BLOCK ? in->slab_rows - i : BLOCK; \
+            for (size_t k = 0; k < rows; k++) { \
+                at[k] = source; \
+                if (++within == width) {    /* on to the next sample of the slab's phases */ \
+                    within = 0; \
+                    source += upsample - width; \
+                } \
+                source++; \
             } \
+            for (size_t p = 0; p < (size_t)count; p++) \
+                for (size_t k = 0; k < rows; k++) { \
+                    size_t value = 2 * (p * length + (at[k] < length ? at[k] : length - 1)); \
+                    re[(i + k) * stride + p] = from[value]; \
+                    im[(i + k) * stride + p] = from[value + 1]; \
+                } \
         } \
     } while (0)
 
@@ -230,6 +241,8 @@ static void spread(const struct bp *bp, const void *tile, int receiver, int ping
     size_t upsample = (size_t)bp->table.upsample, guard = (size_t)bp->table.guard, length = (size_t)bp->shape.length;
     size_t stride = (size_t)in->slab.ping_stride, width = (size_t)in->slab.width, phase = (size_t)in->slab.phase;
     size_t base = (size_t)receiver * in->slab.receiver_stride + (size_t)in->slab.lead + (size_t)ping;
+    /* Upsampled records leave the guards out; phases past the last sample repeat the end and are never asked for. */
+    size_t source = upsample == 1 ? 0 : guard + phase, within = 0;
     if (bp->problem.precision == PRECISION_DOUBLE)
         SPREAD(double);
     else

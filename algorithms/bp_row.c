@@ -8,21 +8,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "real.h"
+#include "lanes.h"
 #include "turn.h"
 
 #define BP_ROW REAL_ISA_NAME(bp_row)
-
-#if defined __AVX512F__
-enum { BYTES = 64 };
-#elif defined __AVX__
-enum { BYTES = 32 };
-#else
-enum { BYTES = 16 };
-#endif
-enum { LANES = BYTES / sizeof(real) };
-/* Neighbouring columns of one phase, loaded from wherever they lie. */
-typedef real block __attribute__((vector_size(BYTES), aligned(sizeof(real)), may_alias));
 
 #define INLINE static inline __attribute__((always_inline))
 
@@ -123,12 +112,12 @@ INLINE void sum_nearest(int width, const struct bp_row_scratch *scratch, int beg
 {
     const int *offset = scratch->offset;
     const real *wr = scratch->wr, *wi = scratch->wi;
-    block a[3] = {{0}}, b[3] = {{0}}, c[3] = {{0}}, d[3] = {{0}};
+    vector_real a[3] = {{0}}, b[3] = {{0}}, c[3] = {{0}}, d[3] = {{0}};
     for (int i = begin; i < end; i++) {
         const real *x = sr + offset[i], *y = si + offset[i];
         real cosine = wr[i], sine = wi[i];
         for (int k = 0; k < width; k++) {
-            block xk = *(const block *)(x + k * LANES), yk = *(const block *)(y + k * LANES);
+            vector_real xk = *(const vector_real *)(x + k * LANES), yk = *(const vector_real *)(y + k * LANES);
             a[k] += xk * cosine;
             b[k] += yk * sine;
             c[k] += xk * sine;
@@ -136,8 +125,8 @@ INLINE void sum_nearest(int width, const struct bp_row_scratch *scratch, int beg
         }
     }
     for (int k = 0; k < width; k++) {
-        *(block *)(re + k * LANES) += a[k] - b[k];
-        *(block *)(im + k * LANES) += c[k] + d[k];
+        *(vector_real *)(re + k * LANES) += a[k] - b[k];
+        *(vector_real *)(im + k * LANES) += c[k] + d[k];
     }
 }
 
@@ -146,14 +135,14 @@ INLINE void sum_taps(int width, int taps, int stride, const struct bp_row_scratc
 {
     const int *offset = scratch->offset;
     const real *wr = scratch->wr, *wi = scratch->wi, *weights = scratch->weights;
-    block a[2] = {{0}}, b[2] = {{0}};
+    vector_real a[2] = {{0}}, b[2] = {{0}};
     for (int i = begin; i < end; i++) {
         const real *x = sr + offset[i], *y = si + offset[i], *w = weights + i * taps;
-        block vr[2] = {{0}}, vi[2] = {{0}};
+        vector_real vr[2] = {{0}}, vi[2] = {{0}};
         for (int t = 0; t < taps; t++)
             for (int k = 0; k < width; k++) {
-                vr[k] += *(const block *)(x + t * stride + k * LANES) * w[t];
-                vi[k] += *(const block *)(y + t * stride + k * LANES) * w[t];
+                vr[k] += *(const vector_real *)(x + t * stride + k * LANES) * w[t];
+                vi[k] += *(const vector_real *)(y + t * stride + k * LANES) * w[t];
             }
         real cosine = wr[i], sine = wi[i];
         for (int k = 0; k < width; k++) {
@@ -162,8 +151,8 @@ INLINE void sum_taps(int width, int taps, int stride, const struct bp_row_scratc
         }
     }
     for (int k = 0; k < width; k++) {
-        *(block *)(re + k * LANES) += a[k];
-        *(block *)(im + k * LANES) += b[k];
+        *(vector_real *)(re + k * LANES) += a[k];
+        *(vector_real *)(im + k * LANES) += b[k];
     }
 }
 

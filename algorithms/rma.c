@@ -17,7 +17,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-static const double BAND_LOSS = 1e-6;       /* of the compressed pulse's energy may lie outside the band */
+static const double BAND_LOSS = 4e-6;       /* of the compressed pulse's energy may lie outside the band */
 static const double GRAZING = 1.005;        /* cells this near to evanescent ones (cos theta < 0.1) are left out too */
 static const double ABEAM_LIMIT = 0.2;      /* rad: a formula further off abeam would break the image's absolute phase */
 static const double WIDEST_SINE = 0.95;     /* of the aperture where neither sampling nor element length bounds it */
@@ -74,10 +74,9 @@ double rma_block_range(const struct rma *rma, int block)
 
 /* The quadratic through the first, the middle and the last receiver of a group, at each node in frequency. The formulas
    of LBF and PCA are quadratic in d; the exact one differs by less than 1e-6 rad over a group. */
-int rma_ramps(const struct rma *rma, const struct rma_line *line, double r, double less, struct rma_ramp *ramps)
+void rma_ramps(const struct rma *rma, const struct rma_line *line, double r, double less, struct rma_ramp *ramps)
 {
-    int groups = 0;
-    for (int begin = 0; begin < rma->receivers; begin += RMA_GROUP, groups++) {
+    for (int begin = 0; begin < rma->receivers; begin += RMA_GROUP, ramps++) {
         int count = rma->receivers - begin < RMA_GROUP ? rma->receivers - begin : RMA_GROUP;
         double values[3][RMA_DEGREE + 1];
         for (int n = 0; n <= RMA_DEGREE; n++) {
@@ -94,10 +93,9 @@ int rma_ramps(const struct rma *rma, const struct rma_line *line, double r, doub
             values[1][n] = slope - bend * (end - 1);        /* D(1) - D(0) of a i + bend i^2, a = slope - bend end */
             values[2][n] = 2 * bend;
         }
-        struct rma_ramp *ramp = &ramps[groups];
-        double *const polynomials[3] = {ramp->first, ramp->step, ramp->curve};
-        ramp->begin = begin;
-        ramp->count = count;
+        double *const polynomials[3] = {ramps->first, ramps->step, ramps->curve};
+        ramps->begin = begin;
+        ramps->count = count;
         for (int k = 0; k < 3; k++)
             for (int power = 0; power <= RMA_DEGREE; power++) {
                 polynomials[k][power] = 0;
@@ -105,7 +103,6 @@ int rma_ramps(const struct rma *rma, const struct rma_line *line, double r, doub
                     polynomials[k][power] += rma->powers[power][n] * values[k][n];
             }
     }
-    return groups;
 }
 
 /* Nodes, and the inverse of their Vandermonde matrix: coefficients of Lagrange's polynomials. */
@@ -195,20 +192,22 @@ static enum status plan_track(struct rma *rma)
     if (!rma->offset)
         return status_set(STATUS_FAILED, "no memory for %d receivers", a->receivers);
     double tolerance = a->sound_speed / a->fc / 1000;
-    rma->even = true;
+    rma->groups = (a->receivers + RMA_GROUP - 1) / RMA_GROUP;
+    rma->recurs = rma->options.phases == RMA_RECURRENCE;
     for (int m = 0; m < a->receivers; m++)
         rma->offset[m] = a->rx[m].x - a->tx[0].x;
     for (int m = 0; m < a->receivers; m++) {
         double pitch = a->receivers > 1 ? (rma->offset[a->receivers - 1] - rma->offset[0]) / (a->receivers - 1) : 0;
-        rma->even = rma->even && fabs(rma->offset[m] - rma->offset[0] - m * pitch) <= tolerance;
+        rma->recurs = rma->recurs && fabs(rma->offset[m] - rma->offset[0] - m * pitch) <= tolerance;
     }
     rma->converts = a->receivers > 1 || fabs(rma->offset[0]) > tolerance;
     rma->setting.reference_offset = rma->offset[a->receivers / 2];
     return check_formula(rma);
 }
 
-/* Azimuth: the full rate of M receivers (LBF21 Eq. (10)), with zeros after the pings so that what lies beyond one end of
-   the track is not imaged at the other. Range: the record, the replica, and the delays of the widest angle. */
+/* Azimuth: the full rate of M receivers (LBF21 Eq. (10)), with half the widest aperture's zeros after the pings: what lies
+   beyond one end of the track and is imaged at the other has then been seen by the last pings only, by the beam's edge.
+   Range: the record, the replica, and the delays of the widest angle. */
 static enum status plan_lengths(struct rma *rma)
 {
     const struct acquisition *a = rma->problem.acquisition;
@@ -228,7 +227,7 @@ static enum status plan_lengths(struct rma *rma)
                               "%g to %g m (squint too large)", rma->method.name, g->x_first, last, x_low - reach,
                               x_high + reach);
     }
-    rma->period = fft_length((long long)fmin(1e9, rma->pings + ceil(reach / spacing)));
+    rma->period = fft_length((long long)fmin(1e9, rma->pings + ceil(reach / 2 / spacing)));
     double first = (2 * nearest / c - rma->t0) * rma->fs;
     double last = (2 * farthest / (c * cosine) * (1 + 2 * fabs(rma->setting.speed) / c) - rma->t0) * rma->fs;
     double before = ceil(fmax(0, -first)), after = ceil(fmax(0, last - (rma->samples - 1)));
@@ -412,10 +411,10 @@ static void plan_scratch(struct rma *rma)
     }
     bool after = rma->options.sum == RMA_SUM_AFTER;
     const size_t bytes[RMA_BUFFERS] = {
-        [RMA_RAMPS] = (receivers / RMA_GROUP + 1) * sizeof(struct rma_ramp),
+        [RMA_RAMPS] = (1 + (size_t)rma->needed) * (size_t)rma->groups * sizeof(struct rma_ramp),
         [RMA_ABSCISSAS] = (size_t)rma->row * sizeof(double),
-        [RMA_CONVERTED] = rma->cuts ? receivers * row : 0,
-        [RMA_SUMS] = (after ? receivers : 1) * row,
+        [RMA_CONVERTED] = rma->cuts ? receivers * 2 * RMA_SPAN * real_bytes : 0,
+        [RMA_SUMS] = (size_t)rma->needed * (after ? receivers : 1) * row,
         [RMA_WAVE] = 2 * longest * real_bytes,
         [RMA_CUT] = 2 * length * real_bytes,
         [RMA_PLACES] = length * real_bytes,

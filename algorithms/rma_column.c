@@ -8,11 +8,16 @@
 #include "rma_engine.h"
 #include "turn.h"
 
-typedef real vec __attribute__((vector_size(RMA_ALIGNMENT), may_alias));
-enum {
-    LANES = RMA_ALIGNMENT / sizeof(real),
-    SPAN = 256                      /* bins whose phases are made at a time: they stay in the first-level cache */
-};
+#if defined __AVX512F__
+enum { VECTOR_BYTES = 64 };
+#elif defined __AVX__
+enum { VECTOR_BYTES = 32 };
+#else
+enum { VECTOR_BYTES = 16 };         /* wider ones would live in memory */
+#endif
+typedef real vec __attribute__((vector_size(VECTOR_BYTES), may_alias));
+enum { LANES = RMA_ALIGNMENT / sizeof(real), VECTOR = VECTOR_BYTES / sizeof(real), PAIR = LANES > VECTOR ? 2 : 1,
+       SPAN = RMA_SPAN };
 
 /* What one thread works on. */
 struct work_place {
@@ -35,10 +40,21 @@ static void stage_end(struct work_place *w, enum rma_stage stage)
     w->mark = now;
 }
 
-/* exp(j 2 pi poly(y)) of n bins. */
+/* exp(j 2 pi poly(y)) of n bins, |y| <= 1. Polynomials below an eighth of a turn need neither double nor whole turns
+   taken off. */
 static void rotors(const double *poly, const double *restrict y, int n, real *restrict re, real *restrict im)
 {
     const double p0 = poly[0], p1 = poly[1], p2 = poly[2], p3 = poly[3], p4 = poly[4], p5 = poly[5];
+    if (fabs(p0) + fabs(p1) + fabs(p2) + fabs(p3) + fabs(p4) + fabs(p5) <= 0.125) {
+        const real a = (real)(2 * M_PI), q0 = a * (real)p0, q1 = a * (real)p1, q2 = a * (real)p2, q3 = a * (real)p3,
+                   q4 = a * (real)p4, q5 = a * (real)p5;
+#pragma omp simd
+        for (int k = 0; k < n; k++) {
+            real u = (real)y[k];
+            turn_eighth(q0 + u * (q1 + u * (q2 + u * (q3 + u * (q4 + u * q5)))), &re[k], &im[k]);
+        }
+        return;
+    }
 #pragma omp simd
     for (int k = 0; k < n; k++) {
         double f = p0 + y[k] * (p1 + y[k] * (p2 + y[k] * (p3 + y[k] * (p4 + y[k] * p5))));
@@ -46,103 +62,116 @@ static void rotors(const double *poly, const double *restrict y, int n, real *re
     }
 }
 
-/* The group's receivers (rows of `in`) times their corrections: added up into `out`, or stored row by row. */
-static inline __attribute__((always_inline)) void group_apply(const real *restrict in, size_t row, int count, int n,
-    real rotor[restrict 6][SPAN], bool add, real *restrict out)
+/* Rows of vectors, `row` reals from one receiver's to the next. */
+struct rows {
+    real *values;
+    size_t row;
+};
+
+/* The group's receivers times their corrections at n bins: added up into one row, or stored row by row. */
+static inline __attribute__((always_inline)) void group_apply(struct rows in, int count, int n,
+    real rotor[restrict 6][SPAN], bool add, struct rows out)
 {
-    for (int b = 0; b < n; b += LANES) {
-        vec wr = *(vec *)&rotor[0][b], wi = *(vec *)&rotor[1][b], sr = *(vec *)&rotor[2][b], si = *(vec *)&rotor[3][b];
-        const vec kr = *(vec *)&rotor[4][b], ki = *(vec *)&rotor[5][b];
-        const real *x = in + 2 * b;
-        real *z = out + 2 * b;
-        vec sum_r = *(vec *)z, sum_i = *(vec *)(z + LANES);
-        for (int i = 0; i < count; i++, x += row) {
-            vec xr = *(const vec *)x, xi = *(const vec *)(x + LANES), t;
-            vec pr = xr * wr - xi * wi, pi = xr * wi + xi * wr;
-            if (add) {
-                sum_r += pr;
-                sum_i += pi;
-            } else {
-                *(vec *)(z + (size_t)i * row) = pr;
-                *(vec *)(z + (size_t)i * row + LANES) = pi;
-            }
-            t = wr * sr - wi * si;
-            wi = wr * si + wi * sr;
-            wr = t;
-            t = sr * kr - si * ki;
-            si = sr * ki + si * kr;
-            sr = t;
+    for (int b = 0; b < n; b += PAIR * VECTOR) {
+        const int at = 2 * (b / LANES * LANES) + b % LANES;
+        const real *x = in.values + at;
+        real *z = out.values + at;
+        vec wr[PAIR], wi[PAIR], sr[PAIR], si[PAIR], sum_r[PAIR], sum_i[PAIR];
+        for (int v = 0; v < PAIR; v++) {
+            wr[v] = *(vec *)&rotor[0][b + v * VECTOR];
+            wi[v] = *(vec *)&rotor[1][b + v * VECTOR];
+            sr[v] = *(vec *)&rotor[2][b + v * VECTOR];
+            si[v] = *(vec *)&rotor[3][b + v * VECTOR];
+            sum_r[v] = *(vec *)(z + v * VECTOR);
+            sum_i[v] = *(vec *)(z + LANES + v * VECTOR);
         }
-        if (add) {
-            *(vec *)z = sum_r;
-            *(vec *)(z + LANES) = sum_i;
+        for (int i = 0; i < count; i++, x += in.row)
+            for (int v = 0; v < PAIR; v++) {
+                const vec kr = *(vec *)&rotor[4][b + v * VECTOR], ki = *(vec *)&rotor[5][b + v * VECTOR];
+                vec xr = *(const vec *)(x + v * VECTOR), xi = *(const vec *)(x + LANES + v * VECTOR), t;
+                vec pr = xr * wr[v] - xi * wi[v], pi = xr * wi[v] + xi * wr[v];
+                if (add) {
+                    sum_r[v] += pr;
+                    sum_i[v] += pi;
+                } else {
+                    *(vec *)(z + (size_t)i * out.row + v * VECTOR) = pr;
+                    *(vec *)(z + (size_t)i * out.row + LANES + v * VECTOR) = pi;
+                }
+                t = wr[v] * sr[v] - wi[v] * si[v];
+                wi[v] = wr[v] * si[v] + wi[v] * sr[v];
+                wr[v] = t;
+                t = sr[v] * kr - si[v] * ki;
+                si[v] = sr[v] * ki + si[v] * kr;
+                sr[v] = t;
+            }
+        for (int v = 0; add && v < PAIR; v++) {
+            *(vec *)(z + v * VECTOR) = sum_r[v];
+            *(vec *)(z + LANES + v * VECTOR) = sum_i[v];
         }
     }
 }
 
-/* Receivers times exp(j 2 pi (correction at r less the one at `less`)), by recurrence. `in` and `out` are rows; all are
-   added up into one where `add`. */
-static void correct_by_recurrence(const struct work_place *w, const real *in, double r, double less, bool add, real *out)
+/* All receivers at bins [k, k + n) by recurrence. */
+static void apply_recurrence(const struct work_place *w, const struct rma_ramp *ramps, int k, int n, struct rows in,
+                             bool add, struct rows out)
 {
-    const struct rma *rma = w->rma;
-    struct rma_ramp *ramps = buffer(w, RMA_RAMPS);
-    const double *y = buffer(w, RMA_ABSCISSAS);
-    size_t row = 2 * (size_t)rma->row;
-    int groups = rma_ramps(rma, &w->line, r, less, ramps), begin = w->line.begin / LANES * LANES;
+    const double *y = (const double *)buffer(w, RMA_ABSCISSAS) + k;
     real rotor[6][SPAN] __attribute__((aligned(RMA_ALIGNMENT)));
-    for (int k = begin; k < rma->row; k += SPAN) {
-        int n = rma->row - k < SPAN ? rma->row - k : SPAN;
-        for (const struct rma_ramp *g = ramps; g < ramps + groups; g++) {
-            rotors(g->first, y + k, n, rotor[0], rotor[1]);
-            rotors(g->step, y + k, n, rotor[2], rotor[3]);
-            rotors(g->curve, y + k, n, rotor[4], rotor[5]);
-            const real *x = in + (size_t)g->begin * row + 2 * k;
-            if (add && g->count == RMA_GROUP)
-                group_apply(x, row, RMA_GROUP, n, rotor, true, out + 2 * k);
-            else if (add)
-                group_apply(x, row, g->count, n, rotor, true, out + 2 * k);
-            else
-                group_apply(x, row, g->count, n, rotor, false, out + (size_t)g->begin * row + 2 * k);
-        }
+    for (const struct rma_ramp *g = ramps; g < ramps + w->rma->groups; g++) {
+        rotors(g->first, y, n, rotor[0], rotor[1]);
+        rotors(g->step, y, n, rotor[2], rotor[3]);
+        rotors(g->curve, y, n, rotor[4], rotor[5]);
+        struct rows from = {in.values + (size_t)g->begin * in.row, in.row};
+        struct rows to = {out.values + (size_t)g->begin * out.row, out.row};
+        if (add && g->count == RMA_GROUP)
+            group_apply(from, RMA_GROUP, n, rotor, true, out);
+        else if (add)
+            group_apply(from, g->count, n, rotor, true, out);
+        else
+            group_apply(from, g->count, n, rotor, false, to);
     }
 }
 
 /* The same by the formula and libm for each cell: for uneven arrays, and to check the recurrence. */
-static void correct_by_libm(const struct work_place *w, const real *in, double r, double less, bool add, real *out)
+static void apply_libm(const struct work_place *w, double r, double less, int k, int n, struct rows in, bool add,
+                       struct rows out)
 {
     const struct rma *rma = w->rma;
     for (int m = 0; m < rma->receivers; m++)
-        for (int k = w->line.begin; k < rma->band; k++) {
-            double frequency = rma_frequency(rma, k), cycles = rma_correction(rma, m, r, frequency, w->line.nu);
+        for (int i = 0; i < n; i++) {
+            if (k + i < w->line.begin || k + i >= rma->band)
+                continue;
+            double frequency = rma_frequency(rma, k + i), cycles = rma_correction(rma, m, r, frequency, w->line.nu);
             if (less > 0)
                 cycles -= rma_correction(rma, m, less, frequency, w->line.nu);
             double angle = 2 * M_PI * (cycles - floor(cycles + 0.5));
             real wr = (real)cos(angle), wi = (real)sin(angle);
-            size_t at = 2 * (size_t)(k / LANES * LANES) + (size_t)(k % LANES), row = (size_t)m * 2 * (size_t)rma->row;
-            real xr = in[row + at], xi = in[row + at + LANES], *z = out + at + (add ? 0 : row);
-            z[0] = (add ? z[0] : 0) + xr * wr - xi * wi;
-            z[LANES] = (add ? z[LANES] : 0) + xr * wi + xi * wr;
+            size_t at = 2 * (size_t)(i / LANES * LANES) + (size_t)(i % LANES);
+            const real *x = in.values + (size_t)m * in.row + at;
+            real *z = out.values + (add ? 0 : (size_t)m * out.row) + at;
+            z[0] = (add ? z[0] : 0) + x[0] * wr - x[LANES] * wi;
+            z[LANES] = (add ? z[LANES] : 0) + x[0] * wi + x[LANES] * wr;
         }
 }
 
-static void correct(const struct work_place *w, const real *in, double r, double less, bool add, real *out)
+/* Receivers at bins [k, k + n) times exp(j 2 pi (correction at r less the one at `less`)); `ramps` are those phases. */
+static void apply(const struct work_place *w, const struct rma_ramp *ramps, double r, double less, int k, int n,
+                  struct rows in, bool add, struct rows out)
 {
-    const struct rma *rma = w->rma;
-    size_t row = 2 * (size_t)rma->row;
-    memset(out, 0, (add ? 1 : (size_t)rma->receivers) * row * sizeof *out);
-    if (rma->even && rma->options.phases == RMA_RECURRENCE)
-        correct_by_recurrence(w, in, r, less, add, out);
+    for (int m = 0; m < (add ? 1 : w->rma->receivers); m++)
+        memset(out.values + (size_t)m * out.row, 0, 2 * (size_t)n * sizeof *out.values);
+    if (w->rma->recurs)
+        apply_recurrence(w, ramps, k, n, in, add, out);
     else
-        correct_by_libm(w, in, r, less, add, out);
+        apply_libm(w, r, less, k, n, in, add, out);
 }
 
 /* Bins that are evanescent, and those that only fill the last vector, read zero. */
 static void mask(const struct work_place *w, real *row)
 {
-    const struct rma *rma = w->rma;
-    for (int k = 0; k < rma->row; k++)
-        if (k < w->line.begin || k >= rma->band)
-            row[2 * (k / LANES * LANES) + k % LANES] = row[2 * (k / LANES * LANES) + k % LANES + LANES] = 0;
+    const int begin = w->line.begin, band = w->rma->band, end = w->rma->row;
+    for (int k = begin > 0 ? 0 : band; k < end; k = k + 1 == begin ? band : k + 1)
+        row[2 * (k / LANES * LANES) + k % LANES] = row[2 * (k / LANES * LANES) + k % LANES + LANES] = 0;
 }
 
 /* Where the samples from `centre` on lie: the block's number at its centre, fractions between, ends held. */
@@ -168,10 +197,16 @@ static void add_block(const struct work_place *w, const real *row, int block, co
     const int length = rma->length;
     real *wave = buffer(w, RMA_WAVE);
     memset(wave, 0, 2 * (size_t)length * sizeof *wave);
-    for (int k = 0; k < rma->band; k++) {
-        int bin = (rma->band_first + k + length) % length, at = 2 * (k / LANES * LANES) + k % LANES;
-        wave[2 * bin] = row[at];
-        wave[2 * bin + 1] = row[at + LANES];
+    int bin = rma->band_first < 0 ? rma->band_first + length : rma->band_first;
+    for (int k = 0, n; k < rma->band; k += n, bin = bin + n == length ? 0 : bin + n) {
+        int lane = k % LANES, left = length - bin;      /* up to the vector's, the band's or the transform's end */
+        const real *from = row + 2 * (k - lane) + lane;
+        n = LANES - lane < rma->band - k ? LANES - lane : rma->band - k;
+        n = n < left ? n : left;
+        for (int i = 0; i < n; i++) {
+            wave[2 * (bin + i)] = from[i];
+            wave[2 * (bin + i) + 1] = from[LANES + i];
+        }
     }
     FFTW(execute_dft)(rma->range_inverse, (complex_real *)wave, (complex_real *)wave);
     int from = (rma->centre % length + length) % length;
@@ -349,45 +384,62 @@ static void focus_direct(struct work_place *w, const struct rma_patch *patch, co
     stage_end(w, RMA_FOCUS);
 }
 
-/* The receivers' spectra at this wavenumber, without conversion or after it, block by block, as one monostatic row:
-   in `cut` as samples; in `sums` where nothing has to be cut and a direct sum reads the spectrum itself. */
-static void convert(struct work_place *w, real *sums, real *cut)
+/* The receivers' spectra at this wavenumber, corrected for each block and added up (or not yet): `sums` holds
+   [needed][1 or receivers] rows. */
+static void convert(struct work_place *w, real *sums)
 {
     const struct rma *rma = w->rma;
     const size_t row = 2 * (size_t)rma->row;
-    int turns = w->q - rma->wavenumbers / 2, period = rma->period;
-    int column = ((rma->spacing < 0 ? -turns : turns) % period + period) % period;
-    const real *data = (const real *)rma->data + (size_t)column * (size_t)rma->receivers * row;
-    const bool after = rma->options.sum == RMA_SUM_AFTER, needs_cut = rma->cuts || after || rma->taps > 0;
-    const int summed = after ? rma->receivers : 1;
-    real *place = buffer(w, RMA_PLACES), *corrected = buffer(w, RMA_CONVERTED);
-    if (needs_cut)
-        memset(cut, 0, 2 * (size_t)rma->length * sizeof *cut);
+    const int turns = w->q - rma->wavenumbers / 2, period = rma->period;
+    const int column = ((rma->spacing < 0 ? -turns : turns) % period + period) % period;
+    const bool add = rma->options.sum == RMA_SUM_BEFORE;
+    const size_t block = (add ? 1 : (size_t)rma->receivers) * row;
+    real *data = (real *)rma->data + (size_t)column * (size_t)rma->receivers * row;
     if (!rma->converts) {
         memcpy(sums, data, row * sizeof *sums);
-        stage_end(w, RMA_BULK);
-    } else {
-        double *y = buffer(w, RMA_ABSCISSAS);
-        for (int k = 0; k < rma->row; k++)
-            y[k] = fmax((rma_frequency(rma, k) - w->line.middle) / w->line.half, -1);
-        correct(w, data, rma->reference, 0, !rma->cuts && !after, rma->cuts ? corrected : sums);
-        stage_end(w, RMA_BULK);
+        return;
     }
+    double *y = buffer(w, RMA_ABSCISSAS);
+    const double y_first = (rma_frequency(rma, 0) - w->line.middle) / w->line.half;
+    const double y_step = rma->fs / rma->length / w->line.half;
+    for (int k = 0; k < rma->row; k++) {
+        double at = y_first + k * y_step;
+        y[k] = at < -1 ? -1 : at > 1 ? 1 : at;
+    }
+    struct rma_ramp *bulk = buffer(w, RMA_RAMPS), *ramps = bulk + rma->groups;
+    if (rma->recurs)
+        rma_ramps(rma, &w->line, rma->reference, 0, bulk);
+    stage_end(w, RMA_BULK);
+    for (int n = 0; rma->cuts && rma->recurs && n < rma->needed; n++)
+        rma_ramps(rma, &w->line, rma_block_range(rma, rma->blocks[n]), rma->reference, ramps + n * rma->groups);
+    stage_end(w, RMA_DIFFERENTIAL);
+    const struct rows converted = {buffer(w, RMA_CONVERTED), 2 * SPAN};
+    for (int k = w->line.begin / LANES * LANES; k < rma->row; k += SPAN) {
+        int n = rma->row - k < SPAN ? rma->row - k : SPAN;
+        struct rows in = {data + 2 * k, row}, out = {sums + 2 * k, row};
+        apply(w, bulk, rma->reference, 0, k, n, in, add && !rma->cuts, rma->cuts ? converted : out);
+        stage_end(w, RMA_BULK);
+        for (int b = 0; rma->cuts && b < rma->needed; b++, out.values += block)
+            apply(w, ramps + b * rma->groups, rma_block_range(rma, rma->blocks[b]), rma->reference, k, n, converted, add,
+                  out);
+        stage_end(w, RMA_DIFFERENTIAL);
+    }
+}
+
+/* The blocks' spectra as one signal of samples from `centre` on. */
+static void reconstruct(struct work_place *w, real *sums, real *cut)
+{
+    const struct rma *rma = w->rma;
+    const int summed = rma->options.sum == RMA_SUM_BEFORE ? 1 : rma->receivers;
+    real *place = buffer(w, RMA_PLACES);
+    memset(cut, 0, 2 * (size_t)rma->length * sizeof *cut);
     if (rma->cuts)
         places(w, place);
-    for (int n = 0; n < rma->needed; n++) {
-        int block = rma->blocks[n];
-        if (rma->cuts) {
-            correct(w, corrected, rma_block_range(rma, block), rma->reference, !after, sums);
-            stage_end(w, RMA_DIFFERENTIAL);
+    for (int n = 0; n < rma->needed; n++)
+        for (int m = 0; m < summed; m++, sums += 2 * rma->row) {
+            mask(w, sums);
+            add_block(w, sums, rma->blocks[n], place, cut);
         }
-        for (int m = 0; m < summed; m++) {
-            mask(w, sums + (size_t)m * row);
-            if (needs_cut)
-                add_block(w, sums + (size_t)m * row, block, place, cut);
-        }
-        stage_end(w, RMA_RECONSTRUCT);
-    }
 }
 
 static void column(struct work_place *w, real *stored)
@@ -395,16 +447,19 @@ static void column(struct work_place *w, real *stored)
     const struct rma *rma = w->rma;
     real *sums = buffer(w, RMA_SUMS), *cut = buffer(w, RMA_CUT), *z = buffer(w, RMA_SPECTRUM);
     const bool direct = rma->taps == 0, from_sums = direct && !rma->cuts && rma->options.sum == RMA_SUM_BEFORE;
-    convert(w, sums, cut);
-    if (!from_sums)
+    convert(w, sums);
+    if (!from_sums) {
+        reconstruct(w, sums, cut);
         spectrum(w, cut, z);
+    }
     if (direct && !from_sums) {
         int first = rma->band_first + rma->length / 2 + RMA_GUARD;
-        for (int k = 0; k < rma->row; k++)
+        for (int k = 0; k < rma->band; k++)
             for (int part = 0; part < 2; part++)
-                sums[2 * (k / LANES * LANES) + k % LANES + part * LANES] = k < rma->band ? z[2 * (first + k) + part] : 0;
-        mask(w, sums);
+                sums[2 * (k / LANES * LANES) + k % LANES + part * LANES] = z[2 * (first + k) + part];
     }
+    if (direct)
+        mask(w, sums);
     stage_end(w, RMA_RECONSTRUCT);
     for (int p = 0; p < rma->patch_count; p++) {
         const struct rma_patch *patch = &rma->patches[p];

@@ -12,7 +12,8 @@
 enum {
     RMA_ALIGNMENT = 64,             /* bytes: a vector, and a line of the cache */
     RMA_DEGREE = 5,                 /* of the phases' polynomials in frequency */
-    RMA_GROUP = 8,                  /* receivers of one recurrence: short, so that float stays at 1e-7 */
+    RMA_SPAN = 256,                 /* bins that go through all corrections together, in the cache */
+    RMA_GROUP = 16,                 /* receivers of one recurrence: float loses 1e-7 over it */
     RMA_TILE = 8,                   /* neighbouring wavenumbers whose rows are stored together */
     RMA_GUARD = 16,                 /* bins repeated beyond a spectrum's ends: the longest kernel */
     RMA_INTERVALS = 1024,           /* of the Stolt kernel's table, linear inside each */
@@ -21,10 +22,10 @@ enum {
 
 /* Scratch of a thread; all but the first two hold values of the plan's precision. */
 enum rma_buffer {
-    RMA_RAMPS,                      /* struct rma_ramp [groups] */
+    RMA_RAMPS,                      /* struct rma_ramp [1 + needed][groups]: bulk, then each block's */
     RMA_ABSCISSAS,                  /* double [row]: y of each bin */
-    RMA_CONVERTED,                  /* [receivers][row]: spectra after the bulk correction */
-    RMA_SUMS,                       /* [1 or receivers][row]: a block's spectra */
+    RMA_CONVERTED,                  /* [receivers][RMA_SPAN]: some bins after the bulk correction */
+    RMA_SUMS,                       /* [needed][1 or receivers][row]: spectra of each block */
     RMA_WAVE,                       /* complex [longest transform] */
     RMA_CUT,                        /* complex [length]: the blocks put together, from sample `centre` on */
     RMA_PLACES,                     /* real [length]: position of those samples in blocks */
@@ -71,7 +72,8 @@ struct rma {
     double x_first, spacing, t0, fs;
     int receivers, pings, samples;
     double *offset;                 /* [receivers] m */
-    bool even;                      /* evenly spaced receivers: recurrences apply */
+    int groups;                     /* of receivers */
+    bool recurs;                    /* corrections by recurrence: receivers are evenly spaced, and libm is not asked for */
     bool converts;                  /* false: one receiver, at the transmitter */
 
     /* azimuth: wavenumber q is (q - wavenumbers/2)/(period spacing) */
@@ -118,8 +120,8 @@ static inline double rma_frequency(const struct rma *rma, int bin)
 /* Correction of receiver m at range r, in cycles: -(phi + r K)/2 pi. */
 double rma_correction(const struct rma *rma, int receiver, double r, double frequency, double nu);
 struct rma_line rma_line(const struct rma *rma, int q);
-/* Fit the correction at `r` less the one at `less` (0: nothing is taken off) for all groups; returns their number. */
-int rma_ramps(const struct rma *rma, const struct rma_line *line, double r, double less, struct rma_ramp *ramps);
+/* Fit the correction at `r` less the one at `less` (0: nothing is taken off) for all groups. */
+void rma_ramps(const struct rma *rma, const struct rma_line *line, double r, double less, struct rma_ramp *ramps);
 /* Range of a block's centre, m. */
 double rma_block_range(const struct rma *rma, int block);
 

@@ -23,13 +23,17 @@ static const struct command commands[] = {
      "oseagt", 0, 0, command_image},
     {"run", "[SCENE ...] [--algorithm SPEC ...] [-o DIR]", "compare algorithms on scenes", "oat", 0, INT_MAX,
      command_run},
+    {"phase", "([SCENE] [-o DIR] | --at FILE.csv)", "phase errors of the two-dimensional spectra (LBF21 Figs 2-9)", "oA", 0, 1,
+     command_phase},
+    {"bench", "[-o DIR]", "speed of the engines against the processor's peak and the control loop", "ot", 0, 0,
+     command_bench},
 };
 
 static const struct option long_options[] = {
     {"output", required_argument, NULL, 'o'}, {"scene", required_argument, NULL, 's'},
     {"echoes", required_argument, NULL, 'e'}, {"algorithm", required_argument, NULL, 'a'},
     {"grid", required_argument, NULL, 'g'},   {"threads", required_argument, NULL, 't'},
-    {"help", no_argument, NULL, 'h'},         {NULL, 0, NULL, 0},
+    {"at", required_argument, NULL, 'A'},     {"help", no_argument, NULL, 'h'},         {NULL, 0, NULL, 0},
 };
 
 static const char *const option_texts[] = {
@@ -39,6 +43,7 @@ static const char *const option_texts[] = {
     "-a, --algorithm SPEC  NAME or NAME:key=value,...; every algorithm takes precision=float|double",
     "-g, --grid GRID       xmin:xstep:xcount,rmin:rstep:rcount in metres",
     "-t, --threads N       OpenMP threads, 1 to 1024",
+    "    --at FILE.csv     points of `phase`: columns d, r, F, f, fc, v, c",
 };
 
 static void help(void)

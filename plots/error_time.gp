@@ -21,7 +21,8 @@ set xlabel "median run time, raw echoes to image (s)"
 set ylabel "relative L2 error against the exact image"
 set title scene." on ".machine
 set key outside right top
-plot for [k = 1:words(names)] csv using (column("run_s")): \
+plot for [k = 1:words(names)] csv \
+    using (mine(strcol("scene"), word(names, k), strcol("algorithm"), column("run_s"))): \
     (mine(strcol("scene"), word(names, k), strcol("algorithm"), column("error"))) \
     with points linetype k + 1 pointtype 5 + 2*k pointsize 2 title word(names, k)
 unset output

@@ -1,0 +1,19 @@
+/* The vector of the instruction set that a file is being compiled for. */
+#ifndef SASBENCH_LANES_H
+#define SASBENCH_LANES_H
+
+#include "real.h"
+
+#if defined __AVX512F__
+enum { VECTOR_BYTES = 64 };
+#elif defined __AVX__
+enum { VECTOR_BYTES = 32 };
+#else
+enum { VECTOR_BYTES = 16 };
+#endif
+enum { LANES = VECTOR_BYTES / sizeof(real) };
+
+/* Loaded and stored wherever it lies. */
+typedef real vector_real __attribute__((vector_size(VECTOR_BYTES), aligned(sizeof(real)), may_alias));
+
+#endif
