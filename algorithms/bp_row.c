@@ -15,6 +15,16 @@
 
 #define INLINE static inline __attribute__((always_inline))
 
+/* Seconds from the transmitter to the pixel, for n shifts. */
+INLINE void legs(double x, double spacing, double r, double c, int n, double *restrict leg)
+{
+#pragma omp simd
+    for (int i = 0; i < n; i++) {
+        double u = x + i * spacing;
+        leg[i] = sqrt(u * u + r * r) / c;
+    }
+}
+
 /* Sample coordinate q and phase (turns, |f| <= 1/2) of n shifts from `first` on; `leg` holds |tx - p|/c. */
 INLINE void delays(const struct bp_medium *medium, const struct bp_raster *raster, double x, double r, double offset,
                    int n, const double *restrict leg, double *restrict q, double *restrict f)
@@ -41,15 +51,12 @@ INLINE int tabulate(const struct bp_medium *medium, const struct bp_table *table
     real *restrict wr = scratch->wr, *restrict wi = scratch->wi, *restrict weights = scratch->weights;
     const double last = medium->samples - 1;
     const int taps = table->taps, phases = table->phases, upsample = table->upsample, stride = slab->ping_stride;
-    double low = last, high = 0;
-#pragma omp simd reduction(min : low) reduction(max : high)
-    for (int i = 0; i < n; i++) {
-        low = q[i] < low ? q[i] : low;
-        high = q[i] > high ? q[i] : high;
-    }
-    bool whole = low >= 0 && high <= last;
+    int outside = 0;
+#pragma omp simd reduction(+ : outside)
+    for (int i = 0; i < n; i++)
+        outside += !(q[i] >= 0 && q[i] <= last);
     int count = 0;
-    if (whole && slab->width == upsample) {
+    if (outside == 0 && slab->width == upsample) {
         for (int i = 0; i < n; i++)
             shift[i] = begin + i;
         count = n;
@@ -231,11 +238,7 @@ void BP_ROW(const struct bp_medium *medium, const struct bp_table *table, const 
         if (n <= 0)
             continue;
         x += begin * raster->spacing;
-#pragma omp simd
-        for (int i = 0; i < n; i++) {
-            double u = x + i * raster->spacing;
-            scratch->leg[i] = sqrt(u * u + r * r) / medium->sound_speed;
-        }
+        legs(x, raster->spacing, r, medium->sound_speed, n, scratch->leg);
         for (int g = 0; g < count; g++) {
             const real *sr = (const real *)slab->re + (size_t)g * slab->receiver_stride;
             const real *si = (const real *)slab->im + (size_t)g * slab->receiver_stride;

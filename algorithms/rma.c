@@ -250,9 +250,21 @@ static enum status plan_lengths(struct rma *rma)
     return STATUS_OK;
 }
 
-/* Largest error in rad that the conversion at the blocks' centres leaves at their ends (LBF21 Eq. (13)). */
-static double block_error(struct rma *rma)
+/* Blocks that fade into each other reach from the first row to the last with their centres, so that no row lies outside
+   two of them; the others do so with their edges. */
+static void blocks_place(struct rma *rma, int count, double nearest, double farthest)
 {
+    bool inverse = rma->options.spacing == RMA_INVERSE, fade = rma->options.blend && count > 1;
+    double from = inverse ? 1 / nearest : nearest, to = inverse ? 1 / farthest : farthest;
+    rma->block_count = count;
+    rma->block_width = (to - from) / (fade ? count - 1 : count);
+    rma->block_from = from + (fade ? 0 : rma->block_width / 2);
+}
+
+/* Is the error that the conversion at the blocks' centres leaves at their ends below the limit (LBF21 Eq. (13))? */
+static bool blocks_suffice(struct rma *rma, int count, double nearest, double farthest)
+{
+    blocks_place(rma, count, nearest, farthest);
     const struct acquisition *a = rma->problem.acquisition;
     double nu = (rma->wavenumbers / 2) / (rma->period * fabs(rma->spacing)), largest = 0;
     nu = fmin(nu, 2 * WIDEST_SINE * (a->fc - a->bandwidth / 2) / a->sound_speed);
@@ -272,8 +284,10 @@ static double block_error(struct rma *rma)
     }
     for (int n = 0; n < rma->block_count; n++)
         for (int end = -1; end <= 1; end += 2) {
-            double centre = rma->block_from + n * rma->block_width, edge = centre + end * rma->block_width / 2;
-            double r0 = rma_block_range(rma, n), r1 = rma->options.spacing == RMA_INVERSE ? 1 / edge : edge;
+            double edge = rma->block_from + (n + end * 0.5) * rma->block_width, r0 = rma_block_range(rma, n), r1 = edge;
+            if (rma->options.spacing == RMA_INVERSE)
+                r1 = edge > 0 ? 1 / edge : farthest;
+            r1 = fmin(fmax(r1, nearest), farthest);
             for (int k = 0; k < 18; k++) {      /* 2 receivers, 3 frequencies, 3 wavenumbers */
                 double frequency = a->fc + (k / 2 % 3 - 1) * a->bandwidth / 2, at = (k / 6 - 1) * nu;
                 double error = rma_correction(rma, receivers[k % 2], r1, frequency, at)
@@ -281,16 +295,7 @@ static double block_error(struct rma *rma)
                 largest = fmax(largest, 2 * pi * fabs(error));
             }
         }
-    return largest;
-}
-
-static void blocks_place(struct rma *rma, int count, double nearest, double farthest)
-{
-    bool inverse = rma->options.spacing == RMA_INVERSE;
-    double from = inverse ? 1 / nearest : nearest, to = inverse ? 1 / farthest : farthest;
-    rma->block_count = count;
-    rma->block_width = (to - from) / count;
-    rma->block_from = from + rma->block_width / 2;
+    return largest <= rma->options.limit;
 }
 
 static enum status plan_blocks(struct rma *rma)
@@ -302,16 +307,15 @@ static enum status plan_blocks(struct rma *rma)
         count = 1;
     if (count == 0) {
         int too_few = 0;
-        for (count = 1; blocks_place(rma, count, nearest, farthest), block_error(rma) > rma->options.limit; count *= 2) {
+        for (count = 1; !blocks_suffice(rma, count, nearest, farthest); count *= 2) {
             too_few = count;
             if (count >= 4096)
-                return status_set(STATUS_UNSUPPORTED, "%s: 4096 range blocks leave a phase error of %g rad, above limit = "
-                                  "%g", rma->method.name, block_error(rma), rma->options.limit);
+                return status_set(STATUS_UNSUPPORTED, "%s: 4096 range blocks leave a phase error above limit = %g rad",
+                                  rma->method.name, rma->options.limit);
         }
         while (count - too_few > 1) {
             int middle = (count + too_few) / 2;
-            blocks_place(rma, middle, nearest, farthest);
-            *(block_error(rma) > rma->options.limit ? &too_few : &count) = middle;
+            *(blocks_suffice(rma, middle, nearest, farthest) ? &count : &too_few) = middle;
         }
     }
     blocks_place(rma, count, nearest, farthest);
@@ -320,7 +324,7 @@ static enum status plan_blocks(struct rma *rma)
     rma->blocks = malloc((size_t)count * sizeof *rma->blocks);
     if (!rma->blocks)
         return status_set(STATUS_FAILED, "no memory for %d blocks", count);
-    double near = rma->options.blend ? 1 : 0.5;
+    double near = rma->options.blend ? 1 - 1e-9 : 0.5 + 1e-9;      /* a block fades to nothing, or ends, there */
     for (int n = 0; n < count; n++) {
         bool wanted = false;
         for (int k = 0; k < rma->problem.patch_count; k++) {
@@ -330,7 +334,7 @@ static enum status plan_blocks(struct rma *rma)
                 double y = rma->options.spacing == RMA_INVERSE ? 1 / ends[e] : ends[e];
                 ends[e] = count > 1 ? fmin(fmax((y - rma->block_from) / rma->block_width, 0), count - 1) : 0;
             }
-            wanted = wanted || (ends[1] > n - near - 1e-9 && ends[0] < n + near + 1e-9);
+            wanted = wanted || (ends[1] > n - near && ends[0] < n + near);
         }
         if (wanted)
             rma->blocks[rma->needed++] = n;

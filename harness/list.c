@@ -50,11 +50,16 @@ static void accepted_format(const struct param *param, char *text, size_t size)
 
 enum status command_info(const struct task *task)
 {
+    const struct algorithm *algorithm = algorithm_find(task->names[0]);
     struct spec spec;
-    enum status status = spec_parse(task->names[0], &spec);
-    if (status != STATUS_OK)
-        return status;
-    const struct algorithm *algorithm = spec.algorithm;
+    if (!algorithm) {
+        enum status status = spec_parse(task->names[0], &spec);     /* says what is accepted */
+        if (status != STATUS_OK)
+            return status;
+        spec_free(&spec);
+        return status_set(STATUS_INVALID, "info: '%.100s' has settings, must be the name of an algorithm alone",
+                          task->names[0]);
+    }
     printf("%s: %s\nreference: %s\ntraits: ", algorithm->name, algorithm->summary, algorithm->reference);
     print_traits(algorithm);
     printf("\n%-10s %-10s %-18s %-24s %s\n", "parameter", "default", "accepted", "sweep", "");
@@ -66,6 +71,5 @@ enum status command_info(const struct task *task)
         accepted_format(p, accepted, sizeof accepted);
         printf("%-10s %-10s %-18s %-24s %s\n", p->name, initial, accepted, p->sweep ? p->sweep : "-", p->summary);
     }
-    spec_free(&spec);
     return STATUS_OK;
 }
