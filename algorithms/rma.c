@@ -1,6 +1,6 @@
-/* Range migration of multi-receiver echoes (rma.h): what a scene needs, in which blocks and transforms, and the order of
-   work. Each azimuth wavenumber is worked on by one thread, receivers in order, so that the bits do not depend on the
-   number of threads. */
+/* Range migration of multi-receiver echoes (rma.h): what a scene needs, in which blocks and transforms, and the
+   order of work. Each azimuth wavenumber is worked on by one thread, receivers in order, so that the bits do not
+   depend on the number of threads. */
 #include "rma.h"
 
 #include <fftw3.h>
@@ -18,8 +18,8 @@
 static const double pi = 3.14159265358979323846;
 
 static const double BAND_LOSS = 4e-6;       /* of the compressed pulse's energy may lie outside the band */
-static const double GRAZING = 1.005;        /* cells this near to evanescent ones (cos theta < 0.1) are left out too */
-static const double ABEAM_LIMIT = 0.2;      /* rad: a formula further off abeam would break the image's absolute phase */
+static const double GRAZING = 1.005;        /* cells this near to evanescence (cos theta < 0.1) are left out too */
+static const double ABEAM_LIMIT = 0.2;      /* rad: a formula further off abeam breaks the absolute phase */
 static const double WIDEST_SINE = 0.95;     /* of the aperture where neither sampling nor element length bounds it */
 
 const char *const rma_spacing_names[] = {"uniform", "inverse", NULL};
@@ -53,7 +53,8 @@ struct rma_line rma_line(const struct rma *rma, int q)
 {
     const struct spectrum_setting *s = &rma->setting;
     double c = s->sound_speed, beta = s->speed / c, b1 = (1 - beta) * (1 + beta);
-    struct rma_line line = {.nu = (q - rma->wavenumbers / 2) / (rma->period * fabs(rma->spacing)), .begin = rma->band};
+    double period_m = rma->period * fabs(rma->spacing);
+    struct rma_line line = {.nu = (q - rma->wavenumbers / 2) / period_m, .begin = rma->band};
     line.lowest = fmax(GRAZING * (1 + fabs(beta)) * c * fabs(line.nu) / 2, 0.01 * s->fc);
     double first = rma_frequency(rma, 0), last = rma_frequency(rma, rma->band - 1);
     if (!(line.lowest < s->fc && line.lowest < last))
@@ -72,8 +73,8 @@ double rma_block_range(const struct rma *rma, int block)
     return rma->options.spacing == RMA_INVERSE ? 1 / centre : centre;
 }
 
-/* The quadratic through the first, the middle and the last receiver of a group, at each node in frequency. The formulas
-   of LBF and PCA are quadratic in d; the exact one differs by less than 1e-6 rad over a group. */
+/* The quadratic through the first, the middle and the last receiver of a group, at each node in frequency. The
+   formulas of LBF and PCA are quadratic in d; the exact one differs by less than 1e-6 rad over a group. */
 void rma_ramps(const struct rma *rma, const struct rma_line *line, double r, double less, struct rma_ramp *ramps)
 {
     for (int begin = 0; begin < rma->receivers; begin += RMA_GROUP, ramps++) {
@@ -162,9 +163,9 @@ static enum status check_formula(const struct rma *rma)
         double error = fabs(rma->method.spectrum(&rma->setting, d, r, fc, abeam)
                             - spectrum_exact(&rma->setting, d, r, fc, abeam));
         if (!(error <= ABEAM_LIMIT))
-            return status_set(STATUS_UNSUPPORTED, "%s: its phase abeam is off by %.2g rad for the receiver at %g m and r = "
-                              "%g m, more than %g (rma_numeric has no such error)", rma->method.name, error, d, r,
-                              ABEAM_LIMIT);
+            return status_set(STATUS_UNSUPPORTED, "%s: its phase abeam is off by %.2g rad for the receiver at %g m "
+                              "and r = %g m, more than %g (rma_numeric has no such error)", rma->method.name, error,
+                              d, r, ABEAM_LIMIT);
     }
     return STATUS_OK;
 }
@@ -174,12 +175,13 @@ static enum status plan_track(struct rma *rma)
     const struct acquisition *a = rma->problem.acquisition;
     struct straight_track track;
     if (!acquisition_is_straight(a, &track))
-        return unsupported(rma, "the track is not straight and uniform (tx, rx within lambda/1000 of even points on a "
-                                "line along x, y = z = 0, one velocity, one t0)");
+        return unsupported(rma, "the track is not straight and uniform (tx, rx within lambda/1000 of even points on "
+                                "a line along x, y = z = 0, one velocity, one t0)");
     if (a->pings < 2)
         return unsupported(rma, "a single ping has no azimuth spectrum");
     if (a->aperture_limit < 1)
-        return unsupported(rma, "the scene has an aperture limit, and range migration cannot choose pings pixel by pixel");
+        return unsupported(rma, "the scene has an aperture limit, and range migration cannot choose pings pixel by "
+                                "pixel");
     rma->x_first = track.x_first;
     rma->spacing = track.spacing;
     rma->t0 = a->t0[0];
@@ -205,9 +207,9 @@ static enum status plan_track(struct rma *rma)
     return check_formula(rma);
 }
 
-/* Azimuth: the full rate of M receivers (LBF21 Eq. (10)), with half the widest aperture's zeros after the pings: what lies
-   beyond one end of the track and is imaged at the other has then been seen by the last pings only, by the beam's edge.
-   Range: the record, the replica, and the delays of the widest angle. */
+/* Azimuth: the full rate of M receivers (LBF21 Eq. (10)), with half the widest aperture's zeros after the pings:
+   what lies beyond one end of the track and is imaged at the other has then been seen by the last pings only, by
+   the beam's edge. Range: the record, the replica, and the delays of the widest angle. */
 static enum status plan_lengths(struct rma *rma)
 {
     const struct acquisition *a = rma->problem.acquisition;
@@ -223,9 +225,9 @@ static enum status plan_lengths(struct rma *rma)
         const struct grid *g = &rma->problem.patches[k];
         double last = g->x_first + (g->x_count - 1) * g->x_step;
         if (g->x_first < x_low - reach || last > x_high + reach)
-            return status_set(STATUS_UNSUPPORTED, "%s: columns from %g to %g m leave what the wavenumbers of the track cover, "
-                              "%g to %g m (squint too large)", rma->method.name, g->x_first, last, x_low - reach,
-                              x_high + reach);
+            return status_set(STATUS_UNSUPPORTED, "%s: columns from %g to %g m leave what the wavenumbers of the "
+                              "track cover, %g to %g m (squint too large)", rma->method.name, g->x_first, last,
+                              x_low - reach, x_high + reach);
     }
     rma->period = fft_length((long long)fmin(1e9, rma->pings + ceil(reach / 2 / spacing)));
     double first = (2 * nearest / c - rma->t0) * rma->fs;
@@ -235,7 +237,8 @@ static enum status plan_lengths(struct rma *rma)
         return status_set(STATUS_UNSUPPORTED, "%s: rows from %g to %g m lie too far outside the record's %g to %g m",
                           rma->method.name, nearest, farthest, c * rma->t0 / 2,
                           c * (rma->t0 + (rma->samples - 1) / rma->fs) / 2);
-    rma->length = fft_length(rma->samples + (long long)(before + after) + (a->pulse_length > 0 ? a->pulse_length - 1 : 0));
+    rma->length = fft_length((long long)rma->samples + (long long)(before + after)
+                             + (a->pulse_length > 0 ? a->pulse_length - 1 : 0));
     if (rma->period == 0 || rma->length == 0 || (double)rma->period * rma->receivers > INT_MAX / 4
         || rma->length > INT_MAX / 64)
         return unsupported(rma, "the transforms are too long");
@@ -250,8 +253,8 @@ static enum status plan_lengths(struct rma *rma)
     return STATUS_OK;
 }
 
-/* Blocks that fade into each other reach from the first row to the last with their centres, so that no row lies outside
-   two of them; the others do so with their edges. */
+/* Blocks that fade into each other reach from the first row to the last with their centres, so that no row lies
+   outside two of them; the others do so with their edges. */
 static void blocks_place(struct rma *rma, int count, double nearest, double farthest)
 {
     bool inverse = rma->options.spacing == RMA_INVERSE, fade = rma->options.blend && count > 1;
@@ -284,7 +287,8 @@ static bool blocks_suffice(struct rma *rma, int count, double nearest, double fa
     }
     for (int n = 0; n < rma->block_count; n++)
         for (int end = -1; end <= 1; end += 2) {
-            double edge = rma->block_from + (n + end * 0.5) * rma->block_width, r0 = rma_block_range(rma, n), r1 = edge;
+            double edge = rma->block_from + (n + end * 0.5) * rma->block_width;
+            double r0 = rma_block_range(rma, n), r1 = edge;
             if (rma->options.spacing == RMA_INVERSE)
                 r1 = edge > 0 ? 1 / edge : farthest;
             r1 = fmin(fmax(r1, nearest), farthest);
@@ -310,8 +314,8 @@ static enum status plan_blocks(struct rma *rma)
         for (count = 1; !blocks_suffice(rma, count, nearest, farthest); count *= 2) {
             too_few = count;
             if (count >= 4096)
-                return status_set(STATUS_UNSUPPORTED, "%s: 4096 range blocks leave a phase error above limit = %g rad",
-                                  rma->method.name, rma->options.limit);
+                return status_set(STATUS_UNSUPPORTED, "%s: 4096 range blocks leave a phase error above limit = %g "
+                                  "rad", rma->method.name, rma->options.limit);
         }
         while (count - too_few > 1) {
             int middle = (count + too_few) / 2;
@@ -410,8 +414,9 @@ static void plan_scratch(struct rma *rma)
     size_t receivers = (size_t)rma->receivers, row = 2 * (size_t)rma->row * real_bytes, longest = (size_t)rma->length;
     size_t most_rows = 0, length = (size_t)rma->length;
     for (int k = 0; k < rma->patch_count; k++) {
+        size_t rows = (size_t)rma->patches[k].grid.r_count;
         longest = (size_t)rma->patches[k].length > longest ? (size_t)rma->patches[k].length : longest;
-        most_rows = (size_t)rma->patches[k].grid.r_count > most_rows ? (size_t)rma->patches[k].grid.r_count : most_rows;
+        most_rows = rows > most_rows ? rows : most_rows;
     }
     bool after = rma->options.sum == RMA_SUM_AFTER;
     const size_t bytes[RMA_BUFFERS] = {
@@ -436,23 +441,24 @@ static void count_work(struct rma *rma)
 {
     struct work *work = &rma->work;
     double receivers = rma->receivers, row = rma->band, q = rma->wavenumbers, length = rma->length;
-    double applied = rma->converts ? 20 : 0;    /* a receiver's cell: product, sum, and two recurrences */
+    double applied = 20;                        /* a receiver's cell: product, sum, and two recurrences */
     double phases = 3 * (2.0 * RMA_DEGREE + 30) / RMA_GROUP;
-    double sums = rma->options.sum == RMA_SUM_AFTER ? receivers : 1;
+    double sums = rma->options.sum == RMA_SUM_AFTER ? receivers : 1, corrections = 1 + (rma->cuts ? rma->needed : 0);
     work->flops = receivers * rma->pings * (fft_flops(length) + 6 * row)
                   + receivers * row * fft_flops(rma->period)
-                  + q * receivers * row * (applied + (rma->converts ? phases : 0)) * (1 + (rma->cuts ? rma->needed : 0))
+                  + q * receivers * row * (rma->converts ? applied + phases : 0) * corrections
                   + q * (sums * rma->needed * (fft_flops(length) + 4 * length) + fft_flops(length) + 2 * length);
     for (int k = 0; k < rma->patch_count; k++) {
         const struct rma_patch *patch = &rma->patches[k];
-        double rows = patch->grid.r_count, points = length * patch->length * patch->step * 2 * rma->fs
-                                                    / (length * rma->setting.sound_speed);
+        double rows = patch->grid.r_count, points = patch->length * patch->step * 2 * rma->fs
+                                                    / rma->setting.sound_speed;
         work->flops += q * (rma->taps ? points * (7.0 * rma->taps + 60) + fft_flops(patch->length) : rows * row * 14);
         work->flops += rows * (2 * fft_flops(patch->chirp) + 6 * (q + patch->chirp + patch->grid.x_count));
     }
 
-    /* LBF21 Eqs. (20) to (22): N_a x N_r the full-rate data. Eq. (20) counts one sub-block, whatever their number: each one
-       more costs its products and its range transforms. */
+
+    /* LBF21 Eqs. (20) to (22): N_a x N_r the full-rate data. Eq. (20) counts one sub-block, whatever their number:
+       each one more costs its products and its range transforms. */
     const struct rma_method *method = &rma->method;
     double na = (double)rma->pings * receivers, nr = rma->samples, taps = rma->taps ? rma->taps : 8;
     double range = method->range[0] * receivers + method->range[1];
@@ -483,11 +489,12 @@ static void count_work(struct rma *rma)
                          rma->block_count - rma->needed);
     if (rma->band < rma->length)
         snprintf(work->skipped + used, sizeof work->skipped - (size_t)used,
-                 "; %.0f %% of the band: %.1g of the pulse's energy", 100 * (1 - (double)rma->band / rma->length), rma->loss);
+                 "; %.0f %% of the band: %.1g of the pulse's energy", 100 * (1 - (double)rma->band / rma->length),
+                 rma->loss);
 }
 
-enum status rma_plan(const struct problem *problem, const struct rma_method *method, const struct rma_options *options,
-                     void **plan)
+enum status rma_plan(const struct problem *problem, const struct rma_method *method,
+                     const struct rma_options *options, void **plan)
 {
     *plan = NULL;
     struct rma *rma = calloc(1, sizeof *rma);
@@ -499,7 +506,8 @@ enum status rma_plan(const struct problem *problem, const struct rma_method *met
     rma->threads = omp_get_max_threads();
     rma->work.bytes = sizeof *rma;
     nodes_fill(rma);
-    static enum status (*const steps[])(struct rma *) = {plan_track, plan_lengths, plan_blocks, plan_patches, plan_band};
+    static enum status (*const steps[])(struct rma *) = {plan_track, plan_lengths, plan_blocks, plan_patches,
+                                                         plan_band};
     enum status status = STATUS_OK;
     for (size_t k = 0; status == STATUS_OK && k < sizeof steps / sizeof *steps; k++)
         status = steps[k](rma);

@@ -1,9 +1,9 @@
-/* The engine that all range migrations share: multi-receiver echoes are coerced into monostatic ones, then focused by
-   one monostatic range migration (LBF21 section IV).
+/* The engine that all range migrations share: multi-receiver echoes are coerced into monostatic ones, then focused
+   by one monostatic range migration (LBF21 section IV).
 
    A method is a formula phi(d, r, F, nu) for the phase of one pair's two-dimensional spectrum (spectrum.h). Each
-   receiver's spectrum is multiplied by exp(-j (phi + r K)) at the centre r of a range block, with r K the exact phase of
-   d = 0: what is left looks like the echo of a monostatic sonar and is focused exactly by
+   receiver's spectrum is multiplied by exp(-j (phi + r K)) at the centre r of a range block, with r K the exact
+   phase of d = 0: what is left looks like the echo of a monostatic sonar and is focused exactly by
 
        image(x, r) = sum over nu and F of  Z(F, nu) exp(+j (r K(F, nu) + 2 pi nu x)) w(F, nu, r),
        w = exp(j pi/4) sqrt(c r/(2 F cos^3 theta)) / (spacing P N_f),
@@ -68,8 +68,8 @@ struct rma_method {
 };
 
 /* The callbacks of struct algorithm, for a method. `options` is only used during the call. */
-enum status rma_plan(const struct problem *problem, const struct rma_method *method, const struct rma_options *options,
-                     void **plan);
+enum status rma_plan(const struct problem *problem, const struct rma_method *method,
+                     const struct rma_options *options, void **plan);
 enum status rma_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
 struct work rma_work(const void *plan);
 void rma_destroy(void *plan);

@@ -1,8 +1,8 @@
-/* Range migration at one azimuth wavenumber: receivers' spectra in, focused rows out (rma.h: bulk to focus). Compiled once
-   for each precision and instruction set (BP_ISA names it).
+/* Range migration at one azimuth wavenumber: receivers' spectra in, focused rows out (rma.h: bulk to focus).
+   Compiled once for each precision and instruction set (BP_ISA names it).
 
-   The corrections of a group of receivers are quadratic in the receiver's number, so that a cell costs two complex products
-   a receiver and three sines and cosines a group; frequencies lie side by side in vectors. */
+   The corrections of a group of receivers are quadratic in the receiver's number, so that a cell costs two complex
+   products a receiver and three sines and cosines a group; frequencies lie side by side in vectors. */
 #include <string.h>
 
 #include "rma_engine.h"
@@ -154,7 +154,8 @@ static void apply_libm(const struct work_place *w, double r, double less, int k,
         }
 }
 
-/* Receivers at bins [k, k + n) times exp(j 2 pi (correction at r less the one at `less`)); `ramps` are those phases. */
+/* Receivers at bins [k, k + n) times exp(j 2 pi (correction at r less the one at `less`)); `ramps` are those
+   phases. */
 static void apply(const struct work_place *w, const struct rma_ramp *ramps, double r, double less, int k, int n,
                   struct rows in, bool add, struct rows out)
 {
@@ -249,10 +250,11 @@ static void spectrum(const struct work_place *w, real *cut, real *out)
     }
 }
 
-/* Values of the spectrum between its bins; position counts from the first guard bin. `taps` is a constant where this is
-   inlined. */
-static inline __attribute__((always_inline)) void interpolate(const real *restrict spectrum, const real *restrict kernel,
-    int taps, int n, const double *restrict position, real *restrict re, real *restrict im)
+/* Values of the spectrum between its bins; position counts from the first guard bin. `taps` is a constant where
+   this is inlined. */
+static inline __attribute__((always_inline)) void interpolate(const real *restrict spectrum,
+    const real *restrict kernel, int taps, int n, const double *restrict position, real *restrict re,
+    real *restrict im)
 {
     for (int j = 0; j < n; j++) {
         int bin = (int)position[j];
@@ -295,8 +297,8 @@ static void focus_interpolated(struct work_place *w, const struct rma_patch *pat
             double root = sqrt(half * half + b1 * kappa * kappa), frequency = beta * half + root;
             double s = sqrt((frequency - half) * (frequency + half)), offset = frequency - fc;
             position[i] = offset / bin + to_fc;
-            /* F sqrt(c/2) S^-3/2, dF/dK dK/fs */
-            weight[i] = (real)(frequency * sqrt(c / (2 * s)) / s * (b1 * kappa * c / (4 * M_PI) / root) * k_step / rma->fs);
+            double slope = b1 * kappa * c / (4 * M_PI) / root;      /* dF/dK */
+            weight[i] = (real)(frequency * sqrt(c / (2 * s)) / s * slope * k_step / rma->fs);
             double f = k * r / (2 * M_PI) - offset * t_centre + 0.125;
             cycles[i] = f - floor(f + 0.5);
         }
@@ -329,9 +331,10 @@ static void focus_interpolated(struct work_place *w, const struct rma_patch *pat
     stage_end(w, RMA_FOCUS);
 }
 
-/* The same without interpolation: every bin of the band at every row. `z` are vectors of the band's bins whose samples
-   count from time `origin`. */
-static void focus_direct(struct work_place *w, const struct rma_patch *patch, const real *z, double origin, real *stored)
+/* The same without interpolation: every bin of the band at every row. `z` are vectors of the band's bins whose
+   samples count from time `origin`. */
+static void focus_direct(struct work_place *w, const struct rma_patch *patch, const real *z, double origin,
+                         real *stored)
 {
     const struct rma *rma = w->rma;
     const double c = rma->setting.sound_speed, half = c * w->line.nu / 2;
@@ -419,9 +422,10 @@ static void convert(struct work_place *w, real *sums)
         struct rows in = {data + 2 * k, row}, out = {sums + 2 * k, row};
         apply(w, bulk, rma->reference, 0, k, n, in, add && !rma->cuts, rma->cuts ? converted : out);
         stage_end(w, RMA_BULK);
-        for (int b = 0; rma->cuts && b < rma->needed; b++, out.values += block)
-            apply(w, ramps + b * rma->groups, rma_block_range(rma, rma->blocks[b]), rma->reference, k, n, converted, add,
-                  out);
+        for (int b = 0; rma->cuts && b < rma->needed; b++, out.values += block) {
+            double r = rma_block_range(rma, rma->blocks[b]);
+            apply(w, ramps + b * rma->groups, r, rma->reference, k, n, converted, add, out);
+        }
         stage_end(w, RMA_DIFFERENTIAL);
     }
 }
@@ -483,7 +487,7 @@ void REAL_ISA_NAME(rma_column)(const struct rma *rma, int thread, int q, double 
         if (w.line.begin < rma->band)
             column(&w, stored + 2 * n);
     }
-    for (size_t i = 0; i < rma->rows; i++)
-        memcpy(focused + 2 * (i * rma->columns + (size_t)q), stored + 2 * RMA_TILE * i, 2 * RMA_TILE * sizeof *stored);
+    for (size_t i = 0; i < rma->rows; i++, stored += 2 * RMA_TILE)
+        memcpy(focused + 2 * (i * rma->columns + (size_t)q), stored, 2 * RMA_TILE * sizeof *stored);
     stage_end(&w, RMA_FOCUS);
 }

@@ -1,6 +1,7 @@
-/* A range migration's plan, shared by rma.c (geometry, blocks, order of work), rma_transform.c (transforms along range
-   and azimuth, for each precision) and rma_column.c (one azimuth wavenumber from the receivers' spectra to focused
-   rows, for each precision and instruction set). Pointers without a type hold values of the plan's precision. */
+/* A range migration's plan, shared by rma.c (geometry, blocks, order of work), rma_transform.c (transforms along
+   range and azimuth, for each precision) and rma_column.c (one azimuth wavenumber from the receivers' spectra to
+   focused rows, for each precision and instruction set). Pointers without a type hold values of the plan's
+   precision. */
 #ifndef SASBENCH_RMA_ENGINE_H
 #define SASBENCH_RMA_ENGINE_H
 
@@ -35,8 +36,8 @@ enum rma_buffer {
     RMA_BUFFERS
 };
 
-/* Phases of a group of receivers in cycles: receiver i of it has  first + i step + i(i-1)/2 curve. Each is a polynomial
-   in y = (F - middle)/half, lowest power first. */
+/* Phases of a group of receivers in cycles: receiver i of it has  first + i step + i(i-1)/2 curve. Each is a
+   polynomial in y = (F - middle)/half, lowest power first. */
 struct rma_ramp {
     int begin, count;               /* receivers */
     double first[RMA_DEGREE + 1], step[RMA_DEGREE + 1], curve[RMA_DEGREE + 1];
@@ -73,7 +74,7 @@ struct rma {
     int receivers, pings, samples;
     double *offset;                 /* [receivers] m */
     int groups;                     /* of receivers */
-    bool recurs;                    /* corrections by recurrence: receivers are evenly spaced, and libm is not asked for */
+    bool recurs;                    /* by recurrence: receivers are evenly spaced, and libm is not asked for */
     bool converts;                  /* false: one receiver, at the transmitter */
 
     /* azimuth: wavenumber q is (q - wavenumbers/2)/(period spacing) */
@@ -97,7 +98,8 @@ struct rma {
     int patch_count;
     struct rma_patch *patches;
     size_t rows;                    /* of all patches */
-    double chebyshev[RMA_DEGREE + 1], powers[RMA_DEGREE + 1][RMA_DEGREE + 1];   /* nodes; values there to coefficients */
+    double chebyshev[RMA_DEGREE + 1];       /* nodes of the phases' polynomials */
+    double powers[RMA_DEGREE + 1][RMA_DEGREE + 1];      /* takes values at the nodes to coefficients */
 
     int threads;
     size_t scratch_at[RMA_BUFFERS]; /* bytes: where each buffer of a thread begins */

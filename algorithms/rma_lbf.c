@@ -1,12 +1,13 @@
-/* Range migration by Loffeld's bistatic formula, LBF21's own method: the phase of each pair's spectrum is a quasi-monostatic
-   term psi and half a bistatic deformation psi_i (LBF21 Eqs. (3) to (5)),
+/* Range migration by Loffeld's bistatic formula, LBF21's own method: the phase of each pair's spectrum is a
+   quasi-monostatic term psi and half a bistatic deformation psi_i (LBF21 Eqs. (3) to (5)),
 
        psi   = -2 pi v nu r/(c cos th) + 4 pi r S/c,    S = sqrt(F^2 - (c nu/2)^2),
        psi_i = -2 pi nu d + (pi/c) (d + 2 r v/(c cos th))^2 S^3/(F^2 r).
 
-   `printed` takes theta at the carrier, sin th = c nu/(2 fc), which causes most of the error that the paper reports;
-   `corrected` takes it at F. Error of the corrected phase: below 0.01 rad from 50 m on, falling with r (rma_numeric has
-   none); the image's error is then that of stationary phase, 8e-3 at 40 m and 1e-3 from 135 m on. */
+   `printed` takes theta at the carrier, sin th = c nu/(2 fc), which causes most of the error that the paper
+   reports; `corrected` takes it at F. Error of the corrected phase: below 0.01 rad from 50 m on, falling with r
+   (rma_numeric has none); the image's error is then that of stationary phase, 8e-3 at 40 m and 1e-3 from 135 m
+   on. */
 #include "rma.h"
 
 static const char *const variants[] = {[RMA_PRINTED] = "printed", [RMA_CORRECTED] = "corrected", NULL};

@@ -25,6 +25,12 @@ static void *take(struct rma *rma, size_t count, size_t size, double share)
     return memory;
 }
 
+static real *scratch_of(const struct rma *rma, enum rma_buffer buffer)
+{
+    char *scratch = (char *)rma->scratch + (size_t)omp_get_thread_num() * rma->scratch_bytes;
+    return (real *)(scratch + rma->scratch_at[buffer]);
+}
+
 static complex_real rotor(double cycles)
 {
     double angle = 2 * pi * (cycles - floor(cycles + 0.5));
@@ -91,7 +97,8 @@ static void kernel_fill(const struct rma *rma)
 static bool chirp_fill(struct rma *rma, struct rma_patch *patch)
 {
     int q_count = rma->wavenumbers, x_count = patch->grid.x_count, length = patch->chirp;
-    complex_real *before = take(rma, (size_t)q_count, sizeof *before, 1), *after = take(rma, (size_t)x_count, sizeof *after, 1);
+    complex_real *before = take(rma, (size_t)q_count, sizeof *before, 1);
+    complex_real *after = take(rma, (size_t)x_count, sizeof *after, 1);
     complex_real *kernel = take(rma, (size_t)length, sizeof *kernel, 1);
     patch->before = before;
     patch->after = after;
@@ -121,7 +128,8 @@ static enum status plan(struct rma *rma)
     for (int k = 0; k < rma->patch_count; k++)      /* scratch also serves the transforms of this file */
         strip = strip > (size_t)rma->patches[k].chirp * sizeof(complex_real) ? strip
                 : (size_t)rma->patches[k].chirp * sizeof(complex_real);
-    rma->scratch_bytes = rma->scratch_bytes > strip ? rma->scratch_bytes : (strip / RMA_ALIGNMENT + 1) * RMA_ALIGNMENT;
+    if (rma->scratch_bytes < strip)
+        rma->scratch_bytes = (strip / RMA_ALIGNMENT + 1) * RMA_ALIGNMENT;
     rma->scratch = take(rma, threads, rma->scratch_bytes, 1.0 / rma->threads);
     rma->data = take(rma, (size_t)rma->period * (size_t)rma->receivers * row, sizeof(real), 1);
     rma->focused = take(rma, rma->rows * rma->columns, sizeof(complex_real), 1);
@@ -129,15 +137,16 @@ static enum status plan(struct rma *rma)
     rma->apodization = take(rma, length, sizeof(real), 1);
     rma->kernel = take(rma, (RMA_INTERVALS + 2) * (size_t)rma->taps, sizeof(real), 1);
     double complex *work = take(rma, length, sizeof *work, 0);
-    bool complete = rma->scratch && rma->data && rma->focused && rma->filter && rma->apodization && rma->kernel && work;
+    bool complete = rma->scratch && rma->data && rma->focused && rma->filter && rma->apodization && rma->kernel
+                    && work;
     if (complete) {
-        complex_real *wave = (complex_real *)((char *)rma->scratch + rma->scratch_at[RMA_WAVE]), *lines = rma->scratch;
+        complex_real *wave = (complex_real *)scratch_of(rma, RMA_WAVE), *lines = rma->scratch;
         filter_fill(rma, work);
         kernel_fill(rma);
         rma->range_forward = plan_line(rma->length, wave, FFTW_FORWARD);
         rma->range_inverse = plan_line(rma->length, wave, FFTW_BACKWARD);
-        rma->azimuth_forward = FFTW(plan_many_dft)(1, &rma->period, BLOCKS * LANES, lines, NULL, BLOCKS * LANES, 1, lines,
-                                                   NULL, BLOCKS * LANES, 1, FFTW_FORWARD, FFTW_ESTIMATE);
+        rma->azimuth_forward = FFTW(plan_many_dft)(1, &rma->period, BLOCKS * LANES, lines, NULL, BLOCKS * LANES, 1,
+                                                   lines, NULL, BLOCKS * LANES, 1, FFTW_FORWARD, FFTW_ESTIMATE);
         complete = rma->range_forward && rma->range_inverse && rma->azimuth_forward;
         for (int k = 0; complete && k < rma->patch_count; k++) {
             struct rma_patch *patch = &rma->patches[k];
@@ -178,12 +187,8 @@ static void destroy(struct rma *rma)
     free(rma->kernel);
 }
 
-static real *scratch_of(const struct rma *rma, enum rma_buffer buffer)
-{
-    return (real *)((char *)rma->scratch + (size_t)omp_get_thread_num() * rma->scratch_bytes + rma->scratch_at[buffer]);
-}
-
-/* Records [pings][receivers][samples] into the spectra of their band, times the filter: rows [pings][receivers], complex. */
+/* Records [pings][receivers][samples] into the spectra of their band, times the filter: rows [pings][receivers],
+   complex. */
 static void compress(const struct rma *rma, const void *samples)
 {
     const int records = rma->pings * rma->receivers, length = rma->length;
@@ -207,8 +212,8 @@ static void compress(const struct rma *rma, const void *samples)
     }
 }
 
-/* Azimuth FFT over the pings and the zeros after them, in place; the complex numbers of a vector become its real parts and
-   then its imaginary parts. */
+/* Azimuth FFT over the pings and the zeros after them, in place; the complex numbers of a vector become its real
+   parts and then its imaginary parts. */
 static void spread(const struct rma *rma)
 {
     const int vectors = rma->row / LANES, strips = (vectors + BLOCKS - 1) / BLOCKS;
@@ -217,7 +222,7 @@ static void spread(const struct rma *rma)
     for (int m = 0; m < rma->receivers; m++)
         for (int s = 0; s < strips; s++) {
             const size_t width = 2 * LANES * (size_t)(vectors - s * BLOCKS < BLOCKS ? vectors - s * BLOCKS : BLOCKS);
-            real *lines = (real *)((char *)rma->scratch + (size_t)omp_get_thread_num() * rma->scratch_bytes);
+            real *lines = scratch_of(rma, 0);
             real *data = (real *)rma->data + (size_t)m * row + (size_t)s * BLOCKS * 2 * LANES;
             const size_t ping = (size_t)rma->receivers * row, line = 2 * BLOCKS * LANES, pings = (size_t)rma->pings;
             for (size_t p = 0; p < pings; p++)
@@ -249,7 +254,7 @@ static void inverse(const struct rma *rma, int index, void *pixels)
     const size_t q = (size_t)rma->wavenumbers, columns = (size_t)patch->grid.x_count;
 #pragma omp parallel for schedule(static) num_threads(rma->threads)
     for (int i = 0; i < patch->grid.r_count; i++) {
-        real *wave = (real *)((char *)rma->scratch + (size_t)omp_get_thread_num() * rma->scratch_bytes);
+        real *wave = scratch_of(rma, 0);
         real *out = (real *)pixels + 2 * columns * (size_t)i;
         real root = (real)sqrt(patch->grid.r_first + i * patch->grid.r_step);
         memcpy(wave, (const real *)rma->focused + 2 * rma->columns * (patch->row + (size_t)i), 2 * q * sizeof *wave);

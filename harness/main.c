@@ -91,12 +91,19 @@ static enum status spec_add(struct task *task, const char *text)
     return status;
 }
 
+/* An option as it is written: "-o"; "--at" has no letter. */
+static void option_text(int letter, char *text, size_t size)
+{
+    snprintf(text, size, letter == 'A' ? "--at" : "-%c", letter);
+}
+
 /* Arguments after the command's name. */
 static enum status parse(const struct command *command, int argc, char **argv, struct task *task, bool *helped)
 {
     const char *threads = NULL;
     const struct { int letter; const char **field; } texts[] = {
-        {'o', &task->output}, {'s', &task->scene}, {'e', &task->echoes}, {'g', &task->grid}, {'t', &threads}};
+        {'o', &task->output}, {'s', &task->scene}, {'e', &task->echoes}, {'g', &task->grid}, {'A', &task->at},
+        {'t', &threads}};
     enum status status = STATUS_OK;
     opterr = 0;
     for (int letter; status == STATUS_OK && (letter = getopt_long(argc, argv, ":o:s:e:a:g:t:h", long_options, NULL)) != -1;) {
@@ -107,14 +114,14 @@ static enum status parse(const struct command *command, int argc, char **argv, s
         }
         if (letter == ':')
             return option_unknown(command, word, "needs a value");
-        if (letter == '?' || !strchr(command->options, letter)) {
-            char given[3] = {'-', (char)(letter == '?' ? optopt : letter), 0};
+        char given[8];
+        option_text(letter == '?' ? optopt : letter, given, sizeof given);
+        if (letter == '?' || !strchr(command->options, letter))
             return option_unknown(command, optopt || letter != '?' ? given : word, "is not one of this command");
-        }
         for (size_t k = 0; k < sizeof texts / sizeof *texts; k++)
             if (texts[k].letter == letter) {
                 if (*texts[k].field)
-                    return option_unknown(command, (char[]){'-', (char)letter, 0}, "is given twice");
+                    return option_unknown(command, given, "is given twice");
                 *texts[k].field = optarg;
             }
         if (letter == 'a')

@@ -1,5 +1,5 @@
-/* Five multi-receiver scenes by an independent implementation of LBF21's set-ups: back projection on a small grid, and the
-   errors of range migrations against it (block centre at the first target, no interpolation, weighted). */
+/* Five multi-receiver scenes by an independent implementation of LBF21's set-ups: back projection on a small grid,
+   and the errors of range migrations against it (block centre at the first target, no interpolation, weighted). */
 #ifndef SASBENCH_TEST_RMA_NUMBERS_H
 #define SASBENCH_TEST_RMA_NUMBERS_H
 
@@ -32,7 +32,8 @@ static const struct rma_numbers rma_numbers[] = {
      .t_first = -2.223333333333333, .t0 = 0.048, .df = 93.75, .samples = 256, .bins = 213,
      .limit = 0.5, .per_frequency = true, .lfm = false, .targets = 1,
      .target = {{40.0, 0.3, 1.0, 0.0}},
-     .x_first = 0.13999999999999999, .x_step = 0.013333333333333332, .r_first = 39.925, .r_step = 0.009375, .slice_step = 0.0016666666666666668,
+     .x_first = 0.13999999999999999, .x_step = 0.013333333333333332, .r_first = 39.925, .r_step = 0.009375,
+     .slice_step = 0.0016666666666666668,
      .method = {
          {"rma_numeric:", 0.00450417, 0.29999999, -16.73582},
          {"rma_lbf:variant=corrected,", 0.00476541, 0.299986778, -16.73568},
@@ -127,7 +128,8 @@ static const struct rma_numbers rma_numbers[] = {
      .t_first = -4.486666666666666, .t0 = 0.17333333333333334, .df = 75.0, .samples = 320, .bins = 267,
      .limit = 0.5, .per_frequency = true, .lfm = false, .targets = 3,
      .target = {{135.0, 0.3, 1.0, 0.0}, {134.2, -0.6, 0.0, 0.7}, {136.1, 0.9, -0.5, 0.0}},
-     .x_first = 0.13999999999999999, .x_step = 0.013333333333333332, .r_first = 134.925, .r_step = 0.009375, .slice_step = 0.0016666666666666668,
+     .x_first = 0.13999999999999999, .x_step = 0.013333333333333332, .r_first = 134.925, .r_step = 0.009375,
+     .slice_step = 0.0016666666666666668,
      .method = {
          {"rma_numeric:", 0.000391404, 0.300000872, -16.73114},
          {"rma_lbf:variant=corrected,", 0.000452263, 0.299993574, -16.73081},
@@ -221,7 +223,8 @@ static const struct rma_numbers rma_numbers[] = {
      .t_first = -13.15, .t0 = 0.34, .df = 75.0, .samples = 320, .bins = 267,
      .limit = 1.0, .per_frequency = true, .lfm = false, .targets = 1,
      .target = {{260.0, -0.4, 1.0, 0.0}},
-     .x_first = -0.48000000000000004, .x_step = 0.006666666666666669, .r_first = 259.925, .r_step = 0.009375, .slice_step = 0.0008333333333333334,
+     .x_first = -0.48000000000000004, .x_step = 0.006666666666666669, .r_first = 259.925, .r_step = 0.009375,
+     .slice_step = 0.0008333333333333334,
      .method = {
          {"rma_numeric:", 0.00044134, -0.399993201, -29.9562},
          {"rma_lbf:variant=corrected,", 0.000515544, -0.399999007, -29.95597},
@@ -315,7 +318,8 @@ static const struct rma_numbers rma_numbers[] = {
      .t_first = -7.348333333333334, .t0 = 0.17333333333333334, .df = 75.0, .samples = 320, .bins = 267,
      .limit = 0.5, .per_frequency = true, .lfm = false, .targets = 1,
      .target = {{135.0, 0.25, 1.0, 0.0}},
-     .x_first = 0.16999999999999998, .x_step = 0.006666666666666669, .r_first = 134.925, .r_step = 0.009375, .slice_step = 0.0008333333333333334,
+     .x_first = 0.16999999999999998, .x_step = 0.006666666666666669, .r_first = 134.925, .r_step = 0.009375,
+     .slice_step = 0.0008333333333333334,
      .method = {
          {"rma_numeric:", 0.000389617, 0.250000206, -16.59582},
          {"rma_lbf:variant=corrected,", 0.000675491, 0.249992717, -16.59596},
@@ -408,7 +412,8 @@ static const struct rma_numbers rma_numbers[] = {
      .t_first = -2.6766666666666667, .t0 = 0.06666666666666667, .df = 37.481259370314845, .samples = 667, .bins = 533,
      .limit = 0.5, .per_frequency = false, .lfm = true, .targets = 2,
      .target = {{60.0, 0.2, 1.0, 0.0}, {61.3, -0.5, 0.6, 0.0}},
-     .x_first = 0.04000000000000001, .x_step = 0.013333333333333332, .r_first = 59.925, .r_step = 0.009375, .slice_step = 0.0016666666666666668,
+     .x_first = 0.04000000000000001, .x_step = 0.013333333333333332, .r_first = 59.925, .r_step = 0.009375,
+     .slice_step = 0.0016666666666666668,
      .method = {
          {"rma_numeric:", 0.00181865, 0.200001114, -16.9212},
          {"rma_lbf:variant=corrected,", 0.00185783, 0.199988769, -16.9206},

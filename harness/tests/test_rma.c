@@ -1,5 +1,5 @@
-/* Range migration against numbers of an independent implementation, against exact images over whole swaths, and against
-   itself by other ways of computing. */
+/* Range migration against numbers of an independent implementation, against exact images over whole swaths, and
+   against itself by other ways of computing. */
 #include <complex.h>
 #include <math.h>
 #include <stdio.h>
@@ -16,7 +16,8 @@
 
 static const double pi = 3.14159265358979323846, speed = 3, pri = 0.44;
 
-/* A straight track at 3 m/s with 150 kHz and 20 kHz bandwidth, compressed records, receivers from the transmitter on. */
+/* A straight track at 3 m/s with 150 kHz and 20 kHz bandwidth, compressed records, receivers from the transmitter
+   on. */
 static void make_scene(int pings, int receivers, int samples, double fs, double t0, double x_first, double spacing,
                        double pitch, struct scene *scene)
 {
@@ -72,7 +73,8 @@ static void compress_lfm(const struct rma_numbers *n, struct scene *scene, struc
             for (int k = 0; k < count; k++) {
                 double u = a->t0[0] + k / a->fs - tau;
                 if (fabs(u) <= duration / 2)
-                    record[k] += weight * scene->targets[t].amplitude * cexp(I * pi * (rate * u * u - 2 * a->fc * tau));
+                    record[k] += weight * scene->targets[t].amplitude
+                                 * cexp(I * pi * (rate * u * u - 2 * a->fc * tau));
             }
         }
         fftw_execute(forward);
@@ -87,8 +89,8 @@ static void compress_lfm(const struct rma_numbers *n, struct scene *scene, struc
 
 static void make_numbers(const struct rma_numbers *n, struct scene *scene, struct echoes *echoes)
 {
-    make_scene(n->pings, n->receivers, n->samples, n->samples * n->df, n->t0, speed * n->t_first, speed * pri, n->rx_length,
-               scene);
+    make_scene(n->pings, n->receivers, n->samples, n->samples * n->df, n->t0, speed * n->t_first, speed * pri,
+               n->rx_length, scene);
     scene->acquisition.tx_length = n->tx_length;
     scene->beam.limit = n->limit;
     scene->beam.per_frequency = n->per_frequency;
@@ -239,7 +241,8 @@ static void other_ways(void **state)
         {"rma_lbf:blocks=4,precision=double", "rma_lbf:blocks=4,sum=after,precision=double", 1e-14},
         {"rma_lbf:blocks=4", "rma_lbf:blocks=4,sum=after", 1e-6},
         {"rma_pca:blocks=1,precision=double", "rma_pca:blocks=1,sum=after,precision=double", 1e-14},
-        {"rma_numeric:blocks=4,stolt=16,precision=double", "rma_numeric:blocks=4,stolt=direct,precision=double", 2e-3},
+        {"rma_lbf:blocks=1,stolt=16,precision=double",
+         "rma_lbf:blocks=1,stolt=direct,precision=double", 1e-4},
     };
     struct scene scene;
     struct echoes echoes;
@@ -282,8 +285,8 @@ static void recurrences(void **state)
     free_scene(&scene);
 }
 
-/* 40 to 300 m in 40 blocks equally spaced in 1/r: 2 % from 80 to 280 m. Blocks without rows are left out. The array is as
-   long as LBF21's, its elements are twice as long to save time. */
+/* 40 to 300 m in 40 blocks equally spaced in 1/r: 2 % from 80 to 280 m. Blocks without rows are left out. The array
+   is as long as LBF21's, its elements are twice as long to save time. */
 static void long_swath(void **state)
 {
     (void)state;
