@@ -56,7 +56,9 @@ static void compress_lfm(const struct rma_numbers *n, struct scene *scene, struc
         double t = (k < (count + 1) / 2 ? k : k - count) / a->fs;
         replica[k] = fabs(t) <= duration / 2 ? cexp(I * pi * rate * t * t) : 0;
     }
-    fftw_execute(fftw_plan_dft_1d(count, replica, replica, FFTW_FORWARD, FFTW_ESTIMATE));
+    fftw_plan transform = fftw_plan_dft_1d(count, replica, replica, FFTW_FORWARD, FFTW_ESTIMATE);
+    fftw_execute(transform);
+    fftw_destroy_plan(transform);
     double energy = 0;
     for (int k = 0; k < count; k++)
         if (k <= n->bins / 2 || k >= count - n->bins / 2)
