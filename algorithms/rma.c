@@ -20,6 +20,7 @@ static const double pi = 3.14159265358979323846;
 static const double BAND_LOSS = 4e-6;       /* of the compressed pulse's energy may lie outside the band */
 static const double GRAZING = 1.005;        /* cells this near to evanescence (cos theta < 0.1) are left out too */
 static const double ABEAM_LIMIT = 0.2;      /* rad: a formula further off abeam breaks the absolute phase */
+static const double SAME_CURVE = 1e-10;     /* cycles: rounding, not another curvature */
 static const double WIDEST_SINE = 0.95;     /* of the aperture where neither sampling nor element length bounds it */
 
 const char *const rma_spacing_names[] = {"uniform", "inverse", NULL};
@@ -95,6 +96,7 @@ void rma_ramps(const struct rma *rma, const struct rma_line *line, double r, dou
             values[2][n] = 2 * bend;
         }
         double *const polynomials[3] = {ramps->first, ramps->step, ramps->curve};
+        bool same = begin > 0;
         ramps->begin = begin;
         ramps->count = count;
         for (int k = 0; k < 3; k++)
@@ -102,7 +104,10 @@ void rma_ramps(const struct rma *rma, const struct rma_line *line, double r, dou
                 polynomials[k][power] = 0;
                 for (int n = 0; n <= RMA_DEGREE; n++)
                     polynomials[k][power] += rma->powers[power][n] * values[k][n];
+                same = same && (k < 2 || fabs(ramps->curve[power] - ramps[-1].curve[power]) < SAME_CURVE);
             }
+        if (same || count < 3)      /* one or two receivers have none of their own */
+            memcpy(ramps->curve, begin > 0 ? ramps[-1].curve : ramps->curve, sizeof ramps->curve);
     }
 }
 

@@ -17,7 +17,8 @@ enum { VECTOR_BYTES = 16 };         /* wider ones would live in memory */
 #endif
 typedef real vec __attribute__((vector_size(VECTOR_BYTES), may_alias));
 enum { LANES = RMA_ALIGNMENT / sizeof(real), VECTOR = VECTOR_BYTES / sizeof(real), PAIR = LANES > VECTOR ? 2 : 1,
-       SPAN = RMA_SPAN };
+       SPAN = RMA_SPAN,
+       RUN = 64 };                  /* samples that a block takes or leaves together: places rise or fall along them */
 
 /* What one thread works on. */
 struct work_place {
@@ -120,7 +121,8 @@ static void apply_recurrence(const struct work_place *w, const struct rma_ramp *
     for (const struct rma_ramp *g = ramps; g < ramps + w->rma->groups; g++) {
         rotors(g->first, y, n, rotor[0], rotor[1]);
         rotors(g->step, y, n, rotor[2], rotor[3]);
-        rotors(g->curve, y, n, rotor[4], rotor[5]);
+        if (g == ramps || memcmp(g->curve, g[-1].curve, sizeof g->curve) != 0)
+            rotors(g->curve, y, n, rotor[4], rotor[5]);
         struct rows from = {in.values + (size_t)g->begin * in.row, in.row};
         struct rows to = {out.values + (size_t)g->begin * out.row, out.row};
         if (add && g->count == RMA_GROUP)
@@ -180,7 +182,7 @@ static void places(const struct work_place *w, real *restrict place)
 {
     const struct rma *rma = w->rma;
     const int length = rma->length, last = rma->block_count - 1;
-    const double from = rma->block_from, scale = 1 / rma->block_width, slowness = w->line.slowness;
+    const double from = rma->block_from, scale = rma->cuts ? 1 / rma->block_width : 0, slowness = w->line.slowness;
     const bool inverse = rma->options.spacing == RMA_INVERSE;
 #pragma omp simd
     for (int j = 0; j < length; j++) {
@@ -188,6 +190,20 @@ static void places(const struct work_place *w, real *restrict place)
         double delay = fmax(rma->t0 + n / rma->fs, 1e-9), range = delay / slowness;
         double b = ((inverse ? 1 / range : range) - from) * scale;
         place[j] = (real)(b > 0 ? b < last ? b : last : 0);
+    }
+}
+
+/* Samples that belong to a block, by their places: all of it, or fading to nothing at the neighbours' centres. */
+static void add_weighted(const real *restrict x, const real *restrict place, int n, real block, bool blend,
+                         real *restrict cut)
+{
+    for (int j = 0; j < n; j++) {
+        real away = place[j] - block, weight = away < 0 ? 1 + away : 1 - away;
+        if (!blend)
+            weight = away >= (real)-0.5 && away < (real)0.5;
+        weight = weight > 0 ? weight : 0;
+        cut[2 * j] += weight * x[2 * j];
+        cut[2 * j + 1] += weight * x[2 * j + 1];
     }
 }
 
@@ -214,58 +230,63 @@ static void add_block(const struct work_place *w, const real *row, int block, co
     for (int half = 0; half < 2; half++) {          /* sample (centre + j) mod length, without the division */
         int begin = half ? length - from : 0, end = half ? length : length - from;
         const real *x = wave + 2 * (half ? -begin : from);
-        if (!rma->cuts)
-            for (int j = begin; j < end; j++) {
-                cut[2 * j] += x[2 * j];
-                cut[2 * j + 1] += x[2 * j + 1];
-            }
-        else
-            for (int j = begin; j < end; j++) {
-                real away = (real)fabs(place[j] - (real)block);
-                real weight = rma->options.blend ? (away < 1 ? 1 - away : 0) : place[j] + (real)0.5 >= (real)block
-                              && place[j] + (real)0.5 < (real)(block + 1);
-                cut[2 * j] += weight * x[2 * j];
-                cut[2 * j + 1] += weight * x[2 * j + 1];
-            }
+        for (int j0 = begin; j0 < end; j0 += RUN) {
+            int n = end - j0 < RUN ? end - j0 : RUN;
+            real ends = place[j0] < place[j0 + n - 1] ? place[j0] : place[j0 + n - 1];
+            if (ends < (real)(block + 1) && place[j0] + place[j0 + n - 1] - ends > (real)(block - 1))
+                add_weighted(x + 2 * j0, place + j0, n, (real)block, rma->options.blend, cut + 2 * j0);
+        }
     }
 }
 
-/* The cut's spectrum in rising frequency with RMA_GUARD bins of the next period at either end; its samples count from
-   `centre`. */
-static void spectrum(const struct work_place *w, real *cut, real *out)
+/* The cut's spectrum in rising frequency, RMA_GUARD bins of the next period at either end: all real parts, then all
+   imaginary ones. Its samples count from `centre`. */
+static void spectrum(const struct work_place *w, real *cut, real *re)
 {
     const struct rma *rma = w->rma;
     const size_t length = (size_t)rma->length, low = length / 2;     /* low: bins below fc */
     const real *scale = rma->apodization;
+    real *im = re + length + 2 * RMA_GUARD;
     for (size_t j = 0; j < length; j++) {
         cut[2 * j] *= scale[j];
         cut[2 * j + 1] *= scale[j];
     }
     FFTW(execute_dft)(rma->range_forward, (complex_real *)cut, (complex_real *)cut);
-    memcpy(out + 2 * RMA_GUARD, cut + 2 * (length - low), 2 * low * sizeof *out);
-    memcpy(out + 2 * (RMA_GUARD + low), cut, 2 * (length - low) * sizeof *out);
-    for (size_t k = 0; k < 2 * RMA_GUARD; k++) {
-        out[k] = out[2 * length + k];
-        out[2 * (RMA_GUARD + length) + k] = out[2 * RMA_GUARD + k];
+    const struct {
+        size_t from, to, count;
+    } pieces[] = {{length - low, RMA_GUARD, low}, {0, RMA_GUARD + low, length - low}};
+    for (int piece = 0; piece < 2; piece++) {
+        const real *from = cut + 2 * pieces[piece].from;
+        real *to_re = re + pieces[piece].to, *to_im = im + pieces[piece].to;
+        for (size_t k = 0; k < pieces[piece].count; k++) {
+            to_re[k] = from[2 * k];
+            to_im[k] = from[2 * k + 1];
+        }
+    }
+    for (size_t k = 0; k < RMA_GUARD; k++) {
+        re[k] = re[length + k];
+        im[k] = im[length + k];
+        re[RMA_GUARD + length + k] = re[RMA_GUARD + k];
+        im[RMA_GUARD + length + k] = im[RMA_GUARD + k];
     }
 }
 
 /* Values of the spectrum between its bins; position counts from the first guard bin. `taps` is a constant where
    this is inlined. */
-static inline __attribute__((always_inline)) void interpolate(const real *restrict spectrum,
-    const real *restrict kernel, int taps, int n, const double *restrict position, real *restrict re,
-    real *restrict im)
+static inline __attribute__((always_inline)) void interpolate(const struct rma *rma, const real *restrict spectrum,
+    int taps, int n, const double *restrict position, real *restrict re, real *restrict im)
 {
+    const real *kernel = rma->kernel, *imaginary = spectrum + rma->length + 2 * RMA_GUARD;
     for (int j = 0; j < n; j++) {
-        int bin = (int)position[j];
+        int bin = (int)position[j], first = bin + 1 - taps / 2;
         double interval = (position[j] - bin) * RMA_INTERVALS;
         const real *a = kernel + (size_t)(int)interval * (size_t)taps, *b = a + taps;
-        const real *x = spectrum + 2 * (bin + 1 - taps / 2);
         real u = (real)(interval - (int)interval), vr = 0, vi = 0;
+#pragma omp simd reduction(+ : vr, vi)
         for (int k = 0; k < taps; k++) {
             real weight = a[k] + u * (b[k] - a[k]);
-            vr += weight * x[2 * k];
-            vi += weight * x[2 * k + 1];
+            vr += weight * spectrum[first + k];
+            vi += weight * imaginary[first + k];
         }
         re[j] = vr;
         im[j] = vi;
@@ -279,8 +300,11 @@ static void focus_interpolated(struct work_place *w, const struct rma_patch *pat
     const struct rma *rma = w->rma;
     const double c = rma->setting.sound_speed, fc = rma->setting.fc, beta = rma->setting.speed / c;
     const double b1 = (1 - beta) * (1 + beta), half = c * w->line.nu / 2, bin = rma->fs / rma->length;
-    const double low = fmax(fc - rma->length / 2 * bin, w->line.lowest);
-    const double high = fc + (rma->length - rma->length / 2 - 1) * bin;
+    /* The band, and some bins beside it for what the interpolation and the blocks' edges spread. */
+    const int half_length = rma->length / 2, beside = RMA_GUARD, end = rma->band_first + rma->band - 1 + beside;
+    const double low = fmax(fc + (rma->band_first - beside < -half_length ? -half_length
+                                  : rma->band_first - beside) * bin, w->line.lowest);
+    const double high = fc + (end < half_length - 1 ? end : half_length - 1) * bin;
     const double k_step = 2 * M_PI / (patch->length * patch->step), r = patch->grid.r_first;
     const double t_centre = rma->t0 + rma->centre / rma->fs, to_fc = rma->length / 2 + RMA_GUARD;
     const long long first = (long long)ceil(spectrum_monostatic(&rma->setting, low, w->line.nu) / k_step);
@@ -303,9 +327,9 @@ static void focus_interpolated(struct work_place *w, const struct rma_patch *pat
             cycles[i] = f - floor(f + 0.5);
         }
         switch (rma->taps) {
-        case 4: interpolate(z, rma->kernel, 4, n, position, re, im); break;
-        case 8: interpolate(z, rma->kernel, 8, n, position, re, im); break;
-        default: interpolate(z, rma->kernel, rma->taps, n, position, re, im); break;
+        case 4: interpolate(rma, z, 4, n, position, re, im); break;
+        case 8: interpolate(rma, z, 8, n, position, re, im); break;
+        default: interpolate(rma, z, rma->taps, n, position, re, im); break;
         }
         stage_end(w, RMA_STOLT);
 #pragma omp simd
@@ -437,8 +461,7 @@ static void reconstruct(struct work_place *w, real *sums, real *cut)
     const int summed = rma->options.sum == RMA_SUM_BEFORE ? 1 : rma->receivers;
     real *place = buffer(w, RMA_PLACES);
     memset(cut, 0, 2 * (size_t)rma->length * sizeof *cut);
-    if (rma->cuts)
-        places(w, place);
+    places(w, place);
     for (int n = 0; n < rma->needed; n++)
         for (int m = 0; m < summed; m++, sums += 2 * rma->row) {
             mask(w, sums);
@@ -460,7 +483,8 @@ static void column(struct work_place *w, real *stored)
         int first = rma->band_first + rma->length / 2 + RMA_GUARD;
         for (int k = 0; k < rma->band; k++)
             for (int part = 0; part < 2; part++)
-                sums[2 * (k / LANES * LANES) + k % LANES + part * LANES] = z[2 * (first + k) + part];
+                sums[2 * (k / LANES * LANES) + k % LANES + part * LANES] =
+                    z[part * (rma->length + 2 * RMA_GUARD) + first + k];
     }
     if (direct)
         mask(w, sums);

@@ -14,7 +14,7 @@ enum {
     RMA_ALIGNMENT = 64,             /* bytes: a vector, and a line of the cache */
     RMA_DEGREE = 5,                 /* of the phases' polynomials in frequency */
     RMA_SPAN = 256,                 /* bins that go through all corrections together, in the cache */
-    RMA_GROUP = 16,                 /* receivers of one recurrence: float loses 1e-7 over it */
+    RMA_GROUP = 24,                 /* receivers of one recurrence: float loses some 1e-6 over it */
     RMA_TILE = 8,                   /* neighbouring wavenumbers whose rows are stored together */
     RMA_GUARD = 16,                 /* bins repeated beyond a spectrum's ends: the longest kernel */
     RMA_INTERVALS = 1024,           /* of the Stolt kernel's table, linear inside each */
