@@ -48,11 +48,11 @@ extern const char *const rma_spacing_names[], *const rma_blend_names[], *const r
     {RMA_FIELD(limit), .summary = "largest phase error inside a block (rad) where blocks = 0", .type = PARAM_REAL, \
      .initial = 0.78539816339744831, .min = 1e-3, .max = 100, .terse = true}, \
     {RMA_FIELD(spacing), .summary = "blocks of equal width in r or in 1/r", .type = PARAM_CHOICE, \
-     .initial = RMA_INVERSE, .max = RMA_INVERSE, .choices = rma_spacing_names, .sweep = "uniform inverse"}, \
+     .initial = RMA_INVERSE, .max = RMA_INVERSE, .choices = rma_spacing_names, .sweep = "uniform inverse", .terse = true}, \
     {RMA_FIELD(blend), .summary = "neighbouring blocks fade into each other", .type = PARAM_CHOICE, .initial = 1, \
-     .max = 1, .choices = rma_blend_names, .sweep = "off on"}, \
+     .max = 1, .choices = rma_blend_names, .sweep = "off on", .terse = true}, \
     {RMA_FIELD(stolt), .summary = "Kaiser taps of the Stolt interpolation, or a direct sum", .type = PARAM_CHOICE, \
-     .initial = 3, .max = 5, .choices = rma_stolt_names, .sweep = "4 6 8 12 16"}, \
+     .initial = 3, .max = 5, .choices = rma_stolt_names, .sweep = "4 6 8 12 16", .terse = true}, \
     {RMA_FIELD(sum), .summary = "receivers are summed before or after the range IFFT (check)", .type = PARAM_CHOICE, \
      .initial = RMA_SUM_BEFORE, .max = RMA_SUM_AFTER, .choices = rma_sum_names, .terse = true}, \
     {RMA_FIELD(phases), .summary = "by recurrence over the receivers, or by libm for each cell (check)", \

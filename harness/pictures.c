@@ -1,0 +1,85 @@
+/* The pictures of one scene's comparison: each image in decibels, and the azimuth slices of all overlaid. */
+#include "pictures.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "metrics.h"
+#include "task.h"
+
+/* "DIR/bp22_table3-bp_sinc_taps_8.png" for bp22/table3 and bp_sinc:taps=8. */
+static void picture_path(const char *directory, const char *scene, const char *rest, char *path, size_t size)
+{
+    int used = snprintf(path, size, "%s/", directory);
+    snprintf(path + used, size - (size_t)used, "%s-%s.png", scene, rest);
+    for (char *p = path + used; *p; p++)
+        if (strchr("/:,= \\", *p))
+            *p = '_';
+}
+
+/* A picture that cannot be drawn is told, but does not fail what was measured. */
+static void tell(enum status status)
+{
+    if (status != STATUS_OK)
+        fprintf(stderr, "sasbench: %s\n", status_message());
+}
+
+enum status pictures_begin(const char *directory, const struct scene *scene, int spec_count, struct pictures *pictures)
+{
+    *pictures = (struct pictures){directory, scene, spec_count, NULL};
+    pictures->lines = calloc((size_t)scene->point_count * (size_t)spec_count + 1, sizeof *pictures->lines);
+    return pictures->lines ? STATUS_OK : status_set(STATUS_FAILED, "%s: no memory for slices", scene->name);
+}
+
+void pictures_free(struct pictures *pictures)
+{
+    for (int k = 0; pictures->lines && k < pictures->scene->point_count * pictures->spec_count; k++) {
+        free((char *)pictures->lines[k].label);
+        free(pictures->lines[k].position_m);
+        free(pictures->lines[k].power_db);
+    }
+    free(pictures->lines);
+    *pictures = (struct pictures){0};
+}
+
+void pictures_add(struct pictures *pictures, int index, const char *label, const struct image *image)
+{
+    const struct scene *scene = pictures->scene;
+    char path[4096], title[700];
+    picture_path(pictures->directory, scene->name, label, path, sizeof path);
+    snprintf(title, sizeof title, "%s: %s", scene->name, label);
+    tell(plot_image(path, PLOT_DIRECTORY, image, title));
+    for (int t = 0; t < scene->point_count; t++) {
+        struct slice_line *line = &pictures->lines[t * pictures->spec_count + index];
+        line->label = strdup(label);
+        metrics_slice_samples(image, &scene->acquisition, &scene->targets[t], AXIS_AZIMUTH, &line->position_m,
+                              &line->power_db, &line->count);
+    }
+}
+
+void pictures_slices(const struct pictures *pictures)
+{
+    const struct scene *scene = pictures->scene;
+    char path[4096], title[600];
+    char (*texts)[64] = calloc((size_t)scene->point_count + 1, sizeof *texts);
+    const char **titles = calloc((size_t)scene->point_count + 1, sizeof *titles);
+    struct slice_line *lines = calloc((size_t)scene->point_count * (size_t)pictures->spec_count + 1, sizeof *lines);
+    int count = 0;                      /* lines without a label have no image: unsupported or failed */
+    for (int k = 0; lines && k < scene->point_count * pictures->spec_count; k++)
+        if (pictures->lines[k % pictures->spec_count].label)
+            lines[count++] = pictures->lines[k];
+    if (count > 0 && texts && titles) {
+        for (int t = 0; t < scene->point_count; t++) {
+            snprintf(texts[t], sizeof texts[t], "T%d: x = %g m, r = %g m", t + 1, scene->targets[t].x,
+                     scene->targets[t].r);
+            titles[t] = texts[t];
+        }
+        picture_path(pictures->directory, scene->name, "slices", path, sizeof path);
+        snprintf(title, sizeof title, "%s: azimuth slices", scene->name);
+        tell(plot_slices(path, PLOT_DIRECTORY, title, scene->point_count, titles, count / scene->point_count, lines));
+    }
+    free(lines);
+    free(texts);
+    free(titles);
+}

@@ -1,0 +1,23 @@
+/* The pictures of one scene's comparison, drawn beside its CSVs. What cannot be drawn is told on standard error, but does
+   not fail what was measured. */
+#ifndef SASBENCH_PICTURES_H
+#define SASBENCH_PICTURES_H
+
+#include "plot.h"
+
+struct pictures {
+    const char *directory;          /* borrowed, like the scene */
+    const struct scene *scene;
+    int spec_count;
+    struct slice_line *lines;       /* [point_count][spec_count]; without a label: no image */
+};
+
+/* Errors: STATUS_FAILED without memory. pictures_free accepts a zeroed struct. */
+enum status pictures_begin(const char *directory, const struct scene *scene, int spec_count, struct pictures *pictures);
+/* Draw one algorithm's image (DIR/SCENE-LABEL.png) and keep its slices. index: 0 to spec_count - 1. */
+void pictures_add(struct pictures *pictures, int index, const char *label, const struct image *image);
+/* Draw the azimuth slices of all images added (DIR/SCENE-slices.png), one panel a target. */
+void pictures_slices(const struct pictures *pictures);
+void pictures_free(struct pictures *pictures);
+
+#endif
