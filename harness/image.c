@@ -13,7 +13,9 @@ enum status command_simulate(const struct task *task)
     struct echoes echoes;
     if (!task->output)
         return status_set(STATUS_INVALID, "simulate: -o FILE.mat is missing");
-    enum status status = scene_load(task->names[0], SCENE_DIRECTORY, &scene);
+    enum status status = matfile_place(task->output);
+    if (status == STATUS_OK)
+        status = scene_load(task->names[0], SCENE_DIRECTORY, &scene);
     if (status != STATUS_OK)
         return status;
     status = scene_simulate(&scene, &echoes);
@@ -88,7 +90,7 @@ static enum status check_usage(const struct task *task)
                           task->spec_count);
     if (!task->output)
         return status_set(STATUS_INVALID, "image: -o FILE.mat is missing");
-    return STATUS_OK;
+    return matfile_place(task->output);
 }
 
 enum status command_image(const struct task *task)

@@ -13,6 +13,9 @@ enum status echo_file_read(const char *path, struct acquisition *acquisition, st
    Errors: STATUS_INVALID when the place cannot be written. */
 enum status echo_file_write(const char *path, const struct echoes *echoes, const char *description);
 
+/* Can a file be made here? Asked before long work whose result goes there. Errors: STATUS_INVALID. */
+enum status matfile_place(const char *path);
+
 /* Write an image with x, r, algorithm, options and scene (texts). The second patch is image_2, x_2, r_2, and so on. Same
    rules. */
 enum status image_file_write(const char *path, const struct image *image, const char *algorithm, const char *options,

@@ -246,7 +246,8 @@ static enum status send_variable(const char *path, const struct wanted *wanted, 
     size_t count = variable_count(&packet.variable);
     mat_complex_split_t parts;
     if (Mat_VarReadDataAll(mat, matvar) != 0 || !variable_parts(matvar, count, &parts)) {
-        return status_set(STATUS_INVALID, "%s: variable `%s` is damaged or cut short", path, name);
+        return status_set(STATUS_INVALID, "%s: variable `%s` is damaged or cut short; a whole file is needed",
+                          path, name);
     }
     if (!write_fully(descriptor, &packet, sizeof packet) ||
         !send_values(parts, matvar->data_type, count, descriptor)) {
@@ -264,7 +265,7 @@ static enum status send_variables(const char *path, const struct wanted *wanted,
         return status_set(STATUS_INVALID, "%s: is not a MATLAB file of version 5 or 7.3", path);
     }
     if (Mat_GetVersion(mat) == MAT_FT_MAT5 && mat5_count(path) < 0) {
-        return status_set(STATUS_INVALID, "%s: is cut short or damaged", path);
+        return status_set(STATUS_INVALID, "%s: is cut short or damaged; a whole MATLAB file is needed", path);
     }
     bool sent[WANTED_MAX] = {false};
     enum status status = STATUS_OK;
@@ -392,7 +393,8 @@ enum status variables_read(const char *path, const struct wanted *wanted, int co
     }
     struct stat file;
     if (stat(path, &file) != 0 || access(path, R_OK) != 0) {
-        return status_set(STATUS_INVALID, "%s: cannot be read: %s", path, strerror(errno));
+        return status_set(STATUS_INVALID, "%s: cannot be read: %s; a readable MATLAB file is needed", path,
+                          strerror(errno));
     }
     if (!S_ISREG(file.st_mode)) {
         return status_set(STATUS_INVALID, "%s: is not a regular file; a MATLAB file is needed", path);

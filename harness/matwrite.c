@@ -1,4 +1,5 @@
 /* Writing MATLAB files through libmatio: version 5, or 7.3 where that cannot hold a variable. */
+#include "matfile.h"
 #include "matvar.h"
 
 #include <errno.h>
@@ -10,24 +11,40 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#define ACCEPTED "a new or regular file in a writable folder is needed"
+
 static enum status write_failed(struct writer *writer)
 {
     int reason = errno ? errno : EIO;
-    return writer->status = status_set(STATUS_INVALID, "%s: cannot be written: %s", writer->path, strerror(reason));
+    return writer->status = status_set(STATUS_INVALID, "%s: cannot be written: %s; " ACCEPTED, writer->path,
+                                       strerror(reason));
+}
+
+enum status matfile_place(const char *path)
+{
+    char folder[PATH_MAX];
+    struct stat old;
+    if (strlen(path) + sizeof ".4194304.tmp" > sizeof folder)
+        return status_set(STATUS_INVALID, "%.100s...: cannot be written: path too long; " ACCEPTED, path);
+    if (stat(path, &old) == 0 && !S_ISREG(old.st_mode))
+        return status_set(STATUS_INVALID, "%s: cannot be written: it is not a regular file; " ACCEPTED, path);
+    snprintf(folder, sizeof folder, "%s", path);
+    char *slash = strrchr(folder, '/');
+    if (slash)
+        slash[slash == folder] = 0;
+    if (!*path || access(slash ? folder : ".", W_OK | X_OK) != 0)
+        return status_set(STATUS_INVALID, "%s: cannot be written: %s; " ACCEPTED, path,
+                          strerror(*path ? errno : ENOENT));
+    return STATUS_OK;
 }
 
 /* Version 5 holds up to 2 GiB a variable. */
 enum status writer_open(struct writer *writer, const char *path, size_t largest_variable_bytes)
 {
-    *writer = (struct writer){.path = path};
-    struct stat old;
-    if (stat(path, &old) == 0 && !S_ISREG(old.st_mode)) {
-        return writer->status = status_set(STATUS_INVALID, "%s: cannot be written: it is not a regular file", path);
-    }
-    int length = snprintf(writer->temporary, sizeof writer->temporary, "%s.%ld.tmp", path, (long)getpid());
-    if (length >= (int)sizeof writer->temporary) {
-        return writer->status = status_set(STATUS_INVALID, "%.100s...: cannot be written: path too long", path);
-    }
+    *writer = (struct writer){.path = path, .status = matfile_place(path)};
+    if (writer->status != STATUS_OK)
+        return writer->status;
+    snprintf(writer->temporary, sizeof writer->temporary, "%s.%ld.tmp", path, (long)getpid());
     matio_silence();
     H5dont_atexit();                /* its exit handler crashes after a full disk */
     bool fits_v5 = largest_variable_bytes < ((size_t)1 << 31) - 4096;
