@@ -10,94 +10,43 @@
 
 #include "../algorithms/pairs.h"
 #include "echo_data.h"
-#include "metrics.h"
 #include "pictures.h"
-#include "simulate.h"
+#include "session.h"
 #include "table.h"
 #include "task.h"
 #include "timing.h"
 
-enum { AXES = 2, DEFINITIONS = 3 };
-static const char *const axis_names[AXES] = {[AXIS_AZIMUTH] = "azimuth", [AXIS_RANGE] = "range"};
-static const char *const definition_names[DEFINITIONS] = {
-    [DEFINITION_NULL] = "null", [DEFINITION_3DB] = "3db", [DEFINITION_PIXEL] = "pixel"};
-
 /* One scene while its algorithms run. */
-struct session {
-    const struct scene *scene;
+struct visit {
+    struct session session;
     const struct spec *specs;
     int spec_count;
-    struct echoes echoes[2];            /* by enum precision */
-    struct image reference;             /* double, on the reference patches */
     struct pictures pictures;           /* all zero when none are drawn */
     struct work *works;                 /* [spec_count] of the algorithms measured now; flops 0 otherwise */
 };
 
-/* Where images are compared: the scene's own patches, or the part of a whole swath around its targets. */
-static struct problem compared_problem(const struct scene *scene, enum precision precision)
+static void visit_close(struct visit *visit)
 {
-    if (scene->reference_count)
-        return (struct problem){&scene->acquisition, scene->reference_count, scene->reference_patches, precision};
-    return (struct problem){&scene->acquisition, scene->patch_count, scene->patches, precision};
+    pictures_free(&visit->pictures);
+    free(visit->works);
+    session_close(&visit->session);
 }
 
-/* What an algorithm images: exact ones are too slow for a whole swath and only image what is compared. */
-static struct problem spec_problem(const struct scene *scene, const struct spec *spec)
+/* On failure the visit is closed. */
+static enum status visit_open(const struct comparison *comparison, const struct scene *scene, int spec_count,
+                              const struct spec *specs, struct visit *visit)
 {
-    if (spec->algorithm->traits & TRAIT_EXACT)
-        return compared_problem(scene, spec->precision);
-    return (struct problem){&scene->acquisition, scene->patch_count, scene->patches, spec->precision};
-}
-
-static enum status image_once(const struct spec *spec, const struct problem *problem, const struct echoes *echoes,
-                              struct image *image)
-{
-    void *plan;
-    struct stages stages;
-    enum status status = spec->algorithm->plan(problem, spec->options, &plan);
+    *visit = (struct visit){.specs = specs, .spec_count = spec_count};
+    enum status status = session_open(scene, &visit->session);
     if (status != STATUS_OK)
         return status;
-    stages_begin(&stages);
-    status = spec->algorithm->execute(plan, echoes, image, &stages);
-    spec->algorithm->destroy(plan);
-    return status;
-}
-
-static void session_close(struct session *session)
-{
-    pictures_free(&session->pictures);
-    free(session->works);
-    image_free(&session->reference);
-    echoes_free(&session->echoes[PRECISION_FLOAT]);
-    echoes_free(&session->echoes[PRECISION_DOUBLE]);
-}
-
-/* Echoes in both precisions and the exact image. On failure the session is closed. */
-static enum status session_open(const struct comparison *comparison, const struct scene *scene, int spec_count,
-                                const struct spec *specs, struct session *session)
-{
-    struct spec spec;
-    struct problem problem = compared_problem(scene, PRECISION_DOUBLE);
-    *session = (struct session){.scene = scene, .specs = specs, .spec_count = spec_count};
-    enum status status = spec_parse("reference:precision=double", &spec);
-    if (status != STATUS_OK)
-        return status;
-    session->works = calloc((size_t)spec_count, sizeof *session->works);
-    if (!session->works)
+    visit->works = calloc((size_t)spec_count, sizeof *visit->works);
+    if (!visit->works)
         status = status_set(STATUS_FAILED, "%s: no memory for %d algorithms", scene->name, spec_count);
     if (status == STATUS_OK && comparison->details)
-        status = pictures_begin(comparison->directory, scene, spec_count, &session->pictures);
-    if (status == STATUS_OK)
-        status = scene_simulate(scene, &session->echoes[PRECISION_DOUBLE]);
-    if (status == STATUS_OK)
-        status = echoes_convert(&session->echoes[PRECISION_DOUBLE], PRECISION_FLOAT, &session->echoes[PRECISION_FLOAT]);
-    if (status == STATUS_OK)
-        status = image_allocate(problem.patch_count, problem.patches, PRECISION_DOUBLE, &session->reference);
-    if (status == STATUS_OK)
-        status = image_once(&spec, &problem, &session->echoes[PRECISION_DOUBLE], &session->reference);
-    spec_free(&spec);
+        status = pictures_begin(comparison->directory, scene, spec_count, &visit->pictures);
     if (status != STATUS_OK)
-        session_close(session);
+        visit_close(visit);
     return status;
 }
 
@@ -107,60 +56,13 @@ static void spec_label(const struct spec *spec, char *label, size_t size)
              spec->precision == PRECISION_DOUBLE ? " double" : "");
 }
 
-static void draw(struct session *session, int index, const struct image *image)
+static void draw(struct visit *visit, int index, const struct image *image)
 {
     char label[320];
-    if (!session->pictures.lines)
+    if (!visit->pictures.lines)
         return;
-    spec_label(&session->specs[index], label, sizeof label);
-    pictures_add(&session->pictures, index, label, image);
-}
-
-/* Rows of targets.csv for an image, and the medians of the primary measures into the measurement. `reason` receives why
-   something is undefined. */
-static enum status measure_targets(const struct comparison *comparison, const struct session *session, const struct image *image,
-                                   struct measurement *row, char *reason, size_t reason_size)
-{
-    const struct scene *scene = session->scene;
-    const struct acquisition *a = &scene->acquisition;
-    int points = scene->point_count, count = 0, defined = 0;
-    struct target_row *rows = calloc((size_t)points * AXES * DEFINITIONS + 1, sizeof *rows);
-    double *values = calloc(3 * (size_t)points + 1, sizeof *values);
-    if (!rows || !values) {
-        free(rows);
-        free(values);
-        return status_set(STATUS_FAILED, "%s: no memory for %d targets", scene->name, points);
-    }
-    double *width = values, *pslr = values + points, *islr = values + 2 * points;
-    for (int t = 0; t < points; t++) {
-        const struct target *target = &scene->targets[t];
-        double complex here = metrics_value(image, a, target->x, target->r);
-        double complex exact = metrics_value(&session->reference, a, target->x, target->r);
-        for (int axis = 0; axis < AXES; axis++) {
-            struct slice_metrics m = metrics_slice(image, a, target, (enum axis)axis);
-            if (axis == AXIS_AZIMUTH && *m.reason)
-                snprintf(reason, reason_size, "target %d: %s", t + 1, m.reason);
-            for (int d = 0; d < DEFINITIONS; d++)
-                if (d != DEFINITION_PIXEL || axis == AXIS_AZIMUTH)
-                    rows[count++] = (struct target_row){
-                        row->scene, row->algorithm, row->options, row->precision, t, axis_names[axis],
-                        definition_names[d], m.extent_m, m.position_error_m, carg(here * conj(exact)), m.width_m,
-                        m.pslr_db[d], m.islr_db[d]};
-            if (axis == AXIS_AZIMUTH && isfinite(m.pslr_db[DEFINITION_NULL])) {
-                width[defined] = m.width_m;
-                pslr[defined] = m.pslr_db[DEFINITION_NULL];
-                islr[defined] = m.islr_db[DEFINITION_NULL];
-                defined++;
-            }
-        }
-    }
-    row->width_m = median(width, defined);
-    row->pslr_db = median(pslr, defined);
-    row->islr_db = median(islr, defined);
-    enum status status = record_targets(comparison->record, rows, count);
-    free(rows);
-    free(values);
-    return status;
+    spec_label(&visit->specs[index], label, sizeof label);
+    pictures_add(&visit->pictures, index, label, image);
 }
 
 static void format_stages(const struct stages *stages, char *text, size_t size)
@@ -174,30 +76,26 @@ static void format_stages(const struct stages *stages, char *text, size_t size)
 
 /* Measure one algorithm on one scene, record and draw it. Only a fault of the record itself is an error: what fails or
    is unsupported becomes a row. */
-static enum status measure(struct comparison *comparison, struct session *session, int index)
+static enum status measure(struct comparison *comparison, struct visit *visit, int index)
 {
-    const struct spec *spec = &session->specs[index];
+    const struct session *session = &visit->session;
+    const struct spec *spec = &visit->specs[index];
     const struct scene *scene = session->scene;
-    struct problem problem = spec_problem(scene, spec), whole = {&scene->acquisition, scene->patch_count,
+    struct problem problem = session_problem(scene, spec->algorithm, spec->precision), whole = {&scene->acquisition, scene->patch_count,
                                                                  scene->patches, spec->precision};
     struct timing timing = {0};
     struct image image = {0};
     char stages[512] = "", skipped[400] = "", reason[512] = "";
-    struct measurement row = {
-        .scene = scene->name, .algorithm = spec->algorithm->name, .options = spec->text,
-        .precision = precision_name(spec->precision), .threads = comparison->threads, .engine = "", .status = "ok",
-        .plan_s = NAN, .run_s = NAN, .run_min_s = NAN, .runs = -1, .control_s = NAN, .flops_published = NAN,
-        .flops = NAN, .pairs = NAN, .bytes = NAN, .error = NAN, .error_gain = NAN, .phase_rms_rad = NAN,
-        .width_m = NAN, .pslr_db = NAN, .islr_db = NAN, .stages = stages, .skipped = skipped, .reason = reason};
+    struct measurement row = measurement_empty(scene->name, spec->algorithm->name, spec->text, spec->precision);
+    row.threads = comparison->threads;
+    row.stages = stages;
+    row.skipped = skipped;
+    row.reason = reason;
     enum status status = image_allocate(problem.patch_count, problem.patches, spec->precision, &image);
     if (status == STATUS_OK)
         status = timing_measure(spec->algorithm, &problem, spec->options, &session->echoes[spec->precision],
                                 &session->echoes[PRECISION_FLOAT], &image, &timing);
     if (status == STATUS_OK) {
-        struct error_metrics error = metrics_error(&image, &session->reference);
-        row.error = error.error;
-        row.error_gain = error.error_gain;
-        row.phase_rms_rad = error.phase_rms_rad;
         row.plan_s = timing.plan_s;
         row.run_s = timing.run_s;
         row.run_min_s = timing.run_min_s;
@@ -208,7 +106,7 @@ static enum status measure(struct comparison *comparison, struct session *sessio
         row.pairs = timing.work.pairs;
         row.bytes = timing.work.bytes;
         row.engine = timing.work.engine;
-        session->works[index] = timing.work;
+        visit->works[index] = timing.work;
         format_stages(&timing.stages, stages, sizeof stages);
         double left_out = 1 - problem_pixels(&problem) / problem_pixels(&whole);
         if (left_out > 0)
@@ -221,9 +119,14 @@ static enum status measure(struct comparison *comparison, struct session *sessio
             status = status_set(STATUS_FAILED, "the image holds values that are not finite");
     }
     if (status == STATUS_OK) {
-        status = measure_targets(comparison, session, &image, &row, reason, sizeof reason);
+        struct target_row *targets;
+        int target_count;
+        status = session_quality(session, &image, &row, reason, sizeof reason, &targets, &target_count);
         if (status == STATUS_OK)
-            draw(session, index, &image);
+            status = record_targets(comparison->record, targets, target_count);
+        free(targets);
+        if (status == STATUS_OK)
+            draw(visit, index, &image);
     } else {
         row.status = status == STATUS_UNSUPPORTED ? "unsupported" : "failed";
         comparison->failed |= status != STATUS_UNSUPPORTED;
@@ -238,13 +141,13 @@ static enum status measure(struct comparison *comparison, struct session *sessio
     return status;
 }
 
-static void print_works(const struct session *session)
+static void print_works(const struct visit *visit)
 {
     char label[320];
-    for (int k = 0; k < session->spec_count; k++)
-        if (session->works[k].flops > 0) {
-            spec_label(&session->specs[k], label, sizeof label);
-            table_work(stdout, label, &session->works[k]);
+    for (int k = 0; k < visit->spec_count; k++)
+        if (visit->works[k].flops > 0) {
+            spec_label(&visit->specs[k], label, sizeof label);
+            table_work(stdout, label, &visit->works[k]);
         }
 }
 
@@ -268,17 +171,14 @@ const struct measurement *comparison_find(const struct comparison *comparison, c
 }
 
 /* A row that an earlier run finished is not timed again; its image is, for the overlaid slices. */
-static enum status redraw(struct session *session, int index, const struct measurement *row)
+static enum status redraw(struct visit *visit, int index, const struct measurement *row)
 {
-    struct problem problem = spec_problem(session->scene, &session->specs[index]);
     struct image image = {0};
     if (strcmp(row->status, "ok") != 0)
         return STATUS_OK;
-    enum status status = image_allocate(problem.patch_count, problem.patches, problem.precision, &image);
+    enum status status = session_image(&visit->session, &visit->specs[index], &image, NULL);
     if (status == STATUS_OK)
-        status = image_once(&session->specs[index], &problem, &session->echoes[problem.precision], &image);
-    if (status == STATUS_OK)
-        draw(session, index, &image);
+        draw(visit, index, &image);
     image_free(&image);
     return status;
 }
@@ -286,14 +186,14 @@ static enum status redraw(struct session *session, int index, const struct measu
 enum status comparison_scene(struct comparison *comparison, const struct scene *scene, int spec_count,
                              const struct spec *specs)
 {
-    struct session session;
+    struct visit visit;
     int missing = 0;
     enum status status = record_scene(comparison->record, scene->name, scene->hash);
     for (int k = 0; k < spec_count; k++)
         missing += !comparison_find(comparison, scene, &specs[k]);
     if (status == STATUS_OK && missing > 0) {
         progress(comparison, scene->name, "echoes and exact image");
-        status = session_open(comparison, scene, spec_count, specs, &session);
+        status = visit_open(comparison, scene, spec_count, specs, &visit);
     }
     if (status != STATUS_OK)
         return status;
@@ -301,9 +201,9 @@ enum status comparison_scene(struct comparison *comparison, const struct scene *
         const struct measurement *row = comparison_find(comparison, scene, &specs[k]);
         progress(comparison, scene->name, specs[k].algorithm->name);
         if (!row)
-            status = measure(comparison, &session, k);
+            status = measure(comparison, &visit, k);
         else if (missing > 0 && comparison->details)
-            status = redraw(&session, k, row);
+            status = redraw(&visit, k, row);
         progress_clear();
         if (row && status == STATUS_OK) {
             table_row(stdout, row);
@@ -313,10 +213,10 @@ enum status comparison_scene(struct comparison *comparison, const struct scene *
     }
     if (missing > 0) {
         if (status == STATUS_OK && comparison->details) {
-            pictures_slices(&session.pictures);
-            print_works(&session);
+            pictures_slices(&visit.pictures);
+            print_works(&visit);
         }
-        session_close(&session);
+        visit_close(&visit);
     }
     return status;
 }
