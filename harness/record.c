@@ -11,22 +11,38 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "csv.h"
+#include "text_file.h"
 
-#define METRIC(name, unit, title, better, absolute, relative) \
-    {#name, unit, title, better, absolute, relative, offsetof(struct measurement, name)}
+#define METRIC(struct_name, name, unit, title, better, class, of_float, of_double, relative) \
+    {#name, unit, title, better, class, {of_float, of_double}, relative, offsetof(struct struct_name, name)}
+#define M_METRIC(...) METRIC(measurement, __VA_ARGS__)
+#define T_METRIC(...) METRIC(target_row, __VA_ARGS__)
 
+/* Slacks of quality are about a hundred times what compilers and instruction sets make of the same source: rounding, 1e-8
+   of an error (results/README.md). Work is exact. Two runs at different times can only tell a factor in time;
+   `compare --ab` tells per cents. */
 const struct metric metrics[] = {
-    METRIC(run_s, "s", "Run time", BETTER_LOWER, 0, 0.05),
-    METRIC(flops, "FLOP", "Operations", BETTER_LOWER, 0, 0),
-    METRIC(pairs, "pairs", "Pixel-pulse pairs", BETTER_NONE, 0, 0),
-    METRIC(bytes, "B", "Memory of the plan", BETTER_LOWER, 0, 0),
-    METRIC(error, "1", "Error", BETTER_LOWER, 1e-9, 0.02),
-    METRIC(error_gain, "1", "Error after one gain", BETTER_LOWER, 1e-9, 0.02),
-    METRIC(phase_rms_rad, "rad", "Phase error, rms", BETTER_LOWER, 1e-9, 0.02),
-    METRIC(width_m, "m", "-3 dB width", BETTER_LOWER, 0, 0.002),
-    METRIC(pslr_db, "dB", "PSLR", BETTER_LOWER, 0.02, 0),
-    METRIC(islr_db, "dB", "ISLR", BETTER_LOWER, 0.02, 0),
+    M_METRIC(run_s, "s", "Run time", BETTER_LOWER, CLASS_TIME, 0, 0, 1),
+    M_METRIC(flops_published, "FLOP", "Operations by the paper's formula", BETTER_NONE, CLASS_WORK, 0, 0, 0),
+    M_METRIC(flops, "FLOP", "Operations", BETTER_LOWER, CLASS_WORK, 0, 0, 0),
+    M_METRIC(pairs, "pairs", "Pixel-pulse pairs", BETTER_NONE, CLASS_WORK, 0, 0, 0),
+    M_METRIC(bytes, "B", "Memory of the plan", BETTER_LOWER, CLASS_WORK, 0, 0, 0),
+    M_METRIC(error, "1", "Error", BETTER_LOWER, CLASS_QUALITY, 2e-6, 1e-9, 1e-3),
+    M_METRIC(error_gain, "1", "Error after one gain", BETTER_LOWER, CLASS_QUALITY, 2e-6, 1e-9, 1e-3),
+    M_METRIC(phase_rms_rad, "rad", "Phase error, rms", BETTER_LOWER, CLASS_QUALITY, 2e-6, 1e-9, 1e-3),
+    M_METRIC(width_m, "m", "-3 dB width", BETTER_LOWER, CLASS_QUALITY, 0, 0, 1e-4),
+    M_METRIC(pslr_db, "dB", "PSLR", BETTER_LOWER, CLASS_QUALITY, 2e-3, 2e-3, 0),
+    M_METRIC(islr_db, "dB", "ISLR", BETTER_LOWER, CLASS_QUALITY, 2e-3, 2e-3, 0),
+    {.name = NULL},
+};
+
+const struct metric target_metrics[] = {
+    T_METRIC(extent_m, "m", "Reach of the slice", BETTER_NONE, CLASS_QUALITY, 0, 0, 1e-6),
+    T_METRIC(position_error_m, "m", "Position error", BETTER_SMALL, CLASS_QUALITY, 1e-6, 1e-6, 0),
+    T_METRIC(phase_error_rad, "rad", "Phase error at the target", BETTER_SMALL, CLASS_QUALITY, 1e-5, 1e-7, 0),
+    T_METRIC(width_m, "m", "-3 dB width", BETTER_LOWER, CLASS_QUALITY, 0, 0, 1e-4),
+    T_METRIC(pslr_db, "dB", "PSLR", BETTER_LOWER, CLASS_QUALITY, 2e-3, 2e-3, 0),
+    T_METRIC(islr_db, "dB", "ISLR", BETTER_LOWER, CLASS_QUALITY, 2e-3, 2e-3, 0),
     {.name = NULL},
 };
 
@@ -81,11 +97,6 @@ static const struct {
     {"date", offsetof(struct provenance, date)},
 };
 
-struct scene_hash {
-    char *scene;
-    uint64_t hash;
-};
-
 struct record {
     struct provenance provenance;
     char *paths[SHEETS];
@@ -125,16 +136,21 @@ static void comment_write(FILE *file, const char *key, const char *name, const c
     fputc('\n', file);
 }
 
-static void head_write(FILE *file, const struct record *record, const struct sheet *sheet)
+/* The lines ahead of the rows; without a provenance, `note` stands in its place. */
+static void head_write(FILE *file, const struct sheet *sheet, const struct provenance *provenance, const char *note,
+                       const struct scene_hash *scenes, int scene_count)
 {
     fprintf(file, "# %s\n", sheet->format);
-    for (size_t k = 0; k < sizeof notes / sizeof *notes; k++)
-        comment_write(file, notes[k].key, "", (const char *)&record->provenance + notes[k].offset);
-    fprintf(file, "# threads: %d\n", record->provenance.threads);
-    for (int k = 0; k < record->scene_count; k++) {
+    for (size_t k = 0; provenance && k < sizeof notes / sizeof *notes; k++)
+        comment_write(file, notes[k].key, "", (const char *)provenance + notes[k].offset);
+    if (provenance)
+        fprintf(file, "# threads: %d\n", provenance->threads);
+    else
+        fprintf(file, "# %s\n", note);
+    for (int k = 0; k < scene_count; k++) {
         char hash[17];
-        snprintf(hash, sizeof hash, "%016" PRIx64, record->scenes[k].hash);
-        comment_write(file, "scene ", record->scenes[k].scene, hash);
+        snprintf(hash, sizeof hash, "%016" PRIx64, scenes[k].hash);
+        comment_write(file, "scene ", scenes[k].scene, hash);
     }
     for (const struct column *column = sheet->columns; column->name; column++)
         fprintf(file, "%s%s", column == sheet->columns ? "" : ",", column->name);
@@ -178,15 +194,12 @@ static bool measurement_present(const struct csv *measurements, const struct csv
 static enum status sheet_write(const struct record *record, int sheet, const struct csv old[SHEETS],
                                const char *scene_except)
 {
-    char *path = record->paths[sheet], *beside = text_join(path, ".part");
-    FILE *file = beside ? fopen(beside, "w") : NULL;
-    if (!file) {
-        enum status status = status_set(STATUS_INVALID, "%s: cannot be written: %s; name a folder that can", path,
-                                        strerror(errno));
-        free(beside);
+    struct text_file text;
+    enum status status = text_file_open(record->paths[sheet], &text);
+    if (status != STATUS_OK)
         return status;
-    }
-    head_write(file, record, &sheets[sheet]);
+    FILE *file = text.stream;
+    head_write(file, &sheets[sheet], &record->provenance, NULL, record->scenes, record->scene_count);
     for (int row = 0; row < old[sheet].row_count; row++) {
         if (scene_except && strcmp(csv_cell(&old[sheet], row, 0), scene_except) == 0)
             continue;
@@ -199,14 +212,7 @@ static enum status sheet_write(const struct record *record, int sheet, const str
         }
         fputc('\n', file);
     }
-    enum status status = flush_check(file, beside);
-    fclose(file);
-    if (!status && rename(beside, path) != 0)
-        status = status_set(STATUS_INVALID, "%s: cannot be replaced: %s", path, strerror(errno));
-    if (status)
-        remove(beside);
-    free(beside);
-    return status;
+    return text_file_close(&text, STATUS_OK);
 }
 
 /* Both files anew. The measurements come first: a cut between the two leaves targets without a measurement, which the
@@ -323,13 +329,15 @@ static bool same_run(const struct csv *csv, const struct provenance *provenance)
 static enum status header_check(const struct csv *csv, const struct sheet *sheet)
 {
     int count = 0;
-    bool equal = true;
-    for (; sheet->columns[count].name; count++)
-        equal &= csv_column(csv, sheet->columns[count].name) == count;
-    if (!equal || count != csv->column_count)
-        return status_set(STATUS_INVALID, "%s: the header line does not name our %d columns from %s to %s in their "
-                          "order; name another folder", csv->path, count, sheet->columns[0].name,
-                          sheet->columns[count - 1].name);
+    while (sheet->columns[count].name)
+        count++;
+    for (int k = 0; k < count || k < csv->column_count; k++) {
+        const char *needed = k < count ? sheet->columns[k].name : "no more";
+        const char *found = k < csv->column_count ? csv->columns[k] : "missing";
+        if (strcmp(needed, found) != 0)
+            return status_set(STATUS_INVALID, "%s: the header line names '%.60s' as column %d; '%s' is needed (another "
+                              "version?)", csv->path, found, k + 1, needed);
+    }
     return STATUS_OK;
 }
 
@@ -486,4 +494,90 @@ void record_close(struct record *record)
     free(record->dropped);
     csv_free(&record->earlier);
     free(record);
+}
+
+/* --- Finished files ------------------------------------------------------------------------------------------ */
+
+static enum status measurement_check(const struct csv *csv, int row, const struct measurement *measurement)
+{
+    static const char *const known[] = {"ok", "unsupported", "failed"};
+    for (size_t k = 0; k < sizeof known / sizeof *known; k++)
+        if (strcmp(measurement->status, known[k]) == 0)
+            return STATUS_OK;
+    return status_set(STATUS_INVALID, "%s:%d: status is '%s'; ok, unsupported or failed is needed", csv->path,
+                      csv->lines[row], measurement->status);
+}
+
+static enum status results_parse(struct results *results, const struct sheet *sheet)
+{
+    const struct csv *csv = &results->csv;
+    size_t count = (size_t)csv->row_count + 1, size = results->targets ? sizeof *results->target_rows
+                                                                       : sizeof *results->measurements;
+    char *rows = calloc(count, size);
+    if (!rows)
+        return status_set(STATUS_FAILED, "%s: no memory for %d rows", csv->path, csv->row_count);
+    if (results->targets)
+        results->target_rows = (struct target_row *)rows;
+    else
+        results->measurements = (struct measurement *)rows;
+    enum status status = STATUS_OK;
+    for (int row = 0; row < csv->row_count && !status; row++) {
+        void *out = rows + (size_t)row * size;
+        for (int k = 0; sheet->columns[k].name && !status; k++) {
+            const struct column *column = &sheet->columns[k];
+            status = cell_parse(csv, row, k, column, out);
+            if (!status && column->type == COLUMN_REAL && *csv_cell(csv, row, k)
+                && !isfinite(*(double *)((char *)out + column->offset)))
+                status = status_set(STATUS_INVALID, "%s:%d: %s is '%s'; a finite number or nothing is needed",
+                                    csv->path, csv->lines[row], column->name, csv_cell(csv, row, k));
+        }
+        if (!status && !results->targets)
+            status = measurement_check(csv, row, out);
+    }
+    return status;
+}
+
+enum status results_read(const char *path, struct results *results)
+{
+    *results = (struct results){0};
+    enum status status = csv_read(path, CSV_TAIL_KEEP, &results->csv);
+    if (status)
+        return status;
+    const char *first = results->csv.comment_count > 0 ? results->csv.comments[0] : "";
+    int sheet = 0;
+    while (sheet < SHEETS && strcmp(first, sheets[sheet].format) != 0)
+        sheet++;
+    if (sheet == SHEETS) {
+        status = status_set(STATUS_INVALID, "%s:1: the first line is '%s%.60s'; '# %s' or '# %s' is needed", path,
+                            *first ? "# " : "", first, sheets[SHEET_MEASUREMENTS].format, sheets[SHEET_TARGETS].format);
+    } else {
+        results->targets = sheet == SHEET_TARGETS;
+        status = header_check(&results->csv, &sheets[sheet]);
+    }
+    if (!status)
+        status = results_parse(results, &sheets[sheet]);
+    if (status)
+        results_free(results);
+    return status;
+}
+
+void results_free(struct results *results)
+{
+    free(results->measurements);
+    free(results->target_rows);
+    csv_free(&results->csv);
+    *results = (struct results){0};
+}
+
+enum status measurements_write(const char *path, const char *note, const struct scene_hash *scenes, int scene_count,
+                               const struct measurement *rows, int row_count)
+{
+    struct text_file text;
+    enum status status = text_file_open(path, &text);
+    if (status)
+        return status;
+    head_write(text.stream, &sheets[SHEET_MEASUREMENTS], NULL, note, scenes, scene_count);
+    for (int k = 0; k < row_count; k++)
+        row_write(text.stream, measurement_columns, &rows[k]);
+    return text_file_close(&text, STATUS_OK);
 }

@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "../algorithms/algorithm.h"
+#include "csv.h"
 
 /* One row of measurements.csv. Texts are borrowed for the call; NAN and negative counts become empty fields. */
 struct measurement {
@@ -32,11 +33,14 @@ struct target_row {
 /* The one metric table: CSV header, terminal table, plot labels and the regression gate come from it. */
 struct metric {
     const char *name, *unit, *title;
-    enum { BETTER_NONE, BETTER_LOWER, BETTER_HIGHER } better;
-    double absolute_slack, relative_slack;              /* a change within either is no change */
-    size_t offset;                                      /* of the double in struct measurement */
+    enum { BETTER_NONE, BETTER_LOWER, BETTER_HIGHER, BETTER_SMALL } better;     /* small: of magnitude */
+    enum metric_class { CLASS_QUALITY, CLASS_WORK, CLASS_TIME } class;
+    double absolute_slack[2];                           /* by enum precision; a change within either slack is none */
+    double relative_slack;
+    size_t offset;                                      /* of the double in struct measurement or target_row */
 };
-extern const struct metric metrics[];                   /* name NULL ends the table */
+extern const struct metric metrics[];                   /* of struct measurement; name NULL ends the table */
+extern const struct metric target_metrics[];            /* of struct target_row */
 
 /* What makes rows comparable: written as `# key: value` lines ahead of the rows. */
 struct provenance {
@@ -44,6 +48,29 @@ struct provenance {
     int threads;
 };
 void provenance_fill(struct provenance *provenance, int threads);
+
+/* Scene content that rows were measured on. */
+struct scene_hash {
+    char *scene;
+    uint64_t hash;
+};
+
+/* A finished file, measurements.csv, targets.csv or a baseline, in memory; freed with results_free, which accepts a zeroed
+   struct. Texts of the rows belong to the csv. */
+struct results {
+    struct csv csv;
+    bool targets;                                       /* which of the two it is */
+    struct measurement *measurements;                   /* [csv.row_count], or NULL */
+    struct target_row *target_rows;                     /* [csv.row_count], or NULL */
+};
+/* Errors: STATUS_INVALID naming file, line, column and value: not a file of ours or of another version, other columns, a
+   number that is none or not finite, a status that is none. */
+enum status results_read(const char *path, struct results *results);
+void results_free(struct results *results);
+/* A whole measurements file without provenance, the same on every machine. `note` is one line that says what it is and
+   how it is made. Errors: STATUS_INVALID when it cannot be written; an older file is then left as it is. */
+enum status measurements_write(const char *path, const char *note, const struct scene_hash *scenes, int scene_count,
+                               const struct measurement *rows, int row_count);
 
 struct record;
 /* Open (make) the folder and its two files. Rows left by an earlier run are kept when commit, program and threads are

@@ -520,14 +520,15 @@ static void test_metric_table(void **state)
         char column[64];
         snprintf(column, sizeof column, ",%s", metric->name);
         assert_non_null(strstr(MEASUREMENT_HEADER, column));
-        assert_true(metric->unit && metric->title && metric->absolute_slack >= 0 && metric->relative_slack >= 0);
+        assert_true(metric->unit && metric->title && metric->absolute_slack[PRECISION_FLOAT] >= metric->absolute_slack[PRECISION_DOUBLE]
+                    && metric->absolute_slack[PRECISION_DOUBLE] >= 0 && metric->relative_slack >= 0);
         double value = *(const double *)((const char *)&row + metric->offset);
         if (strcmp(metric->name, "pslr_db") == 0)
             assert_close(value, -13.3, 0);
         if (strcmp(metric->name, "run_s") == 0)
             assert_close(value, 1.0 / 3, 0);
     }
-    assert_int_equal(count, 10);
+    assert_int_equal(count, 11);
 }
 
 static void test_table(void **state)
