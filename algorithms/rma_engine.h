@@ -1,7 +1,7 @@
-/* A range migration's plan, shared by rma.c (geometry, blocks, order of work), rma_transform.c (transforms along
-   range and azimuth, for each precision) and rma_column.c (one azimuth wavenumber from the receivers' spectra to
-   focused rows, for each precision and instruction set). Pointers without a type hold values of the plan's
-   precision. */
+/* A range migration's plan. rma_layout.c lays it out (track, blocks, swaths and their transforms), rma_phase.c knows
+   the corrections' phases, rma_transform.c transforms along range and azimuth (for each precision), rma_convert.c and
+   rma_focus.c work on one azimuth wavenumber (for each precision and instruction set), rma.c puts them in order.
+   Pointers without a type hold values of the plan's precision. */
 #ifndef SASBENCH_RMA_ENGINE_H
 #define SASBENCH_RMA_ENGINE_H
 
@@ -21,18 +21,19 @@ enum {
     RMA_STEPS = 16                  /* range rows between fresh phases of a direct sum */
 };
 
-/* Scratch of a thread; all but the first two hold values of the plan's precision. */
+/* Scratch of a thread; all but the first two hold values of the plan's precision. The largest swath counts. */
 enum rma_buffer {
     RMA_RAMPS,                      /* struct rma_ramp [1 + needed][groups]: bulk, then each block's */
     RMA_ABSCISSAS,                  /* double [row]: y of each bin */
     RMA_CONVERTED,                  /* [receivers][RMA_SPAN]: some bins after the bulk correction */
     RMA_SUMS,                       /* [needed][1 or receivers][row]: spectra of each block */
-    RMA_WAVE,                       /* complex [longest transform] */
-    RMA_CUT,                        /* complex [length]: the blocks put together, from sample `centre` on */
+    RMA_WAVE,                       /* complex [longest transform of a swath] */
+    RMA_CUT,                        /* complex [stolt_length]: the blocks put together, from sample `centre` on */
     RMA_PLACES,                     /* real [length]: position of those samples in blocks */
-    RMA_SPECTRUM,                   /* complex [RMA_GUARD + length + RMA_GUARD] in rising frequency */
+    RMA_SPECTRUM,                   /* complex [RMA_GUARD + stolt_length + RMA_GUARD] in rising frequency */
     RMA_PARTS,                      /* [most rows of a patch]: vectors of a direct sum's re and im */
     RMA_STORED,                     /* complex [rows][RMA_TILE] */
+    RMA_RECORD,                     /* complex [record_length] */
     RMA_BUFFERS
 };
 
@@ -52,14 +53,49 @@ struct rma_line {
     double slowness;                /* s/m: delay over range, (1/2 pi) dK/dF at fc */
 };
 
+/* Of a swath by the transform that the Stolt interpolation reads. */
+#define RMA_OVERSAMPLING 1.5
+
 struct rma_patch {
     struct grid grid;
+    int index;                      /* among the problem's patches */
     int length;                     /* of the range IFFT onto the grid's rows: K = j 2 pi/(length step) */
     double step;                    /* m: the grid's r_step; a range bin for a single row */
-    size_t row;                     /* of its first row among all patches' rows */
+    size_t row;                     /* of its first row among all rows of the swath */
     int chirp;                      /* length of the azimuth transform's convolution */
     void *before, *kernel, *after;  /* complex [wavenumbers], [chirp], [x_count]: the azimuth transform's chirps */
     void *focus_plan, *chirp_forward, *chirp_inverse;
+};
+
+/* Patches whose echoes lie in one stretch of the records, migrated together and apart from all others. */
+struct rma_swath {
+    double nearest, farthest;       /* m: its rows */
+    int patch_count;
+    struct rma_patch *patches;      /* part of the plan's */
+    size_t rows;                    /* of all its patches */
+
+    /* cut: sample i of the swath is sample `first` + i of a record (negative and beyond it: zero); of them
+       [begin, end) are taken, an end inside the record fading in or out */
+    int first, begin, end;
+    double t_first;                 /* s: time of sample 0 after emission */
+    int centre;                     /* the middle sample */
+
+    /* azimuth: wavenumber q is (q - wavenumbers/2)/(period |spacing|) */
+    int period;                     /* pings and zeros after them */
+    int wavenumbers;                /* receivers x period: the full rate */
+    size_t columns;                 /* wavenumbers rounded up to RMA_TILE */
+
+    /* range: bin k is at (band_first + k) fs/length from fc */
+    int length;                     /* of the range transforms */
+    int band_first, band, row;      /* bins, and bins of a stored row (a multiple of the vector) */
+    int stolt_length;               /* of the transform that is interpolated: the samples fill 2/3 of it */
+
+    int needed, *blocks;            /* [needed] the blocks that are computed; part of the plan's */
+    int reference;                  /* index into them: the bulk correction is this block's */
+
+    void *data;                     /* [period][receivers][row]: spectra, vectors of re and im in turn */
+    void *apodization;              /* real [stolt_length]: 1/transform of the Stolt kernel, 1/length included */
+    void *range_forward, *range_inverse, *stolt_forward, *azimuth_forward;
 };
 
 struct rma {
@@ -73,57 +109,59 @@ struct rma {
     double x_first, spacing, t0, fs;
     int receivers, pings, samples;
     double *offset;                 /* [receivers] m */
+    int extremes[2];                /* the receivers of least and greatest offset */
+    double nearest, farthest;       /* m: all rows asked for */
+    double sine;                    /* of the widest angle off abeam that wavenumbers, beam and lowest frequency allow */
     int groups;                     /* of receivers */
     bool recurs;                    /* by recurrence: receivers are evenly spaced, and libm is not asked for */
     bool converts;                  /* false: one receiver, at the transmitter */
 
-    /* azimuth: wavenumber q is (q - wavenumbers/2)/(period spacing) */
-    int period;                     /* pings and zeros after them */
-    int wavenumbers;                /* receivers x period: the full rate */
+    /* pulse compression */
+    int record_length;              /* of its transform; 0: the echoes come compressed */
+    double half_band;               /* Hz: half of what holds the compressed pulse */
+    double loss;                    /* energy of the compressed pulse outside it, relative */
+    int fade;                       /* samples over which a cut fades, and as many between the fade and the rows */
+    void *filter;                   /* complex [record_length]: conj(replica)/energy */
+    void *fades;                    /* real [fade], rising */
+    void *record_forward, *record_inverse;
 
-    /* range: bin k is at (band_first + k) fs/length from fc */
-    int length;                     /* of the range transforms */
-    int band_first, band, row;      /* bins, and bins of a stored row (a multiple of the vector) */
-    double loss;                    /* energy of the compressed pulse outside the band, relative */
+    /* blocks: centre n of block_count at `block_from + n block_width` in r or 1/r */
+    int block_count;
+    double block_from, block_width;
+    int *block_list;                /* the swaths' blocks */
 
-    /* blocks: centre n of block_count at `from + n width` in r or 1/r */
-    int block_count, *blocks, needed;       /* [needed] the blocks that are computed */
-    double block_from, block_width, reference;      /* reference: m, where the bulk correction is exact */
-    bool cuts;                      /* more than one block */
+    int taps;                       /* of the Stolt interpolation; 0: direct sum */
+    double shape;                   /* the Kaiser kernel's parameter */
+    void *kernel;                   /* real [RMA_INTERVALS + 2][taps] */
 
-    /* Stolt: the interpolated signal is centred on sample `centre`, the middle of all rows */
-    int taps, centre;               /* taps 0: direct sum */
-    double shape, widest;           /* the Kaiser kernel's parameter; widest offset from `centre` in lengths */
+    int patch_count, swath_count;
+    struct rma_patch *patches;      /* [patch_count] by range */
+    struct rma_swath *swaths;       /* [swath_count] */
 
-    int patch_count;
-    struct rma_patch *patches;
-    size_t rows;                    /* of all patches */
-    double chebyshev[RMA_DEGREE + 1];       /* nodes of the phases' polynomials */
+    double nodes[RMA_DEGREE + 1];   /* Chebyshev's, of the phases' polynomials */
     double powers[RMA_DEGREE + 1][RMA_DEGREE + 1];      /* takes values at the nodes to coefficients */
 
     int threads;
     size_t scratch_at[RMA_BUFFERS]; /* bytes: where each buffer of a thread begins */
     size_t scratch_bytes;           /* of a thread */
     void *scratch;                  /* [threads] */
-    void *filter;                   /* complex [band]: conj(replica)/energy */
-    void *data;                     /* [period][receivers][row]: spectra, vectors of re and im in turn */
-    void *apodization;              /* real [length]: 1/transform of the Stolt kernel, 1/length included */
-    void *kernel;                   /* real [RMA_INTERVALS + 2][taps] of the Stolt interpolation */
-    void *focused;                  /* complex [rows][columns]: columns = wavenumbers rounded up to RMA_TILE */
-    size_t columns;
-    void *range_forward, *range_inverse, *azimuth_forward;
+    void *focused;                  /* complex [rows][columns] of the swath at work */
 };
 
-static inline double rma_frequency(const struct rma *rma, int bin)
-{
-    return rma->setting.fc + (rma->band_first + bin) * rma->fs / rma->length;
-}
+/* ---- rma_layout.c ---- */
 
+/* Fills everything but the pointers that rma_transform's plan fills. */
+enum status rma_layout(struct rma *rma);
+
+/* ---- rma_phase.c ---- */
+
+double rma_frequency(const struct rma *rma, const struct rma_swath *swath, int bin);        /* F, Hz */
 /* Correction of receiver m at range r, in cycles: -(phi + r K)/2 pi. */
 double rma_correction(const struct rma *rma, int receiver, double r, double frequency, double nu);
-struct rma_line rma_line(const struct rma *rma, int q);
+struct rma_line rma_line(const struct rma *rma, const struct rma_swath *swath, int q);
 /* Fit the correction at `r` less the one at `less` (0: nothing is taken off) for all groups. */
 void rma_ramps(const struct rma *rma, const struct rma_line *line, double r, double less, struct rma_ramp *ramps);
+void rma_nodes(struct rma *rma);                /* fills nodes and powers */
 /* Range of a block's centre, m. */
 double rma_block_range(const struct rma *rma, int block);
 
@@ -132,15 +170,16 @@ struct rma_transform {
     enum status (*plan)(struct rma *rma);       /* memory, tables and FFT plans */
     void (*destroy)(struct rma *rma);           /* accepts what `plan` left unfinished */
     void (*compress)(const struct rma *rma, const void *samples);
-    void (*spread)(const struct rma *rma);
-    void (*inverse)(const struct rma *rma, int patch, void *pixels);
+    void (*spread)(const struct rma *rma, const struct rma_swath *swath);
+    void (*inverse)(const struct rma *rma, const struct rma_swath *swath, const struct rma_patch *patch, void *pixels);
 };
 extern const struct rma_transform rma_transform_float, rma_transform_double;
 
-/* ---- rma_column.c ---- */
+/* ---- rma_focus.c ---- */
 enum rma_stage { RMA_BULK, RMA_DIFFERENTIAL, RMA_RECONSTRUCT, RMA_STOLT, RMA_FOCUS, RMA_STAGES };
 /* Wavenumbers [q, q + RMA_TILE) of all rows into `focused`; seconds of each stage are added. */
-typedef void rma_column_function(const struct rma *rma, int thread, int q, double seconds[RMA_STAGES]);
+typedef void rma_column_function(const struct rma *rma, const struct rma_swath *swath, int thread, int q,
+                                 double seconds[RMA_STAGES]);
 rma_column_function rma_column_float_baseline, rma_column_double_baseline;
 rma_column_function rma_column_float_v3, rma_column_double_v3;
 rma_column_function rma_column_float_v4, rma_column_double_v4;
