@@ -180,8 +180,9 @@ static enum status invariant_plan(struct bp *bp)
                               problem->patches[k].r_count);
         blocks = raster->blocks > blocks ? raster->blocks : blocks;
     }
-    /* A block of columns may begin its width less one before the first ping and end as far behind the last. */
-    int lanes = (16 << isa_choose()) / (int)size, wide = round_up(blocks, lanes);
+    /* A block of columns may begin its width less one before the first ping and end as far behind the last. Room is made
+       for the widest vectors, so that a plan needs the same memory on every machine. */
+    int lanes = BP_LANES_MOST * (int)sizeof(float) / (int)size, wide = round_up(blocks, lanes);
     int lead = wide < BP_BLOCK_VECTORS * lanes ? wide : BP_BLOCK_VECTORS * lanes;
     shape_slab(bp, in, lead, round_up(a->pings + 2 * lead, 8));
     size_t values = (size_t)in->receivers * in->slab.receiver_stride, entries = (size_t)(a->pings + blocks);

@@ -23,6 +23,10 @@ static const struct command commands[] = {
      "oseagt", 0, 0, command_image},
     {"run", "[SCENE ...] [--algorithm SPEC ...] [-o DIR]", "compare algorithms on scenes", "oat", 0, INT_MAX,
      command_run},
+    {"compare", "OLD NEW [--markdown FILE] [--json FILE]", "what got worse between two results folders or CSV files", "MJ", 2,
+     2, command_compare},
+    {"baseline", "[-o FILE.csv]", "measure quality and work of the gate's scenes anew, into results/baseline.csv", "ot", 0, 0,
+     command_baseline},
     {"phase", "([SCENE] [-o DIR] | --at FILE.csv)", "phase errors of the two-dimensional spectra (LBF21 Figs 2-9)", "oA", 0, 1,
      command_phase},
     {"bench", "[-o DIR]", "speed of the engines against the processor's peak and the control loop", "ot", 0, 0,
@@ -33,7 +37,8 @@ static const struct option long_options[] = {
     {"output", required_argument, NULL, 'o'}, {"scene", required_argument, NULL, 's'},
     {"echoes", required_argument, NULL, 'e'}, {"algorithm", required_argument, NULL, 'a'},
     {"grid", required_argument, NULL, 'g'},   {"threads", required_argument, NULL, 't'},
-    {"at", required_argument, NULL, 'A'},     {"help", no_argument, NULL, 'h'},         {NULL, 0, NULL, 0},
+    {"at", required_argument, NULL, 'A'},     {"markdown", required_argument, NULL, 'M'},
+    {"json", required_argument, NULL, 'J'},   {"help", no_argument, NULL, 'h'},         {NULL, 0, NULL, 0},
 };
 
 static const char *const option_texts[] = {
@@ -44,6 +49,8 @@ static const char *const option_texts[] = {
     "-g, --grid GRID       xmin:xstep:xcount,rmin:rstep:rcount in metres",
     "-t, --threads N       OpenMP threads, 1 to 1024",
     "    --at FILE.csv     points of `phase`: columns d, r, F, f, fc, v, c",
+    "    --markdown FILE   what `compare` found, as a comment for a CI",
+    "    --json FILE       the same as trackers of benchmarks read it: name, unit, value, range",
 };
 
 static void help(void)
@@ -55,7 +62,7 @@ static void help(void)
     printf("  test\n        verify this build (of the ./sasbench script)\n\nOptions:\n");
     for (size_t k = 0; k < sizeof option_texts / sizeof *option_texts; k++)
         printf("  %s\n", option_texts[k]);
-    printf("\nExit status: 0 done, 1 a run failed, 2 bad usage or bad input.\n");
+    printf("\nExit status: 0 done, 1 a run failed or got worse, 2 bad usage or bad input.\n");
 }
 
 static enum status threads_parse(const char *text)
@@ -91,10 +98,13 @@ static enum status spec_add(struct task *task, const char *text)
     return status;
 }
 
-/* An option as it is written: "-o"; "--at" has no letter. */
+/* An option as it is written: "-o"; those with capital letters have none. */
 static void option_text(int letter, char *text, size_t size)
 {
-    snprintf(text, size, letter == 'A' ? "--at" : "-%c", letter);
+    snprintf(text, size, "-%c", letter);
+    for (const struct option *o = long_options; o->name; o++)
+        if (o->val == letter && letter < 'a')
+            snprintf(text, size, "--%s", o->name);
 }
 
 /* Arguments after the command's name. */
@@ -103,7 +113,7 @@ static enum status parse(const struct command *command, int argc, char **argv, s
     const char *threads = NULL;
     const struct { int letter; const char **field; } texts[] = {
         {'o', &task->output}, {'s', &task->scene}, {'e', &task->echoes}, {'g', &task->grid}, {'A', &task->at},
-        {'t', &threads}};
+        {'M', &task->markdown}, {'J', &task->json}, {'t', &threads}};
     enum status status = STATUS_OK;
     opterr = 0;
     for (int letter; status == STATUS_OK && (letter = getopt_long(argc, argv, ":o:s:e:a:g:t:h", long_options, NULL)) != -1;) {
@@ -114,7 +124,7 @@ static enum status parse(const struct command *command, int argc, char **argv, s
         }
         if (letter == ':')
             return option_unknown(command, word, "needs a value");
-        char given[8];
+        char given[16];
         option_text(letter == '?' ? optopt : letter, given, sizeof given);
         if (letter == '?' || !strchr(command->options, letter))
             return option_unknown(command, optopt || letter != '?' ? given : word, "is not one of this command");

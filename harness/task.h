@@ -8,7 +8,7 @@
 struct task {
     const char *const *names;       /* [name_count] what stands without an option: scenes, an algorithm */
     int name_count;
-    const char *output, *scene, *echoes, *grid, *at;
+    const char *output, *scene, *echoes, *grid, *at, *markdown, *json;
     int spec_count;
     struct spec *specs;             /* [spec_count] of --algorithm */
 };
@@ -19,6 +19,8 @@ enum status command_info(const struct task *task);
 enum status command_simulate(const struct task *task);
 enum status command_image(const struct task *task);
 enum status command_run(const struct task *task);
+enum status command_compare(const struct task *task);
+enum status command_baseline(const struct task *task);
 enum status command_phase(const struct task *task);
 enum status command_bench(const struct task *task);
 

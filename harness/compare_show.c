@@ -1,0 +1,201 @@
+/* How findings are shown (compare.h): as text, as Markdown, as JSON. */
+#include "compare.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "text_file.h"
+
+enum { MARKDOWN_MOST = 100 };           /* findings: a comment has room for 65536 characters */
+
+struct cell {
+    char text[200];
+};
+
+static struct cell cell_value(double value, const char *text)
+{
+    struct cell cell = {""};
+    if (text)
+        snprintf(cell.text, sizeof cell.text, "%s", text);
+    else if (!isnan(value))
+        snprintf(cell.text, sizeof cell.text, "%.6g", value);
+    return cell;
+}
+
+static struct cell cell_change(const struct finding *finding)
+{
+    struct cell cell = {""};
+    if (!isnan(finding->change))
+        snprintf(cell.text, sizeof cell.text, "%+.3g %%", 100 * finding->change);
+    else if (!isnan(finding->after - finding->before))
+        snprintf(cell.text, sizeof cell.text, "%+.3g %s", finding->after - finding->before, finding->unit);
+    return cell;
+}
+
+static int order_findings(const void *a, const void *b)
+{
+    const struct finding *x = *(const struct finding *const *)a, *y = *(const struct finding *const *)b;
+    int order = (x->verdict > y->verdict) - (x->verdict < y->verdict);
+    return order ? order : (x > y) - (x < y);
+}
+
+/* All findings but the same ones, the worst first, in an array that the caller frees; NULL without memory. */
+static const struct finding **changed(const struct compare *compare, int *count)
+{
+    const struct finding **list = calloc((size_t)compare->finding_count + 1, sizeof *list);
+    *count = 0;
+    for (int k = 0; list && k < compare->finding_count; k++)
+        if (compare->findings[k].verdict != VERDICT_SAME)
+            list[(*count)++] = &compare->findings[k];
+    if (list)
+        qsort(list, (size_t)*count, sizeof *list, order_findings);
+    return list;
+}
+
+static bool verdict_occurs(const struct compare *compare, int verdict)
+{
+    for (int class = 0; class < CLASSES; class++)
+        if (compare->counts[class][verdict] > 0)
+            return true;
+    return false;
+}
+
+static bool class_occurs(const struct compare *compare, int class)
+{
+    for (int verdict = 0; verdict < VERDICTS; verdict++)
+        if (compare->counts[class][verdict] > 0)
+            return true;
+    return false;
+}
+
+/* "quality: 3 worse, 120 same", one text a class. */
+static void print_counts(const struct compare *compare, FILE *stream, const char *before, const char *after)
+{
+    for (int class = 0; class < CLASSES; class++) {
+        const char *between = "";
+        if (!class_occurs(compare, class))
+            continue;
+        fprintf(stream, "%s%s: ", before, class_names[class]);
+        for (int verdict = 0; verdict < VERDICTS; verdict++)
+            if (compare->counts[class][verdict] > 0) {
+                fprintf(stream, "%s%d %s", between, compare->counts[class][verdict], verdict_names[verdict]);
+                between = ", ";
+            }
+        fputs(after, stream);
+    }
+}
+
+static const char *headline(const struct compare *compare)
+{
+    if (verdict_occurs(compare, VERDICT_WORSE) || verdict_occurs(compare, VERDICT_GONE))
+        return "something got worse";
+    return verdict_occurs(compare, VERDICT_WARNING) ? "nothing failed, with a warning" : "nothing got worse";
+}
+
+void compare_print(const struct compare *compare, FILE *stream)
+{
+    int count;
+    const struct finding **list = changed(compare, &count);
+    for (int k = 0; k < compare->note_count; k++)
+        fprintf(stream, "%s\n", compare->notes[k]);
+    if (count > 0)
+        fprintf(stream, "\n%-8s %-17s %13s %13s %11s  %s\n", "verdict", "metric", "OLD", "NEW", "change", "of");
+    for (int k = 0; list && k < count; k++) {
+        const struct finding *f = list[k];
+        fprintf(stream, "%-8s %-17s %13s %13s %11s  %s %s%s%s\n", verdict_names[f->verdict], f->metric,
+                cell_value(f->before, f->before_text).text, cell_value(f->after, f->after_text).text,
+                cell_change(f).text, f->scene, f->spec, *f->detail ? " " : "", f->detail);
+    }
+    fputc('\n', stream);
+    print_counts(compare, stream, "", "\n");
+    fprintf(stream, "%s\n", headline(compare));
+    free(list);
+}
+
+/* Text in a table of Markdown, where a bar ends a cell. */
+static void markdown_cell(FILE *stream, const char *text)
+{
+    fputs("| ", stream);
+    for (; *text; text++) {
+        if (strchr("|\\`*_<>[]#", *text))
+            fputc('\\', stream);
+        fputc((unsigned char)*text < ' ' ? ' ' : *text, stream);
+    }
+    fputc(' ', stream);
+}
+
+enum status compare_markdown(const struct compare *compare, const char *path)
+{
+    int count;
+    struct text_file file;
+    const struct finding **list = changed(compare, &count);
+    if (!list)
+        return status_set(STATUS_FAILED, "no memory for %d findings", compare->finding_count);
+    enum status status = text_file_open(path, &file);
+    if (status == STATUS_OK) {
+        fprintf(file.stream, "## sasbench: %s\n\n", headline(compare));
+        print_counts(compare, file.stream, "- ", "\n");
+        if (count > 0)
+            fputs("\n| verdict | metric | OLD | NEW | change | scene | algorithm |\n|---|---|--:|--:|--:|---|---|\n",
+                  file.stream);
+        for (int k = 0; k < count && k < MARKDOWN_MOST; k++) {
+            const struct finding *f = list[k];
+            struct cell before = cell_value(f->before, f->before_text), after = cell_value(f->after, f->after_text);
+            struct cell change = cell_change(f), of;
+            snprintf(of.text, sizeof of.text, "%.150s%s%.40s", f->spec, *f->detail ? ", " : "", f->detail);
+            const char *const cells[] = {verdict_names[f->verdict], f->metric, before.text, after.text, change.text,
+                                         f->scene, of.text};
+            for (size_t c = 0; c < sizeof cells / sizeof *cells; c++)
+                markdown_cell(file.stream, cells[c]);
+            fputs("|\n", file.stream);
+        }
+        if (count > MARKDOWN_MOST)
+            fprintf(file.stream, "\n%d more are not shown.\n", count - MARKDOWN_MOST);
+        fputc('\n', file.stream);
+        for (int k = 0; k < compare->note_count; k++)
+            fprintf(file.stream, "- %s\n", compare->notes[k]);
+        status = text_file_close(&file, status);
+    }
+    free(list);
+    return status;
+}
+
+static void json_text(FILE *stream, const char *text)
+{
+    for (; *text; text++) {
+        if (strchr("\"\\", *text))
+            fputc('\\', stream);
+        if ((unsigned char)*text < ' ')
+            fprintf(stream, "\\u%04x", (unsigned)*text);
+        else
+            fputc(*text, stream);
+    }
+}
+
+enum status compare_json(const struct compare *compare, const char *path)
+{
+    struct text_file file;
+    const char *between = "[";
+    enum status status = text_file_open(path, &file);
+    if (status != STATUS_OK)
+        return status;
+    for (int k = 0; k < compare->finding_count; k++) {
+        const struct finding *f = &compare->findings[k];
+        if (!f->lower_is_better || !isfinite(f->after))
+            continue;
+        fprintf(file.stream, "%s\n  {\"name\": \"", between);
+        between = ",";
+        json_text(file.stream, f->scene);
+        fputc(' ', file.stream);
+        json_text(file.stream, f->spec);
+        fputs(*f->detail ? " " : "", file.stream);
+        json_text(file.stream, f->detail);
+        fprintf(file.stream, " %s\", \"unit\": \"%s\", \"value\": %.9g", f->metric, f->unit, f->after);
+        if (isfinite(f->slack))
+            fprintf(file.stream, ", \"range\": \"%.3g\"", f->slack);
+        fputc('}', file.stream);
+    }
+    fprintf(file.stream, "%s\n]\n", *between == '[' ? "[" : "");
+    return text_file_close(&file, status);
+}
