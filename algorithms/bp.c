@@ -92,13 +92,15 @@ static void count_work(struct bp *bp, const struct interpolator *in)
     }
     work->published[1].source = "LBF21 Eq. (23)";
     work->published[1].flops = 1.5 * na * nr * log2(nr) + na * nr + 1.5 * na * in->factor * nr * log2(in->factor * nr);
-    snprintf(work->engine, sizeof work->engine, "%s", bp->engine->name);
+    snprintf(work->engine, sizeof work->engine, "%s%s", bp->engine->name,
+             bp->engine == &bp_general && !(bp->phase_limit > 0) ? " exact" : "");
     if (work->pairs < all)
         snprintf(work->skipped, sizeof work->skipped, "%.3g %% of the pairs: outside the record%s",
                  100 * (1 - work->pairs / all), a->aperture_limit < 1 ? " or the aperture limit" : "");
 }
 
 const char *const bp_engine_names[] = {"auto", "general", "invariant", NULL};
+const char *const bp_exact_names[] = {"false", "true", NULL};
 
 /* Tables pay where they serve several columns of a phase: measured, from two ping spacings of image on. */
 static bool tables_pay(const struct bp *bp)
@@ -117,8 +119,12 @@ static enum status choose_engine(struct bp *bp, const struct bp_options *options
     if (options->engine == BP_ENGINE_INVARIANT && status != STATUS_OK)
         return status_set(STATUS_UNSUPPORTED, "engine=invariant: %s", status_message());
     if (options->engine == BP_ENGINE_INVARIANT
-        || (options->engine == BP_ENGINE_AUTO && status == STATUS_OK && tables_pay(bp)))
+        || (options->engine == BP_ENGINE_AUTO && !options->exact && status == STATUS_OK && tables_pay(bp)))
         bp->engine = &bp_invariant;
+    /* The approximation may not move a sample coordinate by more than a quarter of the finest step either. */
+    double finest = bp->medium.fs * bp->table.upsample * (bp->table.phases > 0 ? bp->table.phases : 1);
+    if (!options->exact)
+        bp->phase_limit = fmin(options->phase_limit, 1.57 * bp->medium.fc / finest);
     return STATUS_OK;
 }
 

@@ -1,8 +1,9 @@
-/* The inner sums of back projection, built for each precision and instruction set; chosen at run time by bp.c. */
+/* The inner sums of the general engine: one line of pixels over one ping, built for each precision and instruction set;
+   chosen at run time by bp_general.c. */
 #ifndef SASBENCH_BP_SUM_H
 #define SASBENCH_BP_SUM_H
 
-#include "algorithm.h"
+#include "bp_blocks.h"
 
 /* How values are read between samples (struct interpolator with its weights tabulated). */
 struct bp_table {
@@ -13,22 +14,38 @@ struct bp_table {
 };
 enum { BP_INTERVALS = 256 };
 
-/* One pair's record and geometry. */
-struct bp_pair {
-    struct vector tx, rx, velocity;
-    double t0;
-    const void *row;                /* complex, as records_fill leaves it */
-};
+/* Points of the table's grid to a sample of the record: what a pixel rounds to (phases > 0) or takes a cubic from. */
+static inline int bp_table_fine(const struct bp_table *table)
+{
+    return table->upsample * (table->taps == 1 ? 1 : table->phases > 0 ? table->phases : BP_INTERVALS);
+}
+
+/* Records whose real and imaginary parts the general engine keeps apart: many taps add up along each. */
+static inline bool bp_table_planar(const struct bp_table *table)
+{
+    return table->taps > 2 || (table->taps == 2 && table->phases == 0);
+}
 
 struct bp_medium {
     double sound_speed, fc, fs;
     int samples;
 };
 
-/* Add one pair's contributions to pixels (x, r_first + i r_step), i in [begin, end): re[i], im[i] += value times
-   exp(+j 2 pi fc tau) where tau lies inside the record. */
-typedef void bp_sum_function(const struct bp_medium *medium, const struct bp_table *table, const struct bp_pair *pair,
-                             double x, double r_first, double r_step, int begin, int end, void *re, void *im);
+/* Receivers of one ping, with their records. */
+struct bp_ping {
+    struct vector tx, velocity;
+    double t0;
+    int receivers;
+    const struct vector *rx;        /* [receivers] at emission */
+    const void *rows;               /* [receivers][2 row_length]: complex, or re and then im if bp_table_planar */
+    int row_length;
+};
+
+/* Add the receivers' contributions to the pixels of some blocks of a line, where all delays lie inside the record:
+   re[i], im[i] += value times exp(+j 2 pi fc tau) for pixel i. */
+typedef void bp_sum_function(const struct bp_medium *medium, const struct bp_table *table, const struct bp_ping *ping,
+                             const struct pixel_line *line, int block_count, const struct bp_block *blocks,
+                             void *re, void *im);
 
 bp_sum_function bp_sum_float_baseline, bp_sum_double_baseline;
 bp_sum_function bp_sum_float_v3, bp_sum_double_v3;  /* x86-64-v3: AVX2, FMA */

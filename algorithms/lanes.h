@@ -5,11 +5,11 @@
 #include "real.h"
 
 #if defined __AVX512F__
-enum { VECTOR_BYTES = 64 };
+#define VECTOR_BYTES 64
 #elif defined __AVX__
-enum { VECTOR_BYTES = 32 };
+#define VECTOR_BYTES 32
 #else
-enum { VECTOR_BYTES = 16 };
+#define VECTOR_BYTES 16
 #endif
 enum { LANES = VECTOR_BYTES / sizeof(real) };
 
