@@ -27,6 +27,7 @@ static const struct command commands[] = {
      2, command_compare},
     {"baseline", "[-o FILE.csv]", "measure quality and work of the gate's scenes anew, into results/baseline.csv", "ot", 0, 0,
      command_baseline},
+    {"reproduce", "[ID ...] [-o DIR]", "the papers' tables and claims beside ours", "ot", 0, INT_MAX, command_reproduce},
     {"phase", "([SCENE] [-o DIR] | --at FILE.csv)", "phase errors of the two-dimensional spectra (LBF21 Figs 2-9)", "oA", 0, 1,
      command_phase},
     {"bench", "[-o DIR]", "speed of the engines against the processor's peak and the control loop", "ot", 0, 0,

@@ -21,6 +21,7 @@ enum status command_image(const struct task *task);
 enum status command_run(const struct task *task);
 enum status command_compare(const struct task *task);
 enum status command_baseline(const struct task *task);
+enum status command_reproduce(const struct task *task);
 enum status command_phase(const struct task *task);
 enum status command_bench(const struct task *task);
 

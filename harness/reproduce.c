@@ -1,0 +1,261 @@
+/* The command `reproduce`: measure what the papers' tables and claims rest on, set their numbers beside ours, and judge
+   what they say. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "claims.h"
+#include "comparison.h"
+#include "task.h"
+#include "text_file.h"
+
+enum { NEEDS_MAX = 256, TABLES_MAX = 64, COLUMNS_MAX = 8 };
+
+static enum status tables_select(const struct task *task, bool selected[TABLES_MAX])
+{
+    for (int n = 0; n < task->name_count; n++) {
+        char ids[512] = "";
+        bool known = false;
+        for (int k = 0; tables[k].id; k++) {
+            bool same = strcmp(tables[k].id, task->names[n]) == 0;
+            known |= same;
+            selected[k] |= same;
+            snprintf(ids + strlen(ids), sizeof ids - strlen(ids), "%s%s", k ? ", " : "", tables[k].id);
+        }
+        if (!known)
+            return status_set(STATUS_INVALID, "reproduce: '%s' is not a table; accepted: %s", task->names[n], ids);
+    }
+    for (int k = 0; tables[k].id; k++)
+        selected[k] |= task->name_count == 0;
+    return STATUS_OK;
+}
+
+/* Needs of all selected tables, each once. */
+static int needs_collect(const bool selected[TABLES_MAX], struct need needs[NEEDS_MAX])
+{
+    int count = 0;
+    for (int k = 0; tables[k].id; k++) {
+        struct need more[NEEDS_MAX];
+        int more_count = selected[k] ? table_needs(tables[k].id, more, NEEDS_MAX) : 0;
+        for (int n = 0; n < more_count; n++) {
+            bool known = false;
+            for (int old = 0; old < count; old++)
+                known |= strcmp(needs[old].scene, more[n].scene) == 0 && strcmp(needs[old].spec, more[n].spec) == 0;
+            if (!known && count < NEEDS_MAX)
+                needs[count++] = more[n];
+        }
+    }
+    return count;
+}
+
+/* All needs of one scene; those of `needs` that are done lose their scene. */
+static enum status scene_measure(struct comparison *comparison, struct need *needs, int count)
+{
+    struct scene scene;
+    struct spec specs[NEEDS_MAX];
+    int spec_count = 0;
+    const char *name = needs[0].scene;
+    enum status status = scene_load(name, SCENE_DIRECTORY, &scene);
+    if (status != STATUS_OK)
+        return status;
+    for (int k = 0; k < count && status == STATUS_OK; k++)
+        if (needs[k].scene && strcmp(needs[k].scene, name) == 0) {
+            status = spec_parse(needs[k].spec, &specs[spec_count]);
+            spec_count += status == STATUS_OK;
+            needs[k].scene = NULL;
+        }
+    if (status == STATUS_OK)
+        status = comparison_scene(comparison, &scene, spec_count, specs);
+    for (int k = 0; k < spec_count; k++)
+        spec_free(&specs[k]);
+    scene_free(&scene);
+    return status;
+}
+
+/* *failed: a measurement failed, which is a row like any other here. */
+static enum status measure(const char *directory, struct need *needs, int count, bool *failed)
+{
+    struct comparison comparison;
+    enum status status = comparison_open(directory, count, false, &comparison);
+    for (int k = 0; k < count && status == STATUS_OK; k++)
+        if (needs[k].scene)
+            status = scene_measure(&comparison, needs + k, count - k);
+    *failed = comparison.failed;
+    comparison.failed = false;
+    return comparison_close(&comparison, status);
+}
+
+static bool phase_wanted(const bool selected[TABLES_MAX])
+{
+    bool wanted = false;
+    for (int k = 0; tables[k].id; k++)
+        wanted |= selected[k] && (strncmp(tables[k].id, "lbf21_f", 7) == 0 || strcmp(tables[k].id, "claims") == 0);
+    return wanted;
+}
+
+/* ---- what is written and printed ---- */
+
+static enum status reproduced_write(const char *directory, const struct reproduced *lines, int count)
+{
+    char path[4200];
+    struct text_file file;
+    snprintf(path, sizeof path, "%s/reproduced.csv", directory);
+    enum status status = text_file_open(path, &file);
+    if (status != STATUS_OK)
+        return status;
+    fputs("# sasbench reproduced 1\ntable,item,quantity,definition,unit,paper,ours,difference,assumption\n", file.stream);
+    for (int k = 0; k < count; k++) {
+        const struct reproduced *l = &lines[k];
+        char item[160], assumption[1200];
+        snprintf(item, sizeof item, "%s%s%s", l->target, *l->target ? ", " : "", l->method);
+        snprintf(assumption, sizeof assumption, "%s%s%s", l->assumption, *l->missing ? "; no value: " : "", l->missing);
+        const char *const texts[] = {l->table, item, l->quantity, l->definition, l->unit};
+        const double numbers[] = {l->paper, l->ours, l->ours - l->paper};
+        for (int n = 0; n < 5; n++) {
+            csv_write_text(file.stream, texts[n]);
+            fputc(',', file.stream);
+        }
+        for (int n = 0; n < 3; n++) {
+            csv_write_number(file.stream, numbers[n]);
+            fputc(',', file.stream);
+        }
+        csv_write_text(file.stream, assumption);
+        fputc('\n', file.stream);
+    }
+    return text_file_close(&file, STATUS_OK);
+}
+
+/* A number and, behind it, how far it is from the paper's. */
+static void cell_print(double value, double paper)
+{
+    char text[40] = "-", difference[40] = "";
+    double size = fmax(fabs(value), fabs(paper));
+    if (isfinite(value))
+        snprintf(text, sizeof text, size > 1e4 || size < 0.1 ? "%.4g" : "%.3f", value);
+    if (isfinite(value) && isfinite(paper))
+        snprintf(difference, sizeof difference, size > 1e4 || size < 0.1 ? "(%+.1e)" : "(%+.3f)", value - paper);
+    printf(" %10s %-10s", text, difference);
+}
+
+/* One table, a row a printed number, a column a definition. */
+static void table_print(const struct table *table, const struct reproduced *lines, int count)
+{
+    const char *definitions[COLUMNS_MAX];
+    int columns = 0;
+    for (int k = 0; k < count; k++) {
+        int c = 0;
+        while (c < columns && strcmp(definitions[c], lines[k].definition) != 0)
+            c++;
+        if (strcmp(lines[k].table, table->id) == 0 && c == columns && columns < COLUMNS_MAX)
+            definitions[columns++] = lines[k].definition;
+    }
+    printf("\n%s  %s\n", table->id, table->title);
+    for (int c = 0; c < columns; c++)
+        printf("  (%d) %s\n", c + 1, definitions[c]);
+    printf("  assumed: %s\n  %-36s %-15s %10s", table->assumption, "", "", "paper");
+    for (int c = 0; c < columns; c++)
+        printf(" %10s %-10s", (char[]){'(', (char)('1' + c), ')', '\0'}, "");
+    printf("\n");
+    for (int k = 0; k < count;) {
+        const struct reproduced *l = &lines[k];
+        int end = k + 1;
+        while (end < count && lines[end].table == l->table && lines[end].target == l->target
+               && lines[end].method == l->method && lines[end].quantity == l->quantity)
+            end++;
+        if (strcmp(l->table, table->id) == 0) {
+            char item[160], paper[40] = "";
+            snprintf(item, sizeof item, "%s%s%s", l->target, *l->target ? ", " : "", l->method);
+            if (isfinite(l->paper))
+                snprintf(paper, sizeof paper, fabs(l->paper) > 1e4 ? "%.5g" : "%.5g", l->paper);
+            printf("  %-36s %-15s %10s", item, l->quantity, paper);
+            for (int c = 0; c < columns; c++) {
+                int n = k;
+                while (n < end && strcmp(lines[n].definition, definitions[c]) != 0)
+                    n++;
+                if (n < end)
+                    cell_print(lines[n].ours, lines[n].paper);
+                else
+                    printf(" %10s %-10s", "", "");
+            }
+            printf("\n");
+        }
+        k = end;
+    }
+}
+
+/* Into claims.csv, and printed when `print`. */
+static enum status claims_write(const char *directory, struct measured *measured, bool print)
+{
+    char path[4200];
+    struct text_file file;
+    int counts[VERDICTS] = {0};
+    snprintf(path, sizeof path, "%s/claims.csv", directory);
+    enum status status = text_file_open(path, &file);
+    if (status != STATUS_OK)
+        return status;
+    fputs("# sasbench claims 1\nid,paper,section,claim,verdict,evidence\n", file.stream);
+    for (int t = 0; claim_tables[t]; t++)
+        for (const struct claim *claim = claim_tables[t]; claim->id; claim++) {
+            struct finding found = claim_judge(claim, measured);
+            const char *const texts[] = {claim->id, claim->paper, claim->section, claim->claim,
+                                         verdict_names[found.verdict], found.evidence};
+            for (int k = 0; k < 6; k++) {
+                csv_write_text(file.stream, texts[k]);
+                fputc(k < 5 ? ',' : '\n', file.stream);
+            }
+            counts[found.verdict]++;
+            if (print)
+                printf("\n%-17s %s\n  %s: %s\n", claim->id, claim->claim, verdict_names[found.verdict], found.evidence);
+        }
+    if (print) {
+        printf("\nClaims:");
+        for (int k = 0; k < VERDICTS; k++)
+            printf("%s %d %s", k ? "," : "", counts[k], verdict_names[k]);
+        printf(".\n");
+    }
+    return text_file_close(&file, STATUS_OK);
+}
+
+/* Everything is worked out from the folder, so that a part that was measured earlier stays in the files. */
+static enum status report(const char *directory, const bool selected[TABLES_MAX])
+{
+    struct measured measured;
+    struct reproduced *lines = NULL;
+    int count = 0;
+    enum status status = measured_read(directory, &measured);
+    if (status == STATUS_OK)
+        status = tables_evaluate(&measured, &lines, &count);
+    if (status == STATUS_OK)
+        status = reproduced_write(directory, lines, count);
+    for (int k = 0; tables[k].id && status == STATUS_OK; k++) {
+        if (strcmp(tables[k].id, "claims") == 0)
+            status = claims_write(directory, &measured, selected[k]);
+        else if (selected[k])
+            table_print(&tables[k], lines, count);
+    }
+    if (status == STATUS_OK)
+        printf("\nResults: %s/reproduced.csv, claims.csv, measurements.csv, targets.csv, phase figures.\n", directory);
+    free(lines);
+    measured_free(&measured);
+    return status;
+}
+
+enum status command_reproduce(const struct task *task)
+{
+    const char *directory = task->output ? task->output : "results/reproduce";
+    bool selected[TABLES_MAX] = {false}, failed = false;
+    struct need needs[NEEDS_MAX];
+    enum status status = tables_select(task, selected);
+    if (status != STATUS_OK)
+        return status;
+    int count = needs_collect(selected, needs);
+    status = measure(directory, needs, count, &failed);
+    if (status == STATUS_OK && phase_wanted(selected))
+        status = command_phase(&(struct task){.output = directory});
+    if (status == STATUS_OK)
+        status = report(directory, selected);
+    if (status == STATUS_OK && failed)
+        status = status_set(STATUS_FAILED, "at least one measurement failed; %s/measurements.csv says why", directory);
+    return status;
+}
