@@ -8,16 +8,16 @@
 
 #include "timing.h"
 
-const char *const verdict_names[VERDICTS] = {[VERDICT_HOLDS] = "holds",
-                                             [VERDICT_ASSUMED] = "holds under stated assumption",
-                                             [VERDICT_FAILS] = "does not hold",
-                                             [VERDICT_UNDECIDED] = "cannot be decided"};
+const char *const claim_verdict_names[CLAIM_VERDICTS] = {[CLAIM_HOLDS] = "holds",
+                                             [CLAIM_ASSUMED] = "holds under stated assumption",
+                                             [CLAIM_FAILS] = "does not hold",
+                                             [CLAIM_UNDECIDED] = "cannot be decided"};
 
 const struct claim *const claim_tables[] = {claims_bp22, claims_zp15, claims_lbf21, NULL};
 
 struct finding finding(bool strict, bool assumed, const char *format, ...)
 {
-    struct finding finding = {.verdict = strict ? VERDICT_HOLDS : assumed ? VERDICT_ASSUMED : VERDICT_FAILS};
+    struct finding finding = {.verdict = strict ? CLAIM_HOLDS : assumed ? CLAIM_ASSUMED : CLAIM_FAILS};
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(finding.evidence, sizeof finding.evidence, format, arguments);
@@ -27,7 +27,7 @@ struct finding finding(bool strict, bool assumed, const char *format, ...)
 
 struct finding finding_undecided(const char *format, ...)
 {
-    struct finding finding = {.verdict = VERDICT_UNDECIDED};
+    struct finding finding = {.verdict = CLAIM_UNDECIDED};
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(finding.evidence, sizeof finding.evidence, format, arguments);

@@ -8,12 +8,12 @@
 
 #include "reproduce.h"
 
-enum verdict { VERDICT_HOLDS, VERDICT_ASSUMED, VERDICT_FAILS, VERDICT_UNDECIDED, VERDICTS };
+enum claim_verdict { CLAIM_HOLDS, CLAIM_ASSUMED, CLAIM_FAILS, CLAIM_UNDECIDED, CLAIM_VERDICTS };
 /* "holds", "holds under stated assumption", "does not hold", "cannot be decided". */
-extern const char *const verdict_names[VERDICTS];
+extern const char *const claim_verdict_names[CLAIM_VERDICTS];
 
 struct finding {
-    enum verdict verdict;
+    enum claim_verdict verdict;
     char evidence[800]; /* one line, with the numbers */
 };
 
@@ -26,7 +26,7 @@ struct claim {
 extern const struct claim claims_bp22[], claims_zp15[], claims_lbf21[];
 extern const struct claim *const claim_tables[];
 
-/* The verdict on a claim. Where a measurement is missing, failed or unsupported: VERDICT_UNDECIDED with the reason. */
+/* The verdict on a claim. Where a measurement is missing, failed or unsupported: CLAIM_UNDECIDED with the reason. */
 struct finding claim_judge(const struct claim *claim, struct measured *measured);
 
 /* ---- for the functions of the claims ---- */

@@ -189,7 +189,7 @@ static enum status claims_write(const char *directory, struct measured *measured
 {
     char path[4200];
     struct text_file file;
-    int counts[VERDICTS] = {0};
+    int counts[CLAIM_VERDICTS] = {0};
     snprintf(path, sizeof path, "%s/claims.csv", directory);
     enum status status = text_file_open(path, &file);
     if (status != STATUS_OK)
@@ -199,19 +199,19 @@ static enum status claims_write(const char *directory, struct measured *measured
         for (const struct claim *claim = claim_tables[t]; claim->id; claim++) {
             struct finding found = claim_judge(claim, measured);
             const char *const texts[] = {claim->id, claim->paper, claim->section, claim->claim,
-                                         verdict_names[found.verdict], found.evidence};
+                                         claim_verdict_names[found.verdict], found.evidence};
             for (int k = 0; k < 6; k++) {
                 csv_write_text(file.stream, texts[k]);
                 fputc(k < 5 ? ',' : '\n', file.stream);
             }
             counts[found.verdict]++;
             if (print)
-                printf("\n%-17s %s\n  %s: %s\n", claim->id, claim->claim, verdict_names[found.verdict], found.evidence);
+                printf("\n%-17s %s\n  %s: %s\n", claim->id, claim->claim, claim_verdict_names[found.verdict], found.evidence);
         }
     if (print) {
         printf("\nClaims:");
-        for (int k = 0; k < VERDICTS; k++)
-            printf("%s %d %s", k ? "," : "", counts[k], verdict_names[k]);
+        for (int k = 0; k < CLAIM_VERDICTS; k++)
+            printf("%s %d %s", k ? "," : "", counts[k], claim_verdict_names[k]);
         printf(".\n");
     }
     return text_file_close(&file, STATUS_OK);
