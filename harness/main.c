@@ -28,6 +28,8 @@ static const struct command commands[] = {
     {"baseline", "[-o FILE.csv]", "measure quality and work of the gate's scenes anew, into results/baseline.csv", "ot", 0, 0,
      command_baseline},
     {"reproduce", "[ID ...] [-o DIR]", "the papers' tables and claims beside ours", "ot", 0, INT_MAX, command_reproduce},
+    {"sweep", "[SCENE ...] [--algorithm SPEC ...] [-o DIR]", "error against run time, each algorithm over its ladder", "oat",
+     0, INT_MAX, command_sweep},
     {"phase", "([SCENE] [-o DIR] | --at FILE.csv)", "phase errors of the two-dimensional spectra (LBF21 Figs 2-9)", "oA", 0, 1,
      command_phase},
     {"bench", "[-o DIR]", "speed of the engines against the processor's peak and the control loop", "ot", 0, 0,

@@ -8,16 +8,6 @@
 #include "metrics.h"
 #include "task.h"
 
-/* "DIR/bp22_table3-bp_sinc_taps_8.png" for bp22/table3 and bp_sinc:taps=8. */
-static void picture_path(const char *directory, const char *scene, const char *rest, char *path, size_t size)
-{
-    int used = snprintf(path, size, "%s/", directory);
-    snprintf(path + used, size - (size_t)used, "%s-%s.png", scene, rest);
-    for (char *p = path + used; *p; p++)
-        if (strchr("/:,= \\", *p))
-            *p = '_';
-}
-
 /* A picture that cannot be drawn is told, but does not fail what was measured. */
 static void tell(enum status status)
 {
@@ -46,8 +36,9 @@ void pictures_free(struct pictures *pictures)
 void pictures_add(struct pictures *pictures, int index, const char *label, const struct image *image)
 {
     const struct scene *scene = pictures->scene;
-    char path[4096], title[700];
-    picture_path(pictures->directory, scene->name, label, path, sizeof path);
+    char path[4096], name[700], title[700];
+    snprintf(name, sizeof name, "%s.png", label);
+    picture_path(pictures->directory, scene->name, name, path, sizeof path);
     snprintf(title, sizeof title, "%s: %s", scene->name, label);
     tell(plot_image(path, PLOT_DIRECTORY, image, title));
     for (int t = 0; t < scene->point_count; t++) {
@@ -75,7 +66,7 @@ void pictures_slices(const struct pictures *pictures)
                      scene->targets[t].r);
             titles[t] = texts[t];
         }
-        picture_path(pictures->directory, scene->name, "slices", path, sizeof path);
+        picture_path(pictures->directory, scene->name, "slices.png", path, sizeof path);
         snprintf(title, sizeof title, "%s: azimuth slices", scene->name);
         tell(plot_slices(path, PLOT_DIRECTORY, title, scene->point_count, titles, count / scene->point_count, lines));
     }

@@ -1,5 +1,5 @@
 /* Pictures through gnuplot: data files and a short preamble of variables go to a temporary folder, then one of the
-   scripts in plots/ draws them. The PNG is drawn beside its place and renamed when whole. */
+   scripts in plots/ draws them. The picture is drawn beside its place and renamed when whole. */
 #include "plot.h"
 
 #include <dirent.h>
@@ -27,8 +27,8 @@ extern char **environ;
 /* One picture in the making. */
 struct plot {
     char directory[PATH_MAX];   /* temporary, with everything in it */
-    char output[PATH_MAX];      /* the PNG until it is whole */
-    const char *path;           /* the PNG */
+    char output[PATH_MAX];      /* the picture until it is whole */
+    const char *path;           /* the picture */
     FILE *preamble;             /* sets the script's variables */
 };
 
@@ -157,12 +157,14 @@ static enum status gnuplot_run(const char *preamble, const char *log, int *exit_
     return STATUS_OK;
 }
 
-/* Draw with plots_directory/script, and put the picture in its place. */
-static enum status plot_draw(struct plot *plot, const char *plots_directory, const char *script)
+/* Draw with plots_directory/script. */
+static enum status plot_run(struct plot *plot, const char *plots_directory, const char *script)
 {
     char preamble[PATH_MAX + 32], log[PATH_MAX + 32];
     file_path(plot, "run.gp", preamble);
     file_path(plot, "log", log);
+    size_t length = strlen(plot->path);
+    variable_write(plot->preamble, "format", length > 4 && strcmp(plot->path + length - 4, ".svg") == 0 ? "svg" : "png");
     variable_write(plot->preamble, "output", plot->output);
     variable_write(plot->preamble, "plots", plots_directory);
     fprintf(plot->preamble, "load plots.'/%s'\n", script);
@@ -182,7 +184,16 @@ static enum status plot_draw(struct plot *plot, const char *plots_directory, con
         return status_set(STATUS_FAILED, "plot: gnuplot failed on '%s' with %s/%s: %s", plot->path, plots_directory,
                           script, complaint);
     }
-    return rename(plot->output, plot->path) == 0 ? STATUS_OK : file_failed(plot->path);
+    return STATUS_OK;
+}
+
+/* Draw and put the picture in its place. */
+static enum status plot_draw(struct plot *plot, const char *plots_directory, const char *script)
+{
+    enum status status = plot_run(plot, plots_directory, script);
+    if (status == STATUS_OK && rename(plot->output, plot->path) != 0)
+        status = file_failed(plot->path);
+    return status;
 }
 
 /* One axis of a patch as it is drawn: blocks of pixels. */
@@ -376,4 +387,39 @@ enum status plot_phase(const char *path, const char *plots_directory, const char
                        const char *const *panel_titles, int line_count, const struct slice_line *lines)
 {
     return lines_draw(path, plots_directory, "phase.gp", title, panel_count, panel_titles, line_count, lines);
+}
+
+const char *const folder_plots[] = {"error_time", "error_flops", "lobes_time", "upsampling", NULL};
+
+enum status plot_folder(const char *path, const char *plots_directory, const char *name, const char *folder,
+                        const char *scene, bool *drawn)
+{
+    struct plot plot;
+    char script[64];
+    snprintf(script, sizeof script, "%s.gp", name);
+    *drawn = false;
+    enum status status = plot_begin(&plot, path);
+    if (status == STATUS_OK) {
+        variable_write(plot.preamble, "folder", folder);
+        variable_write(plot.preamble, "scene", scene);
+        status = plot_run(&plot, plots_directory, script);
+    }
+    if (status == STATUS_OK && access(plot.output, F_OK) == 0) {
+        *drawn = true;
+        if (rename(plot.output, path) != 0)
+            status = file_failed(path);
+    }
+    plot_end(&plot);
+    return status;
+}
+
+void picture_path(const char *directory, const char *scene, const char *rest, char *path, size_t size)
+{
+    int used = snprintf(path, size, "%s/", directory);
+    if (used >= (int)size)
+        return;
+    snprintf(path + used, size - (size_t)used, "%s-%s", scene, rest);
+    for (char *p = path + used; *p; p++)
+        if (strchr("/:,= \\", *p))
+            *p = '_';
 }

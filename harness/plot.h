@@ -21,4 +21,14 @@ enum status plot_slices(const char *path, const char *plots_directory, const cha
 enum status plot_phase(const char *path, const char *plots_directory, const char *title, int panel_count,
                        const char *const *panel_titles, int line_count, const struct slice_line *lines);
 
+/* The scripts about a results folder, by name; NULL ends the list. */
+extern const char *const folder_plots[];
+/* One of them for one scene, into `path`, which ends in .png or .svg. *drawn: false where the scene has nothing to show
+   there (no targets, no upsampling rate); no file is written then. */
+enum status plot_folder(const char *path, const char *plots_directory, const char *name, const char *folder,
+                        const char *scene, bool *drawn);
+
+/* "DIR/bp22_table3-error_time.png" for bp22/table3 and error_time.png: signs that a shell would take become '_'. */
+void picture_path(const char *directory, const char *scene, const char *rest, char *path, size_t size);
+
 #endif

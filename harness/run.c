@@ -1,7 +1,6 @@
 /* The command `run`: every scene with every algorithm, measured, recorded and drawn. */
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "comparison.h"
 #include "task.h"
@@ -26,9 +25,7 @@ static enum status check_twice(const struct task *task)
 {
     for (int a = 0; a < task->spec_count; a++)
         for (int b = 0; b < a; b++)
-            if (task->specs[a].algorithm == task->specs[b].algorithm
-                && task->specs[a].precision == task->specs[b].precision
-                && strcmp(task->specs[a].text, task->specs[b].text) == 0)
+            if (spec_equal(&task->specs[a], &task->specs[b]))
                 return status_set(STATUS_INVALID, "run: --algorithm %s is given twice with the same settings",
                                   task->specs[a].algorithm->name);
     return STATUS_OK;

@@ -2,7 +2,6 @@
 #include "spec.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -110,8 +109,8 @@ static double value_load(const struct param *param, const void *options)
     return param->type == PARAM_REAL ? *(const double *)field : *(const int *)field;
 }
 
-/* One key=value (modified in place). `seen` has a bit for each param of the table, one above them for precision. */
-static enum status setting_read(const char *place, char *setting, struct spec *spec, uint64_t *seen)
+/* One key=value (modified in place). */
+static enum status setting_read(const char *place, char *setting, struct spec *spec)
 {
     char *value = strchr(setting, '=');
     if (!value)
@@ -133,10 +132,10 @@ static enum status setting_read(const char *place, char *setting, struct spec *s
         param = &precision_param;
     }
     uint64_t bit = UINT64_C(1) << index;
-    if (*seen & bit)
+    if (spec->given & bit)
         return status_set(STATUS_INVALID, "SPEC '%.100s': %s is given twice; accepted: each key once", place,
                           setting);
-    *seen |= bit;
+    spec->given |= bit;
 
     double number = 0;
     enum status status = value_read(place, param, value, &number);
@@ -153,6 +152,7 @@ static enum status setting_read(const char *place, char *setting, struct spec *s
 static enum status text_build(struct spec *spec)
 {
     size_t length = 0;
+    *spec->text = '\0';
     for (const struct param *param = spec->algorithm->params; param && param->name; param++) {
         char value[64];
         if (param->terse && value_load(param, spec->options) == param->initial)
@@ -190,10 +190,9 @@ static enum status spec_read(const char *place, char *copy, struct spec *spec)
     for (const struct param *param = spec->algorithm->params; param && param->name; param++)
         value_store(param, spec->options, param->initial);
 
-    uint64_t seen = 0;
     while (rest) {
         char *setting = strsep(&rest, ",");
-        enum status status = setting_read(place, setting, spec, &seen);
+        enum status status = setting_read(place, setting, spec);
         if (status != STATUS_OK)
             return status;
     }
@@ -217,4 +216,48 @@ void spec_free(struct spec *spec)
 {
     free(spec->options);
     *spec = (struct spec){.algorithm = NULL};
+}
+
+enum status spec_copy(const struct spec *spec, struct spec *copy)
+{
+    size_t size = spec->algorithm->options_size;
+    *copy = *spec;
+    copy->options = size > 0 ? malloc(size) : NULL;
+    if (size > 0 && !copy->options) {
+        *copy = (struct spec){.algorithm = NULL};
+        return status_set(STATUS_FAILED, "SPEC '%s': out of memory", spec->algorithm->name);
+    }
+    if (size > 0)
+        memcpy(copy->options, spec->options, size);
+    return STATUS_OK;
+}
+
+enum status spec_vary(const struct spec *spec, const char *key, const char *value, struct spec *varied)
+{
+    char setting[128];
+    snprintf(setting, sizeof setting, "%s=%s", key, value);
+    enum status status = spec_copy(spec, varied);
+    if (status != STATUS_OK)
+        return status;
+    status = setting_read(spec->algorithm->name, setting, varied);
+    if (status == STATUS_OK)
+        status = text_build(varied);
+    if (status != STATUS_OK)
+        spec_free(varied);
+    return status;
+}
+
+bool spec_given(const struct spec *spec, const char *key)
+{
+    int index = 0;
+    const struct param *param = spec->algorithm->params;
+    for (; param && param->name && strcmp(param->name, key) != 0; param++)
+        index++;
+    bool known = (param && param->name) || strcmp(key, precision_param.name) == 0;
+    return known && spec->given >> index & 1;
+}
+
+bool spec_equal(const struct spec *a, const struct spec *b)
+{
+    return a->algorithm == b->algorithm && a->precision == b->precision && strcmp(a->text, b->text) == 0;
 }

@@ -10,15 +10,10 @@
 /* Titles, units and values alike: algorithm, time, speed-up, rate, three errors, width, PSLR, ISLR. */
 #define LAYOUT "  %-34s %8s %8s %9s %7s %7s %7s %6s %6s %6s\n"
 
-struct cell {
-    char text[24];
-};
-
 /* The scene whose heading stands above the last row: there is one terminal, and so one table. */
 static char last_scene[256];
 
-/* A value in the unit behind it, which may be empty. */
-static struct cell cell_significant(double value, const char *unit)
+struct cell cell_significant(double value, const char *unit)
 {
     struct cell cell = {"-"};
     if (isfinite(value))
@@ -27,7 +22,7 @@ static struct cell cell_significant(double value, const char *unit)
     return cell;
 }
 
-static struct cell cell_time(double seconds)
+struct cell cell_time(double seconds)
 {
     if (seconds < 0.9995e-3)
         return cell_significant(1e6 * seconds, " us");
@@ -90,18 +85,21 @@ void table_header(FILE *stream)
     fprintf(stream, LAYOUT, "", "", "", "", "", "", "rad", "mm", "dB", "dB");
 }
 
+void measurement_spec(const struct measurement *row, char *text, size_t size)
+{
+    bool other_precision = strcmp(row->precision, "float") != 0;
+    snprintf(text, size, "%s%s%s%s%s", row->algorithm, *row->options || other_precision ? ":" : "", row->options,
+             *row->options && other_precision ? "," : "", other_precision ? "precision=double" : "");
+}
+
 void table_row(FILE *stream, const struct measurement *row)
 {
     if (strcmp(last_scene, row->scene) != 0) {
         fprintf(stream, "\n%.*s\n", WIDTH, row->scene);
         snprintf(last_scene, sizeof last_scene, "%s", row->scene);
     }
-    /* As on the command line, so that it can be taken from here; float is the default there. */
     char spec[512];
-    bool other_precision = strcmp(row->precision, "float") != 0;
-    snprintf(spec, sizeof spec, "%s%s%s%s%s", row->algorithm, *row->options || other_precision ? ":" : "",
-             row->options, *row->options && other_precision ? "," : "",
-             other_precision ? "precision=double" : "");
+    measurement_spec(row, spec, sizeof spec);
     bool ok = strcmp(row->status, "ok") == 0, own_line = !ok || strlen(spec) > SPEC_WIDTH;
     if (own_line)
         print_wrapped(stream, 2, spec);

@@ -11,6 +11,15 @@ void table_header(FILE *stream);
 /* One measurement; a heading line whenever the scene is another than the row's before. Undefined values are "-". */
 void table_row(FILE *stream, const struct measurement *row);
 
+/* A number with its unit as the table shows it. */
+struct cell {
+    char text[24];
+};
+struct cell cell_significant(double value, const char *unit);  /* three digits, the unit directly behind; "-" for NAN */
+struct cell cell_time(double seconds);
+/* The row's SPEC as on the command line, so that it can be taken from here; float is the default there. */
+void measurement_spec(const struct measurement *row, char *text, size_t size);
+
 /* One line: the FLOPs that the plan counted, and those of the papers' formulas, which contradict each other. */
 void table_work(FILE *stream, const char *spec, const struct work *work);
 

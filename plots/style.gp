@@ -1,11 +1,19 @@
-# The one style of every picture: terminal, fonts, lines, grid, tics and colour map. Load it before anything else.
+# The one style of every picture: terminal, fonts, lines, grid, tics and colour map. Load it before anything else of a
+# picture; what another picture left set is forgotten.
 #
 # Variables:  width, height   of the picture in pixels (default 1200 x 900)
+#             format          "png" or "svg" (default: as the name in `output` ends)
 
-if (!exists("width")) width = 1200
-if (!exists("height")) height = 900
+reset
+if (!exists("width")) { width = 1200 }
+if (!exists("height")) { height = 900 }
+if (exists("format")) { svg = format eq "svg" } else { svg = exists("output") && output[strlen(output) - 3:*] eq ".svg" }
 set encoding utf8
-set terminal pngcairo noenhanced size width,height font "DejaVu Sans,13" background "#ffffff"
+if (svg) {
+    set terminal svg noenhanced size width,height dynamic font "DejaVu Sans,Verdana,sans-serif,13" background "#ffffff"
+} else {
+    set terminal pngcairo noenhanced size width,height font "DejaVu Sans,13" background "#ffffff"
+}
 
 # Lines that can be told apart in greyscale and by the colour-blind: lightness, dash and point all differ. The first
 # is broad and pale, so that a reference stays visible below the lines that lie on it.
@@ -19,6 +27,13 @@ set linetype 7 linecolor "#56b4e9" linewidth 1.8 dashtype (16,4,2,4,2,4) pointty
 set linetype 8 linecolor "#e69f00" linewidth 1.8 dashtype (2,4) pointtype 1 pointsize 1.3
 set linetype cycle 8
 
+# Algorithms among one another: each has its colour and its point, filled for float and open for double. The order is that
+# of their first rows.
+array family_colour[10] = ["#808080", "#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", \
+    "#7b3294", "#8c510a"]
+array family_filled[10] = [15, 7, 5, 9, 13, 11, 3, 2, 1, 15]
+array family_open[10] = [14, 6, 4, 8, 12, 10, 3, 2, 1, 14]
+
 set border linecolor "#404040"
 set grid linecolor "#d0d0d0" linewidth 1 dashtype 1
 set tics nomirror out
@@ -28,6 +43,8 @@ set key Left reverse samplen 4 spacing 1.2
 tic_decade(extent) = 10**floor(log10(extent/5.0))
 tic_step(extent) = tic_decade(extent)*(extent < 7.5*tic_decade(extent) ? 1 : extent < 15*tic_decade(extent) ? 2 : \
     extent < 37.5*tic_decade(extent) ? 5 : 10)
+# Decimal tics at 1, 2 and 5 of each decade.
+log_tics = "do for [decade = -9:15] { set xtics add (10.0**decade, 2*10.0**decade, 5*10.0**decade) }"
 
 # Perceptually uniform, and monotone in lightness so that it reads in greyscale (viridis).
 set palette defined ( \

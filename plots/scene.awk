@@ -1,0 +1,314 @@
+# One scene of a results folder as gnuplot commands: reads measurements.csv and, where they are, the tables that `sweep`
+# makes of it. plots/folder.gp runs it; FOLDER and SCENE are taken from the environment, since -v would interpret them.
+#
+# Without SCENE it prints the array scenes[]. With it:
+#   caption                        scene, machine, threads and commit
+#   $rows                          a block for each series, sorted by its setting, of the lines
+#                                  rate run_s flops error pslr islr "label" "label"   (rate: samples for each one recorded,
+#                                  NaN where nothing is upsampled; the setting's value where it is to be written beside
+#                                  the point over run_s, over flops: sparsely, so that no two overlap)
+#   series[], family[], member[], precise[]   title; the algorithm's number (1 to 10); which of its series; 1 for double
+#   rated[]                        the numbers of the series whose rows have a rate
+#   $control                       the control loop's time: two lines of run_s error, from the largest error to the least
+#   reference_pslr, reference_islr NaN where unknown
+#   has_points, has_lobes, has_rates   1 where there is something to draw: any row, lobes beside the reference's, an
+#                                  upsampling rate above 1
+#   $front_run_s, $front_flops     lines: cost error
+#   $slopes, $slope_labels         lines: rate error, two for each straight line, with two empty lines after; rate error "label"
+#   has_rules, bp22_rate, zp15_rate, edge_phase, linear_floor     0 or 1; NaN where unknown
+#
+# Rows that are not `ok`, or whose image is smaller than the others' (exact ones), are left out.
+
+function quoted(text)
+{
+    gsub(/'/, "''", text)
+    return "'" text "'"
+}
+
+function number(text)
+{
+    return text == "" ? "NaN" : text
+}
+
+# The next line of a CSV file that is no comment into field[NAME]; 0 at its end or where there is no such file. Names are
+# those of the first such line.
+function row_read(path,    line, more, text, name, n, end)
+{
+    do {
+        if ((getline line < path) <= 0)
+            return 0
+        if (line ~ /^#/)
+            note_read(line)
+    } while (line ~ /^#/ || line == "")
+    while (gsub(/"/, "&", line) % 2 && (getline more < path) > 0)
+        line = line "\n" more
+    for (n = 1; ; n++) {
+        if (line ~ /^"/) {
+            text = ""
+            line = substr(line, 2)
+            while ((end = index(line, "\"")) > 0) {
+                text = text substr(line, 1, end - 1)
+                line = substr(line, end + 1)
+                if (line !~ /^"/)
+                    break
+                text = text "\""
+                line = substr(line, 2)
+            }
+        } else {
+            end = index(line, ",")
+            text = end ? substr(line, 1, end - 1) : line
+            line = end ? substr(line, end) : ""
+        }
+        if (header[path] < 0)
+            field[names[path, n]] = text
+        else
+            names[path, n] = text
+        if (line !~ /^,/)
+            break
+        line = substr(line, 2)
+    }
+    if (header[path] < 0)
+        return 1
+    header[path] = -1
+    return row_read(path)
+}
+
+function note_read(line)
+{
+    sub(/^# /, "", line)
+    if (line ~ /^[a-z]+: /)
+        note[substr(line, 1, index(line, ":") - 1)] = substr(line, index(line, ": ") + 2)
+}
+
+# The first option that is a number goes to `value` (its name to `setting`), the others to `rest`.
+function options_read(text,    option, count, k, equals)
+{
+    setting = value = rest = ""
+    count = split(text, option, ",")
+    for (k = 1; k <= count; k++) {
+        equals = index(option[k], "=")
+        if (setting == "" && substr(option[k], equals + 1) ~ /^[-+0-9.eE]+$/) {
+            setting = substr(option[k], 1, equals - 1)
+            value = substr(option[k], equals + 1)
+        } else
+            rest = rest (rest == "" ? "" : ",") option[k]
+    }
+}
+
+# beta points are inserted between two samples; the nearest sample alone is rate 1.
+function rate_of(algorithm)
+{
+    return setting == "beta" ? value + 1 : setting == "factor" ? value : algorithm == "bp_nearest" ? 1 : "NaN"
+}
+
+function family_of(algorithm)
+{
+    if (!(algorithm in families))
+        families[algorithm] = ++family_count
+    return families[algorithm]
+}
+
+# Sorted insertion of a row's line into its series.
+function series_add(key, order, line,    at)
+{
+    for (at = ++length_of[key]; at > 1 && orders[key, at - 1] > order; at--) {
+        orders[key, at] = orders[key, at - 1]
+        lines[key, at] = lines[key, at - 1]
+    }
+    orders[key, at] = order
+    lines[key, at] = line
+}
+
+function measurement_take(    key)
+{
+    family_of(field["algorithm"])
+    if (field["scene"] != scene || field["status"] != "ok" || !(field["run_s"] > 0) || !(field["error"] > 0))
+        return
+    if (field["algorithm"] == "reference") {
+        reference_pslr = field["pslr_db"]
+        reference_islr = field["islr_db"]
+    }
+    if (field["pairs"] + 0 > most_pairs)
+        most_pairs = field["pairs"] + 0
+    options_read(field["options"])
+    key = field["algorithm"] SUBSEP rest SUBSEP field["precision"]
+    if (!(key in length_of)) {
+        keys[++key_count] = key
+        title_of[key] = field["algorithm"] (rest == "" ? "" : " " rest)
+        family_at[key] = family_of(field["algorithm"])
+        if (!((field["algorithm"], rest) in member_of))
+            member_of[field["algorithm"], rest] = ++member_count[field["algorithm"]]
+        member_at[key] = member_of[field["algorithm"], rest]
+        precise_at[key] = field["precision"] == "double"
+    }
+    series_add(key, value + 0, rate_of(field["algorithm"]) " " field["run_s"] " " \
+        number(field["flops"]) " " field["error"] " " number(field["pslr_db"]) " " number(field["islr_db"]) " " \
+        (value == "" ? "-" : value) " " field["pairs"] + 0)
+    for (at = ++control_count; at > 1 && control[at - 1] + 0 > field["control_s"] + 0; at--)
+        control[at] = control[at - 1]
+    control[at] = field["control_s"]
+}
+
+# Of all rows measured those that are shown, one after the other: point[n, COLUMN].
+function points_collect(    k, at, part)
+{
+    for (k = 1; k <= key_count; k++)
+        for (at = 1; at <= length_of[keys[k]]; at++) {
+            split(lines[keys[k], at], part, " ")
+            if (part[8] > 0 && part[8] < 0.999*most_pairs)
+                continue
+            point[++points, "key"] = k
+            point[points, "line"] = part[1] " " part[2] " " part[3] " " part[4] " " part[5] " " part[6]
+            point[points, "x", 1] = log(part[2])
+            point[points, "x", 2] = log(part[3])
+            point[points, "y"] = log(part[4])
+            point[points, "label"] = part[7]
+            lobes = lobes || (part[5] != "NaN" && title_of[keys[k]] != "reference")
+            if (part[1] != "NaN" && rated[rated_count] != k)
+                rated[++rated_count] = k
+            rates = rates || part[1] > 1
+        }
+}
+
+# Is the point one of the front?
+function on_front(n, axis,    m)
+{
+    for (m = 1; m <= points; m++)
+        if (point[m, "x", axis] <= point[n, "x", axis] && point[m, "y"] <= point[n, "y"] \
+            && (point[m, "x", axis] < point[n, "x", axis] || point[m, "y"] < point[n, "y"]))
+            return 0
+    return 1
+}
+
+# Which points get a label: those of the front, then the ends of the ladders, then the rest, while there is room. A label
+# takes about 1/30 of the axis's width and 1/30 of its height.
+function labels_place(axis,    n, m, rank, ranks, free, x_least, x_most, y_least, y_most)
+{
+    x_least = y_least = 1e9
+    x_most = y_most = -1e9
+    for (n = 1; n <= points; n++) {
+        if (point[n, "x", axis] < x_least) x_least = point[n, "x", axis]
+        if (point[n, "x", axis] > x_most) x_most = point[n, "x", axis]
+        if (point[n, "y"] < y_least) y_least = point[n, "y"]
+        if (point[n, "y"] > y_most) y_most = point[n, "y"]
+        ranks[n] = on_front(n, axis) ? 1 : precise_at[keys[point[n, "key"]]] ? 4 \
+            : point[n - 1, "key"] != point[n, "key"] || point[n + 1, "key"] != point[n, "key"] ? 2 : 3
+    }
+    for (rank = 1; rank <= 3; rank++)
+        for (n = 1; n <= points; n++) {
+            if (ranks[n] != rank)
+                continue
+            free = point[n, "label"] != "-"
+            for (m = 1; m <= points && free; m++)
+                if (m != n && (point[m, "shown", axis] || rank == 3) \
+                    && far(point[m, "x", axis] - point[n, "x", axis], x_most - x_least) < 1 \
+                    && far(point[m, "y"] - point[n, "y"], y_most - y_least) < 1)
+                    free = 0
+            point[n, "shown", axis] = free
+        }
+}
+
+# A distance in label sizes.
+function far(distance, extent)
+{
+    return 30*(distance < 0 ? -distance : distance)/(extent > 0 ? extent : 1)
+}
+
+function rows_print(    k, n, least, most)
+{
+    points_collect()
+    labels_place(1)
+    labels_place(2)
+    print "$rows << END_OF_ROWS"
+    for (k = n = 1; k <= key_count; k++) {
+        if (point[n, "key"] != k)
+            print "NaN NaN NaN NaN NaN NaN \"\" \"\""
+        for (; point[n, "key"] == k; n++)
+            print point[n, "line"], "\"" (point[n, "shown", 1] ? point[n, "label"] : "") "\"",
+                "\"" (point[n, "shown", 2] ? point[n, "label"] : "") "\""
+        print "\n"
+    }
+    print "END_OF_ROWS"
+    print "array series[" key_count "]; array family[" key_count "]; array member[" key_count "]"
+    print "array precise[" key_count "]"
+    for (k = 1; k <= key_count; k++) {
+        printf "series[%d] = %s; family[%d] = %d; ", k, quoted(title_of[keys[k]]), k, (family_at[keys[k]] - 1)%10 + 1
+        printf "member[%d] = %d; precise[%d] = %d\n", k, member_at[keys[k]], k, precise_at[keys[k]]
+    }
+    if (rated_count)
+        print "array rated[" rated_count "]"
+    for (k = 1; k <= rated_count; k++)
+        printf "rated[%d] = %d\n", k, rated[k]
+    least = 1e9
+    most = -1e9
+    for (n = 1; n <= points; n++) {
+        if (point[n, "y"] < least) least = point[n, "y"]
+        if (point[n, "y"] > most) most = point[n, "y"]
+    }
+    if (control_count && points)
+        printf "$control << END_OF_CONTROL\n%s %.9g\n%s %.9g\nEND_OF_CONTROL\n", control[int((control_count + 1)/2)], exp(most),
+            control[int((control_count + 1)/2)], exp(least)
+    printf "reference_pslr = %s; reference_islr = %s\n", number(reference_pslr), number(reference_islr)
+    printf "has_points = %d; has_lobes = %d; has_rates = %d\n", (points > 0),
+        lobes && reference_pslr != "" && reference_islr != "", rates
+}
+
+function fronts_print(    cost, k)
+{
+    while (row_read(folder "/fronts.csv"))
+        if (field["scene"] == scene)
+            front[field["cost"]] = front[field["cost"]] field["value"] " " field["error"] "\n"
+    for (k = split("run_s flops", cost, " "); k >= 1; k--)
+        printf "$front_%s << END_OF_FRONT\n%sEND_OF_FRONT\n", cost[k], front[cost[k]]
+}
+
+# Lines through the float ladders of the upsampling rate, and what is said at their middle.
+function slopes_print(    text)
+{
+    print "$slopes << END_OF_SLOPES"
+    while (row_read(folder "/slopes.csv"))
+        if (field["scene"] == scene && (field["setting"] == "beta" || field["setting"] == "factor") \
+            && field["part"] != "falling" && field["precision"] == "float") {
+            printf "%s %s\n%s %s\n\n\n", field["rate_first"], field["error_first"], field["rate_last"], field["error_last"]
+            text = text sprintf("%.9g %.9g \"%s, slope %.2f\"\n", sqrt(field["rate_first"]*field["rate_last"]),
+                sqrt(field["error_first"]*field["error_last"]), field["part"], field["slope"])
+        }
+    print "END_OF_SLOPES"
+    printf "$slope_labels << END_OF_LABELS\n%sEND_OF_LABELS\n", text
+}
+
+function rules_print()
+{
+    while (row_read(folder "/rules.csv") && field["scene"] != scene)
+        ;
+    if (field["scene"] != scene)
+        split("", field)
+    printf "has_rules = %d; bp22_rate = %s; zp15_rate = %s; edge_phase = %s; linear_floor = %s\n", (field["scene"] == scene),
+        number(field["bp22_eq20_rate"]), number(field["zp15_rate"]), number(field["edge_phase_rad"]),
+        number(field["linear_floor"])
+}
+
+BEGIN {
+    folder = ENVIRON["FOLDER"]
+    scene = ENVIRON["SCENE"]
+    while (row_read(folder "/measurements.csv")) {
+        if (!(field["scene"] in seen)) {
+            seen[field["scene"]] = 1
+            scenes[++scene_count] = field["scene"]
+        }
+        measurement_take()
+    }
+    if (scene == "") {
+        print "array scenes[" scene_count "]"
+        for (k = 1; k <= scene_count; k++)
+            print "scenes[" k "] = " quoted(scenes[k])
+    } else {
+        print "caption = " quoted(scene ", " note["machine"] ", " note["threads"] " threads, commit " note["commit"])
+        rows_print()
+        split("", field)
+        fronts_print()
+        slopes_print()
+        split("", field)
+        rules_print()
+    }
+}
