@@ -17,6 +17,24 @@ int fft_length(long long n)
     return 0;
 }
 
+int fft_length_fast(long long n)
+{
+    for (; n <= INT_MAX; n++) {
+        long long odd = n;
+        while (odd > 0 && odd % 2 == 0)
+            odd /= 2;
+        if (odd > n / odd)
+            continue;
+        while (odd % 3 == 0)
+            odd /= 3;
+        while (odd % 5 == 0)
+            odd /= 5;
+        if (odd == 1)
+            return (int)n;
+    }
+    return 0;
+}
+
 double fft_flops(double n)
 {
     return 5 * n * log2(n);

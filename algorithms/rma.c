@@ -144,8 +144,8 @@ static void migrate(const struct rma *rma, const struct rma_swath *swath, struct
 #pragma omp parallel num_threads(rma->threads) reduction(+ : seconds[:RMA_STAGES])
     {
 #pragma omp for schedule(dynamic)
-        for (int q = 0; q < swath->wavenumbers; q += RMA_TILE)
-            column(rma, swath, omp_get_thread_num(), q, seconds);
+        for (int turn = 0; turn < swath->wavenumbers; turn += RMA_TILE)
+            column(rma, swath, omp_get_thread_num(), turn, seconds);
     }
     /* The threads' time in each stage, as shares of the time that passed. */
     for (int k = 0; k < RMA_STAGES; k++)

@@ -145,13 +145,19 @@ struct rma {
     size_t scratch_at[RMA_BUFFERS]; /* bytes: where each buffer of a thread begins */
     size_t scratch_bytes;           /* of a thread */
     void *scratch;                  /* [threads] */
-    void *focused;                  /* complex [rows][columns] of the swath at work */
+    void *focused;                  /* complex [rows][columns] of the swath at work, wavenumbers in their turns */
 };
 
 /* ---- rma_layout.c ---- */
 
 /* Fills everything but the pointers that rma_transform's plan fills. */
 enum status rma_layout(struct rma *rma);
+
+/* The order in which wavenumbers are worked on: those that read the same spectra, q mod period, in a row. */
+static inline int rma_wavenumber(const struct rma *rma, const struct rma_swath *swath, int turn)
+{
+    return turn / rma->receivers + turn % rma->receivers * swath->period;
+}
 
 /* ---- rma_phase.c ---- */
 
@@ -177,8 +183,9 @@ extern const struct rma_transform rma_transform_float, rma_transform_double;
 
 /* ---- rma_focus.c ---- */
 enum rma_stage { RMA_BULK, RMA_DIFFERENTIAL, RMA_RECONSTRUCT, RMA_STOLT, RMA_FOCUS, RMA_STAGES };
-/* Wavenumbers [q, q + RMA_TILE) of all rows into `focused`; seconds of each stage are added. */
-typedef void rma_column_function(const struct rma *rma, const struct rma_swath *swath, int thread, int q,
+/* The wavenumbers whose turn it is from `turn` to turn + RMA_TILE - 1, all rows, into `focused`; seconds of each stage
+   are added. */
+typedef void rma_column_function(const struct rma *rma, const struct rma_swath *swath, int thread, int turn,
                                  double seconds[RMA_STAGES]);
 rma_column_function rma_column_float_baseline, rma_column_double_baseline;
 rma_column_function rma_column_float_v3, rma_column_double_v3;

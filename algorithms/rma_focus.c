@@ -21,15 +21,18 @@ static void places(const struct work_place *w, real *restrict place)
 {
     const struct rma *rma = w->rma;
     const struct rma_swath *swath = w->swath;
-    const int length = swath->length, first = swath->blocks[0], last = swath->blocks[swath->needed - 1];
+    const int length = swath->length;
+    const double first = swath->blocks[0], last = swath->blocks[swath->needed - 1];
     const double from = rma->block_from, scale = 1 / rma->block_width, slowness = w->line.slowness;
+    const double fs = rma->fs;
     const bool inverse = rma->options.spacing == RMA_INVERSE;
 #pragma omp simd
     for (int j = 0; j < length; j++) {
         int n = swath->centre + (j < length - length / 2 ? j : j - length);
-        double delay = fmax(swath->t_first + n / rma->fs, 1e-9), range = delay / slowness;
+        double delay = swath->t_first + n / fs, range = (delay > 1e-9 ? delay : 1e-9) / slowness;
         double b = ((inverse ? 1 / range : range) - from) * scale;
-        place[j] = (real)(b > first ? b < last ? b : last : first);
+        b = b < last ? b : last;
+        place[j] = (real)(b > first ? b : first);
     }
 }
 
@@ -47,17 +50,34 @@ static void add_weighted(const real *restrict x, const real *restrict place, int
     }
 }
 
+/* Bins [begin, end) of a row of vectors as complex numbers. */
+static void interleave(const real *restrict row, int begin, int end, real *restrict out)
+{
+    for (int k = begin, n; k < end; k += n, out += 2 * n) {
+        const int lane = k % LANES;
+        const real *from = row + 2 * (k - lane) + lane;
+        n = LANES - lane < end - k ? LANES - lane : end - k;
+        if (n == LANES)             /* the usual case, of constant length */
+            for (int i = 0; i < LANES; i++) {
+                out[2 * i] = from[i];
+                out[2 * i + 1] = from[LANES + i];
+            }
+        else
+            for (int i = 0; i < n; i++) {
+                out[2 * i] = from[i];
+                out[2 * i + 1] = from[LANES + i];
+            }
+    }
+}
+
 /* Range IFFT of a row of spectra, and what belongs to the block added to the cut; without places all of it. */
 static void add_block(const struct work_place *w, const real *row, int block, const real *place, real *cut)
 {
     const struct rma_swath *swath = w->swath;
     const int length = swath->length, below = -swath->band_first;
     real *wave = buffer(w, RMA_WAVE);
-    for (int k = 0; k < swath->band; k++) {
-        const size_t at = 2 * (size_t)(k < below ? length - below + k : k - below);
-        wave[at] = row[2 * (k / LANES * LANES) + k % LANES];
-        wave[at + 1] = row[2 * (k / LANES * LANES) + k % LANES + LANES];
-    }
+    interleave(row, 0, below, wave + 2 * (length - below));
+    interleave(row, below, swath->band, wave);
     memset(wave + 2 * (swath->band - below), 0, 2 * (size_t)(length - swath->band) * sizeof *wave);
     FFTW(execute_dft)(swath->range_inverse, (complex_real *)wave, (complex_real *)wave);
     /* Samples from `centre` on, then those before it at the cut's end. */
@@ -151,10 +171,11 @@ static void focus_interpolated(struct work_place *w, const struct rma_patch *pat
     double position[SPAN], cycles[SPAN];
     real weight[SPAN], re[SPAN], im[SPAN], wr[SPAN], wi[SPAN];
     for (long long j0 = first; j0 <= last; j0 += SPAN) {
-        int n = last - j0 + 1 < SPAN ? (int)(last - j0 + 1) : SPAN;
+        const int n = last - j0 + 1 < SPAN ? (int)(last - j0 + 1) : SPAN;
+        const double from = (double)j0;
 #pragma omp simd
         for (int i = 0; i < n; i++) {
-            double k = (double)(j0 + i) * k_step, kappa = c / (4 * M_PI) * k;
+            double k = (from + i) * k_step, kappa = c / (4 * M_PI) * k;
             double root = sqrt(half * half + b1 * kappa * kappa), frequency = beta * half + root;
             double s = sqrt((frequency - half) * (frequency + half)), offset = frequency - fc;
             position[i] = offset / stolt_bin + to_fc;
@@ -298,20 +319,20 @@ static void column(struct work_place *w, real *stored)
     }
 }
 
-void REAL_ISA_NAME(rma_column)(const struct rma *rma, const struct rma_swath *swath, int thread, int q,
+void REAL_ISA_NAME(rma_column)(const struct rma *rma, const struct rma_swath *swath, int thread, int turn,
                                double seconds[RMA_STAGES])
 {
     struct work_place w = {.rma = rma, .swath = swath, .seconds = seconds, .mark = seconds_now(),
                            .scratch = (char *)rma->scratch + (size_t)thread * rma->scratch_bytes};
     real *stored = buffer(&w, RMA_STORED), *focused = rma->focused;
     memset(stored, 0, 2 * RMA_TILE * swath->rows * sizeof *stored);
-    for (int n = 0; n < RMA_TILE && q + n < swath->wavenumbers; n++) {
-        w.q = q + n;
-        w.line = rma_line(rma, swath, q + n);
+    for (int n = 0; n < RMA_TILE && turn + n < swath->wavenumbers; n++) {
+        w.q = rma_wavenumber(rma, swath, turn + n);
+        w.line = rma_line(rma, swath, w.q);
         if (w.line.begin < swath->band)
             column(&w, stored + 2 * n);
     }
     for (size_t i = 0; i < swath->rows; i++, stored += 2 * RMA_TILE)
-        memcpy(focused + 2 * (i * swath->columns + (size_t)q), stored, 2 * RMA_TILE * sizeof *stored);
+        memcpy(focused + 2 * (i * swath->columns + (size_t)turn), stored, 2 * RMA_TILE * sizeof *stored);
     stage_end(&w, RMA_FOCUS);
 }

@@ -109,7 +109,7 @@ static enum status lay_band(struct rma *rma)
     rma->half_band = a->fs / 2;
     if (a->compressed)
         return STATUS_OK;
-    int length = rma->record_length = fft_length((long long)a->samples + a->pulse_length - 1);
+    int length = rma->record_length = fft_length_fast((long long)a->samples + a->pulse_length - 1);
     double complex *work = length > 0 ? fftw_malloc((size_t)length * sizeof *work) : NULL;
     if (!work)
         return status_set(STATUS_FAILED, "no memory for the replica's spectrum");
@@ -319,8 +319,8 @@ static enum status swath_range(const struct rma *rma, struct rma_swath *swath)
     swath->end = (int)fmin(fmax(to, 0), end) + 1;
     swath->t_first = rma->t0 + from / rma->fs;
     swath->centre = (int)((to - from) / 2);
-    swath->length = fft_length((long long)(to - from) + 1 + RMA_GUARD);
-    swath->stolt_length = rma->taps == 0 ? swath->length : fft_length((long long)(RMA_OVERSAMPLING * swath->length));
+    swath->length = fft_length_fast((long long)(to - from) + 1 + RMA_GUARD);
+    swath->stolt_length = rma->taps == 0 ? swath->length : fft_length_fast((long long)(RMA_OVERSAMPLING * swath->length));
     if (swath->length == 0 || swath->stolt_length == 0 || swath->stolt_length > INT_MAX / 64)
         return unsupported(rma, "the range transform is too long");
 
@@ -343,8 +343,8 @@ static enum status swath_patches(const struct rma *rma, struct rma_swath *swath)
         struct rma_patch *patch = &swath->patches[k];
         patch->step = patch->grid.r_count > 1 ? patch->grid.r_step : bin;
         double rows = fmax(ceil(extent / patch->step), patch->grid.r_count);
-        patch->length = rows < 1e8 ? fft_length((long long)rows) : 0;
-        patch->chirp = fft_length((long long)swath->wavenumbers + patch->grid.x_count - 1);
+        patch->length = rows < 1e8 ? fft_length_fast((long long)rows) : 0;
+        patch->chirp = fft_length_fast((long long)swath->wavenumbers + patch->grid.x_count - 1);
         if (patch->length == 0 || patch->chirp == 0)
             return status_set(STATUS_UNSUPPORTED, "%s: rows %g m apart over %g m are too many to transform",
                               rma->method.name, patch->step, extent);

@@ -312,7 +312,12 @@ static void inverse(const struct rma *rma, const struct rma_swath *swath, const 
         real *wave = scratch_of(rma, 0);
         real *out = (real *)pixels + 2 * columns * (size_t)i;
         real root = (real)sqrt(patch->grid.r_first + i * patch->grid.r_step);
-        memcpy(wave, (const real *)rma->focused + 2 * swath->columns * (patch->row + (size_t)i), 2 * q * sizeof *wave);
+        const real *from = (const real *)rma->focused + 2 * swath->columns * (patch->row + (size_t)i);
+        for (int turn = 0; turn < swath->wavenumbers; turn++) {
+            real *to = wave + 2 * rma_wavenumber(rma, swath, turn);
+            to[0] = from[2 * turn];
+            to[1] = from[2 * turn + 1];
+        }
         multiply(wave, patch->before, swath->wavenumbers);
         memset(wave + 2 * q, 0, 2 * ((size_t)patch->chirp - q) * sizeof *wave);
         FFTW(execute_dft)(patch->chirp_forward, (complex_real *)wave, (complex_real *)wave);
