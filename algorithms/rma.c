@@ -65,7 +65,7 @@ static void count_published(struct rma *rma)
                               + method->interpolations * (2 * taps - 1));
     work->published[0].source = method->source;
     work->published[0].flops = paper;
-    work->published[1].source = "with each range block's products and transforms, which it leaves out";
+    work->published[1].source = "with the factor of the range blocks";
     work->published[1].flops = paper + (rma->block_count - 1) * receivers * na * nr * (1.5 * log2(nr) + 1);
 }
 

@@ -81,8 +81,8 @@ static enum status measure(struct comparison *comparison, struct visit *visit, i
     const struct session *session = &visit->session;
     const struct spec *spec = &visit->specs[index];
     const struct scene *scene = session->scene;
-    struct problem problem = session_problem(scene, spec->algorithm, spec->precision), whole = {&scene->acquisition, scene->patch_count,
-                                                                 scene->patches, spec->precision};
+    struct problem problem = session_problem(scene, spec->algorithm, spec->precision);
+    struct problem whole = {&scene->acquisition, scene->patch_count, scene->patches, spec->precision};
     struct timing timing = {0};
     struct image image = {0};
     char stages[512] = "", skipped[400] = "", reason[512] = "";
@@ -144,6 +144,7 @@ static enum status measure(struct comparison *comparison, struct visit *visit, i
 static void print_works(const struct visit *visit)
 {
     char label[320];
+    table_works_header(stdout);
     for (int k = 0; k < visit->spec_count; k++)
         if (visit->works[k].flops > 0) {
             spec_label(&visit->specs[k], label, sizeof label);

@@ -116,10 +116,15 @@ void table_row(FILE *stream, const struct measurement *row)
     }
 }
 
+void table_works_header(FILE *stream)
+{
+    fprintf(stream, "  %-*s FLOPs counted, by the papers' formulas\n", SPEC_WIDTH, "");
+}
+
 void table_work(FILE *stream, const char *spec, const struct work *work)
 {
-    fprintf(stream, "    FLOPs of %s: counted %.4g", spec, work->flops);
-    for (int k = 0; k < 3 && work->published[k].source; k++)
-        fprintf(stream, ", %s %.4g", work->published[k].source, work->published[k].flops);
+    fprintf(stream, "  %-*s %6.1e", SPEC_WIDTH, spec, work->flops);
+    for (int k = 0; k < (int)(sizeof work->published / sizeof *work->published) && work->published[k].source; k++)
+        fprintf(stream, ", %.1e %s", work->published[k].flops, work->published[k].source);
     fputs("\n", stream);
 }

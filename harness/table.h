@@ -20,7 +20,9 @@ struct cell cell_time(double seconds);
 /* The row's SPEC as on the command line, so that it can be taken from here; float is the default there. */
 void measurement_spec(const struct measurement *row, char *text, size_t size);
 
-/* One line: the FLOPs that the plan counted, and those of the papers' formulas, which contradict each other. */
+/* One line an algorithm: the FLOPs that the plan counted, and those of the papers' formulas, which contradict each
+   other. */
+void table_works_header(FILE *stream);
 void table_work(FILE *stream, const char *spec, const struct work *work);
 
 #endif
