@@ -25,7 +25,7 @@
 
 /* Plain engines, which are what the papers compare: every delay evaluated; every cell's phase by libm and each receiver
    summed by itself. */
-#define PLAIN_BP "engine=general"
+#define PLAIN_BP "engine=general,exact=true"
 #define PLAIN_RMA "spacing=uniform,blend=off,sum=after,phases=libm"
 
 /* Definitions of a time. */

@@ -62,10 +62,16 @@ static const struct place {
     {"lbf21_t4", "PT9", "lbf21/table4_far", 0},   {"lbf21_t4", "PT10", "lbf21/table4_far", 1},
 };
 
-/* Plain engines are timed on a part of the image, which these factors scale to all of it. */
-#define BP22_ROWS 50.0
-#define LBF21_ROWS (4096.0 / 103)
-#define LBF21_PART 16.0
+/* Plain engines are timed on a part of the task, and each stage scaled to all of it: back projection on some rows, of
+   which the sums depend and the compression does not; range migration with a quarter of the receivers, on which the
+   conversion depends twice (receivers and wavenumbers) and all else once. */
+struct scaling {
+    double factor;                      /* of the stages in `stages` (separated by blanks) */
+    const char *stages;
+    double rest;                        /* of the others */
+};
+static const struct scaling bp22_rows = {50, "focus", 1}, lbf21_rows = {4096.0 / 103, "focus", 1};
+static const struct scaling lbf21_part = {16, "bulk differential reconstruct", 4};
 
 /* The measurement that stands for a method. */
 static const struct source {
@@ -73,93 +79,92 @@ static const struct source {
     const char *definition;             /* of a time or a formula; NULL: by the definitions of the quantity */
     const char *scene;                  /* NULL: the target's, from `places` */
     const char *spec;
-    double factor;                      /* of a time, less that of the stage `compress` if `compressed`; 0: 1 */
-    bool compressed;
+    const struct scaling *scaling;      /* of a time; NULL: the whole was timed */
 } sources[] = {
-    {"bp22_t1", "nearest", "Eq. (11) by the plan", "bp22/full", NEAREST, 0, false},
-    {"bp22_t1", "linear, beta 2", "Eq. (11) by the plan", "bp22/full", LINEAR_2, 0, false},
-    {"bp22_t1", "linear, beta 8", "Eq. (11) by the plan", "bp22/full", LINEAR_8, 0, false},
-    {"bp22_t1", "sinc", "Eq. (11) by the plan", "bp22/full", SINC_8, 0, false},
-    {"bp22_t3", "nearest", NULL, NULL, NEAREST, 0, false},
-    {"bp22_t3", "linear, beta 2", NULL, NULL, LINEAR_2, 0, false},
-    {"bp22_t3", "linear, beta 8", NULL, NULL, LINEAR_8, 0, false},
-    {"bp22_t3", "sinc", NULL, NULL, SINC_8, 0, false},
-    {"bp22_t4", "nearest", PLAIN_TIMES, "bp22/full_rows", NEAREST ":" PLAIN_BP, BP22_ROWS, true},
-    {"bp22_t4", "linear, beta 2", PLAIN_TIMES, "bp22/full_rows", LINEAR_2 "," PLAIN_BP, BP22_ROWS, true},
-    {"bp22_t4", "linear, beta 8", PLAIN_TIMES, "bp22/full_rows", LINEAR_8 "," PLAIN_BP, BP22_ROWS, true},
-    {"bp22_t4", "sinc", PLAIN_TIMES, "bp22/full_rows", SINC_8 "," PLAIN_BP, BP22_ROWS, true},
-    {"bp22_t4", "nearest", FAST_TIMES, "bp22/full", NEAREST, 0, false},
-    {"bp22_t4", "linear, beta 2", FAST_TIMES, "bp22/full", LINEAR_2, 0, false},
-    {"bp22_t4", "linear, beta 8", FAST_TIMES, "bp22/full", LINEAR_8, 0, false},
-    {"bp22_t4", "sinc", FAST_TIMES, "bp22/full", SINC_8, 0, false},
-    {"bp22_t4", "nearest", FAST_LIMITED, "bp22/full_limited", NEAREST, 0, false},
-    {"bp22_t4", "linear, beta 2", FAST_LIMITED, "bp22/full_limited", LINEAR_2, 0, false},
-    {"bp22_t4", "linear, beta 8", FAST_LIMITED, "bp22/full_limited", LINEAR_8, 0, false},
-    {"bp22_t4", "sinc", FAST_LIMITED, "bp22/full_limited", SINC_8, 0, false},
-    {"bp22_eq20", "linear", NULL, "bp22/table3", SINC_8, 0, false},
-    {"zp15_f3", "nearest", NULL, "zp15/target", NEAREST, 0, false},
-    {"zp15_f3", "truncated sinc", NULL, "zp15/target", SINC_8, 0, false},
-    {"zp15_f3", "zero padding", NULL, "zp15/target", ZEROPAD_8, 0, false},
-    {"zp15_f4", "nearest", NULL, "zp15/target", NEAREST, 0, false},
-    {"zp15_f4", "truncated sinc", NULL, "zp15/target", SINC_8, 0, false},
-    {"zp15_f4", "zero padding", NULL, "zp15/target", ZEROPAD_8, 0, false},
-    {"lbf21_t2", "LBF, 30.0 m", NULL, "lbf21/blocks_30_0", LBF_BLOCK, 0, false},
-    {"lbf21_t2", "LBF, 18.0 m", NULL, "lbf21/blocks_18_0", LBF_BLOCK, 0, false},
-    {"lbf21_t2", "LBF, 12.0 m", NULL, "lbf21/blocks_12_0", LBF_BLOCK, 0, false},
-    {"lbf21_t2", "LBF, 11.4 m", NULL, "lbf21/blocks_11_4", LBF_BLOCK, 0, false},
-    {"lbf21_t2", "LBF, 9.6 m", NULL, "lbf21/blocks_9_6", LBF_BLOCK, 0, false},
-    {"lbf21_t2", "LBF, 2.7 m", NULL, "lbf21/blocks_2_7", LBF_BLOCK, 0, false},
-    {"lbf21_t2", "PCA", NULL, "lbf21/blocks", PCA_1, 0, false},
-    {"lbf21_t2", "BP", NULL, "lbf21/blocks", ZEROPAD_8, 0, false},
-    {"lbf21_t3", "LBF", NULL, NULL, LBF_16, 0, false},
-    {"lbf21_t3", "PCA", NULL, NULL, PCA_16, 0, false},
-    {"lbf21_t3", "BP", NULL, NULL, ZEROPAD_8, 0, false},
-    {"lbf21_t4", "LBF", NULL, NULL, LBF_16, 0, false},
-    {"lbf21_t4", "PCA", NULL, NULL, PCA_16, 0, false},
-    {"lbf21_t4", "Wu", NULL, NULL, WU_16, 0, false},
-    {"lbf21_t4", "BP", NULL, NULL, ZEROPAD_8, 0, false},
-    {"lbf21_t5", "LBF, 8 blocks", PLAIN_TIMES, "lbf21/real_size_part", LBF_8 "," PLAIN_RMA, LBF21_PART, false},
-    {"lbf21_t5", "LBF, 16 blocks", PLAIN_TIMES, "lbf21/real_size_part", LBF_16 "," PLAIN_RMA, LBF21_PART, false},
-    {"lbf21_t5", "PCA", PLAIN_TIMES, "lbf21/real_size_part", PCA_16 "," PLAIN_RMA, LBF21_PART, false},
-    {"lbf21_t5", "Wu", PLAIN_TIMES, "lbf21/real_size_part", WU_16 "," PLAIN_RMA, LBF21_PART, false},
-    {"lbf21_t5", "BP", PLAIN_TIMES, "lbf21/real_size_rows", ZEROPAD_8 "," PLAIN_BP, LBF21_ROWS, true},
-    {"lbf21_t5", "LBF, 8 blocks", PLAIN_SINC, "lbf21/real_size_part", LBF_8 "," PLAIN_RMA, LBF21_PART, false},
-    {"lbf21_t5", "LBF, 16 blocks", PLAIN_SINC, "lbf21/real_size_part", LBF_16 "," PLAIN_RMA, LBF21_PART, false},
-    {"lbf21_t5", "PCA", PLAIN_SINC, "lbf21/real_size_part", PCA_16 "," PLAIN_RMA, LBF21_PART, false},
-    {"lbf21_t5", "Wu", PLAIN_SINC, "lbf21/real_size_part", WU_16 "," PLAIN_RMA, LBF21_PART, false},
-    {"lbf21_t5", "BP", PLAIN_SINC, "lbf21/real_size_rows", SINC_8 "," PLAIN_BP, LBF21_ROWS, true},
-    {"lbf21_t5", "LBF, 8 blocks", FAST_TIMES, "lbf21/real_size", LBF_8, 0, false},
-    {"lbf21_t5", "LBF, 16 blocks", FAST_TIMES, "lbf21/real_size", LBF_16, 0, false},
-    {"lbf21_t5", "PCA", FAST_TIMES, "lbf21/real_size", PCA_16, 0, false},
-    {"lbf21_t5", "Wu", FAST_TIMES, "lbf21/real_size", WU_16, 0, false},
-    {"lbf21_t5", "BP", FAST_TIMES, "lbf21/real_size", ZEROPAD_8, 0, false},
-    {"lbf21_t5", "LBF, 8 blocks", FAST_SINC, "lbf21/real_size", LBF_8, 0, false},
-    {"lbf21_t5", "LBF, 16 blocks", FAST_SINC, "lbf21/real_size", LBF_16, 0, false},
-    {"lbf21_t5", "PCA", FAST_SINC, "lbf21/real_size", PCA_16, 0, false},
-    {"lbf21_t5", "Wu", FAST_SINC, "lbf21/real_size", WU_16, 0, false},
-    {"lbf21_t5", "BP", FAST_SINC, "lbf21/real_size", SINC_8, 0, false},
-    {"lbf21_flops", "LBF", "Eq. (20) by the plan", "lbf21/real_size", LBF_16, 0, false},
-    {"lbf21_flops", "PCA", "Eq. (21) by the plan", "lbf21/real_size", PCA_16, 0, false},
-    {"lbf21_flops", "Wu", "Eq. (22) by the plan", "lbf21/real_size", WU_16, 0, false},
-    {"lbf21_flops", "BP", "BP22 Eq. (11) by the plan", "lbf21/real_size", ZEROPAD_8, 0, false},
+    {"bp22_t1", "nearest", "Eq. (11) by the plan", "bp22/full", NEAREST, NULL},
+    {"bp22_t1", "linear, beta 2", "Eq. (11) by the plan", "bp22/full", LINEAR_2, NULL},
+    {"bp22_t1", "linear, beta 8", "Eq. (11) by the plan", "bp22/full", LINEAR_8, NULL},
+    {"bp22_t1", "sinc", "Eq. (11) by the plan", "bp22/full", SINC_8, NULL},
+    {"bp22_t3", "nearest", NULL, NULL, NEAREST, NULL},
+    {"bp22_t3", "linear, beta 2", NULL, NULL, LINEAR_2, NULL},
+    {"bp22_t3", "linear, beta 8", NULL, NULL, LINEAR_8, NULL},
+    {"bp22_t3", "sinc", NULL, NULL, SINC_8, NULL},
+    {"bp22_t4", "nearest", PLAIN_TIMES, "bp22/full_rows", NEAREST ":" PLAIN_BP, &bp22_rows},
+    {"bp22_t4", "linear, beta 2", PLAIN_TIMES, "bp22/full_rows", LINEAR_2 "," PLAIN_BP, &bp22_rows},
+    {"bp22_t4", "linear, beta 8", PLAIN_TIMES, "bp22/full_rows", LINEAR_8 "," PLAIN_BP, &bp22_rows},
+    {"bp22_t4", "sinc", PLAIN_TIMES, "bp22/full_rows", SINC_8 "," PLAIN_BP, &bp22_rows},
+    {"bp22_t4", "nearest", FAST_TIMES, "bp22/full", NEAREST, NULL},
+    {"bp22_t4", "linear, beta 2", FAST_TIMES, "bp22/full", LINEAR_2, NULL},
+    {"bp22_t4", "linear, beta 8", FAST_TIMES, "bp22/full", LINEAR_8, NULL},
+    {"bp22_t4", "sinc", FAST_TIMES, "bp22/full", SINC_8, NULL},
+    {"bp22_t4", "nearest", FAST_LIMITED, "bp22/full_limited", NEAREST, NULL},
+    {"bp22_t4", "linear, beta 2", FAST_LIMITED, "bp22/full_limited", LINEAR_2, NULL},
+    {"bp22_t4", "linear, beta 8", FAST_LIMITED, "bp22/full_limited", LINEAR_8, NULL},
+    {"bp22_t4", "sinc", FAST_LIMITED, "bp22/full_limited", SINC_8, NULL},
+    {"bp22_eq20", "linear", NULL, "bp22/table3", SINC_8, NULL},
+    {"zp15_f3", "nearest", NULL, "zp15/target", NEAREST, NULL},
+    {"zp15_f3", "truncated sinc", NULL, "zp15/target", SINC_8, NULL},
+    {"zp15_f3", "zero padding", NULL, "zp15/target", ZEROPAD_8, NULL},
+    {"zp15_f4", "nearest", NULL, "zp15/target", NEAREST, NULL},
+    {"zp15_f4", "truncated sinc", NULL, "zp15/target", SINC_8, NULL},
+    {"zp15_f4", "zero padding", NULL, "zp15/target", ZEROPAD_8, NULL},
+    {"lbf21_t2", "LBF, 30.0 m", NULL, "lbf21/blocks_30_0", LBF_BLOCK, NULL},
+    {"lbf21_t2", "LBF, 18.0 m", NULL, "lbf21/blocks_18_0", LBF_BLOCK, NULL},
+    {"lbf21_t2", "LBF, 12.0 m", NULL, "lbf21/blocks_12_0", LBF_BLOCK, NULL},
+    {"lbf21_t2", "LBF, 11.4 m", NULL, "lbf21/blocks_11_4", LBF_BLOCK, NULL},
+    {"lbf21_t2", "LBF, 9.6 m", NULL, "lbf21/blocks_9_6", LBF_BLOCK, NULL},
+    {"lbf21_t2", "LBF, 2.7 m", NULL, "lbf21/blocks_2_7", LBF_BLOCK, NULL},
+    {"lbf21_t2", "PCA", NULL, "lbf21/blocks", PCA_1, NULL},
+    {"lbf21_t2", "BP", NULL, "lbf21/blocks", ZEROPAD_8, NULL},
+    {"lbf21_t3", "LBF", NULL, NULL, LBF_16, NULL},
+    {"lbf21_t3", "PCA", NULL, NULL, PCA_16, NULL},
+    {"lbf21_t3", "BP", NULL, NULL, ZEROPAD_8, NULL},
+    {"lbf21_t4", "LBF", NULL, NULL, LBF_16, NULL},
+    {"lbf21_t4", "PCA", NULL, NULL, PCA_16, NULL},
+    {"lbf21_t4", "Wu", NULL, NULL, WU_16, NULL},
+    {"lbf21_t4", "BP", NULL, NULL, ZEROPAD_8, NULL},
+    {"lbf21_t5", "LBF, 8 blocks", PLAIN_TIMES, "lbf21/real_size_part", LBF_8 "," PLAIN_RMA, &lbf21_part},
+    {"lbf21_t5", "LBF, 16 blocks", PLAIN_TIMES, "lbf21/real_size_part", LBF_16 "," PLAIN_RMA, &lbf21_part},
+    {"lbf21_t5", "PCA", PLAIN_TIMES, "lbf21/real_size_part", PCA_16 "," PLAIN_RMA, &lbf21_part},
+    {"lbf21_t5", "Wu", PLAIN_TIMES, "lbf21/real_size_part", WU_16 "," PLAIN_RMA, &lbf21_part},
+    {"lbf21_t5", "BP", PLAIN_TIMES, "lbf21/real_size_rows", ZEROPAD_8 "," PLAIN_BP, &lbf21_rows},
+    {"lbf21_t5", "LBF, 8 blocks", PLAIN_SINC, "lbf21/real_size_part", LBF_8 "," PLAIN_RMA, &lbf21_part},
+    {"lbf21_t5", "LBF, 16 blocks", PLAIN_SINC, "lbf21/real_size_part", LBF_16 "," PLAIN_RMA, &lbf21_part},
+    {"lbf21_t5", "PCA", PLAIN_SINC, "lbf21/real_size_part", PCA_16 "," PLAIN_RMA, &lbf21_part},
+    {"lbf21_t5", "Wu", PLAIN_SINC, "lbf21/real_size_part", WU_16 "," PLAIN_RMA, &lbf21_part},
+    {"lbf21_t5", "BP", PLAIN_SINC, "lbf21/real_size_rows", SINC_8 "," PLAIN_BP, &lbf21_rows},
+    {"lbf21_t5", "LBF, 8 blocks", FAST_TIMES, "lbf21/real_size", LBF_8, NULL},
+    {"lbf21_t5", "LBF, 16 blocks", FAST_TIMES, "lbf21/real_size", LBF_16, NULL},
+    {"lbf21_t5", "PCA", FAST_TIMES, "lbf21/real_size", PCA_16, NULL},
+    {"lbf21_t5", "Wu", FAST_TIMES, "lbf21/real_size", WU_16, NULL},
+    {"lbf21_t5", "BP", FAST_TIMES, "lbf21/real_size", ZEROPAD_8, NULL},
+    {"lbf21_t5", "LBF, 8 blocks", FAST_SINC, "lbf21/real_size", LBF_8, NULL},
+    {"lbf21_t5", "LBF, 16 blocks", FAST_SINC, "lbf21/real_size", LBF_16, NULL},
+    {"lbf21_t5", "PCA", FAST_SINC, "lbf21/real_size", PCA_16, NULL},
+    {"lbf21_t5", "Wu", FAST_SINC, "lbf21/real_size", WU_16, NULL},
+    {"lbf21_t5", "BP", FAST_SINC, "lbf21/real_size", SINC_8, NULL},
+    {"lbf21_flops", "LBF", "Eq. (20) by the plan", "lbf21/real_size", LBF_16, NULL},
+    {"lbf21_flops", "PCA", "Eq. (21) by the plan", "lbf21/real_size", PCA_16, NULL},
+    {"lbf21_flops", "Wu", "Eq. (22) by the plan", "lbf21/real_size", WU_16, NULL},
+    {"lbf21_flops", "BP", "BP22 Eq. (11) by the plan", "lbf21/real_size", ZEROPAD_8, NULL},
     /* Many targets and draws, where one would mislead. */
-    {"claims", "", NULL, "bp22/many", NEAREST, 0, false},
-    {"claims", "", NULL, "bp22/many", LINEAR_1, 0, false},
-    {"claims", "", NULL, "bp22/many", LINEAR_2, 0, false},
-    {"claims", "", NULL, "bp22/many", LINEAR_8, 0, false},
-    {"claims", "", NULL, "bp22/many", SINC_8, 0, false},
-    {"claims", "", NULL, "bp22/speckle", NEAREST, 0, false},
-    {"claims", "", NULL, "bp22/speckle", LINEAR_2, 0, false},
-    {"claims", "", NULL, "bp22/speckle", LINEAR_8, 0, false},
-    {"claims", "", NULL, "bp22/speckle", SINC_8, 0, false},
-    {"claims", "", NULL, "zp15/many", NEAREST, 0, false},
-    {"claims", "", NULL, "zp15/many", SINC_8, 0, false},
-    {"claims", "", NULL, "zp15/many", ZEROPAD_8, 0, false},
-    {"claims", "", NULL, "zp15/speckle", NEAREST, 0, false},
-    {"claims", "", NULL, "zp15/speckle", SINC_8, 0, false},
-    {"claims", "", NULL, "zp15/speckle", ZEROPAD_8, 0, false},
-    {"claims", "", NULL, "zp15/speckle", ZEROPAD_16, 0, false},
-    {"claims", "", NULL, "zp15/speckle", ZEROPAD_32, 0, false},
+    {"claims", "", NULL, "bp22/many", NEAREST, NULL},
+    {"claims", "", NULL, "bp22/many", LINEAR_1, NULL},
+    {"claims", "", NULL, "bp22/many", LINEAR_2, NULL},
+    {"claims", "", NULL, "bp22/many", LINEAR_8, NULL},
+    {"claims", "", NULL, "bp22/many", SINC_8, NULL},
+    {"claims", "", NULL, "bp22/speckle", NEAREST, NULL},
+    {"claims", "", NULL, "bp22/speckle", LINEAR_2, NULL},
+    {"claims", "", NULL, "bp22/speckle", LINEAR_8, NULL},
+    {"claims", "", NULL, "bp22/speckle", SINC_8, NULL},
+    {"claims", "", NULL, "zp15/many", NEAREST, NULL},
+    {"claims", "", NULL, "zp15/many", SINC_8, NULL},
+    {"claims", "", NULL, "zp15/many", ZEROPAD_8, NULL},
+    {"claims", "", NULL, "zp15/speckle", NEAREST, NULL},
+    {"claims", "", NULL, "zp15/speckle", SINC_8, NULL},
+    {"claims", "", NULL, "zp15/speckle", ZEROPAD_8, NULL},
+    {"claims", "", NULL, "zp15/speckle", ZEROPAD_16, NULL},
+    {"claims", "", NULL, "zp15/speckle", ZEROPAD_32, NULL},
 };
 enum { PLACES = sizeof places / sizeof *places, SOURCES = sizeof sources / sizeof *sources };
 
@@ -211,9 +216,16 @@ int table_needs(const char *id, struct need *needs, int room)
 
 static double source_seconds(struct measured *measured, const struct source *source)
 {
+    const struct scaling *scaling = source->scaling;
     double seconds = MEASURED(measured, source->scene, source->spec, run_s);
-    double fixed = source->compressed ? measured_stage(measured, source->scene, source->spec, "compress") : 0;
-    return source->factor > 0 ? fixed + source->factor * (seconds - fixed) : seconds;
+    if (!scaling)
+        return seconds;
+    double scaled = 0;
+    char stages[64], *rest = stages;
+    snprintf(stages, sizeof stages, "%s", scaling->stages);
+    for (char *stage; (stage = strsep(&rest, " "));)
+        scaled += measured_stage(measured, source->scene, source->spec, stage);
+    return scaling->factor * scaled + scaling->rest * (seconds - scaled);
 }
 
 double table_seconds(struct measured *measured, const char *id, const char *method, const char *definition)
