@@ -63,7 +63,7 @@ static const struct place {
 };
 
 /* Plain engines are timed on a part of the task, and each stage scaled to all of it: back projection on some rows, of
-   which the sums depend and the compression does not; range migration with a quarter of the receivers, on which the
+   which the sums depend and the compression does not; range migration with a sixth of the receivers, on which the
    conversion depends twice (receivers and wavenumbers) and all else once. */
 struct scaling {
     double factor;                      /* of the stages in `stages` (separated by blanks) */
@@ -71,7 +71,7 @@ struct scaling {
     double rest;                        /* of the others */
 };
 static const struct scaling bp22_rows = {50, "focus", 1}, lbf21_rows = {4096.0 / 103, "focus", 1};
-static const struct scaling lbf21_part = {16, "bulk differential reconstruct", 4};
+static const struct scaling lbf21_part = {36, "bulk differential reconstruct", 6};
 
 /* The measurement that stands for a method. */
 static const struct source {
