@@ -52,8 +52,7 @@ static enum status visit_open(const struct comparison *comparison, const struct 
 
 static void spec_label(const struct spec *spec, char *label, size_t size)
 {
-    snprintf(label, size, "%s%s%s%s", spec->algorithm->name, *spec->text ? ":" : "", spec->text,
-             spec->precision == PRECISION_DOUBLE ? " double" : "");
+    picture_label(spec->algorithm->name, spec->text, precision_name(spec->precision), label, size);
 }
 
 static void draw(struct visit *visit, int index, const struct image *image)

@@ -30,6 +30,7 @@ static const struct command commands[] = {
     {"reproduce", "[ID ...] [-o DIR]", "the papers' tables and claims beside ours", "ot", 0, INT_MAX, command_reproduce},
     {"sweep", "[SCENE ...] [--algorithm SPEC ...] [-o DIR]", "error against run time, each algorithm over its ladder", "oat",
      0, INT_MAX, command_sweep},
+    {"report", "DIR", "a results folder as one page: DIR/report.html, and DIR/report.md", "", 1, 1, command_report},
     {"phase", "([SCENE] [-o DIR] | --at FILE.csv)", "phase errors of the two-dimensional spectra (LBF21 Figs 2-9)", "oA", 0, 1,
      command_phase},
     {"bench", "[-o DIR]", "speed of the engines against the processor's peak and the control loop", "ot", 0, 0,

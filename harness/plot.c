@@ -413,6 +413,12 @@ enum status plot_folder(const char *path, const char *plots_directory, const cha
     return status;
 }
 
+void picture_label(const char *algorithm, const char *options, const char *precision, char *label, size_t size)
+{
+    snprintf(label, size, "%s%s%s%s", algorithm, *options ? ":" : "", options,
+             strcmp(precision, "double") == 0 ? " double" : "");
+}
+
 void picture_path(const char *directory, const char *scene, const char *rest, char *path, size_t size)
 {
     int used = snprintf(path, size, "%s/", directory);

@@ -23,6 +23,7 @@ enum status command_compare(const struct task *task);
 enum status command_baseline(const struct task *task);
 enum status command_reproduce(const struct task *task);
 enum status command_sweep(const struct task *task);
+enum status command_report(const struct task *task);
 enum status command_phase(const struct task *task);
 enum status command_bench(const struct task *task);
 

@@ -25,7 +25,9 @@ set linetype 5 linecolor "#009e73" linewidth 1.8 dashtype (12,3,3,3) pointtype 6
 set linetype 6 linecolor "#cc79a7" linewidth 1.8 dashtype (3,3) pointtype 12 pointsize 1.5
 set linetype 7 linecolor "#56b4e9" linewidth 1.8 dashtype (16,4,2,4,2,4) pointtype 2 pointsize 1.3
 set linetype 8 linecolor "#e69f00" linewidth 1.8 dashtype (2,4) pointtype 1 pointsize 1.3
-set linetype cycle 8
+set linetype 9 linecolor "#7b3294" linewidth 1.8 dashtype (9,3,9,3,2,3) pointtype 10 pointsize 1.5
+set linetype 10 linecolor "#8c510a" linewidth 1.8 dashtype (4,2,1,2) pointtype 14 pointsize 1.3
+set linetype cycle 10
 
 # Algorithms among one another: each has its colour and its point, filled for float and open for double. The order is that
 # of their first rows.
