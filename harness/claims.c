@@ -13,7 +13,7 @@ const char *const claim_verdict_names[CLAIM_VERDICTS] = {[CLAIM_HOLDS] = "holds"
                                              [CLAIM_FAILS] = "does not hold",
                                              [CLAIM_UNDECIDED] = "cannot be decided"};
 
-const struct claim *const claim_tables[] = {claims_bp22, claims_zp15, claims_lbf21, NULL};
+const struct claim *const claim_tables[] = {claims_bp22, claims_zp15, claims_lbf21_phase, claims_lbf21, NULL};
 
 struct finding finding(bool strict, bool assumed, const char *format, ...)
 {

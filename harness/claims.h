@@ -22,8 +22,8 @@ struct claim {
     struct finding (*judge)(struct measured *measured); /* what it asks for in vain makes the claim undecided */
 };
 
-/* All claims: three tables, each ended by an id of NULL, in a list ended by NULL. */
-extern const struct claim claims_bp22[], claims_zp15[], claims_lbf21[];
+/* All claims, in tables ended by an id of NULL; the list of tables is ended by NULL. */
+extern const struct claim claims_bp22[], claims_zp15[], claims_lbf21_phase[], claims_lbf21[];
 extern const struct claim *const claim_tables[];
 
 /* The verdict on a claim. Where a measurement is missing, failed or unsupported: CLAIM_UNDECIDED with the reason. */

@@ -34,8 +34,8 @@ static struct finding bp_is_slow(struct measured *m)
     double flops = MEASURED(m, "lbf21/real_size", ZEROPAD_8, flops) / MEASURED(m, "lbf21/real_size", LBF_16, flops);
     return finding(
         seconds > 1 && flops > 1, seconds > 1 || flops > 1,
-        "3200 x 4096 pixels: back projection takes %.2f times the time of range migration with 16 blocks, and "
-        "%.2f times its counted FLOPs (criterion: both above 1)",
+        "3200 x 4096 pixels: back projection takes %.2f times the time of range migration with 16 blocks, and %.2f "
+        "times its counted FLOPs (criterion: both above 1)",
         seconds, flops);
 }
 
@@ -49,8 +49,8 @@ static struct finding improves_on_nearest(struct measured *m)
     bool errors = error[1] < error[0] && error[2] < error[0];
     return finding(
         islr && errors, islr || errors,
-        "median ISLR above sinc's over 48 targets: nearest %.2f, beta 2 %.2f, beta 8 %.2f dB; error in speckle "
-        "%.3f, %.3f, %.3f",
+        "median ISLR above sinc's over 48 targets: nearest %.2f, beta 2 %.2f, beta 8 %.2f dB; error in speckle %.3f, "
+        "%.3f, %.3f",
         nearest.median, two.median, eight.median, error[0], error[1], error[2]);
 }
 
@@ -108,8 +108,8 @@ static struct finding interpolation_is_cheap(struct measured *m)
     double counted = MEASURED(m, "bp22/full", LINEAR_8, flops) / MEASURED(m, "bp22/full", NEAREST, flops) - 1;
     return finding(printed <= 0.1 && counted <= 0.1, printed <= 0.1,
                    "beta 8 adds %.2g %% to nearest's FLOPs by Eq. (11), where all samples are upsampled once; "
-                   "reading two taps a "
-                   "pair, as our plans do, adds %.0f %% (criterion: a tenth, as the paper reads << )",
+                   "reading two taps a pair, as our plans do, adds %.0f %% (criterion: a tenth, as the paper reads "
+                   "<< )",
                    100 * printed, 100 * counted);
 }
 
@@ -127,8 +127,8 @@ static struct finding rate_two_suffices(struct measured *m)
     int wide = isfinite(width) ? upsampling_rate(bin, width, wavelength) : 0;
     return finding(
         strict == 2, wide == 2,
-        "with the resolution D/2 = %.3g m, 2 b/(2 + 1) = %.5f m is not below %.5f m and beta must be %d; with the "
-        "-3 dB width of the images, %.4f m, it must be %d",
+        "with the resolution D/2 = %.3g m, 2 b/(2 + 1) = %.5f m is not below %.5f m and beta must be %d; with the -3 "
+        "dB width of the images, %.4f m, it must be %d",
         nominal, 2 * bin / 3, nominal * nominal / (10 * wavelength), strict, width, wide);
 }
 
@@ -215,8 +215,8 @@ static struct finding resolution_same(struct measured *m)
     double width,
         largest = spread_magnitude(largest_of_methods(m, "null", offset, "width_m", 0, ALL, &width)) / width;
     return finding(largest <= 0.01, false,
-                   "-3 dB widths of three methods differ from sinc's by at most %.2g %% of %.1f mm "
-                   "over 48 targets (criterion: 1 %%)",
+                   "-3 dB widths of three methods differ from sinc's by at most %.2g %% of %.1f mm over 48 targets "
+                   "(criterion: 1 %%)",
                    100 * largest, 1e3 * width);
 }
 
@@ -226,8 +226,8 @@ static struct finding nearest_pslr(struct measured *m)
     struct spread fine = SPREAD(m, TABLE_3, NEAREST, SINC_8, "null", pslr_db, 0, SIX);
     return finding(
         spread_magnitude(six) <= 0.14 + ROUNDING_DB, fabs(six.median) <= 0.14 + ROUNDING_DB,
-        "PSLR of nearest less sinc's at six targets: %.2f to %.2f dB (median %.2f) by pixel, %.2f to %.2f dB by "
-        "null (criterion: Table 3's largest, 0.14 dB)",
+        "PSLR of nearest less sinc's at six targets: %.2f to %.2f dB (median %.2f) by pixel, %.2f to %.2f dB by null "
+        "(criterion: Table 3's largest, 0.14 dB)",
         six.least, six.largest, six.median, fine.least, fine.largest);
 }
 
@@ -239,8 +239,7 @@ static struct finding islr_difference(struct measured *m, const char *spec, doub
     bool within = printed >= on.least - ROUNDING_DB && printed <= on.largest + ROUNDING_DB;
     return finding(fabs(six.largest - printed) <= ROUNDING_DB, within,
                    "ISLR above sinc's: largest of six %.2f dB; 24 targets on range bins %.2f to %.2f dB; 24 between "
-                   "them %.2f to "
-                   "%.2f dB; the paper says %.2f",
+                   "them %.2f to %.2f dB; the paper says %.2f",
                    six.largest, on.least, on.largest, off.least, off.largest, printed);
 }
 
@@ -286,8 +285,8 @@ static struct finding eight_beats_two(struct measured *m)
 static struct finding recorded_data(struct measured *m)
 {
     return finding_undecided(
-        "the paper's recorded data are not available; in simulated speckle the errors are %.3f (nearest), "
-        "%.3f (beta 2), %.3f (beta 8) and %.3f (sinc)",
+        "the paper's recorded data are not available; in simulated speckle the errors are %.3f (nearest), %.3f (beta "
+        "2), %.3f (beta 8) and %.3f (sinc)",
         MEASURED(m, SPECKLE, NEAREST, error), MEASURED(m, SPECKLE, LINEAR_2, error),
         MEASURED(m, SPECKLE, LINEAR_8, error), MEASURED(m, SPECKLE, SINC_8, error));
 }
@@ -296,16 +295,16 @@ static struct finding two_phase_error(struct measured *m)
 {
     double two = MEASURED(m, SPECKLE, LINEAR_2, phase_rms_rad), eight = MEASURED(m, SPECKLE, LINEAR_8, phase_rms_rad);
     return finding(two >= 2 * eight, two > eight * 1.1,
-                   "rms phase error in speckle: beta 2 %.3f rad, beta 8 %.3f rad, a "
-                   "factor of %.2f (criterion for much larger: 2)",
+                   "rms phase error in speckle: beta 2 %.3f rad, beta 8 %.3f rad, a factor of %.2f (criterion for "
+                   "much larger: 2)",
                    two, eight, two / eight);
 }
 
 static struct finding nearest_insas(struct measured *m)
 {
     return finding_undecided(
-        "no interferometric data and no criterion are given; rms phase error in speckle: nearest %.3f rad, "
-        "sinc %.3f rad",
+        "no interferometric data and no criterion are given; rms phase error in speckle: nearest %.3f rad, sinc %.3f "
+        "rad",
         MEASURED(m, SPECKLE, NEAREST, phase_rms_rad), MEASURED(m, SPECKLE, SINC_8, phase_rms_rad));
 }
 
@@ -318,8 +317,7 @@ static struct finding times_faster(struct measured *m)
         MEASURED(m, "bp22/full", SINC_8, flops_published) / MEASURED(m, "bp22/full", LINEAR_8, flops_published);
     return finding(plain >= 4.215, fast >= 4.215,
                    "time of sinc over that of beta 8: plain engine %.2f, fast engine %.2f, fast with limited "
-                   "aperture %.2f; by the "
-                   "paper's FLOPs %.2f; the paper says 4.22",
+                   "aperture %.2f; by the paper's FLOPs %.2f; the paper says 4.22",
                    plain, fast, limited, flops);
 }
 
@@ -371,8 +369,7 @@ static struct finding nearest_phase(struct measured *m)
 {
     double nearest = MEASURED(m, SPECKLE, NEAREST, phase_rms_rad), limit = acos(-1) / 8;
     return finding(nearest > limit, false,
-                   "rms phase error of nearest in speckle %.3f rad; the paper tolerates pi/8 = %.3f rad "
-                   "(Eq. (17))",
+                   "rms phase error of nearest in speckle %.3f rad; the paper tolerates pi/8 = %.3f rad (Eq. (17))",
                    nearest, limit);
 }
 
@@ -397,8 +394,8 @@ static struct finding load_not_increased(struct measured *m)
     double printed =
         MEASURED(m, "bp22/full", LINEAR_8, flops_published) / MEASURED(m, "bp22/full", NEAREST, flops_published) - 1;
     return finding(printed <= 0, printed < 0.01,
-                   "Eq. (11) grows by %.2g %% from nearest to beta 8; that is none only if less "
-                   "than 1 %% counts as none",
+                   "Eq. (11) grows by %.2g %% from nearest to beta 8; that is none only if less than 1 %% counts as "
+                   "none",
                    100 * printed);
 }
 
@@ -407,8 +404,8 @@ static struct finding efficiency_lowered(struct measured *m)
     double plain = time_ratio(m, "linear, beta 8", "sinc", PLAIN_TIMES),
            fast = time_ratio(m, "linear, beta 8", "sinc", FAST_TIMES);
     return finding(plain > 1 && fast > 1, false,
-                   "beta 8 takes %.2f (plain engine) and %.2f (fast engine) of sinc's time: it is "
-                   "faster, as the paper's own Table 4 says; the sentence says the opposite",
+                   "beta 8 takes %.2f (plain engine) and %.2f (fast engine) of sinc's time: it is faster, as the "
+                   "paper's own Table 4 says; the sentence says the opposite",
                    plain, fast);
 }
 
@@ -424,8 +421,8 @@ static struct finding real_time(struct measured *m)
     double fast = table_seconds(m, "bp22_t4", "linear, beta 8", FAST_TIMES),
            plain = table_seconds(m, "bp22_t4", "linear, beta 8", PLAIN_TIMES);
     return finding(plain < recording, fast < recording,
-                   "an image of %.1f s of pings takes %.1f s by the plain engine and, on "
-                   "this machine, %.1f s by the fast one",
+                   "an image of %.1f s of pings takes %.1f s by the plain engine and, on this machine, %.1f s by the "
+                   "fast one",
                    recording, plain, fast);
 }
 
@@ -460,8 +457,7 @@ const struct claim claims_bp22[] = {
      two_phase_error},
     {"bp22-4.2-3", "BP22", "4.2", "the error of nearest neighbour seriously disturbs interferometry", nearest_insas},
     {"bp22-4.2-4", "BP22", "4.2",
-     "on recorded data the slice of nearest neighbour deviates, those of beta = 2 and 8 agree with "
-     "sinc's",
+     "on recorded data the slice of nearest neighbour deviates, those of beta = 2 and 8 agree with sinc's",
      recorded_data},
     {"bp22-4.2-5", "BP22", "4.2", "the method is 4.22 times faster than traditional back projection", times_faster},
     {"bp22-4.2-6", "BP22", "4.2", "only the complex multiplications take time", multiplication_dominates},

@@ -33,8 +33,8 @@ static struct finding truncation_is_costly(struct measured *m)
 {
     double plain = sinc_over_zeropad(m, true), fast = sinc_over_zeropad(m, false);
     return finding(plain > 1 && fast > 1, plain > 1 || fast > 1,
-                   "3200 x 4096 pixels, 20 kHz: sinc of 8 taps takes %.2f (plain "
-                   "engine) and %.2f (fast engine) times the time of zero padding by 8 (criterion: above 1 by both)",
+                   "3200 x 4096 pixels, 20 kHz: sinc of 8 taps takes %.2f (plain engine) and %.2f (fast engine) "
+                   "times the time of zero padding by 8 (criterion: above 1 by both)",
                    plain, fast);
 }
 
@@ -43,8 +43,8 @@ static struct finding padding_interpolates(struct measured *m)
     double e8 = MEASURED(m, SPECKLE, ZEROPAD_8, error), e16 = MEASURED(m, SPECKLE, ZEROPAD_16, error);
     double e32 = MEASURED(m, SPECKLE, ZEROPAD_32, error), order = log2(e8 / e32) / 2;
     return finding(order > 0.85 && order < 1.15, false,
-                   "error in speckle with factor 8, 16, 32: %.2g, %.2g, %.2g; order %.2f in "
-                   "1/factor, so that only rounding is left (criterion: 0.85 to 1.15)",
+                   "error in speckle with factor 8, 16, 32: %.2g, %.2g, %.2g; order %.2f in 1/factor, so that only "
+                   "rounding is left (criterion: 0.85 to 1.15)",
                    e8, e16, e32, order);
 }
 
@@ -53,8 +53,8 @@ static struct finding truncation_loses_resolution(struct measured *m)
     struct spread wider = SPREAD(m, MANY, SINC_8, ZEROPAD_8, "null", width_m, 0, TARGETS);
     double width = SPREAD(m, MANY, ZEROPAD_8, NULL, "null", width_m, 0, TARGETS).median;
     return finding(wider.median >= 0.01 * width, wider.largest >= 0.01 * width,
-                   "-3 dB width of sinc of 8 taps less that of zero "
-                   "padding by 8: %.3g to %.3g %% of %.1f mm (criterion for a loss: 1 %%)",
+                   "-3 dB width of sinc of 8 taps less that of zero padding by 8: %.3g to %.3g %% of %.1f mm "
+                   "(criterion for a loss: 1 %%)",
                    100 * wider.least / width, 100 * wider.largest / width, 1e3 * width);
 }
 
@@ -85,9 +85,8 @@ static struct finding eighth_of_wavelength(struct measured *m)
     double phase = MEASURED(m, SPECKLE, ZEROPAD_8, phase_rms_rad);
     return finding(
         factor <= 8 && phase < acos(-1) / 8, factor <= 8,
-        "rounding misses the range by at most %.2f mm with factor 8 "
-        "and lambda/8 is %.2f mm, so the rule asks for %d; rms phase error left in speckle %.2g rad (criterion: "
-        "below pi/8)",
+        "rounding misses the range by at most %.2f mm with factor 8 and lambda/8 is %.2f mm, so the rule asks for "
+        "%d; rms phase error left in speckle %.2g rad (criterion: below pi/8)",
         1e3 * bin / 16, 1e3 * wavelength / 8, factor, phase);
 }
 
@@ -98,8 +97,7 @@ static struct finding padding_costs_little(struct measured *m)
     double fast = measured_stage(m, FULL, ZEROPAD_8, "compress") / table_seconds(m, "lbf21_t5", "BP", FAST_TIMES);
     return finding(plain <= 0.1 && fast <= 0.1, plain <= 0.1 || fast <= 0.1,
                    "compression and zero padding by 8 together take %.2g %% (plain engine) and %.2g %% (fast engine) "
-                   "of the time at "
-                   "3200 x 4096 pixels (criterion: a tenth)",
+                   "of the time at 3200 x 4096 pixels (criterion: a tenth)",
                    100 * plain, 100 * fast);
 }
 
@@ -108,9 +106,9 @@ static struct finding better_than_nearest(struct measured *m)
     struct spread gain = SPREAD(m, MANY, NEAREST, ZEROPAD_8, "null", islr_db, 0, TARGETS);
     double nearest = MEASURED(m, TARGET, NEAREST, error), zero = MEASURED(m, TARGET, ZEROPAD_8, error);
     return finding(
-        gain.least > 0 && zero<nearest, gain.median> 0,
-        "ISLR of nearest above that of zero padding by 8: %.2f to "
-        "%.2f dB over 24 targets; error at the paper's target %.3f against %.3f (criterion: better at each)",
+        gain.least > 0 && zero < nearest, gain.median > 0,
+        "ISLR of nearest above that of zero padding by 8: %.2f to %.2f dB over 24 targets; error at the paper's "
+        "target %.3f against %.3f (criterion: better at each)",
         gain.least, gain.largest, nearest, zero);
 }
 
@@ -126,10 +124,8 @@ static struct finding better_than_sinc(struct measured *m)
     }
     return finding(better == 3, zero[0] < sinc[0] || zero[1] < sinc[1],
                    "error of zero padding by 8 against sinc of 8 taps: %.3f against %.3f around the paper's target, "
-                   "%.3f against "
-                   "%.3f in speckle, %.3f against %.3f close to 24 targets (criterion: smaller; in all three, or in "
-                   "speckle or the "
-                   "paper's case)",
+                   "%.3f against %.3f in speckle, %.3f against %.3f close to 24 targets (criterion: smaller; in all "
+                   "three, or in speckle or the paper's case)",
                    zero[0], sinc[0], zero[1], sinc[1], zero[2], sinc[2]);
 }
 
@@ -137,16 +133,16 @@ static struct finding slices_differ(struct measured *m)
 {
     struct spread sinc = SPREAD(m, MANY, SINC_8, ZEROPAD_8, "null", islr_db, 0, TARGETS);
     return finding(sinc.least > 0, sinc.median > 0,
-                   "ISLR of sinc of 8 taps less that of zero padding by 8: %.3f to %.3f dB (median "
-                   "%.3f) over 24 targets (criterion: zero padding is lower)",
+                   "ISLR of sinc of 8 taps less that of zero padding by 8: %.3f to %.3f dB (median %.3f) over 24 "
+                   "targets (criterion: zero padding is lower)",
                    sinc.least, sinc.largest, sinc.median);
 }
 
 static struct finding lake_trial(struct measured *m)
 {
     return finding_undecided(
-        "the recorded data of the lake trial are not available; errors in simulated speckle: %.3f (nearest), "
-        "%.3f (sinc of 8 taps), %.3f (zero padding by 8)",
+        "the recorded data of the lake trial are not available; errors in simulated speckle: %.3f (nearest), %.3f "
+        "(sinc of 8 taps), %.3f (zero padding by 8)",
         MEASURED(m, SPECKLE, NEAREST, error), MEASURED(m, SPECKLE, SINC_8, error),
         MEASURED(m, SPECKLE, ZEROPAD_8, error));
 }
@@ -157,8 +153,7 @@ static struct finding accurate_and_efficient(struct measured *m)
     double plain = sinc_over_zeropad(m, true), fast = sinc_over_zeropad(m, false);
     return finding(zero < sinc && plain > 1 && fast > 1, zero < sinc && (plain > 1 || fast > 1),
                    "against sinc of 8 taps, zero padding by 8 has an error of %.3f instead of %.3f in speckle and is "
-                   "%.2f (plain "
-                   "engine) and %.2f (fast engine) times as fast (criterion: better in both)",
+                   "%.2f (plain engine) and %.2f (fast engine) times as fast (criterion: better in both)",
                    zero, sinc, plain, fast);
 }
 

@@ -31,24 +31,6 @@ static enum status tables_select(const struct task *task, bool selected[TABLES_M
     return STATUS_OK;
 }
 
-/* Needs of all selected tables, each once. */
-static int needs_collect(const bool selected[TABLES_MAX], struct need needs[NEEDS_MAX])
-{
-    int count = 0;
-    for (int k = 0; tables[k].id; k++) {
-        struct need more[NEEDS_MAX];
-        int more_count = selected[k] ? table_needs(tables[k].id, more, NEEDS_MAX) : 0;
-        for (int n = 0; n < more_count; n++) {
-            bool known = false;
-            for (int old = 0; old < count; old++)
-                known |= strcmp(needs[old].scene, more[n].scene) == 0 && strcmp(needs[old].spec, more[n].spec) == 0;
-            if (!known && count < NEEDS_MAX)
-                needs[count++] = more[n];
-        }
-    }
-    return count;
-}
-
 /* All needs of one scene; those of `needs` that are done lose their scene. */
 static enum status scene_measure(struct comparison *comparison, struct need *needs, int count)
 {
@@ -86,17 +68,20 @@ static enum status measure(const char *directory, struct need *needs, int count,
     return comparison_close(&comparison, status);
 }
 
-static bool phase_wanted(const bool selected[TABLES_MAX])
-{
-    bool wanted = false;
-    for (int k = 0; tables[k].id; k++)
-        wanted |= selected[k] && (strncmp(tables[k].id, "lbf21_f", 7) == 0 || strcmp(tables[k].id, "claims") == 0);
-    return wanted;
-}
-
 /* ---- what is written and printed ---- */
 
-static enum status reproduced_write(const char *directory, const struct reproduced *lines, int count)
+/* Ahead of what is worked out: where, when and with what it was measured. */
+static void head_write(FILE *file, const char *what, const struct measured *measured)
+{
+    const struct csv *csv = &measured->measurements.csv;
+    fprintf(file, "# sasbench %s 1\n", what);
+    for (int k = 0; k < csv->comment_count; k++)
+        if (strncmp(csv->comments[k], "sasbench ", 9) != 0 && strncmp(csv->comments[k], "scene ", 6) != 0)
+            fprintf(file, "# %s\n", csv->comments[k]);
+}
+
+static enum status reproduced_write(const char *directory, const struct measured *measured,
+                                    const struct reproduced *lines, int count)
 {
     char path[4200];
     struct text_file file;
@@ -104,7 +89,8 @@ static enum status reproduced_write(const char *directory, const struct reproduc
     enum status status = text_file_open(path, &file);
     if (status != STATUS_OK)
         return status;
-    fputs("# sasbench reproduced 1\ntable,item,quantity,definition,unit,paper,ours,difference,assumption\n", file.stream);
+    head_write(file.stream, "reproduced", measured);
+    fputs("table,item,quantity,definition,unit,paper,ours,difference,assumption\n", file.stream);
     for (int k = 0; k < count; k++) {
         const struct reproduced *l = &lines[k];
         char item[160], assumption[1200];
@@ -167,7 +153,7 @@ static void table_print(const struct table *table, const struct reproduced *line
             char item[160], paper[40] = "";
             snprintf(item, sizeof item, "%s%s%s", l->target, *l->target ? ", " : "", l->method);
             if (isfinite(l->paper))
-                snprintf(paper, sizeof paper, fabs(l->paper) > 1e4 ? "%.5g" : "%.5g", l->paper);
+                snprintf(paper, sizeof paper, "%.5g", l->paper);
             printf("  %-36s %-15s %10s", item, l->quantity, paper);
             for (int c = 0; c < columns; c++) {
                 int n = k;
@@ -194,7 +180,8 @@ static enum status claims_write(const char *directory, struct measured *measured
     enum status status = text_file_open(path, &file);
     if (status != STATUS_OK)
         return status;
-    fputs("# sasbench claims 1\nid,paper,section,claim,verdict,evidence\n", file.stream);
+    head_write(file.stream, "claims", measured);
+    fputs("id,paper,section,claim,verdict,evidence\n", file.stream);
     for (int t = 0; claim_tables[t]; t++)
         for (const struct claim *claim = claim_tables[t]; claim->id; claim++) {
             struct finding found = claim_judge(claim, measured);
@@ -206,7 +193,8 @@ static enum status claims_write(const char *directory, struct measured *measured
             }
             counts[found.verdict]++;
             if (print)
-                printf("\n%-17s %s\n  %s: %s\n", claim->id, claim->claim, claim_verdict_names[found.verdict], found.evidence);
+                printf("\n%-17s %s\n  %s: %s\n", claim->id, claim->claim, claim_verdict_names[found.verdict],
+                       found.evidence);
         }
     if (print) {
         printf("\nClaims:");
@@ -227,7 +215,7 @@ static enum status report(const char *directory, const bool selected[TABLES_MAX]
     if (status == STATUS_OK)
         status = tables_evaluate(&measured, &lines, &count);
     if (status == STATUS_OK)
-        status = reproduced_write(directory, lines, count);
+        status = reproduced_write(directory, &measured, lines, count);
     for (int k = 0; tables[k].id && status == STATUS_OK; k++) {
         if (strcmp(tables[k].id, "claims") == 0)
             status = claims_write(directory, &measured, selected[k]);
@@ -249,9 +237,12 @@ enum status command_reproduce(const struct task *task)
     enum status status = tables_select(task, selected);
     if (status != STATUS_OK)
         return status;
-    int count = needs_collect(selected, needs);
+    int count = 0;
+    for (int k = 0; tables[k].id; k++)
+        if (selected[k])
+            count = table_needs(tables[k].id, needs, count, NEEDS_MAX);
     status = measure(directory, needs, count, &failed);
-    if (status == STATUS_OK && phase_wanted(selected))
+    if (status == STATUS_OK)
         status = command_phase(&(struct task){.output = directory});
     if (status == STATUS_OK)
         status = report(directory, selected);

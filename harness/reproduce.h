@@ -95,8 +95,9 @@ extern const struct table tables[];         /* id NULL ends */
 struct need {
     const char *scene, *spec;
 };
-/* Needs of the table `id`, each named once, into needs [room]; returns how many there are. The claims need all. */
-int table_needs(const char *id, struct need *needs, int room);
+/* Add the needs of the table `id` to needs [count of room], each once; returns how many there are then. The claims need
+   all. What finds no room is left out. */
+int table_needs(const char *id, struct need *needs, int count, int room);
 
 /* Seconds of a method of a table of times by one of its definitions ("fast engines"), scaled to the full size where only
    a part of it was timed. */

@@ -191,14 +191,14 @@ static int need_add(struct need *needs, int count, int room, struct need need)
     for (int k = 0; k < count; k++)
         if (strcmp(needs[k].scene, need.scene) == 0 && strcmp(needs[k].spec, need.spec) == 0)
             return count;
-    if (count < room)
-        needs[count] = need;
+    if (count == room)
+        return count;
+    needs[count] = need;
     return count + 1;
 }
 
-int table_needs(const char *id, struct need *needs, int room)
+int table_needs(const char *id, struct need *needs, int count, int room)
 {
-    int count = 0;
     for (int k = 0; k < SOURCES; k++) {
         const struct source *source = &sources[k];
         if (strcmp(id, "claims") != 0 && strcmp(id, source->table) != 0)

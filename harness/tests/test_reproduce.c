@@ -180,17 +180,17 @@ static void rate_of_eq20(void **state)
 static void claims_have_names_of_their_own(void **state)
 {
     (void)state;
-    int counts[3] = {0};
+    int counts[4] = {0};
     for (int t = 0; claim_tables[t]; t++)
         for (const struct claim *claim = claim_tables[t]; claim->id; claim++, counts[t]++) {
             assert_true(strlen(claim->section) > 0 && strlen(claim->claim) > 0);
-            assert_string_equal(claim->paper, ((const char *[]){"BP22", "ZP15", "LBF21"})[t]);
+            assert_string_equal(claim->paper, ((const char *[]){"BP22", "ZP15", "LBF21", "LBF21"})[t]);
             for (int u = 0; u <= t; u++)
                 for (const struct claim *other = claim_tables[u]; other->id && other != claim; other++)
                     if (strcmp(claim->id, other->id) == 0)
                         fail_msg("two claims %s", claim->id);
         }
-    assert_true(counts[0] >= 30 && counts[1] >= 10 && counts[2] >= 50);
+    assert_true(counts[0] >= 30 && counts[1] >= 10 && counts[2] + counts[3] >= 50);
 }
 
 /* Every number comes from a measurement: without any, nothing is decided and no value is there. */
@@ -223,7 +223,7 @@ static void every_line_can_be_measured(void **state)
     struct measured measured;
     struct reproduced *lines;
     struct need needs[256];
-    int count, need_count = table_needs("claims", needs, 256);
+    int count, need_count = table_needs("claims", needs, 0, 256);
     rows_begin();
     for (int k = 0; k < need_count; k++) {
         static const char *const definitions[] = {"null", "3db", "pixel"};
