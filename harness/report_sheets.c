@@ -59,7 +59,7 @@ const struct sheet sheets[SHEETS] = {
                  {"bp22_eq20_rate", "BP22 Eq. (20): more than", SHOW_NUMBER},
                  {"zp15_rate", "ZP15: more than", SHOW_NUMBER},
                  {"edge_phase_rad", "phase at the band's edge at rate 1 (rad)", SHOW_NUMBER},
-                 {"linear_floor", "linear's mean loss", SHOW_NUMBER}}},
+                 {"linear_floor", "linear's floor", SHOW_NUMBER}}},
     {.file = "claims.csv",
      .id = "claims",
      .title = "Claims",

@@ -265,14 +265,14 @@ static void slope_write(const struct rung *rungs, const double *rates, const dou
            fit.last, fit.residual_log10);
 }
 
-/* The ladder's parts: where the error falls, the finest half of that (the order that the method tends to), and the
-   floor. */
+/* The ladder's parts: where the error falls and the floor; without a floor the finest half, for the order that the
+   method tends to. */
 static void ladder_write(const struct rung *rungs, int count, const double *rates, const double *errors, FILE *file)
 {
-    int floor = floor_find(count, errors), finest = floor / 2;
+    int floor = floor_find(count, errors), finest = count / 2;
     slope_write(rungs, rates, errors, floor, "falling", file);
-    if (floor - finest >= 3)
-        slope_write(rungs + finest, rates + finest, errors + finest, floor - finest, "finest", file);
+    if (floor == count && count - finest >= 3)
+        slope_write(rungs + finest, rates + finest, errors + finest, count - finest, "finest", file);
     if (floor < count)
         slope_write(rungs + floor, rates + floor, errors + floor, count - floor, "floor", file);
 }
@@ -301,8 +301,10 @@ static void slopes_write(struct group *group, FILE *file)
     }
 }
 
-/* The rules for the upsampling rate and the error laws at this scene's numbers (FORMULAS: BP22 Eq. (20), ZP15's lambda/8,
-   band edge and mean loss of linear interpolation). A scene that is no longer there as it was measured has none. */
+/* The rules for the upsampling rate at this scene's numbers (BP22 Eq. (20), ZP15's lambda/8), and two error laws: the
+   envelope's phase at the band's edge at rate 1, which falls as 1/rate, and the floor of linear interpolation. That is
+   its loss 1 - sinc^2(f/fs), about (pi f/fs)^2/3, rms over a flat band |f| <= B/2: pi^2 (B/fs)^2/(12 sqrt 5). A scene that
+   is no longer there as it was measured has none. */
 static void rules_write(struct group *group, const struct csv *csv, FILE *file)
 {
     struct scene scene;
@@ -319,7 +321,7 @@ static void rules_write(struct group *group, const struct csv *csv, FILE *file)
         double bp22 = 2 * bin * 10 * lambda / (resolution * resolution), zp15 = 2 * a->fc / a->fs;
         fields_write(file, (const char *const[]){group->scene, NULL},
                      (double[]){a->fc, a->fs, a->bandwidth, bp22, zp15, M_PI * fraction / 2,
-                                M_PI * M_PI / 36 * fraction * fraction}, 7);
+                                M_PI * M_PI / (12 * sqrt(5)) * fraction * fraction}, 7);
         printf("\n%s: upsampling rates asked for by BP22 Eq. (20) > %.3g, by ZP15's lambda/8 > %.3g\n", group->scene, bp22,
                zp15);
     }

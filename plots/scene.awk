@@ -253,13 +253,19 @@ function rows_print(    k, n, least, most)
         lobes && reference_pslr != "" && reference_islr != "", rates
 }
 
-function fronts_print(    cost, k)
+# The points that no other beats, the cheapest first.
+function front_print(axis, name,    n, at, count, order)
 {
-    while (row_read(folder "/fronts.csv"))
-        if (field["scene"] == scene)
-            front[field["cost"]] = front[field["cost"]] field["value"] " " field["error"] "\n"
-    for (k = split("run_s flops", cost, " "); k >= 1; k--)
-        printf "$front_%s << END_OF_FRONT\n%sEND_OF_FRONT\n", cost[k], front[cost[k]]
+    for (n = 1; n <= points; n++)
+        if (on_front(n, axis)) {
+            for (at = ++count; at > 1 && point[order[at - 1], "x", axis] > point[n, "x", axis]; at--)
+                order[at] = order[at - 1]
+            order[at] = n
+        }
+    printf "$front_%s << END_OF_FRONT\n", name
+    for (at = 1; at <= count; at++)
+        printf "%.9g %.9g\n", exp(point[order[at], "x", axis]), exp(point[order[at], "y"])
+    print "END_OF_FRONT"
 }
 
 # Lines through the float ladders of the upsampling rate, and what is said at their middle.
@@ -270,8 +276,8 @@ function slopes_print(    text)
         if (field["scene"] == scene && (field["setting"] == "beta" || field["setting"] == "factor") \
             && field["part"] != "falling" && field["precision"] == "float") {
             printf "%s %s\n%s %s\n\n\n", field["rate_first"], field["error_first"], field["rate_last"], field["error_last"]
-            text = text sprintf("%.9g %.9g \"%s, slope %.2f\"\n", sqrt(field["rate_first"]*field["rate_last"]),
-                sqrt(field["error_first"]*field["error_last"]), field["part"], field["slope"])
+            text = text sprintf("%.9g %.9g \"%sslope %.2f\"\n", sqrt(field["rate_first"]*field["rate_last"]),
+                sqrt(field["error_first"]*field["error_last"]), field["part"] == "floor" ? "floor, " : "", field["slope"])
         }
     print "END_OF_SLOPES"
     printf "$slope_labels << END_OF_LABELS\n%sEND_OF_LABELS\n", text
@@ -305,8 +311,9 @@ BEGIN {
     } else {
         print "caption = " quoted(scene ", " note["machine"] ", " note["threads"] " threads, commit " note["commit"])
         rows_print()
+        front_print(1, "run_s")
+        front_print(2, "flops")
         split("", field)
-        fronts_print()
         slopes_print()
         split("", field)
         rules_print()

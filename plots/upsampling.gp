@@ -46,7 +46,7 @@ do for [picture = 1:pictures] {
     plot edge_phase/x with lines linewidth 1 dashtype 3 linecolor rgb "#000000" \
             title (has_rules ? "phase at the band's edge, pi B/(2 fs K)" : ""), \
         linear_floor with lines linewidth 1 dashtype 5 linecolor rgb "#000000" \
-            title (has_rules ? "linear's mean loss, (pi B/(6 fs))^2" : ""), \
+            title (has_rules ? "linear's floor, pi^2 (B/fs)^2/(12 sqrt 5)" : ""), \
         for [n = 1:|rated|] k = rated[n] $rows index k - 1 using 1:4 with linespoints \
             linecolor rgb family_colour[family[k]] linewidth (precise[k] ? 1 : 1.8) dashtype 1 + (member[k] > 1) \
             pointtype (precise[k] ? family_open[family[k]] : family_filled[family[k]]) \
