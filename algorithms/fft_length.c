@@ -23,7 +23,7 @@ int fft_length_fast(long long n)
         long long odd = n;
         while (odd > 0 && odd % 2 == 0)
             odd /= 2;
-        if (odd > n / odd)
+        if (odd > 4 * (n / odd))
             continue;
         while (odd % 3 == 0)
             odd /= 3;

@@ -4,7 +4,7 @@
 /* The smallest length >= n whose prime factors FFTW handles best (2, 3, 5, 7); 0 when it exceeds INT_MAX. */
 int fft_length(long long n);
 
-/* The smallest length >= n with a power of two that its odd part (of 3 and 5) does not exceed: up to 25 % longer, up to
+/* The smallest length >= n whose odd part (of 3 and 5) is at most four times its power of two: seldom 10 % longer, up to
    three times faster where FFTW plans by estimate. 0 when it exceeds INT_MAX. */
 int fft_length_fast(long long n);
 

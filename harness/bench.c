@@ -10,6 +10,7 @@
 #include "../algorithms/isa.h"
 #include "../algorithms/pairs.h"
 #include "../algorithms/peak.h"
+#include "bench_rma.h"
 #include "control.h"
 #include "echo_data.h"
 #include "record.h"
@@ -150,5 +151,5 @@ enum status command_bench(const struct task *task)
         status = status_set(STATUS_FAILED, "%.300s: cannot be written: %s", path, strerror(errno));
     if (status == STATUS_OK)
         printf("\nResults: %s\n", path);
-    return status;
+    return status == STATUS_OK ? bench_rma(directory) : status;
 }
