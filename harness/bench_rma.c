@@ -1,4 +1,5 @@
 /* Range migration in `bench`: LBF21's real-data size, 8 range blocks, float, all threads, everything in one run. */
+#define _GNU_SOURCE                 /* sincos */
 #include "bench_rma.h"
 
 #include <errno.h>
@@ -127,7 +128,7 @@ static enum status measure(const struct problem *problem, const struct echoes *e
     const double later = stages_seconds(&eight.stages, later_stages);
     const double one_phase = stages_seconds(&one.stages, phase_stages);
     const double libm_phase = stages_seconds(&libm.stages, phase_stages);
-    double fft, cells[2];
+    double fft = 0, cells[2];
     status = transform_seconds(threads, &fft);
     if (status != STATUS_OK)
         return status;
