@@ -42,7 +42,7 @@ extern const char *const bp_engine_names[], *const bp_exact_names[];
      .type = PARAM_CHOICE, .offset = offsetof(struct bp_options, exact), .max = 1, .choices = bp_exact_names, \
      .terse = true}, \
     {.name = "phase_limit", .summary = "rad: most that the general engine's interpolated delays change a pair's phase by", \
-     .type = PARAM_REAL, .offset = offsetof(struct bp_options, phase_limit), .initial = 1e-4, .min = 1e-9, .max = 0.1, \
+     .type = PARAM_REAL, .offset = offsetof(struct bp_options, phase_limit), .initial = 1e-4, .min = 1e-8, .max = 0.1, \
      .terse = true}
 
 /* The callbacks of struct algorithm, for an interpolator. `options` begins with a struct bp_options and is only used during the

@@ -59,7 +59,7 @@ struct ping_box ping_box_make(const struct acquisition *a, int ping, int patch_c
     const double pi = 3.14159265358979323846, c = a->sound_speed;
     struct vector v = a->velocity[ping];
     const struct vector *rx = a->rx + (size_t)ping * (size_t)a->receivers;
-    struct ping_box box = {a->tx[ping], a->tx[ping], 0};
+    struct ping_box box = {a->tx[ping], a->tx[ping], 0, 0};
     for (int m = 0; m < a->receivers; m++)
         include(&box, rx[m]);
     double furthest = 0, mach = length(v.x, v.y, v.z) / c;
@@ -72,6 +72,7 @@ struct ping_box ping_box_make(const struct acquisition *a, int ping, int patch_c
     for (int m = 0; m < a->receivers; m++)
         include(&box, (struct vector){rx[m].x + v.x * longest, rx[m].y + v.y * longest, rx[m].z + v.z * longest});
     box.reach = pow(256 * phase_limit * c / (2 * pi * a->fc) * pow((1 - mach) / (1 + mach), 4), 1.0 / 6);
+    box.longest = 0x1p18 * (1 - mach) * c / a->fc;
     return box;
 }
 
@@ -79,13 +80,13 @@ struct ping_box ping_box_make(const struct acquisition *a, int ping, int patch_c
    would hold, which any part of it keeps. */
 static int block_longest(const struct ping_box *box, const struct pixel_line *line, int begin, int end)
 {
-    double step = line->x_step > 0 ? line->x_step : line->r_step, whole = (end - begin - 1) * step / (2 * box->reach);
-    double distance = ping_box_clearance(box, line, begin, end);
-    if (whole * whole * whole * whole * whole * whole <= distance * distance * distance * distance * distance)
+    double step = line->x_step > 0 ? line->x_step : line->r_step, whole = (end - begin - 1) * step;
+    double half = whole / (2 * box->reach), rho = ping_box_clearance(box, line, begin, end);
+    if (whole <= box->longest && half * half * half * half * half * half <= rho * rho * rho * rho * rho)
         return end - begin;
     for (int n = 0; n < 2; n++) {
-        double rho = ping_box_clearance(box, line, begin, n == 0 ? begin + 1 : end);
-        double pixels = 1 + floor(2 * box->reach * pow(rho, 5.0 / 6) / step);
+        rho = ping_box_clearance(box, line, begin, n == 0 ? begin + 1 : end);
+        double pixels = 1 + floor(fmin(2 * box->reach * pow(rho, 5.0 / 6), box->longest) / step);
         if (pixels < end - begin)
             end = begin + (int)pixels;
     }

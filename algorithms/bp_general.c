@@ -87,10 +87,10 @@ static enum status general_plan(struct bp *bp)
     enum status status = bp_plan_records(bp);
     if (status != STATUS_OK)
         return status;
-    double points = (double)a->samples * bp_table_fine(&bp->table);
-    if (!(points < INT_MAX))
-        return status_set(STATUS_UNSUPPORTED, "records of %d samples on a grid of %d points a sample are too long to index",
-                          a->samples, bp_table_fine(&bp->table));
+    int fine = bp->table.upsample * (bp_table_cubics(&bp->table) ? BP_INTERVALS : 1);
+    if (!((double)a->samples * fine < INT_MAX))
+        return status_set(STATUS_UNSUPPORTED, "records of %d samples with %d points each are too long to index",
+                          a->samples, fine);
     size_t size = real_size(problem->precision), row_bytes = (size_t)bp->shape.length * 2 * size;
     bool planar = bp_table_planar(&bp->table);
     double pairs = (double)a->pings * a->receivers;

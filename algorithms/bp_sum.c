@@ -14,141 +14,139 @@
 #define INLINE static inline __attribute__((always_inline))
 
 enum {
-    RUN = 256,                      /* pixels at a time: the run's arrays stay in the first-level cache */
-    NODES = 6                       /* of a quintic */
+    RUN = 512,                      /* pixels at a time: the run's arrays stay in the first-level cache */
+    NODES = 6,                      /* of a quintic */
+    PARTS = LANES * sizeof(double) / VECTOR_BYTES       /* vectors of doubles to a vector of `real` */
 };
+
+typedef double vector_double __attribute__((vector_size(VECTOR_BYTES)));
+typedef unsigned long long vector_long __attribute__((vector_size(VECTOR_BYTES)));
+typedef float vector_bits __attribute__((vector_size(VECTOR_BYTES)));     /* moved, not computed with */
+typedef int vector_int __attribute__((vector_size(LANES * sizeof(int)), aligned(sizeof(int)), may_alias));
+
+TURN(turn_vector, vector_real)
 
 struct sample {
     real re, im;
 };
 
-/* Where a run of pixels reads a record, on the grid of bp_table_fine(table) points a sample. */
+/* Where a run of pixels reads a record. */
 struct run {
     int count;
-    int point[RUN];                 /* whole part, >= 0 */
-    real rest[RUN];                 /* fraction; of tables of cubics only */
-    real turns[RUN];                /* phase, |turns| <= 1/2 */
+    _Alignas(VECTOR_BYTES) int sample[RUN];     /* of the upsampled record, on from which the taps are counted */
+    _Alignas(VECTOR_BYTES) int phase[RUN];      /* row of the table of weights; of tables only */
+    _Alignas(VECTOR_BYTES) real rest[RUN];      /* position in the interval of a cubic; of tables of cubics only */
+    _Alignas(VECTOR_BYTES) real turns[RUN];     /* phase, |turns| <= 1/2 */
 };
 
-/* ---- sums ---- */
-
-/* Values LANES indices long, real and imaginary parts apart: copies of whole values, which are faster than gathers, in
-   the order from which one shuffle takes the parts. */
+/* The order of pixels in the parts of a vector, from which one shuffle takes the low halves of all (EVEN) or the high ones
+   (ODD) as they come. */
 #if REAL_DOUBLE
 #if VECTOR_BYTES == 64
-#define EACH(v) {v(0), v(1), v(2), v(3), v(4), v(5), v(6), v(7)}
+#define PART(v, n) {v(0), v(1), v(2), v(3), v(4), v(5), v(6), v(7)}
+#define EVEN 0, 2, 4, 6, 8, 10, 12, 14
 #elif VECTOR_BYTES == 32
-#define EACH(v) {v(0), v(1), v(2), v(3)}
+#define PART(v, n) {v(0), v(1), v(2), v(3)}
+#define EVEN 0, 2, 4, 6
 #else
-#define EACH(v) {v(0), v(1)}
+#define PART(v, n) {v(0), v(1)}
+#define EVEN 0, 2
 #endif
-INLINE void gather(const struct sample *from, const int *index, vector_real *re, vector_real *im)
-{
-#define RE(n) from[index[n]].re
-#define IM(n) from[index[n]].im
-    *re = (vector_real)EACH(RE);
-    *im = (vector_real)EACH(IM);
-}
 #else
 #if VECTOR_BYTES == 64
-#define HALF(v, n) {v(n), v(n + 1), v(n + 4), v(n + 5), v(n + 8), v(n + 9), v(n + 12), v(n + 13)}
+#define PART(v, n) {v(n), v(n + 1), v(n + 4), v(n + 5), v(n + 8), v(n + 9), v(n + 12), v(n + 13)}
 #define EVEN 0, 2, 16, 18, 4, 6, 20, 22, 8, 10, 24, 26, 12, 14, 28, 30
 #define ODD 1, 3, 17, 19, 5, 7, 21, 23, 9, 11, 25, 27, 13, 15, 29, 31
 #elif VECTOR_BYTES == 32
-#define HALF(v, n) {v(n), v(n + 1), v(n + 4), v(n + 5)}
+#define PART(v, n) {v(n), v(n + 1), v(n + 4), v(n + 5)}
 #define EVEN 0, 2, 8, 10, 4, 6, 12, 14
 #define ODD 1, 3, 9, 11, 5, 7, 13, 15
 #else
-#define HALF(v, n) {v(n), v(n + 1)}
+#define PART(v, n) {v(n), v(n + 1)}
 #define EVEN 0, 2, 4, 6
 #define ODD 1, 3, 5, 7
 #endif
-INLINE void gather(const struct sample *from, const int *index, vector_real *re, vector_real *im)
-{
-    typedef double whole __attribute__((may_alias, aligned(sizeof(real))));    /* both parts at once */
-    typedef double vector_whole __attribute__((vector_size(VECTOR_BYTES)));
-#define WHOLE(n) *(const whole *)(from + index[n])
-    vector_real low = (vector_real)(vector_whole)HALF(WHOLE, 0), high = (vector_real)(vector_whole)HALF(WHOLE, 2);
-    *re = __builtin_shufflevector(low, high, EVEN);
-    *im = __builtin_shufflevector(low, high, ODD);
-}
 #endif
 
-INLINE vector_real *at(real *values)
+/* ---- sums ---- */
+
+/* LANES values, real and imaginary parts apart: copies of whole values, which are faster than gathers. */
+INLINE void gather(const struct sample *from, const int *index, vector_real *re, vector_real *im)
+{
+#if REAL_DOUBLE
+#define RE(n) from[index[n]].re
+#define IM(n) from[index[n]].im
+    *re = (vector_real)PART(RE, 0);
+    *im = (vector_real)PART(IM, 0);
+#else
+    typedef double whole __attribute__((may_alias, aligned(sizeof(real))));    /* both parts at once */
+#define WHOLE(n) *(const whole *)(from + index[n])
+    vector_real low = (vector_real)(vector_double)PART(WHOLE, 0), high = (vector_real)(vector_double)PART(WHOLE, 2);
+    *re = __builtin_shufflevector(low, high, EVEN);
+    *im = __builtin_shufflevector(low, high, ODD);
+#endif
+}
+
+INLINE vector_real *at(const real *values)
 {
     return (vector_real *)values;
 }
 
-/* The nearest point. */
-static void add_nearest(const struct sample *row, struct run *run, real *wr, real *wi, real *re, real *im)
+/* One value each: the nearest. Or two with weights for each phase of a grid. */
+INLINE void add_gathered(int taps, const struct sample *row, const struct sample *weights, const struct run *run,
+                         real *re, real *im)
 {
+    const int count = run->count;
     int i = 0;
-    for (; i <= run->count - LANES; i += LANES) {
-        vector_real x, y, c = *at(wr + i), s = *at(wi + i);
-        gather(row, run->point + i, &x, &y);
+    for (; i <= count - LANES; i += LANES) {
+        vector_real x, y, c, s;
+        turn_vector(*at(run->turns + i), &c, &s);
+        gather(row, run->sample + i, &x, &y);
+        if (taps == 2) {
+            vector_real next_x, next_y, a, b;
+            gather(row + 1, run->sample + i, &next_x, &next_y);
+            gather(weights, run->phase + i, &a, &b);
+            x = x * a + next_x * b;
+            y = y * a + next_y * b;
+        }
         *at(re + i) += x * c - y * s;
         *at(im + i) += x * s + y * c;
     }
-    for (; i < run->count; i++) {
-        struct sample v = row[run->point[i]];
-        re[i] += v.re * wr[i] - v.im * wi[i];
-        im[i] += v.re * wi[i] + v.im * wr[i];
-    }
-}
-
-/* Two weights for each phase of the grid. */
-static void add_two(const struct bp_table *table, const struct sample *row, struct run *run, real *wr, real *wi,
-                    real *re, real *im)
-{
-    const struct sample *weights = table->weights;      /* {first, second} */
-    const int phases = table->phases;
-    const double one = 1.0 / phases;
-    int phase[RUN];
-#pragma omp simd
-    for (int i = 0; i < run->count; i++) {
-        int sample = (int)((run->point[i] + 0.5) * one);
-        phase[i] = run->point[i] - sample * phases;
-        run->point[i] = sample;
-    }
-    int i = 0;
-    for (; i <= run->count - LANES; i += LANES) {
-        vector_real ax, ay, bx, by, wa, wb, c = *at(wr + i), s = *at(wi + i);
-        gather(row, run->point + i, &ax, &ay);
-        gather(row + 1, run->point + i, &bx, &by);
-        gather(weights, phase + i, &wa, &wb);
-        ax = ax * wa + bx * wb;
-        ay = ay * wa + by * wb;
-        *at(re + i) += ax * c - ay * s;
-        *at(im + i) += ax * s + ay * c;
-    }
-    for (; i < run->count; i++) {
-        struct sample a = row[run->point[i]], b = row[run->point[i] + 1], w = weights[phase[i]];
-        real x = a.re * w.re + b.re * w.im, y = a.im * w.re + b.im * w.im;
-        re[i] += x * wr[i] - y * wi[i];
-        im[i] += x * wi[i] + y * wr[i];
+    for (; i < count; i++) {
+        struct sample v = row[run->sample[i]];
+        if (taps == 2) {
+            struct sample w = weights[run->phase[i]], next = row[run->sample[i] + 1];
+            v = (struct sample){v.re * w.re + next.re * w.im, v.im * w.re + next.im * w.im};
+        }
+        real c, s;
+        turn(run->turns[i], &c, &s);
+        re[i] += v.re * c - v.im * s;
+        im[i] += v.re * s + v.im * c;
     }
 }
 
 /* Many weights, from a grid of phases or from cubics in the fraction; the record's parts lie apart. `taps` is a constant
    where this is inlined, so that the loops over it unroll. */
 INLINE void add_taps(const struct bp_table *table, int taps, const real *row_re, const real *row_im,
-                     const struct run *run, const real *wr, const real *wi, real *re, real *im)
+                     const struct run *run, real *re, real *im)
 {
     const real *weights = table->weights;
-    const int fine = table->phases > 0 ? table->phases : BP_INTERVALS;
+    real wr[RUN], wi[RUN];
+#pragma omp simd
+    for (int i = 0; i < run->count; i++)
+        turn(run->turns[i], &wr[i], &wi[i]);
     for (int i = 0; i < run->count; i++) {
-        const int sample = run->point[i] / fine, phase = run->point[i] % fine;
-        const real *x = row_re + sample, *y = row_im + sample;
+        const real *x = row_re + run->sample[i], *y = row_im + run->sample[i];
         real vr = 0, vi = 0;
         if (table->phases > 0) {
-            const real *w = weights + (size_t)phase * (size_t)taps;
+            const real *w = weights + (size_t)run->phase[i] * (size_t)taps;
 #pragma omp simd reduction(+ : vr, vi)
             for (int k = 0; k < taps; k++) {
                 vr += w[k] * x[k];
                 vi += w[k] * y[k];
             }
         } else {
-            const real *w = weights + 4 * (size_t)phase * (size_t)taps, u = run->rest[i];
+            const real *w = weights + 4 * (size_t)run->phase[i] * (size_t)taps, u = run->rest[i];
 #pragma omp simd reduction(+ : vr, vi)
             for (int k = 0; k < taps; k++) {
                 real weight = w[k] + u * (w[taps + k] + u * (w[2 * taps + k] + u * w[3 * taps + k]));
@@ -161,26 +159,22 @@ INLINE void add_taps(const struct bp_table *table, int taps, const real *row_re,
     }
 }
 
-static void add_run(const struct bp_table *table, const real *row, int row_length, struct run *run, real *re, real *im)
+static void add_run(const struct bp_table *table, const real *row, int row_length, const struct run *run, real *re, real *im)
 {
-    real wr[RUN], wi[RUN];
-#pragma omp simd
-    for (int i = 0; i < run->count; i++)
-        turn(run->turns[i], &wr[i], &wi[i]);
-    if (!bp_table_planar(table)) {
-        const struct sample *first = (const struct sample *)row + table->guard + table->first;
-        if (table->taps == 1)
-            add_nearest(first, run, wr, wi, re, im);
-        else
-            add_two(table, first, run, wr, wi, re, im);
-        return;
-    }
     const real *x = row + table->guard + table->first, *y = x + row_length;
-    switch (table->taps) {          /* the shipped kernels unroll, any other length works as well */
-    case 8: add_taps(table, 8, x, y, run, wr, wi, re, im); break;
-    case 16: add_taps(table, 16, x, y, run, wr, wi, re, im); break;
-    case 20: add_taps(table, 20, x, y, run, wr, wi, re, im); break;
-    default: add_taps(table, table->taps, x, y, run, wr, wi, re, im); break;
+    const struct sample *first = (const struct sample *)row + table->guard + table->first;
+    if (!bp_table_planar(table)) {
+        if (table->taps == 1)
+            add_gathered(1, first, NULL, run, re, im);
+        else
+            add_gathered(2, first, table->weights, run, re, im);
+    } else {
+        switch (table->taps) {      /* the shipped kernels unroll, any other length works as well */
+        case 8: add_taps(table, 8, x, y, run, re, im); break;
+        case 16: add_taps(table, 16, x, y, run, re, im); break;
+        case 20: add_taps(table, 20, x, y, run, re, im); break;
+        default: add_taps(table, table->taps, x, y, run, re, im); break;
+        }
     }
 }
 
@@ -223,8 +217,8 @@ static void legs_back(const struct bp_medium *medium, const struct bp_ping *ping
     }
 }
 
-/* What turns a delay into a point of the table's grid, and a point into turns: point = (tau - t0) fs fine + shift,
-   turns = point ratio + base. */
+/* From a delay to a point, point = (tau - t0) fs fine + shift, whose whole part is a sample or one of a cubic's
+   intervals, and from a point to turns, turns = point ratio + base. */
 struct scale {
     double t0, fs, fine, shift, ratio, base;
 };
@@ -235,6 +229,8 @@ static void sum_exact(const struct bp_medium *medium, const struct bp_table *tab
 {
     struct places places;
     struct run run;
+    const bool cubics = bp_table_cubics(table);
+    const double one = cubics ? BP_INTERVALS : table->phases;
     for (int first = begin; first < end; first += RUN) {
         places.count = run.count = end - first < RUN ? end - first : RUN;
         for (int i = 0; i < places.count; i++) {
@@ -247,10 +243,12 @@ static void sum_exact(const struct bp_medium *medium, const struct bp_table *tab
             legs_back(medium, ping, ping->rx[m], &places);
 #pragma omp simd
             for (int i = 0; i < run.count; i++) {
-                double point = (places.tau[i] - scale->t0) * scale->fs * scale->fine + scale->shift;
-                double turns = medium->fc * places.tau[i];
-                run.point[i] = (int)point;
-                run.rest[i] = (real)(point - run.point[i]);
+                double q = (places.tau[i] - scale->t0) * scale->fs * table->upsample;
+                double point = floor(q * one + scale->shift * one), turns = medium->fc * places.tau[i];
+                double sample = floor((point + 0.5) / one);
+                run.sample[i] = (int)sample;
+                run.phase[i] = (int)(point - sample * one);
+                run.rest[i] = (real)(q * one - point);
                 run.turns[i] = (real)(turns - floor(turns + 0.5));
             }
             add_run(table, (const real *)ping->rows + 2 * (size_t)m * (size_t)ping->row_length, ping->row_length, &run,
@@ -264,7 +262,7 @@ static const double node[NODES] = {-0.96592582628906829, -0.70710678118654752, -
                                    0.25881904510252076,  0.70710678118654752,  0.96592582628906829};
 
 /* The quintic through the delays at a block's Chebyshev points, as points of the grid against pixels from the block's
-   middle: even and odd part are quadratics in the square, by divided differences. */
+   middle: even and odd part are quadratics in the square, by divided differences. Without the scale's shift. */
 INLINE void quintic(const double *tau, const struct scale *scale, double half, double *c)
 {
     const double ya = node[3] * node[3], yb = 0.5, step = 0.43301270189221932;     /* yb - ya, half of yc - ya */
@@ -284,11 +282,10 @@ INLINE void quintic(const double *tau, const struct scale *scale, double half, d
         c[k] = part[k % 2][k / 2] * power;
         power *= one;
     }
-    c[0] += scale->shift;
 }
 
 /* A line reads few values of each record and comes back to the next line much later: have them fetched together. */
-INLINE void prefetch(const struct bp_table *table, const struct sample *row, const double *tau, const struct scale *scale)
+INLINE void prefetch(const struct sample *row, const double *tau, const struct scale *scale, int upsample)
 {
     enum { NEAR = 64 / sizeof(struct sample), MOST = 16 };      /* values of a cache line, cache lines */
     double low = tau[0], high = tau[0];
@@ -296,11 +293,51 @@ INLINE void prefetch(const struct bp_table *table, const struct sample *row, con
         low = tau[k] < low ? tau[k] : low;
         high = tau[k] > high ? tau[k] : high;
     }
-    low = (low - scale->t0) * scale->fs * table->upsample - 1;
-    high = (high - scale->t0) * scale->fs * table->upsample + 1;
-    if (!bp_table_planar(table) && high - low < MOST * NEAR)
+    low = (low - scale->t0) * scale->fs * upsample - 1;
+    high = (high - scale->t0) * scale->fs * upsample + 1;
+    if (high - low < MOST * NEAR)
         for (int i = (int)low; i < high + NEAR; i += NEAR)
             __builtin_prefetch(row + i);
+}
+
+/* Points of a run of pixels from `first` pixels past the block's middle on. A double that is brought to a known exponent is
+   a fixed-point number in its lower bits: whole points and 19 bits of their fraction, or 32 bits of a fraction of a
+   turn, without rounding or conversion. Fills whole vectors, up to LANES - 1 pixels more than `count`. */
+INLINE void points(const double *c, const struct scale *scale, double first, const struct bp_table *table, bool cubics,
+                   struct run *run)
+{
+    enum { BITS = 19 };
+    const double shift = scale->shift + 0x1.8p33, ratio = scale->ratio;
+    const double turns = c[0] * ratio + scale->base, base = scale->base - floor(turns) + 0x1.8p20;
+#define LANE(n) n
+    vector_double u[2] = {PART(LANE, 0), PART(LANE, 2)};
+    u[0] += first;
+    u[1] += first;
+    for (int i = 0; i < run->count; i += LANES) {
+        vector_double point[2], turned[2];
+        vector_long whole[2];
+        for (int k = 0; k < (int)PARTS; k++) {
+            vector_double u2 = u[k] * u[k];
+            vector_double p = (c[0] + u[k] * c[1]) + u2 * ((c[2] + u[k] * c[3]) + u2 * (c[4] + u[k] * c[5]));
+            turned[k] = p * ratio + base;
+            point[k] = p + shift;
+            whole[k] = (vector_long)point[k] >> BITS;
+            u[k] += LANES;
+        }
+#define LOW(v) (vector_int)__builtin_shufflevector((vector_bits)v[0], (vector_bits)v[PARTS - 1], EVEN)
+        vector_int sample = LOW(whole);
+        if (cubics) {
+            *(vector_int *)(run->phase + i) = sample & (BP_INTERVALS - 1);
+            sample >>= BP_INTERVAL_BITS;
+            vector_int rest = LOW(point) & ((1 << BITS) - 1);
+            *at(run->rest + i) = __builtin_convertvector(rest, vector_real) * (real)0x1p-19;
+        } else if (table->taps > 1) {
+            vector_int rest = LOW(point) & ((1 << BITS) - 1);
+            *(vector_int *)(run->phase + i) = rest * table->phases >> BITS;
+        }
+        *(vector_int *)(run->sample + i) = sample;
+        *at(run->turns + i) = __builtin_convertvector(LOW(turned), vector_real) * (real)0x1p-32;
+    }
 }
 
 /* One receiver over one block. */
@@ -309,30 +346,14 @@ INLINE void sum_block(const struct bp_table *table, const real *row, int row_len
 {
     struct run run;
     double c[NODES];
-    const double half = 0.5 * (block->end - 1 - block->begin), ratio = scale->ratio, base = scale->base;
-    const bool cubics = table->taps > 1 && table->phases == 0;
+    const double half = 0.5 * (block->end - 1 - block->begin), middle = block->begin + half;
     quintic(tau, scale, half, c);
-    const double c0 = c[0], c1 = c[1], c2 = c[2], c3 = c[3], c4 = c[4], c5 = c[5];
     for (int first = block->begin; first < block->end; first += RUN) {
-        const int n = block->end - first < RUN ? block->end - first : RUN;
-        const double begin = first - (block->begin + half);
-#define POINT(i) \
-    double u = begin + (i), u2 = u * u, point = (c0 + u * c1) + u2 * ((c2 + u * c3) + u2 * (c4 + u * c5))
-#pragma omp simd
-        for (int i = 0; i < n; i++) {
-            POINT(i);
-            double turns = point * ratio + base;
-            run.point[i] = (int)point;
-            run.turns[i] = (real)(turns - floor(turns + 0.5));
-        }
-        if (cubics)
-#pragma omp simd
-            for (int i = 0; i < n; i++) {
-                POINT(i);
-                run.rest[i] = (real)(point - run.point[i]);
-            }
-#undef POINT
-        run.count = n;
+        run.count = block->end - first < RUN ? block->end - first : RUN;
+        if (bp_table_cubics(table))
+            points(c, scale, first - middle, table, true, &run);
+        else
+            points(c, scale, first - middle, table, false, &run);
         add_run(table, row, row_length, &run, re + first, im + first);
     }
 }
@@ -341,10 +362,10 @@ void BP_SUM(const struct bp_medium *medium, const struct bp_table *table, const 
             const struct pixel_line *line, int block_count, const struct bp_block *blocks, void *re, void *im)
 {
     struct places places = {.count = NODES * block_count};
-    const double fine = bp_table_fine(table), turns = medium->fc * ping->t0;
-    struct scale scale = {.t0 = ping->t0, .fs = medium->fs, .fine = fine, .shift = table->taps == 1 || table->phases > 0 ? 0.5 : 0,
-                          .ratio = medium->fc / (medium->fs * fine)};
-    scale.base = turns - floor(turns) - scale.shift * scale.ratio;
+    const bool cubics = bp_table_cubics(table);
+    const double fine = table->upsample * (cubics ? BP_INTERVALS : 1), turns = medium->fc * ping->t0;
+    const struct scale scale = {ping->t0, medium->fs, fine, cubics ? 0 : 0.5 / table->phases, medium->fc / (medium->fs * fine),
+                                turns - floor(turns)};
     for (int b = 0; b < block_count; b++) {
         const double half = 0.5 * (blocks[b].end - 1 - blocks[b].begin), middle = blocks[b].begin + half;
         for (int k = 0; k < NODES; k++) {
@@ -358,7 +379,8 @@ void BP_SUM(const struct bp_medium *medium, const struct bp_table *table, const 
         legs_back(medium, ping, ping->rx[m], &places);
         for (int b = 0; b < block_count; b++)
             if (!blocks[b].exact) {
-                prefetch(table, (const struct sample *)row + table->guard + table->first, places.tau + b * NODES, &scale);
+                if (!bp_table_planar(table))
+                    prefetch((const struct sample *)row + table->guard, places.tau + b * NODES, &scale, table->upsample);
                 sum_block(table, row, ping->row_length, &scale, &blocks[b], places.tau + b * NODES, re, im);
             }
     }

@@ -12,18 +12,18 @@ struct bp_table {
        [BP_INTERVALS][4][taps], lowest power first. Of the plan's precision; NULL when taps == 1. */
     const void *weights;
 };
-enum { BP_INTERVALS = 256 };
+enum { BP_INTERVAL_BITS = 8, BP_INTERVALS = 1 << BP_INTERVAL_BITS };
 
-/* Points of the table's grid to a sample of the record: what a pixel rounds to (phases > 0) or takes a cubic from. */
-static inline int bp_table_fine(const struct bp_table *table)
+/* Are the weights cubics in the fraction of a sample? Else they are for whole phases, one phase if there is one tap. */
+static inline bool bp_table_cubics(const struct bp_table *table)
 {
-    return table->upsample * (table->taps == 1 ? 1 : table->phases > 0 ? table->phases : BP_INTERVALS);
+    return table->taps > 1 && table->phases == 0;
 }
 
 /* Records whose real and imaginary parts the general engine keeps apart: many taps add up along each. */
 static inline bool bp_table_planar(const struct bp_table *table)
 {
-    return table->taps > 2 || (table->taps == 2 && table->phases == 0);
+    return table->taps > 2 || bp_table_cubics(table);
 }
 
 struct bp_medium {

@@ -26,25 +26,30 @@ static inline void turn_eighth(real x, real *c, real *s)
 }
 
 /* From the half angle's S = sqrt(2) sin(pi f) and C = sqrt(2) cos(pi f), by minimax polynomials: cos = 1 - S^2 and
-   sin = S C, so that no quadrant has to be told from another, in short chains of products. */
-static inline void turn(real f, real *c, real *s)
-{
-    real z = f * f, z2 = z * z;
+   sin = S C, so that no quadrant has to be told from another, in short chains of products. For `real` and vectors of it. */
 #if REAL_DOUBLE
-    real z4 = z2 * z2;
-    real sine = (4.4428829381583661 + z * -7.308249499995437) + z2 * (3.6064765714705578 + z * -0.84748802480989638)
-        + z4 * ((0.11617182685703353 + z * -0.010423362571554722)
-                + z2 * (0.00065944661738638643 + z * -3.0974149455374744e-05) + z4 * 1.0866855346742344e-06);
-    real cosine = (1.4142135623730951 + z * -6.9788641996388758) + z2 * (5.7398857349463546 + z * -1.8883467170302786)
-        + z4 * ((0.33280776877138168 + z * -0.03649645205784869)
-                + z2 * (0.0027288046656343086 + z * -0.00014787947669331688) + z4 * 5.8684089145498459e-06);
+#define TURN_SINE(z, z2) \
+    ((4.4428829381583661 + z * -7.308249499995437) + z2 * (3.6064765714705578 + z * -0.84748802480989638) \
+     + z2 * z2 * ((0.11617182685703353 + z * -0.010423362571554722) \
+                  + z2 * ((0.00065944661738638643 + z * -3.0974149455374744e-05) + z2 * 1.0866855346742344e-06)))
+#define TURN_COSINE(z, z2) \
+    ((1.4142135623730951 + z * -6.9788641996388758) + z2 * (5.7398857349463546 + z * -1.8883467170302786) \
+     + z2 * z2 * ((0.33280776877138168 + z * -0.03649645205784869) \
+                  + z2 * ((0.0027288046656343086 + z * -0.00014787947669331688) + z2 * 5.8684089145498459e-06)))
 #else
-    real sine = (4.44288283f + z * -7.30824118f) + z2 * (3.60628933f + z * -0.845765404f + z2 * 0.109208753f);
-    real cosine = (1.41421350f + z * -6.97885099f) + z2 * (5.73946117f + z * -1.88356299f + z2 * 0.310698194f);
+#define TURN_SINE(z, z2) \
+    ((4.44288283f + z * -7.30824118f) + z2 * (3.60628933f + z * -0.845765404f + z2 * 0.109208753f))
+#define TURN_COSINE(z, z2) \
+    ((1.41421350f + z * -6.97885099f) + z2 * (5.73946117f + z * -1.88356299f + z2 * 0.310698194f))
 #endif
-    sine *= f;
-    *c = 1 - sine * sine;
-    *s = sine * cosine;
-}
+#define TURN(name, type) \
+    static inline __attribute__((always_inline)) void name(type f, type *c, type *s) \
+    { \
+        type z = f * f, z2 = z * z, sine = f * TURN_SINE(z, z2); \
+        *c = 1 - sine * sine; \
+        *s = sine * TURN_COSINE(z, z2); \
+    }
+
+TURN(turn, real)
 
 #endif

@@ -165,7 +165,7 @@ enum { METHODS = sizeof methods / sizeof *methods };
    the other. */
 static int near_ties(const struct acquisition *a, struct vector p, int fine, double limit)
 {
-    double reach = fine * limit * a->fs / (2 * pi * a->fc);
+    double reach = fine * (limit * a->fs / (2 * pi * a->fc) + 0x1p-19);    /* the engine's points are multiples of 2^-19 */
     int ties = 0;
     for (int ping = 0; ping < a->pings; ping++)
         for (int m = 0; m < a->receivers; m++) {
@@ -237,7 +237,7 @@ static void fast_near_exact(void **state)
                 assert_memory_equal(fast.pixels[0], again.pixels[0],
                                     (size_t)grid.x_count * (size_t)grid.r_count * precision_size(fast.precision));
                 struct comparison c = compare(&fast, &exact, &a, methods[m].fine, limit);
-                double expected = 2 * methods[m].fine * limit * a.fs / (2 * pi * a.fc) * pairs;
+                double expected = 2 * methods[m].fine * (limit * a.fs / (2 * pi * a.fc) + 0x1p-19) * pairs;
                 if (!(c.difference <= limit + (p ? 0 : 2e-6)) || !(c.worst <= 4 * peak)
                     || !(c.ties <= 2 * expected + 20))
                     fail_msg("%s, %s: differs by %g; by %g where %d pairs are near a tie", image_cases[k].name, spec,
@@ -258,9 +258,9 @@ static void fast_near_exact(void **state)
     }
 }
 
-/* The functions for a machine without AVX and without fused multiply-adds show the same images, on either path and in the
-   invariant engine. */
-static void baseline_equals_best(void **state)
+/* The functions for a machine without AVX and without fused multiply-adds, and those with AVX2 on a machine that has more,
+   show the same images, on either path and in the invariant engine. */
+static void instruction_sets_agree(void **state)
 {
     (void)state;
     static const char *const paths[] = {"exact=true", "engine=general", "engine=invariant"};
@@ -272,7 +272,7 @@ static void baseline_equals_best(void **state)
                     struct acquisition a;
                     struct grid grid;
                     struct echoes echoes;
-                    struct image best, baseline;
+                    struct image best, other;
                     char spec[96];
                     make_image_case(&image_cases[k], &a, &grid, &echoes);
                     if (n == 2)
@@ -280,16 +280,18 @@ static void baseline_equals_best(void **state)
                     struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
                     snprintf(spec, sizeof spec, "%sprecision=%s,%s", methods[m].spec, p ? "double" : "float", paths[n]);
                     assert_int_equal(support_image(spec, problem, &echoes, &best), STATUS_OK);
-                    setenv("SASBENCH_ISA", "baseline", 1);
-                    assert_int_equal(support_image(spec, problem, &echoes, &baseline), STATUS_OK);
-                    unsetenv("SASBENCH_ISA");
-                    worst[p] = fmax(worst[p], support_difference(&baseline, &best));
+                    for (int lower = 0; lower < 2; lower++) {
+                        setenv("SASBENCH_ISA", lower ? "v3" : "baseline", 1);
+                        assert_int_equal(support_image(spec, problem, &echoes, &other), STATUS_OK);
+                        unsetenv("SASBENCH_ISA");
+                        worst[p] = fmax(worst[p], support_difference(&other, &best));
+                        image_free(&other);
+                    }
                     image_free(&best);
-                    image_free(&baseline);
                     echoes_free(&echoes);
                     acquisition_free(&a);
                 }
-    print_message("baseline: within %.1e (float), %.1e (double) of the best instruction set\n", worst[0], worst[1]);
+    print_message("lesser instruction sets: within %.1e (float), %.1e (double) of the best\n", worst[0], worst[1]);
     assert_true(worst[0] < 2e-6 && worst[1] < 1e-10);
 }
 
@@ -298,7 +300,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(phase_below_limit),
         cmocka_unit_test(fast_near_exact),
-        cmocka_unit_test(baseline_equals_best),
+        cmocka_unit_test(instruction_sets_agree),
     };
     return cmocka_run_group_tests_name("bp_general", tests, NULL, NULL);
 }
