@@ -26,11 +26,11 @@ do for [picture = 1:pictures] {
     set xlabel cost_title
     set ylabel "relative L2 error of the complex image"
     set title picture_scene[picture].": error against ".(cost == 2 ? "run time" : "counted operations")
-    set lmargin at screen 95.0/width
+    set lmargin at screen 110.0/width
     set rmargin at screen 1 - 25.0/width
     set tmargin at screen 1 - 45.0/height
     set bmargin at screen 235.0/height
-    set key at screen 0.5,160.0/height center top maxrows 5 samplen 3
+    set key at screen 0.5,160.0/height center top maxrows 5 samplen 2.5 font ",12"
     set label 1 caption at screen 0.5,12.0/height center font ",10" textcolor "#606060"
     front = cost == 2 ? "$front_run_s" : "$front_flops"
     if (cost == 2) { set arrow 1 from control_max,graph 0 to control_max,graph 1 nohead dashtype 3 linewidth 1.5 }
@@ -41,7 +41,8 @@ do for [picture = 1:pictures] {
             pointsize (precise[k] ? 1 : 1.4) title (precise[k] ? "" : series[k]), \
         for [k = 1:|series|] $rows index k - 1 using cost:4:(strcol(5 + cost)) with labels font ",10" \
             offset 0.5,0.5 left textcolor rgb family_colour[family[k]] notitle, \
-        keyentry with points pointtype 6 linecolor rgb "#000000" title "open, thin: in double", \
+        keyentry with points pointtype 6 linewidth 1 pointsize 1.2 linecolor rgb "#000000" \
+            title "open, thin: in double", \
         keyentry with lines linewidth 1.5 dashtype 3 linecolor rgb "#000000" \
             title (cost == 2 ? "time of the control loop" : "")
     unset output

@@ -27,22 +27,27 @@ do for [picture = 1:pictures] {
     stats $rows using 2 name "x" nooutput
     set xrange [x_min/1.3:1.4*x_max]
     set yrange [8e-5:*]
-    set ytics add ("<= 1e-4" 1e-4)
+    set ytics add ("≤1e-4" 1e-4)
     shown(value) = value > 1e-4 ? value : 1e-4
-    set lmargin at screen 95.0/width
+    set lmargin at screen 110.0/width
     set rmargin at screen 1 - 25.0/width
     do for [panel = 1:2] {
         set tmargin at screen 1 - (45 + 420*(panel - 1))/(1.0*height)
         set bmargin at screen 1 - (45 + 420*(panel - 1) + 355)/(1.0*height)
         set ylabel sprintf("|%s - exact image's| (dB)", quantity[panel])
         set xlabel (panel == 1 ? "" : "median run time, raw echoes to image (s)")
-        set title (panel == 1 ? picture_scene[picture].": side lobes against run time, median over the targets, azimuth" : "")
-        if (panel == 1) { unset key } else { set key at screen 0.5,145.0/height center top maxrows 5 samplen 3 }
+        set title (panel == 1 ? \
+            picture_scene[picture].": side lobes against run time, median over the targets, azimuth" : "")
+        if (panel == 1) { unset key } else {
+            set key at screen 0.5,145.0/height center top maxrows 5 samplen 2.5 font ",12"
+        }
         plot for [k = 1:|series|] $rows index k - 1 using 2:(shown(abs(column(4 + panel) - exact[panel]))) \
-            with linespoints linecolor rgb family_colour[family[k]] linewidth (precise[k] ? 1 : 1.8) dashtype 1 + (member[k] > 1) \
+            with linespoints linecolor rgb family_colour[family[k]] \
+            linewidth (precise[k] ? 1 : 1.8) dashtype 1 + (member[k] > 1) \
             pointtype (precise[k] ? family_open[family[k]] : family_filled[family[k]]) pointsize (precise[k] ? 1 : 1.4) \
             title (precise[k] ? "" : series[k]), \
-            keyentry with points pointtype 6 linecolor rgb "#000000" title "open, thin: in double"
+            keyentry with points pointtype 6 linewidth 1 pointsize 1.2 linecolor rgb "#000000" \
+                title "open, thin: in double"
         unset label 1
     }
     unset multiplot

@@ -14,7 +14,8 @@
 #   has_points, has_lobes, has_rates   1 where there is something to draw: any row, lobes beside the reference's, an
 #                                  upsampling rate above 1
 #   $front_run_s, $front_flops     lines: cost error
-#   $slopes, $slope_labels         lines: rate error, two for each straight line, with two empty lines after; rate error "label"
+#   $slopes, $slope_labels         lines: rate error, two for each straight line, with two empty lines after; rate error
+#                                  "label"; has_slopes: 1 where there are any
 #   has_rules, bp22_rate, zp15_rate, edge_phase, linear_floor     0 or 1; NaN where unknown
 #
 # Rows that are not `ok`, or whose image is smaller than the others' (exact ones), are left out.
@@ -180,8 +181,8 @@ function on_front(n, axis,    m)
     return 1
 }
 
-# Which points get a label: those of the front, then the ends of the ladders, then the rest, while there is room. A label
-# takes about 1/30 of the axis's width and 1/30 of its height.
+# Which points in float get a label: those of the front, then the ends of the ladders, then the rest, while there is room.
+# A label takes about 1/30 of the axis's width and 1/30 of its height.
 function labels_place(axis,    n, m, rank, ranks, free, x_least, x_most, y_least, y_most)
 {
     x_least = y_least = 1e9
@@ -191,7 +192,7 @@ function labels_place(axis,    n, m, rank, ranks, free, x_least, x_most, y_least
         if (point[n, "x", axis] > x_most) x_most = point[n, "x", axis]
         if (point[n, "y"] < y_least) y_least = point[n, "y"]
         if (point[n, "y"] > y_most) y_most = point[n, "y"]
-        ranks[n] = on_front(n, axis) ? 1 : precise_at[keys[point[n, "key"]]] ? 4 \
+        ranks[n] = precise_at[keys[point[n, "key"]]] ? 4 : on_front(n, axis) ? 1 \
             : point[n - 1, "key"] != point[n, "key"] || point[n + 1, "key"] != point[n, "key"] ? 2 : 3
     }
     for (rank = 1; rank <= 3; rank++)
@@ -214,7 +215,7 @@ function far(distance, extent)
     return 30*(distance < 0 ? -distance : distance)/(extent > 0 ? extent : 1)
 }
 
-function rows_print(    k, n, least, most)
+function rows_print(    k, n, size, least, most)
 {
     points_collect()
     labels_place(1)
@@ -229,8 +230,8 @@ function rows_print(    k, n, least, most)
         print "\n"
     }
     print "END_OF_ROWS"
-    print "array series[" key_count "]; array family[" key_count "]; array member[" key_count "]"
-    print "array precise[" key_count "]"
+    size = key_count > 0 ? key_count : 1
+    print "array series[" size "]; array family[" size "]; array member[" size "]; array precise[" size "]"
     for (k = 1; k <= key_count; k++) {
         printf "series[%d] = %s; family[%d] = %d; ", k, quoted(title_of[keys[k]]), k, (family_at[keys[k]] - 1)%10 + 1
         printf "member[%d] = %d; precise[%d] = %d\n", k, member_at[keys[k]], k, precise_at[keys[k]]
@@ -246,8 +247,8 @@ function rows_print(    k, n, least, most)
         if (point[n, "y"] > most) most = point[n, "y"]
     }
     if (control_count && points)
-        printf "$control << END_OF_CONTROL\n%s %.9g\n%s %.9g\nEND_OF_CONTROL\n", control[int((control_count + 1)/2)], exp(most),
-            control[int((control_count + 1)/2)], exp(least)
+        printf "$control << END_OF_CONTROL\n%s %.9g\n%s %.9g\nEND_OF_CONTROL\n", control[int((control_count + 1)/2)],
+            exp(most), control[int((control_count + 1)/2)], exp(least)
     printf "reference_pslr = %s; reference_islr = %s\n", number(reference_pslr), number(reference_islr)
     printf "has_points = %d; has_lobes = %d; has_rates = %d\n", (points > 0),
         lobes && reference_pslr != "" && reference_islr != "", rates
@@ -275,12 +276,13 @@ function slopes_print(    text)
     while (row_read(folder "/slopes.csv"))
         if (field["scene"] == scene && (field["setting"] == "beta" || field["setting"] == "factor") \
             && field["part"] != "falling" && field["precision"] == "float") {
-            printf "%s %s\n%s %s\n\n\n", field["rate_first"], field["error_first"], field["rate_last"], field["error_last"]
+            printf "%s %s\n%s %s\n\n\n", field["rate_first"], field["error_first"], field["rate_last"],
+                field["error_last"]
             text = text sprintf("%.9g %.9g \"%sslope %.2f\"\n", sqrt(field["rate_first"]*field["rate_last"]),
                 sqrt(field["error_first"]*field["error_last"]), field["part"] == "floor" ? "floor, " : "", field["slope"])
         }
     print "END_OF_SLOPES"
-    printf "$slope_labels << END_OF_LABELS\n%sEND_OF_LABELS\n", text
+    printf "$slope_labels << END_OF_LABELS\n%sEND_OF_LABELS\nhas_slopes = %d\n", text, (text != "")
 }
 
 function rules_print()
@@ -289,8 +291,8 @@ function rules_print()
         ;
     if (field["scene"] != scene)
         split("", field)
-    printf "has_rules = %d; bp22_rate = %s; zp15_rate = %s; edge_phase = %s; linear_floor = %s\n", (field["scene"] == scene),
-        number(field["bp22_eq20_rate"]), number(field["zp15_rate"]), number(field["edge_phase_rad"]),
+    printf "has_rules = %d; bp22_rate = %s; zp15_rate = %s; edge_phase = %s; linear_floor = %s\n",
+        (field["scene"] == scene), number(field["bp22_eq20_rate"]), number(field["zp15_rate"]), number(field["edge_phase_rad"]),
         number(field["linear_floor"])
 }
 

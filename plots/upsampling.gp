@@ -24,7 +24,7 @@ do for [picture = 1:pictures] {
     set logscale x 2
     set xrange [0.9:1.25*x_max]
     set xtics 2
-    set lmargin at screen 95.0/width
+    set lmargin at screen 110.0/width
     set rmargin at screen 1 - 25.0/width
     if (bp22_rate > 0) {
         set arrow 1 from bp22_rate,graph 0 to bp22_rate,graph 1 nohead dashtype 2 linecolor "#000000"
@@ -38,22 +38,24 @@ do for [picture = 1:pictures] {
     set tmargin at screen 1 - 45.0/height
     set bmargin at screen 1 - 400.0/height
     set title picture_scene[picture].": the upsampling rate"
-    set key at screen 0.5,135.0/height center top maxrows 5 samplen 4
+    set key at screen 0.5,135.0/height center top maxrows 5 samplen 4 font ",12"
     set logscale y
     set format y "1e%T"
     set yrange [y_min/2:1]
     set ylabel "relative L2 error of the complex image"
-    plot edge_phase/x with lines linewidth 1 dashtype 3 linecolor rgb "#000000" \
-            title (has_rules ? "phase at the band's edge, pi B/(2 fs K)" : ""), \
-        linear_floor with lines linewidth 1 dashtype 5 linecolor rgb "#000000" \
-            title (has_rules ? "linear's floor, pi^2 (B/fs)^2/(12 sqrt 5)" : ""), \
+    plot for [once = 1:has_rules] edge_phase/x with lines linewidth 1 dashtype 3 linecolor rgb "#000000" \
+            title "phase at the band's edge, pi B/(2 fs K)", \
+        for [once = 1:has_rules] linear_floor with lines linewidth 1 dashtype 5 linecolor rgb "#000000" \
+            title "linear's floor, pi^2 (B/fs)^2/(12 sqrt 5)", \
         for [n = 1:|rated|] k = rated[n] $rows index k - 1 using 1:4 with linespoints \
             linecolor rgb family_colour[family[k]] linewidth (precise[k] ? 1 : 1.8) dashtype 1 + (member[k] > 1) \
             pointtype (precise[k] ? family_open[family[k]] : family_filled[family[k]]) \
             pointsize (precise[k] ? 2.2 : 1.4) title (precise[k] ? "" : series[k]), \
-        $slopes using 1:2 with lines linewidth 1 linecolor rgb "#000000" title "fitted lines", \
-        $slope_labels using 1:2:3 with labels font ",11" offset 1,1 left notitle, \
-        keyentry with points pointtype 6 linecolor rgb "#000000" title "open, large: in double", \
+        for [once = 1:has_slopes] $slopes using 1:2 with lines linewidth 1 dashtype 1 linecolor rgb "#000000" \
+            title "fitted lines", \
+        for [once = 1:has_slopes] $slope_labels using 1:2:3 with labels font ",11" offset 1,1 left notitle, \
+        keyentry with points pointtype 6 linewidth 1 pointsize 1.2 linecolor rgb "#000000" \
+            title "open, large: in double", \
         keyentry with lines linetype 1 title (panels == 2 ? "the exact image's ISLR" : "")
     if (panels == 2) {
         unset key
@@ -69,7 +71,8 @@ do for [picture = 1:pictures] {
         plot reference_islr with lines linetype 1, \
             for [n = 1:|rated|] k = rated[n] $rows index k - 1 using 1:6 with linespoints \
                 linecolor rgb family_colour[family[k]] linewidth (precise[k] ? 1 : 1.8) dashtype 1 + (member[k] > 1) \
-                pointtype (precise[k] ? family_open[family[k]] : family_filled[family[k]]) pointsize (precise[k] ? 2.2 : 1.4)
+                pointtype (precise[k] ? family_open[family[k]] : family_filled[family[k]]) \
+                pointsize (precise[k] ? 2.2 : 1.4)
     }
     unset multiplot
     unset output

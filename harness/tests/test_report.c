@@ -298,6 +298,7 @@ static void test_everything_is_on_the_page(void **state)
     assert_non_null(strstr(html, "the layout is lost"));
     assert_null(strstr(strstr(html, "the layout is lost") + 1, "the layout is lost"));
     assert_false(is_there("report.html.part") || is_there("report.md.part"));
+    assert_null(strstr(html, "could not be drawn"));
     /* Every link within the page leads somewhere. */
     for (const char *link = html; (link = strstr(link, "href=\"#"));) {
         char id[48];
@@ -327,6 +328,7 @@ static void test_failures_alone_make_a_page(void **state)
     assert_int_equal(page->drawings, 0);
     assert_int_equal(page->tables, 2);
     assert_holds(html, "failed: out of luck");
+    assert_null(strstr(html, "could not be drawn"));
     free(page);
     free(html);
 }
