@@ -118,6 +118,24 @@ static const char *verdict_class(const char *verdict)
     return NULL;
 }
 
+/* How many of each verdict there are, where the sheet has verdicts. */
+static void verdicts_count_show(struct page *page, const struct sheet *sheet, const struct csv *csv)
+{
+    char text[256] = "";
+    for (int k = 0; k < SHEET_COLUMNS && sheet->columns[k].title; k++)
+        for (int verdict = 0; verdict < CLAIM_VERDICTS && sheet->columns[k].show == SHOW_VERDICT; verdict++) {
+            int count = 0;
+            for (int row = 0; row < csv->row_count; row++)
+                count += strcmp(csv_cell(csv, row, csv_column(csv, sheet->columns[k].name)),
+                                claim_verdict_names[verdict]) == 0;
+            size_t used = strlen(text);
+            snprintf(text + used, sizeof text - used, "%s%d %s", used ? ", " : "", count,
+                     claim_verdict_names[verdict]);
+        }
+    if (*text)
+        page_paragraph(page, text);
+}
+
 static void sheet_rows_show(struct page *page, const struct sheet *sheet, const struct csv *csv, const char *group)
 {
     struct page_column columns[SHEET_COLUMNS];
@@ -173,6 +191,7 @@ void sheet_show(struct page *page, const struct sheet *sheet, const struct csv *
         return;
     page_heading(page, 2, sheet->id, sheet->title);
     page_paragraph(page, sheet->text);
+    verdicts_count_show(page, sheet, csv);
     int column = sheet->group ? csv_column(csv, sheet->group) : -1;
     if (column < 0)
         sheet_rows_show(page, sheet, csv, NULL);

@@ -64,8 +64,8 @@ enum status command_sweep(const struct task *task)
     for (int k = 0; k < scene_count && status == STATUS_OK; k++)
         draw(directory, &scenes[k]);
     if (status == STATUS_OK)
-        printf("\nResults: %s/measurements.csv, targets.csv, fronts.csv, cheapest.csv, slopes.csv, rules.csv and plots.\n",
-               directory);
+        printf("\nResults: %s/measurements.csv, targets.csv, fronts.csv, cheapest.csv, slopes.csv, rules.csv and "
+               "plots.\n", directory);
     status = comparison_close(&comparison, status);
     scenes_free(scenes, scene_count);
     ladder_free(&ladder);

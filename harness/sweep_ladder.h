@@ -10,9 +10,9 @@ struct ladder {
     int count;
 };
 
-/* Append `start` with every combination of the values that its params' `sweep` names, in float and in double. What was
-   given in the SPEC stays as it is, and so do the terse params, whose defaults are meant to be kept. An exact algorithm has
-   nothing to trade: it is appended once, as it is. Errors: STATUS_FAILED without memory; STATUS_INVALID when a ladder
+/* Append `start` with every combination of the values that its params' `sweep` names, in float and in double. What
+   was given in the SPEC stays as it is, and so do the terse params, whose defaults are meant to be kept. An exact
+   algorithm has nothing to trade: it is appended once, as it is. Errors: STATUS_FAILED without memory; STATUS_INVALID when a ladder
    names a value that the param does not take. */
 enum status ladder_add(struct ladder *ladder, const struct spec *start);
 void ladder_free(struct ladder *ladder);

@@ -73,7 +73,7 @@ int floor_find(int count, const double *error)
 
 /* --- Rows ------------------------------------------------------------------------------------------------------ */
 
-/* A measured setting as a rung of its ladder: the first option that is a number, and the rest, which stays the same. */
+/* A measured setting as a rung of its ladder: the first option that is a number, and the rest, which stays. */
 struct rung {
     const struct measurement *row;
     char setting[32], rest[256];        /* empty setting: no option is a number */
@@ -237,8 +237,8 @@ static void cheapest_write(struct group *group, FILE *file)
             printf("    %7s  %8s %8s %9s  %7.1e  %s\n", threshold, cell_time(row->run_s).text,
                    cell_significant(row->control_s / row->run_s, "x").text,
                    cell_significant(1e-6 * row->flops, "").text, row->error, spec);
-            fields_write(file, (const char *const[]){row->scene, costs[c].name, threshold, row->algorithm, row->options,
-                                                     row->precision, NULL},
+            fields_write(file, (const char *const[]){row->scene, costs[c].name, threshold, row->algorithm,
+                                                     row->options, row->precision, NULL},
                          (double[]){row->run_s, row->control_s / row->run_s, row->flops, row->error, row->error_gain,
                                     row->pslr_db, row->islr_db}, 7);
         }
@@ -261,8 +261,8 @@ static void slope_write(const struct rung *rungs, const double *rates, const dou
     snprintf(name, sizeof name, "%s%s%s%s", row->algorithm, *rungs->rest ? ":" : "", rungs->rest,
              strcmp(row->precision, "double") == 0 ? " double" : "");
     snprintf(range, sizeof range, "%s %g to %g", rungs->setting, rungs[0].value, rungs[count - 1].value);
-    printf("  %-36s %-8s %-18s %6d  %6.3f  %7.1e  %7.1e  %8.4f\n", name, part, range, fit.points, fit.slope, fit.first,
-           fit.last, fit.residual_log10);
+    printf("  %-36s %-8s %-18s %6d  %6.3f  %7.1e  %7.1e  %8.4f\n", name, part, range, fit.points, fit.slope,
+           fit.first, fit.last, fit.residual_log10);
 }
 
 /* The ladder's parts: where the error falls and the floor; without a floor the finest half, for the order that the
@@ -302,9 +302,9 @@ static void slopes_write(struct group *group, FILE *file)
 }
 
 /* The rules for the upsampling rate at this scene's numbers (BP22 Eq. (20), ZP15's lambda/8), and two error laws: the
-   envelope's phase at the band's edge at rate 1, which falls as 1/rate, and the floor of linear interpolation. That is
-   its loss 1 - sinc^2(f/fs), about (pi f/fs)^2/3, rms over a flat band |f| <= B/2: pi^2 (B/fs)^2/(12 sqrt 5). A scene that
-   is no longer there as it was measured has none. */
+   envelope's phase at the band's edge at rate 1, which falls as 1/rate, and the floor of linear interpolation. That
+   is its loss 1 - sinc^2(f/fs), about (pi f/fs)^2/3, rms over a flat band |f| <= B/2: pi^2 (B/fs)^2/(12 sqrt 5). A
+   scene that is no longer there as it was measured has none. */
 static void rules_write(struct group *group, const struct csv *csv, FILE *file)
 {
     struct scene scene;
@@ -322,8 +322,8 @@ static void rules_write(struct group *group, const struct csv *csv, FILE *file)
         fields_write(file, (const char *const[]){group->scene, NULL},
                      (double[]){a->fc, a->fs, a->bandwidth, bp22, zp15, M_PI * fraction / 2,
                                 M_PI * M_PI / (12 * sqrt(5)) * fraction * fraction}, 7);
-        printf("\n%s: upsampling rates asked for by BP22 Eq. (20) > %.3g, by ZP15's lambda/8 > %.3g\n", group->scene, bp22,
-               zp15);
+        printf("\n%s: upsampling rates asked for by BP22 Eq. (20) > %.3g, by ZP15's lambda/8 > %.3g\n", group->scene,
+               bp22, zp15);
     }
     scene_free(&scene);
 }
@@ -338,8 +338,8 @@ static const struct {
                   "scene,cost,error_below,algorithm,options,precision,run_s,speed_up,flops,error,error_gain,pslr_db,"
                   "islr_db"},
     [SLOPES] = {"slopes.csv", "sasbench slopes 1",
-                "scene,algorithm,options,precision,setting,part,first,last,rate_first,rate_last,points,slope,error_first,"
-                "error_last,residual_log10"},
+                "scene,algorithm,options,precision,setting,part,first,last,rate_first,rate_last,points,slope,"
+                "error_first,error_last,residual_log10"},
     [RULES] = {"rules.csv", "sasbench rules 1",
                "scene,fc_hz,fs_hz,bandwidth_hz,bp22_eq20_rate,zp15_rate,edge_phase_rad,linear_floor"},
 };

@@ -1,12 +1,13 @@
-/* What the rows of a sweep say: the fronts, the cheapest setting for each decade of error, how the error falls along each
-   ladder, and the papers' rules for the upsampling rate. */
+/* What the rows of a sweep say: the fronts, the cheapest setting for each decade of error, how the error falls along
+   each ladder, and the papers' rules for the upsampling rate. */
 #ifndef SASBENCH_SWEEP_TABLES_H
 #define SASBENCH_SWEEP_TABLES_H
 
 #include "record.h"
 
-/* The points that no other point beats: none has both less or equal cost and less or equal error. Of equal points the first
-   stays. Their indices go to front [count], cost ascending; returns how many. Values that are not > 0 are no points. */
+/* The points that no other point beats: none has both less or equal cost and less or equal error. Of equal points the
+   first stays. Their indices go to front [count], cost ascending; returns how many. Values that are not > 0 are no
+   points. */
 int front_find(int count, const double *cost, const double *error, int *front);
 
 /* A straight line through log10 error against log10 rate, by least squares. */
@@ -18,13 +19,13 @@ struct line_fit {
 };
 struct line_fit line_fit(int count, const double *rate, const double *error);
 
-/* The first point from which on no error differs from the last one's by more than 5 %; `count` when the last two differ
-   more: there is no floor. */
+/* The first point from which on no error differs from the last one's by more than 5 %; `count` when the last two
+   differ more: there is no floor. */
 int floor_find(int count, const double *error);
 
-/* Read DIR/measurements.csv, write fronts.csv, cheapest.csv, slopes.csv and rules.csv beside it (results/README.md has their
-   columns) and print the last three. Errors: as results_read; STATUS_INVALID for a folder that
-   cannot be written; STATUS_FAILED without memory. */
+/* Read DIR/measurements.csv, write fronts.csv, cheapest.csv, slopes.csv and rules.csv beside it (results/README.md has
+   their columns) and print the last three. Errors: as results_read; STATUS_INVALID for a folder that cannot be
+   written; STATUS_FAILED without memory. */
 enum status sweep_tables(const char *directory);
 
 #endif

@@ -1,5 +1,6 @@
-/* `sweep`: ladders, fronts and lines on made-up numbers; the whole command on a small speckle scene, cut short and resumed;
-   and the two laws that a sweep has to show there: linear upsampling's floor and zero padding's order 1/K. */
+/* `sweep`: ladders, fronts and lines on made-up numbers; the whole command on a small speckle scene, cut short and
+   resumed; and the two laws that a sweep has to show there: linear upsampling's floor and zero padding's order 1/K. */
+#include <glob.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -175,8 +176,8 @@ static void test_tables_of_made_up_rows(void **state)
     assert_int_equal(record_open(folder, &provenance, &record), STATUS_OK);
     assert_int_equal(record_scene(record, "made/up", 1), STATUS_OK);
     struct measurement row = {
-        .scene = "made/up", .algorithm = "bp_zeropad", .precision = "float", .threads = 2, .engine = "x", .status = "ok",
-        .reason = "", .skipped = "", .stages = "", .plan_s = 1, .runs = 3, .control_s = 8, .flops_published = NAN,
+        .scene = "made/up", .algorithm = "bp_zeropad", .precision = "float", .threads = 2, .engine = "x",
+        .status = "ok", .reason = "", .skipped = "", .stages = "", .plan_s = 1, .runs = 3, .control_s = 8, .flops_published = NAN,
         .pairs = 1e6, .bytes = 1, .error_gain = NAN, .phase_rms_rad = NAN, .width_m = NAN, .pslr_db = NAN,
         .islr_db = NAN};
     for (int k = 0; k < 7; k++) {
@@ -217,7 +218,8 @@ static void test_tables_of_made_up_rows(void **state)
     int tenth = row_find(&csv, names, (const char *const[]){"run_s", "1e-1"});
     assert_float_equal(cell(&csv, tenth, "error"), 0.075, 1e-9);
     assert_float_equal(cell(&csv, tenth, "speed_up"), 200, 1e-6);
-    assert_float_equal(cell(&csv, row_find(&csv, names, (const char *const[]){"flops", "1e-1"}), "run_s"), 0.64, 1e-9);
+    tenth = row_find(&csv, names, (const char *const[]){"flops", "1e-1"});
+    assert_float_equal(cell(&csv, tenth, "run_s"), 0.64, 1e-9);
     assert_int_equal(row_find(&csv, names, (const char *const[]){"run_s", "1e-3"}), -1);
     csv_free(&csv);
 }
@@ -234,7 +236,8 @@ static const char small_scene[] =
     "record = { first_sample = 1920; samples = 256; };\n"
     "beam = { kind = \"rect\"; truncation = \"tx\"; limit = 0.443; };\n"
     "targets = { fields = ( { x = [-0.5, 0.5]; r = [49.0, 53.0]; count = 150; seed = 1; } ); };\n"
-    "image = { x = { first = -0.3; step = 0.02; count = 31; }; r = { first = 50.012; step = 0.025; count = 81; }; };\n";
+    "image = { x = { first = -0.3; step = 0.02; count = 31; };\n"
+    "          r = { first = 50.012; step = 0.025; count = 81; }; };\n";
 
 static void sweep_small(void)
 {
@@ -248,6 +251,14 @@ static void sweep_small(void)
     assert_int_equal(command_sweep(&task), STATUS_OK);
     spec_free(&specs[0]);
     spec_free(&specs[1]);
+}
+
+static size_t files_count(const char *pattern)
+{
+    glob_t found;
+    size_t count = glob(path_of(pattern), 0, NULL, &found) == 0 ? found.gl_pathc : 0;
+    globfree(&found);
+    return count;
 }
 
 /* The rows; the comment ahead of them holds the date of the last call. */
@@ -266,6 +277,12 @@ static void test_speckle_sweep_is_resumed_and_shows_the_laws(void **state)
     assert_true(file && fputs(small_scene, file) >= 0 && fclose(file) == 0);
     sweep_small();
     char *first = rows_read();
+    static const char *const plots[] = {"error_time", "error_flops", "upsampling", "lobes_time"};
+    for (size_t k = 0; k < sizeof plots / sizeof *plots; k++) {
+        char pattern[64];
+        snprintf(pattern, sizeof pattern, "out/*small*-%s.[ps][nv]g", plots[k]);
+        assert_int_equal(files_count(pattern), k < 3 ? 2 : 0);      /* PNG and SVG; speckle has no lobes */
+    }
 
     /* Done: nothing is measured again. */
     sweep_small();
