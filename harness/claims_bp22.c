@@ -239,7 +239,7 @@ static struct finding islr_difference(struct measured *m, const char *spec, doub
     bool within = printed >= on.least - ROUNDING_DB && printed <= on.largest + ROUNDING_DB;
     return finding(fabs(six.largest - printed) <= ROUNDING_DB, within,
                    "ISLR above sinc's: largest of six %.2f dB; 24 targets on range bins %.2f to %.2f dB; 24 between "
-                   "them %.2f to %.2f dB; the paper says %.2f",
+                   "them %.2f to %.2f dB; the paper says %.2f (else: it lies among those on range bins)",
                    six.largest, on.least, on.largest, off.least, off.largest, printed);
 }
 
@@ -257,7 +257,8 @@ static struct finding islr_within(struct measured *m, const char *spec, double p
         spread_magnitude(spread_join(on, off)) <= printed + ROUNDING_DB,
         spread_magnitude(six) <= printed + ROUNDING_DB || spread_magnitude(on) <= printed + ROUNDING_DB,
         "ISLR less sinc's: six targets as in Table 3 %.2f to %.2f dB; 24 on range bins %.2f to %.2f dB (median "
-        "%.2f); 24 between them %.2f to %.2f dB (median %.2f); bound %.2f dB",
+        "%.2f); 24 between them %.2f to %.2f dB (median %.2f); bound %.2f dB (at all; else at the six or on range "
+        "bins)",
         six.least, six.largest, on.least, on.largest, on.median, off.least, off.largest, off.median, printed);
 }
 
@@ -294,7 +295,7 @@ static struct finding recorded_data(struct measured *m)
 static struct finding two_phase_error(struct measured *m)
 {
     double two = MEASURED(m, SPECKLE, LINEAR_2, phase_rms_rad), eight = MEASURED(m, SPECKLE, LINEAR_8, phase_rms_rad);
-    return finding(two >= 2 * eight, two > eight * 1.1,
+    return finding(two >= 2 * eight, false,
                    "rms phase error in speckle: beta 2 %.3f rad, beta 8 %.3f rad, a factor of %.2f (criterion for "
                    "much larger: 2)",
                    two, eight, two / eight);

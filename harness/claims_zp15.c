@@ -132,9 +132,9 @@ static struct finding better_than_sinc(struct measured *m)
 static struct finding slices_differ(struct measured *m)
 {
     struct spread sinc = SPREAD(m, MANY, SINC_8, ZEROPAD_8, "null", islr_db, 0, TARGETS);
-    return finding(sinc.least > 0, sinc.median > 0,
+    return finding(sinc.least > 0, sinc.median >= 0.01,
                    "ISLR of sinc of 8 taps less that of zero padding by 8: %.3f to %.3f dB (median %.3f) over 24 "
-                   "targets (criterion: zero padding is lower)",
+                   "targets (criterion: zero padding is lower at each, else by 0.01 dB in the median)",
                    sinc.least, sinc.largest, sinc.median);
 }
 

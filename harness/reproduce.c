@@ -95,7 +95,8 @@ static enum status reproduced_write(const char *directory, const struct measured
         const struct reproduced *l = &lines[k];
         char item[160], assumption[1200];
         snprintf(item, sizeof item, "%s%s%s", l->target, *l->target ? ", " : "", l->method);
-        snprintf(assumption, sizeof assumption, "%s%s%s", l->assumption, *l->missing ? "; no value: " : "", l->missing);
+        snprintf(assumption, sizeof assumption, "%s%s%s%s%s", l->assumption, *l->note ? "; " : "", l->note,
+                 *l->missing ? "; no value: " : "", l->missing);
         const char *const texts[] = {l->table, item, l->quantity, l->definition, l->unit};
         const double numbers[] = {l->paper, l->ours, l->ours - l->paper};
         for (int n = 0; n < 5; n++) {
@@ -122,6 +123,21 @@ static void cell_print(double value, double paper)
     if (isfinite(value) && isfinite(paper))
         snprintf(difference, sizeof difference, size > 1e4 || size < 0.1 ? "(%+.1e)" : "(%+.3f)", value - paper);
     printf(" %10s %-10s", text, difference);
+}
+
+/* What published.csv notes on a target or a method, each once. */
+static void notes_print(const struct table *table, const struct reproduced *lines, int count)
+{
+    for (int k = 0; k < count; k++) {
+        const struct reproduced *l = &lines[k];
+        const char *subject = *l->target ? l->target : l->method;
+        bool said = strcmp(l->table, table->id) != 0 || !*l->note;
+        for (int n = 0; n < k && !said; n++)
+            said = strcmp(lines[n].note, l->note) == 0 && lines[n].table == l->table
+                   && strcmp(*lines[n].target ? lines[n].target : lines[n].method, subject) == 0;
+        if (!said)
+            printf("  %s: %s\n", subject, l->note);
+    }
 }
 
 /* One table, a row a printed number, a column a definition. */
@@ -168,6 +184,7 @@ static void table_print(const struct table *table, const struct reproduced *line
         }
         k = end;
     }
+    notes_print(table, lines, count);
 }
 
 /* Into claims.csv, and printed when `print`. */

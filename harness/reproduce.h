@@ -110,7 +110,7 @@ int upsampling_rate(double bin_m, double resolution_m, double wavelength_m);
 struct reproduced {
     const char *table, *target, *method, *quantity, *definition, *unit;
     double paper, ours;                     /* NAN: not printed, not measured */
-    const char *assumption;
+    const char *assumption, *note;          /* of the table; of the printed number */
     char missing[400];                      /* why `ours` is not there */
 };
 /* All lines, malloc'ed, [*count], for the caller to free. Errors: STATUS_FAILED without memory. */

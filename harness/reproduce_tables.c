@@ -12,11 +12,11 @@ const struct table tables[] = {
     {"bp22_t1", "BP22 Table 1, Eq. (11): FLOPs at N_a = 2880, N_r = 4800",
      "an FFT of N counts 5 N log2 N; counted: what our plans do, which read two taps where BP22 upsamples first", NULL},
     {"bp22_t3", "BP22 Table 3: PSLR and ISLR of six targets",
-     "the layout is lost: six targets on range bins, 40 to 225 m; rect beam cut at sin theta = .405 lambda/D_tx, f_s = 2B, "
-     "pings every 0.8 m on the pixels' raster", NULL},
+     "the layout is lost: six targets on range bins, 40 to 225 m; rect beam cut at sin theta = .405 lambda/D_tx, f_s "
+     "= 2B, pings every 0.8 m on the pixels' raster; the scatter among the printed targets does not reproduce", NULL},
     {"bp22_t4", "BP22 Table 4: times as ratios to nearest neighbour",
-     "simulated echoes of the real data's size (2880 x 4800 pixels from 2880 records); sinc of 8 taps; machine and language are "
-     "others", "nearest"},
+     "simulated echoes of the real data's size (2880 x 4800 pixels from 2880 records); sinc of 8 taps; machine and "
+     "language are others", "nearest"},
     {"bp22_eq20", "BP22 Eq. (20): smallest upsampling rate",
      "grid factor beta + 1, bin c/(2 f_s) with f_s = 2B, strict inequality", NULL},
     {"zp15_f3", "ZP15 Fig. 3: images of one target by three methods",
@@ -28,11 +28,12 @@ const struct table tables[] = {
     {"lbf21_t3", "LBF21 Table III: six targets, short integration time",
      "the layout is lost: azimuths of Fig. 13, ranges 50, 90, 135, 180, 225, 270 m; 16 blocks; beam as in Table II", NULL},
     {"lbf21_t4", "LBF21 Table IV: four targets, long integration time",
-     "the layout is lost: ranges 50, 80, 225, 260 m; 16 blocks; pixels of 0.01 m, half those of the short array; Wu's method "
-     "is a working definition", NULL},
+     "the layout is lost: ranges 50, 80, 225, 260 m; 16 blocks; pixels of 0.01 m, half those of the short array; "
+     "Wu's method is a working definition", NULL},
     {"lbf21_t5", "LBF21 Table V: times as ratios to LBF with 16 blocks",
-     "simulated echoes of the real data's size (48 receivers, 80 pings, 4096 samples into 3200 x 4096 pixels); PCA and Wu "
-     "with 16 blocks; Wu's method is a working definition; machine and language are others", "LBF, 16 blocks"},
+     "simulated echoes of the real data's size (48 receivers, 80 pings, 4096 samples into 3200 x 4096 pixels); PCA "
+     "and Wu with 16 blocks; Wu's method is a working definition; plain range migration calls libm for each phase, "
+     "plain back projection is vectorised; machine and language are others", "LBF, 16 blocks"},
     {"lbf21_flops", "LBF21 Eqs. (20) to (23): FLOPs of range migration and back projection",
      "N_interp = 8; N_a is 3200 in the paper and 48 x 80 = 3840 in our plans; Eq. (20) counts one sub-block", NULL},
     {"lbf21_f2", "LBF21 Fig. 2: phase error of LBF, first receiver, short", "d_1 = 0, |f| up to v/D_tx", NULL},
@@ -273,7 +274,7 @@ static void line_add(struct lines *lines, int row, const struct table *table, co
     *line = (struct reproduced){
         table->id, csv_cell(csv, row, PUBLISHED_TARGET), csv_cell(csv, row, PUBLISHED_METHOD),
         csv_cell(csv, row, PUBLISHED_QUANTITY), definition, csv_cell(csv, row, PUBLISHED_UNIT), paper, ours,
-        table->assumption, ""};
+        table->assumption, csv_cell(csv, row, PUBLISHED_NOTE), ""};
     if (!isfinite(ours))
         snprintf(line->missing, sizeof line->missing, "%s", lines->measured->missing);
     *lines->measured->missing = '\0';
