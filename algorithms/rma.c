@@ -37,10 +37,11 @@ static double swath_flops(const struct rma *rma, const struct rma_swath *swath)
     const double applied = 20;                  /* a receiver's cell: product, sum, and two recurrences */
     const double phases = 3 * (2.0 * RMA_DEGREE + 30) / RMA_GROUP;
     const double sums = rma->options.sum == RMA_SUM_AFTER ? receivers : 1;
+    const double weights = swath->needed * sums > 1 ? 10 * (rma->options.blend ? rma_nodes_blended(rma) : 1) : 0;
     double flops = receivers * rma->pings * fft_flops(length) + receivers * band * fft_flops(swath->period)
                    + q * receivers * band * (rma->converts ? applied + phases : 0) * swath->needed
-                   + q * (sums * swath->needed * (fft_flops(length) + 4 * length) + fft_flops(swath->stolt_length)
-                          + 2 * length);
+                   + q * (sums * (swath->needed * fft_flops(length) + weights * length)
+                          + fft_flops(swath->stolt_length) + 2 * length);
     for (int k = 0; k < swath->patch_count; k++) {
         const struct rma_patch *patch = &swath->patches[k];
         double rows = patch->grid.r_count, points = patch->length * patch->step * 2 * rma->fs

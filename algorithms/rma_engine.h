@@ -16,6 +16,7 @@ enum {
     RMA_SPAN = 256,                 /* bins that go through all corrections together, in the cache */
     RMA_GROUP = 24,                 /* receivers of one recurrence: float loses some 1e-6 over it */
     RMA_TILE = 8,                   /* neighbouring wavenumbers whose rows are stored together */
+    RMA_NODES = 4,                  /* blocks that blend at one range: a cubic */
     RMA_GUARD = 16,                 /* bins repeated beyond a spectrum's ends: the longest kernel */
     RMA_INTERVALS = 1024,           /* of the Stolt kernel's table, linear inside each */
     RMA_STEPS = 16                  /* range rows between fresh phases of a direct sum */
@@ -152,6 +153,12 @@ struct rma {
 
 /* Fills everything but the pointers that rma_transform's plan fills. */
 enum status rma_layout(struct rma *rma);
+
+/* Blocks that blend at one range. */
+static inline int rma_nodes_blended(const struct rma *rma)
+{
+    return rma->block_count < RMA_NODES ? rma->block_count : RMA_NODES;
+}
 
 /* The order in which wavenumbers are worked on: those that read the same spectra, q mod period, in a row. */
 static inline int rma_wavenumber(const struct rma *rma, const struct rma_swath *swath, int turn)

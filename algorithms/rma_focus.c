@@ -36,15 +36,44 @@ static void places(const struct work_place *w, real *restrict place)
     }
 }
 
-/* Samples that belong to a block, by their places: all of it, or fading to nothing at the neighbours' centres. */
-static void add_weighted(const real *restrict x, const real *restrict place, int n, real block, bool blend,
-                         real *restrict cut)
+/* Where a block counts, by place, and with which weight: a polynomial in the way from its centre, lowest power first. */
+struct piece {
+    real from, to, weight[RMA_NODES];
+};
+
+/* Blocks that blend: Lagrange's cubic through the nearest four, two to either side but at the ends of the swath. */
+static int block_pieces(const struct rma *rma, int block, struct piece *pieces)
 {
+    int count = 0;
+    if (!rma->options.blend) {
+        pieces[count++] = (struct piece){(real)(block - 0.5), (real)(block + 0.5), {1}};
+        return count;
+    }
+    const int nodes = rma_nodes_blended(rma), last = rma->block_count - nodes;
+    for (int first = block - nodes + 1; first <= block; first++) {      /* the nearest: first to first + nodes - 1 */
+        if (first < 0 || first > last)
+            continue;
+        struct piece *piece = &pieces[count++];
+        *piece = (struct piece){first > 0 ? (real)(first + 1) : -INFINITY, first < last ? (real)(first + 2) : INFINITY, {1}};
+        for (int node = first, degree = 1; node < first + nodes; node++)
+            if (node != block) {
+                real way = (real)(node - block);
+                for (int k = degree; k > 0; k--)
+                    piece->weight[k] = piece->weight[k] - piece->weight[k - 1] / way;
+                degree++;
+            }
+    }
+    return count;
+}
+
+static void add_weighted(const real *restrict x, const real *restrict place, int n, real block,
+                         const struct piece *piece, real *restrict cut)
+{
+    const real from = piece->from, to = piece->to, w0 = piece->weight[0], w1 = piece->weight[1],
+               w2 = piece->weight[2], w3 = piece->weight[3];
     for (int j = 0; j < n; j++) {
-        real away = place[j] - block, weight = away < 0 ? 1 + away : 1 - away;
-        if (!blend)
-            weight = away >= (real)-0.5 && away < (real)0.5;
-        weight = weight > 0 ? weight : 0;
+        real away = place[j] - block, weight = w0 + away * (w1 + away * (w2 + away * w3));
+        weight = place[j] >= from && place[j] < to ? weight : 0;
         cut[2 * j] += weight * x[2 * j];
         cut[2 * j + 1] += weight * x[2 * j + 1];
     }
@@ -80,6 +109,8 @@ static void add_block(const struct work_place *w, const real *row, int block, co
     interleave(row, below, swath->band, wave);
     memset(wave + 2 * (swath->band - below), 0, 2 * (size_t)(length - swath->band) * sizeof *wave);
     FFTW(execute_dft)(swath->range_inverse, (complex_real *)wave, (complex_real *)wave);
+    struct piece pieces[RMA_NODES];
+    const int count = place ? block_pieces(w->rma, block, pieces) : 0;
     /* Samples from `centre` on, then those before it at the cut's end. */
     for (int j = 0, n; j < length; j += n) {
         const int at = (swath->centre + j) % length, ahead = length - length / 2, left = (j < ahead ? ahead : length) - j;
@@ -90,9 +121,10 @@ static void add_block(const struct work_place *w, const real *row, int block, co
             memcpy(to, x, 2 * (size_t)n * sizeof *to);
             continue;
         }
-        real low = place[j] < place[j + n - 1] ? place[j] : place[j + n - 1];
-        if (low < (real)(block + 1) && place[j] + place[j + n - 1] - low > (real)(block - 1))
-            add_weighted(x, place + j, n, (real)block, w->rma->options.blend, to);
+        real low = place[j] < place[j + n - 1] ? place[j] : place[j + n - 1], high = place[j] + place[j + n - 1] - low;
+        for (int k = 0; k < count; k++)
+            if (low < pieces[k].to && high >= pieces[k].from)
+                add_weighted(x, place + j, n, (real)block, &pieces[k], to);
     }
 }
 

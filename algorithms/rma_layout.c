@@ -141,15 +141,15 @@ static double block_place(const struct rma *rma, double r)
     return ((rma->options.spacing == RMA_INVERSE ? 1 / r : r) - rma->block_from) / rma->block_width;
 }
 
-/* Blocks that fade into each other reach from the first row to the last with their centres, so that no row lies
-   outside two of them; the others do so with their edges. */
+/* Blocks that blend reach from the first row to the last with their centres, so that no row lies outside them; the
+   others do so with their edges. */
 static void blocks_place(struct rma *rma, int count)
 {
-    bool inverse = rma->options.spacing == RMA_INVERSE, fade = rma->options.blend && count > 1;
+    bool inverse = rma->options.spacing == RMA_INVERSE, blend = rma->options.blend && count > 1;
     double from = inverse ? 1 / rma->nearest : rma->nearest, to = inverse ? 1 / rma->farthest : rma->farthest;
     rma->block_count = count;
-    rma->block_width = (to - from) / (fade ? count - 1 : count);
-    rma->block_from = from + (fade ? 0 : rma->block_width / 2);
+    rma->block_width = (to - from) / (blend ? count - 1 : count);
+    rma->block_from = from + (blend ? 0 : rma->block_width / 2);
 }
 
 /* Is the error that the conversion at the blocks' centres leaves at their ends below the limit (LBF21 Eq. (13))? */
@@ -200,17 +200,26 @@ static enum status lay_blocks(struct rma *rma)
     return STATUS_OK;
 }
 
-/* The blocks that a swath's rows lie in. */
+/* The first of the blocks that make up the rows at a place. */
+static int block_first(const struct rma *rma, double place)
+{
+    double last = rma->block_count - 1;
+    if (!rma->options.blend)
+        return (int)fmin(fmax(floor(place + 0.5), 0), last);
+    return (int)fmin(fmax(floor(place) - 1, 0), rma->block_count - rma_nodes_blended(rma));
+}
+
+/* The blocks that make up a swath's rows. */
 static void swath_blocks(const struct rma *rma, struct rma_swath *swath, int *list)
 {
-    double near = rma->options.blend ? 1 - 1e-9 : 0.5 + 1e-9;      /* a block fades to nothing, or ends, there */
+    const int nodes = rma->options.blend ? rma_nodes_blended(rma) : 1;
     swath->blocks = list;
     for (int n = 0; n < rma->block_count; n++) {
         bool wanted = rma->block_count == 1;
         for (int k = 0; k < swath->patch_count && !wanted; k++) {
             const struct grid *g = &swath->patches[k].grid;
-            double last = rma->block_count - 1, begin = block_place(rma, g->r_first), end = block_place(rma, last_row(g));
-            wanted = fmin(fmax(end, 0), last) > n - near && fmin(fmax(begin, 0), last) < n + near;
+            int begin = block_first(rma, block_place(rma, g->r_first)), end = block_first(rma, block_place(rma, last_row(g)));
+            wanted = n >= (begin < end ? begin : end) && n < (begin < end ? end : begin) + nodes;
         }
         if (wanted)
             list[swath->needed++] = n;
