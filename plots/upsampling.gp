@@ -24,7 +24,7 @@ do for [picture = 1:pictures] {
     set logscale x 2
     set xrange [0.9:1.25*x_max]
     set xtics 2
-    set lmargin at screen 110.0/width
+    set lmargin at screen 125.0/width
     set rmargin at screen 1 - 25.0/width
     if (bp22_rate > 0) {
         set arrow 1 from bp22_rate,graph 0 to bp22_rate,graph 1 nohead dashtype 2 linecolor "#000000"
