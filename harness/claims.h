@@ -1,8 +1,8 @@
 /* What BP22, ZP15 and LBF21 claim, sentence by sentence, and how our measurements judge it.
 
-   A claim is a row of a table: a function looks up what was measured and compares it with the numbers that the sentence
-   itself gives. What counts as agreement is the printed number with its last digit's rounding; where a sentence gives
-   no number ("slightly", "far less") the evidence states the criterion that was taken. */
+   A claim is a row of a table: a function looks up what was measured and compares it with the numbers that the
+   sentence itself gives. What counts as agreement is the printed number with its last digit's rounding; where a
+   sentence gives no number ("slightly", "far less") the evidence states the criterion that was taken. */
 #ifndef SASBENCH_CLAIMS_H
 #define SASBENCH_CLAIMS_H
 
@@ -31,7 +31,7 @@ struct finding claim_judge(const struct claim *claim, struct measured *measured)
 
 /* ---- for the functions of the claims ---- */
 
-/* Holds as it stands if `strict`; else under the assumption that the evidence names if `assumed`; else it does not. */
+/* Holds if `strict`; else under the assumption that the evidence names if `assumed`; else it does not. */
 struct finding finding(bool strict, bool assumed, const char *format, ...) __attribute__((format(printf, 3, 4)));
 struct finding finding_undecided(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
@@ -39,8 +39,8 @@ struct finding finding_undecided(const char *format, ...) __attribute__((format(
 struct spread {
     double least, median, largest;
 };
-/* Of what `spec` has above `other` (NULL: of its own values) in a field of the azimuth slices of targets [first, first +
-   count) of a scene: SPREAD(measured, scene, spec, other, "pixel", islr_db, 0, 24). */
+/* Of what `spec` has above `other` (NULL: of its own values) in a field of the azimuth slices of targets [first,
+   first + count) of a scene: SPREAD(measured, scene, spec, other, "pixel", islr_db, 0, 24). */
 #define SPREAD(measured, scene, spec, other, definition, field, first, count)                                        \
     spread_of(measured, scene, spec, other, definition, offsetof(struct target_row, field), #field, first, count)
 struct spread spread_of(struct measured *measured, const char *scene, const char *spec, const char *other,

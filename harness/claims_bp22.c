@@ -1,4 +1,4 @@
-/* The claims of BP22 (back projection with two interpolators): linear upsampling against nearest neighbour and sinc. */
+/* The claims of BP22 (two interpolators): linear upsampling against nearest neighbour and sinc. */
 #include <math.h>
 #include <stdio.h>
 

@@ -203,8 +203,8 @@ static struct finding within_bp(struct measured *m, const struct part *part, con
         spread_magnitude(p), spread_magnitude(i), pslr_db, islr_db);
 }
 
-/* "`spec` loses up to ...": the printed largest loss of PSLR lies within the losses at the part's targets, or within a
-   quarter of the largest. */
+/* "`spec` loses up to ...": the printed largest loss of PSLR lies within the losses at the part's targets, or within
+   a quarter of the largest. */
 static struct finding loses(struct measured *m, const struct part *part, const char *spec, double pslr_db,
                             double islr_db)
 {
@@ -328,7 +328,8 @@ static struct finding shifts(struct measured *m, const char *spec, double most_m
     return finding(rounds && one_sign && least >= 1.5 && !own_definition, rounds,
                    "position errors less BP's from 225 to 270 m: %.2f to %.2f mm%s; the paper says 2 to %.0f mm "
                    "(else: the largest rounds to that)",
-                   1e3 * shift.least, 1e3 * shift.largest, own_definition ? " by our working definition" : "", most_mm);
+                   1e3 * shift.least, 1e3 * shift.largest, own_definition ? " by our working definition" : "",
+                   most_mm);
 }
 
 static struct finding pca_shifts(struct measured *m)

@@ -96,8 +96,8 @@ static struct finding lbf_reduces_to_pca(struct measured *m)
 }
 
 /* "LBF errs by ... at most": by both of its formulas, else by one of them, in [low_rad, high_rad). */
-static struct finding largest_within(struct measured *m, enum phase_setup setup, bool last, double least_m, double most_m,
-                                     double low_rad, double high_rad)
+static struct finding largest_within(struct measured *m, enum phase_setup setup, bool last, double least_m,
+                                     double most_m, double low_rad, double high_rad)
 {
     double five = phase(m, setup, last, "lbf_fc", least_m, most_m, 1);
     double seven = phase(m, setup, last, "lbf7_fc", least_m, most_m, 1);

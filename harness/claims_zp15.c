@@ -1,4 +1,4 @@
-/* The claims of ZP15 (back projection with zero padding in frequency): zero padding against nearest and truncated sinc. */
+/* The claims of ZP15: zero padding in frequency against nearest neighbour and truncated sinc. */
 #include <math.h>
 
 #include "claims.h"

@@ -1,5 +1,5 @@
-/* The command `reproduce`: measure what the papers' tables and claims rest on, set their numbers beside ours, and judge
-   what they say. */
+/* The command `reproduce`: measure what the papers' tables and claims rest on, set their numbers beside ours, and
+   judge what they say. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -240,7 +240,8 @@ static enum status report(const char *directory, const bool selected[TABLES_MAX]
             table_print(&tables[k], lines, count);
     }
     if (status == STATUS_OK)
-        printf("\nResults: %s/reproduced.csv, claims.csv, measurements.csv, targets.csv, phase figures.\n", directory);
+        printf("\nResults: %s/reproduced.csv, claims.csv, measurements.csv, targets.csv, phase figures.\n",
+               directory);
     free(lines);
     measured_free(&measured);
     return status;
@@ -264,6 +265,7 @@ enum status command_reproduce(const struct task *task)
     if (status == STATUS_OK)
         status = report(directory, selected);
     if (status == STATUS_OK && failed)
-        status = status_set(STATUS_FAILED, "at least one measurement failed; %s/measurements.csv says why", directory);
+        status = status_set(STATUS_FAILED, "at least one measurement failed; %s/measurements.csv says why",
+                            directory);
     return status;
 }

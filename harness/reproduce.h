@@ -1,6 +1,6 @@
-/* The papers' tables and claims beside our own numbers: what has to be measured, where the values are found again, and
-   what becomes of them. Measuring fills a results folder; all that is said of the papers is then worked out from that
-   folder alone, so that no number comes from anywhere else. */
+/* The papers' tables and claims beside our own numbers: what has to be measured, where the values are found again,
+   and what becomes of them. Measuring fills a results folder; all that is said of the papers is then worked out from
+   that folder alone, so that no number comes from anywhere else. */
 #ifndef SASBENCH_REPRODUCE_H
 #define SASBENCH_REPRODUCE_H
 
@@ -23,8 +23,8 @@
 #define PCA_16 "rma_pca:blocks=16"
 #define WU_16 "rma_wu:blocks=16"
 
-/* Plain engines, which are what the papers compare: every delay evaluated; every cell's phase by libm and each receiver
-   summed by itself. */
+/* Plain engines, which are what the papers compare: every delay evaluated; every cell's phase by libm and each
+   receiver summed by itself. */
 #define PLAIN_BP "engine=general,exact=true"
 #define PLAIN_RMA "spacing=uniform,blend=off,sum=after,phases=libm"
 
@@ -56,19 +56,21 @@ void measured_free(struct measured *measured);
 /* A field of the measurement of `spec` (SPEC text) on `scene`: MEASURED(measured, scene, spec, error). */
 #define MEASURED(measured, scene, spec, field) \
     measured_value(measured, scene, spec, offsetof(struct measurement, field), #field)
-double measured_value(struct measured *measured, const char *scene, const char *spec, size_t offset, const char *name);
+double measured_value(struct measured *measured, const char *scene, const char *spec, size_t offset,
+                      const char *name);
 
 /* Seconds of one stage of it ("compress"). */
 double measured_stage(struct measured *measured, const char *scene, const char *spec, const char *stage);
 
-/* A field of its azimuth slice through a target (from 0): MEASURED_TARGET(measured, scene, spec, 0, "pixel", islr_db). */
+/* A field of its azimuth slice through a target (from 0):
+   MEASURED_TARGET(measured, scene, spec, 0, "pixel", islr_db). */
 #define MEASURED_TARGET(measured, scene, spec, target, definition, field) \
     measured_target(measured, scene, spec, target, definition, offsetof(struct target_row, field), #field)
 double measured_target(struct measured *measured, const char *scene, const char *spec, int target,
                        const char *definition, size_t offset, const char *name);
 
-/* The largest magnitude (rad) of a formula's phase error over a set-up's first or last receiver, ranges from `least_m`
-   to `most_m`, the three range frequencies, and |f| up to `share` of the Doppler band (0: its centre). */
+/* The largest magnitude (rad) of a formula's phase error over a set-up's first or last receiver, ranges from
+   `least_m` to `most_m`, the three range frequencies, and |f| up to `share` of the Doppler band (0: its centre). */
 struct phase_part {
     enum phase_setup setup;
     bool last_receiver;
@@ -95,12 +97,12 @@ extern const struct table tables[];         /* id NULL ends */
 struct need {
     const char *scene, *spec;
 };
-/* Add the needs of the table `id` to needs [count of room], each once; returns how many there are then. The claims need
-   all. What finds no room is left out. */
+/* Add the needs of the table `id` to needs [count of room], each once; returns how many there are then. The claims
+   need all. What finds no room is left out. */
 int table_needs(const char *id, struct need *needs, int count, int room);
 
-/* Seconds of a method of a table of times by one of its definitions ("fast engines"), scaled to the full size where only
-   a part of it was timed. */
+/* Seconds of a method of a table of times by one of its definitions ("fast engines"), scaled to the full size where
+   only a part of it was timed. */
 double table_seconds(struct measured *measured, const char *id, const char *method, const char *definition);
 
 /* The smallest upsampling rate that satisfies BP22 Eq. (20) for bin and resolution (m) at wavelength lambda (m). */

@@ -14,14 +14,16 @@ static const char *const phase_files[] = {
     [PHASE_SHORT] = "phase-lbf21__phase_short.csv", [PHASE_LONG] = "phase-lbf21__phase_long.csv"};
 
 /* The columns of published.csv. */
-static const char *const published_columns[] = {"table", "target", "method", "quantity", "unit", "paper", "source", "note"};
+static const char *const published_columns[] = {"table", "target", "method", "quantity",
+                                                "unit", "paper", "source", "note"};
 
 static enum status published_read(struct csv *csv)
 {
     enum status status = csv_read(SASBENCH_ROOT "/results/published.csv", CSV_TAIL_KEEP, csv);
     for (size_t k = 0; status == STATUS_OK && k < sizeof published_columns / sizeof *published_columns; k++)
         if (csv_column(csv, published_columns[k]) != (int)k)
-            status = status_set(STATUS_INVALID, "%s: column %zu must be '%s'", csv->path, k + 1, published_columns[k]);
+            status = status_set(STATUS_INVALID, "%s: column %zu must be '%s'", csv->path, k + 1,
+                                published_columns[k]);
     return status;
 }
 
@@ -99,7 +101,8 @@ double measured_value(struct measured *measured, const char *scene, const char *
     const struct measurement *row = measurement_find(measured, scene, spec);
     double value = row ? *(const double *)((const char *)row + offset) : NAN;
     if (row && !isfinite(value))
-        missing(measured, "%s with %s: %s is undefined%s%s", scene, spec, name, *row->reason ? ", " : "", row->reason);
+        missing(measured, "%s with %s: %s is undefined%s%s", scene, spec, name, *row->reason ? ", " : "",
+                row->reason);
     return value;
 }
 

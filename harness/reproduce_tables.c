@@ -10,7 +10,8 @@
 
 const struct table tables[] = {
     {"bp22_t1", "BP22 Table 1, Eq. (11): FLOPs at N_a = 2880, N_r = 4800",
-     "an FFT of N counts 5 N log2 N; counted: what our plans do, which read two taps where BP22 upsamples first", NULL},
+     "an FFT of N counts 5 N log2 N; counted: what our plans do, which read two taps where BP22 upsamples first",
+     NULL},
     {"bp22_t3", "BP22 Table 3: PSLR and ISLR of six targets",
      "the layout is lost: six targets on range bins, 40 to 225 m; rect beam cut at sin theta = .405 lambda/D_tx, f_s "
      "= 2B, pings every 0.8 m on the pixels' raster; the scatter among the printed targets does not reproduce", NULL},
@@ -26,7 +27,8 @@ const struct table tables[] = {
     {"lbf21_t2", "LBF21 Table II: width of the sub-blocks, target at the edge of one",
      "rect beam cut at sin theta = .405 lambda/D_tx as in BP22's simulations; ping phase unknown", NULL},
     {"lbf21_t3", "LBF21 Table III: six targets, short integration time",
-     "the layout is lost: azimuths of Fig. 13, ranges 50, 90, 135, 180, 225, 270 m; 16 blocks; beam as in Table II", NULL},
+     "the layout is lost: azimuths of Fig. 13, ranges 50, 90, 135, 180, 225, 270 m; 16 blocks; beam as in Table II",
+     NULL},
     {"lbf21_t4", "LBF21 Table IV: four targets, long integration time",
      "the layout is lost: ranges 50, 80, 225, 260 m; 16 blocks; pixels of 0.01 m, half those of the short array; "
      "Wu's method is a working definition", NULL},
@@ -359,7 +361,8 @@ static void lines_of_flops(struct lines *lines, int row, const struct table *tab
     for (int s = 0; s < SOURCES; s++)
         if (strcmp(sources[s].table, table->id) == 0 && strcmp(sources[s].method, method) == 0) {
             const char *scene = sources[s].scene, *spec = sources[s].spec;
-            line_add(lines, row, table, sources[s].definition, paper, MEASURED(measured, scene, spec, flops_published));
+            line_add(lines, row, table, sources[s].definition, paper,
+                     MEASURED(measured, scene, spec, flops_published));
             line_add(lines, row, table, "counted", paper, MEASURED(measured, scene, spec, flops));
         }
 }

@@ -1,5 +1,5 @@
-/* The papers' tables and claims: all printed numbers are there, nothing is said without a measurement, verdicts follow the
-   numbers and change with a fault in an algorithm, and finished measurements are kept. */
+/* The papers' tables and claims: all printed numbers are there, nothing is said without a measurement, verdicts
+   follow the numbers and change with a fault in an algorithm, and finished measurements are kept. */
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
@@ -211,7 +211,8 @@ static void nothing_is_said_without_measurements(void **state)
     assert_true(count > 2 * measured.published.row_count);
     for (int k = 0; k < count; k++)
         if (strcmp(lines[k].definition, "rho_a = D_tx/2") != 0 && (isfinite(lines[k].ours) || !*lines[k].missing))
-            fail_msg("%s %s %s: %g without a measurement", lines[k].table, lines[k].target, lines[k].method, lines[k].ours);
+            fail_msg("%s %s %s: %g without a measurement", lines[k].table, lines[k].target, lines[k].method,
+                     lines[k].ours);
     free(lines);
     measured_free(&measured);
 }
@@ -233,8 +234,9 @@ static void every_line_can_be_measured(void **state)
         assert_int_equal(spec_parse(needs[k].spec, &spec), STATUS_OK);
         for (int target = 0; target < scene.point_count; target++)
             for (int d = 0; d < 3; d++) {
-                struct target_row row = {needs[k].scene, spec.algorithm->name, spec.text, precision_name(spec.precision),
-                                         target, "azimuth", definitions[d], 3, 0, 0, 0.04, -15, -10};
+                struct target_row row = {needs[k].scene, spec.algorithm->name, spec.text,
+                                         precision_name(spec.precision), target, "azimuth", definitions[d],
+                                         3, 0, 0, 0.04, -15, -10};
                 assert_int_equal(record_targets(rows, &row, 1), STATUS_OK);
             }
         struct measurement row = row_of(needs[k].scene, &spec);
@@ -352,16 +354,17 @@ static void failures_decide_nothing(void **state)
 
 /* --- Faults --------------------------------------------------------------------------------------------------- */
 
-/* Small scenes that stand in for those of the claims. */
-#define ARRAY                                                                                                      \
-    "description = \"stand-in\"; sonar = { fc = 150e3; bandwidth = 15e3; fs = 30e3; }; pulse = { kind = \"flat\"; };" \
-    "array = { tx_length = 0.08; rx_length = 0.04; receivers = 8; first_offset = 0.06; pitch = 0.06; };"           \
-    "track = { speed = 2.5; pri = 0.096; pings = 24; x_first = -2.8; };"                                           \
-    "record = { first_sample = 520; samples = 512; }; beam = { kind = \"txrx\"; truncation = \"tx\"; limit = 0.443; };"
+/* A small scene that stands in for those of the claims. */
 static const char scatterers[] =
-    ARRAY "targets = { fields = ( { x = [-0.3, 0.3]; r = [14.5, 19.5]; count = 60; seed = 4; } ); };"
-          "image = { x = { first = -0.4019; step = 0.04; count = 21; };"
-          "          r = { first = 14.5113; step = 0.0971; count = 50; }; };";
+    "description = \"stand-in\"; sonar = { fc = 150e3; bandwidth = 15e3; fs = 30e3; };\n"
+    "pulse = { kind = \"flat\"; };\n"
+    "array = { tx_length = 0.08; rx_length = 0.04; receivers = 8; first_offset = 0.06; pitch = 0.06; };\n"
+    "track = { speed = 2.5; pri = 0.096; pings = 24; x_first = -2.8; };\n"
+    "record = { first_sample = 520; samples = 512; };\n"
+    "beam = { kind = \"txrx\"; truncation = \"tx\"; limit = 0.443; };\n"
+    "targets = { fields = ( { x = [-0.3, 0.3]; r = [14.5, 19.5]; count = 60; seed = 4; } ); };\n"
+    "image = { x = { first = -0.4019; step = 0.04; count = 21; };\n"
+    "          r = { first = 14.5113; step = 0.0971; count = 50; }; };\n";
 
 static enum fault { FAULT_NONE, FAULT_NO_INTERPOLATION, FAULT_PHASE, FAULT_RANGE_MIGRATION } injected;
 
@@ -373,7 +376,7 @@ static void phase_spoil(struct image *image)
         pixels[k] *= (float complex)cexp(0.05 * I * (k % image->patches[0].x_count));
 }
 
-/* Measure SPEC on a session whose scene has the name that claims ask for, with the fault if it concerns the algorithm. */
+/* Measure SPEC on a session whose scene has a name that claims ask for, with the fault if it concerns SPEC. */
 static void measure(const struct session *session, const char *spec_text)
 {
     struct spec spec, used;
@@ -500,12 +503,14 @@ static void finished_measurements_are_kept(void **state)
     assert_non_null(strstr(text, "table,item,quantity,definition,unit,paper,ours,difference,assumption\n"));
     assert_non_null(strstr(text, "\nbp22_eq20,linear,upsampling_rate,rho_a = D_tx/2,1,2,3,1,"));
     assert_non_null(strstr(text, "\nbp22_eq20,linear,upsampling_rate,rho_a = measured -3 dB width,1,2,1,-1,"));
-    assert_non_null(strstr(text, "\nlbf21_f2,\"1st receiver, 50 to 300 m, LBF\",phase_error_rad,\"Eq. (5), theta by fc\",rad,"
-                                 "0.02,0.014"));
+    assert_non_null(strstr(text, "\nlbf21_f2,\"1st receiver, 50 to 300 m, LBF\",phase_error_rad,"
+                                 "\"Eq. (5), theta by fc\",rad,0.02,0.014"));
     text = text_read("claims.csv");
     assert_non_null(strstr(text, "id,paper,section,claim,verdict,evidence\n"));
-    assert_non_null(strstr(text, "\nlbf21-3C-1,LBF21,\"III-C, Fig. 2\",\"LBF, first receiver: at most 0.02 rad\",holds,"));
-    assert_non_null(strstr(text, "\nbp22-4.1-11,BP22,4.1,beta = 8 is within 0.07 dB ISLR of sinc,cannot be decided,"));
+    assert_non_null(strstr(text, "\nlbf21-3C-1,LBF21,\"III-C, Fig. 2\",\"LBF, first receiver: at most 0.02 "
+                                 "rad\",holds,"));
+    assert_non_null(strstr(text, "\nbp22-4.1-11,BP22,4.1,beta = 8 is within 0.07 dB ISLR of sinc,cannot be "
+                                 "decided,"));
     free(before);
     spec_free(&spec);
     scene_free(&scene);
