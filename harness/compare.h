@@ -28,6 +28,7 @@ struct finding {
     double before, after;                               /* NAN: not defined */
     const char *before_text, *after_text;               /* instead of the numbers where not NULL */
     double change;                                      /* after/before - 1 where that says more; else NAN */
+    double change_low, change_high;                     /* interval of the change; both 0: none is known */
     double slack;                                       /* of `after`: changes within it are none; NAN: unknown */
     bool lower_is_better;
 };

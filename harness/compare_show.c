@@ -26,7 +26,10 @@ static struct cell cell_value(double value, const char *text)
 static struct cell cell_change(const struct finding *finding)
 {
     struct cell cell = {""};
-    if (!isnan(finding->change))
+    if (finding->change_high > finding->change_low)
+        snprintf(cell.text, sizeof cell.text, "%+.1f %% (%+.1f to %+.1f)", 100 * finding->change,
+                 100 * finding->change_low, 100 * finding->change_high);
+    else if (!isnan(finding->change))
         snprintf(cell.text, sizeof cell.text, "%+.3g %%", 100 * finding->change);
     else if (!isnan(finding->after - finding->before))
         snprintf(cell.text, sizeof cell.text, "%+.3g %s", finding->after - finding->before, finding->unit);
@@ -90,7 +93,15 @@ static const char *headline(const struct compare *compare)
 {
     if (verdict_occurs(compare, VERDICT_WORSE) || verdict_occurs(compare, VERDICT_GONE))
         return "something got worse";
-    return verdict_occurs(compare, VERDICT_WARNING) ? "nothing failed, with a warning" : "nothing got worse";
+    if (verdict_occurs(compare, VERDICT_WARNING))
+        return "nothing failed, with a warning";
+    return verdict_occurs(compare, VERDICT_NOISY) ? "nothing failed, not all could be told" : "nothing got worse";
+}
+
+static int widest(int width, const char *text)
+{
+    int length = (int)strlen(text);
+    return length > width ? length : width;
 }
 
 void compare_print(const struct compare *compare, FILE *stream)
@@ -99,13 +110,19 @@ void compare_print(const struct compare *compare, FILE *stream)
     const struct finding **list = changed(compare, &count);
     for (int k = 0; k < compare->note_count; k++)
         fprintf(stream, "%s\n", compare->notes[k]);
+    int verdict_width = 8, change_width = 11;
+    for (int k = 0; list && k < count; k++) {
+        verdict_width = widest(verdict_width, verdict_names[list[k]->verdict]);
+        change_width = widest(change_width, cell_change(list[k]).text);
+    }
     if (count > 0)
-        fprintf(stream, "\n%-8s %-17s %13s %13s %11s  %s\n", "verdict", "metric", "OLD", "NEW", "change", "of");
+        fprintf(stream, "\n%-*s %-17s %13s %13s %*s  %s\n", verdict_width, "verdict", "metric", "OLD", "NEW",
+                change_width, "change", "of");
     for (int k = 0; list && k < count; k++) {
         const struct finding *f = list[k];
-        fprintf(stream, "%-8s %-17s %13s %13s %11s  %s %s%s%s\n", verdict_names[f->verdict], f->metric,
+        fprintf(stream, "%-*s %-17s %13s %13s %*s  %s %s%s%s\n", verdict_width, verdict_names[f->verdict], f->metric,
                 cell_value(f->before, f->before_text).text, cell_value(f->after, f->after_text).text,
-                cell_change(f).text, f->scene, f->spec, *f->detail ? " " : "", f->detail);
+                change_width, cell_change(f).text, f->scene, f->spec, *f->detail ? " " : "", f->detail);
     }
     fputc('\n', stream);
     print_counts(compare, stream, "", "\n");

@@ -23,8 +23,10 @@ static const struct command commands[] = {
      "oseagt", 0, 0, command_image},
     {"run", "[SCENE ...] [--algorithm SPEC ...] [-o DIR]", "compare algorithms on scenes", "oat", 0, INT_MAX,
      command_run},
-    {"compare", "OLD NEW [--markdown FILE] [--json FILE]", "what got worse between two results folders or CSV files", "MJ", 2,
-     2, command_compare},
+    {"compare", "(OLD NEW | --ab OLD_BINARY NEW_BINARY [SCENE ...] [--algorithm SPEC ...]) [--markdown FILE] [--json FILE]",
+     "what got worse between two results folders or CSV files; what got slower between two programs, run side by side",
+     "aBMJ", 2, INT_MAX, command_compare},
+    {"measure", "", "the other end of `compare --ab`, which starts it", "", 0, 0, command_measure},
     {"baseline", "[-o FILE.csv]", "measure quality and work of the gate's scenes anew, into results/baseline.csv", "ot", 0, 0,
      command_baseline},
     {"reproduce", "[ID ...] [-o DIR]", "the papers' tables and claims beside ours", "ot", 0, INT_MAX, command_reproduce},
@@ -42,7 +44,8 @@ static const struct option long_options[] = {
     {"echoes", required_argument, NULL, 'e'}, {"algorithm", required_argument, NULL, 'a'},
     {"grid", required_argument, NULL, 'g'},   {"threads", required_argument, NULL, 't'},
     {"at", required_argument, NULL, 'A'},     {"markdown", required_argument, NULL, 'M'},
-    {"json", required_argument, NULL, 'J'},   {"help", no_argument, NULL, 'h'},         {NULL, 0, NULL, 0},
+    {"json", required_argument, NULL, 'J'},   {"ab", no_argument, NULL, 'B'},
+    {"help", no_argument, NULL, 'h'},       {NULL, 0, NULL, 0},
 };
 
 static const char *const option_texts[] = {
@@ -53,6 +56,7 @@ static const char *const option_texts[] = {
     "-g, --grid GRID       xmin:xstep:xcount,rmin:rstep:rcount in metres",
     "-t, --threads N       OpenMP threads, 1 to 1024",
     "    --at FILE.csv     points of `phase`: columns d, r, F, f, fc, v, c",
+    "    --ab              `compare` runs two programs side by side, to compare their times",
     "    --markdown FILE   what `compare` found, as a comment for a CI",
     "    --json FILE       the same as trackers of benchmarks read it: name, unit, value, range",
 };
@@ -140,6 +144,8 @@ static enum status parse(const struct command *command, int argc, char **argv, s
             }
         if (letter == 'a')
             status = spec_add(task, optarg);
+        if (letter == 'B')
+            task->ab = true;
     }
     task->names = (const char *const *)argv + optind;
     task->name_count = argc - optind;

@@ -9,6 +9,7 @@ struct task {
     const char *const *names;       /* [name_count] what stands without an option: scenes, an algorithm */
     int name_count;
     const char *output, *scene, *echoes, *grid, *at, *markdown, *json;
+    bool ab;
     int spec_count;
     struct spec *specs;             /* [spec_count] of --algorithm */
 };
@@ -20,6 +21,7 @@ enum status command_simulate(const struct task *task);
 enum status command_image(const struct task *task);
 enum status command_run(const struct task *task);
 enum status command_compare(const struct task *task);
+enum status command_measure(const struct task *task);
 enum status command_baseline(const struct task *task);
 enum status command_reproduce(const struct task *task);
 enum status command_sweep(const struct task *task);

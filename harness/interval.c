@@ -1,0 +1,86 @@
+/* Bootstrap of interval.h. */
+#include "interval.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "random.h"
+
+enum { DRAWS = 10000 };
+
+struct value {
+    double ratio;
+    int round;
+};
+
+static int value_order(const void *a, const void *b)
+{
+    double x = ((const struct value *)a)->ratio, y = ((const struct value *)b)->ratio;
+    return (x > y) - (x < y);
+}
+
+static int number_order(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Median of sorted values, each of which counts as often as its round was drawn. */
+static double weighted_median(const struct value *values, int count, const int *drawn)
+{
+    int passed = 0, k = 0;
+    while (2 * (passed + drawn[values[k].round]) < count)
+        passed += drawn[values[k++].round];
+    int next = k;
+    if (2 * (passed + drawn[values[k].round]) == count)         /* between this one and the next that counts */
+        do
+            next++;
+        while (drawn[values[next].round] == 0);
+    return sqrt(values[k].ratio * values[next].ratio);
+}
+
+enum status interval_find(const double *ratios, int rounds, int blocks, double miss, struct interval *interval)
+{
+    int count = rounds * blocks;
+    struct value *values = calloc((size_t)count, sizeof *values);
+    double *medians = calloc(DRAWS, sizeof *medians);
+    int *drawn = calloc((size_t)rounds, sizeof *drawn);
+    enum status status = STATUS_OK;
+    if (values && medians && drawn) {
+        struct random random = random_seed(1, 0);
+        for (int k = 0; k < count; k++)
+            values[k] = (struct value){ratios[k], k / blocks};
+        qsort(values, (size_t)count, sizeof *values, value_order);
+        for (int k = 0; k < rounds; k++)
+            drawn[k] = 1;
+        interval->middle = weighted_median(values, count, drawn);
+        for (int n = 0; n < DRAWS; n++) {
+            memset(drawn, 0, (size_t)rounds * sizeof *drawn);
+            for (int k = 0; k < rounds; k++)
+                drawn[(int)(rounds * random_uniform(&random))]++;
+            medians[n] = weighted_median(values, count, drawn);
+        }
+        qsort(medians, DRAWS, sizeof *medians, number_order);
+        int out = (int)(miss * DRAWS);
+        interval->low = medians[out];
+        interval->high = medians[DRAWS - 1 - out];
+    } else {
+        status = status_set(STATUS_FAILED, "no memory for %d ratios of times", count);
+    }
+    free(values);
+    free(medians);
+    free(drawn);
+    return status;
+}
+
+enum verdict interval_judge(const struct interval *interval)
+{
+    if (interval->low > 1 + EFFECT_FAIL)
+        return VERDICT_WORSE;
+    if (interval->low > 1 + EFFECT_WARN)
+        return VERDICT_WARNING;
+    if (interval->high < 1 / (1 + EFFECT_WARN))
+        return VERDICT_BETTER;
+    return interval->high < 1 + EFFECT_FAIL ? VERDICT_SAME : VERDICT_NOISY;
+}
