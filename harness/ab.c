@@ -14,7 +14,7 @@
 #include "timing.h"
 
 /* 8 rounds decide between identical programs on a quiet machine. */
-const struct ab_effort ab_usual = {8, 4, 32, 60, 600};
+const struct ab_effort ab_usual = {8, 4, 48, 90, 600};
 
 /* What is run where nothing is asked for: small, yet every stage of back projection and range migration holds much of the
    time somewhere. */
@@ -117,7 +117,7 @@ static bool times_read(struct unit *unit, const char *answer, double *seconds)
     for (const char *at = answer + strlen(took) + used; *at == ' ' || *at == ';';) {
         const char *equals = strchr(++at, '=');
         if (!equals)
-            return *at == '\0';         /* no stages */
+            return *at == '\0' && at[-1] == ' ';        /* no stages */
         char *end;
         double stage = strtod(equals + 1, &end);
         int part = part_index(unit, at, (size_t)(equals - at));
