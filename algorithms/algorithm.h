@@ -66,8 +66,8 @@ struct stages {
 void stages_begin(struct stages *stages);                       /* forget all, start the clock */
 void stages_end(struct stages *stages, const char *name);       /* time since the last mark goes to `name` (summed) */
 double seconds_now(void);                                       /* monotonic clock, s */
-/* From now on seconds_now, called by this thread, leaves out the time in which the thread was ready to run and other work
-   had the processor (what the thread sleeps still counts). Where the system does not tell that, nothing changes. */
+/* From now on seconds_now, called by this thread, leaves out the time in which the thread was ready to run and other
+   work had the processor (what the thread sleeps still counts). Where the system does not tell that, nothing changes. */
 void seconds_skip_waiting(void);
 
 /* What the plan will do, and what it leaves out. */

@@ -16,8 +16,8 @@
 /* 8 rounds decide between identical programs on a quiet machine. */
 const struct ab_effort ab_usual = {8, 4, 48, 90, 600};
 
-/* What is run where nothing is asked for: small, yet every stage of back projection and range migration holds much of the
-   time somewhere. */
+/* What is run where nothing is asked for: small, yet every stage of back projection and range migration holds much of
+   the time somewhere. */
 static const struct {
     const char *scene;
     const char *specs[8];               /* none: every algorithm */
@@ -58,10 +58,11 @@ struct contest {
 
 /* --- Rounds --------------------------------------------------------------------------------------------------- */
 
-static enum status answer_wrong(const struct partner *partner, const char *question, const char *answer, const char *needed)
+static enum status answer_wrong(const struct partner *partner, const char *question, const char *answer,
+                                const char *needed)
 {
-    return status_set(STATUS_INVALID, "%s %s answers '%.100s' to '%.100s'; %s is needed", partner->role, partner->path, answer,
-                      question, needed);
+    return status_set(STATUS_INVALID, "%s %s answers '%.100s' to '%.100s'; %s is needed", partner->role, partner->path,
+                      answer, question, needed);
 }
 
 /* In the first round, what only one program can plan is a finding, and is left out from then on. */
@@ -80,9 +81,11 @@ static enum status unit_plan(struct contest *contest, struct unit *unit, bool fi
         if (!can[k] && (!first || strncmp(answers[k], refused, strlen(refused)) != 0))
             return answer_wrong(partner, unit->question, answers[k], "'planned UNIT HASH'");
     }
+    if (can[0] && can[1] && hashes[0] != hashes[1])
+        return status_set(STATUS_INVALID, "scene %s: OLD and NEW read it differently, so that their times are not "
+                          "comparable", unit->scene);
     if (can[0] && can[1])
-        return hashes[0] == hashes[1] ? STATUS_OK : status_set(STATUS_INVALID, "scene %s: OLD and NEW read it differently, so "
-                                                               "that their times are not comparable", unit->scene);
+        return STATUS_OK;
     unit->skipped = true;
     if (!can[0] && !can[1])
         return compare_note(contest->compare, "%s with %s is left out: %s", unit->scene, unit->spec,
@@ -270,10 +273,10 @@ static enum status findings_add(struct contest *contest, const struct ab_effort 
             status = detail ? part_interval(unit, part, miss, &interval) : STATUS_FAILED;
             if (status != STATUS_OK)
                 break;
-            double after = part_seconds(unit, 1, part);
+            double before = part_seconds(unit, 0, part), after = part_seconds(unit, 1, part);
             status = compare_add(contest->compare, &(struct finding){
                 .verdict = interval_judge(&interval), .class = CLASS_TIME, .scene = unit->scene, .spec = unit->spec,
-                .detail = detail, .metric = "time", .unit = "s", .before = part_seconds(unit, 0, part), .after = after,
+                .detail = detail, .metric = "time", .unit = "s", .before = before, .after = after,
                 .change = interval.middle - 1, .change_low = interval.low - 1, .change_high = interval.high - 1,
                 .slack = after * (interval.high - interval.low) / 2, .lower_is_better = true});
         }
@@ -313,7 +316,8 @@ static enum status scene_units(struct contest *contest, const char *scene, const
         if (!units)
             return status_set(STATUS_FAILED, "no memory for %d units", contest->unit_count + 1);
         contest->units = units;
-        status = unit_make(contest, scene, spec_count > 0 ? specs[k] : algorithms[k]->name, &units[contest->unit_count]);
+        status = unit_make(contest, scene, spec_count > 0 ? specs[k] : algorithms[k]->name,
+                           &units[contest->unit_count]);
         contest->unit_count += status == STATUS_OK;
     }
     return status;
@@ -339,8 +343,9 @@ static enum status units_make(struct contest *contest, const char *const *scenes
         int usual_count = 0;
         while (scene_count == 0 && spec_count == 0 && usual[k].specs[usual_count])
             usual_count++;
-        status = scene_units(contest, scene_count > 0 ? scenes[k] : usual[k].scene, usual_count > 0 ? usual[k].specs : texts,
-                             usual_count > 0 ? usual_count : spec_count);
+        const char *scene = scene_count > 0 ? scenes[k] : usual[k].scene;
+        status = usual_count > 0 ? scene_units(contest, scene, usual[k].specs, usual_count)
+                                 : scene_units(contest, scene, texts, spec_count);
     }
     free(texts);
     return status;
@@ -361,11 +366,11 @@ static enum status contest_run(struct contest *contest, const struct ab_effort *
     if (status == STATUS_OK)
         status = findings_add(contest, effort);
     if (status == STATUS_OK && contest->compare->finding_count == 0)
-        status = status_set(STATUS_INVALID, "neither program can do what is asked: %s", contest->compare->note_count > 0
-                            ? contest->compare->notes[0] : "nothing is");
+        status = status_set(STATUS_INVALID, "neither program can do what is asked: %s",
+                            contest->compare->note_count > 0 ? contest->compare->notes[0] : "nothing is");
     if (status == STATUS_OK)
-        status = compare_note(contest->compare, "%d rounds in %.0f s, one thread; all intervals together hold with %g %%; a "
-                              "slowdown beyond %g %% warns, beyond %g %% fails", round, seconds_now() - begin,
+        status = compare_note(contest->compare, "%d rounds in %.0f s, one thread; all intervals together hold with %g %%; "
+                              "a slowdown beyond %g %% warns, beyond %g %% fails", round, seconds_now() - begin,
                               100 * (1 - ERROR_PROBABILITY), 100 * EFFECT_WARN, 100 * EFFECT_FAIL);
     return status;
 }

@@ -40,8 +40,8 @@ static double weighted_median(const struct value *values, int count, const int *
     return sqrt(values[k].ratio * values[next].ratio);
 }
 
-/* How far out Student's t of this many degrees of freedom lies that is exceeded with probability `miss`, by how far the
-   normal one lies that is exceeded with probability 1/40 (Abramowitz and Stegun 26.7.5). */
+/* How far out Student's t of this many degrees of freedom lies that is exceeded with probability `miss`, by how far
+   the normal one lies that is exceeded with probability 1/40 (Abramowitz and Stegun 26.7.5). */
 static double reach(double miss, int degrees)
 {
     double low = 0, high = 40, n = degrees;

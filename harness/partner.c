@@ -74,8 +74,8 @@ static enum status silence(struct partner *partner, const char *question)
         else
             snprintf(how, sizeof how, "ended with status %d", WEXITSTATUS(state));
     }
-    return status_set(STATUS_INVALID, "%s %s %s %s '%s'; a sasbench that has the command measure is needed", partner->role,
-                      partner->path, how, *question ? "after" : "instead of", *question ? question : greeting);
+    return status_set(STATUS_INVALID, "%s %s %s %s '%s'; a sasbench that has the command measure is needed",
+                      partner->role, partner->path, how, *question ? "after" : "instead of", *question ? question : greeting);
 }
 
 static enum status line_read(struct partner *partner, const char *question, char *line, size_t size)
@@ -89,8 +89,10 @@ static enum status line_read(struct partner *partner, const char *question, char
             continue;
         if (ready <= 0)
             return status_set(STATUS_INVALID, "%s %s says nothing for %g s %s '%s'", partner->role, partner->path,
-                              partner->patience_s, *question ? "after" : "instead of", *question ? question : greeting);
-        ssize_t got = recv(partner->socket, partner->buffer + partner->held, sizeof partner->buffer - partner->held, 0);
+                              partner->patience_s, *question ? "after" : "instead of",
+                              *question ? question : greeting);
+        size_t room = sizeof partner->buffer - partner->held;
+        ssize_t got = recv(partner->socket, partner->buffer + partner->held, room, 0);
         if (got <= 0)
             return silence(partner, question);
         partner->held += (size_t)got;
@@ -128,8 +130,8 @@ enum status partner_start(const char *role, const char *path, int turn, double p
     char line[200];
     enum status status = line_read(partner, "", line, sizeof line);
     if (status == STATUS_OK && strcmp(line, greeting) != 0)
-        status = status_set(STATUS_INVALID, "%s %s says '%.60s' instead of '%s': another version, or no sasbench", role, path,
-                            line, greeting);
+        status = status_set(STATUS_INVALID, "%s %s says '%.60s' instead of '%s': another version, or no sasbench", role,
+                            path, line, greeting);
     if (status != STATUS_OK)
         partner_stop(partner);
     return status;

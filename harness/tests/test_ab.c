@@ -58,7 +58,8 @@ static void verdicts_of_made_up_times(void **state)
         struct random random = random_seed(7, n);
         int counts[VERDICTS] = {0};
         for (int trial = 0; trial < TRIALS; trial++) {
-            struct interval interval = draw_interval(&random, cases[n].ratio, cases[n].noise_round, cases[n].noise_block, 1e-4);
+            struct interval interval = draw_interval(&random, cases[n].ratio, cases[n].noise_round,
+                                                     cases[n].noise_block, 1e-4);
             counts[interval_judge(&interval)]++;
         }
         enum verdict verdict = cases[n].verdict;
