@@ -80,8 +80,9 @@ enum status interval_find(const double *ratios, int rounds, int blocks, double m
         }
         qsort(medians, DRAWS, sizeof *medians, number_order);
         double wider = reach(miss, rounds - 1) * sqrt(rounds / (rounds - 1.0));
-        interval->low = interval->middle * pow(medians[DRAWS / 40] / interval->middle, wider);
-        interval->high = interval->middle * pow(medians[DRAWS - 1 - DRAWS / 40] / interval->middle, wider);
+        double side = fmax(medians[DRAWS - 1 - DRAWS / 40] / interval->middle, interval->middle / medians[DRAWS / 40]);
+        interval->low = interval->middle / pow(side, wider);
+        interval->high = interval->middle * pow(side, wider);
     } else {
         status = status_set(STATUS_FAILED, "no memory for %d ratios of times", count);
     }

@@ -17,8 +17,9 @@ struct interval {
    NEW by OLD of each block, positive; rounds >= 2. Since each time is taken by the speed of its own block (the geometric
    mean of both), the ratio of the medians is the median of the ratios. Rounds are drawn, not blocks: what a process
    happens to get with its start (the places of its memory) is common to a round. `miss`: the probability on each side
-   that the true ratio lies beyond; the drawn medians give the interval of 95 %, Student's t (of rounds - 1 degrees of
-   freedom, so that few rounds say less) widens it to `miss`. Always the same for the same ratios.
+   that the true ratio lies beyond. The drawn medians give the interval of 95 %, its wider side standing for both;
+   Student's t (of rounds - 1 degrees of freedom, so that few rounds say less) widens it to `miss`. Always the same for
+   the same ratios.
    Errors: STATUS_FAILED without memory. */
 enum status interval_find(const double *ratios, int rounds, int blocks, double miss, struct interval *interval);
 
