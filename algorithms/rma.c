@@ -47,7 +47,8 @@ static double swath_flops(const struct rma *rma, const struct rma_swath *swath)
         double rows = patch->grid.r_count, points = patch->length * patch->step * 2 * rma->fs
                                                     / rma->setting.sound_speed;
         flops += q * (rma->taps ? points * (7.0 * rma->taps + 60) + fft_flops(patch->length) : rows * band * 14);
-        flops += rows * (2 * fft_flops(patch->chirp) + 6 * (q + patch->chirp + patch->grid.x_count));
+        flops += rows * (patch->folds ? fft_flops(patch->columns) + 2 * q : 2 * fft_flops(patch->columns) + 6 * patch->columns);
+        flops += rows * 6 * (q + patch->grid.x_count);
     }
     return flops;
 }

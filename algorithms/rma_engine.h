@@ -63,9 +63,12 @@ struct rma_patch {
     int length;                     /* of the range IFFT onto the grid's rows: K = j 2 pi/(length step) */
     double step;                    /* m: the grid's r_step; a range bin for a single row */
     size_t row;                     /* of its first row among all rows of the swath */
-    int chirp;                      /* length of the azimuth transform's convolution */
-    void *before, *kernel, *after;  /* complex [wavenumbers], [chirp], [x_count]: the azimuth transform's chirps */
-    void *focus_plan, *chirp_forward, *chirp_inverse;
+    /* azimuth: columns that divide the track's period evenly are bins of one transform (wavenumbers fold onto it);
+       any other ones are a convolution with a chirp */
+    bool folds;
+    int columns;                    /* length of the transform */
+    void *before, *kernel, *after;  /* complex [wavenumbers], [columns] (chirp only), [x_count]: factors on the way */
+    void *focus_plan, *azimuth_forward, *azimuth_inverse;       /* forward: chirp only */
 };
 
 /* Patches whose echoes lie in one stretch of the records, migrated together and apart from all others. */

@@ -16,6 +16,7 @@ static const double BAND_LOSS = 4e-6;       /* of the compressed pulse's energy 
 static const double ABEAM_LIMIT = 0.2;      /* rad: a formula further off abeam breaks the absolute phase */
 static const double WIDEST_SINE = 0.95;     /* of the aperture where neither sampling nor element length bounds it */
 static const double FADE_PERIODS = 8;      /* of fs - B in a cut's fade: what it smears stays between them */
+static const double EVEN = 1e-12;           /* relative: columns that divide the period but for rounding */
 static const int stolt_taps[] = {0, 4, 6, 8, 12, 16};
 
 static enum status unsupported(const struct rma *rma, const char *reason)
@@ -353,8 +354,12 @@ static enum status swath_patches(const struct rma *rma, struct rma_swath *swath)
         patch->step = patch->grid.r_count > 1 ? patch->grid.r_step : bin;
         double rows = fmax(ceil(extent / patch->step), patch->grid.r_count);
         patch->length = rows < 1e8 ? fft_length_fast((long long)rows) : 0;
-        patch->chirp = fft_length_fast((long long)swath->wavenumbers + patch->grid.x_count - 1);
-        if (patch->length == 0 || patch->chirp == 0)
+        double columns = swath->period * fabs(rma->spacing) / patch->grid.x_step, whole = floor(columns + 0.5);
+        patch->folds = fabs(columns - whole) <= EVEN * whole && whole >= patch->grid.x_count && whole <= INT_MAX
+                       && fft_length((long long)whole) == whole;
+        patch->columns = patch->folds ? (int)whole
+                                      : fft_length_fast((long long)swath->wavenumbers + patch->grid.x_count - 1);
+        if (patch->length == 0 || patch->columns == 0)
             return status_set(STATUS_UNSUPPORTED, "%s: rows %g m apart over %g m are too many to transform",
                               rma->method.name, patch->step, extent);
     }

@@ -104,32 +104,36 @@ static void apodization_fill(const struct rma *rma, const struct rma_swath *swat
     }
 }
 
-/* The azimuth sum onto a grid's columns as a convolution (chirp z): for wavenumbers nu = (q - Q/2) dnu and columns
-   x = x0 + j dx,  2 q j = q^2 + j^2 - (j - q)^2. */
-static bool chirp_fill(struct rma *rma, const struct rma_swath *swath, struct rma_patch *patch)
+/* The azimuth sum onto a grid's columns, wavenumbers nu = (q - Q/2) dnu and columns x = x0 + j dx: one transform where
+   1/(dnu dx) is its length, or a convolution (chirp z),  2 q j = q^2 + j^2 - (j - q)^2. */
+static bool azimuth_fill(struct rma *rma, const struct rma_swath *swath, struct rma_patch *patch)
 {
-    int q_count = swath->wavenumbers, x_count = patch->grid.x_count, length = patch->chirp;
+    const int q_count = swath->wavenumbers, x_count = patch->grid.x_count, length = patch->columns;
     complex_real *before = take(rma, (size_t)q_count, sizeof *before, 1);
     complex_real *after = take(rma, (size_t)x_count, sizeof *after, 1);
-    complex_real *kernel = take(rma, (size_t)length, sizeof *kernel, 1);
+    complex_real *kernel = patch->folds ? NULL : take(rma, (size_t)length, sizeof *kernel, 1);
+    complex_real *wave = (complex_real *)scratch_of(rma, 0);
     patch->before = before;
     patch->after = after;
     patch->kernel = kernel;
-    if (!before || !after || !kernel)
+    patch->azimuth_inverse = plan_line(length, wave, FFTW_BACKWARD);
+    if (!before || !after || !patch->azimuth_inverse)
         return false;
-    double period = swath->period * fabs(rma->spacing), turn = patch->grid.x_step / period;
-    double from = (patch->grid.x_first - rma->x_first) / period;
-    patch->chirp_forward = plan_line(length, kernel, FFTW_FORWARD);
-    patch->chirp_inverse = plan_line(length, kernel, FFTW_BACKWARD);
-    if (!patch->chirp_forward || !patch->chirp_inverse)
-        return false;
+    const double period = swath->period * fabs(rma->spacing), turn = patch->folds ? 1.0 / length
+                                                                                 : patch->grid.x_step / period;
+    const double from = (patch->grid.x_first - rma->x_first) / period, square = patch->folds ? 0 : 0.5 * turn;
     for (int q = 0; q < q_count; q++)
-        before[q] = rotor((q - q_count / 2) * from + 0.5 * turn * q * q);
+        before[q] = rotor((q - q_count / 2) * from + square * q * q);
     for (int j = 0; j < x_count; j++)
-        after[j] = rotor(0.5 * turn * j * j - turn * (q_count / 2) * j) / (real)(period * length);
+        after[j] = rotor(square * j * j - turn * (q_count / 2) * j) / (real)(patch->folds ? period : period * length);
+    if (patch->folds)
+        return true;
+    patch->azimuth_forward = plan_line(length, wave, FFTW_FORWARD);
+    if (!kernel || !patch->azimuth_forward)
+        return false;
     for (int i = -(q_count - 1); i < x_count; i++)
-        kernel[i < 0 ? i + length : i] = rotor(-0.5 * turn * i * i);
-    FFTW(execute_dft)(patch->chirp_forward, kernel, kernel);
+        kernel[i < 0 ? i + length : i] = rotor(-square * i * i);
+    FFTW(execute_dft)(patch->azimuth_forward, kernel, kernel);
     return true;
 }
 
@@ -150,7 +154,7 @@ static bool plan_swath(struct rma *rma, struct rma_swath *swath)
     for (int k = 0; complete && k < swath->patch_count; k++) {
         struct rma_patch *patch = &swath->patches[k];
         patch->focus_plan = plan_line(patch->length, wave, FFTW_BACKWARD);
-        complete = patch->focus_plan && chirp_fill(rma, swath, patch);
+        complete = patch->focus_plan && azimuth_fill(rma, swath, patch);
     }
     return complete;
 }
@@ -162,7 +166,7 @@ static enum status plan(struct rma *rma)
         strip = strip > at_once * (size_t)s->period ? strip : at_once * (size_t)s->period;
         focused = focused > s->rows * s->columns ? focused : s->rows * s->columns;
         for (int k = 0; k < s->patch_count; k++)
-            strip = strip > (size_t)s->patches[k].chirp ? strip : (size_t)s->patches[k].chirp;
+            strip = strip > (size_t)s->patches[k].columns ? strip : (size_t)s->patches[k].columns;
     }
     strip *= sizeof(complex_real);
     if (rma->scratch_bytes < strip)
@@ -202,8 +206,8 @@ static void destroy(struct rma *rma)
     for (int k = 0; rma->patches && k < rma->patch_count; k++) {
         struct rma_patch *patch = &rma->patches[k];
         plan_destroy(patch->focus_plan);
-        plan_destroy(patch->chirp_forward);
-        plan_destroy(patch->chirp_inverse);
+        plan_destroy(patch->azimuth_forward);
+        plan_destroy(patch->azimuth_inverse);
         free(patch->before);
         free(patch->after);
         free(patch->kernel);
@@ -306,25 +310,30 @@ static void spread(const struct rma *rma, const struct rma_swath *swath)
 
 static void inverse(const struct rma *rma, const struct rma_swath *swath, const struct rma_patch *patch, void *pixels)
 {
-    const size_t q = (size_t)swath->wavenumbers, columns = (size_t)patch->grid.x_count;
+    const size_t x_count = (size_t)patch->grid.x_count;
+    const int length = patch->columns;
+    const real *before = patch->before;
 #pragma omp parallel for schedule(static) num_threads(rma->threads)
     for (int i = 0; i < patch->grid.r_count; i++) {
         real *wave = scratch_of(rma, 0);
-        real *out = (real *)pixels + 2 * columns * (size_t)i;
+        real *out = (real *)pixels + 2 * x_count * (size_t)i;
         real root = (real)sqrt(patch->grid.r_first + i * patch->grid.r_step);
         const real *from = (const real *)rma->focused + 2 * swath->columns * (patch->row + (size_t)i);
-        for (int turn = 0; turn < swath->wavenumbers; turn++) {
-            real *to = wave + 2 * rma_wavenumber(rma, swath, turn);
-            to[0] = from[2 * turn];
-            to[1] = from[2 * turn + 1];
+        memset(wave, 0, 2 * (size_t)length * sizeof *wave);
+        for (int p = 0; p < swath->period; p++)         /* in the order of rma_wavenumber */
+            for (int q = p; q < swath->wavenumbers; q += swath->period, from += 2) {
+                const real *b = before + 2 * q;
+                real *to = wave + 2 * (q < length ? q : q % length);
+                to[0] += from[0] * b[0] - from[1] * b[1];
+                to[1] += from[0] * b[1] + from[1] * b[0];
+            }
+        if (!patch->folds) {
+            FFTW(execute_dft)(patch->azimuth_forward, (complex_real *)wave, (complex_real *)wave);
+            multiply(wave, patch->kernel, length);
         }
-        multiply(wave, patch->before, swath->wavenumbers);
-        memset(wave + 2 * q, 0, 2 * ((size_t)patch->chirp - q) * sizeof *wave);
-        FFTW(execute_dft)(patch->chirp_forward, (complex_real *)wave, (complex_real *)wave);
-        multiply(wave, patch->kernel, patch->chirp);
-        FFTW(execute_dft)(patch->chirp_inverse, (complex_real *)wave, (complex_real *)wave);
+        FFTW(execute_dft)(patch->azimuth_inverse, (complex_real *)wave, (complex_real *)wave);
         multiply(wave, patch->after, patch->grid.x_count);
-        for (size_t k = 0; k < 2 * columns; k++)
+        for (size_t k = 0; k < 2 * x_count; k++)
             out[k] = wave[k] * root;
     }
 }

@@ -275,6 +275,33 @@ static void other_ways(void **state)
     free_scene(&scene);
 }
 
+/* The same pixels on columns that one transform gives, fewer or more than wavenumbers, and on columns that take a
+   chirp (11 divides their number). */
+static void columns(void **state)
+{
+    (void)state;
+    static const double targets[] = {36.4};
+    static const int parts[] = {1, 5, 10, 11};          /* of 0.1 m: columns */
+    struct grid grids[4];
+    struct scene scene;
+    struct echoes echoes;
+    struct image image;
+    make_scene(8, 40, 600, 24e3, 0.044, -2.8, 0.8, 0.04, &scene);
+    add_targets(&scene, 1, targets);
+    assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
+    for (int k = 0; k < 4; k++)
+        grids[k] = (struct grid){-0.1, 0.1 / parts[k], 2 * parts[k] + 1, 36.3, 0.1, 3};
+    form("rma_lbf:precision=double", (struct problem){&scene.acquisition, 4, grids, PRECISION_DOUBLE}, &echoes, &image);
+    for (int k = 1; k < 4; k++)
+        for (int n = 0; n < 9; n++) {
+            double complex value = image_pixel(&image, k, n / 3, n % 3 * parts[k]);
+            assert_true(cabs(value - image_pixel(&image, 0, n / 3, n % 3)) < 1e-9 * support_peak(&image));
+        }
+    image_free(&image);
+    echoes_free(&echoes);
+    free_scene(&scene);
+}
+
 static void recurrences(void **state)
 {
     (void)state;
@@ -485,7 +512,7 @@ int main(void)
         cmocka_unit_test(independent_numbers), cmocka_unit_test(short_swath),  cmocka_unit_test(other_ways),
         cmocka_unit_test(recurrences),         cmocka_unit_test(long_swath),   cmocka_unit_test(block_counts),
         cmocka_unit_test(ghosts),              cmocka_unit_test(one_receiver), cmocka_unit_test(odd_tracks),
-        cmocka_unit_test(refusals),
+        cmocka_unit_test(refusals),            cmocka_unit_test(columns),
     };
     return cmocka_run_group_tests_name("rma", tests, NULL, NULL);
 }
