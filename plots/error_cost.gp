@@ -22,6 +22,7 @@ do for [picture = 1:pictures] {
     stats $control using (cost == 2 ? $1 : x_max) name "control" nooutput
     stats $rows using 4 name "y" nooutput
     set yrange [y_min/1.6:1.6*y_max]
+    eval short_tics(y_min, y_max)
     set xrange [x_min/1.3:1.4*(control_max > x_max ? control_max : x_max)]
     set xlabel cost_title
     set ylabel "relative L2 error of the complex image"

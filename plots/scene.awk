@@ -167,7 +167,7 @@ function points_collect(    k, at, part)
             lobes = lobes || (part[5] != "NaN" && title_of[keys[k]] != "reference")
             if (part[1] != "NaN" && rated[rated_count] != k)
                 rated[++rated_count] = k
-            rates = rates || part[1] > 1
+            rates = rates || (part[1] != "NaN" && part[1] + 0 > 1)
         }
 }
 
@@ -297,6 +297,7 @@ function rules_print()
 }
 
 BEGIN {
+    families["reference"] = family_count = 1
     folder = ENVIRON["FOLDER"]
     scene = ENVIRON["SCENE"]
     while (row_read(folder "/measurements.csv")) {

@@ -29,8 +29,8 @@ set linetype 9 linecolor "#7b3294" linewidth 1.8 dashtype (9,3,9,3,2,3) pointtyp
 set linetype 10 linecolor "#8c510a" linewidth 1.8 dashtype (4,2,1,2) pointtype 14 pointsize 1.3
 set linetype cycle 10
 
-# Algorithms among one another: each has its colour and its point, filled for float and open for double. The order is that
-# of their first rows.
+# Algorithms among one another: each has its colour and its point, filled for float and open for double. `reference` is the
+# first, the order of the others is that of their first rows.
 array family_colour[10] = ["#808080", "#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", \
     "#7b3294", "#8c510a"]
 array family_filled[10] = [15, 7, 5, 9, 13, 11, 3, 2, 1, 15]
@@ -47,6 +47,9 @@ tic_step(extent) = tic_decade(extent)*(extent < 7.5*tic_decade(extent) ? 1 : ext
     extent < 37.5*tic_decade(extent) ? 5 : 10)
 # Decimal tics at 1, 2 and 5 of each decade.
 log_tics = "do for [decade = -9:15] { set xtics add (10.0**decade, 2*10.0**decade, 5*10.0**decade) }"
+# The same on a short axis of powers of ten, which would have one label or none: eval short_tics(least, most).
+short_tics(least, most) = most > 20*least ? "" : "do for [decade = -12:2] { do for [digit in '2 5'] { " \
+    ."set ytics add (sprintf('%se%d', digit, decade) digit*10.0**decade) } }"
 
 # Perceptually uniform, and monotone in lightness so that it reads in greyscale (viridis).
 set palette defined ( \
