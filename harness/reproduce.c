@@ -125,18 +125,17 @@ static void cell_print(double value, double paper)
     printf(" %10s %-10s", text, difference);
 }
 
-/* What published.csv notes on a target or a method, each once. */
+/* What published.csv notes on the table's numbers, once for each target. */
 static void notes_print(const struct table *table, const struct reproduced *lines, int count)
 {
     for (int k = 0; k < count; k++) {
         const struct reproduced *l = &lines[k];
-        const char *subject = *l->target ? l->target : l->method;
         bool said = strcmp(l->table, table->id) != 0 || !*l->note;
         for (int n = 0; n < k && !said; n++)
-            said = strcmp(lines[n].note, l->note) == 0 && lines[n].table == l->table
-                   && strcmp(*lines[n].target ? lines[n].target : lines[n].method, subject) == 0;
+            said = lines[n].table == l->table && strcmp(lines[n].note, l->note) == 0
+                   && strcmp(lines[n].target, l->target) == 0;
         if (!said)
-            printf("  %s: %s\n", subject, l->note);
+            printf("  %s: %s\n", *l->target ? l->target : "paper", l->note);
     }
 }
 
