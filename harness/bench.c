@@ -1,42 +1,49 @@
-/* The command `bench`: how near every engine comes to the machine's limits on BP22's full-size scene. Ratios of one run:
-   against the processor's multiply-add peak, and against the control loop. */
-#include <errno.h>
+/* The command `bench`: how near the engines come to the machine's limits at the papers' sizes. Everything is a ratio of one
+   run: against the processor's multiply-add peak, and against the control loop. */
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 
 #include "../algorithms/isa.h"
-#include "../algorithms/pairs.h"
 #include "../algorithms/peak.h"
 #include "bench_rma.h"
-#include "control.h"
 #include "echo_data.h"
+#include "plot.h"
 #include "record.h"
 #include "simulate.h"
 #include "task.h"
+#include "text_file.h"
 #include "timing.h"
 
-enum { ROWS = 64 };                     /* of the general engine's problem, evenly spaced over the swath */
-
-static const char *const methods[] = {"bp_nearest", "bp_linear:beta=8", "bp_sinc:taps=8", "bp_zeropad:factor=8"};
+/* FLOPs of one pair are those of the method's own sums, without delays and phases: what the inner loop cannot avoid. */
+static const struct method {
+    const char *name, *settings;
+    double pair_flops;
+} methods[] = {
+    {"bp_nearest", "", 8},
+    {"bp_linear", "beta=8,", 16},
+    {"bp_sinc", "taps=8,", 40},
+    {"bp_zeropad", "factor=8,", 8},
+};
 enum { METHODS = sizeof methods / sizeof *methods };
-/* FLOPs of one pair in the method's own sums, without delays and phases. */
-static const double pair_flops[METHODS] = {8, 16, 40, 8};
 
-static const struct {
+static const struct bench_case {
     const char *scene, *engine;
+    int rows;                           /* evenly spaced over the swath; 0: all */
+    int methods, alone;                 /* the first ones of the table; those also on one thread */
 } cases[] = {
-    {"bp22/full_limited", "invariant"},
-    {"bp22/full", "invariant"},
-    {"bp22/full_limited", "general"},
+    {"bp22/full_limited", "invariant", 0, METHODS, 1},
+    {"bp22/full", "invariant", 0, 1, 0},
+    {"bp22/full_limited", "general", 64, METHODS, METHODS},
 };
 
 struct bench {
     FILE *file;
-    double peak[2][2];                  /* [precision][0: one thread, 1: all] FLOP/s */
     int threads;
+    double peak[2][2];                  /* [precision][0: one thread, 1: all] FLOP/s */
 };
 
 static double stage_seconds(const struct stages *stages, const char *name)
@@ -47,109 +54,140 @@ static double stage_seconds(const struct stages *stages, const char *name)
     return NAN;
 }
 
-static enum status measure(struct bench *bench, const struct scene *scene, const char *engine, int method,
-                           enum precision precision, int threads, const struct problem *whole,
-                           const struct echoes *echoes, const struct echoes *control_echoes)
+/* The most memory that the process has held so far, in bytes. */
+static double memory_peak(void)
+{
+    struct rusage usage;
+    return getrusage(RUSAGE_SELF, &usage) == 0 ? 1024.0 * (double)usage.ru_maxrss : NAN;
+}
+
+/* One row. *alone_s: the run's seconds on one thread, NAN before they are known. */
+static enum status measure(struct bench *bench, const struct bench_case *one, const struct method *method,
+                           const struct problem *problem, int threads, const struct echoes *echoes,
+                           const struct echoes *control_echoes, double *alone_s)
 {
     char text[96];
     struct spec spec;
     struct image image;
     struct timing timing;
-    struct problem problem = *whole;
-    problem.precision = precision;
-    snprintf(text, sizeof text, "%s%sengine=%s,precision=%s", methods[method], strchr(methods[method], ':') ? "," : ":",
-             engine, precision_name(precision));
+    const char *precision = precision_name(problem->precision);
+    snprintf(text, sizeof text, "%s:%sengine=%s,precision=%s", method->name, method->settings, one->engine, precision);
     enum status status = spec_parse(text, &spec);
     if (status != STATUS_OK)
         return status;
     omp_set_num_threads(threads);
-    status = image_allocate(problem.patch_count, problem.patches, precision, &image);
-    if (status == STATUS_OK) {
-        status = timing_measure(spec.algorithm, &problem, spec.options, echoes, control_echoes, &image, &timing);
-        image_free(&image);
-    }
-    const char *algorithm = spec.algorithm->name;
-    omp_set_num_threads(bench->threads);
+    status = image_allocate(problem->patch_count, problem->patches, problem->precision, &image);
+    if (status == STATUS_OK)
+        status = timing_measure(spec.algorithm, problem, spec.options, echoes, control_echoes, &image, &timing);
+    image_free(&image);
     spec_free(&spec);
+    omp_set_num_threads(bench->threads);
     if (status != STATUS_OK)
         return status;
-    double sums = stage_seconds(&timing.stages, "focus"), rate = timing.work.pairs / sums;
-    double peak = bench->peak[precision][threads > 1];
-    fprintf(bench->file, "%s,%s,%s,%s,%d,%d,%.9g,%.6g,%.6g,%.6g,%.6g,%.4g,%.4g,%.4g,%.6g\n", scene->name, engine,
-            algorithm, precision_name(precision), threads, timing.runs,
-            timing.work.pairs, timing.run_s, sums, rate, pair_flops[method], pair_flops[method] * rate / peak,
-            rate / peak, timing.control_s / sums, timing.work.bytes);
-    fflush(bench->file);
-    printf("%-18s %-9s %-20s %-6s %d  %8.3f %8.3f %9.3f %7.3f %9.4f %8.1f %7.0f\n", scene->name, engine, methods[method],
-           precision_name(precision), threads, timing.run_s, sums, 1e-9 * rate, pair_flops[method] * rate / peak,
-           rate / peak, timing.control_s / sums, timing.work.bytes / 1e6);
+    const double sums = stage_seconds(&timing.stages, "focus"), rate = timing.work.pairs / sums;
+    const double peak = bench->peak[problem->precision][threads > 1], control = timing.control_s / sums;
+    if (threads == 1)
+        *alone_s = timing.run_s;
+    const double fraction = method->pair_flops * rate / peak, gain = *alone_s / timing.run_s;
+    fprintf(bench->file, "%s,%s,%s,%s,%d,%d,%d,%.9g,%.4g,%.4g,%.4g,%.4g,%g,%.4g,%.4g,%.4g,%.4g,", one->scene, one->engine,
+            method->name, precision, threads, problem->patches[0].r_count, timing.runs, timing.work.pairs,
+            timing.plan_s, timing.run_s, sums, rate, method->pair_flops, fraction, rate / peak, control,
+            timing.run_s / sums);
+    if (threads > 1 && !isnan(gain))
+        fprintf(bench->file, "%.4g", gain);
+    fprintf(bench->file, ",%.6g,%.6g\n", timing.work.bytes, memory_peak());
+    printf("%-17s %-9s %-10s %-6s %d %7.3f %7.3f %7.3f %6.3f %8.5f %7.1f %7.2f %6.2f %6.0f\n", one->scene, one->engine,
+           method->name, precision, threads, timing.run_s, sums, 1e-9 * rate, fraction, rate / peak, control,
+           timing.run_s / sums, threads > 1 ? gain : NAN, memory_peak() / 0x1p20);
     fflush(stdout);
     return STATUS_OK;
 }
 
-static enum status bench_case(struct bench *bench, const char *name, const char *engine)
+static enum status bench_case(struct bench *bench, const struct bench_case *one)
 {
     struct scene scene;
-    struct echoes echoes[2];
-    enum status status = scene_load(name, SCENE_DIRECTORY, &scene);
+    struct echoes echoes[2] = {{0}, {0}};
+    enum status status = scene_load(one->scene, SCENE_DIRECTORY, &scene);
     if (status != STATUS_OK)
         return status;
-    struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
-    struct grid rows = scene.patches[0];
-    if (strcmp(engine, "general") == 0) {
-        rows.r_step *= (double)rows.r_count / ROWS;
-        rows.r_count = ROWS;
-        problem.patches = &rows;
+    struct grid grid = scene.patches[0];
+    if (one->rows > 0) {
+        grid.r_step *= (double)grid.r_count / one->rows;
+        grid.r_count = one->rows;
     }
     status = scene_simulate(&scene, &echoes[PRECISION_DOUBLE]);
-    if (status == STATUS_OK) {
+    if (status == STATUS_OK)
         status = echoes_convert(&echoes[PRECISION_DOUBLE], PRECISION_FLOAT, &echoes[PRECISION_FLOAT]);
-        for (int m = 0; m < METHODS && status == STATUS_OK; m++)
-            for (int p = 0; p < 2 && status == STATUS_OK; p++) {
-                enum precision precision = p ? PRECISION_DOUBLE : PRECISION_FLOAT;
-                status = measure(bench, &scene, engine, m, precision, bench->threads, &problem, &echoes[precision],
-                                 &echoes[PRECISION_FLOAT]);
-                if (m == 0 && bench->threads > 1 && status == STATUS_OK)
-                    status = measure(bench, &scene, engine, m, precision, 1, &problem, &echoes[precision],
-                                     &echoes[PRECISION_FLOAT]);
-            }
-        echoes_free(&echoes[PRECISION_DOUBLE]);
-        echoes_free(&echoes[PRECISION_FLOAT]);
-    }
+    for (int m = 0; m < one->methods; m++)
+        for (int p = 0; p < 2; p++) {
+            struct problem problem = {&scene.acquisition, 1, &grid, (enum precision)p};
+            double alone_s = NAN;
+            for (int n = m < one->alone ? 0 : 1; n < 2 && status == STATUS_OK; n++)
+                if (n == 0 || bench->threads > 1 || m >= one->alone)
+                    status = measure(bench, one, &methods[m], &problem, n == 0 ? 1 : bench->threads, &echoes[p],
+                                     &echoes[PRECISION_FLOAT], &alone_s);
+        }
+    echoes_free(&echoes[PRECISION_DOUBLE]);
+    echoes_free(&echoes[PRECISION_FLOAT]);
     scene_free(&scene);
     return status;
 }
 
+static enum status measure_cases(struct bench *bench)
+{
+    struct provenance provenance;
+    provenance_fill(&provenance, bench->threads);
+    fprintf(bench->file, "# sasbench bench 2\n# machine: %s\n# compiler: %s\n# flags: %s\n# commit: %s\n# date: %s\n",
+            provenance.machine, provenance.compiler, provenance.flags, provenance.commit, provenance.date);
+    fprintf(bench->file, "# isa: %s\n", isa_name(isa_choose()));
+    for (int p = 0; p < 2; p++) {
+        const char *name = precision_name((enum precision)p);
+        bench->peak[p][0] = peak_flops((enum precision)p, 1);
+        bench->peak[p][1] = bench->threads > 1 ? peak_flops((enum precision)p, bench->threads) : bench->peak[p][0];
+        fprintf(bench->file, "# peak %s: %.4g FLOP/s on 1 thread, %.4g on %d\n", name, bench->peak[p][0],
+                bench->peak[p][1], bench->threads);
+        printf("multiply-add peak, %s (%s): %.1f GFLOP/s on one thread, %.1f on %d\n", name, isa_name(isa_choose()),
+               1e-9 * bench->peak[p][0], 1e-9 * bench->peak[p][1], bench->threads);
+    }
+    fprintf(bench->file, "scene,engine,algorithm,precision,threads,rows,runs,pairs,plan_s,run_s,sum_s,pairs_per_s,"
+                         "flops_per_pair,fraction_of_peak,pairs_per_peak_flop,ratio_to_control,run_to_sum,"
+                         "gain_of_threads,plan_bytes,process_bytes\n");
+    printf("\n%-17s %-9s %-10s %-6s %s %7s %7s %7s %6s %8s %7s %7s %6s %6s\n", "scene", "engine", "algorithm", "prec.", "t",
+           "run s", "sums s", "Gpair/s", "peak", "pair/FL", "control", "run/sum", "gain", "MiB");
+    enum status status = STATUS_OK;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases && status == STATUS_OK; k++)
+        status = bench_case(bench, &cases[k]);
+    return status;
+}
+
+/* Back projection on BP22's full size: bench.csv and its picture. */
+static enum status bench_bp(const char *directory)
+{
+    char csv[4096], picture[4096];
+    struct text_file file;
+    snprintf(csv, sizeof csv, "%s/bench.csv", directory);
+    enum status status = text_file_open(csv, &file);
+    if (status != STATUS_OK)
+        return status;
+    struct bench bench = {.file = file.stream, .threads = omp_get_max_threads()};
+    status = text_file_close(&file, measure_cases(&bench));
+    for (int k = 0; k < 2 && status == STATUS_OK; k++) {
+        snprintf(picture, sizeof picture, "%s/bench.%s", directory, k ? "svg" : "png");
+        status = plot_csv(picture, PLOT_DIRECTORY, "bench.gp", csv);
+    }
+    if (status == STATUS_OK)
+        printf("\nResults: %s/bench.csv, bench.png, bench.svg\n", directory);
+    return status;
+}
+
+/* Each measures into files of its own in the folder. */
+static enum status (*const parts[])(const char *directory) = {bench_bp, bench_rma};
+
 enum status command_bench(const struct task *task)
 {
     const char *directory = task->output ? task->output : "results/bench";
-    char path[4096];
-    struct bench bench = {.threads = omp_get_max_threads()};
     enum status status = directory_make(directory);
-    snprintf(path, sizeof path, "%s/bench.csv", directory);
-    if (status == STATUS_OK && !(bench.file = fopen(path, "w")))
-        status = status_set(STATUS_INVALID, "%.300s: cannot be written: %s; must be a writable folder", path,
-                            strerror(errno));
-    if (status != STATUS_OK)
-        return status;
-    fprintf(bench.file, "# sasbench bench 1\n# isa: %s\n", isa_name(isa_choose()));
-    for (int p = 0; p < 2; p++) {
-        bench.peak[p][0] = peak_flops((enum precision)p, 1);
-        bench.peak[p][1] = peak_flops((enum precision)p, bench.threads);
-        fprintf(bench.file, "# peak %s: %.4g FLOP/s on 1 thread, %.4g on %d\n", precision_name((enum precision)p),
-                bench.peak[p][0], bench.peak[p][1], bench.threads);
-        printf("multiply-add peak, %s (%s): %.1f GFLOP/s on one thread, %.1f on %d\n", precision_name((enum precision)p),
-               isa_name(isa_choose()), 1e-9 * bench.peak[p][0], 1e-9 * bench.peak[p][1], bench.threads);
-    }
-    fprintf(bench.file, "scene,engine,algorithm,precision,threads,runs,pairs,run_s,sum_s,pairs_per_s,flops_per_pair,"
-                        "fraction_of_peak,pairs_per_peak_flop,ratio_to_control,bytes\n");
-    printf("\n%-18s %-9s %-20s %-6s %s  %8s %8s %9s %7s %9s %8s %7s\n", "scene", "engine", "algorithm", "prec.", "t",
-           "run s", "sums s", "Gpairs/s", "of peak", "pair/FLOP", "control", "MB");
-    for (size_t k = 0; k < sizeof cases / sizeof *cases && status == STATUS_OK; k++)
-        status = bench_case(&bench, cases[k].scene, cases[k].engine);
-    if (fclose(bench.file) != 0 && status == STATUS_OK)
-        status = status_set(STATUS_FAILED, "%.300s: cannot be written: %s", path, strerror(errno));
-    if (status == STATUS_OK)
-        printf("\nResults: %s\n", path);
-    return status == STATUS_OK ? bench_rma(directory) : status;
+    for (size_t k = 0; k < sizeof parts / sizeof *parts && status == STATUS_OK; k++)
+        status = parts[k](directory);
+    return status;
 }

@@ -413,6 +413,18 @@ enum status plot_folder(const char *path, const char *plots_directory, const cha
     return status;
 }
 
+enum status plot_csv(const char *path, const char *plots_directory, const char *script, const char *csv)
+{
+    struct plot plot;
+    enum status status = plot_begin(&plot, path);
+    if (status == STATUS_OK) {
+        variable_write(plot.preamble, "csv", csv);
+        status = plot_draw(&plot, plots_directory, script);
+    }
+    plot_end(&plot);
+    return status;
+}
+
 void picture_label(const char *algorithm, const char *options, const char *precision, char *label, size_t size)
 {
     snprintf(label, size, "%s%s%s%s", algorithm, *options ? ":" : "", options,

@@ -28,6 +28,9 @@ extern const char *const folder_plots[];
 enum status plot_folder(const char *path, const char *plots_directory, const char *name, const char *folder,
                         const char *scene, bool *drawn);
 
+/* A script about one CSV file, into `path`, which ends in .png or .svg. */
+enum status plot_csv(const char *path, const char *plots_directory, const char *script, const char *csv);
+
 /* What a picture of one setting is called: "bp_linear:beta=8 double". */
 void picture_label(const char *algorithm, const char *options, const char *precision, char *label, size_t size);
 /* "DIR/bp22_table3-error_time.png" for bp22/table3 and error_time.png: signs that a shell would take become '_'. */

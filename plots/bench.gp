@@ -1,0 +1,50 @@
+# How near the engines come to the machine's limits, on all threads: rate, fraction of the multiply-add peak, ratio to the
+# control loop.
+#
+# By hand:    gnuplot -c plots/bench.gp results/bench/bench.csv
+# Variables:  csv      what `bench` wrote
+#             output   the picture, PNG or SVG (default: beside the CSV, .png)
+#             plots    folder of the scripts
+
+if (!exists("plots")) plots = "plots"
+if (!exists("csv")) csv = ARGC >= 1 ? ARG1 : "results/bench/bench.csv"
+if (!exists("output")) output = csv[1:strlen(csv) - 4].".png"
+width = 1400
+height = 620
+load plots."/style.gp"
+set datafile separator comma
+
+stats csv using (column("threads")) name "threads" nooutput
+label(method, precision, scene) = method.(precision eq "double" ? " double" : "") \
+    .(scene eq "bp22/full" ? " (whole aperture)" : "")
+set table $rows separator comma
+plot csv using (label(strcol("algorithm"), strcol("precision"), strcol("scene"))):(strcol("engine")): \
+    (1e-9*column("pairs_per_s")):(column("fraction_of_peak")):(column("ratio_to_control")):(" ") \
+    with table if (column("threads") == threads_max)
+unset table
+
+array title[3] = ["rate (1e9 pairs/s)", "fraction of the multiply-add peak", "times the control loop's rate"]
+array engine[2] = ["invariant", "general"]
+array colour[2] = ["#0072b2", "#d55e00"]
+set output output
+set style fill solid 0.9 noborder
+set grid noytics
+set yrange [|$rows| - 0.3:-0.7]
+set multiplot title sprintf("Back projection of BP22's full size, %d thread%s", threads_max, threads_max > 1 ? "s" : "")
+set tmargin at screen 1 - 60.0/height
+set bmargin at screen 125.0/height
+do for [k = 1:3] {
+    set lmargin at screen (345 + 350*(k - 1))/real(width)
+    set rmargin at screen (660 + 350*(k - 1))/real(width)
+    set xlabel title[k]
+    low = k == 3 ? 1 : 0
+    if (k == 3) { set logscale x }
+    set xrange [low:*]
+    if (k == 2) { set xtics 0.1 } else { set xtics auto }
+    if (k > 1) { set format y "" }
+    if (k == 3) { set key at screen 0.5,50.0/height center top } else { unset key }
+    plot for [e = 1:2] $rows using (low):0:(low):(strstrt(strcol(2), engine[e]) ? column(k + 2) : NaN):($0 - 0.35):($0 + 0.35): \
+        ytic(k == 1 ? 1 : 6) with boxxyerror linecolor rgb colour[e] title engine[e]." engine"
+}
+unset multiplot
+unset output
