@@ -35,13 +35,17 @@ static enum status tabulate(struct bp *bp, const struct interpolator *in, const 
                                   .first = in->first, .guard = in->taps};
     if (in->taps == 1)
         return STATUS_OK;
+    bool line = in->taps == 2 && in->phases > 0;
     size_t rows = in->phases > 0 ? (size_t)in->phases : 4 * (size_t)BP_INTERVALS, taps = (size_t)in->taps;
     double *w = malloc(rows * taps * sizeof *w), *at = malloc(4 * taps * sizeof *at);
     bp->weights = malloc(rows * taps * real_size(bp->problem.precision));
     if (w && at && bp->weights) {
         if (in->phases > 0)
-            for (int p = 0; p < in->phases; p++)
-                in->weights(options, (double)p / in->phases, w + (size_t)p * taps);
+            for (int p = 0; p < in->phases; p++) {
+                double fraction = (double)p / in->phases, *at_p = w + (size_t)p * taps;
+                in->weights(options, fraction, at_p);
+                line = line && fabs(at_p[0] - (1 - fraction)) <= 1e-15 && fabs(at_p[1] - fraction) <= 1e-15;
+            }
         for (int k = 0; in->phases == 0 && k < BP_INTERVALS; k++) {
             /* The cubic through the four Chebyshev points of the interval, from Newton's divided differences. */
             double u[4], *c = w + (size_t)k * 4 * taps;
@@ -70,6 +74,7 @@ static enum status tabulate(struct bp *bp, const struct interpolator *in, const 
     free(w);
     free(at);
     bp->table.weights = bp->weights;
+    bp->table.line = line;
     bp->work.bytes += (double)(rows * taps * real_size(bp->problem.precision));
     return complete ? STATUS_OK : status_set(STATUS_FAILED, "no memory for interpolation weights");
 }

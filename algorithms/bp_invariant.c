@@ -156,6 +156,7 @@ static enum status invariant_plan(struct bp *bp)
         return status;
     acquisition_is_straight(a, &track);
     int threads = omp_get_max_threads(), blocks = 0;
+    size_t most_phases = 0, legs = 0;
     size_t size = real_size(problem->precision);
     double *bytes = &bp->work.bytes, ignored = 0;
     in->row = row_functions[isa_choose()][problem->precision];
@@ -179,6 +180,9 @@ static enum status invariant_plan(struct bp *bp)
             return status_set(STATUS_FAILED, "no memory for the sums of %d x %d pixels", raster->columns,
                               problem->patches[k].r_count);
         blocks = raster->blocks > blocks ? raster->blocks : blocks;
+        size_t shifts = phases * (size_t)(a->pings + raster->blocks);
+        most_phases = phases > most_phases ? phases : most_phases;
+        legs = shifts > legs ? shifts : legs;
     }
     /* A block of columns may begin its width less one before the first ping and end as far behind the last. Room is made
        for the widest vectors, so that a plan needs the same memory on every machine. */
@@ -187,8 +191,9 @@ static enum status invariant_plan(struct bp *bp)
     shape_slab(bp, in, lead, round_up(a->pings + 2 * lead, 8));
     size_t values = (size_t)in->receivers * in->slab.receiver_stride, entries = (size_t)(a->pings + blocks);
     size_t tile = (size_t)TILE * (size_t)bp->shape.length * 2 * size;
-    size_t reals = entries * (2 + (size_t)bp->table.taps), per_thread = entries * (3 * sizeof(double) + 2 * sizeof(int))
-                                                                        + reals * size;
+    size_t reals = entries * (2 + (size_t)bp->table.taps);
+    size_t per_thread = most_phases * sizeof(struct bp_row_shifts) + (legs + 2 * entries) * sizeof(double)
+                        + 2 * entries * sizeof(int) + reals * size;
     per_thread = (per_thread + 63) / 64 * 64;
     if (!(in->slab.receiver_stride < INT_MAX))
         return status_set(STATUS_UNSUPPORTED, "records of %zu values a receiver are too long to index",
@@ -202,10 +207,11 @@ static enum status invariant_plan(struct bp *bp)
         return status_set(STATUS_FAILED, "no memory for records of %d receivers", in->receivers);
     *bytes += (double)(tile + per_thread + sizeof *in->scratch);
     for (int t = 0; t < threads; t++) {
-        double *d = (double *)((char *)in->tables + (size_t)t * per_thread);
-        int *n = (int *)(d + 3 * entries);
+        struct bp_row_shifts *shifts = (struct bp_row_shifts *)((char *)in->tables + (size_t)t * per_thread);
+        double *leg = (double *)(shifts + most_phases), *d = leg + legs;
+        int *n = (int *)(d + 2 * entries);
         char *w = (char *)(n + 2 * entries);
-        in->scratch[t] = (struct bp_row_scratch){d, d + entries, d + 2 * entries, n, n + entries, w, w + entries * size,
+        in->scratch[t] = (struct bp_row_scratch){shifts, leg, d, d + entries, n, n + entries, w, w + entries * size,
                                                  w + 2 * entries * size};
     }
     return STATUS_OK;

@@ -113,7 +113,8 @@ INLINE int tabulate(const struct bp_medium *medium, const struct bp_table *table
 
 /* Sums of one block of `width` vectors of columns over entries [begin, end). re, im: the block's first column; sr, si: the
    receiver's records such that sr[offset] is the block's first column's value. Real and imaginary weights have
-   accumulators of their own, so that enough independent chains hide the latency of multiply-adds. */
+   accumulators of their own, so that enough independent chains hide the latency of multiply-adds; all real parts come
+   before the imaginary ones, so that these chains and what they need fit 16 registers. */
 INLINE void sum_nearest(int width, const struct bp_row_scratch *scratch, int begin, int end, const real *sr,
                         const real *si, real *re, real *im)
 {
@@ -124,11 +125,16 @@ INLINE void sum_nearest(int width, const struct bp_row_scratch *scratch, int beg
         const real *x = sr + offset[i], *y = si + offset[i];
         real cosine = wr[i], sine = wi[i];
         for (int k = 0; k < width; k++) {
-            vector_real xk = *(const vector_real *)(x + k * LANES), yk = *(const vector_real *)(y + k * LANES);
-            a[k] += xk * cosine;
-            b[k] += yk * sine;
-            c[k] += xk * sine;
-            d[k] += yk * cosine;
+            vector_real v = *(const vector_real *)(x + k * LANES);
+            HOLD(v);
+            a[k] += v * cosine;
+            c[k] += v * sine;
+        }
+        for (int k = 0; k < width; k++) {
+            vector_real v = *(const vector_real *)(y + k * LANES);
+            HOLD(v);
+            b[k] += v * sine;
+            d[k] += v * cosine;
         }
     }
     for (int k = 0; k < width; k++) {
@@ -167,6 +173,8 @@ INLINE void sum_taps(int width, int taps, int stride, const struct bp_row_scratc
 static int entry_find(const int *shift, int count, int bound)
 {
     int low = 0;
+    if (count > 0 && shift[count - 1] - shift[0] == count - 1)      /* as is usual, none is left out */
+        return bound < shift[0] ? 0 : bound - shift[0] < count ? bound - shift[0] : count;
     while (low < count) {
         int middle = low + (count - low) / 2;
         if (shift[middle] < bound)
@@ -228,22 +236,31 @@ void BP_ROW(const struct bp_medium *medium, const struct bp_table *table, const 
             const struct bp_slab *slab, double r, const double *offsets, int count, const struct bp_row_scratch *scratch,
             void *re_, void *im_, int stride)
 {
-    for (int rho = 0; rho < raster->ratio && rho < raster->columns; rho++) {
-        real *re = (real *)re_ + (size_t)rho * (size_t)stride, *im = (real *)im_ + (size_t)rho * (size_t)stride;
-        int columns = (raster->columns - rho + raster->ratio - 1) / raster->ratio;
-        int begin = 1 - columns, end = raster->pings;
-        double x = raster->x_first - (raster->grid_first + rho * raster->grid_step);
-        shift_bounds(raster, x, r, &begin, &end);
-        int n = end - begin;
-        if (n <= 0)
-            continue;
-        x += begin * raster->spacing;
-        legs(x, raster->spacing, r, medium->sound_speed, n, scratch->leg);
-        for (int g = 0; g < count; g++) {
-            const real *sr = (const real *)slab->re + (size_t)g * slab->receiver_stride;
-            const real *si = (const real *)slab->im + (size_t)g * slab->receiver_stride;
-            delays(medium, raster, x, r, offsets[g], n, scratch->leg, scratch->q, scratch->f);
-            int entries = tabulate(medium, table, slab, begin, n, scratch);
+    const int phases = raster->ratio < raster->columns ? raster->ratio : raster->columns;
+    const size_t most = (size_t)(raster->pings + raster->blocks);
+    struct bp_row_shifts *all = scratch->shifts;
+    for (int rho = 0; rho < phases; rho++) {
+        struct bp_row_shifts *shifts = &all[rho];
+        shifts->columns = (raster->columns - rho + raster->ratio - 1) / raster->ratio;
+        shifts->begin = 1 - shifts->columns;
+        shifts->end = raster->pings;
+        shifts->x = raster->x_first - (raster->grid_first + rho * raster->grid_step);
+        shift_bounds(raster, shifts->x, r, &shifts->begin, &shifts->end);
+        shifts->x += shifts->begin * raster->spacing;
+        legs(shifts->x, raster->spacing, r, medium->sound_speed, shifts->end - shifts->begin, scratch->leg + (size_t)rho * most);
+    }
+    /* Receiver by receiver: the few samples that a row reads of one stay in the first-level cache over all phases. */
+    for (int g = 0; g < count; g++) {
+        const real *sr = (const real *)slab->re + (size_t)g * slab->receiver_stride;
+        const real *si = (const real *)slab->im + (size_t)g * slab->receiver_stride;
+        for (int rho = 0; rho < phases; rho++) {
+            const struct bp_row_shifts *shifts = &all[rho];
+            const int n = shifts->end - shifts->begin, columns = shifts->columns;
+            real *re = (real *)re_ + (size_t)rho * (size_t)stride, *im = (real *)im_ + (size_t)rho * (size_t)stride;
+            if (n <= 0)
+                continue;
+            delays(medium, raster, shifts->x, r, offsets[g], n, scratch->leg + (size_t)rho * most, scratch->q, scratch->f);
+            int entries = tabulate(medium, table, slab, shifts->begin, n, scratch);
             switch (table->taps) {              /* the shipped kernels unroll, any other length works as well */
             case 1: sum_columns(1, BP_BLOCK_VECTORS, raster, slab, columns, scratch, entries, sr, si, re, im); break;
             case 2: sum_columns(2, 2, raster, slab, columns, scratch, entries, sr, si, re, im); break;

@@ -31,9 +31,17 @@ struct bp_raster {
     double limit;                   /* aperture limit */
 };
 
-/* Scratch of one thread, for at most `entries` shifts. */
+/* The shifts [begin, end) of one column phase inside the aperture. */
+struct bp_row_shifts {
+    int begin, end, columns;
+    double x;                       /* m, of ping `begin` from column 0 */
+};
+
+/* Scratch of one thread, for at most `entries` = pings + blocks shifts. */
 struct bp_row_scratch {
-    double *leg, *q, *f;            /* [entries] */
+    struct bp_row_shifts *shifts;   /* [phases], phases = min(ratio, columns) */
+    double *leg;                    /* [phases][entries] s, from the transmitter */
+    double *q, *f;                  /* [entries] */
     int *shift;                     /* [entries] p - n div ratio, rising */
     int *offset;                    /* [entries] where the first tap's value for ping `shift` lies in the receiver's slab */
     void *wr, *wi, *weights;        /* real [entries], [entries], [entries][taps] */

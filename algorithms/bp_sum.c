@@ -34,8 +34,8 @@ struct sample {
 struct run {
     int count;
     _Alignas(VECTOR_BYTES) int sample[RUN];     /* of the upsampled record, on from which the taps are counted */
-    _Alignas(VECTOR_BYTES) int phase[RUN];      /* row of the table of weights; of tables only */
-    _Alignas(VECTOR_BYTES) real rest[RUN];      /* position in the interval of a cubic; of tables of cubics only */
+    _Alignas(VECTOR_BYTES) int phase[RUN];      /* row of the table of weights; where one is used */
+    _Alignas(VECTOR_BYTES) real rest[RUN];      /* position in the interval of a cubic, or a line's fraction */
     _Alignas(VECTOR_BYTES) real turns[RUN];     /* phase, |turns| <= 1/2 */
 };
 
@@ -92,31 +92,58 @@ INLINE vector_real *at(const real *values)
     return (vector_real *)values;
 }
 
-/* One value each: the nearest. Or two with weights for each phase of a grid. */
-INLINE void add_gathered(int taps, const struct sample *row, const struct sample *weights, const struct run *run,
-                         real *re, real *im)
+/* Values and those behind them. */
+INLINE void gather_two(const struct sample *from, const int *index, vector_real value[2], vector_real next[2])
+{
+#if REAL_DOUBLE
+    gather(from, index, &value[0], &value[1]);
+    gather(from + 1, index, &next[0], &next[1]);
+#else
+    typedef float both __attribute__((vector_size(16), aligned(sizeof(float)), may_alias));
+#define BOTH(n) (*(const both *)(from + index[n]))
+#if VECTOR_BYTES == 64
+#define JOIN(a, b) __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7)
+#define BOTHS(n) __builtin_shufflevector(JOIN(BOTH(n), BOTH(n + 4)), JOIN(BOTH(n + 8), BOTH(n + 12)), \
+                                         0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
+#elif VECTOR_BYTES == 32
+#define BOTHS(n) __builtin_shufflevector(BOTH(n), BOTH(n + 4), 0, 1, 2, 3, 4, 5, 6, 7)
+#else
+#define BOTHS(n) BOTH(n)
+#endif
+    vector_real a = BOTHS(0), b = BOTHS(1), c = BOTHS(2), d = BOTHS(3);
+    vector_real re_low = __builtin_shufflevector(a, b, EVEN), re_high = __builtin_shufflevector(c, d, EVEN);
+    vector_real im_low = __builtin_shufflevector(a, b, ODD), im_high = __builtin_shufflevector(c, d, ODD);
+    value[0] = __builtin_shufflevector(re_low, re_high, EVEN);
+    value[1] = __builtin_shufflevector(im_low, im_high, EVEN);
+    next[0] = __builtin_shufflevector(re_low, re_high, ODD);
+    next[1] = __builtin_shufflevector(im_low, im_high, ODD);
+#endif
+}
+
+/* One value each, the nearest, or between two on a line. */
+INLINE void add_gathered(bool line, const struct sample *row, const struct run *run, real *re, real *im)
 {
     const int count = run->count;
     int i = 0;
     for (; i <= count - LANES; i += LANES) {
-        vector_real x, y, c, s;
+        vector_real v[2], next[2], c, s;
         turn_vector(*at(run->turns + i), &c, &s);
-        gather(row, run->sample + i, &x, &y);
-        if (taps == 2) {
-            vector_real next_x, next_y, a, b;
-            gather(row + 1, run->sample + i, &next_x, &next_y);
-            gather(weights, run->phase + i, &a, &b);
-            x = x * a + next_x * b;
-            y = y * a + next_y * b;
+        if (line) {
+            gather_two(row, run->sample + i, v, next);
+            v[0] += *at(run->rest + i) * (next[0] - v[0]);
+            v[1] += *at(run->rest + i) * (next[1] - v[1]);
+        } else {
+            gather(row, run->sample + i, &v[0], &v[1]);
         }
-        *at(re + i) += x * c - y * s;
-        *at(im + i) += x * s + y * c;
+        *at(re + i) += v[0] * c - v[1] * s;
+        *at(im + i) += v[0] * s + v[1] * c;
     }
     for (; i < count; i++) {
         struct sample v = row[run->sample[i]];
-        if (taps == 2) {
-            struct sample w = weights[run->phase[i]], next = row[run->sample[i] + 1];
-            v = (struct sample){v.re * w.re + next.re * w.im, v.im * w.re + next.im * w.im};
+        if (line) {
+            struct sample next = row[run->sample[i] + 1];
+            v.re += run->rest[i] * (next.re - v.re);
+            v.im += run->rest[i] * (next.im - v.im);
         }
         real c, s;
         turn(run->turns[i], &c, &s);
@@ -164,10 +191,10 @@ static void add_run(const struct bp_table *table, const real *row, int row_lengt
     const real *x = row + table->guard + table->first, *y = x + row_length;
     const struct sample *first = (const struct sample *)row + table->guard + table->first;
     if (!bp_table_planar(table)) {
-        if (table->taps == 1)
-            add_gathered(1, first, NULL, run, re, im);
+        if (table->line)
+            add_gathered(true, first, run, re, im);
         else
-            add_gathered(2, first, table->weights, run, re, im);
+            add_gathered(false, first, run, re, im);
     } else {
         switch (table->taps) {      /* the shipped kernels unroll, any other length works as well */
         case 8: add_taps(table, 8, x, y, run, re, im); break;
@@ -248,7 +275,7 @@ static void sum_exact(const struct bp_medium *medium, const struct bp_table *tab
                 double sample = floor((point + 0.5) / one);
                 run.sample[i] = (int)sample;
                 run.phase[i] = (int)(point - sample * one);
-                run.rest[i] = (real)(q * one - point);
+                run.rest[i] = (real)(cubics ? q * one - point : run.phase[i] / one);
                 run.turns[i] = (real)(turns - floor(turns + 0.5));
             }
             add_run(table, (const real *)ping->rows + 2 * (size_t)m * (size_t)ping->row_length, ping->row_length, &run,
@@ -309,6 +336,7 @@ INLINE void points(const double *c, const struct scale *scale, double first, con
     enum { BITS = 19 };
     const double shift = scale->shift + 0x1.8p33, ratio = scale->ratio;
     const double turns = c[0] * ratio + scale->base, base = scale->base - floor(turns) + 0x1.8p20;
+    const real one_phase = 1 / (real)table->phases;
 #define LANE(n) n
     vector_double u[2] = {PART(LANE, 0), PART(LANE, 2)};
     u[0] += first;
@@ -332,8 +360,11 @@ INLINE void points(const double *c, const struct scale *scale, double first, con
             vector_int rest = LOW(point) & ((1 << BITS) - 1);
             *at(run->rest + i) = __builtin_convertvector(rest, vector_real) * (real)0x1p-19;
         } else if (table->taps > 1) {
-            vector_int rest = LOW(point) & ((1 << BITS) - 1);
-            *(vector_int *)(run->phase + i) = rest * table->phases >> BITS;
+            vector_int rest = LOW(point) & ((1 << BITS) - 1), phase = rest * table->phases >> BITS;
+            if (table->line)
+                *at(run->rest + i) = __builtin_convertvector(phase, vector_real) * one_phase;
+            else
+                *(vector_int *)(run->phase + i) = phase;
         }
         *(vector_int *)(run->sample + i) = sample;
         *at(run->turns + i) = __builtin_convertvector(LOW(turned), vector_real) * (real)0x1p-32;

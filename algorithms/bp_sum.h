@@ -11,6 +11,7 @@ struct bp_table {
     /* phases > 0: [phases][taps]. phases == 0: a cubic in the fraction's position inside each of BP_INTERVALS intervals,
        [BP_INTERVALS][4][taps], lowest power first. Of the plan's precision; NULL when taps == 1. */
     const void *weights;
+    bool line;                      /* two weights, 1 - f and f of the rounded fraction f: needs no table */
 };
 enum { BP_INTERVAL_BITS = 8, BP_INTERVALS = 1 << BP_INTERVAL_BITS };
 
@@ -23,7 +24,7 @@ static inline bool bp_table_cubics(const struct bp_table *table)
 /* Records whose real and imaginary parts the general engine keeps apart: many taps add up along each. */
 static inline bool bp_table_planar(const struct bp_table *table)
 {
-    return table->taps > 2 || bp_table_cubics(table);
+    return table->taps > 1 && !table->line;
 }
 
 struct bp_medium {

@@ -16,4 +16,11 @@ enum { LANES = VECTOR_BYTES / sizeof(real) };
 /* Loaded and stored wherever it lies. */
 typedef real vector_real __attribute__((vector_size(VECTOR_BYTES), aligned(sizeof(real)), may_alias));
 
+/* Hold a loaded vector in its register: else the compiler loads it anew for each product, and loads are the limit. */
+#if defined __x86_64__
+#define HOLD(vector) __asm__("" : "+v"(vector))
+#else
+#define HOLD(vector) ((void)0)
+#endif
+
 #endif

@@ -43,7 +43,6 @@ static const struct bench_case {
 struct bench {
     FILE *file;
     int threads;
-    double peak[2][2];                  /* [precision][0: one thread, 1: all] FLOP/s */
 };
 
 static double stage_seconds(const struct stages *stages, const char *name)
@@ -61,7 +60,7 @@ static double memory_peak(void)
     return getrusage(RUSAGE_SELF, &usage) == 0 ? 1024.0 * (double)usage.ru_maxrss : NAN;
 }
 
-/* One row. *alone_s: the run's seconds on one thread, NAN before they are known. */
+/* One row; the peak is measured before and after, as the control is. *alone_s: the run's seconds on one thread, NAN before they are known. */
 static enum status measure(struct bench *bench, const struct bench_case *one, const struct method *method,
                            const struct problem *problem, int threads, const struct echoes *echoes,
                            const struct echoes *control_echoes, double *alone_s)
@@ -76,22 +75,24 @@ static enum status measure(struct bench *bench, const struct bench_case *one, co
     if (status != STATUS_OK)
         return status;
     omp_set_num_threads(threads);
+    double peak = 0.5 * peak_flops(problem->precision, threads);
     status = image_allocate(problem->patch_count, problem->patches, problem->precision, &image);
     if (status == STATUS_OK)
         status = timing_measure(spec.algorithm, problem, spec.options, echoes, control_echoes, &image, &timing);
+    peak += 0.5 * peak_flops(problem->precision, threads);
     image_free(&image);
     spec_free(&spec);
     omp_set_num_threads(bench->threads);
     if (status != STATUS_OK)
         return status;
     const double sums = stage_seconds(&timing.stages, "focus"), rate = timing.work.pairs / sums;
-    const double peak = bench->peak[problem->precision][threads > 1], control = timing.control_s / sums;
+    const double fraction = method->pair_flops * rate / peak, control = timing.control_s / sums;
     if (threads == 1)
         *alone_s = timing.run_s;
-    const double fraction = method->pair_flops * rate / peak, gain = *alone_s / timing.run_s;
-    fprintf(bench->file, "%s,%s,%s,%s,%d,%d,%d,%.9g,%.4g,%.4g,%.4g,%.4g,%g,%.4g,%.4g,%.4g,%.4g,", one->scene, one->engine,
-            method->name, precision, threads, problem->patches[0].r_count, timing.runs, timing.work.pairs,
-            timing.plan_s, timing.run_s, sums, rate, method->pair_flops, fraction, rate / peak, control,
+    const double gain = *alone_s / timing.run_s;
+    fprintf(bench->file, "%s,%s,%s,%s,%d,%d,%d,%.9g,%.4g,%.4g,%.4g,%.4g,%.4g,%g,%.4g,%.4g,%.4g,%.4g,", one->scene,
+            one->engine, method->name, precision, threads, problem->patches[0].r_count, timing.runs, timing.work.pairs,
+            timing.plan_s, timing.run_s, sums, rate, peak, method->pair_flops, fraction, rate / peak, control,
             timing.run_s / sums);
     if (threads > 1 && !isnan(gain))
         fprintf(bench->file, "%.4g", gain);
@@ -140,17 +141,12 @@ static enum status measure_cases(struct bench *bench)
     fprintf(bench->file, "# sasbench bench 2\n# machine: %s\n# compiler: %s\n# flags: %s\n# commit: %s\n# date: %s\n",
             provenance.machine, provenance.compiler, provenance.flags, provenance.commit, provenance.date);
     fprintf(bench->file, "# isa: %s\n", isa_name(isa_choose()));
-    for (int p = 0; p < 2; p++) {
-        const char *name = precision_name((enum precision)p);
-        bench->peak[p][0] = peak_flops((enum precision)p, 1);
-        bench->peak[p][1] = bench->threads > 1 ? peak_flops((enum precision)p, bench->threads) : bench->peak[p][0];
-        fprintf(bench->file, "# peak %s: %.4g FLOP/s on 1 thread, %.4g on %d\n", name, bench->peak[p][0],
-                bench->peak[p][1], bench->threads);
-        printf("multiply-add peak, %s (%s): %.1f GFLOP/s on one thread, %.1f on %d\n", name, isa_name(isa_choose()),
-               1e-9 * bench->peak[p][0], 1e-9 * bench->peak[p][1], bench->threads);
-    }
+    for (int p = 0; p < 2; p++)
+        printf("multiply-add peak, %s (%s): %.1f GFLOP/s on one thread, %.1f on %d\n", precision_name((enum precision)p),
+               isa_name(isa_choose()), 1e-9 * peak_flops((enum precision)p, 1),
+               1e-9 * peak_flops((enum precision)p, bench->threads), bench->threads);
     fprintf(bench->file, "scene,engine,algorithm,precision,threads,rows,runs,pairs,plan_s,run_s,sum_s,pairs_per_s,"
-                         "flops_per_pair,fraction_of_peak,pairs_per_peak_flop,ratio_to_control,run_to_sum,"
+                         "peak_flops,flops_per_pair,fraction_of_peak,pairs_per_peak_flop,ratio_to_control,run_to_sum,"
                          "gain_of_threads,plan_bytes,process_bytes\n");
     printf("\n%-17s %-9s %-10s %-6s %s %7s %7s %7s %6s %8s %7s %7s %6s %6s\n", "scene", "engine", "algorithm", "prec.", "t",
            "run s", "sums s", "Gpair/s", "peak", "pair/FL", "control", "run/sum", "gain", "MiB");
