@@ -225,7 +225,7 @@ static void assert_holds(const char *text, const char *part)
 
 static const char *const odd_scene = "b<i>it's \"b\" & c";
 
-/* Two scenes, one with signs that HTML gives a meaning, with all that `run`, `sweep` and `reproduce` leave. */
+/* Three scenes, one with signs that HTML gives a meaning, with all that `run`, `sweep` and `reproduce` leave. */
 static void folder_fill(void)
 {
     struct measurement rows[] = {
@@ -233,6 +233,7 @@ static void folder_fill(void)
         row_of("a", "bp_linear", "beta=2", 0.02, 0.1),  row_of("a", "bp_linear", "beta=8", 0.03, 0.09),
         row_of(odd_scene, "reference", "", 0.9, 1e-6),  row_of(odd_scene, "bp_zeropad", "factor=4", 0.2, 0.01),
         row_of(odd_scene, "rma_pca", "blocks=2", 0, 0), row_of(odd_scene, "rma_wu", "blocks=2", 0, 0),
+        row_of("no/rate", "rma_pca", "blocks=2", 0.1, 0.1),
     };
     rows[6].status = "unsupported";
     rows[6].reason = "a track of <3 pings | none";
@@ -275,11 +276,11 @@ static void test_everything_is_on_the_page(void **state)
     assert_int_equal(report_write(folder), STATUS_OK);
     char *html = text_read("report.html"), *markdown = text_read("report.md");
     struct parser *page = page_parse(html);
-    /* Machine, two scenes, cheapest, slopes, rules, two papers, two reproduced tables. */
-    assert_int_equal(page->tables, 10);
-    assert_int_equal(page->rows, 10 + 8 + 8 + 1 + 1 + 1 + 4 + 3);
-    /* Scene a draws all four; the other has an upsampling rate and lobes as well. */
-    assert_int_equal(page->drawings, 8);
+    /* Machine, three scenes, cheapest, slopes, rules, two papers, two reproduced tables. */
+    assert_int_equal(page->tables, 11);
+    assert_int_equal(page->rows, 11 + 8 + 9 + 1 + 1 + 1 + 4 + 3);
+    /* All four of two scenes; the third has neither an upsampling rate nor an exact image to compare lobes with. */
+    assert_int_equal(page->drawings, 4 + 4 + 2);
     /* Slices, one image, one figure of `phase`: the picture without a row is not of these results. */
     assert_int_equal(page->images, 3);
     static const char *const parts[] = {
