@@ -234,7 +234,7 @@ static double miss_probability(const struct contest *contest, const struct ab_ef
     return ERROR_PROBABILITY / 2 / fmax(1, comparisons) / looks;
 }
 
-/* Marks the units of which all is decided; *open tells how many are not. */
+/* Marks the units of which all is decided, or something is worse; *open tells how many are left. */
 static enum status contest_look(struct contest *contest, const struct ab_effort *effort, int *open)
 {
     double miss = miss_probability(contest, effort);
@@ -242,19 +242,21 @@ static enum status contest_look(struct contest *contest, const struct ab_effort 
     *open = 0;
     for (int k = 0; k < contest->unit_count; k++) {
         struct unit *unit = &contest->units[k];
-        bool decided = true;
+        bool worse = false, clear = true;
         if (unit->skipped || unit->decided)
             continue;
-        for (int part = 0; part < unit->part_count && decided && status == STATUS_OK; part++) {
+        for (int part = 0; part < unit->part_count && status == STATUS_OK; part++) {
             struct interval interval;
             if (!part_counts(unit, part))
                 continue;
             status = part_interval(unit, part, miss, &interval);
             enum verdict verdict = status == STATUS_OK ? interval_judge(&interval) : VERDICT_NOISY;
-            decided = verdict != VERDICT_NOISY && (verdict != VERDICT_WARNING || interval.high < 1 + EFFECT_FAIL);
+            worse = worse || verdict == VERDICT_WORSE;
+            clear = clear && verdict != VERDICT_NOISY
+                    && (verdict != VERDICT_WARNING || interval.high < 1 + EFFECT_FAIL);
         }
-        unit->decided = decided;
-        *open += !decided;
+        unit->decided = worse || clear;
+        *open += !unit->decided;
     }
     return status;
 }

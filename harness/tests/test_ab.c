@@ -48,7 +48,7 @@ static void verdicts_of_made_up_times(void **state)
         int least;                      /* of the trials that must come to it; the others are too noisy to tell */
     } cases[] = {
         {1.00, 0.01, 0.02, VERDICT_SAME, TRIALS - 10},
-        {1.00, 0.02, 0.06, VERDICT_SAME, TRIALS / 5},
+        {1.00, 0.02, 0.06, VERDICT_SAME, TRIALS / 10},
         {1.00, 0.00, 0.50, VERDICT_NOISY, TRIALS},
         {1.10, 0.01, 0.02, VERDICT_WORSE, TRIALS - 10},
         {1.30, 0.02, 0.06, VERDICT_WORSE, TRIALS - 2},
@@ -67,8 +67,9 @@ static void verdicts_of_made_up_times(void **state)
         int others = TRIALS - counts[verdict] - (verdict == VERDICT_NOISY ? 0 : counts[VERDICT_NOISY])
                      - (verdict == VERDICT_WORSE ? counts[VERDICT_WARNING] : 0);
         if (counts[verdict] < cases[n].least || others > 0)
-            fail_msg("case %zu: %d %s, %d noisy, %d others", n, counts[verdict], verdict_names[verdict],
-                     counts[VERDICT_NOISY], others);
+            fail_msg("case %zu: %d %s; %d worse, %d warnings, %d better, %d same, %d noisy", n, counts[verdict],
+                     verdict_names[verdict], counts[VERDICT_WORSE], counts[VERDICT_WARNING], counts[VERDICT_BETTER],
+                     counts[VERDICT_SAME], counts[VERDICT_NOISY]);
     }
 }
 
