@@ -120,35 +120,42 @@ INLINE void gather_two(const struct sample *from, const int *index, vector_real 
 #endif
 }
 
-/* One value each, the nearest, or between two on a line. */
-INLINE void add_gathered(bool line, const struct sample *row, const struct run *run, real *re, real *im)
+/* What LANES pixels from i on take from a record: the nearest value each, or between two on a line. */
+INLINE void take(bool line, const struct sample *row, const struct run *run, int i, vector_real *re, vector_real *im)
+{
+    vector_real v[2], next[2], c, s;
+    turn_vector(*at(run->turns + i), &c, &s);
+    if (line) {
+        gather_two(row, run->sample + i, v, next);
+        v[0] += *at(run->rest + i) * (next[0] - v[0]);
+        v[1] += *at(run->rest + i) * (next[1] - v[1]);
+    } else {
+        gather(row, run->sample + i, &v[0], &v[1]);
+    }
+    *re = v[0] * c - v[1] * s;
+    *im = v[0] * s + v[1] * c;
+}
+
+INLINE void add_taken(bool line, const struct sample *row, struct run *run, real *re, real *im)
 {
     const int count = run->count;
+    vector_real x, y;
     int i = 0;
     for (; i <= count - LANES; i += LANES) {
-        vector_real v[2], next[2], c, s;
-        turn_vector(*at(run->turns + i), &c, &s);
-        if (line) {
-            gather_two(row, run->sample + i, v, next);
-            v[0] += *at(run->rest + i) * (next[0] - v[0]);
-            v[1] += *at(run->rest + i) * (next[1] - v[1]);
-        } else {
-            gather(row, run->sample + i, &v[0], &v[1]);
-        }
-        *at(re + i) += v[0] * c - v[1] * s;
-        *at(im + i) += v[0] * s + v[1] * c;
+        take(line, row, run, i, &x, &y);
+        *at(re + i) += x;
+        *at(im + i) += y;
     }
-    for (; i < count; i++) {
-        struct sample v = row[run->sample[i]];
-        if (line) {
-            struct sample next = row[run->sample[i] + 1];
-            v.re += run->rest[i] * (next.re - v.re);
-            v.im += run->rest[i] * (next.im - v.im);
-        }
-        real c, s;
-        turn(run->turns[i], &c, &s);
-        re[i] += v.re * c - v.im * s;
-        im[i] += v.re * s + v.im * c;
+    if (i == count)
+        return;
+    for (int k = count; k < i + LANES; k++) {       /* the last vector's other pixels read what may be read */
+        run->sample[k] = run->sample[i];
+        run->rest[k] = run->turns[k] = 0;
+    }
+    take(line, row, run, i, &x, &y);
+    for (int k = 0; i + k < count; k++) {
+        re[i + k] += x[k];
+        im[i + k] += y[k];
     }
 }
 
@@ -186,15 +193,15 @@ INLINE void add_taps(const struct bp_table *table, int taps, const real *row_re,
     }
 }
 
-static void add_run(const struct bp_table *table, const real *row, int row_length, const struct run *run, real *re, real *im)
+static void add_run(const struct bp_table *table, const real *row, int row_length, struct run *run, real *re, real *im)
 {
     const real *x = row + table->guard + table->first, *y = x + row_length;
     const struct sample *first = (const struct sample *)row + table->guard + table->first;
     if (!bp_table_planar(table)) {
         if (table->line)
-            add_gathered(true, first, run, re, im);
+            add_taken(true, first, run, re, im);
         else
-            add_gathered(false, first, run, re, im);
+            add_taken(false, first, run, re, im);
     } else {
         switch (table->taps) {      /* the shipped kernels unroll, any other length works as well */
         case 8: add_taps(table, 8, x, y, run, re, im); break;
@@ -259,8 +266,9 @@ static void sum_exact(const struct bp_medium *medium, const struct bp_table *tab
     const bool cubics = bp_table_cubics(table);
     const double one = cubics ? BP_INTERVALS : table->phases;
     for (int first = begin; first < end; first += RUN) {
-        places.count = run.count = end - first < RUN ? end - first : RUN;
-        for (int i = 0; i < places.count; i++) {
+        const int count = end - first < RUN ? end - first : RUN;
+        places.count = run.count = count;
+        for (int i = 0; i < count; i++) {
             struct vector p = line_pixel(line, first + i);
             places.x[i] = p.x;
             places.r[i] = p.y;
@@ -269,7 +277,7 @@ static void sum_exact(const struct bp_medium *medium, const struct bp_table *tab
         for (int m = 0; m < ping->receivers; m++) {
             legs_back(medium, ping, ping->rx[m], &places);
 #pragma omp simd
-            for (int i = 0; i < run.count; i++) {
+            for (int i = 0; i < count; i++) {
                 double q = (places.tau[i] - scale->t0) * scale->fs * table->upsample;
                 double point = floor(q * one + scale->shift * one), turns = medium->fc * places.tau[i];
                 double sample = floor((point + 0.5) / one);
