@@ -14,7 +14,7 @@
 #include "timing.h"
 
 /* 8 rounds decide between identical programs on a quiet machine. */
-const struct ab_effort ab_usual = {8, 4, 48, 90, 600};
+const struct ab_effort ab_usual = {8, 4, 64, 240, 600};
 
 /* What is run where nothing is asked for: small, yet every stage of back projection and range migration holds much of
    the time somewhere. */
