@@ -94,12 +94,13 @@ static enum status measure(struct bench *bench, const struct bench_case *one, co
             one->engine, method->name, precision, threads, problem->patches[0].r_count, timing.runs, timing.work.pairs,
             timing.plan_s, timing.run_s, sums, rate, peak, method->pair_flops, fraction, rate / peak, control,
             timing.run_s / sums);
+    char gain_text[24] = "";
     if (threads > 1 && !isnan(gain))
-        fprintf(bench->file, "%.4g", gain);
-    fprintf(bench->file, ",%.6g,%.6g\n", timing.work.bytes, memory_peak());
-    printf("%-17s %-9s %-10s %-6s %d %7.3f %7.3f %7.3f %6.3f %8.5f %7.1f %7.2f %6.2f %6.0f\n", one->scene, one->engine,
+        snprintf(gain_text, sizeof gain_text, "%.3f", gain);
+    fprintf(bench->file, "%s,%.6g,%.6g\n", gain_text, timing.work.bytes, memory_peak());
+    printf("%-17s %-9s %-10s %-6s %d %7.3f %7.3f %7.3f %6.3f %8.5f %7.1f %7.2f %6s %6.0f\n", one->scene, one->engine,
            method->name, precision, threads, timing.run_s, sums, 1e-9 * rate, fraction, rate / peak, control,
-           timing.run_s / sums, threads > 1 ? gain : NAN, memory_peak() / 0x1p20);
+           timing.run_s / sums, *gain_text ? gain_text : "-", memory_peak() / 0x1p20);
     fflush(stdout);
     return STATUS_OK;
 }
