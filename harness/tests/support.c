@@ -1,6 +1,9 @@
 #include "support.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
 
 #include "../simulate.h"
 
@@ -63,4 +66,31 @@ double support_peak(const struct image *image)
             for (int j = 0; j < image->patches[k].x_count; j++)
                 peak = fmax(peak, cabs(image_pixel(image, k, i, j)));
     return peak;
+}
+
+char folder[256];
+
+int folder_make(void **state)
+{
+    (void)state;
+    const char *base = getenv("TMPDIR");
+    snprintf(folder, sizeof folder, "%s/sasbench-XXXXXX", base ? base : "/tmp");
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+int folder_remove(void **state)
+{
+    (void)state;
+    char command[300];
+    snprintf(command, sizeof command, "rm -r '%s'", folder);
+    return system(command);
+}
+
+const char *path_of(const char *name)
+{
+    static char paths[4][400];
+    static int next;
+    char *path = paths[next++ % 4];
+    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
+    return path;
 }

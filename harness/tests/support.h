@@ -1,4 +1,4 @@
-/* What several tests need: a scene with its echoes, and one image of it. */
+/* What several tests need: a scene with its echoes, one image of it, a folder. */
 #ifndef SASBENCH_TEST_SUPPORT_H
 #define SASBENCH_TEST_SUPPORT_H
 
@@ -22,5 +22,11 @@ enum status support_image(const char *spec, struct problem problem, const struct
 /* |a - b|_2 / |b|_2 over all pixels of two images of the same patches; |a|_2 when b is all zero. */
 double support_difference(const struct image *a, const struct image *b);
 double support_peak(const struct image *image);
+
+/* A folder of its own for every test: fixtures, and the path of a name in it (the last four stay valid). */
+extern char folder[256];
+int folder_make(void **state);
+int folder_remove(void **state);        /* with all that is in it */
+const char *path_of(const char *name);
 
 #endif

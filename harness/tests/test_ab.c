@@ -103,27 +103,9 @@ static void verdicts_at_the_stated_effects(void **state)
 
 /* --- Programs ------------------------------------------------------------------------------------------------- */
 
-static char folder[256];
 static struct ab_effort quick = {4, 2, 8, 20, 30};
 
-static const char *path_of(const char *name)
-{
-    static char paths[4][400];
-    static int next;
-    char *path = paths[next++ % 4];
-    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
-    return path;
-}
-
-static int folder_make(void **state)
-{
-    (void)state;
-    const char *base = getenv("TMPDIR");
-    snprintf(folder, sizeof folder, "%s/sasbench-XXXXXX", base ? base : "/tmp");
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int folder_remove(void **state)
+static int folder_remove_known(void **state)
 {
     (void)state;
     static const char *const names[] = {"old", "new", "pid"};
@@ -332,7 +314,7 @@ static void the_real_program_answers(void **state)
 
 int main(void)
 {
-#define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, folder_make, folder_remove)
+#define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, folder_make, folder_remove_known)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(verdicts_of_made_up_times),
         cmocka_unit_test(intervals_hold_as_often_as_they_say),

@@ -23,7 +23,6 @@
 
 enum { ARGUMENTS_MAX = 14, SAYS_MAX = 4 };
 
-static char folder[256];                /* where the program runs: all paths below are relative to it */
 static char program[PATH_MAX];
 static char long_name[5000];
 
@@ -841,17 +840,16 @@ static void echo_files_write(void)
     free(bytes);
 }
 
-static int folder_make(void **state)
+/* The folder is where the program runs: all paths are relative to it. */
+static int inputs_make(void **state)
 {
-    (void)state;
-    const char *base = getenv("TMPDIR"), *path = getenv("SASBENCH_PROGRAM");
+    const char *path = getenv("SASBENCH_PROGRAM");
     if (!path || !realpath(path, program)) {
         print_error("SASBENCH_PROGRAM must be the path of the program to test\n");
         return -1;
     }
-    snprintf(folder, sizeof folder, "%s/sasbench-XXXXXX", base ? base : "/tmp");
     /* The program's own temporary files are to be seen, too. */
-    if (!mkdtemp(folder) || setenv("TMPDIR", folder, 1) != 0)
+    if (folder_make(state) != 0 || setenv("TMPDIR", folder, 1) != 0)
         return -1;
     memset(long_name, 'x', sizeof long_name - 1);
     if (mkdir(path_in("folder.cfg"), 0777) != 0 || mkdir(path_in("foreign"), 0777) != 0 ||
@@ -867,20 +865,6 @@ static int folder_make(void **state)
     return 0;
 }
 
-static int folder_remove(void **state)
-{
-    (void)state;
-    char *roots[] = {folder, NULL};
-    FTS *tree = fts_open(roots, FTS_PHYSICAL | FTS_NOCHDIR, NULL);
-    if (!tree)
-        return -1;
-    for (FTSENT *entry; (entry = fts_read(tree));)
-        if (entry->fts_info != FTS_D)
-            remove(entry->fts_path);
-    fts_close(tree);
-    return access(folder, F_OK) == 0 ? -1 : 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -894,5 +878,5 @@ int main(void)
         cmocka_unit_test(unsupported_is_a_row_with_a_reason),
         cmocka_unit_test(interrupted_run_goes_on),
     };
-    return cmocka_run_group_tests(tests, folder_make, folder_remove);
+    return cmocka_run_group_tests(tests, inputs_make, folder_remove);
 }

@@ -14,28 +14,7 @@
 #include "../compare.h"
 #include "support.h"
 
-/* --- A folder for every test ---------------------------------------------------------------------------------- */
-
-static char folder[256];
-
-static const char *path_of(const char *name)
-{
-    static char paths[4][400];
-    static int next;
-    char *path = paths[next++ % 4];
-    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
-    return path;
-}
-
-static int folder_make(void **state)
-{
-    (void)state;
-    const char *base = getenv("TMPDIR");
-    snprintf(folder, sizeof folder, "%s/sasbench-XXXXXX", base ? base : "/tmp");
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int folder_remove(void **state)
+static int folder_remove_known(void **state)
 {
     (void)state;
     static const char *const names[] = {"old.csv", "new.csv", "out.md", "out.json", "old/measurements.csv",
@@ -439,7 +418,7 @@ static void shown_as_text_markdown_and_json(void **state)
 int main(void)
 {
     omp_set_num_threads(1);             /* the same bits, and quick beside other tests */
-#define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, folder_make, folder_remove)
+#define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, folder_make, folder_remove_known)
     const struct CMUnitTest tests[] = {
         IN_FOLDER(baseline_holds),
         IN_FOLDER(baseline_holds_without_vector_extensions),

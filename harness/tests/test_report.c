@@ -12,35 +12,6 @@
 #include "../report.h"
 #include "support.h"
 
-/* --- A folder for every test ---------------------------------------------------------------------------------- */
-
-static char folder[256];
-
-static const char *path_of(const char *name)
-{
-    static char paths[4][400];
-    static int next;
-    char *path = paths[next++ % 4];
-    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
-    return path;
-}
-
-static int folder_make(void **state)
-{
-    (void)state;
-    const char *base = getenv("TMPDIR");
-    snprintf(folder, sizeof folder, "%s/sasbench-XXXXXX", base ? base : "/tmp");
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int folder_remove(void **state)
-{
-    (void)state;
-    char command[300];
-    snprintf(command, sizeof command, "rm -r '%s'", folder);
-    return system(command);
-}
-
 static void text_write(const char *name, const char *text)
 {
     FILE *file = fopen(path_of(name), "w");

@@ -13,26 +13,6 @@
 #include "../task.h"
 #include "support.h"
 
-/* --- A folder for every test ---------------------------------------------------------------------------------- */
-
-static char folder[256];
-
-static int folder_make(void **state)
-{
-    (void)state;
-    const char *base = getenv("TMPDIR");
-    snprintf(folder, sizeof folder, "%s/sasbench-XXXXXX", base ? base : "/tmp");
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int folder_remove(void **state)
-{
-    (void)state;
-    char command[300];
-    snprintf(command, sizeof command, "rm -r '%s'", folder);
-    return system(command);
-}
-
 static struct record *rows;
 
 static void rows_begin(void)
