@@ -10,6 +10,8 @@
 #include "interval.h"
 #include "partner.h"
 #include "scene.h"
+#include "session.h"
+#include "table.h"
 #include "task.h"
 #include "timing.h"
 
@@ -328,9 +330,10 @@ static enum status scene_units(struct contest *contest, const char *scene, const
 /* A SPEC as it is written. */
 static const char *spec_text(struct compare *compare, const struct spec *spec)
 {
-    bool is_double = spec->precision == PRECISION_DOUBLE;
-    return compare_text(compare, "%s%s%s%s%s", spec->algorithm->name, *spec->text || is_double ? ":" : "", spec->text,
-                        *spec->text && is_double ? "," : "", is_double ? "precision=double" : "");
+    char text[512];
+    struct measurement row = measurement_empty("", spec->algorithm->name, spec->text, spec->precision);
+    measurement_spec(&row, text, sizeof text);
+    return compare_text(compare, "%s", text);
 }
 
 static enum status units_make(struct contest *contest, const char *const *scenes, int scene_count,

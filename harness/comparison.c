@@ -142,12 +142,14 @@ static enum status measure(struct comparison *comparison, struct visit *visit, i
 
 static void print_works(const struct visit *visit)
 {
-    char label[320];
+    char text[512];
     table_works_header(stdout);
     for (int k = 0; k < visit->spec_count; k++)
         if (visit->works[k].flops > 0) {
-            spec_label(&visit->specs[k], label, sizeof label);
-            table_work(stdout, label, &visit->works[k]);
+            const struct spec *spec = &visit->specs[k];
+            struct measurement row = measurement_empty("", spec->algorithm->name, spec->text, spec->precision);
+            measurement_spec(&row, text, sizeof text);
+            table_work(stdout, text, &visit->works[k]);
         }
 }
 
