@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "../simulate.h"
@@ -93,4 +94,31 @@ const char *path_of(const char *name)
     char *path = paths[next++ % 4];
     snprintf(path, sizeof paths[0], "%s/%s", folder, name);
     return path;
+}
+
+bool support_exists(const char *name)
+{
+    return access(path_of(name), F_OK) == 0;
+}
+
+void support_write(const char *name, const char *text)
+{
+    FILE *file = fopen(path_of(name), "w");
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+}
+
+char *support_read(const char *name)
+{
+    struct stat info;
+    FILE *file = fopen(path_of(name), "r");
+    if (!file)
+        return NULL;
+    assert_int_equal(fstat(fileno(file), &info), 0);
+    char *text = calloc((size_t)info.st_size + 1, 1);
+    assert_non_null(text);
+    assert_int_equal(fread(text, 1, (size_t)info.st_size, file), info.st_size);
+    fclose(file);
+    return text;
 }

@@ -28,5 +28,8 @@ extern char folder[256];
 int folder_make(void **state);
 int folder_remove(void **state);        /* with all that is in it */
 const char *path_of(const char *name);
+bool support_exists(const char *name);
+void support_write(const char *name, const char *text);
+char *support_read(const char *name);   /* the whole file, malloc'ed; NULL if it is not there */
 
 #endif

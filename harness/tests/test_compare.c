@@ -24,14 +24,6 @@ static int folder_remove_known(void **state)
     return rmdir(folder);               /* fails when a file was left behind */
 }
 
-static void text_write(const char *name, const char *text)
-{
-    FILE *file = fopen(path_of(name), "w");
-    assert_non_null(file);
-    assert_true(fputs(text, file) >= 0);
-    assert_int_equal(fclose(file), 0);
-}
-
 static char *text_read(const char *name)
 {
     static char text[1 << 17];
@@ -212,8 +204,8 @@ static void faults_are_caught_by_name(void **state)
 
 static void compare_texts(const char *old, const char *new, struct compare *compare)
 {
-    text_write("old.csv", old);
-    text_write("new.csv", new);
+    support_write("old.csv", old);
+    support_write("new.csv", new);
     enum status status = compare_results(path_of("old.csv"), path_of("new.csv"), compare);
     if (status != STATUS_OK)
         fail_msg("%s", status_message());
@@ -310,11 +302,11 @@ static void folders_are_compared_with_their_targets(void **state)
     struct compare compare;
     mkdir(path_of("old"), 0777);
     mkdir(path_of("new"), 0777);
-    text_write("old/measurements.csv", HEAD ROW "s,b,,float,2,,ok,,,,,,,,,,,,,1,,,,,\n");
-    text_write("new/measurements.csv", HEAD ROW "s,b,,float,2,,failed,why,,,,,,,,,,,,,,,,,\n");
-    text_write("old/targets.csv", TARGET_HEAD "s,a,beta=8,float,0,azimuth,null,3,-1e-3,0,0.04,-13,-10\n"
+    support_write("old/measurements.csv", HEAD ROW "s,b,,float,2,,ok,,,,,,,,,,,,,1,,,,,\n");
+    support_write("new/measurements.csv", HEAD ROW "s,b,,float,2,,failed,why,,,,,,,,,,,,,,,,,\n");
+    support_write("old/targets.csv", TARGET_HEAD "s,a,beta=8,float,0,azimuth,null,3,-1e-3,0,0.04,-13,-10\n"
                                   "s,b,,float,0,azimuth,null,3,0,0,0.04,-13,-10\n");
-    text_write("new/targets.csv", TARGET_HEAD "s,a,beta=8,float,0,azimuth,null,3,2e-3,0,0.04,-13,-10\n");
+    support_write("new/targets.csv", TARGET_HEAD "s,a,beta=8,float,0,azimuth,null,3,2e-3,0,0.04,-13,-10\n");
     assert_int_equal(compare_results(path_of("old"), path_of("new"), &compare), STATUS_OK);
     const struct finding *position = find(&compare, "position_error_m"), *status = find(&compare, "status");
     assert_int_equal(position->verdict, VERDICT_WORSE);
@@ -356,10 +348,10 @@ static void malformed_and_mixed_files_are_refused(void **state)
         {HEAD ROW ROW, {"new.csv:5", "line 4", "once"}},
         {TARGET_HEAD, {"old.csv holds measurements", "new.csv holds targets", "same kind"}},
     };
-    text_write("old.csv", HEAD ROW);
+    support_write("old.csv", HEAD ROW);
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         struct compare compare;
-        text_write("new.csv", cases[k].text);
+        support_write("new.csv", cases[k].text);
         assert_int_equal(compare_results(path_of("old.csv"), path_of("new.csv"), &compare), STATUS_INVALID);
         for (int s = 0; s < 3 && cases[k].says[s]; s++)
             if (!strstr(status_message(), cases[k].says[s]))

@@ -12,33 +12,6 @@
 #include "../report.h"
 #include "support.h"
 
-static void text_write(const char *name, const char *text)
-{
-    FILE *file = fopen(path_of(name), "w");
-    assert_non_null(file);
-    assert_true(fputs(text, file) >= 0);
-    assert_int_equal(fclose(file), 0);
-}
-
-/* The whole file, malloc'ed. */
-static char *text_read(const char *name)
-{
-    struct stat info;
-    FILE *file = fopen(path_of(name), "r");
-    assert_non_null(file);
-    assert_int_equal(fstat(fileno(file), &info), 0);
-    char *text = calloc((size_t)info.st_size + 1, 1);
-    assert_non_null(text);
-    assert_int_equal(fread(text, 1, (size_t)info.st_size, file), info.st_size);
-    fclose(file);
-    return text;
-}
-
-static bool is_there(const char *name)
-{
-    return access(path_of(name), F_OK) == 0;
-}
-
 static struct measurement row_of(const char *scene, const char *algorithm, const char *options, double run_s,
                                  double error)
 {
@@ -213,20 +186,20 @@ static void folder_fill(void)
     for (int k = 6; k < 8; k++)
         rows[k].run_s = rows[k].error = NAN;
     record_rows(rows, sizeof rows / sizeof *rows);
-    text_write("cheapest.csv", "# sasbench cheapest 1\nscene,cost,error_below,algorithm,options,precision,run_s,"
+    support_write("cheapest.csv", "# sasbench cheapest 1\nscene,cost,error_below,algorithm,options,precision,run_s,"
                                "speed_up,flops,error,error_gain,pslr_db,islr_db\n"
                                "a,run_s,1e-1,bp_linear,beta=8,float,0.03,33,3e7,0.09,0.09,-13.39,\n");
-    text_write("slopes.csv", "scene,algorithm,options,precision,setting,part,first,last,rate_first,rate_last,points,"
+    support_write("slopes.csv", "scene,algorithm,options,precision,setting,part,first,last,rate_first,rate_last,points,"
                              "slope,error_first,error_last,residual_log10\n"
                              "a,bp_zeropad,,float,factor,finest,8,64,8,64,4,-1.0321,0.1,0.01,0.00123\n");
-    text_write("rules.csv", "scene,fc_hz,fs_hz,bandwidth_hz,bp22_eq20_rate,zp15_rate,edge_phase_rad,linear_floor\n"
+    support_write("rules.csv", "scene,fc_hz,fs_hz,bandwidth_hz,bp22_eq20_rate,zp15_rate,edge_phase_rad,linear_floor\n"
                             "a,150000,30000,15000,3.125,10,0.785,0.0685\n");
-    text_write("claims.csv", "id,paper,section,claim,verdict,evidence\n"
+    support_write("claims.csv", "id,paper,section,claim,verdict,evidence\n"
                              "x-1,BP22,4.1,\"linear, at <beta> = 2\",holds,1 < 2\n"
                              "x-2,BP22,4.2,second,does not hold,two & three\n"
                              "x-3,ZP15,3,third,holds under stated assumption,e\n"
                              "x-4,ZP15,4,fourth,cannot be decided,e\n");
-    text_write("reproduced.csv", "table,item,quantity,definition,unit,paper,ours,difference,assumption\n"
+    support_write("reproduced.csv", "table,item,quantity,definition,unit,paper,ours,difference,assumption\n"
                                  "bp22_t3,T1,pslr_db,null,dB,-14.62,-13.46,1.159,the layout is lost\n"
                                  "bp22_t3,T1,islr_db,null,dB,-8.08,,,the layout is lost\n"
                                  "unheard_of,T1,islr_db,null,dB,-8.08,,,\n");
@@ -235,9 +208,9 @@ static void folder_fill(void)
         char path[400], name[64];
         snprintf(name, sizeof name, "%s.png", pictures[k][1]);
         picture_path("", pictures[k][0], name, path, sizeof path);
-        text_write(path + 1, "not looked into");
+        support_write(path + 1, "not looked into");
     }
-    text_write("phase-x.png", "abc");
+    support_write("phase-x.png", "abc");
 }
 
 static void test_everything_is_on_the_page(void **state)
@@ -245,7 +218,9 @@ static void test_everything_is_on_the_page(void **state)
     (void)state;
     folder_fill();
     assert_int_equal(report_write(folder), STATUS_OK);
-    char *html = text_read("report.html"), *markdown = text_read("report.md");
+    char *html = support_read("report.html"), *markdown = support_read("report.md");
+    assert_non_null(html);
+    assert_non_null(markdown);
     struct parser *page = page_parse(html);
     /* Machine, three scenes, cheapest, slopes, rules, two papers, two reproduced tables. */
     assert_int_equal(page->tables, 11);
@@ -273,7 +248,7 @@ static void test_everything_is_on_the_page(void **state)
         assert_holds(markdown, lines[k]);
     assert_non_null(strstr(html, "the layout is lost"));
     assert_null(strstr(strstr(html, "the layout is lost") + 1, "the layout is lost"));
-    assert_false(is_there("report.html.part") || is_there("report.md.part"));
+    assert_false(support_exists("report.html.part") || support_exists("report.md.part"));
     assert_null(strstr(html, "could not be drawn"));
     /* Every link within the page leads somewhere. */
     for (const char *link = html; (link = strstr(link, "href=\"#"));) {
@@ -299,7 +274,8 @@ static void test_failures_alone_make_a_page(void **state)
     row.reason = "out of luck";
     record_rows(&row, 1);
     assert_int_equal(report_write(folder), STATUS_OK);
-    char *html = text_read("report.html");
+    char *html = support_read("report.html");
+    assert_non_null(html);
     struct parser *page = page_parse(html);
     assert_int_equal(page->drawings, 0);
     assert_int_equal(page->tables, 2);
@@ -324,17 +300,18 @@ static void test_faults_leave_the_old_pages(void **state)
     struct measurement row = row_of("a", "bp_nearest", "", 0.1, 0.1);
     for (size_t k = 0; k < sizeof faults / sizeof *faults; k++) {
         record_rows(&row, 1);
-        text_write("report.html", "old");
+        support_write("report.html", "old");
         if (faults[k].text)
-            text_write(faults[k].file, faults[k].text);
+            support_write(faults[k].file, faults[k].text);
         else
             remove(path_of(faults[k].file));
         assert_int_equal(report_write(folder), STATUS_INVALID);
         assert_holds(status_message(), faults[k].part);
-        char *html = text_read("report.html");
+        char *html = support_read("report.html");
+        assert_non_null(html);
         assert_string_equal(html, "old");
         free(html);
-        assert_false(is_there("report.html.part") || is_there("report.md"));
+        assert_false(support_exists("report.html.part") || support_exists("report.md"));
         remove(path_of(faults[k].file));
     }
     assert_int_equal(report_write("/nowhere/at/all"), STATUS_INVALID);
@@ -354,7 +331,9 @@ static void test_pages_stay_small(void **state)
     assert_int_equal(ftruncate(fileno(picture), REPORT_HTML_BYTES), 0);
     assert_int_equal(fclose(picture), 0);
     assert_int_equal(report_write(folder), STATUS_OK);
-    char *html = text_read("report.html"), *markdown = text_read("report.md");
+    char *html = support_read("report.html"), *markdown = support_read("report.md");
+    assert_non_null(html);
+    assert_non_null(markdown);
     struct parser *page = page_parse(html);
     assert_true(strlen(html) < REPORT_HTML_BYTES && strlen(markdown) < 65536);
     assert_int_equal(page->images, 0);

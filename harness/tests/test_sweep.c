@@ -15,26 +15,6 @@
 #include "../task.h"
 #include "support.h"
 
-static bool is_there(const char *name)
-{
-    return access(path_of(name), F_OK) == 0;
-}
-
-/* The whole file, malloc'ed; NULL if it is not there. */
-static char *text_read(const char *name)
-{
-    struct stat info;
-    FILE *file = fopen(path_of(name), "r");
-    if (!file)
-        return NULL;
-    assert_int_equal(fstat(fileno(file), &info), 0);
-    char *text = calloc((size_t)info.st_size + 1, 1);
-    assert_non_null(text);
-    assert_int_equal(fread(text, 1, (size_t)info.st_size, file), info.st_size);
-    fclose(file);
-    return text;
-}
-
 /* --- Made-up numbers ------------------------------------------------------------------------------------------ */
 
 static void test_front(void **state)
@@ -235,7 +215,7 @@ static size_t files_count(const char *pattern)
 /* The rows; the comment ahead of them holds the date of the last call. */
 static char *rows_read(void)
 {
-    char *text = text_read("out/measurements.csv"), *rows = text ? strstr(text, "\nscene,") : NULL;
+    char *text = support_read("out/measurements.csv"), *rows = text ? strstr(text, "\nscene,") : NULL;
     assert_non_null(rows);
     memmove(text, rows, strlen(rows) + 1);
     return text;
@@ -308,9 +288,9 @@ static void test_bad_scene_makes_nothing(void **state)
     snprintf(output, sizeof output, "%s", path_of("none"));
     struct task task = {.names = (const char *const[]){"no/such/scene"}, .name_count = 1, .output = output};
     assert_int_equal(command_sweep(&task), STATUS_INVALID);
-    assert_false(is_there("none"));
+    assert_false(support_exists("none"));
     assert_int_equal(sweep_tables(folder), STATUS_INVALID);
-    assert_false(is_there("fronts.csv") || is_there("fronts.csv.part"));
+    assert_false(support_exists("fronts.csv") || support_exists("fronts.csv.part"));
 }
 
 int main(void)
