@@ -13,11 +13,13 @@
 #include "pairs.h"
 
 enum {
-    SLAB_BYTES = 24 << 20,          /* receivers are taken together up to this: it stays in the shared cache */
+    SLAB_BYTES = 64 << 20,          /* receivers are taken together up to this: the image is read and written for each slab */
+    READ_BYTES = 4 << 20,           /* and as long as what one row of the image reads of them stays in the shared cache */
     SLAB_MOST = 128 << 20,          /* one receiver's upsampled records: beyond it their phases are taken in passes */
     TILE = 16,                      /* pings compressed together: one cache line of each fine sample */
     BLOCK = 16,                     /* rows of the slab that are filled together */
-    ROWS = 4                        /* image rows of one task */
+    ROWS = 4,                       /* image rows of one task */
+    GROUP = 1024                    /* entries of the tables that are made at once */
 };
 
 struct invariant {
@@ -128,8 +130,24 @@ static void *allocate(size_t bytes, double *total)
     return aligned_alloc(64, (bytes + 63) / 64 * 64);
 }
 
+/* The most samples of a record that one row of a patch reads: those between its nearest and its furthest pixel. */
+static double samples_read(const struct bp *bp, const struct bp_raster *raster, const struct grid *grid)
+{
+    const double last_ping = raster->x_first + (raster->pings - 1) * raster->spacing;
+    const double last_column = grid->x_first + (grid->x_count - 1) * grid->x_step, limit = raster->limit;
+    const double most = fmax(last_ping - grid->x_first, last_column - raster->x_first);
+    double samples = 0;
+    for (int end = 0; end < 2; end++) {
+        double r = fabs(grid->r_first + end * (grid->r_count - 1) * grid->r_step), x = fabs(most);
+        if (limit < 1)
+            x = fmin(x, r * limit / sqrt((1 - limit) * (1 + limit)));
+        samples = fmax(samples, 2 * (sqrt(r * r + x * x) - r) / bp->medium.sound_speed * bp->medium.fs);
+    }
+    return samples + bp->table.taps;
+}
+
 /* Rows and receivers of the slab, and the passes that keep it small however much the records are upsampled. */
-static void shape_slab(struct bp *bp, struct invariant *in, int lead, int ping_stride)
+static void shape_slab(struct bp *bp, struct invariant *in, double read, int lead, int ping_stride)
 {
     int upsample = bp->table.upsample, samples = bp->shape.samples;
     size_t row_bytes = (size_t)ping_stride * 2 * real_size(bp->problem.precision);
@@ -139,8 +157,34 @@ static void shape_slab(struct bp *bp, struct invariant *in, int lead, int ping_s
     in->slab_rows = rows * (size_t)width;
     in->slab = (struct bp_slab){.receiver_stride = in->slab_rows * (size_t)ping_stride, .ping_stride = ping_stride,
                                 .lead = lead, .width = width};
-    double fitting = floor((double)SLAB_BYTES / (double)(in->slab_rows * row_bytes));
-    in->receivers = (int)fmin(bp->problem.acquisition->receivers, fmax(1, fitting));
+    double fitting = fmin((double)SLAB_BYTES / (double)(in->slab_rows * row_bytes),
+                          (double)READ_BYTES / (read * width * (double)row_bytes));
+    in->receivers = (int)fmin(bp->problem.acquisition->receivers, fmax(1, floor(fitting)));
+}
+
+struct arena {
+    char *base;                     /* NULL while the size is being found */
+    size_t used;
+};
+
+static void *take(struct arena *arena, size_t count, size_t size)
+{
+    void *part = arena->base ? arena->base + arena->used : NULL;
+    arena->used += (count * size + 63) / 64 * 64;
+    return part;
+}
+
+/* One thread's scratch, from the arena. */
+static struct bp_row_scratch scratch_take(struct arena *arena, size_t phases, size_t shifts, size_t entries, size_t taps,
+                                          size_t real_bytes)
+{
+    return (struct bp_row_scratch){
+        .phases = take(arena, phases + 1, sizeof(struct bp_row_shifts)),
+        .leg = take(arena, shifts, sizeof(double)), .ahead = take(arena, shifts, sizeof(double)),
+        .shift = take(arena, shifts, sizeof(int)), .capacity = (int)entries, .q = take(arena, entries, sizeof(double)),
+        .kept = take(arena, entries, sizeof(int)), .offset = take(arena, entries, sizeof(int)),
+        .step = take(arena, entries, sizeof(int)), .wr = take(arena, entries, real_bytes),
+        .wi = take(arena, entries, real_bytes), .weights = take(arena, taps > 1 ? entries * taps : 0, real_bytes)};
 }
 
 static enum status invariant_plan(struct bp *bp)
@@ -156,7 +200,8 @@ static enum status invariant_plan(struct bp *bp)
         return status;
     acquisition_is_straight(a, &track);
     int threads = omp_get_max_threads(), blocks = 0;
-    size_t most_phases = 0, legs = 0;
+    size_t most_phases = 0, most_shifts = 0;
+    double samples = 0;
     size_t size = real_size(problem->precision);
     double *bytes = &bp->work.bytes, ignored = 0;
     in->row = row_functions[isa_choose()][problem->precision];
@@ -180,21 +225,22 @@ static enum status invariant_plan(struct bp *bp)
             return status_set(STATUS_FAILED, "no memory for the sums of %d x %d pixels", raster->columns,
                               problem->patches[k].r_count);
         blocks = raster->blocks > blocks ? raster->blocks : blocks;
-        size_t shifts = phases * (size_t)(a->pings + raster->blocks);
+        samples = fmax(samples, samples_read(bp, raster, &problem->patches[k]));
+        size_t shifts = phases * (size_t)BP_ENTRIES(a->pings + raster->blocks);
         most_phases = phases > most_phases ? phases : most_phases;
-        legs = shifts > legs ? shifts : legs;
+        most_shifts = shifts > most_shifts ? shifts : most_shifts;
     }
     /* A block of columns may begin its width less one before the first ping and end as far behind the last. Room is made
        for the widest vectors, so that a plan needs the same memory on every machine. */
     int lanes = BP_LANES_MOST * (int)sizeof(float) / (int)size, wide = round_up(blocks, lanes);
     int lead = wide < BP_BLOCK_VECTORS * lanes ? wide : BP_BLOCK_VECTORS * lanes;
-    shape_slab(bp, in, lead, round_up(a->pings + 2 * lead, 8));
-    size_t values = (size_t)in->receivers * in->slab.receiver_stride, entries = (size_t)(a->pings + blocks);
-    size_t tile = (size_t)TILE * (size_t)bp->shape.length * 2 * size;
-    size_t reals = entries * (2 + (size_t)bp->table.taps);
-    size_t per_thread = most_phases * sizeof(struct bp_row_shifts) + (legs + 2 * entries) * sizeof(double)
-                        + 2 * entries * sizeof(int) + reals * size;
-    per_thread = (per_thread + 63) / 64 * 64;
+    shape_slab(bp, in, samples, lead, round_up(a->pings + 2 * lead, 8));
+    size_t values = (size_t)in->receivers * in->slab.receiver_stride, tile = (size_t)TILE * (size_t)bp->shape.length * 2 * size;
+    size_t entries = (size_t)BP_ENTRIES(a->pings + blocks), taps = (size_t)bp->table.taps;
+    entries = entries > GROUP ? entries : GROUP;
+    struct arena arena = {NULL, 0};
+    scratch_take(&arena, most_phases, most_shifts, entries, taps, size);
+    const size_t per_thread = arena.used;
     if (!(in->slab.receiver_stride < INT_MAX))
         return status_set(STATUS_UNSUPPORTED, "records of %zu values a receiver are too long to index",
                           in->slab.receiver_stride);
@@ -206,14 +252,9 @@ static enum status invariant_plan(struct bp *bp)
     if (!in->slab_re || !in->slab_im || !in->tiles || !in->tables || !in->scratch)
         return status_set(STATUS_FAILED, "no memory for records of %d receivers", in->receivers);
     *bytes += (double)(tile + per_thread + sizeof *in->scratch);
-    for (int t = 0; t < threads; t++) {
-        struct bp_row_shifts *shifts = (struct bp_row_shifts *)((char *)in->tables + (size_t)t * per_thread);
-        double *leg = (double *)(shifts + most_phases), *d = leg + legs;
-        int *n = (int *)(d + 2 * entries);
-        char *w = (char *)(n + 2 * entries);
-        in->scratch[t] = (struct bp_row_scratch){shifts, leg, d, d + entries, n, n + entries, w, w + entries * size,
-                                                 w + 2 * entries * size};
-    }
+    arena = (struct arena){in->tables, 0};
+    for (int t = 0; t < threads; t++)
+        in->scratch[t] = scratch_take(&arena, most_phases, most_shifts, entries, taps, size);
     return STATUS_OK;
 }
 

@@ -33,19 +33,28 @@ struct bp_raster {
 
 /* The shifts [begin, end) of one column phase inside the aperture. */
 struct bp_row_shifts {
-    int begin, end, columns;
-    double x;                       /* m, of ping `begin` from column 0 */
+    int begin, end;
+    int first;                      /* its entries' place among the row's, which are padded to whole vectors */
+    /* Of the present receiver, whose other entries lie outside its record or pass: */
+    int count, least;               /* entries, and the first one's shift */
+    bool gapless;                   /* no shift between its first and its last is left out */
 };
 
-/* Scratch of one thread, for at most `entries` = pings + blocks shifts. */
+/* Scratch of one thread. Shifts of a row: of all phases = min(ratio, columns), each BP_ENTRIES(pings + blocks) at the most;
+   entries: of one receiver and as many phases as fit into `capacity` >= BP_ENTRIES(pings + blocks). */
 struct bp_row_scratch {
-    struct bp_row_shifts *shifts;   /* [phases], phases = min(ratio, columns) */
-    double *leg;                    /* [phases][entries] s, from the transmitter */
-    double *q, *f;                  /* [entries] */
-    int *shift;                     /* [entries] p - n div ratio, rising */
-    int *offset;                    /* [entries] where the first tap's value for ping `shift` lies in the receiver's slab */
-    void *wr, *wi, *weights;        /* real [entries], [entries], [entries][taps] */
+    struct bp_row_shifts *phases;   /* [phases + 1], the last for its `first` */
+    double *leg;                    /* [shifts] s, from the transmitter */
+    double *ahead;                  /* [shifts] m, of the transmitter from the column when the echo leaves the pixel */
+    int *shift;                     /* [shifts] p - n div ratio, rising within a phase */
+    int capacity;
+    double *q;                      /* [capacity] sample coordinate */
+    int *kept;                      /* [capacity] `shift` of entries that are kept, where some are not */
+    int *offset;                    /* [capacity] where the first tap's value for ping `shift` lies in the receiver's slab */
+    int *step;                      /* [capacity] fine step between two samples */
+    void *wr, *wi, *weights;        /* real [capacity], [capacity], [capacity][taps] */
 };
+#define BP_ENTRIES(shifts) (((shifts) + BP_LANES_MOST - 1) / BP_LANES_MOST * BP_LANES_MOST)
 
 /* Add `count` receivers, `offsets[g]` metres ahead of the transmitter, to one image row at range r: sums hold
    [ratio][stride] values re, then im, of column rho + ratio j at [rho][j]; stride >= blocks + BP_LANES_MOST, the most of one vector. */
