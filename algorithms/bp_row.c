@@ -224,7 +224,8 @@ INLINE void sum_taps_pair(int width, int taps, int stride, const struct part *on
         const int m = one->begin + i, n = two->begin + i;
         const real *x = sr + one->offset[m], *y = si + one->offset[m], *w = one->weights + m * taps;
         const real *x2 = sr + two->offset[n], *y2 = si + two->offset[n], *w2 = two->weights + n * taps;
-        vector_real a[BP_BLOCK_VECTORS] = {{0}}, b[BP_BLOCK_VECTORS] = {{0}}, a2[BP_BLOCK_VECTORS] = {{0}}, b2[BP_BLOCK_VECTORS] = {{0}};
+        vector_real a[BP_BLOCK_VECTORS] = {{0}}, b[BP_BLOCK_VECTORS] = {{0}};
+        vector_real a2[BP_BLOCK_VECTORS] = {{0}}, b2[BP_BLOCK_VECTORS] = {{0}};
         if (x == x2) {
             for (int t = 0; t < taps; t++) {
                 for (int k = 0; k < width; k++) {
@@ -441,7 +442,7 @@ static void shift_bounds(const struct bp_raster *raster, double edge, double x, 
 static bool inside_record(const struct bp_medium *medium, const struct bp_raster *raster, const struct delay_terms *terms,
                           double r, double offset, double furthest)
 {
-    const double v = terms->v, c = medium->sound_speed, leg = sqrt(furthest * furthest + r * r) / c;
+    const double v = fabs(terms->v), c = medium->sound_speed, leg = sqrt(furthest * furthest + r * r) / c;
     const double b = furthest + fabs(offset) + v * leg;
     const double least = fabs(r) / c + (sqrt(terms->er2) - v * b) * terms->one_e;
     const double most = leg + (v * b + sqrt(terms->c2 * b * b + terms->er2)) * terms->one_e;
@@ -454,7 +455,7 @@ void BP_ROW(const struct bp_medium *medium, const struct bp_table *table, const 
             void *re, void *im, int stride)
 {
     const int phases = raster->ratio < raster->columns ? raster->ratio : raster->columns;
-    const double limit = raster->limit, edge = fabs(r) * limit / sqrt((1 - limit) * (1 + limit));
+    const double limit = raster->limit, edge = limit < 1 ? fabs(r) * limit / sqrt((1 - limit) * (1 + limit)) : INFINITY;
     const struct delay_terms terms = delay_terms_make(medium, raster, r);
     struct bp_row_shifts *all = scratch->phases;
     const struct kernel *kernel = kernels;
