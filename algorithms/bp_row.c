@@ -7,7 +7,6 @@
 #include "bp_row.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "lanes.h"
 #include "turn.h"
@@ -437,13 +436,13 @@ static void shift_bounds(const struct bp_raster *raster, double edge, double x, 
     *end = high;
 }
 
-/* Are all delays to a receiver inside its record, by the least and the longest there could be? `furthest`: largest distance
-   along the track between ping and pixel. */
+/* Are all delays of a row inside the record, by the least and the longest there could be? `furthest` and `offset`: largest
+   distances along the track between ping and pixel and between transmitter and receiver. */
 static bool inside_record(const struct bp_medium *medium, const struct bp_raster *raster, const struct delay_terms *terms,
                           double r, double offset, double furthest)
 {
     const double v = fabs(terms->v), c = medium->sound_speed, leg = sqrt(furthest * furthest + r * r) / c;
-    const double b = furthest + fabs(offset) + v * leg;
+    const double b = furthest + offset + v * leg;
     const double least = fabs(r) / c + (sqrt(terms->er2) - v * b) * terms->one_e;
     const double most = leg + (v * b + sqrt(terms->c2 * b * b + terms->er2)) * terms->one_e;
     const double slack = 1e-9 / medium->fs, last = raster->t0 + (medium->samples - 1) / medium->fs;
@@ -461,7 +460,7 @@ void BP_ROW(const struct bp_medium *medium, const struct bp_table *table, const 
     const struct kernel *kernel = kernels;
     while (kernel->taps != 0 && kernel->taps != table->taps)
         kernel++;
-    double furthest = 0;
+    double furthest = 0, offset = 0;
     int total = 0;
     for (int p = 0; p < phases; p++) {
         double x = raster->x_first - (raster->grid_first + p * raster->grid_step);
@@ -477,9 +476,12 @@ void BP_ROW(const struct bp_medium *medium, const struct bp_table *table, const 
         total += whole_vectors(end - begin);
     }
     all[phases].first = total;
+    for (int g = 0; g < count; g++)
+        offset = fmax(offset, fabs(offsets[g]));
+    /* Of all receivers or none, so that none inherits what another one kept. */
+    const bool whole = slab->width == table->upsample && inside_record(medium, raster, &terms, r, offset, furthest);
     for (int g = 0; g < count; g++) {
         const size_t receiver = (size_t)g * slab->receiver_stride + (size_t)slab->lead;
-        const bool whole = slab->width == table->upsample && inside_record(medium, raster, &terms, r, offsets[g], furthest);
         struct group group = {raster, slab, scratch, NULL, table->taps, 0, 0, (const real *)slab->re + receiver,
                               (const real *)slab->im + receiver, re, im, (size_t)stride};
         while (group.begin < phases) {

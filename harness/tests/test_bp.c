@@ -151,6 +151,7 @@ static const struct invariant_case {
     {"backwards", 17, 2, 4, 50, 8, 0.04, -0.5, 20.1, -2.5, 0.02, 400, true},
     {"short records", 17, 2, 4, 50, 200, 0.04, -0.5, 18.1, 2.5, INFINITY, 60, false},
     {"fast, backwards", 17, 2, 4, 50, 200, 0.04, -0.5, 18.1, -150, INFINITY, 60, true},
+    {"far receivers, short records", 17, 4, 4, 50, 200, -20, -0.5, 18.1, -2.5, INFINITY, 300, true},
     {"both sides of the track", 9, 2, 4, 30, 41, 0.04, -0.5, -0.41, 2.5, 0.7, 300, false},  /* no pixel on a ping */
     {"many columns", 120, 2, 1, 301, 3, 0.04, -3.1, 20.1, 2.5, 0.2, 400, false},
     {"many phases", 31, 2, 40, 403, 3, 0.04, -3.1, 20.1, 2.5, 0.3, 400, false},     /* several groups of tables */
