@@ -156,6 +156,17 @@ struct part {
     real *re, *im;
 };
 
+/* One value of each column, loaded once, times two weights: loads are the limit. */
+INLINE void add_twice(int width, const real *values, real one, real two, vector_real *a, vector_real *b)
+{
+    for (int k = 0; k < width; k++) {
+        vector_real v = *(const vector_real *)(values + k * LANES);
+        HOLD(v);
+        a[k] += v * one;
+        b[k] += v * two;
+    }
+}
+
 /* Sums of one block of `width` vectors of columns. sr, si: the receiver's records such that sr[offset] is the block's first
    column's value. Real and imaginary weights have accumulators of their own, so that enough independent chains hide the
    latency of multiply-adds; all real parts come before the imaginary ones, so that these chains and what they need fit 16
@@ -169,18 +180,8 @@ INLINE void sum_nearest(int width, const struct part *part, const real *sr, cons
     for (int i = part->begin; i < end; i++) {
         const real *x = sr + offset[i], *y = si + offset[i];
         real cosine = wr[i], sine = wi[i];
-        for (int k = 0; k < width; k++) {
-            vector_real v = *(const vector_real *)(x + k * LANES);
-            HOLD(v);
-            a[k] += v * cosine;
-            c[k] += v * sine;
-        }
-        for (int k = 0; k < width; k++) {
-            vector_real v = *(const vector_real *)(y + k * LANES);
-            HOLD(v);
-            b[k] += v * sine;
-            d[k] += v * cosine;
-        }
+        add_twice(width, x, cosine, sine, a, c);
+        add_twice(width, y, sine, cosine, b, d);
     }
     for (int k = 0; k < width; k++) {
         *(vector_real *)(part->re + k * LANES) += a[k] - b[k];
@@ -214,7 +215,7 @@ INLINE void sum_taps(int width, int taps, int stride, const struct part *part, c
 }
 
 /* Two phases, equally many entries for the same shifts: where both read the same samples, as neighbours mostly do, each
-   value is loaded once, for loads are the limit. */
+   value is loaded once. */
 INLINE void sum_taps_pair(int width, int taps, int stride, const struct part *one, const struct part *two, const real *sr,
                           const real *si)
 {
@@ -227,22 +228,8 @@ INLINE void sum_taps_pair(int width, int taps, int stride, const struct part *on
         vector_real a2[BP_BLOCK_VECTORS] = {{0}}, b2[BP_BLOCK_VECTORS] = {{0}};
         if (x == x2) {
             for (int t = 0; t < taps; t++) {
-                for (int k = 0; k < width; k++) {
-                    vector_real v = *(const vector_real *)(x + t * stride + k * LANES);
-                    HOLD(v);
-                    a[k] += v * w[t];
-                    a2[k] += v * w2[t];
-                    HOLD(a[k]);
-                    HOLD(a2[k]);
-                }
-                for (int k = 0; k < width; k++) {
-                    vector_real v = *(const vector_real *)(y + t * stride + k * LANES);
-                    HOLD(v);
-                    b[k] += v * w[t];
-                    b2[k] += v * w2[t];
-                    HOLD(b[k]);
-                    HOLD(b2[k]);
-                }
+                add_twice(width, x + t * stride, w[t], w2[t], a, a2);
+                add_twice(width, y + t * stride, w[t], w2[t], b, b2);
             }
         } else {
             for (int t = 0; t < taps; t++)
