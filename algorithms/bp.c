@@ -34,7 +34,7 @@ static enum status tabulate(struct bp *bp, const struct interpolator *in, const 
     bp->table = (struct bp_table){.upsample = in->upsample, .phases = in->phases, .taps = in->taps,
                                   .first = in->first, .guard = in->taps};
     if (in->taps == 1)
-        return STATUS_OK;
+        return STATUS_OK;           /* BP_NEAREST */
     bool line = in->taps == 2 && in->phases > 0;
     size_t rows = in->phases > 0 ? (size_t)in->phases : 4 * (size_t)BP_INTERVALS, taps = (size_t)in->taps;
     double *w = malloc(rows * taps * sizeof *w), *at = malloc(4 * taps * sizeof *at);
@@ -74,7 +74,7 @@ static enum status tabulate(struct bp *bp, const struct interpolator *in, const 
     free(w);
     free(at);
     bp->table.weights = bp->weights;
-    bp->table.line = line;
+    bp->table.reading = line ? BP_LINE : in->phases > 0 ? BP_PHASES : BP_CUBICS;
     bp->work.bytes += (double)(rows * taps * real_size(bp->problem.precision));
     return complete ? STATUS_OK : status_set(STATUS_FAILED, "no memory for interpolation weights");
 }

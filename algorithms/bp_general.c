@@ -21,8 +21,8 @@ struct general {
     struct vector *heading;         /* [pings] */
     struct ping_box *boxes;         /* [pings] */
     int batch;                      /* rows */
-    void *rows;                     /* [batch][2 shape.length] real: complex, or re and then im if bp_table_planar */
-    void *interleaved;              /* complex [threads][shape.length] if bp_table_planar */
+    void *rows;                     /* [batch][2 shape.length] real: re, then im; one value more may be read */
+    void *interleaved;              /* complex [threads][shape.length] */
     int patch_count;
     bool *along_x;                  /* [patch_count] the lines' direction */
     void **sums;                    /* [patch_count]: re then im, real [lines][pixels of a line] each */
@@ -87,23 +87,22 @@ static enum status general_plan(struct bp *bp)
     enum status status = bp_plan_records(bp);
     if (status != STATUS_OK)
         return status;
-    int fine = bp->table.upsample * (bp_table_cubics(&bp->table) ? BP_INTERVALS : 1);
+    int fine = bp->table.upsample * (bp->table.reading == BP_CUBICS ? BP_INTERVALS : 1);
     if (!((double)a->samples * fine < INT_MAX))
         return status_set(STATUS_UNSUPPORTED, "records of %d samples with %d points each are too long to index",
                           a->samples, fine);
     size_t size = real_size(problem->precision), row_bytes = (size_t)bp->shape.length * 2 * size;
-    bool planar = bp_table_planar(&bp->table);
     double pairs = (double)a->pings * a->receivers;
     general->sum = sum_functions[isa_choose()][problem->precision];
     general->batch = (int)fmin(pairs, fmax(BATCH_LEAST, (double)(BATCH_BYTES / row_bytes)));
-    general->rows = aligned_alloc(64, ((size_t)general->batch * row_bytes + 63) / 64 * 64);
-    general->interleaved = planar ? malloc((size_t)omp_get_max_threads() * row_bytes) : NULL;
+    general->rows = aligned_alloc(64, ((size_t)general->batch * row_bytes + size + 63) / 64 * 64);
+    general->interleaved = malloc((size_t)omp_get_max_threads() * row_bytes);
     general->heading = calloc((size_t)a->pings, sizeof *general->heading);
     general->boxes = calloc((size_t)a->pings, sizeof *general->boxes);
     general->patch_count = problem->patch_count;
     general->along_x = calloc((size_t)problem->patch_count, sizeof *general->along_x);
     general->sums = calloc((size_t)problem->patch_count, sizeof *general->sums);
-    if (!general->rows || (planar && !general->interleaved) || !general->heading || !general->boxes || !general->along_x || !general->sums)
+    if (!general->rows || !general->interleaved || !general->heading || !general->boxes || !general->along_x || !general->sums)
         return status_set(STATUS_FAILED, "no memory for %d records of %d values", general->batch, bp->shape.length);
     for (int p = 0; p < a->pings; p++) {
         general->heading[p] = acquisition_heading(a, p);
@@ -118,7 +117,7 @@ static enum status general_plan(struct bp *bp)
         if (!general->sums[k])
             return status_set(STATUS_FAILED, "no memory for the sums of %zu pixels", pixels);
     }
-    bp->work.bytes += sizeof *general + (double)(general->batch + planar) * (double)row_bytes
+    bp->work.bytes += sizeof *general + (general->batch + 1.0) * (double)row_bytes
                       + (double)a->pings * (double)(sizeof *general->heading + sizeof *general->boxes)
                       + problem_pixels(problem) * 2 * (double)size;
     return STATUS_OK;
@@ -213,9 +212,9 @@ static void fill(const struct bp *bp, const struct echoes *echoes, size_t index,
     size_t length = (size_t)bp->shape.length, row_bytes = length * 2 * real_size(bp->problem.precision);
     int thread = omp_get_thread_num();
     void *row = (char *)general->rows + (size_t)n * row_bytes;
-    void *from = general->interleaved ? (char *)general->interleaved + (size_t)thread * row_bytes : row;
+    void *from = (char *)general->interleaved + (size_t)thread * row_bytes;
     bp_fill_row(bp, thread, echoes, index, from);
-    for (size_t i = 0; i < length && from != row; i++)
+    for (size_t i = 0; i < length; i++)
         if (bp->problem.precision == PRECISION_DOUBLE) {
             ((double *)row)[i] = ((const double *)from)[2 * i];
             ((double *)row)[length + i] = ((const double *)from)[2 * i + 1];

@@ -114,7 +114,7 @@ INLINE void tabulate(const struct bp_table *table, const struct bp_slab *slab, i
     const int taps = table->taps, width = slab->width, stride = slab->ping_stride;
     const int row = table->upsample > 1 ? -slab->phase : table->guard + table->first;
     const real *values = table->weights;
-    if (bp_table_cubics(table)) {
+    if (table->reading == BP_CUBICS) {
         for (int i = 0; i < n; i++) {
             int sample = (int)q[i];
             double interval = (q[i] - sample) * BP_INTERVALS;

@@ -9,12 +9,26 @@
 #include "lanes.h"
 #include "turn.h"
 
+/* Each four floats of a vector permuted by the low two bits of an index: no compiler makes this one instruction of a shuffle. */
+#if defined __AVX__ && !REAL_DOUBLE
+#include <immintrin.h>
+#define WINDOWS 1
+#if VECTOR_BYTES == 64
+#define PICK(values, index) (vector_real)_mm512_permutevar_ps((__m512)(values), (__m512i)(index))
+#else
+#define PICK(values, index) (vector_real)_mm256_permutevar_ps((__m256)(values), (__m256i)(index))
+#endif
+#else
+#define WINDOWS 0
+#endif
+
 #define BP_SUM REAL_ISA_NAME(bp_sum)
 
 #define INLINE static inline __attribute__((always_inline))
 
 enum {
-    RUN = 512,                      /* pixels at a time: the run's arrays stay in the first-level cache */
+    RUN = 256,                      /* pixels at a time: a group's runs stay in the first-level cache */
+    GROUP = 4,                      /* receivers that are summed together: sums are loaded and stored once for all */
     NODES = 6,                      /* of a quintic */
     PARTS = LANES * sizeof(double) / VECTOR_BYTES       /* vectors of doubles to a vector of `real` */
 };
@@ -22,26 +36,24 @@ enum {
 typedef double vector_double __attribute__((vector_size(VECTOR_BYTES)));
 typedef unsigned long long vector_long __attribute__((vector_size(VECTOR_BYTES)));
 typedef float vector_bits __attribute__((vector_size(VECTOR_BYTES)));     /* moved, not computed with */
+typedef double two_floats __attribute__((may_alias, aligned(sizeof(real))));     /* moved at once */
+typedef float quad __attribute__((vector_size(16), aligned(sizeof(float)), may_alias));
 typedef int vector_int __attribute__((vector_size(LANES * sizeof(int)), aligned(sizeof(int)), may_alias));
 
 TURN(turn_vector, vector_real)
 
-struct sample {
-    real re, im;
-};
-
 /* Where a run of pixels reads a record. */
 struct run {
-    int count;
     _Alignas(VECTOR_BYTES) int sample[RUN];     /* of the upsampled record, on from which the taps are counted */
     _Alignas(VECTOR_BYTES) int phase[RUN];      /* row of the table of weights; where one is used */
     _Alignas(VECTOR_BYTES) real rest[RUN];      /* position in the interval of a cubic, or a line's fraction */
     _Alignas(VECTOR_BYTES) real turns[RUN];     /* phase, |turns| <= 1/2 */
 };
 
-/* The order of pixels in the parts of a vector, from which one shuffle takes the low halves of all (EVEN) or the high ones
-   (ODD) as they come. */
+/* PART: the order of pixels in the parts of a vector, from which one shuffle takes the low halves of all (EVEN) or the high
+   ones (ODD) as they come. ALL: all pixels in order. SECONDS: the second of each four; QUADS: fours side by side. */
 #if REAL_DOUBLE
+#define ALL(v) PART(v, 0)
 #if VECTOR_BYTES == 64
 #define PART(v, n) {v(0), v(1), v(2), v(3), v(4), v(5), v(6), v(7)}
 #define EVEN 0, 2, 4, 6, 8, 10, 12, 14
@@ -57,119 +69,143 @@ struct run {
 #define PART(v, n) {v(n), v(n + 1), v(n + 4), v(n + 5), v(n + 8), v(n + 9), v(n + 12), v(n + 13)}
 #define EVEN 0, 2, 16, 18, 4, 6, 20, 22, 8, 10, 24, 26, 12, 14, 28, 30
 #define ODD 1, 3, 17, 19, 5, 7, 21, 23, 9, 11, 25, 27, 13, 15, 29, 31
+#define ALL(v) {v(0), v(1), v(2), v(3), v(4), v(5), v(6), v(7), v(8), v(9), v(10), v(11), v(12), v(13), v(14), v(15)}
+#define SECONDS 1, 1, 1, 1, 5, 5, 5, 5, 9, 9, 9, 9, 13, 13, 13, 13
+#define JOIN(a, b) __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7)
+#define QUADS(v) __builtin_shufflevector(JOIN(v(0), v(1)), JOIN(v(2), v(3)), \
+                                         0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
 #elif VECTOR_BYTES == 32
 #define PART(v, n) {v(n), v(n + 1), v(n + 4), v(n + 5)}
 #define EVEN 0, 2, 8, 10, 4, 6, 12, 14
 #define ODD 1, 3, 9, 11, 5, 7, 13, 15
+#define ALL(v) {v(0), v(1), v(2), v(3), v(4), v(5), v(6), v(7)}
+#define SECONDS 1, 1, 1, 1, 5, 5, 5, 5
+#define QUADS(v) __builtin_shufflevector(v(0), v(1), 0, 1, 2, 3, 4, 5, 6, 7)
 #else
 #define PART(v, n) {v(n), v(n + 1)}
 #define EVEN 0, 2, 4, 6
 #define ODD 1, 3, 5, 7
+#define ALL(v) {v(0), v(1), v(2), v(3)}
 #endif
 #endif
 
 /* ---- sums ---- */
-
-/* LANES values, real and imaginary parts apart: copies of whole values, which are faster than gathers. */
-INLINE void gather(const struct sample *from, const int *index, vector_real *re, vector_real *im)
-{
-#if REAL_DOUBLE
-#define RE(n) from[index[n]].re
-#define IM(n) from[index[n]].im
-    *re = (vector_real)PART(RE, 0);
-    *im = (vector_real)PART(IM, 0);
-#else
-    typedef double whole __attribute__((may_alias, aligned(sizeof(real))));    /* both parts at once */
-#define WHOLE(n) *(const whole *)(from + index[n])
-    vector_real low = (vector_real)(vector_double)PART(WHOLE, 0), high = (vector_real)(vector_double)PART(WHOLE, 2);
-    *re = __builtin_shufflevector(low, high, EVEN);
-    *im = __builtin_shufflevector(low, high, ODD);
-#endif
-}
 
 INLINE vector_real *at(const real *values)
 {
     return (vector_real *)values;
 }
 
+/* LANES values: copies, which are faster than gather instructions. */
+INLINE vector_real gather(const real *from, const int *index)
+{
+#define FROM(n) from[index[n]]
+    return (vector_real)ALL(FROM);
+}
+
 /* Values and those behind them. */
-INLINE void gather_two(const struct sample *from, const int *index, vector_real value[2], vector_real next[2])
+INLINE void gather_two(const real *from, const int *index, vector_real *value, vector_real *next)
 {
 #if REAL_DOUBLE
-    gather(from, index, &value[0], &value[1]);
-    gather(from + 1, index, &next[0], &next[1]);
+    *value = gather(from, index);
+    *next = gather(from + 1, index);
 #else
-    typedef float both __attribute__((vector_size(16), aligned(sizeof(float)), may_alias));
-#define BOTH(n) (*(const both *)(from + index[n]))
-#if VECTOR_BYTES == 64
-#define JOIN(a, b) __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7)
-#define BOTHS(n) __builtin_shufflevector(JOIN(BOTH(n), BOTH(n + 4)), JOIN(BOTH(n + 8), BOTH(n + 12)), \
-                                         0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
-#elif VECTOR_BYTES == 32
-#define BOTHS(n) __builtin_shufflevector(BOTH(n), BOTH(n + 4), 0, 1, 2, 3, 4, 5, 6, 7)
-#else
-#define BOTHS(n) BOTH(n)
-#endif
-    vector_real a = BOTHS(0), b = BOTHS(1), c = BOTHS(2), d = BOTHS(3);
-    vector_real re_low = __builtin_shufflevector(a, b, EVEN), re_high = __builtin_shufflevector(c, d, EVEN);
-    vector_real im_low = __builtin_shufflevector(a, b, ODD), im_high = __builtin_shufflevector(c, d, ODD);
-    value[0] = __builtin_shufflevector(re_low, re_high, EVEN);
-    value[1] = __builtin_shufflevector(im_low, im_high, EVEN);
-    next[0] = __builtin_shufflevector(re_low, re_high, ODD);
-    next[1] = __builtin_shufflevector(im_low, im_high, ODD);
+#define BOTH(n) *(const two_floats *)(from + index[n])
+    vector_real low = (vector_real)(vector_double)PART(BOTH, 0), high = (vector_real)(vector_double)PART(BOTH, 2);
+    *value = __builtin_shufflevector(low, high, EVEN);
+    *next = __builtin_shufflevector(low, high, ODD);
 #endif
 }
 
-/* What LANES pixels from i on take from a record: the nearest value each, or between two on a line. */
-INLINE void take(bool line, const struct sample *row, const struct run *run, int i, vector_real *re, vector_real *im)
+/* The same for pixels at most half a sample apart: of four, the others read the second one's sample or a neighbour of it.
+   These windows of four values, from the second one's predecessor on, are loaded whole: half as many instructions. The last
+   value is only a line's next one; else it may lie one past the row's end. */
+INLINE vector_real take_narrow(bool line, const real *from, const int *index, const real *rest)
 {
-    vector_real v[2], next[2], c, s;
+#if WINDOWS
+#define WINDOW(n) (*(const quad *)(from + index[4 * (n) + 1] - 1))
+    vector_int all = *(const vector_int *)index, which = all - __builtin_shufflevector(all, all, SECONDS) + 1;
+    vector_real windows = QUADS(WINDOW), value = PICK(windows, which);
+    if (line)
+        value += *at(rest) * (PICK(windows, which + 1) - value);
+    return value;
+#else
+    (void)line, (void)index, (void)rest;
+    return (vector_real){0} + *from;        /* never called */
+#endif
+}
+
+/* Add to LANES pixels from i on what they take from a record: the nearest value each, or between two on a line. */
+INLINE void take(bool line, bool narrow, const real *row_re, const real *row_im, const struct run *run, int i,
+                 vector_real *re, vector_real *im)
+{
+    vector_real c, s, x, y, next;
     turn_vector(*at(run->turns + i), &c, &s);
-    if (line) {
-        gather_two(row, run->sample + i, v, next);
-        v[0] += *at(run->rest + i) * (next[0] - v[0]);
-        v[1] += *at(run->rest + i) * (next[1] - v[1]);
+    if (narrow) {
+        x = take_narrow(line, row_re, run->sample + i, run->rest + i);
+        y = take_narrow(line, row_im, run->sample + i, run->rest + i);
+    } else if (line) {
+        gather_two(row_re, run->sample + i, &x, &next);
+        x += *at(run->rest + i) * (next - x);
+        gather_two(row_im, run->sample + i, &y, &next);
+        y += *at(run->rest + i) * (next - y);
     } else {
-        gather(row, run->sample + i, &v[0], &v[1]);
+        x = gather(row_re, run->sample + i);
+        y = gather(row_im, run->sample + i);
     }
-    *re = v[0] * c - v[1] * s;
-    *im = v[0] * s + v[1] * c;
+    *re = *re + x * c - y * s;
+    *im = *im + x * s + y * c;
 }
 
-INLINE void add_taken(bool line, const struct sample *row, struct run *run, real *re, real *im)
+/* One run of each of `group` records, a constant where this is inlined. */
+INLINE void add_taken(bool line, bool narrow, int group, const real *row, size_t row_length, int count, struct run *runs,
+                      real *re, real *im)
 {
-    const int count = run->count;
-    vector_real x, y;
     int i = 0;
     for (; i <= count - LANES; i += LANES) {
-        take(line, row, run, i, &x, &y);
-        *at(re + i) += x;
-        *at(im + i) += y;
+        vector_real x = *at(re + i), y = *at(im + i);
+        for (int g = 0; g < group; g++)
+            take(line, narrow, row + 2 * (size_t)g * row_length, row + (2 * (size_t)g + 1) * row_length, &runs[g], i, &x, &y);
+        *at(re + i) = x;
+        *at(im + i) = y;
     }
     if (i == count)
         return;
-    for (int k = count; k < i + LANES; k++) {       /* the last vector's other pixels read what may be read */
-        run->sample[k] = run->sample[i];
-        run->rest[k] = run->turns[k] = 0;
+    vector_real x = {0}, y = {0};
+    for (int g = 0; g < group; g++) {
+        for (int k = count; k < i + LANES; k++) {       /* the last vector's other pixels read what may be read */
+            runs[g].sample[k] = runs[g].sample[count - 1];
+            runs[g].rest[k] = runs[g].turns[k] = 0;
+        }
+        take(line, narrow, row + 2 * (size_t)g * row_length, row + (2 * (size_t)g + 1) * row_length, &runs[g], i, &x, &y);
     }
-    take(line, row, run, i, &x, &y);
     for (int k = 0; i + k < count; k++) {
         re[i + k] += x[k];
         im[i + k] += y[k];
     }
 }
 
+INLINE void add_all(bool line, bool narrow, int group, const real *row, size_t row_length, int count, struct run *runs,
+                    real *re, real *im)
+{
+    if (group == GROUP)
+        add_taken(line, narrow, GROUP, row, row_length, count, runs, re, im);
+    else
+        for (int g = 0; g < group; g++)
+            add_taken(line, narrow, 1, row + 2 * (size_t)g * row_length, row_length, count, &runs[g], re, im);
+}
+
 /* Many weights, from a grid of phases or from cubics in the fraction; the record's parts lie apart. `taps` is a constant
    where this is inlined, so that the loops over it unroll. */
 INLINE void add_taps(const struct bp_table *table, int taps, const real *row_re, const real *row_im,
-                     const struct run *run, real *re, real *im)
+                     int count, const struct run *run, real *re, real *im)
 {
     const real *weights = table->weights;
     real wr[RUN], wi[RUN];
 #pragma omp simd
-    for (int i = 0; i < run->count; i++)
+    for (int i = 0; i < count; i++)
         turn(run->turns[i], &wr[i], &wi[i]);
-    for (int i = 0; i < run->count; i++) {
+    for (int i = 0; i < count; i++) {
         const real *x = row_re + run->sample[i], *y = row_im + run->sample[i];
         real vr = 0, vi = 0;
         if (table->phases > 0) {
@@ -193,23 +229,31 @@ INLINE void add_taps(const struct bp_table *table, int taps, const real *row_re,
     }
 }
 
-static void add_run(const struct bp_table *table, const real *row, int row_length, struct run *run, real *re, real *im)
+/* One run of each of `group` records, whose rows follow one another. */
+static void add_runs(const struct bp_table *table, bool narrow, int group, const real *row, int row_length, int count,
+                     struct run *runs, real *re, real *im)
 {
-    const real *x = row + table->guard + table->first, *y = x + row_length;
-    const struct sample *first = (const struct sample *)row + table->guard + table->first;
-    if (!bp_table_planar(table)) {
-        if (table->line)
-            add_taken(true, first, run, re, im);
-        else
-            add_taken(false, first, run, re, im);
-    } else {
-        switch (table->taps) {      /* the shipped kernels unroll, any other length works as well */
-        case 8: add_taps(table, 8, x, y, run, re, im); break;
-        case 16: add_taps(table, 16, x, y, run, re, im); break;
-        case 20: add_taps(table, 20, x, y, run, re, im); break;
-        default: add_taps(table, table->taps, x, y, run, re, im); break;
-        }
+    const size_t length = (size_t)row_length;
+    const bool line = table->reading == BP_LINE;
+    row += table->guard + table->first;
+    if (!line && table->reading != BP_NEAREST) {
+        for (int g = 0; g < group; g++, row += 2 * length)
+            switch (table->taps) {  /* the shipped kernels unroll, any other length works as well */
+            case 8: add_taps(table, 8, row, row + length, count, &runs[g], re, im); break;
+            case 16: add_taps(table, 16, row, row + length, count, &runs[g], re, im); break;
+            case 20: add_taps(table, 20, row, row + length, count, &runs[g], re, im); break;
+            default: add_taps(table, table->taps, row, row + length, count, &runs[g], re, im); break;
+            }
+        return;
     }
+    if (line && narrow)
+        add_all(true, true, group, row, length, count, runs, re, im);
+    else if (line)
+        add_all(true, false, group, row, length, count, runs, re, im);
+    else if (narrow)
+        add_all(false, true, group, row, length, count, runs, re, im);
+    else
+        add_all(false, false, group, row, length, count, runs, re, im);
 }
 
 /* ---- delays ---- */
@@ -220,7 +264,6 @@ struct places {
     int count;
     double x[RUN], r[RUN];
     double leg[RUN], bx[RUN], by[RUN], bz[RUN];
-    double tau[RUN];                /* s: delay to the receiver seen last */
 };
 
 static void legs_out(const struct bp_medium *medium, const struct bp_ping *ping, struct places *places)
@@ -237,8 +280,9 @@ static void legs_out(const struct bp_medium *medium, const struct bp_ping *ping,
     }
 }
 
-/* The delays to the receiver at rx (delay.h). */
-static void legs_back(const struct bp_medium *medium, const struct bp_ping *ping, struct vector rx, struct places *places)
+/* The delays to the receiver at rx (delay.h), in seconds. */
+static void legs_back(const struct bp_medium *medium, const struct bp_ping *ping, struct vector rx,
+                      const struct places *places, double *tau)
 {
     const struct vector v = ping->velocity;
     const double c = medium->sound_speed, speed = sqrt(v.x * v.x + v.y * v.y + v.z * v.z), e = (c - speed) * (c + speed);
@@ -247,7 +291,7 @@ static void legs_back(const struct bp_medium *medium, const struct bp_ping *ping
     for (int i = 0; i < places->count; i++) {
         double x = rx.x + places->bx[i], y = rx.y + places->by[i], z = rx.z + places->bz[i];
         double p = x * v.x + y * v.y + z * v.z;
-        places->tau[i] = places->leg[i] + (p + sqrt(p * p + e * (x * x + y * y + z * z))) * one_e;
+        tau[i] = places->leg[i] + (p + sqrt(p * p + e * (x * x + y * y + z * z))) * one_e;
     }
 }
 
@@ -263,11 +307,12 @@ static void sum_exact(const struct bp_medium *medium, const struct bp_table *tab
 {
     struct places places;
     struct run run;
-    const bool cubics = bp_table_cubics(table);
+    double tau[RUN];
+    const bool cubics = table->reading == BP_CUBICS;
     const double one = cubics ? BP_INTERVALS : table->phases;
     for (int first = begin; first < end; first += RUN) {
         const int count = end - first < RUN ? end - first : RUN;
-        places.count = run.count = count;
+        places.count = count;
         for (int i = 0; i < count; i++) {
             struct vector p = line_pixel(line, first + i);
             places.x[i] = p.x;
@@ -275,19 +320,19 @@ static void sum_exact(const struct bp_medium *medium, const struct bp_table *tab
         }
         legs_out(medium, ping, &places);
         for (int m = 0; m < ping->receivers; m++) {
-            legs_back(medium, ping, ping->rx[m], &places);
+            legs_back(medium, ping, ping->rx[m], &places, tau);
 #pragma omp simd
             for (int i = 0; i < count; i++) {
-                double q = (places.tau[i] - scale->t0) * scale->fs * table->upsample;
-                double point = floor(q * one + scale->shift * one), turns = medium->fc * places.tau[i];
+                double q = (tau[i] - scale->t0) * scale->fs * table->upsample;
+                double point = floor(q * one + scale->shift * one), turns = medium->fc * tau[i];
                 double sample = floor((point + 0.5) / one);
                 run.sample[i] = (int)sample;
                 run.phase[i] = (int)(point - sample * one);
                 run.rest[i] = (real)(cubics ? q * one - point : run.phase[i] / one);
                 run.turns[i] = (real)(turns - floor(turns + 0.5));
             }
-            add_run(table, (const real *)ping->rows + 2 * (size_t)m * (size_t)ping->row_length, ping->row_length, &run,
-                    re + first, im + first);
+            add_runs(table, false, 1, (const real *)ping->rows + 2 * (size_t)m * (size_t)ping->row_length, ping->row_length,
+                     count, &run, re + first, im + first);
         }
     }
 }
@@ -320,9 +365,9 @@ INLINE void quintic(const double *tau, const struct scale *scale, double half, d
 }
 
 /* A line reads few values of each record and comes back to the next line much later: have them fetched together. */
-INLINE void prefetch(const struct sample *row, const double *tau, const struct scale *scale, int upsample)
+INLINE void prefetch(const real *row, int row_length, const double *tau, const struct scale *scale, int upsample)
 {
-    enum { NEAR = 64 / sizeof(struct sample), MOST = 16 };      /* values of a cache line, cache lines */
+    enum { NEAR = 64 / sizeof(real), MOST = 16 };       /* values of a cache line, cache lines */
     double low = tau[0], high = tau[0];
     for (int k = 1; k < NODES; k++) {
         low = tau[k] < low ? tau[k] : low;
@@ -331,30 +376,32 @@ INLINE void prefetch(const struct sample *row, const double *tau, const struct s
     low = (low - scale->t0) * scale->fs * upsample - 1;
     high = (high - scale->t0) * scale->fs * upsample + 1;
     if (high - low < MOST * NEAR)
-        for (int i = (int)low; i < high + NEAR; i += NEAR)
+        for (int i = (int)low; i < high + NEAR; i += NEAR) {
             __builtin_prefetch(row + i);
+            __builtin_prefetch(row + row_length + i);
+        }
 }
 
 /* Points of a run of pixels from `first` pixels past the block's middle on. A double that is brought to a known exponent is
    a fixed-point number in its lower bits: whole points and 19 bits of their fraction, or 32 bits of a fraction of a
-   turn, without rounding or conversion. Fills whole vectors, up to LANES - 1 pixels more than `count`. */
-INLINE void points(const double *c, const struct scale *scale, double first, const struct bp_table *table, bool cubics,
+   turn, without rounding or conversion. Fills whole vectors, up to LANES - 1 pixels more than `count`. `reading` is a constant
+   where this is inlined. */
+INLINE void points(const double *c, const struct scale *scale, double first, int count, enum bp_reading reading, int phases,
                    struct run *run)
 {
     enum { BITS = 19 };
     const double shift = scale->shift + 0x1.8p33, ratio = scale->ratio;
     const double turns = c[0] * ratio + scale->base, base = scale->base - floor(turns) + 0x1.8p20;
-    const real one_phase = 1 / (real)table->phases;
+    const real one_phase = 1 / (real)phases;
 #define LANE(n) n
     vector_double u[2] = {PART(LANE, 0), PART(LANE, 2)};
     u[0] += first;
     u[1] += first;
-    for (int i = 0; i < run->count; i += LANES) {
+    for (int i = 0; i < count; i += LANES) {
         vector_double point[2], turned[2];
         vector_long whole[2];
         for (int k = 0; k < (int)PARTS; k++) {
-            vector_double u2 = u[k] * u[k];
-            vector_double p = (c[0] + u[k] * c[1]) + u2 * ((c[2] + u[k] * c[3]) + u2 * (c[4] + u[k] * c[5]));
+            vector_double p = c[0] + u[k] * (c[1] + u[k] * (c[2] + u[k] * (c[3] + u[k] * (c[4] + u[k] * c[5]))));
             turned[k] = p * ratio + base;
             point[k] = p + shift;
             whole[k] = (vector_long)point[k] >> BITS;
@@ -362,14 +409,14 @@ INLINE void points(const double *c, const struct scale *scale, double first, con
         }
 #define LOW(v) (vector_int)__builtin_shufflevector((vector_bits)v[0], (vector_bits)v[PARTS - 1], EVEN)
         vector_int sample = LOW(whole);
-        if (cubics) {
+        if (reading == BP_CUBICS) {
             *(vector_int *)(run->phase + i) = sample & (BP_INTERVALS - 1);
             sample >>= BP_INTERVAL_BITS;
             vector_int rest = LOW(point) & ((1 << BITS) - 1);
             *at(run->rest + i) = __builtin_convertvector(rest, vector_real) * (real)0x1p-19;
-        } else if (table->taps > 1) {
-            vector_int rest = LOW(point) & ((1 << BITS) - 1), phase = rest * table->phases >> BITS;
-            if (table->line)
+        } else if (reading != BP_NEAREST) {
+            vector_int rest = LOW(point) & ((1 << BITS) - 1), phase = rest * phases >> BITS;
+            if (reading == BP_LINE)
                 *at(run->rest + i) = __builtin_convertvector(phase, vector_real) * one_phase;
             else
                 *(vector_int *)(run->phase + i) = phase;
@@ -379,21 +426,38 @@ INLINE void points(const double *c, const struct scale *scale, double first, con
     }
 }
 
-/* One receiver over one block. */
-INLINE void sum_block(const struct bp_table *table, const real *row, int row_length, const struct scale *scale,
-                      const struct bp_block *block, const double *tau, real *re, real *im)
+/* The most that a quintic changes from one pixel of its block to the next. */
+INLINE double slope_most(const double *c, double half)
 {
-    struct run run;
-    double c[NODES];
+    double most = 0;
+    for (int k = NODES - 1; k > 0; k--)
+        most = k * fabs(c[k]) + half * most;
+    return most;
+}
+
+/* A group of receivers over one block; tau[g][NODES]. */
+INLINE void sum_block(const struct bp_table *table, int group, const real *row, int row_length, const struct scale *scale,
+                      const struct bp_block *block, const double *tau, size_t tau_stride, real *re, real *im)
+{
+    struct run runs[GROUP];
+    double c[GROUP][NODES];
     const double half = 0.5 * (block->end - 1 - block->begin), middle = block->begin + half;
-    quintic(tau, scale, half, c);
+    bool narrow = WINDOWS;              /* at most half a sample from pixel to pixel, rounding allowed for */
+    for (int g = 0; g < group; g++) {
+        quintic(tau + g * tau_stride, scale, half, c[g]);
+        narrow = narrow && slope_most(c[g], half) <= 0.49;
+    }
     for (int first = block->begin; first < block->end; first += RUN) {
-        run.count = block->end - first < RUN ? block->end - first : RUN;
-        if (bp_table_cubics(table))
-            points(c, scale, first - middle, table, true, &run);
-        else
-            points(c, scale, first - middle, table, false, &run);
-        add_run(table, row, row_length, &run, re + first, im + first);
+        int count = block->end - first < RUN ? block->end - first : RUN;
+        for (int g = 0; g < group; g++) {
+            switch (table->reading) {
+            case BP_NEAREST: points(c[g], scale, first - middle, count, BP_NEAREST, 1, &runs[g]); break;
+            case BP_LINE: points(c[g], scale, first - middle, count, BP_LINE, table->phases, &runs[g]); break;
+            case BP_PHASES: points(c[g], scale, first - middle, count, BP_PHASES, table->phases, &runs[g]); break;
+            case BP_CUBICS: points(c[g], scale, first - middle, count, BP_CUBICS, 1, &runs[g]); break;
+            }
+        }
+        add_runs(table, narrow, group, row, row_length, count, runs, re + first, im + first);
     }
 }
 
@@ -401,7 +465,8 @@ void BP_SUM(const struct bp_medium *medium, const struct bp_table *table, const 
             const struct pixel_line *line, int block_count, const struct bp_block *blocks, void *re, void *im)
 {
     struct places places = {.count = NODES * block_count};
-    const bool cubics = bp_table_cubics(table);
+    double tau[GROUP][NODES * BP_BLOCKS];
+    const bool cubics = table->reading == BP_CUBICS;
     const double fine = table->upsample * (cubics ? BP_INTERVALS : 1), turns = medium->fc * ping->t0;
     const struct scale scale = {ping->t0, medium->fs, fine, cubics ? 0 : 0.5 / table->phases, medium->fc / (medium->fs * fine),
                                 turns - floor(turns)};
@@ -413,15 +478,19 @@ void BP_SUM(const struct bp_medium *medium, const struct bp_table *table, const 
         }
     }
     legs_out(medium, ping, &places);
-    for (int m = 0; m < ping->receivers; m++) {
+    for (int m = 0; m < ping->receivers; m += GROUP) {
+        const int group = ping->receivers - m < GROUP ? ping->receivers - m : GROUP;
         const real *row = (const real *)ping->rows + 2 * (size_t)m * (size_t)ping->row_length;
-        legs_back(medium, ping, ping->rx[m], &places);
+        for (int g = 0; g < group; g++) {
+            legs_back(medium, ping, ping->rx[m + g], &places, tau[g]);
+            for (int b = 0; b < block_count; b++)
+                if (!blocks[b].exact)
+                    prefetch(row + 2 * (size_t)g * (size_t)ping->row_length + table->guard, ping->row_length, &tau[g][b * NODES],
+                             &scale, table->upsample);
+        }
         for (int b = 0; b < block_count; b++)
-            if (!blocks[b].exact) {
-                if (!bp_table_planar(table))
-                    prefetch((const struct sample *)row + table->guard, places.tau + b * NODES, &scale, table->upsample);
-                sum_block(table, row, ping->row_length, &scale, &blocks[b], places.tau + b * NODES, re, im);
-            }
+            if (!blocks[b].exact)
+                sum_block(table, group, row, ping->row_length, &scale, &blocks[b], &tau[0][b * NODES], NODES * BP_BLOCKS, re, im);
     }
     for (int b = 0; b < block_count; b++)
         if (blocks[b].exact)

@@ -5,27 +5,22 @@
 
 #include "bp_blocks.h"
 
-/* How values are read between samples (struct interpolator with its weights tabulated). */
-struct bp_table {
-    int upsample, phases, taps, first, guard;
-    /* phases > 0: [phases][taps]. phases == 0: a cubic in the fraction's position inside each of BP_INTERVALS intervals,
-       [BP_INTERVALS][4][taps], lowest power first. Of the plan's precision; NULL when taps == 1. */
-    const void *weights;
-    bool line;                      /* two weights, 1 - f and f of the rounded fraction f: needs no table */
+/* How a value between samples is read. */
+enum bp_reading {
+    BP_NEAREST,                     /* the nearest value: one tap */
+    BP_LINE,                        /* two weights, 1 - f and f of the fraction f rounded to a phase: no table is read */
+    BP_PHASES,                      /* weights [phases][taps] of the fraction rounded to a phase */
+    BP_CUBICS                       /* weights that are cubics in the fraction's position inside each of BP_INTERVALS
+                                       intervals, [BP_INTERVALS][4][taps], lowest power first */
 };
 enum { BP_INTERVAL_BITS = 8, BP_INTERVALS = 1 << BP_INTERVAL_BITS };
 
-/* Are the weights cubics in the fraction of a sample? Else they are for whole phases, one phase if there is one tap. */
-static inline bool bp_table_cubics(const struct bp_table *table)
-{
-    return table->taps > 1 && table->phases == 0;
-}
-
-/* Records whose real and imaginary parts the general engine keeps apart: many taps add up along each. */
-static inline bool bp_table_planar(const struct bp_table *table)
-{
-    return table->taps > 1 && !table->line;
-}
+/* struct interpolator with its weights tabulated. */
+struct bp_table {
+    enum bp_reading reading;
+    int upsample, phases, taps, first, guard;
+    const void *weights;            /* of the plan's precision; NULL if BP_NEAREST */
+};
 
 struct bp_medium {
     double sound_speed, fc, fs;
@@ -38,7 +33,7 @@ struct bp_ping {
     double t0;
     int receivers;
     const struct vector *rx;        /* [receivers] at emission */
-    const void *rows;               /* [receivers][2 row_length]: complex, or re and then im if bp_table_planar */
+    const void *rows;               /* [receivers][2 row_length] real: re, then im; one value behind the last may be read */
     int row_length;
 };
 
