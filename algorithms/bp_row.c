@@ -204,8 +204,8 @@ INLINE void sum_taps(int width, int taps, int stride, const struct part *part, c
             }
         real cosine = wr[i], sine = wi[i];
         for (int k = 0; k < width; k++) {
-            a[k] += vr[k] * cosine - vi[k] * sine;
-            b[k] += vr[k] * sine + vi[k] * cosine;
+            a[k] = a[k] + vr[k] * cosine - vi[k] * sine;
+            b[k] = b[k] + vr[k] * sine + vi[k] * cosine;
         }
     }
     for (int k = 0; k < width; k++) {
@@ -242,10 +242,12 @@ INLINE void sum_taps_pair(int width, int taps, int stride, const struct part *on
         }
         real cosine = one->wr[m], sine = one->wi[m], cosine2 = two->wr[n], sine2 = two->wi[n];
         for (int k = 0; k < width; k++) {
-            *(vector_real *)(one->re + k * LANES) += a[k] * cosine - b[k] * sine;
-            *(vector_real *)(one->im + k * LANES) += a[k] * sine + b[k] * cosine;
-            *(vector_real *)(two->re + k * LANES) += a2[k] * cosine2 - b2[k] * sine2;
-            *(vector_real *)(two->im + k * LANES) += a2[k] * sine2 + b2[k] * cosine2;
+            vector_real *re = (vector_real *)(one->re + k * LANES), *im = (vector_real *)(one->im + k * LANES);
+            vector_real *re2 = (vector_real *)(two->re + k * LANES), *im2 = (vector_real *)(two->im + k * LANES);
+            *re = *re + a[k] * cosine - b[k] * sine;
+            *im = *im + a[k] * sine + b[k] * cosine;
+            *re2 = *re2 + a2[k] * cosine2 - b2[k] * sine2;
+            *im2 = *im2 + a2[k] * sine2 + b2[k] * cosine2;
         }
     }
 }
