@@ -6,6 +6,7 @@
    vectors; then a block of columns is summed for all of them, whose samples stay in the first-level cache. */
 #include "bp_row.h"
 
+#include <limits.h>
 #include <math.h>
 
 #include "lanes.h"
@@ -304,6 +305,7 @@ struct group {
     const struct bp_row_scratch *scratch;
     const int *shift;
     int taps, begin, end;
+    int from, to;                   /* shifts [from, to) are summed */
     const real *sr, *si;            /* the receiver's records, their ping 0 */
     real *re, *im;                  /* sums [phase][stride] */
     size_t stride;
@@ -315,13 +317,13 @@ INLINE int between(int value, int least, int most)
     return value < least ? least : value < most ? value : most;
 }
 
-/* Phase p's part of the block of `wide` columns from j on. */
-INLINE struct part part_make(const struct group *group, int taps, int p, int j, int wide)
+/* Phase p's part of the block of columns from j on. */
+INLINE struct part part_make(const struct group *group, int taps, int p, int j)
 {
     const struct bp_row_scratch *scratch = group->scratch;
     const struct bp_row_shifts *phase = &scratch->phases[p];
     const size_t first = (size_t)(phase->first - scratch->phases[group->begin].first);
-    const int *shift = group->shift + first, from = 1 - j - wide, to = group->raster->pings - j;
+    const int *shift = group->shift + first, from = group->from, to = group->to;
     int begin, end;
     if (phase->gapless) {
         begin = between(from - phase->least, 0, phase->count);
@@ -346,9 +348,9 @@ INLINE void sum_block(int width, int taps, const struct group *group, int j)
     OPAQUE(sr);
     OPAQUE(si);
     for (int p = group->begin; p < group->end; p++) {
-        struct part one = part_make(group, taps, p, j, width * LANES);
+        struct part one = part_make(group, taps, p, j);
         if (taps > 2 && p + 1 < group->end) {
-            struct part two = part_make(group, taps, ++p, j, width * LANES);
+            struct part two = part_make(group, taps, ++p, j);
             sum_two(width, taps, stride, &one, &two, sr, si);
         } else {
             sum_part(width, taps, stride, &one, sr, si);
@@ -382,14 +384,34 @@ static const struct kernel {
     {0, {any_1, any_2, any_3}},
 };
 
-/* All columns, in blocks as wide as each other. */
-static void sum_columns(const struct kernel *kernel, const struct group *group)
+/* All columns, in blocks as wide as each other. A shift whose pings begin or end inside a block is summed for those of
+   its vectors only that have some; vector v has pings for the shifts [FIRST(v), END(v)). */
+static void sum_columns(const struct kernel *kernel, struct group *group)
 {
-    const int blocks = group->raster->blocks;
-    for (int j = 0, width; j < blocks; j += width * LANES) {
-        int left = (blocks - j + LANES - 1) / LANES, parts = (left + BP_BLOCK_VECTORS - 1) / BP_BLOCK_VECTORS;
+    const int columns = group->raster->blocks, pings = group->raster->pings;
+    const struct bp_row_shifts *phases = group->scratch->phases;
+    int least = INT_MAX, most = INT_MIN;
+    for (int p = group->begin; p < group->end; p++) {
+        least = phases[p].begin < least ? phases[p].begin : least;
+        most = phases[p].end > most ? phases[p].end : most;
+    }
+    for (int j = 0, width; j < columns; j += width * LANES) {
+        int left = (columns - j + LANES - 1) / LANES, parts = (left + BP_BLOCK_VECTORS - 1) / BP_BLOCK_VECTORS;
         width = (left + parts - 1) / parts;
-        kernel->block[width - 1](group, j);
+#define FIRST(v) (1 - j - ((v) + 1) * LANES)
+#define END(v) (pings - j - (v) * LANES)
+        for (int v = 0; v < width; v++)
+            for (int end = width; end > v; end--) {
+                int from = FIRST(v), to = END(end - 1);
+                if (end < width && from < END(end))
+                    from = END(end);
+                if (v > 0 && to > FIRST(v - 1))
+                    to = FIRST(v - 1);
+                group->from = from > least ? from : least;
+                group->to = to < most ? to : most;
+                if (group->from < group->to)
+                    kernel->block[end - v - 1](group, j + v * LANES);
+            }
     }
 }
 
@@ -471,7 +493,7 @@ void BP_ROW(const struct bp_medium *medium, const struct bp_table *table, const 
     const bool whole = slab->width == table->upsample && inside_record(medium, raster, &terms, r, offset, furthest);
     for (int g = 0; g < count; g++) {
         const size_t receiver = (size_t)g * slab->receiver_stride + (size_t)slab->lead;
-        struct group group = {raster, slab, scratch, NULL, table->taps, 0, 0, (const real *)slab->re + receiver,
+        struct group group = {raster, slab, scratch, NULL, table->taps, 0, 0, 0, 0, (const real *)slab->re + receiver,
                               (const real *)slab->im + receiver, re, im, (size_t)stride};
         while (group.begin < phases) {
             const int first = all[group.begin].first;
