@@ -117,23 +117,20 @@ INLINE void gather_two(const real *from, const int *index, vector_real *value, v
 #endif
 }
 
+#if WINDOWS
 /* The same for pixels at most half a sample apart: of four, the others read the second one's sample or a neighbour of it.
    These windows of four values, from the second one's predecessor on, are loaded whole: half as many instructions. The last
    value is only a line's next one; else it may lie one past the row's end. */
 INLINE vector_real take_narrow(bool line, const real *from, const int *index, const real *rest)
 {
-#if WINDOWS
 #define WINDOW(n) (*(const quad *)(from + index[4 * (n) + 1] - 1))
     vector_int all = *(const vector_int *)index, which = all - __builtin_shufflevector(all, all, SECONDS) + 1;
     vector_real windows = QUADS(WINDOW), value = PICK(windows, which);
     if (line)
         value += *at(rest) * (PICK(windows, which + 1) - value);
     return value;
-#else
-    (void)line, (void)index, (void)rest;
-    return (vector_real){0} + *from;        /* never called */
-#endif
 }
+#endif
 
 /* Add to LANES pixels from i on what they take from a record: the nearest value each, or between two on a line. */
 INLINE void take(bool line, bool narrow, const real *row_re, const real *row_im, const struct run *run, int i,
@@ -141,10 +138,14 @@ INLINE void take(bool line, bool narrow, const real *row_re, const real *row_im,
 {
     vector_real c, s, x, y, next;
     turn_vector(*at(run->turns + i), &c, &s);
+    (void)narrow;
+#if WINDOWS
     if (narrow) {
         x = take_narrow(line, row_re, run->sample + i, run->rest + i);
         y = take_narrow(line, row_im, run->sample + i, run->rest + i);
-    } else if (line) {
+    } else
+#endif
+    if (line) {
         gather_two(row_re, run->sample + i, &x, &next);
         x += *at(run->rest + i) * (next - x);
         gather_two(row_im, run->sample + i, &y, &next);
@@ -442,7 +443,7 @@ INLINE void sum_block(const struct bp_table *table, int group, const real *row, 
     struct run runs[GROUP];
     double c[GROUP][NODES];
     const double half = 0.5 * (block->end - 1 - block->begin), middle = block->begin + half;
-    bool narrow = WINDOWS;              /* at most half a sample from pixel to pixel, rounding allowed for */
+    bool narrow = WINDOWS;          /* at most half a sample from pixel to pixel, rounding allowed for */
     for (int g = 0; g < group; g++) {
         quintic(tau + g * tau_stride, scale, half, c[g]);
         narrow = narrow && slope_most(c[g], half) <= 0.49;
