@@ -230,8 +230,8 @@ static enum status invariant_plan(struct bp *bp)
         most_phases = phases > most_phases ? phases : most_phases;
         most_shifts = shifts > most_shifts ? shifts : most_shifts;
     }
-    /* A block of columns may begin its width less one before the first ping and end as far behind the last. Room is made
-       for the widest vectors, so that a plan needs the same memory on every machine. */
+    /* Vectors of columns are read that have a ping, and so up to their width less one before the first ping and behind the
+       last. Room is made for a block of the widest vectors, so that a plan needs the same memory on every machine. */
     int lanes = BP_LANES_MOST * (int)sizeof(float) / (int)size, wide = round_up(blocks, lanes);
     int lead = wide < BP_BLOCK_VECTORS * lanes ? wide : BP_BLOCK_VECTORS * lanes;
     shape_slab(bp, in, samples, lead, round_up(a->pings + 2 * lead, 8));

@@ -30,6 +30,7 @@ enum {
     RUN = 256,                      /* pixels at a time: a group's runs stay in the first-level cache */
     GROUP = 4,                      /* receivers that are summed together: sums are loaded and stored once for all */
     NODES = 6,                      /* of a quintic */
+    DELAYS = NODES * BP_BLOCKS,     /* that are evaluated together, to one receiver */
     PARTS = LANES * sizeof(double) / VECTOR_BYTES       /* vectors of doubles to a vector of `real` */
 };
 
@@ -436,16 +437,16 @@ INLINE double slope_most(const double *c, double half)
     return most;
 }
 
-/* A group of receivers over one block; tau[g][NODES]. */
+/* A group of receivers over one block; tau: its delays to the first of them, DELAYS on to the next one. */
 INLINE void sum_block(const struct bp_table *table, int group, const real *row, int row_length, const struct scale *scale,
-                      const struct bp_block *block, const double *tau, size_t tau_stride, real *re, real *im)
+                      const struct bp_block *block, const double *tau, real *re, real *im)
 {
     struct run runs[GROUP];
     double c[GROUP][NODES];
     const double half = 0.5 * (block->end - 1 - block->begin), middle = block->begin + half;
     bool narrow = WINDOWS;          /* at most half a sample from pixel to pixel, rounding allowed for */
     for (int g = 0; g < group; g++) {
-        quintic(tau + g * tau_stride, scale, half, c[g]);
+        quintic(tau + g * DELAYS, scale, half, c[g]);
         narrow = narrow && slope_most(c[g], half) <= 0.49;
     }
     for (int first = block->begin; first < block->end; first += RUN) {
@@ -466,7 +467,7 @@ void BP_SUM(const struct bp_medium *medium, const struct bp_table *table, const 
             const struct pixel_line *line, int block_count, const struct bp_block *blocks, void *re, void *im)
 {
     struct places places = {.count = NODES * block_count};
-    double tau[GROUP][NODES * BP_BLOCKS];
+    double tau[GROUP * DELAYS];
     const bool cubics = table->reading == BP_CUBICS;
     const double fine = table->upsample * (cubics ? BP_INTERVALS : 1), turns = medium->fc * ping->t0;
     const struct scale scale = {ping->t0, medium->fs, fine, cubics ? 0 : 0.5 / table->phases, medium->fc / (medium->fs * fine),
@@ -483,15 +484,15 @@ void BP_SUM(const struct bp_medium *medium, const struct bp_table *table, const 
         const int group = ping->receivers - m < GROUP ? ping->receivers - m : GROUP;
         const real *row = (const real *)ping->rows + 2 * (size_t)m * (size_t)ping->row_length;
         for (int g = 0; g < group; g++) {
-            legs_back(medium, ping, ping->rx[m + g], &places, tau[g]);
+            legs_back(medium, ping, ping->rx[m + g], &places, tau + g * DELAYS);
             for (int b = 0; b < block_count; b++)
                 if (!blocks[b].exact)
-                    prefetch(row + 2 * (size_t)g * (size_t)ping->row_length + table->guard, ping->row_length, &tau[g][b * NODES],
-                             &scale, table->upsample);
+                    prefetch(row + 2 * (size_t)g * (size_t)ping->row_length + table->guard, ping->row_length,
+                             tau + g * DELAYS + b * NODES, &scale, table->upsample);
         }
         for (int b = 0; b < block_count; b++)
             if (!blocks[b].exact)
-                sum_block(table, group, row, ping->row_length, &scale, &blocks[b], &tau[0][b * NODES], NODES * BP_BLOCKS, re, im);
+                sum_block(table, group, row, ping->row_length, &scale, &blocks[b], tau + b * NODES, re, im);
     }
     for (int b = 0; b < block_count; b++)
         if (blocks[b].exact)
