@@ -130,20 +130,57 @@ static void *allocate(size_t bytes, double *total)
     return aligned_alloc(64, (bytes + 63) / 64 * 64);
 }
 
+/* The largest distance along the track between a ping and a column. */
+static double furthest(const struct bp_raster *raster, const struct grid *grid)
+{
+    const double last_ping = raster->x_first + (raster->pings - 1) * raster->spacing;
+    const double last_column = grid->x_first + (grid->x_count - 1) * grid->x_step;
+    return fabs(fmax(last_ping - grid->x_first, last_column - raster->x_first));
+}
+
 /* The most samples of a record that one row of a patch reads: those between its nearest and its furthest pixel. */
 static double samples_read(const struct bp *bp, const struct bp_raster *raster, const struct grid *grid)
 {
-    const double last_ping = raster->x_first + (raster->pings - 1) * raster->spacing;
-    const double last_column = grid->x_first + (grid->x_count - 1) * grid->x_step, limit = raster->limit;
-    const double most = fmax(last_ping - grid->x_first, last_column - raster->x_first);
+    const double limit = raster->limit;
     double samples = 0;
     for (int end = 0; end < 2; end++) {
-        double r = fabs(grid->r_first + end * (grid->r_count - 1) * grid->r_step), x = fabs(most);
+        double r = fabs(grid->r_first + end * (grid->r_count - 1) * grid->r_step), x = furthest(raster, grid);
         if (limit < 1)
             x = fmin(x, r * limit / sqrt((1 - limit) * (1 + limit)));
         samples = fmax(samples, 2 * (sqrt(r * r + x * x) - r) / bp->medium.sound_speed * bp->medium.fs);
     }
     return samples + bp->table.taps;
+}
+
+/* The most samples by which the delay changes over one azimuth step, of any pair inside the aperture or one ping spacing
+   outside it. */
+static double steepness(const struct bp *bp, const struct bp_raster *raster, const struct grid *grid)
+{
+    const struct acquisition *a = bp->problem.acquisition;
+    const double c = bp->medium.sound_speed, v = fabs(raster->speed), e = (c - v) * (c + v), limit = raster->limit;
+    double offset = 0, steepest = 0;
+    for (int m = 0; m < a->receivers; m++)
+        offset = fmax(offset, fabs(a->rx[m].x - a->tx[0].x));
+    for (int end = 0; end < 2; end++) {
+        double r = fabs(grid->r_first + end * (grid->r_count - 1) * grid->r_step), x = furthest(raster, grid);
+        if (limit < 1)
+            x = fmin(x, r * limit / sqrt((1 - limit) * (1 + limit)));
+        x += raster->spacing;
+        double leg = sqrt(x * x + r * r), b = x + offset + v * leg / c, sine = x / leg, back = b / sqrt(b * b + e / (c * c) * r * r);
+        steepest = fmax(steepest, sine / c + (v + c * back) / e * (1 + v / c * sine));
+    }
+    return steepest * grid->x_step * bp->medium.fs;
+}
+
+/* Neighbouring phases that are summed together. Of up to two taps, two where they mostly read the same samples; of more
+   taps, as many as keep their samples within BP_SPREAD, rounding included. */
+static int phases_together(const struct bp *bp, double steepness)
+{
+    if (bp->table.upsample > 1)
+        return 1;
+    if (bp->table.taps < 3)
+        return steepness <= 0.5 ? 2 : 1;
+    return (int)fmin(BP_TOGETHER, 1 + floor((BP_SPREAD - 1) / steepness));
 }
 
 /* Rows and receivers of the slab, and the passes that keep it small however much the records are upsampled. */
@@ -178,13 +215,15 @@ static void *take(struct arena *arena, size_t count, size_t size)
 static struct bp_row_scratch scratch_take(struct arena *arena, size_t phases, size_t shifts, size_t entries, size_t taps,
                                           size_t real_bytes)
 {
+    const size_t few = taps < 3 ? taps : 1, many = taps < 3 ? 0 : taps + BP_SPREAD;
     return (struct bp_row_scratch){
-        .phases = take(arena, phases + 1, sizeof(struct bp_row_shifts)),
+        .groups = take(arena, phases + 1, sizeof(struct bp_row_group)),
         .leg = take(arena, shifts, sizeof(double)), .ahead = take(arena, shifts, sizeof(double)),
-        .shift = take(arena, shifts, sizeof(int)), .capacity = (int)entries, .q = take(arena, entries, sizeof(double)),
-        .kept = take(arena, entries, sizeof(int)), .offset = take(arena, entries, sizeof(int)),
-        .step = take(arena, entries, sizeof(int)), .wr = take(arena, entries, real_bytes),
-        .wi = take(arena, entries, real_bytes), .weights = take(arena, taps > 1 ? entries * taps : 0, real_bytes)};
+        .shift = take(arena, shifts, sizeof(int)), .gate = take(arena, shifts, real_bytes), .capacity = (int)entries,
+        .q = take(arena, entries, sizeof(double)), .kept = take(arena, entries, sizeof(int)),
+        .row = take(arena, entries, sizeof(int)), .offset = take(arena, entries, sizeof(int)),
+        .step = take(arena, entries, sizeof(int)), .rows = take(arena, entries, sizeof(int)), .wr = take(arena, entries * few, real_bytes),
+        .wi = take(arena, entries * few, real_bytes), .weights = take(arena, entries * many, real_bytes)};
 }
 
 static enum status invariant_plan(struct bp *bp)
@@ -218,6 +257,7 @@ static enum status invariant_plan(struct bp *bp)
     for (int k = 0; k < problem->patch_count; k++) {
         struct bp_raster *raster = &in->rasters[k];
         raster_make(bp, &track, &problem->patches[k], raster);
+        raster->together = phases_together(bp, steepness(bp, raster, &problem->patches[k]));
         in->strides[k] = round_up(raster->blocks + BP_LANES_MOST, 8);
         size_t phases = (size_t)(raster->ratio < raster->columns ? raster->ratio : raster->columns);
         in->sums[k] = allocate(2 * (size_t)problem->patches[k].r_count * phases * (size_t)in->strides[k] * size, bytes);
@@ -231,12 +271,11 @@ static enum status invariant_plan(struct bp *bp)
         most_shifts = shifts > most_shifts ? shifts : most_shifts;
     }
     /* Vectors of columns are read that have a ping, and so up to their width less one before the first ping and behind the
-       last. Room is made for a block of the widest vectors, so that a plan needs the same memory on every machine. */
-    int lanes = BP_LANES_MOST * (int)sizeof(float) / (int)size, wide = round_up(blocks, lanes);
-    int lead = wide < BP_BLOCK_VECTORS * lanes ? wide : BP_BLOCK_VECTORS * lanes;
+       last. Room is made for the widest vectors, so that a plan needs the same memory on every machine. */
+    int lead = BP_LANES_MOST * (int)sizeof(float) / (int)size;
     shape_slab(bp, in, samples, lead, round_up(a->pings + 2 * lead, 8));
     size_t values = (size_t)in->receivers * in->slab.receiver_stride, tile = (size_t)TILE * (size_t)bp->shape.length * 2 * size;
-    size_t entries = (size_t)BP_ENTRIES(a->pings + blocks), taps = (size_t)bp->table.taps;
+    size_t entries = BP_TOGETHER * (size_t)BP_ENTRIES(a->pings + blocks), taps = (size_t)bp->table.taps;
     entries = entries > GROUP ? entries : GROUP;
     struct arena arena = {NULL, 0};
     scratch_take(&arena, most_phases, most_shifts, entries, taps, size);

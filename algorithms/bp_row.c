@@ -2,8 +2,10 @@
    sample and phase depend only on the shift s = ping - column: they are tabulated once, and
        image[rho + ratio j] += w(s) record[sample(s)][j + s]
    runs over contiguous pings: no gather, no trigonometry, 4 multiply-adds a pair. Exact: the same pairs, samples and
-   weights as the general engine's plain path, in another order. Tables are made for many phases at once, in whole
-   vectors; then a block of columns is summed for all of them, whose samples stay in the first-level cache. */
+   weights as the general engine's plain path, in another order. Loads of the records are the limit, half of which cross a
+   cache line: neighbouring phases, which mostly read the same samples, are summed together and share them. Tables are
+   made for some groups of phases at once, in whole vectors; then a block of columns is summed for all of these, whose
+   samples stay in the first-level cache. */
 #include "bp_row.h"
 
 #include <limits.h>
@@ -23,23 +25,37 @@ static int whole_vectors(int count)
 
 /* ---- tables ---- */
 
-/* Shifts begin .. begin + n of one phase, the first ping x from column 0; padded to whole vectors by the last. */
-INLINE void places(const struct bp_medium *medium, const struct bp_raster *raster, double x, double r, int begin, int n,
-                   double *restrict leg, double *restrict ahead, int *restrict shift)
+/* The shifts [begin, end) of one phase inside the aperture. */
+struct shifts {
+    int begin, end;
+};
+
+/* A group's entries, by shift and then phase, padded to whole vectors by the last. Those outside their phase's aperture
+   have gate 0, all others 1. */
+static void places(const struct bp_medium *medium, const struct bp_raster *raster, const struct bp_row_group *group,
+                   const struct shifts *inside, double r, double *restrict leg, double *restrict ahead,
+                   int *restrict shift, real *restrict gate)
 {
-    const double one_c = 1 / medium->sound_speed, v = raster->speed, spacing = raster->spacing, r2 = r * r;
-    const int whole = whole_vectors(n);
-#pragma omp simd
-    for (int i = 0; i < whole; i++) {
-        double u = x + i * spacing, seconds = sqrt(u * u + r2) * one_c;
-        leg[i] = seconds;
-        ahead[i] = u + v * seconds;
-        shift[i] = begin + i;
+    const double one_c = 1 / medium->sound_speed, v = raster->speed, r2 = r * r;
+    const int phases = group->phases, n = (group->end - group->begin) * phases, whole = whole_vectors(n);
+    for (int k = 0; k < phases; k++) {
+        const double x = raster->x_first - (raster->grid_first + (group->phase + k) * raster->grid_step);
+        for (int s = group->begin, i = k; s < group->end; s++, i += phases) {
+            ahead[i] = x + s * raster->spacing;
+            shift[i] = s;
+            gate[i] = s >= inside[k].begin && s < inside[k].end;
+        }
     }
     for (int i = n; i < whole; i++) {
-        leg[i] = leg[n - 1];
         ahead[i] = ahead[n - 1];
         shift[i] = shift[n - 1];
+        gate[i] = 0;
+    }
+#pragma omp simd
+    for (int i = 0; i < whole; i++) {
+        double u = ahead[i], seconds = sqrt(u * u + r2) * one_c;
+        leg[i] = seconds;
+        ahead[i] = u + v * seconds;
     }
 }
 
@@ -55,10 +71,11 @@ static struct delay_terms delay_terms_make(const struct bp_medium *medium, const
     return (struct delay_terms){v, c * c, e * r * r, 1 / e};
 }
 
-/* Sample coordinate and weight exp(j 2 pi fc tau) of n entries, n whole vectors. */
+/* Sample coordinate and weight exp(j 2 pi fc tau) of n entries, n whole vectors; weight 0 where the gate is. Two loops, so
+   that several of each one's chains are under way at once. */
 INLINE void delays(const struct bp_medium *medium, const struct bp_raster *raster, const struct delay_terms *terms,
-                   double offset, int n, const double *restrict leg, const double *restrict ahead, double *restrict q,
-                   real *restrict wr, real *restrict wi)
+                   double offset, int n, const double *restrict leg, const double *restrict ahead,
+                   const real *restrict gate, double *restrict q, real *restrict wr, real *restrict wi)
 {
     const double v = terms->v, c2 = terms->c2, er2 = terms->er2, one_e = terms->one_e;
     const double fc = medium->fc, fs = medium->fs, t0 = raster->t0;
@@ -68,7 +85,14 @@ INLINE void delays(const struct bp_medium *medium, const struct bp_raster *raste
         double tau = leg[i] + (b * v + sqrt(c2 * (b * b) + er2)) * one_e;
         double cycles = fc * tau;
         q[i] = (tau - t0) * fs;
-        turn((real)(cycles - floor(cycles + 0.5)), &wr[i], &wi[i]);
+        wr[i] = (real)(cycles - floor(cycles + 0.5));
+    }
+#pragma omp simd
+    for (int i = 0; i < n; i++) {
+        real cosine, sine;
+        turn(wr[i], &cosine, &sine);
+        wr[i] = cosine * gate[i];
+        wi[i] = sine * gate[i];
     }
 }
 
@@ -80,13 +104,33 @@ INLINE void nearest_step(double q, int steps, int *sample, int *step)
     *step = next ? 0 : near;
 }
 
-/* Leave out entries outside the record and, of upsampled records, those whose fine sample is not in the slab. */
-static void keep(const struct bp_medium *medium, const struct bp_table *table, const struct bp_slab *slab,
-                 struct bp_row_shifts *phase, int first, const struct bp_row_scratch *scratch)
+/* Entries outside the record weigh nothing, and read its nearest sample; shifts before the first and after the last that
+   has an entry inside are left out. */
+static void confine(const struct bp_medium *medium, struct bp_row_group *group, double *restrict q, real *restrict wr,
+                    real *restrict wi)
 {
-    double *q = scratch->q + first;
-    real *wr = (real *)scratch->wr + first, *wi = (real *)scratch->wi + first;
-    int *kept = scratch->kept + first, count = 0, n = phase->end - phase->begin;
+    const double last = medium->samples - 1;
+    const int phases = group->phases, n = (group->end - group->begin) * phases, whole = whole_vectors(n);
+    int from = n, to = 0;
+    for (int i = 0; i < whole; i++) {
+        if (q[i] >= 0 && q[i] <= last) {
+            from = i < from ? i : from;
+            to = i + 1;
+            continue;
+        }
+        wr[i] = wi[i] = 0;
+        q[i] = q[i] < 0 ? 0 : last;
+    }
+    to = to < n ? to : n;
+    group->from = from < to ? from / phases : 0;
+    group->to = from < to ? (to + phases - 1) / phases : 0;
+}
+
+/* Of one phase's entries, keep those inside the record whose fine sample is in the slab. */
+static void keep(const struct bp_medium *medium, const struct bp_table *table, const struct bp_slab *slab,
+                 struct bp_row_group *group, double *q, real *wr, real *wi, int *kept)
+{
+    int count = 0, n = group->end - group->begin;
     for (int i = 0; i < n; i++) {
         if (!(q[i] >= 0 && q[i] <= medium->samples - 1))
             continue;
@@ -97,40 +141,41 @@ static void keep(const struct bp_medium *medium, const struct bp_table *table, c
         q[count] = q[i];
         wr[count] = wr[i];
         wi[count] = wi[i];
-        kept[count++] = phase->begin + i;
+        kept[count++] = group->begin + i;
     }
-    phase->count = count;
-    phase->least = count > 0 ? kept[0] : phase->begin;
-    phase->gapless = count == 0 || kept[count - 1] - kept[0] == count - 1;
+    group->to = count;
     for (int i = count; i < whole_vectors(n); i++) {
         q[i] = 0;
-        kept[i] = phase->begin;
+        kept[i] = group->begin;
     }
 }
 
-/* Where n entries read the slab, n whole vectors, and their weights. */
-INLINE void tabulate(const struct bp_table *table, const struct bp_slab *slab, int n, const double *restrict q,
-                     const int *restrict shift, int *restrict offset, int *restrict step, real *restrict weights)
+/* Where n entries read the slab, n whole vectors: the first tap's row, and its value for ping `shift`. What their weights
+   are made of: the fine step from the sample to the next one, or the interval, and with cubics the position inside it, in
+   place of q. */
+INLINE void tabulate(const struct bp_table *table, const struct bp_slab *slab, int n, double *restrict q,
+                     const int *restrict shift, int *restrict row, int *restrict offset, int *restrict step)
 {
-    const int taps = table->taps, width = slab->width, stride = slab->ping_stride;
-    const int row = table->upsample > 1 ? -slab->phase : table->guard + table->first;
-    const real *values = table->weights;
+    const int first = table->upsample > 1 ? -slab->phase : table->guard + table->first;
+    const int width = slab->width, stride = slab->ping_stride;
     if (table->reading == BP_CUBICS) {
+#pragma omp simd
         for (int i = 0; i < n; i++) {
             int sample = (int)q[i];
             double interval = (q[i] - sample) * BP_INTERVALS;
-            const real *w = values + (size_t)(int)interval * 4 * (size_t)taps;
-            real u = (real)(interval - (int)interval);
-            offset[i] = (sample + row) * stride + shift[i];
-            for (int k = 0; k < taps; k++)
-                weights[i * taps + k] = w[k] + u * (w[taps + k] + u * (w[2 * taps + k] + u * w[3 * taps + k]));
+            row[i] = sample + first;
+            offset[i] = row[i] * stride + shift[i];
+            step[i] = (int)interval;
+            q[i] = interval - step[i];
         }
         return;
     }
-    if (taps == 1 && table->upsample == 1) {
+    if (table->taps == 1 && table->upsample == 1) {
 #pragma omp simd
-        for (int i = 0; i < n; i++)
-            offset[i] = ((int)(q[i] + 0.5) + row) * stride + shift[i];
+        for (int i = 0; i < n; i++) {
+            row[i] = (int)(q[i] + 0.5) + first;
+            offset[i] = row[i] * stride + shift[i];
+        }
         return;
     }
     const int fine = table->upsample > 1, steps = fine ? table->upsample : table->phases;
@@ -138,51 +183,80 @@ INLINE void tabulate(const struct bp_table *table, const struct bp_slab *slab, i
     for (int i = 0; i < n; i++) {
         int sample, near;
         nearest_step(q[i], steps, &sample, &near);
-        offset[i] = (sample * width + (fine ? near : 0) + row) * stride + shift[i];
+        row[i] = sample * width + (fine ? near : 0) + first;
+        offset[i] = row[i] * stride + shift[i];
         step[i] = near;
     }
-    for (int i = 0; taps > 1 && i < n; i++)
-        for (int k = 0; k < taps; k++)
-            weights[i * taps + k] = values[step[i] * taps + k];
+}
+
+/* The weights of one entry's taps, from its step and, with cubics, its position u. */
+INLINE void weigh(const struct bp_table *table, int taps, int step, real u, real *restrict weights)
+{
+    const real *values = table->weights;
+    if (table->reading == BP_CUBICS) {
+        const real *w = values + step * 4 * taps;
+        for (int t = 0; t < taps; t++)
+            weights[t] = w[t] + u * (w[taps + t] + u * (w[2 * taps + t] + u * w[3 * taps + t]));
+    } else {
+        for (int t = 0; t < taps; t++)
+            weights[t] = values[step * taps + t];
+    }
 }
 
 /* ---- sums ---- */
 
-/* Entries of one phase, and what they add to: the sums of a block's first column. */
-struct part {
-    const int *offset;
-    const real *wr, *wi, *weights;
-    int begin, end, least;          /* the first one's shift */
-    bool gapless;
-    real *re, *im;
+/* Groups [begin, end) of one receiver, all of as many phases, with their tables. */
+struct chunk {
+    const struct bp_raster *raster;
+    const struct bp_table *table;
+    const struct bp_slab *slab;
+    const struct bp_row_scratch *scratch;
+    int begin, end;
+    bool sparse;                    /* shifts are left out: scratch->kept holds those that are there */
+    int from, to;                   /* shifts [from, to) are summed */
+    const real *sr, *si;            /* the receiver's records, their ping 0 */
+    real *re, *im;                  /* sums [phase][stride] */
+    size_t stride;
 };
 
-/* One value of each column, loaded once, times two weights: loads are the limit. */
-INLINE void add_twice(int width, const real *values, real one, real two, vector_real *a, vector_real *b)
-{
-    for (int k = 0; k < width; k++) {
-        vector_real v = *(const vector_real *)(values + k * LANES);
-        HOLD(v);
-        a[k] += v * one;
-        b[k] += v * two;
-    }
-}
+/* A group's entries for some shifts, and the sums of a block's first column. */
+struct part {
+    int begin, end;                 /* shifts, counted from the group's first one */
+    const int *offset, *rows;
+    const real *wr, *wi, *weights;
+    real *re, *im;                  /* of the group's first phase */
+    size_t stride;
+};
 
-/* Sums of one block of `width` vectors of columns. sr, si: the receiver's records such that sr[offset] is the block's first
-   column's value. Real and imaginary weights have accumulators of their own, so that enough independent chains hide the
-   latency of multiply-adds; all real parts come before the imaginary ones, so that these chains and what they need fit 16
-   registers. */
-INLINE void sum_nearest(int width, const struct part *part, const real *sr, const real *si)
+/* A vector of samples, loaded once, times real and imaginary weights of one phase or of two. */
+#define LOAD(name, pointer) \
+    vector_real name = *(const vector_real *)(pointer); \
+    HOLD(name)
+
+/* One phase, one or two samples with complex weights, `width` vectors of columns. Real and imaginary weights have
+   accumulators of their own, so that enough independent chains hide the latency of multiply-adds; all real parts come
+   before the imaginary ones, so that these chains and what they need fit 16 registers. */
+INLINE void sum_one(int width, int taps, int stride, const struct part *part, const real *sr, const real *si)
 {
-    const int *offset = part->offset, end = part->end;
-    const real *wr = part->wr, *wi = part->wi;
     vector_real a[BP_BLOCK_VECTORS] = {{0}}, b[BP_BLOCK_VECTORS] = {{0}};
     vector_real c[BP_BLOCK_VECTORS] = {{0}}, d[BP_BLOCK_VECTORS] = {{0}};
+    const int *offset = part->offset, end = part->end;
+    const real *wr = part->wr, *wi = part->wi;
     for (int i = part->begin; i < end; i++) {
         const real *x = sr + offset[i], *y = si + offset[i];
-        real cosine = wr[i], sine = wi[i];
-        add_twice(width, x, cosine, sine, a, c);
-        add_twice(width, y, sine, cosine, b, d);
+        for (int t = 0; t < taps; t++) {
+            real cosine = wr[i * taps + t], sine = wi[i * taps + t];
+            for (int k = 0; k < width; k++) {
+                LOAD(v, x + t * stride + k * LANES);
+                a[k] += v * cosine;
+                c[k] += v * sine;
+            }
+            for (int k = 0; k < width; k++) {
+                LOAD(v, y + t * stride + k * LANES);
+                b[k] += v * sine;
+                d[k] += v * cosine;
+            }
+        }
     }
     for (int k = 0; k < width; k++) {
         *(vector_real *)(part->re + k * LANES) += a[k] - b[k];
@@ -190,71 +264,84 @@ INLINE void sum_nearest(int width, const struct part *part, const real *sr, cons
     }
 }
 
-INLINE void sum_taps(int width, int taps, int stride, const struct part *part, const real *sr, const real *si)
+/* The same of two phases that read the same samples. */
+INLINE void sum_two(int width, int taps, int stride, const struct part *part, const real *sr, const real *si)
 {
-    const int *offset = part->offset, end = part->end;
-    const real *wr = part->wr, *wi = part->wi, *weights = part->weights;
     vector_real a[BP_BLOCK_VECTORS] = {{0}}, b[BP_BLOCK_VECTORS] = {{0}};
+    vector_real a2[BP_BLOCK_VECTORS] = {{0}}, b2[BP_BLOCK_VECTORS] = {{0}};
+    const int *offset = part->offset, end = part->end;
+    const real *wr = part->wr, *wi = part->wi;
     for (int i = part->begin; i < end; i++) {
-        const real *x = sr + offset[i], *y = si + offset[i], *w = weights + i * taps;
-        vector_real vr[BP_BLOCK_VECTORS] = {{0}}, vi[BP_BLOCK_VECTORS] = {{0}};
-        for (int t = 0; t < taps; t++)
+        const real *x = sr + offset[2 * i], *y = si + offset[2 * i];
+        for (int t = 0; t < taps; t++) {
+            const real *r = wr + 2 * i * taps + t, *m = wi + 2 * i * taps + t;
+            real cosine = r[0], sine = m[0], cosine2 = r[taps], sine2 = m[taps];
             for (int k = 0; k < width; k++) {
-                vr[k] += *(const vector_real *)(x + t * stride + k * LANES) * w[t];
-                vi[k] += *(const vector_real *)(y + t * stride + k * LANES) * w[t];
+                LOAD(v, x + t * stride + k * LANES);
+                a[k] += v * cosine;
+                b[k] += v * sine;
+                a2[k] += v * cosine2;
+                b2[k] += v * sine2;
             }
-        real cosine = wr[i], sine = wi[i];
-        for (int k = 0; k < width; k++) {
-            a[k] = a[k] + vr[k] * cosine - vi[k] * sine;
-            b[k] = b[k] + vr[k] * sine + vi[k] * cosine;
+            for (int k = 0; k < width; k++) {
+                LOAD(v, y + t * stride + k * LANES);
+                a[k] -= v * sine;
+                b[k] += v * cosine;
+                a2[k] -= v * sine2;
+                b2[k] += v * cosine2;
+            }
         }
     }
     for (int k = 0; k < width; k++) {
         *(vector_real *)(part->re + k * LANES) += a[k];
         *(vector_real *)(part->im + k * LANES) += b[k];
+        *(vector_real *)(part->re + part->stride + k * LANES) += a2[k];
+        *(vector_real *)(part->im + part->stride + k * LANES) += b2[k];
     }
 }
 
-/* Two phases, equally many entries for the same shifts: where both read the same samples, as neighbours mostly do, each
-   value is loaded once. */
-INLINE void sum_taps_pair(int width, int taps, int stride, const struct part *one, const struct part *two, const real *sr,
-                          const real *si)
+/* Some phases, many samples with real weights, whose sum is rotated. rows[i] >= taps samples serve all phases of the
+   group; a phase's weights are 0 for those that are not its own. */
+INLINE void sum_taps(int phases, int width, int taps, int stride, const struct part *part, const real *sr, const real *si)
 {
-    const int count = one->end - one->begin;
-    for (int i = 0; i < count; i++) {
-        const int m = one->begin + i, n = two->begin + i;
-        const real *x = sr + one->offset[m], *y = si + one->offset[m], *w = one->weights + m * taps;
-        const real *x2 = sr + two->offset[n], *y2 = si + two->offset[n], *w2 = two->weights + n * taps;
-        vector_real a[BP_BLOCK_VECTORS] = {{0}}, b[BP_BLOCK_VECTORS] = {{0}};
-        vector_real a2[BP_BLOCK_VECTORS] = {{0}}, b2[BP_BLOCK_VECTORS] = {{0}};
-        if (x == x2) {
-            for (int t = 0; t < taps; t++) {
-                add_twice(width, x + t * stride, w[t], w2[t], a, a2);
-                add_twice(width, y + t * stride, w[t], w2[t], b, b2);
-            }
-        } else {
-            for (int t = 0; t < taps; t++)
-                for (int k = 0; k < width; k++) {
-                    a[k] += *(const vector_real *)(x + t * stride + k * LANES) * w[t];
-                    b[k] += *(const vector_real *)(y + t * stride + k * LANES) * w[t];
-                    a2[k] += *(const vector_real *)(x2 + t * stride + k * LANES) * w2[t];
-                    b2[k] += *(const vector_real *)(y2 + t * stride + k * LANES) * w2[t];
-                }
+    const int spread = taps + BP_SPREAD;
+    for (int i = part->begin; i < part->end; i++) {
+        const real *x = sr + part->offset[i], *y = si + part->offset[i], *w = part->weights + i * phases * spread;
+        vector_real vr[BP_TOGETHER] = {{0}}, vi[BP_TOGETHER] = {{0}};       /* [phases][width] */
+#define TAP(t) \
+        for (int k = 0; k < width; k++) { \
+            LOAD(v, x + (t) * stride + k * LANES); \
+            LOAD(u, y + (t) * stride + k * LANES); \
+            for (int p = 0; p < phases; p++) { \
+                vr[p * width + k] += v * w[p * spread + (t)]; \
+                vi[p * width + k] += u * w[p * spread + (t)]; \
+            } \
         }
-        real cosine = one->wr[m], sine = one->wi[m], cosine2 = two->wr[n], sine2 = two->wi[n];
-        for (int k = 0; k < width; k++) {
-            vector_real *re = (vector_real *)(one->re + k * LANES), *im = (vector_real *)(one->im + k * LANES);
-            vector_real *re2 = (vector_real *)(two->re + k * LANES), *im2 = (vector_real *)(two->im + k * LANES);
-            *re = *re + a[k] * cosine - b[k] * sine;
-            *im = *im + a[k] * sine + b[k] * cosine;
-            *re2 = *re2 + a2[k] * cosine2 - b2[k] * sine2;
-            *im2 = *im2 + a2[k] * sine2 + b2[k] * cosine2;
+        for (int t = 0; t < taps; t++)
+            TAP(t)
+        for (int t = taps; t < part->rows[i]; t++)
+            TAP(t)
+        for (int p = 0; p < phases; p++) {
+            real cosine = part->wr[i * phases + p], sine = part->wi[i * phases + p];
+            for (int k = 0; k < width; k++) {
+                vector_real *re = (vector_real *)(part->re + (size_t)p * part->stride + k * LANES);
+                vector_real *im = (vector_real *)(part->im + (size_t)p * part->stride + k * LANES);
+                vector_real a = vr[p * width + k], b = vi[p * width + k];
+                *re = *re + a * cosine - b * sine;
+                *im = *im + a * sine + b * cosine;
+            }
         }
     }
 }
 
-/* The first of a phase's entries whose shift is >= bound. */
-static int entry_find(const int *shift, int count, int bound)
+/* `value` inside [least, most]. */
+INLINE int between(int value, int least, int most)
+{
+    return value < least ? least : value < most ? value : most;
+}
+
+/* The first of `count` rising shifts that is >= bound. */
+static int find(const int *shift, int count, int bound)
 {
     int low = 0;
     while (low < count) {
@@ -267,136 +354,92 @@ static int entry_find(const int *shift, int count, int bound)
     return low;
 }
 
-/* A block of `width` vectors of columns of one phase. */
-INLINE void sum_part(int width, int taps, int stride, const struct part *part, const real *sr, const real *si)
-{
-    if (taps > 1)
-        sum_taps(width, taps, stride, part, sr, si);
-    else
-        sum_nearest(width, part, sr, si);
-}
-
-/* Two neighbouring phases: together for the shifts that both have. */
-INLINE void sum_two(int width, int taps, int stride, const struct part *one, const struct part *two, const real *sr,
-                    const real *si)
-{
-    struct part rest[4] = {*one, *one, *two, *two};
-    rest[0].end = rest[1].begin;
-    rest[2].end = rest[3].begin;
-    int least = one->least > two->least ? one->least : two->least;
-    int to = one->least + one->end - one->begin, to2 = two->least + two->end - two->begin, most = to < to2 ? to : to2;
-    if (one->gapless && two->gapless && least < most) {
-        struct part common = *one, common2 = *two;
-        common.begin = rest[0].end = one->begin + least - one->least;
-        common.end = rest[1].begin = one->begin + most - one->least;
-        common2.begin = rest[2].end = two->begin + least - two->least;
-        common2.end = rest[3].begin = two->begin + most - two->least;
-        sum_taps_pair(width, taps, stride, &common, &common2, sr, si);
-    }
-    for (int n = 0; n < 4; n++)
-        if (rest[n].begin < rest[n].end)
-            sum_taps(width, taps, stride, &rest[n], sr, si);
-}
-
-/* Phases [begin, end) of one receiver, with their tables. */
-struct group {
-    const struct bp_raster *raster;
-    const struct bp_slab *slab;
-    const struct bp_row_scratch *scratch;
-    const int *shift;
-    int taps, begin, end;
-    int from, to;                   /* shifts [from, to) are summed */
-    const real *sr, *si;            /* the receiver's records, their ping 0 */
-    real *re, *im;                  /* sums [phase][stride] */
-    size_t stride;
-};
-
-/* `value` inside [least, most]. */
-INLINE int between(int value, int least, int most)
-{
-    return value < least ? least : value < most ? value : most;
-}
-
-/* Phase p's part of the block of columns from j on. */
-INLINE struct part part_make(const struct group *group, int taps, int p, int j)
-{
-    const struct bp_row_scratch *scratch = group->scratch;
-    const struct bp_row_shifts *phase = &scratch->phases[p];
-    const size_t first = (size_t)(phase->first - scratch->phases[group->begin].first);
-    const int *shift = group->shift + first, from = group->from, to = group->to;
-    int begin, end;
-    if (phase->gapless) {
-        begin = between(from - phase->least, 0, phase->count);
-        end = between(to - phase->least, 0, phase->count);
-    } else {
-        begin = entry_find(shift, phase->count, from);
-        end = entry_find(shift, phase->count, to);
-    }
-    const size_t at = (size_t)p * group->stride + (size_t)j;
-    return (struct part){
-        .offset = scratch->offset + first, .wr = (const real *)scratch->wr + first,
-        .wi = (const real *)scratch->wi + first, .weights = (const real *)scratch->weights + first * (size_t)taps,
-        .begin = begin, .end = end, .least = phase->least + begin, .gapless = phase->gapless,
-        .re = group->re + at, .im = group->im + at};
-}
-
 /* A block of `width` vectors of columns from j on. */
-INLINE void sum_block(int width, int taps, const struct group *group, int j)
+INLINE void sum_block(int phases, int width, int taps, const struct chunk *chunk, int j)
 {
-    const real *sr = group->sr + j, *si = group->si + j;
-    const int stride = group->slab->ping_stride;
+    const struct bp_row_scratch *scratch = chunk->scratch;
+    const struct bp_row_group *groups = scratch->groups;
+    const real *sr = chunk->sr + j, *si = chunk->si + j;
+    const int stride = chunk->slab->ping_stride;
     OPAQUE(sr);
     OPAQUE(si);
-    for (int p = group->begin; p < group->end; p++) {
-        struct part one = part_make(group, taps, p, j);
-        if (taps > 2 && p + 1 < group->end) {
-            struct part two = part_make(group, taps, ++p, j);
-            sum_two(width, taps, stride, &one, &two, sr, si);
+    for (int g = chunk->begin; g < chunk->end; g++) {
+        const struct bp_row_group *group = &groups[g];
+        const size_t first = (size_t)(group->first - groups[chunk->begin].first), complex_taps = taps < 3 ? (size_t)taps : 1;
+        const size_t at = (size_t)group->phase * chunk->stride + (size_t)j;
+        struct part part = {
+            .offset = scratch->offset + first, .rows = scratch->rows + first,
+            .wr = (const real *)scratch->wr + first * complex_taps, .wi = (const real *)scratch->wi + first * complex_taps,
+            .weights = (const real *)scratch->weights + first * (size_t)(taps + BP_SPREAD),
+            .re = chunk->re + at, .im = chunk->im + at, .stride = chunk->stride};
+        if (chunk->sparse) {
+            part.begin = find(scratch->kept + first, group->to, chunk->from);
+            part.end = find(scratch->kept + first, group->to, chunk->to);
         } else {
-            sum_part(width, taps, stride, &one, sr, si);
+            part.begin = between(chunk->from - group->begin, group->from, group->to);
+            part.end = between(chunk->to - group->begin, group->from, group->to);
         }
+        if (taps > 2)
+            sum_taps(phases, width, taps, stride, &part, sr, si);
+        else if (phases == 2)
+            sum_two(width, taps, stride, &part, sr, si);
+        else
+            sum_one(width, taps, stride, &part, sr, si);
     }
 }
 
 /* The shipped kernels unroll, any other length works as well. Functions of their own: the compiler runs out of registers
    where it inlines several. */
-#define BLOCK(name, taps, width) \
-    static __attribute__((noinline)) void name(const struct group *group, int j) \
+#define BLOCK(name, taps, phases, width) \
+    static __attribute__((noinline)) void name##_##phases##_##width(const struct chunk *chunk, int j) \
     { \
-        sum_block(width, taps, group, j); \
+        sum_block(phases, width, taps, chunk, j); \
     }
-#define BLOCKS(name, taps) \
-    BLOCK(name##_1, taps, 1) \
-    BLOCK(name##_2, taps, 2) \
-    BLOCK(name##_3, taps, 3)
-BLOCKS(nearest, 1)
-BLOCKS(line, 2)
-BLOCKS(eight, 8)
-BLOCKS(any, group->taps)
+#define BLOCKS_FEW(name, taps) \
+    BLOCK(name, taps, 1, 1) BLOCK(name, taps, 1, 2) BLOCK(name, taps, 1, 3) \
+    BLOCK(name, taps, 2, 1) BLOCK(name, taps, 2, 2)
+#define BLOCKS_MANY(name, taps) \
+    BLOCK(name, taps, 1, 1) BLOCK(name, taps, 1, 2) BLOCK(name, taps, 1, 3) \
+    BLOCK(name, taps, 2, 1) BLOCK(name, taps, 2, 2) BLOCK(name, taps, 2, 3) \
+    BLOCK(name, taps, 3, 1) BLOCK(name, taps, 3, 2) \
+    BLOCK(name, taps, 4, 1) BLOCK(name, taps, 5, 1) BLOCK(name, taps, 6, 1)
+#define TABLE_FEW(name) {{name##_1_1, name##_1_2, name##_1_3}, {name##_2_1, name##_2_2}}
+#define TABLE_MANY(name) \
+    {{name##_1_1, name##_1_2, name##_1_3}, {name##_2_1, name##_2_2, name##_2_3}, {name##_3_1, name##_3_2}, \
+     {name##_4_1}, {name##_5_1}, {name##_6_1}}
+BLOCKS_FEW(nearest, 1)
+BLOCKS_FEW(line, 2)
+BLOCKS_MANY(eight, 8)
+BLOCKS_MANY(any, chunk->table->taps)
+
+typedef void block_function(const struct chunk *chunk, int j);
 
 static const struct kernel {
     int taps;                       /* 0: any number */
-    void (*block[BP_BLOCK_VECTORS])(const struct group *group, int j);
+    block_function *block[BP_TOGETHER][BP_BLOCK_VECTORS];   /* [phases - 1][vectors - 1], as many as registers hold */
 } kernels[] = {
-    {1, {nearest_1, nearest_2, nearest_3}},
-    {2, {line_1, line_2, line_3}},
-    {8, {eight_1, eight_2, eight_3}},
-    {0, {any_1, any_2, any_3}},
+    {1, TABLE_FEW(nearest)},
+    {2, TABLE_FEW(line)},
+    {8, TABLE_MANY(eight)},
+    {0, TABLE_MANY(any)},
 };
 
 /* All columns, in blocks as wide as each other. A shift whose pings begin or end inside a block is summed for those of
    its vectors only that have some; vector v has pings for the shifts [FIRST(v), END(v)). */
-static void sum_columns(const struct kernel *kernel, struct group *group)
+static void sum_columns(const struct kernel *kernel, struct chunk *chunk)
 {
-    const int columns = group->raster->blocks, pings = group->raster->pings;
-    const struct bp_row_shifts *phases = group->scratch->phases;
-    int least = INT_MAX, most = INT_MIN;
-    for (int p = group->begin; p < group->end; p++) {
-        least = phases[p].begin < least ? phases[p].begin : least;
-        most = phases[p].end > most ? phases[p].end : most;
+    const int columns = chunk->raster->blocks, pings = chunk->raster->pings;
+    const struct bp_row_group *groups = chunk->scratch->groups;
+    block_function *const *block = kernel->block[groups[chunk->begin].phases - 1];
+    int least = INT_MAX, most = INT_MIN, widest = BP_BLOCK_VECTORS;
+    while (!block[widest - 1])
+        widest--;
+    for (int g = chunk->begin; g < chunk->end; g++) {
+        least = groups[g].begin < least ? groups[g].begin : least;
+        most = groups[g].end > most ? groups[g].end : most;
     }
     for (int j = 0, width; j < columns; j += width * LANES) {
-        int left = (columns - j + LANES - 1) / LANES, parts = (left + BP_BLOCK_VECTORS - 1) / BP_BLOCK_VECTORS;
+        int left = (columns - j + LANES - 1) / LANES, parts = (left + widest - 1) / widest;
         width = (left + parts - 1) / parts;
 #define FIRST(v) (1 - j - ((v) + 1) * LANES)
 #define END(v) (pings - j - (v) * LANES)
@@ -407,11 +450,91 @@ static void sum_columns(const struct kernel *kernel, struct group *group)
                     from = END(end);
                 if (v > 0 && to > FIRST(v - 1))
                     to = FIRST(v - 1);
-                group->from = from > least ? from : least;
-                group->to = to < most ? to : most;
-                if (group->from < group->to)
-                    kernel->block[end - v - 1](group, j + v * LANES);
+                chunk->from = from > least ? from : least;
+                chunk->to = to < most ? to : most;
+                if (chunk->from < chunk->to)
+                    block[end - v - 1](chunk, j + v * LANES);
             }
+    }
+}
+
+/* One entry, with one or two complex weights, onto all columns that have a ping. */
+INLINE void sum_entry(const struct chunk *chunk, int taps, int phase, int shift, int offset, const real *wr, const real *wi)
+{
+    const int stride = chunk->slab->ping_stride, pings = chunk->raster->pings, columns = chunk->raster->blocks;
+    const int begin = shift < 0 ? -shift / LANES * LANES : 0, end = pings - shift < columns ? pings - shift : columns;
+    const real *sr = chunk->sr + offset, *si = chunk->si + offset;
+    real *re = chunk->re + (size_t)phase * chunk->stride, *im = chunk->im + (size_t)phase * chunk->stride;
+    for (int j = begin; j < end; j += LANES) {
+        vector_real a = *(vector_real *)(re + j), b = *(vector_real *)(im + j);
+        for (int t = 0; t < taps; t++) {
+            vector_real x = *(const vector_real *)(sr + t * stride + j), y = *(const vector_real *)(si + t * stride + j);
+            a = a + x * wr[t] - y * wi[t];
+            b = b + x * wi[t] + y * wr[t];
+        }
+        *(vector_real *)(re + j) = a;
+        *(vector_real *)(im + j) = b;
+    }
+}
+
+/* One or two taps, n entries: the weights times the taps' own, and in pairs of phases each second one whose samples are
+   not the first one's is summed by itself. */
+INLINE void join_few(struct chunk *chunk, int taps, int n, const int *shift)
+{
+    const struct bp_row_scratch *scratch = chunk->scratch;
+    const struct bp_row_group *groups = scratch->groups;
+    const int first = groups[chunk->begin].first, *offset = scratch->offset;
+    int *apart = scratch->rows, count = 0;
+    real *wr = scratch->wr, *wi = scratch->wi;
+    for (int e = n - 1; taps == 2 && e >= 0; e--) {
+        real weights[2], cosine = wr[e], sine = wi[e];
+        weigh(chunk->table, 2, scratch->step[e], (real)scratch->q[e], weights);
+        for (int t = 0; t < 2; t++) {
+            wr[2 * e + t] = cosine * weights[t];
+            wi[2 * e + t] = sine * weights[t];
+        }
+    }
+    if (groups[chunk->begin].phases == 1)
+        return;
+    for (int e = 1; e < n; e += 2) {
+        apart[count] = e;
+        count += offset[e] != offset[e - 1];
+    }
+    for (int i = 0, g = chunk->begin; i < count; i++) {
+        int e = apart[i];
+        real *r = wr + e * taps, *m = wi + e * taps;
+        while (groups[g + 1].first - first <= e)
+            g++;
+        sum_entry(chunk, taps, groups[g].phase + 1, shift[e], offset[e], r, m);
+        for (int t = 0; t < taps; t++)
+            r[t] = m[t] = 0;
+    }
+}
+
+/* Many taps: the samples that serve all phases of a group, and each one's weights for them. */
+INLINE void join_many(const struct chunk *chunk, int taps, const struct bp_row_group *group, int first)
+{
+    const struct bp_row_scratch *scratch = chunk->scratch;
+    const int phases = group->phases, n = group->end - group->begin, spread = taps + BP_SPREAD;
+    const int *row = scratch->row + first, *step = scratch->step + first;
+    const double *u = scratch->q + first;
+    int *offset = scratch->offset + first, *rows = scratch->rows + first;
+    real *weights = (real *)scratch->weights + (size_t)first * (size_t)spread;
+    for (int i = 0; i < n; i++) {
+        const int e = i * phases;
+        int least = e, most = e;
+        for (int p = 1; p < phases; p++) {
+            least = row[e + p] < row[least] ? e + p : least;
+            most = row[e + p] > row[most] ? e + p : most;
+        }
+        for (int p = 0; p < phases; p++) {
+            real *w = weights + (e + p) * spread;
+            for (int t = 0; t < spread; t++)
+                w[t] = 0;
+            weigh(chunk->table, taps, step[e + p], (real)u[e + p], w + row[e + p] - row[least]);
+        }
+        rows[i] = taps + row[most] - row[least];
+        offset[i] = offset[least];          /* i <= e: what is overwritten has been read */
     }
 }
 
@@ -460,55 +583,95 @@ static bool inside_record(const struct bp_medium *medium, const struct bp_raster
     return least >= raster->t0 + slack && most <= last - slack;
 }
 
+/* The row's phases in groups as large as each other, and their shifts; returns the largest distance along the track
+   between a ping and a pixel. */
+static double make_groups(const struct bp_medium *medium, const struct bp_raster *raster, double r, int phases,
+                          int group_count, const struct bp_row_scratch *scratch)
+{
+    const double limit = raster->limit, edge = limit < 1 ? fabs(r) * limit / sqrt((1 - limit) * (1 + limit)) : INFINITY;
+    double furthest = 0;
+    int total = 0;
+    for (int g = 0; g < group_count; g++) {
+        const int first = phases * g / group_count, count = phases * (g + 1) / group_count - first;
+        struct bp_row_group *group = &scratch->groups[g];
+        struct shifts inside[BP_TOGETHER];
+        *group = (struct bp_row_group){.phase = first, .phases = count, .first = total};
+        for (int k = 0; k < count; k++) {
+            const int p = first + k;
+            double x = raster->x_first - (raster->grid_first + p * raster->grid_step);
+            int begin = 1 - (raster->columns - p + raster->ratio - 1) / raster->ratio, end = raster->pings;
+            if (limit < 1)
+                shift_bounds(raster, edge, x, r, &begin, &end);
+            inside[k] = (struct shifts){begin, end};
+            if (begin == end)
+                continue;
+            bool empty = group->begin == group->end;
+            group->begin = empty || begin < group->begin ? begin : group->begin;
+            group->end = empty || end > group->end ? end : group->end;
+            furthest = fmax(furthest, fmax(fabs(x + begin * raster->spacing), fabs(x + (end - 1) * raster->spacing)));
+        }
+        group->to = group->end - group->begin;
+        if (group->to == 0)
+            continue;
+        places(medium, raster, group, inside, r, scratch->leg + total, scratch->ahead + total, scratch->shift + total,
+               (real *)scratch->gate + total);
+        total += whole_vectors(group->to * count);
+    }
+    scratch->groups[group_count].first = total;
+    return furthest + raster->spacing;      /* a group has entries outside the aperture of some of its phases */
+}
+
 void BP_ROW(const struct bp_medium *medium, const struct bp_table *table, const struct bp_raster *raster,
             const struct bp_slab *slab, double r, const double *offsets, int count, const struct bp_row_scratch *scratch,
             void *re, void *im, int stride)
 {
     const int phases = raster->ratio < raster->columns ? raster->ratio : raster->columns;
-    const double limit = raster->limit, edge = limit < 1 ? fabs(r) * limit / sqrt((1 - limit) * (1 + limit)) : INFINITY;
+    const int group_count = (phases + raster->together - 1) / raster->together;
     const struct delay_terms terms = delay_terms_make(medium, raster, r);
-    struct bp_row_shifts *all = scratch->phases;
+    struct bp_row_group *groups = scratch->groups;
     const struct kernel *kernel = kernels;
     while (kernel->taps != 0 && kernel->taps != table->taps)
         kernel++;
-    double furthest = 0, offset = 0;
-    int total = 0;
-    for (int p = 0; p < phases; p++) {
-        double x = raster->x_first - (raster->grid_first + p * raster->grid_step);
-        int begin = 1 - (raster->columns - p + raster->ratio - 1) / raster->ratio, end = raster->pings;
-        if (limit < 1)
-            shift_bounds(raster, edge, x, r, &begin, &end);
-        all[p] = (struct bp_row_shifts){begin, end, total, end - begin, begin, true};
-        if (begin == end)
-            continue;
-        places(medium, raster, x + begin * raster->spacing, r, begin, end - begin, scratch->leg + total,
-               scratch->ahead + total, scratch->shift + total);
-        furthest = fmax(furthest, fmax(fabs(x + begin * raster->spacing), fabs(x + (end - 1) * raster->spacing)));
-        total += whole_vectors(end - begin);
-    }
-    all[phases].first = total;
-    for (int g = 0; g < count; g++)
-        offset = fmax(offset, fabs(offsets[g]));
-    /* Of all receivers or none, so that none inherits what another one kept. */
-    const bool whole = slab->width == table->upsample && inside_record(medium, raster, &terms, r, offset, furthest);
-    for (int g = 0; g < count; g++) {
-        const size_t receiver = (size_t)g * slab->receiver_stride + (size_t)slab->lead;
-        struct group group = {raster, slab, scratch, NULL, table->taps, 0, 0, 0, 0, (const real *)slab->re + receiver,
-                              (const real *)slab->im + receiver, re, im, (size_t)stride};
-        while (group.begin < phases) {
-            const int first = all[group.begin].first;
+    const double furthest = make_groups(medium, raster, r, phases, group_count, scratch);
+    double offset = 0;
+    for (int m = 0; m < count; m++)
+        offset = fmax(offset, fabs(offsets[m]));
+    const bool whole = inside_record(medium, raster, &terms, r, offset, furthest);
+    for (int m = 0; m < count; m++) {
+        const size_t receiver = (size_t)m * slab->receiver_stride + (size_t)slab->lead;
+        struct chunk chunk = {.raster = raster, .table = table, .slab = slab, .scratch = scratch,
+                              .sparse = slab->width < table->upsample, .sr = (const real *)slab->re + receiver,
+                              .si = (const real *)slab->im + receiver, .re = re, .im = im, .stride = (size_t)stride};
+        for (; chunk.begin < group_count; chunk.begin = chunk.end) {
+            const int first = groups[chunk.begin].first, together = groups[chunk.begin].phases;
             do
-                group.end++;
-            while (group.end < phases && all[group.end + 1].first - first <= scratch->capacity);
-            const int n = all[group.end].first - first;
-            delays(medium, raster, &terms, offsets[g], n, scratch->leg + first, scratch->ahead + first, scratch->q,
-                   scratch->wr, scratch->wi);
-            for (int p = group.begin; !whole && p < group.end; p++)
-                keep(medium, table, slab, &all[p], all[p].first - first, scratch);
-            group.shift = whole ? scratch->shift + first : scratch->kept;
-            tabulate(table, slab, n, scratch->q, group.shift, scratch->offset, scratch->step, scratch->weights);
-            sum_columns(kernel, &group);
-            group.begin = group.end;
+                chunk.end++;
+            while (chunk.end < group_count && groups[chunk.end].phases == together
+                   && groups[chunk.end + 1].first - first <= scratch->capacity);
+            const int n = groups[chunk.end].first - first;
+            real *wr = scratch->wr, *wi = scratch->wi;
+            delays(medium, raster, &terms, offsets[m], n, scratch->leg + first, scratch->ahead + first,
+                   (const real *)scratch->gate + first, scratch->q, wr, wi);
+            for (int g = chunk.begin; g < chunk.end; g++) {
+                const int e = groups[g].first - first;
+                if (chunk.sparse)
+                    keep(medium, table, slab, &groups[g], scratch->q + e, wr + e, wi + e, scratch->kept + e);
+                else if (!whole)
+                    confine(medium, &groups[g], scratch->q + e, wr + e, wi + e);
+            }
+            const int *shift = chunk.sparse ? scratch->kept : scratch->shift + first;
+            tabulate(table, slab, n, scratch->q, shift, scratch->row, scratch->offset, scratch->step);
+            if (table->taps == 1)
+                join_few(&chunk, 1, n, shift);
+            else if (table->taps == 2)
+                join_few(&chunk, 2, n, shift);
+            for (int g = chunk.begin; table->taps > 2 && g < chunk.end; g++) {
+                if (table->taps == 8)
+                    join_many(&chunk, 8, &groups[g], groups[g].first - first);
+                else
+                    join_many(&chunk, table->taps, &groups[g], groups[g].first - first);
+            }
+            sum_columns(kernel, &chunk);
         }
     }
 }

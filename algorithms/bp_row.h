@@ -9,6 +9,10 @@
    for BP_LANES_MOST values beyond its last column. */
 enum { BP_BLOCK_VECTORS = 3, BP_LANES_MOST = 16 };
 
+/* At most BP_TOGETHER column phases are summed together; their samples of one shift lie at most BP_SPREAD apart where a
+   value has more than two taps. */
+enum { BP_TOGETHER = 6, BP_SPREAD = 4 };
+
 /* Compressed records of some receivers, pings contiguous: value (receiver g, row i, ping p) at
    [g receiver_stride + i ping_stride + lead + p]. Row i is the record's sample i - guard; upsampled records keep `width`
    of their `upsample` phases from `phase` on: row (f / upsample) width + f % upsample - phase for fine sample f. */
@@ -29,30 +33,34 @@ struct bp_raster {
     double grid_first, grid_step;   /* m */
     int columns, blocks;            /* of the grid; ceil(columns/ratio) */
     double limit;                   /* aperture limit */
+    int together;                   /* phases summed together at most, 2 for up to two taps, 1 for upsampled records */
 };
 
-/* The shifts [begin, end) of one column phase inside the aperture. */
-struct bp_row_shifts {
+/* Neighbouring column phases that are summed together, and the shifts [begin, end) inside the aperture of any of them. */
+struct bp_row_group {
+    int phase, phases;              /* the first one, how many */
     int begin, end;
-    int first;                      /* its entries' place among the row's, which are padded to whole vectors */
-    /* Of the present receiver, whose other entries lie outside its record or pass: */
-    int count, least;               /* entries, and the first one's shift */
-    bool gapless;                   /* no shift between its first and its last is left out */
+    int first;                      /* its entries' place among the row's: by shift and then phase, padded to whole vectors */
+    int from, to;                   /* of these, what is inside the present receiver's record: shifts counted from `begin` */
 };
 
-/* Scratch of one thread. Shifts of a row: of all phases = min(ratio, columns), each BP_ENTRIES(pings + blocks) at the most;
-   entries: of one receiver and as many phases as fit into `capacity` >= BP_ENTRIES(pings + blocks). */
+/* Scratch of one thread. Entries of a row: of all phases = min(ratio, columns), each BP_ENTRIES(pings + blocks) at the most;
+   of one receiver and as many groups as fit into `capacity` >= BP_TOGETHER BP_ENTRIES(pings + blocks). */
 struct bp_row_scratch {
-    struct bp_row_shifts *phases;   /* [phases + 1], the last for its `first` */
-    double *leg;                    /* [shifts] s, from the transmitter */
-    double *ahead;                  /* [shifts] m, of the transmitter from the column when the echo leaves the pixel */
-    int *shift;                     /* [shifts] p - n div ratio, rising within a phase */
+    struct bp_row_group *groups;    /* [phases + 1], the last for its `first` */
+    double *leg;                    /* [row's entries] s, from the transmitter */
+    double *ahead;                  /* [row's entries] m, of the transmitter from the column when the echo leaves the pixel */
+    int *shift;                     /* [row's entries] p - n div ratio */
+    void *gate;                     /* real [row's entries] 1 inside the phase's aperture, else 0 */
     int capacity;
-    double *q;                      /* [capacity] sample coordinate */
+    double *q;                      /* [capacity] sample coordinate; then, with cubics, the position inside their interval */
     int *kept;                      /* [capacity] `shift` of entries that are kept, where some are not */
+    int *row;                       /* [capacity] the first tap's row of the slab */
     int *offset;                    /* [capacity] where the first tap's value for ping `shift` lies in the receiver's slab */
-    int *step;                      /* [capacity] fine step between two samples */
-    void *wr, *wi, *weights;        /* real [capacity], [capacity], [capacity][taps] */
+    int *step;                      /* [capacity] fine step or interval between two samples */
+    int *rows;                      /* [capacity] samples that a shift of a group reads */
+    void *wr, *wi;                  /* real [capacity][taps], or [capacity] where there are more than two */
+    void *weights;                  /* real [capacity][taps + BP_SPREAD] where there are more than two taps */
 };
 #define BP_ENTRIES(shifts) (((shifts) + BP_LANES_MOST - 1) / BP_LANES_MOST * BP_LANES_MOST)
 

@@ -139,29 +139,33 @@ static void naive_sums(void **state)
 static const struct invariant_case {
     const char *name;
     int pings, receivers, ratio, columns, rows;
-    double first_offset, x_first, r_first, speed, limit;
+    double step, first_offset, x_first, r_first, speed, limit;
     int samples;
     bool backwards;
 } invariant_cases[] = {
-    {"odd sizes", 13, 3, 7, 61, 23, 0.04, -0.613, 19.87, 2.5, INFINITY, 400, false},
-    {"one receiver", 31, 1, 3, 97, 11, 0.04, -1.2, 20.0, 2.5, INFINITY, 400, false},
-    {"negative offsets", 9, 4, 5, 40, 9, -0.31, -0.45, 20.1, 2.5, INFINITY, 400, false},
-    {"off the raster", 9, 4, 5, 41, 9, 0.04, -0.4537, 20.1, 2.5, 0.03, 400, false},
-    {"one ping", 1, 5, 1, 33, 9, 0.04, -0.3, 20.1, 2.5, INFINITY, 400, false},
-    {"backwards", 17, 2, 4, 50, 8, 0.04, -0.5, 20.1, -2.5, 0.02, 400, true},
-    {"short records", 17, 2, 4, 50, 200, 0.04, -0.5, 18.1, 2.5, INFINITY, 60, false},
-    {"fast, backwards", 17, 2, 4, 50, 200, 0.04, -0.5, 18.1, -150, INFINITY, 60, true},
-    {"far receivers, short records", 17, 4, 4, 50, 200, -20, -0.5, 18.1, -2.5, INFINITY, 300, true},
-    {"both sides of the track", 9, 2, 4, 30, 41, 0.04, -0.5, -0.41, 2.5, 0.7, 300, false},  /* no pixel on a ping */
-    {"many columns", 120, 2, 1, 301, 3, 0.04, -3.1, 20.1, 2.5, 0.2, 400, false},
-    {"many phases", 31, 2, 40, 403, 3, 0.04, -3.1, 20.1, 2.5, 0.3, 400, false},     /* several groups of tables */
+    {"odd sizes", 13, 3, 7, 61, 23, 0.02, 0.04, -0.613, 19.87, 2.5, INFINITY, 400, false},
+    {"one receiver", 31, 1, 3, 97, 11, 0.02, 0.04, -1.2, 20.0, 2.5, INFINITY, 400, false},
+    {"negative offsets", 9, 4, 5, 40, 9, 0.02, -0.31, -0.45, 20.1, 2.5, INFINITY, 400, false},
+    {"off the raster", 9, 4, 5, 41, 9, 0.02, 0.04, -0.4537, 20.1, 2.5, 0.03, 400, false},
+    {"one ping", 1, 5, 1, 33, 9, 0.02, 0.04, -0.3, 20.1, 2.5, INFINITY, 400, false},
+    {"backwards", 17, 2, 4, 50, 8, 0.02, 0.04, -0.5, 20.1, -2.5, 0.02, 400, true},
+    {"short records", 17, 2, 4, 50, 200, 0.02, 0.04, -0.5, 18.1, 2.5, INFINITY, 60, false},
+    {"fast, backwards", 17, 2, 4, 50, 200, 0.02, 0.04, -0.5, 18.1, -150, INFINITY, 60, true},
+    {"far receivers, short records", 17, 4, 4, 50, 200, 0.02, -20, -0.5, 18.1, -2.5, INFINITY, 300, true},
+    {"both sides of the track", 9, 2, 4, 30, 41, 0.02, 0.04, -0.5, -0.41, 2.5, 0.7, 300, false},  /* no pixel on a ping */
+    {"many columns", 120, 2, 1, 301, 3, 0.02, 0.04, -3.1, 20.1, 2.5, 0.2, 400, false},
+    {"many phases", 31, 2, 40, 403, 3, 0.02, 0.04, -3.1, 20.1, 2.5, 0.3, 400, false},     /* several groups of tables */
+    {"slanting", 31, 2, 40, 403, 3, 0.02, 0.04, -3.1, 4.1, 2.5, INFINITY, 700, false},    /* a sample in two columns */
+    {"coarse grid", 13, 2, 9, 150, 5, 0.07, 0.04, -3.1, 14.1, 2.5, 0.6, 400, false},
+    {"coarser grid", 13, 2, 9, 150, 5, 0.3, 0.04, -3.1, 14.1, 2.5, 0.6, 400, false},
+    {"long records", 31, 1, 3, 97, 3, 0.02, 0.04, -1.2, 20.0, 2.5, INFINITY, 2400, false},  /* fine samples in several passes */
 };
 
 static void make_invariant_case(const struct invariant_case *c, struct acquisition *a, struct grid *grid,
                                 struct echoes *echoes)
 {
     struct random random = random_seed(7, (uint64_t)c->columns);
-    double step = 0.02, spacing = c->ratio * step;
+    double spacing = c->ratio * c->step;
     *a = (struct acquisition){.sound_speed = 1500, .fc = 150e3, .fs = 30e3, .bandwidth = 15e3, .samples = c->samples,
                               .receivers = c->receivers, .pings = c->pings, .compressed = true,
                               .aperture_limit = c->limit};
@@ -174,7 +178,7 @@ static void make_invariant_case(const struct invariant_case *c, struct acquisiti
         for (int m = 0; m < a->receivers; m++)
             a->rx[p * a->receivers + m].x = a->tx[p].x + c->first_offset + 0.04 * m;
     }
-    *grid = (struct grid){c->x_first, step, c->columns, c->r_first, 0.025, c->rows};
+    *grid = (struct grid){c->x_first, c->step, c->columns, c->r_first, 0.025, c->rows};
     assert_int_equal(echoes_allocate(a, PRECISION_DOUBLE, echoes), STATUS_OK);
     for (int n = 0; n < a->samples * a->receivers * a->pings; n++)
         ((double complex *)echoes->samples)[n] = random_normal(&random);
