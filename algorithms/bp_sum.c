@@ -30,7 +30,7 @@ enum {
     RUN = 256,                      /* pixels at a time: a group's runs stay in the first-level cache */
     GROUP = 4,                      /* receivers that are summed together: sums are loaded and stored once for all */
     NODES = 6,                      /* of a quintic */
-    DELAYS = NODES * BP_BLOCKS,     /* that are evaluated together, to one receiver */
+    DELAYS = NODES * BP_BLOCKS,     /* that are evaluated together, to each receiver of a group */
     PARTS = LANES * sizeof(double) / VECTOR_BYTES       /* vectors of doubles to a vector of `real` */
 };
 
@@ -282,19 +282,24 @@ static void legs_out(const struct bp_medium *medium, const struct bp_ping *ping,
     }
 }
 
-/* The delays to the receiver at rx (delay.h), in seconds. */
-static void legs_back(const struct bp_medium *medium, const struct bp_ping *ping, struct vector rx,
-                      const struct places *places, double *tau)
+/* A ping's velocity; c^2 - |v|^2 and its inverse. */
+struct motion {
+    struct vector v;
+    double e, one_e;
+};
+
+static struct motion motion_make(const struct bp_medium *medium, const struct bp_ping *ping)
 {
     const struct vector v = ping->velocity;
     const double c = medium->sound_speed, speed = sqrt(v.x * v.x + v.y * v.y + v.z * v.z), e = (c - speed) * (c + speed);
-    const double one_e = 1 / e;
-#pragma omp simd
-    for (int i = 0; i < places->count; i++) {
-        double x = rx.x + places->bx[i], y = rx.y + places->by[i], z = rx.z + places->bz[i];
-        double p = x * v.x + y * v.y + z * v.z;
-        tau[i] = places->leg[i] + (p + sqrt(p * p + e * (x * x + y * y + z * z))) * one_e;
-    }
+    return (struct motion){v, e, 1 / e};
+}
+
+/* The delay (delay.h), in seconds, to the receiver that is (x, y, z) from the place when the echo leaves it, after `leg`. */
+INLINE double leg_back(const struct motion *motion, double leg, double x, double y, double z)
+{
+    double p = x * motion->v.x + y * motion->v.y + z * motion->v.z;
+    return leg + (p + sqrt(p * p + motion->e * (x * x + y * y + z * z))) * motion->one_e;
 }
 
 /* From a delay to a point, point = (tau - t0) fs fine + shift, whose whole part is a sample or one of a cubic's
@@ -310,6 +315,7 @@ static void sum_exact(const struct bp_medium *medium, const struct bp_table *tab
     struct places places;
     struct run run;
     double tau[RUN];
+    const struct motion motion = motion_make(medium, ping);
     const bool cubics = table->reading == BP_CUBICS;
     const double one = cubics ? BP_INTERVALS : table->phases;
     for (int first = begin; first < end; first += RUN) {
@@ -322,7 +328,10 @@ static void sum_exact(const struct bp_medium *medium, const struct bp_table *tab
         }
         legs_out(medium, ping, &places);
         for (int m = 0; m < ping->receivers; m++) {
-            legs_back(medium, ping, ping->rx[m], &places, tau);
+            const struct vector rx = ping->rx[m];
+#pragma omp simd
+            for (int i = 0; i < count; i++)
+                tau[i] = leg_back(&motion, places.leg[i], rx.x + places.bx[i], rx.y + places.by[i], rx.z + places.bz[i]);
 #pragma omp simd
             for (int i = 0; i < count; i++) {
                 double q = (tau[i] - scale->t0) * scale->fs * table->upsample;
@@ -343,42 +352,57 @@ static void sum_exact(const struct bp_medium *medium, const struct bp_table *tab
 static const double node[NODES] = {-0.96592582628906829, -0.70710678118654752, -0.25881904510252076,
                                    0.25881904510252076,  0.70710678118654752,  0.96592582628906829};
 
-/* The quintic through the delays at a block's Chebyshev points, as points of the grid against pixels from the block's
-   middle: even and odd part are quadratics in the square, by divided differences. Without the scale's shift. */
-INLINE void quintic(const double *tau, const struct scale *scale, double half, double *c)
+/* The quintics of a group of receivers through their delays at a block's Chebyshev points, [node][receiver]: points of the
+   grid against pixels from the block's middle, c [power][receiver]; even and odd part are quadratics in the square, by
+   divided differences. Without the scale's shift. Returns the most that one of them changes from one pixel to the next. */
+INLINE double quintics(double (*tau)[GROUP], const struct scale *scale, double half, double (*c)[GROUP])
 {
     const double ya = node[3] * node[3], yb = 0.5, step = 0.43301270189221932;     /* yb - ya, half of yc - ya */
-    double part[2][3];
-    for (int odd = 0; odd < 2; odd++) {
-        double a = odd ? (tau[3] - tau[2]) * (0.5 / node[3]) : 0.5 * (tau[3] + tau[2]);
-        double b = odd ? (tau[4] - tau[1]) * (0.5 / node[4]) : 0.5 * (tau[4] + tau[1]);
-        double d = odd ? (tau[5] - tau[0]) * (0.5 / node[5]) : 0.5 * (tau[5] + tau[0]);
-        double ab = (b - a) * (1 / step), bd = (d - b) * (1 / step), abd = (bd - ab) * (0.5 / step);
-        part[odd][0] = a - ya * ab + ya * yb * abd;
-        part[odd][1] = ab - (ya + yb) * abd;
-        part[odd][2] = abd;
+    const double one = 1 / half;
+    double slope[GROUP], steepest = 0;
+#pragma omp simd
+    for (int g = 0; g < GROUP; g++) {
+        double power = scale->fs * scale->fine, most = 0;
+        for (int odd = 0; odd < 2; odd++) {
+            double a = odd ? (tau[3][g] - tau[2][g]) * (0.5 / node[3]) : 0.5 * (tau[3][g] + tau[2][g]);
+            double b = odd ? (tau[4][g] - tau[1][g]) * (0.5 / node[4]) : 0.5 * (tau[4][g] + tau[1][g]);
+            double d = odd ? (tau[5][g] - tau[0][g]) * (0.5 / node[5]) : 0.5 * (tau[5][g] + tau[0][g]);
+            double ab = (b - a) * (1 / step), bd = (d - b) * (1 / step), abd = (bd - ab) * (0.5 / step);
+            c[odd][g] = a - ya * ab + ya * yb * abd - (odd ? 0 : scale->t0);
+            c[2 + odd][g] = ab - (ya + yb) * abd;
+            c[4 + odd][g] = abd;
+        }
+        for (int k = 0; k < NODES; k++) {
+            c[k][g] *= power;
+            power *= one;
+        }
+        for (int k = NODES - 1; k > 0; k--)
+            most = k * fabs(c[k][g]) + half * most;
+        slope[g] = most;
     }
-    double power = scale->fs * scale->fine, one = 1 / half;
-    part[0][0] -= scale->t0;
-    for (int k = 0; k < NODES; k++) {
-        c[k] = part[k % 2][k / 2] * power;
-        power *= one;
-    }
+    for (int g = 0; g < GROUP; g++)
+        steepest = slope[g] > steepest ? slope[g] : steepest;
+    return steepest;
 }
 
 /* A line reads few values of each record and comes back to the next line much later: have them fetched together. */
-INLINE void prefetch(const real *row, int row_length, const double *tau, const struct scale *scale, int upsample)
+INLINE void prefetch(const real *row, int row_length, int group, double (*tau)[GROUP], const struct scale *scale,
+                     int upsample)
 {
     enum { NEAR = 64 / sizeof(real), MOST = 16 };       /* values of a cache line, cache lines */
-    double low = tau[0], high = tau[0];
-    for (int k = 1; k < NODES; k++) {
-        low = tau[k] < low ? tau[k] : low;
-        high = tau[k] > high ? tau[k] : high;
+    double low[GROUP], high[GROUP];
+#pragma omp simd
+    for (int g = 0; g < GROUP; g++) {
+        double least = tau[0][g], most = tau[0][g];
+        for (int k = 1; k < NODES; k++) {
+            least = tau[k][g] < least ? tau[k][g] : least;
+            most = tau[k][g] > most ? tau[k][g] : most;
+        }
+        low[g] = (least - scale->t0) * scale->fs * upsample - 1;
+        high[g] = (most - scale->t0) * scale->fs * upsample + 1;
     }
-    low = (low - scale->t0) * scale->fs * upsample - 1;
-    high = (high - scale->t0) * scale->fs * upsample + 1;
-    if (high - low < MOST * NEAR)
-        for (int i = (int)low; i < high + NEAR; i += NEAR) {
+    for (int g = 0; g < group; g++, row += 2 * (size_t)row_length)
+        for (int i = (int)low[g]; high[g] - low[g] < MOST * NEAR && i < high[g] + NEAR; i += NEAR) {
             __builtin_prefetch(row + i);
             __builtin_prefetch(row + row_length + i);
         }
@@ -388,9 +412,12 @@ INLINE void prefetch(const real *row, int row_length, const double *tau, const s
    a fixed-point number in its lower bits: whole points and 19 bits of their fraction, or 32 bits of a fraction of a
    turn, without rounding or conversion. Fills whole vectors, up to LANES - 1 pixels more than `count`. `reading` is a constant
    where this is inlined. */
-INLINE void points(const double *c, const struct scale *scale, double first, int count, enum bp_reading reading, int phases,
-                   struct run *run)
+INLINE void points(double (*quintic)[GROUP], int g, const struct scale *scale, double first, int count,
+                   enum bp_reading reading, int phases, struct run *run)
 {
+    double c[NODES];
+    for (int k = 0; k < NODES; k++)
+        c[k] = quintic[k][g];
     enum { BITS = 19 };
     const double shift = scale->shift + 0x1.8p33, ratio = scale->ratio;
     const double turns = c[0] * ratio + scale->base, base = scale->base - floor(turns) + 0x1.8p20;
@@ -428,35 +455,23 @@ INLINE void points(const double *c, const struct scale *scale, double first, int
     }
 }
 
-/* The most that a quintic changes from one pixel of its block to the next. */
-INLINE double slope_most(const double *c, double half)
-{
-    double most = 0;
-    for (int k = NODES - 1; k > 0; k--)
-        most = k * fabs(c[k]) + half * most;
-    return most;
-}
-
-/* A group of receivers over one block; tau: its delays to the first of them, DELAYS on to the next one. */
+/* A group of receivers over one block; tau: its delays, [node][receiver]. */
 INLINE void sum_block(const struct bp_table *table, int group, const real *row, int row_length, const struct scale *scale,
-                      const struct bp_block *block, const double *tau, real *re, real *im)
+                      const struct bp_block *block, double (*tau)[GROUP], real *re, real *im)
 {
     struct run runs[GROUP];
-    double c[GROUP][NODES];
+    _Alignas(64) double c[NODES][GROUP];
     const double half = 0.5 * (block->end - 1 - block->begin), middle = block->begin + half;
-    bool narrow = WINDOWS;          /* at most half a sample from pixel to pixel, rounding allowed for */
-    for (int g = 0; g < group; g++) {
-        quintic(tau + g * DELAYS, scale, half, c[g]);
-        narrow = narrow && slope_most(c[g], half) <= 0.49;
-    }
+    /* At most half a sample from pixel to pixel, rounding allowed for. */
+    const bool narrow = quintics(tau, scale, half, c) <= 0.49 && WINDOWS;
     for (int first = block->begin; first < block->end; first += RUN) {
         int count = block->end - first < RUN ? block->end - first : RUN;
         for (int g = 0; g < group; g++) {
             switch (table->reading) {
-            case BP_NEAREST: points(c[g], scale, first - middle, count, BP_NEAREST, 1, &runs[g]); break;
-            case BP_LINE: points(c[g], scale, first - middle, count, BP_LINE, table->phases, &runs[g]); break;
-            case BP_PHASES: points(c[g], scale, first - middle, count, BP_PHASES, table->phases, &runs[g]); break;
-            case BP_CUBICS: points(c[g], scale, first - middle, count, BP_CUBICS, 1, &runs[g]); break;
+            case BP_NEAREST: points(c, g, scale, first - middle, count, BP_NEAREST, 1, &runs[g]); break;
+            case BP_LINE: points(c, g, scale, first - middle, count, BP_LINE, table->phases, &runs[g]); break;
+            case BP_PHASES: points(c, g, scale, first - middle, count, BP_PHASES, table->phases, &runs[g]); break;
+            case BP_CUBICS: points(c, g, scale, first - middle, count, BP_CUBICS, 1, &runs[g]); break;
             }
         }
         add_runs(table, narrow, group, row, row_length, count, runs, re + first, im + first);
@@ -467,7 +482,8 @@ void BP_SUM(const struct bp_medium *medium, const struct bp_table *table, const 
             const struct pixel_line *line, int block_count, const struct bp_block *blocks, void *re, void *im)
 {
     struct places places = {.count = NODES * block_count};
-    double tau[GROUP * DELAYS];
+    _Alignas(64) double tau[DELAYS][GROUP];
+    const struct motion motion = motion_make(medium, ping);
     const bool cubics = table->reading == BP_CUBICS;
     const double fine = table->upsample * (cubics ? BP_INTERVALS : 1), turns = medium->fc * ping->t0;
     const struct scale scale = {ping->t0, medium->fs, fine, cubics ? 0 : 0.5 / table->phases, medium->fc / (medium->fs * fine),
@@ -483,13 +499,22 @@ void BP_SUM(const struct bp_medium *medium, const struct bp_table *table, const 
     for (int m = 0; m < ping->receivers; m += GROUP) {
         const int group = ping->receivers - m < GROUP ? ping->receivers - m : GROUP;
         const real *row = (const real *)ping->rows + 2 * (size_t)m * (size_t)ping->row_length;
-        for (int g = 0; g < group; g++) {
-            legs_back(medium, ping, ping->rx[m + g], &places, tau + g * DELAYS);
-            for (int b = 0; b < block_count; b++)
-                if (!blocks[b].exact)
-                    prefetch(row + 2 * (size_t)g * (size_t)ping->row_length + table->guard, ping->row_length,
-                             tau + g * DELAYS + b * NODES, &scale, table->upsample);
+        double x[GROUP], y[GROUP], z[GROUP];
+        for (int g = 0; g < GROUP; g++) {   /* those that there are not repeat the last one */
+            const struct vector rx = ping->rx[m + (g < group ? g : group - 1)];
+            x[g] = rx.x;
+            y[g] = rx.y;
+            z[g] = rx.z;
         }
+        for (int i = 0; i < places.count; i++) {
+            const double leg = places.leg[i], bx = places.bx[i], by = places.by[i], bz = places.bz[i];
+#pragma omp simd
+            for (int g = 0; g < GROUP; g++)
+                tau[i][g] = leg_back(&motion, leg, x[g] + bx, y[g] + by, z[g] + bz);
+        }
+        for (int b = 0; b < block_count; b++)
+            if (!blocks[b].exact)
+                prefetch(row + table->guard, ping->row_length, group, tau + b * NODES, &scale, table->upsample);
         for (int b = 0; b < block_count; b++)
             if (!blocks[b].exact)
                 sum_block(table, group, row, ping->row_length, &scale, &blocks[b], tau + b * NODES, re, im);
