@@ -301,10 +301,11 @@ INLINE void sum_two(int width, int taps, int stride, const struct part *part, co
 }
 
 /* Some phases, many samples with real weights, whose sum is rotated. rows[i] >= taps samples serve all phases of the
-   group; a phase's weights are 0 for those that are not its own. */
+   group; a phase's weights are 0 for those that are not its own. Registers hold the block's sums of one phase, not of more. */
 INLINE void sum_taps(int phases, int width, int taps, int stride, const struct part *part, const real *sr, const real *si)
 {
     const int spread = taps + BP_SPREAD;
+    vector_real sum_re[BP_BLOCK_VECTORS] = {{0}}, sum_im[BP_BLOCK_VECTORS] = {{0}};
     for (int i = part->begin; i < part->end; i++) {
         const real *x = sr + part->offset[i], *y = si + part->offset[i], *w = part->weights + i * phases * spread;
         vector_real vr[BP_TOGETHER] = {{0}}, vi[BP_TOGETHER] = {{0}};       /* [phases][width] */
@@ -324,13 +325,18 @@ INLINE void sum_taps(int phases, int width, int taps, int stride, const struct p
         for (int p = 0; p < phases; p++) {
             real cosine = part->wr[i * phases + p], sine = part->wi[i * phases + p];
             for (int k = 0; k < width; k++) {
-                vector_real *re = (vector_real *)(part->re + (size_t)p * part->stride + k * LANES);
-                vector_real *im = (vector_real *)(part->im + (size_t)p * part->stride + k * LANES);
+                const size_t at = (size_t)p * part->stride + (size_t)(k * LANES);
+                vector_real *re = phases == 1 ? &sum_re[k] : (vector_real *)(part->re + at);
+                vector_real *im = phases == 1 ? &sum_im[k] : (vector_real *)(part->im + at);
                 vector_real a = vr[p * width + k], b = vi[p * width + k];
                 *re = *re + a * cosine - b * sine;
                 *im = *im + a * sine + b * cosine;
             }
         }
+    }
+    for (int k = 0; phases == 1 && k < width; k++) {
+        *(vector_real *)(part->re + k * LANES) += sum_re[k];
+        *(vector_real *)(part->im + k * LANES) += sum_im[k];
     }
 }
 
