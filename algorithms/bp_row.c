@@ -195,6 +195,7 @@ INLINE void weigh(const struct bp_table *table, int taps, int step, real u, real
     const real *values = table->weights;
     if (table->reading == BP_CUBICS) {
         const real *w = values + step * 4 * taps;
+#pragma omp simd
         for (int t = 0; t < taps; t++)
             weights[t] = w[t] + u * (w[taps + t] + u * (w[2 * taps + t] + u * w[3 * taps + t]));
     } else {
