@@ -166,7 +166,8 @@ static double steepness(const struct bp *bp, const struct bp_raster *raster, con
         if (limit < 1)
             x = fmin(x, r * limit / sqrt((1 - limit) * (1 + limit)));
         x += raster->spacing;
-        double leg = sqrt(x * x + r * r), b = x + offset + v * leg / c, sine = x / leg, back = b / sqrt(b * b + e / (c * c) * r * r);
+        double leg = sqrt(x * x + r * r), b = x + offset + v * leg / c;
+        double sine = x / leg, back = b / sqrt(b * b + e / (c * c) * r * r);
         steepest = fmax(steepest, sine / c + (v + c * back) / e * (1 + v / c * sine));
     }
     return steepest * grid->x_step * bp->medium.fs;
@@ -222,8 +223,9 @@ static struct bp_row_scratch scratch_take(struct arena *arena, size_t phases, si
         .shift = take(arena, shifts, sizeof(int)), .gate = take(arena, shifts, real_bytes), .capacity = (int)entries,
         .q = take(arena, entries, sizeof(double)), .kept = take(arena, entries, sizeof(int)),
         .row = take(arena, entries, sizeof(int)), .offset = take(arena, entries, sizeof(int)),
-        .step = take(arena, entries, sizeof(int)), .rows = take(arena, entries, sizeof(int)), .wr = take(arena, entries * few, real_bytes),
-        .wi = take(arena, entries * few, real_bytes), .weights = take(arena, entries * many, real_bytes)};
+        .step = take(arena, entries, sizeof(int)), .rows = take(arena, entries, sizeof(int)),
+        .wr = take(arena, entries * few, real_bytes), .wi = take(arena, entries * few, real_bytes),
+        .weights = take(arena, entries * many, real_bytes)};
 }
 
 static enum status invariant_plan(struct bp *bp)

@@ -229,7 +229,7 @@ struct part {
     size_t stride;
 };
 
-/* A vector of samples, loaded once, times real and imaginary weights of one phase or of two. */
+/* A vector of samples, loaded once for all its products: loads are the limit. */
 #define LOAD(name, pointer) \
     vector_real name = *(const vector_real *)(pointer); \
     HOLD(name)
@@ -590,7 +590,7 @@ static bool inside_record(const struct bp_medium *medium, const struct bp_raster
     return least >= raster->t0 + slack && most <= last - slack;
 }
 
-/* The row's phases in groups as large as each other, and their shifts; returns the largest distance along the track
+/* The row's phases in groups that differ by one at the most, and their shifts; returns the largest distance along the track
    between a ping and a pixel. */
 static double make_groups(const struct bp_medium *medium, const struct bp_raster *raster, double r, int phases,
                           int group_count, const struct bp_row_scratch *scratch)
@@ -599,7 +599,8 @@ static double make_groups(const struct bp_medium *medium, const struct bp_raster
     double furthest = 0;
     int total = 0;
     for (int g = 0; g < group_count; g++) {
-        const int first = phases * g / group_count, count = phases * (g + 1) / group_count - first;
+        const int size = phases / group_count, larger = phases % group_count;      /* the first ones have one phase more */
+        const int first = g * size + (g < larger ? g : larger), count = size + (g < larger);
         struct bp_row_group *group = &scratch->groups[g];
         struct shifts inside[BP_TOGETHER];
         *group = (struct bp_row_group){.phase = first, .phases = count, .first = total};

@@ -158,6 +158,7 @@ static const struct invariant_case {
     {"slanting", 31, 2, 40, 403, 3, 0.02, 0.04, -3.1, 4.1, 2.5, INFINITY, 700, false},    /* a sample in two columns */
     {"coarse grid", 13, 2, 9, 150, 5, 0.07, 0.04, -3.1, 14.1, 2.5, 0.6, 400, false},
     {"coarser grid", 13, 2, 9, 150, 5, 0.3, 0.04, -3.1, 14.1, 2.5, 0.6, 400, false},
+    {"one ping, very many columns", 1, 1, 1, 70001, 1, 1e-4, 0.04, -3.1, 20.1, 2.5, INFINITY, 400, false},
     {"long records", 31, 1, 3, 97, 3, 0.02, 0.04, -1.2, 20.0, 2.5, INFINITY, 2400, false},  /* fine samples in several passes */
 };
 
