@@ -130,23 +130,21 @@ static void *allocate(size_t bytes, double *total)
     return aligned_alloc(64, (bytes + 63) / 64 * 64);
 }
 
-/* The largest distance along the track between a ping and a column. */
-static double furthest(const struct bp_raster *raster, const struct grid *grid)
+/* The largest distance along the track between a ping and a pixel at r that are a pair. */
+static double reach(const struct bp_raster *raster, const struct grid *grid, double r)
 {
-    const double last_ping = raster->x_first + (raster->pings - 1) * raster->spacing;
+    const double last_ping = raster->x_first + (raster->pings - 1) * raster->spacing, limit = raster->limit;
     const double last_column = grid->x_first + (grid->x_count - 1) * grid->x_step;
-    return fabs(fmax(last_ping - grid->x_first, last_column - raster->x_first));
+    const double most = fabs(fmax(last_ping - grid->x_first, last_column - raster->x_first));
+    return limit < 1 ? fmin(most, r * limit / sqrt((1 - limit) * (1 + limit))) : most;
 }
 
 /* The most samples of a record that one row of a patch reads: those between its nearest and its furthest pixel. */
 static double samples_read(const struct bp *bp, const struct bp_raster *raster, const struct grid *grid)
 {
-    const double limit = raster->limit;
     double samples = 0;
     for (int end = 0; end < 2; end++) {
-        double r = fabs(grid->r_first + end * (grid->r_count - 1) * grid->r_step), x = furthest(raster, grid);
-        if (limit < 1)
-            x = fmin(x, r * limit / sqrt((1 - limit) * (1 + limit)));
+        double r = fabs(grid->r_first + end * (grid->r_count - 1) * grid->r_step), x = reach(raster, grid, r);
         samples = fmax(samples, 2 * (sqrt(r * r + x * x) - r) / bp->medium.sound_speed * bp->medium.fs);
     }
     return samples + bp->table.taps;
@@ -156,16 +154,14 @@ static double samples_read(const struct bp *bp, const struct bp_raster *raster, 
    outside it. */
 static double steepness(const struct bp *bp, const struct bp_raster *raster, const struct grid *grid)
 {
-    const struct acquisition *a = bp->problem.acquisition;
-    const double c = bp->medium.sound_speed, v = fabs(raster->speed), e = (c - v) * (c + v), limit = raster->limit;
+    const struct invariant *in = bp->state;
+    const double c = bp->medium.sound_speed, v = fabs(raster->speed), e = (c - v) * (c + v);
     double offset = 0, steepest = 0;
-    for (int m = 0; m < a->receivers; m++)
-        offset = fmax(offset, fabs(a->rx[m].x - a->tx[0].x));
+    for (int m = 0; m < bp->problem.acquisition->receivers; m++)
+        offset = fmax(offset, fabs(in->offsets[m]));
     for (int end = 0; end < 2; end++) {
-        double r = fabs(grid->r_first + end * (grid->r_count - 1) * grid->r_step), x = furthest(raster, grid);
-        if (limit < 1)
-            x = fmin(x, r * limit / sqrt((1 - limit) * (1 + limit)));
-        x += raster->spacing;
+        double r = fabs(grid->r_first + end * (grid->r_count - 1) * grid->r_step);
+        double x = reach(raster, grid, r) + raster->spacing;
         double leg = sqrt(x * x + r * r), b = x + offset + v * leg / c;
         double sine = x / leg, back = b / sqrt(b * b + e / (c * c) * r * r);
         steepest = fmax(steepest, sine / c + (v + c * back) / e * (1 + v / c * sine));

@@ -486,7 +486,7 @@ INLINE void sum_entry(const struct chunk *chunk, int taps, int phase, int shift,
 
 /* One or two taps, n entries: the weights times the taps' own, and in pairs of phases each second one whose samples are
    not the first one's is summed by itself. */
-INLINE void join_few(struct chunk *chunk, int taps, int n, const int *shift)
+INLINE void join_few(const struct chunk *chunk, int taps, int n, const int *shift)
 {
     const struct bp_row_scratch *scratch = chunk->scratch;
     const struct bp_row_group *groups = scratch->groups;

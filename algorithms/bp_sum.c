@@ -415,10 +415,10 @@ INLINE void prefetch(const real *row, int row_length, int group, double (*tau)[G
 INLINE void points(double (*quintic)[GROUP], int g, const struct scale *scale, double first, int count,
                    enum bp_reading reading, int phases, struct run *run)
 {
+    enum { BITS = 19 };
     double c[NODES];
     for (int k = 0; k < NODES; k++)
         c[k] = quintic[k][g];
-    enum { BITS = 19 };
     const double shift = scale->shift + 0x1.8p33, ratio = scale->ratio;
     const double turns = c[0] * ratio + scale->base, base = scale->base - floor(turns) + 0x1.8p20;
     const real one_phase = 1 / (real)phases;
