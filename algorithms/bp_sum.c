@@ -9,14 +9,17 @@
 #include "lanes.h"
 #include "turn.h"
 
-/* Each four floats of a vector permuted by the low two bits of an index: no compiler makes this one instruction of a shuffle. */
+/* PICK: each four floats of a vector permuted by the low two bits of an index. REPEAT: four floats from memory as each four of
+   a vector. One instruction each, which no compiler makes of a shuffle. */
 #if defined __AVX__ && !REAL_DOUBLE
 #include <immintrin.h>
 #define WINDOWS 1
 #if VECTOR_BYTES == 64
 #define PICK(values, index) (vector_real)_mm512_permutevar_ps((__m512)(values), (__m512i)(index))
+#define REPEAT(from) (vector_real)_mm512_broadcast_f32x4(_mm_loadu_ps(from))
 #else
 #define PICK(values, index) (vector_real)_mm256_permutevar_ps((__m256)(values), (__m256i)(index))
+#define REPEAT(from) (vector_real)_mm256_broadcast_ps((const __m128 *)(from))
 #endif
 #else
 #define WINDOWS 0
@@ -31,6 +34,8 @@ enum {
     GROUP = 4,                      /* receivers that are summed together: sums are loaded and stored once for all */
     NODES = 6,                      /* of a quintic */
     DELAYS = NODES * BP_BLOCKS,     /* that are evaluated together, to each receiver of a group */
+    BITS = 19,                      /* of a point's fraction */
+    SPAN = 4000,                    /* whole points that fit beside them in 32 bits, with a sign */
     PARTS = LANES * sizeof(double) / VECTOR_BYTES       /* vectors of doubles to a vector of `real` */
 };
 
@@ -38,14 +43,26 @@ typedef double vector_double __attribute__((vector_size(VECTOR_BYTES)));
 typedef unsigned long long vector_long __attribute__((vector_size(VECTOR_BYTES)));
 typedef float vector_bits __attribute__((vector_size(VECTOR_BYTES)));     /* moved, not computed with */
 typedef double two_floats __attribute__((may_alias, aligned(sizeof(real))));     /* moved at once */
+typedef float bits __attribute__((may_alias));
 typedef float quad __attribute__((vector_size(16), aligned(sizeof(float)), may_alias));
 typedef int vector_int __attribute__((vector_size(LANES * sizeof(int)), aligned(sizeof(int)), may_alias));
 
-TURN(turn_vector, vector_real)
+TURN(turn_vector, vector_real, TURN_SINE, TURN_COSINE)
+#if WINDOWS
+TURN(turn_short, vector_real, TURN_SHORT_SINE, TURN_SHORT_COSINE)
+#endif
+
+/* How the samples of neighbouring pixels are loaded. */
+enum loading {
+    APART,                          /* each by itself */
+    FOURS,                          /* those of four pixels at once: at most half a sample from pixel to pixel */
+    TOGETHER                        /* those of a vector at once: at most 2/LANES */
+};
 
 /* Where a run of pixels reads a record. */
 struct run {
-    _Alignas(VECTOR_BYTES) int sample[RUN];     /* of the upsampled record, on from which the taps are counted */
+    int base;                       /* sample of the upsampled record from which the others are counted */
+    _Alignas(VECTOR_BYTES) int sample[RUN];     /* on from which the taps are counted */
     _Alignas(VECTOR_BYTES) int phase[RUN];      /* row of the table of weights; where one is used */
     _Alignas(VECTOR_BYTES) real rest[RUN];      /* position in the interval of a cubic, or a line's fraction */
     _Alignas(VECTOR_BYTES) real turns[RUN];     /* phase, |turns| <= 1/2 */
@@ -119,55 +136,87 @@ INLINE void gather_two(const real *from, const int *index, vector_real *value, v
 }
 
 #if WINDOWS
-/* The same for pixels at most half a sample apart: of four, the others read the second one's sample or a neighbour of it.
-   These windows of four values, from the second one's predecessor on, are loaded whole: half as many instructions. The last
-   value is only a line's next one; else it may lie one past the row's end. */
-INLINE vector_real take_narrow(bool line, const real *from, const int *index, const real *rest)
+/* Pixels' values by their places in windows of four; on a line, between two. */
+INLINE vector_real pick(bool line, vector_real windows, vector_int place, const real *rest)
 {
-#define WINDOW(n) (*(const quad *)(from + index[4 * (n) + 1] - 1))
-    vector_int all = *(const vector_int *)index, which = all - __builtin_shufflevector(all, all, SECONDS) + 1;
-    vector_real windows = QUADS(WINDOW), value = PICK(windows, which);
+    vector_real value = PICK(windows, place);
     if (line)
-        value += *at(rest) * (PICK(windows, which + 1) - value);
+        value += *at(rest) * (PICK(windows, place + 1) - value);
     return value;
+}
+
+/* The same out of windows that are loaded whole: from the predecessor of a middle pixel's sample on, where the others read
+   that sample or a neighbour of it. The last value is only a line's next one; else it may lie one past the row's end. */
+INLINE void take_windows(bool line, enum loading loading, const real *row, size_t row_length, const struct run *run, int i,
+                         vector_real *x, vector_real *y)
+{
+    const int *index = run->sample + i;
+    vector_int place = *(const vector_int *)index;
+    vector_real re, im;
+    if (loading == TOGETHER) {
+        const int *middle = index + LANES / 2 - 1;
+        const real *from = row + *middle - 1;
+#define MIDDLE(n) (*(const bits *)middle)       /* an int would come from its register, by two instructions for one */
+        place = place + 1 - (vector_int)(vector_bits)ALL(MIDDLE);
+        re = REPEAT(from);
+        im = REPEAT(from + row_length);
+    } else {
+#define WINDOW(n) (*(const quad *)(row + index[4 * (n) + 1] - 1))
+        place = place + 1 - __builtin_shufflevector(place, place, SECONDS);
+        re = QUADS(WINDOW);
+        row += row_length;
+        im = QUADS(WINDOW);
+    }
+    *x = pick(line, re, place, run->rest + i);
+    *y = pick(line, im, place, run->rest + i);
 }
 #endif
 
+/* The same pixel by pixel. */
+INLINE vector_real take_apart(bool line, const real *row, const struct run *run, int i)
+{
+    vector_real value, next;
+    if (!line)
+        return gather(row, run->sample + i);
+    gather_two(row, run->sample + i, &value, &next);
+    return value + *at(run->rest + i) * (next - value);
+}
+
 /* Add to LANES pixels from i on what they take from a record: the nearest value each, or between two on a line. */
-INLINE void take(bool line, bool narrow, const real *row_re, const real *row_im, const struct run *run, int i,
+INLINE void take(bool line, enum loading loading, const real *row, size_t row_length, const struct run *run, int i,
                  vector_real *re, vector_real *im)
 {
-    vector_real c, s, x, y, next;
-    turn_vector(*at(run->turns + i), &c, &s);
-    (void)narrow;
+    vector_real c, s, x, y;
 #if WINDOWS
-    if (narrow) {
-        x = take_narrow(line, row_re, run->sample + i, run->rest + i);
-        y = take_narrow(line, row_im, run->sample + i, run->rest + i);
+    if (loading != APART) {
+        turn_short(*at(run->turns + i), &c, &s);
+        take_windows(line, loading, row, row_length, run, i, &x, &y);
     } else
 #endif
-    if (line) {
-        gather_two(row_re, run->sample + i, &x, &next);
-        x += *at(run->rest + i) * (next - x);
-        gather_two(row_im, run->sample + i, &y, &next);
-        y += *at(run->rest + i) * (next - y);
-    } else {
-        x = gather(row_re, run->sample + i);
-        y = gather(row_im, run->sample + i);
+    {
+        (void)loading;
+        turn_vector(*at(run->turns + i), &c, &s);
+        x = take_apart(line, row, run, i);
+        y = take_apart(line, row + row_length, run, i);
     }
     *re = *re + x * c - y * s;
     *im = *im + x * s + y * c;
 }
 
 /* One run of each of `group` records, a constant where this is inlined. */
-INLINE void add_taken(bool line, bool narrow, int group, const real *row, size_t row_length, int count, struct run *runs,
-                      real *re, real *im)
+INLINE void add_taken(bool line, enum loading loading, int group, const real *row, size_t row_length, int count,
+                      struct run *runs, real *re, real *im)
 {
+    const real *from[GROUP];
     int i = 0;
+    for (int g = 0; g < group; g++) {
+        from[g] = row + 2 * (size_t)g * row_length + runs[g].base;
+        OPAQUE(from[g]);
+    }
     for (; i <= count - LANES; i += LANES) {
         vector_real x = *at(re + i), y = *at(im + i);
         for (int g = 0; g < group; g++)
-            take(line, narrow, row + 2 * (size_t)g * row_length, row + (2 * (size_t)g + 1) * row_length, &runs[g], i, &x, &y);
+            take(line, loading, from[g], row_length, &runs[g], i, &x, &y);
         *at(re + i) = x;
         *at(im + i) = y;
     }
@@ -179,7 +228,7 @@ INLINE void add_taken(bool line, bool narrow, int group, const real *row, size_t
             runs[g].sample[k] = runs[g].sample[count - 1];
             runs[g].rest[k] = runs[g].turns[k] = 0;
         }
-        take(line, narrow, row + 2 * (size_t)g * row_length, row + (2 * (size_t)g + 1) * row_length, &runs[g], i, &x, &y);
+        take(line, loading, from[g], row_length, &runs[g], i, &x, &y);
     }
     for (int k = 0; i + k < count; k++) {
         re[i + k] += x[k];
@@ -187,14 +236,14 @@ INLINE void add_taken(bool line, bool narrow, int group, const real *row, size_t
     }
 }
 
-INLINE void add_all(bool line, bool narrow, int group, const real *row, size_t row_length, int count, struct run *runs,
-                    real *re, real *im)
+INLINE void add_all(bool line, enum loading loading, int group, const real *row, size_t row_length, int count,
+                    struct run *runs, real *re, real *im)
 {
     if (group == GROUP)
-        add_taken(line, narrow, GROUP, row, row_length, count, runs, re, im);
+        add_taken(line, loading, GROUP, row, row_length, count, runs, re, im);
     else
         for (int g = 0; g < group; g++)
-            add_taken(line, narrow, 1, row + 2 * (size_t)g * row_length, row_length, count, &runs[g], re, im);
+            add_taken(line, loading, 1, row + 2 * (size_t)g * row_length, row_length, count, &runs[g], re, im);
 }
 
 /* Many weights, from a grid of phases or from cubics in the fraction; the record's parts lie apart. `taps` is a constant
@@ -232,30 +281,44 @@ INLINE void add_taps(const struct bp_table *table, int taps, const real *row_re,
 }
 
 /* One run of each of `group` records, whose rows follow one another. */
-static void add_runs(const struct bp_table *table, bool narrow, int group, const real *row, int row_length, int count,
+static void add_runs(const struct bp_table *table, enum loading loading, int group, const real *row, int row_length, int count,
                      struct run *runs, real *re, real *im)
 {
     const size_t length = (size_t)row_length;
     const bool line = table->reading == BP_LINE;
     row += table->guard + table->first;
     if (!line && table->reading != BP_NEAREST) {
-        for (int g = 0; g < group; g++, row += 2 * length)
+        for (int g = 0; g < group; g++, row += 2 * length) {
+            const real *from = row + runs[g].base;
             switch (table->taps) {  /* the shipped kernels unroll, any other length works as well */
-            case 8: add_taps(table, 8, row, row + length, count, &runs[g], re, im); break;
-            case 16: add_taps(table, 16, row, row + length, count, &runs[g], re, im); break;
-            case 20: add_taps(table, 20, row, row + length, count, &runs[g], re, im); break;
-            default: add_taps(table, table->taps, row, row + length, count, &runs[g], re, im); break;
+            case 8: add_taps(table, 8, from, from + length, count, &runs[g], re, im); break;
+            case 16: add_taps(table, 16, from, from + length, count, &runs[g], re, im); break;
+            case 20: add_taps(table, 20, from, from + length, count, &runs[g], re, im); break;
+            default: add_taps(table, table->taps, from, from + length, count, &runs[g], re, im); break;
             }
+        }
         return;
     }
-    if (line && narrow)
-        add_all(true, true, group, row, length, count, runs, re, im);
-    else if (line)
-        add_all(true, false, group, row, length, count, runs, re, im);
-    else if (narrow)
-        add_all(false, true, group, row, length, count, runs, re, im);
-    else
-        add_all(false, false, group, row, length, count, runs, re, im);
+    switch (loading) {
+    case APART:
+        if (line)
+            add_all(true, APART, group, row, length, count, runs, re, im);
+        else
+            add_all(false, APART, group, row, length, count, runs, re, im);
+        break;
+    case FOURS:
+        if (line)
+            add_all(true, FOURS, group, row, length, count, runs, re, im);
+        else
+            add_all(false, FOURS, group, row, length, count, runs, re, im);
+        break;
+    case TOGETHER:
+        if (line)
+            add_all(true, TOGETHER, group, row, length, count, runs, re, im);
+        else
+            add_all(false, TOGETHER, group, row, length, count, runs, re, im);
+        break;
+    }
 }
 
 /* ---- delays ---- */
@@ -313,7 +376,7 @@ static void sum_exact(const struct bp_medium *medium, const struct bp_table *tab
                       const struct pixel_line *line, const struct scale *scale, int begin, int end, real *re, real *im)
 {
     struct places places;
-    struct run run;
+    struct run run = {.base = 0};
     double tau[RUN];
     const struct motion motion = motion_make(medium, ping);
     const bool cubics = table->reading == BP_CUBICS;
@@ -342,7 +405,7 @@ static void sum_exact(const struct bp_medium *medium, const struct bp_table *tab
                 run.rest[i] = (real)(cubics ? q * one - point : run.phase[i] / one);
                 run.turns[i] = (real)(turns - floor(turns + 0.5));
             }
-            add_runs(table, false, 1, (const real *)ping->rows + 2 * (size_t)m * (size_t)ping->row_length, ping->row_length,
+            add_runs(table, APART, 1, (const real *)ping->rows + 2 * (size_t)m * (size_t)ping->row_length, ping->row_length,
                      count, &run, re + first, im + first);
         }
     }
@@ -409,17 +472,21 @@ INLINE void prefetch(const real *row, int row_length, int group, double (*tau)[G
 }
 
 /* Points of a run of pixels from `first` pixels past the block's middle on. A double that is brought to a known exponent is
-   a fixed-point number in its lower bits: whole points and 19 bits of their fraction, or 32 bits of a fraction of a
-   turn, without rounding or conversion. Fills whole vectors, up to LANES - 1 pixels more than `count`. `reading` is a constant
-   where this is inlined. */
+   a fixed-point number in its lower bits: the nearest sample; whole points and 19 bits of their fraction, 32 bits in all
+   but for cubics, so that the run must stay within SPAN points of its first; 32 bits of a fraction of a turn. Nothing is
+   rounded or converted. Fills whole vectors, up to LANES - 1 pixels more than `count`. `reading` is a constant where this is
+   inlined. */
 INLINE void points(double (*quintic)[GROUP], int g, const struct scale *scale, double first, int count,
                    enum bp_reading reading, int phases, struct run *run)
 {
-    enum { BITS = 19 };
-    double c[NODES];
-    for (int k = 0; k < NODES; k++)
+    const bool nearest = reading == BP_NEAREST, cubics = reading == BP_CUBICS;
+    double c[NODES], begin = 0;
+    for (int k = NODES - 1; k >= 0; k--) {
         c[k] = quintic[k][g];
-    const double shift = scale->shift + 0x1.8p33, ratio = scale->ratio;
+        begin = begin * first + c[k];
+    }
+    run->base = nearest || cubics ? 0 : (int)begin;
+    const double shift = nearest ? 0x1.8p52 : scale->shift - run->base + 0x1.8p33, ratio = scale->ratio;
     const double turns = c[0] * ratio + scale->base, base = scale->base - floor(turns) + 0x1.8p20;
     const real one_phase = 1 / (real)phases;
 #define LANE(n) n
@@ -431,20 +498,21 @@ INLINE void points(double (*quintic)[GROUP], int g, const struct scale *scale, d
         vector_long whole[2];
         for (int k = 0; k < (int)PARTS; k++) {
             vector_double p = c[0] + u[k] * (c[1] + u[k] * (c[2] + u[k] * (c[3] + u[k] * (c[4] + u[k] * c[5]))));
-            turned[k] = p * ratio + base;
             point[k] = p + shift;
             whole[k] = (vector_long)point[k] >> BITS;
+            turned[k] = p * ratio + base;
             u[k] += LANES;
         }
 #define LOW(v) (vector_int)__builtin_shufflevector((vector_bits)v[0], (vector_bits)v[PARTS - 1], EVEN)
-        vector_int sample = LOW(whole);
-        if (reading == BP_CUBICS) {
+        vector_int sample = LOW(point), rest = sample & ((1 << BITS) - 1);
+        if (cubics) {
+            sample = LOW(whole);
             *(vector_int *)(run->phase + i) = sample & (BP_INTERVALS - 1);
             sample >>= BP_INTERVAL_BITS;
-            vector_int rest = LOW(point) & ((1 << BITS) - 1);
             *at(run->rest + i) = __builtin_convertvector(rest, vector_real) * (real)0x1p-19;
-        } else if (reading != BP_NEAREST) {
-            vector_int rest = LOW(point) & ((1 << BITS) - 1), phase = rest * phases >> BITS;
+        } else if (!nearest) {
+            vector_int phase = rest * phases >> BITS;
+            sample >>= BITS;
             if (reading == BP_LINE)
                 *at(run->rest + i) = __builtin_convertvector(phase, vector_real) * one_phase;
             else
@@ -462,10 +530,11 @@ INLINE void sum_block(const struct bp_table *table, int group, const real *row, 
     struct run runs[GROUP];
     _Alignas(64) double c[NODES][GROUP];
     const double half = 0.5 * (block->end - 1 - block->begin), middle = block->begin + half;
-    /* At most half a sample from pixel to pixel, rounding allowed for. */
-    const bool narrow = quintics(tau, scale, half, c) <= 0.49 && WINDOWS;
-    for (int first = block->begin; first < block->end; first += RUN) {
-        int count = block->end - first < RUN ? block->end - first : RUN;
+    const double steepest = quintics(tau, scale, half, c), slack = 0.01;    /* for rounding */
+    const enum loading loading = !WINDOWS || steepest > 0.5 - slack ? APART : steepest > 2.0 / LANES - slack ? FOURS : TOGETHER;
+    const int longest = steepest * RUN > SPAN ? (int)fmax(1, SPAN / steepest) : RUN;
+    for (int first = block->begin, count; first < block->end; first += count) {
+        count = block->end - first < longest ? block->end - first : longest;
         for (int g = 0; g < group; g++) {
             switch (table->reading) {
             case BP_NEAREST: points(c, g, scale, first - middle, count, BP_NEAREST, 1, &runs[g]); break;
@@ -474,20 +543,21 @@ INLINE void sum_block(const struct bp_table *table, int group, const real *row, 
             case BP_CUBICS: points(c, g, scale, first - middle, count, BP_CUBICS, 1, &runs[g]); break;
             }
         }
-        add_runs(table, narrow, group, row, row_length, count, runs, re + first, im + first);
+        add_runs(table, loading, group, row, row_length, count, runs, re + first, im + first);
     }
 }
 
 void BP_SUM(const struct bp_medium *medium, const struct bp_table *table, const struct bp_ping *ping,
             const struct pixel_line *line, int block_count, const struct bp_block *blocks, void *re, void *im)
 {
-    struct places places = {.count = NODES * block_count};
+    struct places places;           /* not cleared: it is large */
     _Alignas(64) double tau[DELAYS][GROUP];
     const struct motion motion = motion_make(medium, ping);
     const bool cubics = table->reading == BP_CUBICS;
     const double fine = table->upsample * (cubics ? BP_INTERVALS : 1), turns = medium->fc * ping->t0;
     const struct scale scale = {ping->t0, medium->fs, fine, cubics ? 0 : 0.5 / table->phases, medium->fc / (medium->fs * fine),
                                 turns - floor(turns)};
+    places.count = NODES * block_count;
     for (int b = 0; b < block_count; b++) {
         const double half = 0.5 * (blocks[b].end - 1 - blocks[b].begin), middle = blocks[b].begin + half;
         for (int k = 0; k < NODES; k++) {

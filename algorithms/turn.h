@@ -42,14 +42,19 @@ static inline void turn_eighth(real x, real *c, real *s)
 #define TURN_COSINE(z, z2) \
     ((1.41421350f + z * -6.97885099f) + z2 * (5.73946117f + z * -1.88356299f + z2 * 0.310698194f))
 #endif
-#define TURN(name, type) \
+/* For float, two thirds of the instructions: within 1.8e-6 (measured over all f), -115 dB. */
+#define TURN_SHORT_SINE(z, z2) (4.44285705f + z * (-7.30718432f + z * (3.59301926f + z * -0.780718886f)))
+#define TURN_SHORT_COSINE(z, z2) \
+    (1.41422033f + z * (-6.97910828f + z * (5.74248479f + z * (-1.89762169f + z * 0.33330754f))))
+#define TURN(name, type, SINE, COSINE) \
     static inline __attribute__((always_inline)) void name(type f, type *c, type *s) \
     { \
-        type z = f * f, z2 = z * z, sine = f * TURN_SINE(z, z2); \
+        type z = f * f, z2 = z * z, sine = f * SINE(z, z2); \
         *c = 1 - sine * sine; \
-        *s = sine * TURN_COSINE(z, z2); \
+        *s = sine * COSINE(z, z2); \
+        (void)z2; \
     }
 
-TURN(turn, real)
+TURN(turn, real, TURN_SINE, TURN_COSINE)
 
 #endif
