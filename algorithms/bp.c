@@ -98,7 +98,7 @@ static void count_work(struct bp *bp, const struct interpolator *in)
     work->published[1].source = "LBF21 Eq. (23)";
     work->published[1].flops = 1.5 * na * nr * log2(nr) + na * nr + 1.5 * na * in->factor * nr * log2(in->factor * nr);
     snprintf(work->engine, sizeof work->engine, "%s%s", bp->engine->name,
-             bp->engine == &bp_general && !(bp->phase_limit > 0) ? " exact" : "");
+             bp->engine == &bp_general && !(bp->medium.phase_limit > 0) ? " exact" : "");
     if (work->pairs < all)
         snprintf(work->skipped, sizeof work->skipped, "%.3g %% of the pairs: outside the record%s",
                  100 * (1 - work->pairs / all), a->aperture_limit < 1 ? " or the aperture limit" : "");
@@ -129,7 +129,7 @@ static enum status choose_engine(struct bp *bp, const struct bp_options *options
     /* The approximation may not move a sample coordinate by more than a quarter of the finest step either. */
     double finest = bp->medium.fs * bp->table.upsample * (bp->table.phases > 0 ? bp->table.phases : 1);
     if (!options->exact)
-        bp->phase_limit = fmin(options->phase_limit, 1.57 * bp->medium.fc / finest);
+        bp->medium.phase_limit = fmin(options->phase_limit, 1.57 * bp->medium.fc / finest);
     return STATUS_OK;
 }
 
@@ -142,7 +142,7 @@ enum status bp_plan(const struct problem *problem, const struct interpolator *in
     if (!bp)
         return status_set(STATUS_FAILED, "no memory for the plan");
     bp->problem = *problem;
-    bp->medium = (struct bp_medium){a->sound_speed, a->fc, a->fs, a->samples};
+    bp->medium = (struct bp_medium){a->sound_speed, a->fc, a->fs, a->samples, 0};
     bp->work.bytes = sizeof *bp;
     enum status status = tabulate(bp, interpolator, options);
     if (status == STATUS_OK)

@@ -104,9 +104,11 @@ static enum status general_plan(struct bp *bp)
     general->sums = calloc((size_t)problem->patch_count, sizeof *general->sums);
     if (!general->rows || !general->interleaved || !general->heading || !general->boxes || !general->along_x || !general->sums)
         return status_set(STATUS_FAILED, "no memory for %d records of %d values", general->batch, bp->shape.length);
+    /* The rest of the limit is for the sums in float (bp_sum.c). */
+    const double quintics = problem->precision == PRECISION_FLOAT ? 0.85 : 1;
     for (int p = 0; p < a->pings; p++) {
         general->heading[p] = acquisition_heading(a, p);
-        general->boxes[p] = ping_box_make(a, p, problem->patch_count, problem->patches, bp->phase_limit);
+        general->boxes[p] = ping_box_make(a, p, problem->patch_count, problem->patches, quintics * bp->medium.phase_limit);
     }
     for (int k = 0; k < problem->patch_count; k++) {
         const struct grid *grid = &problem->patches[k];

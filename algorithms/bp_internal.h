@@ -16,7 +16,6 @@ struct bp {
     struct records_shape shape;
     const struct bp_engine *engine;
     void *state;                    /* the engine's own */
-    double phase_limit;             /* rad: of the general engine's quintics; 0: every delay is evaluated */
     struct work work;
 };
 

@@ -5,21 +5,29 @@
 #include "bp_sum.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "lanes.h"
 #include "turn.h"
 
 /* PICK: each four floats of a vector permuted by the low two bits of an index. REPEAT: four floats from memory as each four of
-   a vector. One instruction each, which no compiler makes of a shuffle. */
+   a vector. ROUND, FLOOR: to whole floats; NEAREST: to integers. One instruction each, which no compiler makes of portable
+   code. */
 #if defined __AVX__ && !REAL_DOUBLE
 #include <immintrin.h>
 #define WINDOWS 1
 #if VECTOR_BYTES == 64
 #define PICK(values, index) (vector_real)_mm512_permutevar_ps((__m512)(values), (__m512i)(index))
 #define REPEAT(from) (vector_real)_mm512_broadcast_f32x4(_mm_loadu_ps(from))
+#define ROUND(values) (vector_real)_mm512_roundscale_ps((__m512)(values), _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)
+#define FLOOR(values) (vector_real)_mm512_roundscale_ps((__m512)(values), _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC)
+#define NEAREST(values) (vector_int)_mm512_cvtps_epi32((__m512)(values))
 #else
 #define PICK(values, index) (vector_real)_mm256_permutevar_ps((__m256)(values), (__m256i)(index))
 #define REPEAT(from) (vector_real)_mm256_broadcast_ps((const __m128 *)(from))
+#define ROUND(values) (vector_real)_mm256_round_ps((__m256)(values), _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)
+#define FLOOR(values) (vector_real)_mm256_round_ps((__m256)(values), _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC)
+#define NEAREST(values) (vector_int)_mm256_cvtps_epi32((__m256)(values))
 #endif
 #else
 #define WINDOWS 0
@@ -35,6 +43,7 @@ enum {
     NODES = 6,                      /* of a quintic */
     DELAYS = NODES * BP_BLOCKS,     /* that are evaluated together, to each receiver of a group */
     BITS = 19,                      /* of a point's fraction */
+    FLAT_LEAST = 64,                /* pixels of a run below which single precision does not pay */
     SPAN = 4000,                    /* whole points that fit beside them in 32 bits, with a sign */
     PARTS = LANES * sizeof(double) / VECTOR_BYTES       /* vectors of doubles to a vector of `real` */
 };
@@ -46,6 +55,7 @@ typedef double two_floats __attribute__((may_alias, aligned(sizeof(real))));    
 typedef float bits __attribute__((may_alias));
 typedef float quad __attribute__((vector_size(16), aligned(sizeof(float)), may_alias));
 typedef int vector_int __attribute__((vector_size(LANES * sizeof(int)), aligned(sizeof(int)), may_alias));
+typedef unsigned vector_unsigned __attribute__((vector_size(LANES * sizeof(int)), aligned(sizeof(int)), may_alias));
 
 TURN(turn_vector, vector_real, TURN_SINE, TURN_COSINE)
 #if WINDOWS
@@ -417,15 +427,15 @@ static const double node[NODES] = {-0.96592582628906829, -0.70710678118654752, -
 
 /* The quintics of a group of receivers through their delays at a block's Chebyshev points, [node][receiver]: points of the
    grid against pixels from the block's middle, c [power][receiver]; even and odd part are quadratics in the square, by
-   divided differences. Without the scale's shift. Returns the most that one of them changes from one pixel to the next. */
-INLINE double quintics(double (*tau)[GROUP], const struct scale *scale, double half, double (*c)[GROUP])
+   divided differences. Without the scale's shift. *slope, *bend: bounds on their first and second derivatives. */
+INLINE void quintics(double (*tau)[GROUP], const struct scale *scale, double half, double (*c)[GROUP], double *slope, double *bend)
 {
     const double ya = node[3] * node[3], yb = 0.5, step = 0.43301270189221932;     /* yb - ya, half of yc - ya */
     const double one = 1 / half;
-    double slope[GROUP], steepest = 0;
+    double first[GROUP], second[GROUP];
 #pragma omp simd
     for (int g = 0; g < GROUP; g++) {
-        double power = scale->fs * scale->fine, most = 0;
+        double power = scale->fs * scale->fine;
         for (int odd = 0; odd < 2; odd++) {
             double a = odd ? (tau[3][g] - tau[2][g]) * (0.5 / node[3]) : 0.5 * (tau[3][g] + tau[2][g]);
             double b = odd ? (tau[4][g] - tau[1][g]) * (0.5 / node[4]) : 0.5 * (tau[4][g] + tau[1][g]);
@@ -439,13 +449,18 @@ INLINE double quintics(double (*tau)[GROUP], const struct scale *scale, double h
             c[k][g] *= power;
             power *= one;
         }
-        for (int k = NODES - 1; k > 0; k--)
-            most = k * fabs(c[k][g]) + half * most;
-        slope[g] = most;
+        first[g] = second[g] = 0;
+        for (int k = NODES - 1; k > 0; k--) {
+            first[g] = k * fabs(c[k][g]) + half * first[g];
+            if (k > 1)
+                second[g] = k * (k - 1) * fabs(c[k][g]) + half * second[g];
+        }
     }
-    for (int g = 0; g < GROUP; g++)
-        steepest = slope[g] > steepest ? slope[g] : steepest;
-    return steepest;
+    *slope = *bend = 0;
+    for (int g = 0; g < GROUP; g++) {
+        *slope = first[g] > *slope ? first[g] : *slope;
+        *bend = second[g] > *bend ? second[g] : *bend;
+    }
 }
 
 /* A line reads few values of each record and comes back to the next line much later: have them fetched together. */
@@ -476,6 +491,8 @@ INLINE void prefetch(const real *row, int row_length, int group, double (*tau)[G
    but for cubics, so that the run must stay within SPAN points of its first; 32 bits of a fraction of a turn. Nothing is
    rounded or converted. Fills whole vectors, up to LANES - 1 pixels more than `count`. `reading` is a constant where this is
    inlined. */
+#define LANE(n) n
+#define LOW(v) (vector_int)__builtin_shufflevector((vector_bits)v[0], (vector_bits)v[PARTS - 1], EVEN)
 INLINE void points(double (*quintic)[GROUP], int g, const struct scale *scale, double first, int count,
                    enum bp_reading reading, int phases, struct run *run)
 {
@@ -489,7 +506,6 @@ INLINE void points(double (*quintic)[GROUP], int g, const struct scale *scale, d
     const double shift = nearest ? 0x1.8p52 : scale->shift - run->base + 0x1.8p33, ratio = scale->ratio;
     const double turns = c[0] * ratio + scale->base, base = scale->base - floor(turns) + 0x1.8p20;
     const real one_phase = 1 / (real)phases;
-#define LANE(n) n
     vector_double u[2] = {PART(LANE, 0), PART(LANE, 2)};
     u[0] += first;
     u[1] += first;
@@ -503,7 +519,6 @@ INLINE void points(double (*quintic)[GROUP], int g, const struct scale *scale, d
             turned[k] = p * ratio + base;
             u[k] += LANES;
         }
-#define LOW(v) (vector_int)__builtin_shufflevector((vector_bits)v[0], (vector_bits)v[PARTS - 1], EVEN)
         vector_int sample = LOW(point), rest = sample & ((1 << BITS) - 1);
         if (cubics) {
             sample = LOW(whole);
@@ -523,18 +538,104 @@ INLINE void points(double (*quintic)[GROUP], int g, const struct scale *scale, d
     }
 }
 
+#if WINDOWS
+/* A group's quintics about a run's middle, [power][receiver]: points and turns along a line, and their bend away from it in
+   turns. */
+struct flat {
+    double point[2][GROUP], turns[2][GROUP];
+    real bend[NODES - 2][GROUP];
+};
+
+INLINE void flatten(double (*quintic)[GROUP], const struct scale *scale, double middle, struct flat *flat)
+{
+    double c[NODES][GROUP];
+    memcpy(c, quintic, sizeof c);
+    for (int n = 0; n < NODES - 1; n++)
+        for (int k = NODES - 2; k >= n; k--)
+            for (int g = 0; g < GROUP; g++)
+                c[k][g] += middle * c[k + 1][g];
+    for (int g = 0; g < GROUP; g++) {
+        for (int k = 0; k < 2; k++) {
+            flat->point[k][g] = c[k][g];
+            flat->turns[k][g] = c[k][g] * scale->ratio + (k == 0 ? scale->base : 0);
+        }
+        for (int k = 2; k < NODES; k++)
+            flat->bend[k - 2][g] = (real)(c[k][g] * scale->ratio);
+    }
+}
+
+/* The same as points() for a run that bends little: the line's turns are a fixed-point number that is counted on, the bend is a
+   float. Points are floats that are counted from the run's middle. */
+INLINE void points_flat(const struct flat *flat, int g, const struct scale *scale, int count, bool line, int phases,
+                        struct run *run)
+{
+    const double begin = -0.5 * (count - 1), slope = flat->turns[1][g], step = LANES * slope;
+    const double base = flat->turns[0][g] - floor(flat->turns[0][g] + begin * slope) + 0x1.8p20;
+    vector_double turned[2] = {PART(LANE, 0), PART(LANE, 2)};
+    for (int k = 0; k < (int)PARTS; k++)
+        turned[k] = (turned[k] + begin) * slope + base;
+    vector_unsigned turns = (vector_unsigned)LOW(turned);
+    const unsigned turns_step = (unsigned)(long long)((step - floor(step)) * 0x1p32);
+    const double middle = floor(flat->point[0][g]);
+    const real first = (real)(flat->point[0][g] - middle + (line ? scale->shift : 0)), second = (real)flat->point[1][g];
+    const real c2 = flat->bend[0][g], c3 = flat->bend[1][g], c4 = flat->bend[2][g], c5 = flat->bend[3][g];
+    const real point_turn = (real)(1 / scale->ratio), one_phase = 1 / (real)phases;
+    vector_real u = ALL(LANE);
+    u += (real)begin;
+    run->base = (int)middle;
+    for (int i = 0; i < count; i += LANES) {
+        vector_real bend = u * u * (c2 + u * (c3 + u * (c4 + u * c5)));
+        vector_real turn = __builtin_convertvector((vector_int)turns, vector_real) * (real)0x1p-32 + bend;
+        vector_real point = first + u * second + bend * point_turn;
+        if (line) {
+            vector_real whole = FLOOR(point);
+            *(vector_int *)(run->sample + i) = NEAREST(whole);
+            *at(run->rest + i) = FLOOR((point - whole) * (real)phases) * one_phase;
+        } else
+            *(vector_int *)(run->sample + i) = NEAREST(point);
+        *at(run->turns + i) = turn - ROUND(turn);
+        turns += turns_step;
+        u += LANES;
+    }
+}
+#endif
+
 /* A group of receivers over one block; tau: its delays, [node][receiver]. */
 INLINE void sum_block(const struct bp_table *table, int group, const real *row, int row_length, const struct scale *scale,
-                      const struct bp_block *block, double (*tau)[GROUP], real *re, real *im)
+                      double phase_limit, const struct bp_block *block, double (*tau)[GROUP], real *re, real *im)
 {
     struct run runs[GROUP];
     _Alignas(64) double c[NODES][GROUP];
     const double half = 0.5 * (block->end - 1 - block->begin), middle = block->begin + half;
-    const double steepest = quintics(tau, scale, half, c), slack = 0.01;    /* for rounding */
-    const enum loading loading = !WINDOWS || steepest > 0.5 - slack ? APART : steepest > 2.0 / LANES - slack ? FOURS : TOGETHER;
-    const int longest = steepest * RUN > SPAN ? (int)fmax(1, SPAN / steepest) : RUN;
+    double slope, bend;
+    quintics(tau, scale, half, c, &slope, &bend);
+    const double slack = 0.01;      /* for rounding */
+    const enum loading loading = !WINDOWS || slope > 0.5 - slack ? APART : slope > 2.0 / LANES - slack ? FOURS : TOGETHER;
+    int longest = slope * RUN > SPAN ? (int)fmax(1, SPAN / slope) : RUN;
+#if WINDOWS
+    /* A bend of n turns errs by at most 1.1e-6 n rad: 0.15 of the limit. */
+    const double turns = fmin(16, phase_limit * 0x1p17), half_run = sqrt(2 * turns / (bend * scale->ratio));
+    const int flat_longest = 2 * half_run < RUN ? (int)(2 * half_run) / LANES * LANES : RUN;
+    const bool flat = loading == TOGETHER && flat_longest >= FLAT_LEAST
+                      && (table->reading == BP_NEAREST || table->reading == BP_LINE);
+    if (flat)
+        longest = flat_longest;
+#else
+    (void)phase_limit;
+#endif
     for (int first = block->begin, count; first < block->end; first += count) {
         count = block->end - first < longest ? block->end - first : longest;
+#if WINDOWS
+        if (flat) {
+            struct flat lines;
+            flatten(c, scale, first - middle + 0.5 * (count - 1), &lines);
+            for (int g = 0; g < group; g++)
+                if (table->reading == BP_LINE)
+                    points_flat(&lines, g, scale, count, true, table->phases, &runs[g]);
+                else
+                    points_flat(&lines, g, scale, count, false, 1, &runs[g]);
+        } else
+#endif
         for (int g = 0; g < group; g++) {
             switch (table->reading) {
             case BP_NEAREST: points(c, g, scale, first - middle, count, BP_NEAREST, 1, &runs[g]); break;
@@ -587,7 +688,7 @@ void BP_SUM(const struct bp_medium *medium, const struct bp_table *table, const 
                 prefetch(row + table->guard, ping->row_length, group, tau + b * NODES, &scale, table->upsample);
         for (int b = 0; b < block_count; b++)
             if (!blocks[b].exact)
-                sum_block(table, group, row, ping->row_length, &scale, &blocks[b], tau + b * NODES, re, im);
+                sum_block(table, group, row, ping->row_length, &scale, medium->phase_limit, &blocks[b], tau + b * NODES, re, im);
     }
     for (int b = 0; b < block_count; b++)
         if (blocks[b].exact)

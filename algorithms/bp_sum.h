@@ -25,6 +25,7 @@ struct bp_table {
 struct bp_medium {
     double sound_speed, fc, fs;
     int samples;
+    double phase_limit;             /* rad: that the general engine's sums may err by; 0: every delay is evaluated */
 };
 
 /* Receivers of one ping, with their records. */

@@ -50,7 +50,7 @@ static void random_pair(uint64_t seed, struct acquisition *a, struct grid *grid,
                           seed % 2 ? 1 : count};
     double longest = 2 * 8 * size / (c - speed);                /* every distance is below 8 size */
     a->fs = a->bandwidth = (a->samples - 2) / longest;
-    a->fc = uniform(&random, 10, 1e4) / longest;                /* at most 1e4 cycles: rounding stays below 1e-10 rad */
+    a->fc = pow(10, uniform(&random, 1, 5.5)) / longest;        /* at most 3e5 cycles: rounding stays below 1e-9 rad */
     assert_int_equal(echoes_allocate(a, PRECISION_DOUBLE, echoes), STATUS_OK);
     for (int n = 0; n < a->samples; n++)
         ((double complex *)echoes->samples)[n] = 1;
@@ -74,40 +74,46 @@ static double share_of_quintics(const struct acquisition *a, const struct grid *
     return pixels / line.count;
 }
 
-/* The phase errs by less than the limit, for any geometry and limit, and comes near it: the bound is no idle one. */
+/* The phase errs by less than the limit, for any geometry and limit, and comes near it: the bound is no idle one. In single
+   precision the short polynomials' 1.8e-6 and the rounding of a turn and of the value are on top. */
 static void phase_below_limit(void **state)
 {
     (void)state;
     static const double limits[] = {1e-2, 1e-4, 1e-6};
     for (size_t k = 0; k < sizeof limits / sizeof *limits; k++) {
-        double worst = 0, share = 0;
+        double worst[2] = {0, 0}, share = 0;
         int cases = 600;
         for (int seed = 0; seed < cases; seed++) {
             struct acquisition a;
             struct grid grid;
             struct echoes echoes;
-            struct image image;
-            char spec[80];
+            struct image images[2];
             random_pair((uint64_t)seed, &a, &grid, &echoes);
-            snprintf(spec, sizeof spec, "bp_nearest:precision=double,phase_limit=%g", limits[k]);
             struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
-            assert_int_equal(support_image(spec, problem, &echoes, &image), STATUS_OK);
+            for (int n = 0; n < 2; n++) {
+                char spec[96];
+                snprintf(spec, sizeof spec, "bp_nearest:precision=%s,phase_limit=%g", precision_name((enum precision)n),
+                         limits[k]);
+                assert_int_equal(support_image(spec, problem, &echoes, &images[n]), STATUS_OK);
+            }
             share += share_of_quintics(&a, &grid, limits[k]) / cases;
             for (int i = 0; i < grid.r_count; i++)
                 for (int j = 0; j < grid.x_count; j++) {
                     struct vector p = {grid.x_first + j * grid.x_step, grid.r_first + i * grid.r_step, 0};
                     double cycles = a.fc * delay_exact(a.tx[0], a.rx[0], a.velocity[0], p, a.sound_speed);
                     double complex exact = cexp(I * 2 * pi * (cycles - rint(cycles)));
-                    worst = fmax(worst, cabs(image_pixel(&image, 0, i, j) - exact));
+                    for (int n = 0; n < 2; n++)
+                        worst[n] = fmax(worst[n], cabs(image_pixel(&images[n], 0, i, j) - exact));
                 }
-            image_free(&image);
+            image_free(&images[0]);
+            image_free(&images[1]);
             echoes_free(&echoes);
             acquisition_free(&a);
         }
-        print_message("limit %g rad: largest phase error %.1e rad, %.0f %% of the delays from quintics\n", limits[k], worst,
-                      100 * share);
-        assert_true(worst <= limits[k] + 1e-9);
-        assert_true(worst > 0.05 * limits[k] && share > 0.5);
+        print_message("limit %g rad: largest phase error %.1e rad (float), %.1e (double), %.0f %% of the delays from quintics\n",
+                      limits[k], worst[PRECISION_FLOAT], worst[PRECISION_DOUBLE], 100 * share);
+        assert_true(worst[PRECISION_DOUBLE] <= limits[k] + 1e-9 && worst[PRECISION_FLOAT] <= limits[k] + 2.5e-6);
+        assert_true(worst[PRECISION_DOUBLE] > 0.05 * limits[k] && share > 0.5);
     }
 }
 
@@ -127,6 +133,7 @@ static const struct image_case {
     {"track in space, aperture limit", 11, 3, 57, 211, -1.7, 0.07, 12.3, 0.031, 0.04, 0.6, 2.5, 0.2, 300, 800},
     {"records end inside the lines", 9, 2, 151, 201, -4.5, 0.06, 18.1, 0.026, 0.04, 0.2, 2.5, INFINITY, 753, 110},
     {"pixels near and on the track", 6, 3, 91, 87, -1.1, 0.02, -0.4, 0.05, 0.04, 0.05, 2.5, INFINITY, 0, 400},
+    {"far away, 120 samples from pixel to pixel", 3, 2, 5, 101, -6.1, 3, 1803.7, 3, 0.04, 0, 2.5, INFINITY, 72100, 12200},
     {"v/c = 0.05, stands oblique", 7, 3, 121, 33, -1.3, 0.03, 15.2, 0.09, -0.04, 0.3, 75, INFINITY, 500, 600},
 };
 
@@ -161,11 +168,18 @@ static const struct {
 };
 enum { METHODS = sizeof methods / sizeof *methods };
 
+/* By how many samples the engine's positions may err: its points are multiples of 2^-19, and in single precision where lines
+   bend little. */
+static double position_error(const struct acquisition *a, enum precision precision, double limit)
+{
+    return limit * a->fs / (2 * pi * a->fc) + (precision == PRECISION_DOUBLE ? 0x1p-19 : 0x1p-17);
+}
+
 /* How many of a pixel's delays lie so near the middle between two points of the grid that an approximate one may choose
    the other. */
-static int near_ties(const struct acquisition *a, struct vector p, int fine, double limit)
+static int near_ties(const struct acquisition *a, struct vector p, int fine, double error)
 {
-    double reach = fine * (limit * a->fs / (2 * pi * a->fc) + 0x1p-19);    /* the engine's points are multiples of 2^-19 */
+    double reach = fine * error;
     int ties = 0;
     for (int ping = 0; ping < a->pings; ping++)
         for (int m = 0; m < a->receivers; m++) {
@@ -187,11 +201,11 @@ static struct comparison compare(const struct image *fast, const struct image *e
 {
     const struct grid *grid = exact->patches;
     struct comparison c = {0};
-    double difference = 0, norm = 0;
+    double difference = 0, norm = 0, error = position_error(a, fast->precision, limit);
     for (int i = 0; i < grid->r_count; i++)
         for (int j = 0; j < grid->x_count; j++) {
             struct vector p = {grid->x_first + j * grid->x_step, grid->r_first + i * grid->r_step, 0};
-            int ties = fine ? near_ties(a, p, fine, limit) : 0;
+            int ties = fine ? near_ties(a, p, fine, error) : 0;
             double complex value = image_pixel(exact, 0, i, j), delta = image_pixel(fast, 0, i, j) - value;
             norm += creal(value * conj(value));
             if (ties == 0)
@@ -237,7 +251,7 @@ static void fast_near_exact(void **state)
                 assert_memory_equal(fast.pixels[0], again.pixels[0],
                                     (size_t)grid.x_count * (size_t)grid.r_count * precision_size(fast.precision));
                 struct comparison c = compare(&fast, &exact, &a, methods[m].fine, limit);
-                double expected = 2 * methods[m].fine * (limit * a.fs / (2 * pi * a.fc) + 0x1p-19) * pairs;
+                double expected = 2 * methods[m].fine * position_error(&a, fast.precision, limit) * pairs;
                 if (!(c.difference <= limit + (p ? 0 : 2e-6)) || !(c.worst <= 4 * peak)
                     || !(c.ties <= 2 * expected + 20))
                     fail_msg("%s, %s: differs by %g; by %g where %d pairs are near a tie", image_cases[k].name, spec,
@@ -259,12 +273,13 @@ static void fast_near_exact(void **state)
 }
 
 /* The functions for a machine without AVX and without fused multiply-adds, and those with AVX2 on a machine that has more,
-   show the same images, on either path and in the invariant engine. */
+   show the same images, on either path and in the invariant engine; in float but for what the general engine's fast path may
+   err by (bp_sum.c). */
 static void instruction_sets_agree(void **state)
 {
     (void)state;
     static const char *const paths[] = {"exact=true", "engine=general", "engine=invariant"};
-    double worst[2] = {0, 0};
+    double worst[2] = {0, 0}, worst_fast = 0;
     for (int k = 0; k < 2; k++)
         for (int m = 0; m < METHODS; m++)
             for (int n = 0; n < 3; n++)
@@ -284,15 +299,17 @@ static void instruction_sets_agree(void **state)
                         setenv("SASBENCH_ISA", lower ? "v3" : "baseline", 1);
                         assert_int_equal(support_image(spec, problem, &echoes, &other), STATUS_OK);
                         unsetenv("SASBENCH_ISA");
-                        worst[p] = fmax(worst[p], support_difference(&other, &best));
+                        double *most = n == 1 && p == 0 ? &worst_fast : &worst[p];
+                        *most = fmax(*most, support_difference(&other, &best));
                         image_free(&other);
                     }
                     image_free(&best);
                     echoes_free(&echoes);
                     acquisition_free(&a);
                 }
-    print_message("lesser instruction sets: within %.1e (float), %.1e (double) of the best\n", worst[0], worst[1]);
-    assert_true(worst[0] < 2e-6 && worst[1] < 1e-10);
+    print_message("lesser instruction sets: within %.1e (float), %.1e (float, general), %.1e (double) of the best\n", worst[0],
+                  worst_fast, worst[1]);
+    assert_true(worst[0] < 1e-6 && worst_fast < 0.15 * 1e-4 + 2e-6 && worst[1] < 1e-10);
 }
 
 int main(void)
