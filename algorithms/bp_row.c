@@ -361,18 +361,21 @@ static int find(const int *shift, int count, int bound)
     return low;
 }
 
-/* A block of `width` vectors of columns from j on. */
-INLINE void sum_block(int phases, int width, int taps, const struct chunk *chunk, int j)
+/* A block of `width` vectors of columns from j on. Works on copies: else all that a chunk and its scratch point to is read
+   anew after each store of a sum. */
+INLINE void sum_block(int phases, int width, int taps, const struct chunk *shared, int j)
 {
-    const struct bp_row_scratch *scratch = chunk->scratch;
+    const struct chunk own_chunk = *shared, *chunk = &own_chunk;
+    const struct bp_row_scratch own_scratch = *chunk->scratch, *scratch = &own_scratch;
     const struct bp_row_group *groups = scratch->groups;
+    const int origin = groups[chunk->begin].first;
     const real *sr = chunk->sr + j, *si = chunk->si + j;
     const int stride = chunk->slab->ping_stride;
     OPAQUE(sr);
     OPAQUE(si);
     for (int g = chunk->begin; g < chunk->end; g++) {
         const struct bp_row_group *group = &groups[g];
-        const size_t first = (size_t)(group->first - groups[chunk->begin].first), complex_taps = taps < 3 ? (size_t)taps : 1;
+        const size_t first = (size_t)(group->first - origin), complex_taps = taps < 3 ? (size_t)taps : 1;
         const size_t at = (size_t)group->phase * chunk->stride + (size_t)j;
         struct part part = {
             .offset = scratch->offset + first, .rows = scratch->rows + first,
@@ -431,8 +434,18 @@ static const struct kernel {
     {0, TABLE_MANY(any)},
 };
 
-/* All columns, in blocks as wide as each other. A shift whose pings begin or end inside a block is summed for those of
-   its vectors only that have some; vector v has pings for the shifts [FIRST(v), END(v)). */
+/* The shifts [from, to) of those that the row has, for a block of columns from j on. */
+INLINE void sum_shifts(block_function *block, struct chunk *chunk, int least, int most, int from, int to, int j)
+{
+    chunk->from = from > least ? from : least;
+    chunk->to = to < most ? to : most;
+    if (chunk->from < chunk->to)
+        block(chunk, j);
+}
+
+/* All columns, in blocks as wide as each other. Vector v of one has pings for the shifts [FIRST(v), END(v)). Where the lead is as
+   wide as a block, a shift that has pings for some of its vectors is summed for all, for the others zeros; else for
+   those only that have some. */
 static void sum_columns(const struct kernel *kernel, struct chunk *chunk)
 {
     const int columns = chunk->raster->blocks, pings = chunk->raster->pings;
@@ -450,6 +463,10 @@ static void sum_columns(const struct kernel *kernel, struct chunk *chunk)
         width = (left + parts - 1) / parts;
 #define FIRST(v) (1 - j - ((v) + 1) * LANES)
 #define END(v) (pings - j - (v) * LANES)
+        if (width * LANES <= chunk->slab->lead) {
+            sum_shifts(block[width - 1], chunk, least, most, FIRST(width - 1), END(0), j);
+            continue;
+        }
         for (int v = 0; v < width; v++)
             for (int end = width; end > v; end--) {
                 int from = FIRST(v), to = END(end - 1);
@@ -457,10 +474,7 @@ static void sum_columns(const struct kernel *kernel, struct chunk *chunk)
                     from = END(end);
                 if (v > 0 && to > FIRST(v - 1))
                     to = FIRST(v - 1);
-                chunk->from = from > least ? from : least;
-                chunk->to = to < most ? to : most;
-                if (chunk->from < chunk->to)
-                    block[end - v - 1](chunk, j + v * LANES);
+                sum_shifts(block[end - v - 1], chunk, least, most, from, to, j + v * LANES);
             }
     }
 }

@@ -17,7 +17,7 @@ enum { BP_TOGETHER = 6, BP_SPREAD = 4 };
    [g receiver_stride + i ping_stride + lead + p]. Row i is the record's sample i - guard; upsampled records keep `width`
    of their `upsample` phases from `phase` on: row (f / upsample) width + f % upsample - phase for fine sample f. */
 struct bp_slab {
-    const void *re, *im;            /* real; 0 in the lead and behind the last ping */
+    const void *re, *im;            /* real; 0 in the lead and as far behind the last ping */
     size_t receiver_stride;
     int ping_stride, lead;
     int phase, width;
