@@ -1,337 +1,40 @@
-/* The inner loops of the general engine: delays of a line of pixels, exactly or from a block's quintic, then the sums. Delay
-   and phase are double, reduced to a fraction of a turn before they become `real`. Short loops over arrays in the
-   first-level cache, so that many pixels are in flight at once. This file is compiled once for each precision and
-   instruction set (BP_ISA names it). */
+/* The inner loops of the general engine: delays of a line of pixels, exactly or from a block's quintic, as runs of pixels for
+   bp_take.c. Delay and phase are double, reduced to a fraction of a turn before they become `real`; where lines bend
+   little, only their straight part is. Short loops over arrays in the first-level cache, so that many pixels are in flight
+   at once. This file is compiled once for each precision and instruction set (BP_ISA names it). */
 #include "bp_sum.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "lanes.h"
-#include "turn.h"
+#include "bp_run.h"
 
-/* PICK: each four floats of a vector permuted by the low two bits of an index. REPEAT: four floats from memory as each four of
-   a vector. ROUND, FLOOR: to whole floats; NEAREST: to integers. One instruction each, which no compiler makes of portable
-   code. */
-#if defined __AVX__ && !REAL_DOUBLE
+#define BP_SUM REAL_ISA_NAME(bp_sum)
+
+/* Vectors of float rounded to whole ones, and to integers. */
+#if WINDOWS
 #include <immintrin.h>
-#define WINDOWS 1
 #if VECTOR_BYTES == 64
-#define PICK(values, index) (vector_real)_mm512_permutevar_ps((__m512)(values), (__m512i)(index))
-#define REPEAT(from) (vector_real)_mm512_broadcast_f32x4(_mm_loadu_ps(from))
 #define ROUND(values) (vector_real)_mm512_roundscale_ps((__m512)(values), _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)
 #define FLOOR(values) (vector_real)_mm512_roundscale_ps((__m512)(values), _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC)
 #define NEAREST(values) (vector_int)_mm512_cvtps_epi32((__m512)(values))
 #else
-#define PICK(values, index) (vector_real)_mm256_permutevar_ps((__m256)(values), (__m256i)(index))
-#define REPEAT(from) (vector_real)_mm256_broadcast_ps((const __m128 *)(from))
 #define ROUND(values) (vector_real)_mm256_round_ps((__m256)(values), _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)
 #define FLOOR(values) (vector_real)_mm256_round_ps((__m256)(values), _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC)
 #define NEAREST(values) (vector_int)_mm256_cvtps_epi32((__m256)(values))
 #endif
-#else
-#define WINDOWS 0
 #endif
 
-#define BP_SUM REAL_ISA_NAME(bp_sum)
-
-#define INLINE static inline __attribute__((always_inline))
-
 enum {
-    RUN = 256,                      /* pixels at a time: a group's runs stay in the first-level cache */
-    GROUP = 4,                      /* receivers that are summed together: sums are loaded and stored once for all */
     NODES = 6,                      /* of a quintic */
     DELAYS = NODES * BP_BLOCKS,     /* that are evaluated together, to each receiver of a group */
     BITS = 19,                      /* of a point's fraction */
-    FLAT_LEAST = 64,                /* pixels of a run below which single precision does not pay */
     SPAN = 4000,                    /* whole points that fit beside them in 32 bits, with a sign */
-    PARTS = LANES * sizeof(double) / VECTOR_BYTES       /* vectors of doubles to a vector of `real` */
+    FLAT_LEAST = 64                 /* pixels of a run below which single precision does not pay */
 };
 
-typedef double vector_double __attribute__((vector_size(VECTOR_BYTES)));
 typedef unsigned long long vector_long __attribute__((vector_size(VECTOR_BYTES)));
-typedef float vector_bits __attribute__((vector_size(VECTOR_BYTES)));     /* moved, not computed with */
-typedef double two_floats __attribute__((may_alias, aligned(sizeof(real))));     /* moved at once */
-typedef float bits __attribute__((may_alias));
-typedef float quad __attribute__((vector_size(16), aligned(sizeof(float)), may_alias));
-typedef int vector_int __attribute__((vector_size(LANES * sizeof(int)), aligned(sizeof(int)), may_alias));
 typedef unsigned vector_unsigned __attribute__((vector_size(LANES * sizeof(int)), aligned(sizeof(int)), may_alias));
-
-TURN(turn_vector, vector_real, TURN_SINE, TURN_COSINE)
-#if WINDOWS
-TURN(turn_short, vector_real, TURN_SHORT_SINE, TURN_SHORT_COSINE)
-#endif
-
-/* How the samples of neighbouring pixels are loaded. */
-enum loading {
-    APART,                          /* each by itself */
-    FOURS,                          /* those of four pixels at once: at most half a sample from pixel to pixel */
-    TOGETHER                        /* those of a vector at once: at most 2/LANES */
-};
-
-/* Where a run of pixels reads a record. */
-struct run {
-    int base;                       /* sample of the upsampled record from which the others are counted */
-    _Alignas(VECTOR_BYTES) int sample[RUN];     /* on from which the taps are counted */
-    _Alignas(VECTOR_BYTES) int phase[RUN];      /* row of the table of weights; where one is used */
-    _Alignas(VECTOR_BYTES) real rest[RUN];      /* position in the interval of a cubic, or a line's fraction */
-    _Alignas(VECTOR_BYTES) real turns[RUN];     /* phase, |turns| <= 1/2 */
-};
-
-/* PART: the order of pixels in the parts of a vector, from which one shuffle takes the low halves of all (EVEN) or the high
-   ones (ODD) as they come. ALL: all pixels in order. SECONDS: the second of each four; QUADS: fours side by side. */
-#if REAL_DOUBLE
-#define ALL(v) PART(v, 0)
-#if VECTOR_BYTES == 64
-#define PART(v, n) {v(0), v(1), v(2), v(3), v(4), v(5), v(6), v(7)}
-#define EVEN 0, 2, 4, 6, 8, 10, 12, 14
-#elif VECTOR_BYTES == 32
-#define PART(v, n) {v(0), v(1), v(2), v(3)}
-#define EVEN 0, 2, 4, 6
-#else
-#define PART(v, n) {v(0), v(1)}
-#define EVEN 0, 2
-#endif
-#else
-#if VECTOR_BYTES == 64
-#define PART(v, n) {v(n), v(n + 1), v(n + 4), v(n + 5), v(n + 8), v(n + 9), v(n + 12), v(n + 13)}
-#define EVEN 0, 2, 16, 18, 4, 6, 20, 22, 8, 10, 24, 26, 12, 14, 28, 30
-#define ODD 1, 3, 17, 19, 5, 7, 21, 23, 9, 11, 25, 27, 13, 15, 29, 31
-#define ALL(v) {v(0), v(1), v(2), v(3), v(4), v(5), v(6), v(7), v(8), v(9), v(10), v(11), v(12), v(13), v(14), v(15)}
-#define SECONDS 1, 1, 1, 1, 5, 5, 5, 5, 9, 9, 9, 9, 13, 13, 13, 13
-#define JOIN(a, b) __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7)
-#define QUADS(v) __builtin_shufflevector(JOIN(v(0), v(1)), JOIN(v(2), v(3)), \
-                                         0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
-#elif VECTOR_BYTES == 32
-#define PART(v, n) {v(n), v(n + 1), v(n + 4), v(n + 5)}
-#define EVEN 0, 2, 8, 10, 4, 6, 12, 14
-#define ODD 1, 3, 9, 11, 5, 7, 13, 15
-#define ALL(v) {v(0), v(1), v(2), v(3), v(4), v(5), v(6), v(7)}
-#define SECONDS 1, 1, 1, 1, 5, 5, 5, 5
-#define QUADS(v) __builtin_shufflevector(v(0), v(1), 0, 1, 2, 3, 4, 5, 6, 7)
-#else
-#define PART(v, n) {v(n), v(n + 1)}
-#define EVEN 0, 2, 4, 6
-#define ODD 1, 3, 5, 7
-#define ALL(v) {v(0), v(1), v(2), v(3)}
-#endif
-#endif
-
-/* ---- sums ---- */
-
-INLINE vector_real *at(const real *values)
-{
-    return (vector_real *)values;
-}
-
-/* LANES values: copies, which are faster than gather instructions. */
-INLINE vector_real gather(const real *from, const int *index)
-{
-#define FROM(n) from[index[n]]
-    return (vector_real)ALL(FROM);
-}
-
-/* Values and those behind them. */
-INLINE void gather_two(const real *from, const int *index, vector_real *value, vector_real *next)
-{
-#if REAL_DOUBLE
-    *value = gather(from, index);
-    *next = gather(from + 1, index);
-#else
-#define BOTH(n) *(const two_floats *)(from + index[n])
-    vector_real low = (vector_real)(vector_double)PART(BOTH, 0), high = (vector_real)(vector_double)PART(BOTH, 2);
-    *value = __builtin_shufflevector(low, high, EVEN);
-    *next = __builtin_shufflevector(low, high, ODD);
-#endif
-}
-
-#if WINDOWS
-/* Pixels' values by their places in windows of four; on a line, between two. */
-INLINE vector_real pick(bool line, vector_real windows, vector_int place, const real *rest)
-{
-    vector_real value = PICK(windows, place);
-    if (line)
-        value += *at(rest) * (PICK(windows, place + 1) - value);
-    return value;
-}
-
-/* The same out of windows that are loaded whole: from the predecessor of a middle pixel's sample on, where the others read
-   that sample or a neighbour of it. The last value is only a line's next one; else it may lie one past the row's end. */
-INLINE void take_windows(bool line, enum loading loading, const real *row, size_t row_length, const struct run *run, int i,
-                         vector_real *x, vector_real *y)
-{
-    const int *index = run->sample + i;
-    vector_int place = *(const vector_int *)index;
-    vector_real re, im;
-    if (loading == TOGETHER) {
-        const int *middle = index + LANES / 2 - 1;
-        const real *from = row + *middle - 1;
-#define MIDDLE(n) (*(const bits *)middle)       /* an int would come from its register, by two instructions for one */
-        place = place + 1 - (vector_int)(vector_bits)ALL(MIDDLE);
-        re = REPEAT(from);
-        im = REPEAT(from + row_length);
-    } else {
-#define WINDOW(n) (*(const quad *)(row + index[4 * (n) + 1] - 1))
-        place = place + 1 - __builtin_shufflevector(place, place, SECONDS);
-        re = QUADS(WINDOW);
-        row += row_length;
-        im = QUADS(WINDOW);
-    }
-    *x = pick(line, re, place, run->rest + i);
-    *y = pick(line, im, place, run->rest + i);
-}
-#endif
-
-/* The same pixel by pixel. */
-INLINE vector_real take_apart(bool line, const real *row, const struct run *run, int i)
-{
-    vector_real value, next;
-    if (!line)
-        return gather(row, run->sample + i);
-    gather_two(row, run->sample + i, &value, &next);
-    return value + *at(run->rest + i) * (next - value);
-}
-
-/* Add to LANES pixels from i on what they take from a record: the nearest value each, or between two on a line. */
-INLINE void take(bool line, enum loading loading, const real *row, size_t row_length, const struct run *run, int i,
-                 vector_real *re, vector_real *im)
-{
-    vector_real c, s, x, y;
-#if WINDOWS
-    if (loading != APART) {
-        turn_short(*at(run->turns + i), &c, &s);
-        take_windows(line, loading, row, row_length, run, i, &x, &y);
-    } else
-#endif
-    {
-        (void)loading;
-        turn_vector(*at(run->turns + i), &c, &s);
-        x = take_apart(line, row, run, i);
-        y = take_apart(line, row + row_length, run, i);
-    }
-    *re = *re + x * c - y * s;
-    *im = *im + x * s + y * c;
-}
-
-/* One run of each of `group` records, a constant where this is inlined. */
-INLINE void add_taken(bool line, enum loading loading, int group, const real *row, size_t row_length, int count,
-                      struct run *runs, real *re, real *im)
-{
-    const real *from[GROUP];
-    int i = 0;
-    for (int g = 0; g < group; g++) {
-        from[g] = row + 2 * (size_t)g * row_length + runs[g].base;
-        OPAQUE(from[g]);
-    }
-    for (; i <= count - LANES; i += LANES) {
-        vector_real x = *at(re + i), y = *at(im + i);
-        for (int g = 0; g < group; g++)
-            take(line, loading, from[g], row_length, &runs[g], i, &x, &y);
-        *at(re + i) = x;
-        *at(im + i) = y;
-    }
-    if (i == count)
-        return;
-    vector_real x = {0}, y = {0};
-    for (int g = 0; g < group; g++) {
-        for (int k = count; k < i + LANES; k++) {       /* the last vector's other pixels read what may be read */
-            runs[g].sample[k] = runs[g].sample[count - 1];
-            runs[g].rest[k] = runs[g].turns[k] = 0;
-        }
-        take(line, loading, from[g], row_length, &runs[g], i, &x, &y);
-    }
-    for (int k = 0; i + k < count; k++) {
-        re[i + k] += x[k];
-        im[i + k] += y[k];
-    }
-}
-
-INLINE void add_all(bool line, enum loading loading, int group, const real *row, size_t row_length, int count,
-                    struct run *runs, real *re, real *im)
-{
-    if (group == GROUP)
-        add_taken(line, loading, GROUP, row, row_length, count, runs, re, im);
-    else
-        for (int g = 0; g < group; g++)
-            add_taken(line, loading, 1, row + 2 * (size_t)g * row_length, row_length, count, &runs[g], re, im);
-}
-
-/* Many weights, from a grid of phases or from cubics in the fraction; the record's parts lie apart. `taps` is a constant
-   where this is inlined, so that the loops over it unroll. */
-INLINE void add_taps(const struct bp_table *table, int taps, const real *row_re, const real *row_im,
-                     int count, const struct run *run, real *re, real *im)
-{
-    const real *weights = table->weights;
-    real wr[RUN], wi[RUN];
-#pragma omp simd
-    for (int i = 0; i < count; i++)
-        turn(run->turns[i], &wr[i], &wi[i]);
-    for (int i = 0; i < count; i++) {
-        const real *x = row_re + run->sample[i], *y = row_im + run->sample[i];
-        real vr = 0, vi = 0;
-        if (table->phases > 0) {
-            const real *w = weights + (size_t)run->phase[i] * (size_t)taps;
-#pragma omp simd reduction(+ : vr, vi)
-            for (int k = 0; k < taps; k++) {
-                vr += w[k] * x[k];
-                vi += w[k] * y[k];
-            }
-        } else {
-            const real *w = weights + 4 * (size_t)run->phase[i] * (size_t)taps, u = run->rest[i];
-#pragma omp simd reduction(+ : vr, vi)
-            for (int k = 0; k < taps; k++) {
-                real weight = w[k] + u * (w[taps + k] + u * (w[2 * taps + k] + u * w[3 * taps + k]));
-                vr += weight * x[k];
-                vi += weight * y[k];
-            }
-        }
-        re[i] += vr * wr[i] - vi * wi[i];
-        im[i] += vr * wi[i] + vi * wr[i];
-    }
-}
-
-/* One run of each of `group` records, whose rows follow one another. */
-static void add_runs(const struct bp_table *table, enum loading loading, int group, const real *row, int row_length, int count,
-                     struct run *runs, real *re, real *im)
-{
-    const size_t length = (size_t)row_length;
-    const bool line = table->reading == BP_LINE;
-    row += table->guard + table->first;
-    if (!line && table->reading != BP_NEAREST) {
-        for (int g = 0; g < group; g++, row += 2 * length) {
-            const real *from = row + runs[g].base;
-            switch (table->taps) {  /* the shipped kernels unroll, any other length works as well */
-            case 8: add_taps(table, 8, from, from + length, count, &runs[g], re, im); break;
-            case 16: add_taps(table, 16, from, from + length, count, &runs[g], re, im); break;
-            case 20: add_taps(table, 20, from, from + length, count, &runs[g], re, im); break;
-            default: add_taps(table, table->taps, from, from + length, count, &runs[g], re, im); break;
-            }
-        }
-        return;
-    }
-    switch (loading) {
-    case APART:
-        if (line)
-            add_all(true, APART, group, row, length, count, runs, re, im);
-        else
-            add_all(false, APART, group, row, length, count, runs, re, im);
-        break;
-    case FOURS:
-        if (line)
-            add_all(true, FOURS, group, row, length, count, runs, re, im);
-        else
-            add_all(false, FOURS, group, row, length, count, runs, re, im);
-        break;
-    case TOGETHER:
-        if (line)
-            add_all(true, TOGETHER, group, row, length, count, runs, re, im);
-        else
-            add_all(false, TOGETHER, group, row, length, count, runs, re, im);
-        break;
-    }
-}
-
-/* ---- delays ---- */
 
 /* Places (x, r, 0) on a line as a ping sees them: seconds from the transmitter, and the vector to there from where the
    array's origin is by then. */
@@ -415,7 +118,7 @@ static void sum_exact(const struct bp_medium *medium, const struct bp_table *tab
                 run.rest[i] = (real)(cubics ? q * one - point : run.phase[i] / one);
                 run.turns[i] = (real)(turns - floor(turns + 0.5));
             }
-            add_runs(table, APART, 1, (const real *)ping->rows + 2 * (size_t)m * (size_t)ping->row_length, ping->row_length,
+            BP_TAKE(table, APART, 1, (const real *)ping->rows + 2 * (size_t)m * (size_t)ping->row_length, ping->row_length,
                      count, &run, re + first, im + first);
         }
     }
@@ -644,7 +347,7 @@ INLINE void sum_block(const struct bp_table *table, int group, const real *row, 
             case BP_CUBICS: points(c, g, scale, first - middle, count, BP_CUBICS, 1, &runs[g]); break;
             }
         }
-        add_runs(table, loading, group, row, row_length, count, runs, re + first, im + first);
+        BP_TAKE(table, loading, group, row, row_length, count, runs, re + first, im + first);
     }
 }
 
