@@ -517,9 +517,14 @@ INLINE void join_few(const struct chunk *chunk, int taps, int n, const int *shif
     }
     if (groups[chunk->begin].phases == 1)
         return;
-    for (int e = 1; e < n; e += 2) {
-        apart[count] = e;
-        count += offset[e] != offset[e - 1];
+    for (int e = 0; e < n; e += LANES) {        /* most pairs read the same sample, and so do their neighbours */
+        int differ = 0;
+        for (int k = 0; k < LANES; k += 2)
+            differ |= offset[e + k] ^ offset[e + k + 1];
+        for (int k = 1; differ && k < LANES; k += 2) {
+            apart[count] = e + k;
+            count += offset[e + k] != offset[e + k - 1];
+        }
     }
     for (int i = 0, g = chunk->begin; i < count; i++) {
         int e = apart[i];

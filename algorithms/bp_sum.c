@@ -89,11 +89,12 @@ static void sum_exact(const struct bp_medium *medium, const struct bp_table *tab
                       const struct pixel_line *line, const struct scale *scale, int begin, int end, real *re, real *im)
 {
     struct places places;
-    struct run run = {.base = 0};
+    struct run run;
     double tau[RUN];
     const struct motion motion = motion_make(medium, ping);
     const bool cubics = table->reading == BP_CUBICS;
     const double one = cubics ? BP_INTERVALS : table->phases;
+    run.base = 0;
     for (int first = begin; first < end; first += RUN) {
         const int count = end - first < RUN ? end - first : RUN;
         places.count = count;

@@ -1,5 +1,6 @@
 /* The command `bench`: how near the engines come to the machine's limits at the papers' sizes. Everything is a ratio of one
-   run: against the processor's multiply-add peak, and against the control loop. */
+   run: against the processor's multiply-add peak, and against the control loop. Each line is measured in several rounds,
+   minutes apart, since what else the machine does lasts for seconds to minutes; printed are medians of the rounds. */
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
@@ -45,6 +46,17 @@ struct bench {
     int threads;
 };
 
+/* What is measured in each round. */
+enum value { PLAN_S, RUN_S, SUM_S, RATE, PEAK, FRACTION, PER_PEAK, CONTROL, RUN_TO_SUM, GAIN, VALUES };
+enum { ROUNDS = 3 };
+
+/* One line of the table. */
+struct line {
+    int threads, runs;              /* of all rounds; no runs: not measured */
+    double pairs, plan_bytes, process_bytes;
+    double value[VALUES][ROUNDS];
+};
+
 static double stage_seconds(const struct stages *stages, const char *name)
 {
     for (int k = 0; k < stages->count; k++)
@@ -60,49 +72,65 @@ static double memory_peak(void)
     return getrusage(RUSAGE_SELF, &usage) == 0 ? 1024.0 * (double)usage.ru_maxrss : NAN;
 }
 
-/* One row; the peak is measured before and after, as the control is. *alone_s: the run's seconds on one thread, NAN before they are known. */
-static enum status measure(struct bench *bench, const struct bench_case *one, const struct method *method,
-                           const struct problem *problem, int threads, const struct echoes *echoes,
-                           const struct echoes *control_echoes, double *alone_s)
+/* One round of a line; the peak is measured before and after, as the control is. `alone`: the line on one thread. */
+static enum status measure(const struct bench *bench, const struct bench_case *one, const struct method *method,
+                           const struct problem *problem, const struct echoes *echoes, const struct echoes *control_echoes,
+                           const struct line *alone, int round, struct line *line)
 {
     char text[96];
     struct spec spec;
     struct image image;
     struct timing timing;
-    const char *precision = precision_name(problem->precision);
-    snprintf(text, sizeof text, "%s:%sengine=%s,precision=%s", method->name, method->settings, one->engine, precision);
+    snprintf(text, sizeof text, "%s:%sengine=%s,precision=%s", method->name, method->settings, one->engine,
+             precision_name(problem->precision));
     enum status status = spec_parse(text, &spec);
     if (status != STATUS_OK)
         return status;
-    omp_set_num_threads(threads);
-    double peak = 0.5 * peak_flops(problem->precision, threads);
+    omp_set_num_threads(line->threads);
+    double peak = 0.5 * peak_flops(problem->precision, line->threads);
     status = image_allocate(problem->patch_count, problem->patches, problem->precision, &image);
     if (status == STATUS_OK)
         status = timing_measure(spec.algorithm, problem, spec.options, echoes, control_echoes, &image, &timing);
-    peak += 0.5 * peak_flops(problem->precision, threads);
+    peak += 0.5 * peak_flops(problem->precision, line->threads);
     image_free(&image);
     spec_free(&spec);
     omp_set_num_threads(bench->threads);
     if (status != STATUS_OK)
         return status;
     const double sums = stage_seconds(&timing.stages, "focus"), rate = timing.work.pairs / sums;
-    const double fraction = method->pair_flops * rate / peak, control = timing.control_s / sums;
-    if (threads == 1)
-        *alone_s = timing.run_s;
-    const double gain = *alone_s / timing.run_s;
-    fprintf(bench->file, "%s,%s,%s,%s,%d,%d,%d,%.9g,%.4g,%.4g,%.4g,%.4g,%.4g,%g,%.4g,%.4g,%.4g,%.4g,", one->scene,
-            one->engine, method->name, precision, threads, problem->patches[0].r_count, timing.runs, timing.work.pairs,
-            timing.plan_s, timing.run_s, sums, rate, peak, method->pair_flops, fraction, rate / peak, control,
-            timing.run_s / sums);
-    char gain_text[24] = "";
-    if (threads > 1 && !isnan(gain))
-        snprintf(gain_text, sizeof gain_text, "%.3f", gain);
-    fprintf(bench->file, "%s,%.6g,%.6g\n", gain_text, timing.work.bytes, memory_peak());
-    printf("%-17s %-9s %-10s %-6s %d %7.3f %7.3f %7.3f %6.3f %8.5f %7.1f %7.2f %6s %6.0f\n", one->scene, one->engine,
-           method->name, precision, threads, timing.run_s, sums, 1e-9 * rate, fraction, rate / peak, control,
-           timing.run_s / sums, *gain_text ? gain_text : "-", memory_peak() / 0x1p20);
-    fflush(stdout);
+    const double values[VALUES] = {
+        [PLAN_S] = timing.plan_s, [RUN_S] = timing.run_s, [SUM_S] = sums, [RATE] = rate, [PEAK] = peak,
+        [FRACTION] = method->pair_flops * rate / peak, [PER_PEAK] = rate / peak, [CONTROL] = timing.control_s / sums,
+        [RUN_TO_SUM] = timing.run_s / sums, [GAIN] = alone->runs > 0 ? alone->value[RUN_S][round] / timing.run_s : NAN,
+    };
+    for (int k = 0; k < VALUES; k++)
+        line->value[k][round] = values[k];
+    line->runs += timing.runs;
+    line->pairs = timing.work.pairs;
+    line->plan_bytes = timing.work.bytes;
+    if (round == 0)
+        line->process_bytes = memory_peak();
     return STATUS_OK;
+}
+
+static void report(const struct bench *bench, const struct bench_case *one, const struct method *method,
+                   const struct problem *problem, struct line *line)
+{
+    const char *precision = precision_name(problem->precision);
+    double v[VALUES];
+    char gain[24] = "";
+    for (int k = 0; k < VALUES; k++)
+        v[k] = median(line->value[k], ROUNDS);
+    if (line->threads > 1 && !isnan(v[GAIN]))
+        snprintf(gain, sizeof gain, "%.3f", v[GAIN]);
+    fprintf(bench->file, "%s,%s,%s,%s,%d,%d,%d,%.9g,%.4g,%.4g,%.4g,%.4g,%.4g,%g,%.4g,%.4g,%.4g,%.4g,%s,%.6g,%.6g\n",
+            one->scene, one->engine, method->name, precision, line->threads, problem->patches[0].r_count, line->runs,
+            line->pairs, v[PLAN_S], v[RUN_S], v[SUM_S], v[RATE], v[PEAK], method->pair_flops, v[FRACTION], v[PER_PEAK],
+            v[CONTROL], v[RUN_TO_SUM], gain, line->plan_bytes, line->process_bytes);
+    printf("%-17s %-9s %-10s %-6s %d %7.3f %7.3f %7.3f %6.3f %8.5f %7.1f %7.2f %6s %6.0f\n", one->scene, one->engine,
+           method->name, precision, line->threads, v[RUN_S], v[SUM_S], 1e-9 * v[RATE], v[FRACTION], v[PER_PEAK], v[CONTROL],
+           v[RUN_TO_SUM], *gain ? gain : "-", line->process_bytes / 0x1p20);
+    fflush(stdout);
 }
 
 static enum status bench_case(struct bench *bench, const struct bench_case *one)
@@ -120,15 +148,25 @@ static enum status bench_case(struct bench *bench, const struct bench_case *one)
     status = scene_simulate(&scene, &echoes[PRECISION_DOUBLE]);
     if (status == STATUS_OK)
         status = echoes_convert(&echoes[PRECISION_DOUBLE], PRECISION_FLOAT, &echoes[PRECISION_FLOAT]);
+    struct line lines[METHODS][2][2] = {0};     /* [method][precision][on one thread, on all] */
+    for (int round = 0; round < ROUNDS; round++)
+        for (int m = 0; m < one->methods; m++)
+            for (int p = 0; p < 2; p++)
+                for (int n = 0; n < 2 && status == STATUS_OK; n++) {
+                    const bool alone = m < one->alone && n == 0, all = n == 1 && (bench->threads > 1 || m >= one->alone);
+                    struct problem problem = {&scene.acquisition, 1, &grid, (enum precision)p};
+                    lines[m][p][n].threads = n == 0 ? 1 : bench->threads;
+                    if (alone || all)
+                        status = measure(bench, one, &methods[m], &problem, &echoes[p], &echoes[PRECISION_FLOAT],
+                                         &lines[m][p][0], round, &lines[m][p][n]);
+                }
     for (int m = 0; m < one->methods; m++)
-        for (int p = 0; p < 2; p++) {
-            struct problem problem = {&scene.acquisition, 1, &grid, (enum precision)p};
-            double alone_s = NAN;
-            for (int n = m < one->alone ? 0 : 1; n < 2 && status == STATUS_OK; n++)
-                if (n == 0 || bench->threads > 1 || m >= one->alone)
-                    status = measure(bench, one, &methods[m], &problem, n == 0 ? 1 : bench->threads, &echoes[p],
-                                     &echoes[PRECISION_FLOAT], &alone_s);
-        }
+        for (int p = 0; p < 2; p++)
+            for (int n = 0; n < 2 && status == STATUS_OK; n++) {
+                struct problem problem = {&scene.acquisition, 1, &grid, (enum precision)p};
+                if (lines[m][p][n].runs > 0)
+                    report(bench, one, &methods[m], &problem, &lines[m][p][n]);
+            }
     echoes_free(&echoes[PRECISION_DOUBLE]);
     echoes_free(&echoes[PRECISION_FLOAT]);
     scene_free(&scene);
