@@ -155,14 +155,24 @@ INLINE void add_taken(bool line, enum loading loading, int group, const real *ro
     }
 }
 
-INLINE void add_all(bool line, enum loading loading, int group, const real *row, size_t row_length, int count,
-                    struct run *runs, real *re, real *im)
+INLINE void add_group(bool line, enum loading loading, int group, const real *row, size_t row_length, int count,
+                      struct run *runs, real *re, real *im)
 {
     if (group == GROUP)
         add_taken(line, loading, GROUP, row, row_length, count, runs, re, im);
     else
         for (int g = 0; g < group; g++)
             add_taken(line, loading, 1, row + 2 * (size_t)g * row_length, row_length, count, &runs[g], re, im);
+}
+
+/* `loading` is a constant where this is inlined. */
+INLINE void add_all(bool line, enum loading loading, int group, const real *row, size_t row_length, int count,
+                    struct run *runs, real *re, real *im)
+{
+    if (line)
+        add_group(true, loading, group, row, row_length, count, runs, re, im);
+    else
+        add_group(false, loading, group, row, row_length, count, runs, re, im);
 }
 
 /* Many weights, from a grid of phases or from cubics in the fraction; the record's parts lie apart. `taps` is a constant
@@ -218,23 +228,8 @@ void BP_TAKE(const struct bp_table *table, enum loading loading, int group, cons
         return;
     }
     switch (loading) {
-    case APART:
-        if (line)
-            add_all(true, APART, group, row, length, count, runs, re, im);
-        else
-            add_all(false, APART, group, row, length, count, runs, re, im);
-        break;
-    case FOURS:
-        if (line)
-            add_all(true, FOURS, group, row, length, count, runs, re, im);
-        else
-            add_all(false, FOURS, group, row, length, count, runs, re, im);
-        break;
-    case TOGETHER:
-        if (line)
-            add_all(true, TOGETHER, group, row, length, count, runs, re, im);
-        else
-            add_all(false, TOGETHER, group, row, length, count, runs, re, im);
-        break;
+    case APART: add_all(line, APART, group, row, length, count, runs, re, im); break;
+    case FOURS: add_all(line, FOURS, group, row, length, count, runs, re, im); break;
+    case TOGETHER: add_all(line, TOGETHER, group, row, length, count, runs, re, im); break;
     }
 }
