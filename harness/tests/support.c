@@ -65,7 +65,7 @@ double support_peak(const struct image *image)
     for (int k = 0; k < image->patch_count; k++)
         for (int i = 0; i < image->patches[k].r_count; i++)
             for (int j = 0; j < image->patches[k].x_count; j++)
-                peak = fmax(peak, cabs(image_pixel(image, k, i, j)));
+                peak = worse_of(peak, cabs(image_pixel(image, k, i, j)));
     return peak;
 }
 

@@ -2,12 +2,7 @@
 #ifndef SASBENCH_TEST_SUPPORT_H
 #define SASBENCH_TEST_SUPPORT_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "assertions.h"
 
 #include "../echo_data.h"
 #include "../scene.h"

@@ -1,15 +1,10 @@
 /* The acquisition's promises and track shapes, and the memory of samples and images. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "../echo_data.h"
+#include "assertions.h"
 
 enum { SAMPLES = 16, RECEIVERS = 3, PINGS = 8, PULSE = 4 };
 

@@ -119,7 +119,7 @@ static void naive_sums(void **state)
             for (int j = 0; j < grid.x_count; j++) {
                 double complex exact = naive(&echoes, grid.x_first + j * grid.x_step, grid.r_first + i * grid.r_step,
                                              method, &pairs);
-                largest = fmax(largest, cabs(image_pixel(&image, 0, i, j) - exact));
+                largest = worse_of(largest, cabs(image_pixel(&image, 0, i, j) - exact));
             }
         if ((double)pairs != pairs_count(&problem))
             fail_msg("seed %d: %lld pairs by definition, %.0f counted", (int)seed, pairs, pairs_count(&problem));
@@ -214,7 +214,7 @@ static void invariant_equals_exact(void **state)
                 double difference = support_difference(&invariant, &exact);
                 if (!(difference < (p ? 1e-10 : 3e-6)))
                     fail_msg("%s, %s: differs by %g", invariant_cases[k].name, spec, difference);
-                worst[p] = fmax(worst[p], difference);
+                worst[p] = worse_of(worst[p], difference);
                 image_free(&exact);
                 image_free(&invariant);
             }

@@ -103,7 +103,7 @@ static void phase_below_limit(void **state)
                     double cycles = a.fc * delay_exact(a.tx[0], a.rx[0], a.velocity[0], p, a.sound_speed);
                     double complex exact = cexp(I * 2 * pi * (cycles - rint(cycles)));
                     for (int n = 0; n < 2; n++)
-                        worst[n] = fmax(worst[n], cabs(image_pixel(&images[n], 0, i, j) - exact));
+                        worst[n] = worse_of(worst[n], cabs(image_pixel(&images[n], 0, i, j) - exact));
                 }
             image_free(&images[0]);
             image_free(&images[1]);
@@ -211,7 +211,7 @@ static struct comparison compare(const struct image *fast, const struct image *e
             if (ties == 0)
                 difference += creal(delta * conj(delta));
             else
-                c.worst = fmax(c.worst, cabs(delta) / ties);
+                c.worst = worse_of(c.worst, cabs(delta) / ties);
             c.ties += ties;
             c.pixels += ties > 0;
         }
@@ -235,7 +235,7 @@ static void fast_near_exact(void **state)
         double pairs = (double)a.pings * a.receivers * grid.x_count * grid.r_count, largest[2] = {0, 0}, peak = 0;
         int ties = 0, pixels = 0;
         for (int n = 0; n < a.samples * a.receivers * a.pings; n++)
-            peak = fmax(peak, cabs(((double complex *)echoes.samples)[n]));
+            peak = worse_of(peak, cabs(((double complex *)echoes.samples)[n]));
         for (int m = 0; m < METHODS; m++) {
             struct image exact, fast, again;
             char spec[96];
@@ -256,7 +256,7 @@ static void fast_near_exact(void **state)
                     || !(c.ties <= 2 * expected + 20))
                     fail_msg("%s, %s: differs by %g; by %g where %d pairs are near a tie", image_cases[k].name, spec,
                              c.difference, c.worst, c.ties);
-                largest[p] = fmax(largest[p], c.difference);
+                largest[p] = worse_of(largest[p], c.difference);
                 ties += c.ties;
                 pixels += c.pixels;
                 image_free(&again);
@@ -300,7 +300,7 @@ static void instruction_sets_agree(void **state)
                         assert_int_equal(support_image(spec, problem, &echoes, &other), STATUS_OK);
                         unsetenv("SASBENCH_ISA");
                         double *most = n == 1 && p == 0 ? &worst_fast : &worst[p];
-                        *most = fmax(*most, support_difference(&other, &best));
+                        *most = worse_of(*most, support_difference(&other, &best));
                         image_free(&other);
                     }
                     image_free(&best);

@@ -196,7 +196,7 @@ static void linearity(void **state)
     double worst = 0;
     for (int i = 0; i < grid.r_count; i++)
         for (int j = 0; j < grid.x_count; j++)
-            worst = fmax(worst, cabs(2 * I * image_pixel(&image[0], 0, i, j) - 0.5 * image_pixel(&image[1], 0, i, j)
+            worst = worse_of(worst, cabs(2 * I * image_pixel(&image[0], 0, i, j) - 0.5 * image_pixel(&image[1], 0, i, j)
                                      - image_pixel(&image[2], 0, i, j)));
     assert_true(worst < 1e-12 * support_peak(&image[2]));
     for (int k = 0; k < 3; k++) {

@@ -2,11 +2,7 @@
 #define _GNU_SOURCE                 /* memmem */
 #include <dirent.h>
 #include <math.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,10 +10,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <matio.h>
 
 #include "../matfile.h"
+#include "assertions.h"
 
 static char directory[128];
 static char path[160];              /* the one file in it */

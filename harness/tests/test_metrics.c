@@ -1,24 +1,12 @@
 /* Metrics: slices of exact images against independent numbers, closed forms, and what must stay undefined. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "../../algorithms/delay.h"
 #include "../echo_data.h"
 #include "../metrics.h"
-
-/* assert_float_equal takes NAN for equal to anything. */
-static void assert_close(double value, double wanted, double slack)
-{
-    if (!(fabs(value - wanted) <= slack))
-        fail_msg("%.12g is not %.12g +- %.3g", value, wanted, slack);
-}
+#include "assertions.h"
 
 /* --- Exact images of one target, straight from the formulas -------------------------------------------------- */
 

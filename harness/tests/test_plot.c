@@ -1,18 +1,13 @@
 /* Pictures: the real scripts draw, and a script of our own reads back what they are given. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "../echo_data.h"
 #include "../plot.h"
+#include "assertions.h"
 
 /* SASBENCH_ROOT, the repository, comes from the build. */
 static const char *const real_plots = SASBENCH_ROOT "/plots";

@@ -1,11 +1,7 @@
 /* CSV files, the results folder through cuts and changes, and the terminal's table. */
 #include <locale.h>
 #include <math.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,11 +9,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "../csv.h"
 #include "../record.h"
 #include "../table.h"
+#include "assertions.h"
 
 #define MEASUREMENT_HEADER \
     "scene,algorithm,options,precision,threads,engine,status,reason,skipped,plan_s,run_s,run_min_s,runs,control_s," \
@@ -25,13 +20,6 @@
 #define TARGET_HEADER \
     "scene,algorithm,options,precision,target,axis,definition,extent_m,position_error_m,phase_error_rad,width_m," \
     "pslr_db,islr_db\n"
-
-/* assert_float_equal takes NAN for equal to anything. */
-static void assert_close(double value, double wanted, double slack)
-{
-    if (!(fabs(value - wanted) <= slack))
-        fail_msg("%.12g is not %.12g +- %.3g", value, wanted, slack);
-}
 
 /* --- A folder of its own for every test ---------------------------------------------------------------------- */
 

@@ -89,7 +89,7 @@ static double deviation(const struct image *image, int patch, const double *exac
     const struct grid *grid = &image->patches[patch];
     for (int i = 0; i < grid->r_count; i++)
         for (int j = 0; j < grid->x_count; j++, exact += 2)
-            worst = fmax(worst, cabs(image_pixel(image, patch, i, j) - (exact[0] + I * exact[1])) / peak);
+            worst = worse_of(worst, cabs(image_pixel(image, patch, i, j) - (exact[0] + I * exact[1])) / peak);
     return worst;
 }
 
@@ -97,7 +97,7 @@ static double sum_of_weights(const struct reference_scene *numbers)
 {
     double peak = 0;
     for (int j = 0; j < 81; j++)
-        peak = fmax(peak, hypot(numbers->azimuth.exact[2 * j], numbers->azimuth.exact[2 * j + 1]));
+        peak = worse_of(peak, hypot(numbers->azimuth.exact[2 * j], numbers->azimuth.exact[2 * j + 1]));
     return peak;
 }
 
@@ -153,7 +153,7 @@ static void exact_images(void **state)
         double along = deviation(&azimuth, 0, numbers->azimuth.exact, peak);
         double across = deviation(&others, 0, numbers->range.exact, peak), elsewhere = 0;
         for (int n = 0; n < 16; n++)
-            elsewhere = fmax(elsewhere, deviation(&others, 1 + n, numbers->pixels.exact + 2 * n, peak));
+            elsewhere = worse_of(elsewhere, deviation(&others, 1 + n, numbers->pixels.exact + 2 * n, peak));
         print_message("%s: exact values within %.1e (azimuth), %.1e (range), %.1e (pixels) of the peak\n",
                       numbers->scene, along, across, elsewhere);
         assert_true(along < 1e-8 && across < 1e-8 && elsewhere < 1e-8);

@@ -160,7 +160,7 @@ static void independent_numbers(void **state)
         for (int j = 0; j < 24; j++)
             for (int i = 0; i < 16; i++) {
                 double complex value = n->bp[2 * (j * 16 + i)] + I * n->bp[2 * (j * 16 + i) + 1];
-                worst = fmax(worst, cabs(image_pixel(&exact, 0, i, j) - value) / peak);
+                worst = worse_of(worst, cabs(image_pixel(&exact, 0, i, j) - value) / peak);
             }
         print_message("%s: back projection within %.1e of the peak\n", n->name, worst);
         assert_true(worst < 1e-4);

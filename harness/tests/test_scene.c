@@ -1,21 +1,16 @@
 /* Scene files: what the shipped ones hold, how keys arrive, what is refused and how that is said; grids. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "../../algorithms/delay.h"
 #include "../random.h"
 #include "../scene.h"
 #include "../simulate.h"
+#include "assertions.h"
 #include "reference_numbers.h"
 
 #define SHIPPED SASBENCH_ROOT "/scenes"

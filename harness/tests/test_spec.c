@@ -1,16 +1,11 @@
 /* SPEC parsing: what is accepted, what it becomes, and what the refusals say. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "../spec.h"
+#include "assertions.h"
 
 /* Two algorithms that exist only here: one with every type of param, one without any. */
 struct full_options {

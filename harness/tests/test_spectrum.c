@@ -1,15 +1,10 @@
 /* Two-dimensional spectra against the numbers of an independent implementation, and the largest errors of the
    formulas in LBF21's two set-ups. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include "../../algorithms/delay.h"
 #include "../../algorithms/spectrum.h"
+#include "assertions.h"
 #include "spectrum_numbers.h"
 
 static const double pi = 3.14159265358979323846;
@@ -24,7 +19,7 @@ static void independent_numbers(void **state)
         spectrum_function *const functions[] = {spectrum_exact, spectrum_lbf_printed, spectrum_lbf_corrected,
                                                 spectrum_lbf7, spectrum_pca};
         for (int j = 0; j < 5; j++)
-            worst = fmax(worst, fabs(functions[j](&lbf21, n[0], n[1], n[2], n[3] / lbf21.speed) - n[4 + j]));
+            worst = worse_of(worst, fabs(functions[j](&lbf21, n[0], n[1], n[2], n[3] / lbf21.speed) - n[4 + j]));
     }
     print_message("largest difference %.1e rad\n", worst);
     assert_true(worst < 1e-6);
@@ -63,8 +58,8 @@ static void largest_errors(void **state)
             for (int n = -100; n <= 100; n++)
                 for (int edge = -1; edge <= 1; edge++) {
                     double nu = n / 100.0 / table[k].tx_length, frequency = 150e3 + edge * 10e3;
-                    worst = fmax(worst, fabs(table[k].function(&lbf21, table[k].d, ranges[j], frequency, nu)
-                                             - spectrum_exact(&lbf21, table[k].d, ranges[j], frequency, nu)));
+                    worst = worse_of(worst, fabs(table[k].function(&lbf21, table[k].d, ranges[j], frequency, nu)
+                                                 - spectrum_exact(&lbf21, table[k].d, ranges[j], frequency, nu)));
                 }
             if (!(fabs(worst - table[k].expected[j]) <= table[k].tolerance))
                 fail_msg("row %d at %g m: %.5f, expected %.4f", (int)k, ranges[j], worst, table[k].expected[j]);
@@ -86,7 +81,7 @@ static void exactness(void **state)
             for (double u = -r; u <= r; u += 1e-3) {
                 double tau = delay_exact((struct vector){u, 0, 0}, (struct vector){u + d, 0, 0},
                                          (struct vector){setting.speed, 0, 0}, (struct vector){0, r, 0}, 1500);
-                largest = fmax(largest, -2 * pi * (frequency * tau + nu * u));
+                largest = worse_of(largest, -2 * pi * (frequency * tau + nu * u));
             }
             assert_true(largest - value < 1e-6 && value - largest < 2e-4);
             double closed = -r * spectrum_monostatic(&setting, frequency, nu);
