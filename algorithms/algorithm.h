@@ -85,16 +85,28 @@ struct work {
 
 enum param_type { PARAM_INTEGER, PARAM_REAL, PARAM_CHOICE };
 
-/* One setting: parsing, bounds, `info`, the CSV's options column and the sweep all come from this row. */
+/* One setting: parsing, bounds, `info`, the CSV's options column and the sweep all come from this row. Name, type and place
+   come from the field by PARAM or PARAM_NAMED. */
 struct param {
     const char *name, *summary;     /* name NULL ends the table */
     enum param_type type;           /* the field is an int (integer, choice: index) or a double (real) */
-    size_t offset;                  /* of the field in the options struct */
+    size_t offset, size;            /* of the field in the options struct */
     double initial, min, max;       /* default and closed bounds; for a choice initial is the index */
     const char *const *choices;     /* NULL-terminated names of a choice, else NULL */
     const char *sweep;              /* the ladder of values that `sweep` runs, separated by blanks; may be NULL */
     bool terse;                     /* left out of the options text while it has its default */
 };
+
+/* A row begins with  {PARAM(struct options, taps), .summary = ...  for a number, an int or a double, or with
+   {PARAM_NAMED(struct options, window, windows), ...  for a choice among names, an int. A field of another type does not
+   compile. */
+#define PARAM(options, field) \
+    PARAM_PLACE(options, field), \
+    .type = _Generic(((options *)NULL)->field, int: PARAM_INTEGER, double: PARAM_REAL)
+#define PARAM_NAMED(options, field, names) \
+    PARAM_PLACE(options, field), .type = _Generic(((options *)NULL)->field, int: PARAM_CHOICE), .choices = names
+#define PARAM_PLACE(options, field) \
+    .name = #field, .offset = offsetof(options, field), .size = sizeof ((options *)NULL)->field
 
 /* Promises that the conformance test checks. */
 enum trait {

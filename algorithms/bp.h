@@ -35,15 +35,14 @@ struct bp_options {
 enum bp_engine_choice { BP_ENGINE_AUTO, BP_ENGINE_GENERAL, BP_ENGINE_INVARIANT };
 extern const char *const bp_engine_names[], *const bp_exact_names[];
 #define BP_PARAMS \
-    {.name = "engine", .summary = "general: any track; invariant: tables, uniform straight tracks on the pixel raster", \
-     .type = PARAM_CHOICE, .offset = offsetof(struct bp_options, engine), .initial = BP_ENGINE_AUTO, \
-     .max = BP_ENGINE_INVARIANT, .choices = bp_engine_names, .terse = true}, \
-    {.name = "exact", .summary = "general engine, every delay evaluated: the plain path that tests compare with", \
-     .type = PARAM_CHOICE, .offset = offsetof(struct bp_options, exact), .max = 1, .choices = bp_exact_names, \
-     .terse = true}, \
-    {.name = "phase_limit", .summary = "rad: most that the general engine's interpolated delays change a pair's phase by", \
-     .type = PARAM_REAL, .offset = offsetof(struct bp_options, phase_limit), .initial = 1e-4, .min = 1e-8, .max = 0.1, \
-     .terse = true}
+    {PARAM_NAMED(struct bp_options, engine, bp_engine_names), \
+     .summary = "general: any track; invariant: tables, uniform straight tracks on the pixel raster", \
+     .initial = BP_ENGINE_AUTO, .max = BP_ENGINE_INVARIANT, .terse = true}, \
+    {PARAM_NAMED(struct bp_options, exact, bp_exact_names), \
+     .summary = "general engine, every delay evaluated: the plain path that tests compare with", .max = 1, .terse = true}, \
+    {PARAM(struct bp_options, phase_limit), \
+     .summary = "rad: most that the general engine's interpolated delays change a pair's phase by", \
+     .initial = 1e-4, .min = 1e-8, .max = 0.1, .terse = true}
 
 /* The callbacks of struct algorithm, for an interpolator. `options` begins with a struct bp_options and is only used during the
    call. Errors: STATUS_UNSUPPORTED when the engine asked for cannot do the problem, with the reason. */

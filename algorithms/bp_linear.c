@@ -13,8 +13,8 @@ struct options {
 };
 
 static const struct param params[] = {
-    {.name = "beta", .summary = "points inserted between two samples", .type = PARAM_INTEGER,
-     .offset = offsetof(struct options, beta), .initial = 8, .min = 0, .max = 1024, .sweep = "0 1 2 4 8 16 32"},
+    {PARAM(struct options, beta), .summary = "points inserted between two samples",
+     .initial = 8, .min = 0, .max = 1024, .sweep = "0 1 2 4 8 16 32"},
     BP_PARAMS,
     {.name = NULL},
 };

@@ -15,11 +15,11 @@ struct options {
 static const char *const windows[] = {"none", "kaiser", NULL};
 
 static const struct param params[] = {
-    {.name = "taps", .summary = "kernel length in samples, even", .type = PARAM_INTEGER,
-     .offset = offsetof(struct options, taps), .initial = 8, .min = 2, .max = 64, .sweep = "4 8 16 32"},
-    {.name = "window", .summary = "taper of the kernel: none (the papers') or Kaiser with beta = 5",
-     .type = PARAM_CHOICE, .offset = offsetof(struct options, window), .initial = WINDOW_NONE, .max = WINDOW_KAISER,
-     .choices = windows, .sweep = "none kaiser"},
+    {PARAM(struct options, taps), .summary = "kernel length in samples, even",
+     .initial = 8, .min = 2, .max = 64, .sweep = "4 8 16 32"},
+    {PARAM_NAMED(struct options, window, windows),
+     .summary = "taper of the kernel: none (the papers') or Kaiser with beta = 5", .initial = WINDOW_NONE,
+     .max = WINDOW_KAISER, .sweep = "none kaiser"},
     BP_PARAMS,
     {.name = NULL},
 };

@@ -43,22 +43,25 @@ extern const char *const rma_spacing_names[], *const rma_blend_names[], *const r
     *const rma_sum_names[], *const rma_phases_names[];
 
 /* The parameters that all methods have. */
-#define RMA_FIELD(field) .name = #field, .offset = offsetof(struct rma_options, field)
 #define RMA_PARAMS \
-    {RMA_FIELD(blocks), .summary = "range blocks of the conversion; 0: as Eq. (13) asks for", .type = PARAM_INTEGER, \
+    {PARAM(struct rma_options, blocks), .summary = "range blocks of the conversion; 0: as Eq. (13) asks for", \
      .initial = 0, .min = 0, .max = 4096, .sweep = "1 2 4 8 16 32"}, \
-    {RMA_FIELD(limit), .summary = "largest phase error inside a block (rad) where blocks = 0", .type = PARAM_REAL, \
+    {PARAM(struct rma_options, limit), .summary = "largest phase error inside a block (rad) where blocks = 0", \
      .initial = 0.78539816339744831, .min = 1e-3, .max = 100, .terse = true}, \
-    {RMA_FIELD(spacing), .summary = "blocks of equal width in r or in 1/r", .type = PARAM_CHOICE, \
-     .initial = RMA_INVERSE, .max = RMA_INVERSE, .choices = rma_spacing_names, .sweep = "uniform inverse", .terse = true}, \
-    {RMA_FIELD(blend), .summary = "blocks blend: each row is the cubic through the nearest four", .type = PARAM_CHOICE, .initial = 1, \
-     .max = 1, .choices = rma_blend_names, .sweep = "off on", .terse = true}, \
-    {RMA_FIELD(stolt), .summary = "Kaiser taps of the Stolt interpolation, or a direct sum", .type = PARAM_CHOICE, \
-     .initial = 3, .max = 5, .choices = rma_stolt_names, .sweep = "4 6 8 12 16", .terse = true}, \
-    {RMA_FIELD(sum), .summary = "receivers are summed before or after the range IFFT (check)", .type = PARAM_CHOICE, \
-     .initial = RMA_SUM_BEFORE, .max = RMA_SUM_AFTER, .choices = rma_sum_names, .terse = true}, \
-    {RMA_FIELD(phases), .summary = "by recurrence over the receivers, or by libm for each cell (check)", \
-     .type = PARAM_CHOICE, .initial = RMA_RECURRENCE, .max = RMA_LIBM, .choices = rma_phases_names, .terse = true}
+    {PARAM_NAMED(struct rma_options, spacing, rma_spacing_names), .summary = "blocks of equal width in r or in 1/r", \
+     .initial = RMA_INVERSE, .max = RMA_INVERSE, .sweep = "uniform inverse", .terse = true}, \
+    {PARAM_NAMED(struct rma_options, blend, rma_blend_names), \
+     .summary = "blocks blend: each row is the cubic through the nearest four", .initial = 1, .max = 1, \
+     .sweep = "off on", .terse = true}, \
+    {PARAM_NAMED(struct rma_options, stolt, rma_stolt_names), \
+     .summary = "Kaiser taps of the Stolt interpolation, or a direct sum", .initial = 3, .max = 5, \
+     .sweep = "4 6 8 12 16", .terse = true}, \
+    {PARAM_NAMED(struct rma_options, sum, rma_sum_names), \
+     .summary = "receivers are summed before or after the range IFFT (check)", .initial = RMA_SUM_BEFORE, \
+     .max = RMA_SUM_AFTER, .terse = true}, \
+    {PARAM_NAMED(struct rma_options, phases, rma_phases_names), \
+     .summary = "by recurrence over the receivers, or by libm for each cell (check)", .initial = RMA_RECURRENCE, \
+     .max = RMA_LIBM, .terse = true}
 
 struct rma_method {
     const char *name;

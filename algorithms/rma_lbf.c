@@ -13,8 +13,8 @@
 static const char *const variants[] = {[RMA_PRINTED] = "printed", [RMA_CORRECTED] = "corrected", NULL};
 
 static const struct param params[] = {
-    {RMA_FIELD(variant), .summary = "theta at the carrier, as printed, or at F", .type = PARAM_CHOICE,
-     .initial = RMA_CORRECTED, .max = RMA_CORRECTED, .choices = variants, .sweep = "printed corrected"},
+    {PARAM_NAMED(struct rma_options, variant, variants), .summary = "theta at the carrier, as printed, or at F",
+     .initial = RMA_CORRECTED, .max = RMA_CORRECTED, .sweep = "printed corrected"},
     RMA_PARAMS,
     {.name = NULL},
 };

@@ -19,14 +19,10 @@ struct full_options {
 static const char *const windows[] = {"none", "kaiser", NULL};
 
 static const struct param full_params[] = {
-    {.name = "taps", .summary = "kernel length", .type = PARAM_INTEGER, .offset = offsetof(struct full_options, taps),
-     .initial = 8, .min = -4, .max = 64, .sweep = "4 8 16"},
-    {.name = "window", .summary = "of the kernel", .type = PARAM_CHOICE, .initial = 0, .choices = windows,
-     .offset = offsetof(struct full_options, window)},
-    {.name = "spacing", .summary = "of the blocks", .type = PARAM_REAL, .initial = 0.1, .min = 1e-3, .max = 1e3,
-     .offset = offsetof(struct full_options, spacing)},
-    {.name = "length", .summary = "without an upper bound", .type = PARAM_REAL, .min = 0, .max = INFINITY,
-     .offset = offsetof(struct full_options, length)},
+    {PARAM(struct full_options, taps), .summary = "kernel length", .initial = 8, .min = -4, .max = 64, .sweep = "4 8 16"},
+    {PARAM_NAMED(struct full_options, window, windows), .summary = "of the kernel", .initial = 0},
+    {PARAM(struct full_options, spacing), .summary = "of the blocks", .initial = 0.1, .min = 1e-3, .max = 1e3},
+    {PARAM(struct full_options, length), .summary = "without an upper bound", .min = 0, .max = INFINITY},
     {.name = NULL},
 };
 
