@@ -10,7 +10,8 @@
 #include "timing.h"
 
 const char *const verdict_names[VERDICTS] = {
-    [VERDICT_WORSE] = "worse", [VERDICT_GONE] = "gone", [VERDICT_WARNING] = "warning",
+    [VERDICT_WORSE] = "worse", [VERDICT_GONE] = "gone", [VERDICT_CHANGED] = "changed",
+    [VERDICT_WARNING] = "warning",
     [VERDICT_NOISY] = "too noisy to tell", [VERDICT_BETTER] = "better", [VERDICT_NEW] = "new", [VERDICT_SAME] = "same"};
 const char *const class_names[] = {[CLASS_QUALITY] = "quality", [CLASS_WORK] = "work", [CLASS_TIME] = "time"};
 
@@ -97,7 +98,13 @@ static int count_of(const struct compare *compare, enum verdict verdict)
 enum status compare_judge(const struct compare *compare)
 {
     int worse = count_of(compare, VERDICT_WORSE), gone = count_of(compare, VERDICT_GONE);
-    return worse + gone == 0 ? STATUS_OK : status_set(STATUS_FAILED, "%d worse, %d gone", worse, gone);
+    int changed = compare->to_baseline ? count_of(compare, VERDICT_CHANGED) : 0;
+    if (worse + gone + changed == 0)
+        return STATUS_OK;
+    if (changed == 0)
+        return status_set(STATUS_FAILED, "%d worse, %d gone", worse, gone);
+    return status_set(STATUS_FAILED, "%d worse, %d gone, %d changed for the better: where that is meant, ./sasbench baseline "
+                      "writes a new baseline, to be reviewed", worse, gone, changed);
 }
 
 void compare_free(struct compare *compare)
@@ -119,12 +126,18 @@ struct key {
     int row;
 };
 
+/* A comment "scene NAME: HASH". A name may hold anything, so that its length is kept. */
+struct scene_content {
+    const char *name, *hash;            /* borrowed; the name ends at `length` */
+    size_t length;
+};
+
 /* One of the two results, ready to be searched. */
 struct side {
     struct results results;
     struct key *keys;                   /* [row_count] sorted */
-    const char **hashes;                /* [hash_count] comments "scene NAME: HASH", sorted */
-    int hash_count;
+    struct scene_content *contents;     /* [content_count] sorted by name */
+    int content_count;
     bool *matched;                      /* [row_count] by row: found on the other side, too */
     bool *closed;                       /* [row_count] by row: nothing more to say of what belongs to this row */
 };
@@ -156,9 +169,22 @@ static int key_order_row(const void *a, const void *b)
     return order ? order : (x->row > y->row) - (x->row < y->row);
 }
 
-static int text_order(const void *a, const void *b)
+static int content_order(const void *a, const void *b)
 {
-    return strcmp(*(const char *const *)a, *(const char *const *)b);
+    const struct scene_content *x = a, *y = b;
+    int order = memcmp(x->name, y->name, x->length < y->length ? x->length : y->length);
+    return order ? order : (x->length > y->length) - (x->length < y->length);
+}
+
+/* False where the comment is about something else. */
+static bool content_read(const char *comment, struct scene_content *content)
+{
+    static const char head[] = "scene ";
+    const char *colon = strrchr(comment, ':');
+    if (strncmp(comment, head, strlen(head)) != 0 || !colon || colon < comment + strlen(head))
+        return false;
+    *content = (struct scene_content){comment + strlen(head), colon + 1, (size_t)(colon - comment) - strlen(head)};
+    return true;
 }
 
 static struct key key_of(const struct results *results, int row)
@@ -174,7 +200,7 @@ static struct key key_of(const struct results *results, int row)
 static void side_close(struct side *side)
 {
     free(side->keys);
-    free(side->hashes);
+    free(side->contents);
     free(side->matched);
     free(side->closed);
     results_free(&side->results);
@@ -191,13 +217,12 @@ static enum status side_open(const char *path, struct side *side)
     side->keys = calloc(rows + 1, sizeof *side->keys);
     side->matched = calloc(rows + 1, sizeof *side->matched);
     side->closed = calloc(rows + 1, sizeof *side->closed);
-    side->hashes = calloc((size_t)csv->comment_count + 1, sizeof *side->hashes);
-    if (!side->keys || !side->matched || !side->closed || !side->hashes)
+    side->contents = calloc((size_t)csv->comment_count + 1, sizeof *side->contents);
+    if (!side->keys || !side->matched || !side->closed || !side->contents)
         return status_set(STATUS_FAILED, "%s: no memory for %d rows", path, csv->row_count);
     for (int k = 0; k < csv->comment_count; k++)
-        if (strncmp(csv->comments[k], "scene ", strlen("scene ")) == 0)
-            side->hashes[side->hash_count++] = csv->comments[k];
-    qsort(side->hashes, (size_t)side->hash_count, sizeof *side->hashes, text_order);
+        side->content_count += content_read(csv->comments[k], &side->contents[side->content_count]);
+    qsort(side->contents, (size_t)side->content_count, sizeof *side->contents, content_order);
     for (int row = 0; row < csv->row_count; row++)
         side->keys[row] = key_of(&side->results, row);
     qsort(side->keys, rows, sizeof *side->keys, key_order_row);
@@ -219,22 +244,10 @@ static const struct key *side_find(const struct side *side, const struct key *ke
 /* The content of a scene as the file's head names it; NULL when it does not. */
 static const char *side_hash(const struct side *side, const char *scene)
 {
-    size_t length = strlen(scene);
-    int low = 0, high = side->hash_count;
-    while (low < high) {
-        int middle = (low + high) / 2;
-        const char *name = side->hashes[middle] + strlen("scene ");
-        int order = strncmp(name, scene, length);
-        if (order == 0 && name[length] != ':')
-            order = 1;
-        if (order == 0)
-            return name + length;
-        if (order < 0)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return NULL;
+    const struct scene_content sought = {scene, NULL, strlen(scene)};
+    const struct scene_content *found = bsearch(&sought, side->contents, (size_t)side->content_count,
+                                                sizeof *side->contents, content_order);
+    return found ? found->hash : NULL;
 }
 
 /* --- Judging ------------------------------------------------------------------------------------------------- */
@@ -433,10 +446,47 @@ static enum status note_side(struct compare *compare, const char *which, const c
                         machine ? machine : "");
 }
 
+static void finding_change(struct compare *compare, struct finding *finding)
+{
+    compare->counts[finding->class][finding->verdict]--;
+    finding->verdict = VERDICT_CHANGED;
+    compare->counts[finding->class][finding->verdict]++;
+}
+
+static bool is_betterment(const struct finding *finding)
+{
+    return finding->verdict == VERDICT_BETTER && finding->class != CLASS_TIME;
+}
+
+static bool is_much(const struct finding *finding)
+{
+    double change = fabs(finding->after - finding->before);
+    if (finding->class == CLASS_WORK)
+        return !(change <= CHANGED_WORK * fabs(finding->before));
+    return !(change <= CHANGED_SLACKS * finding->slack);        /* a status has no numbers: always */
+}
+
+/* A fault can flatter as well as harm: the findings from `first` on that are better by much, or in many rows. */
+static void changes_find(struct compare *compare, int first, const struct metric *metrics_used)
+{
+    for (const struct metric *metric = metrics_used; metric->name; metric++) {
+        int rows = 0;
+        for (int k = first; k < compare->finding_count; k++)
+            rows += is_betterment(&compare->findings[k]) && strcmp(compare->findings[k].metric, metric->name) == 0;
+        for (int k = first; k < compare->finding_count && rows >= CHANGED_ROWS; k++)
+            if (is_betterment(&compare->findings[k]) && strcmp(compare->findings[k].metric, metric->name) == 0)
+                finding_change(compare, &compare->findings[k]);
+    }
+    for (int k = first; k < compare->finding_count; k++)
+        if (is_betterment(&compare->findings[k]) && is_much(&compare->findings[k]))
+            finding_change(compare, &compare->findings[k]);
+}
+
 static enum status judge_files(struct compare *compare, const char *const paths[2], struct side sides[2],
                                const struct side measurements[2])
 {
     static const char *const names[2] = {"OLD", "NEW"};
+    int before = compare->finding_count;
     struct work_place place = {compare, &sides[0], &sides[1], NULL, NULL, 0, false};
     enum status status = STATUS_OK;
     for (int k = 0; k < 2 && status == STATUS_OK; k++)
@@ -453,7 +503,9 @@ static enum status judge_files(struct compare *compare, const char *const paths[
     place.ratios = calloc((size_t)sides[0].results.csv.row_count + 1, sizeof *place.ratios);
     if (!place.ratios)
         return status_set(STATUS_FAILED, "no memory for %d rows", sides[0].results.csv.row_count);
+    compare->to_baseline |= !csv_comment(&sides[0].results.csv, "program");
     status = judge_sides(&place, measurements);
+    changes_find(compare, before, place.metrics);
     if (status == STATUS_OK && place.threads_differ)
         status = compare_note(compare, "threads differ: times are not compared where they do");
     if (status == STATUS_OK && place.ratio_count > 0) {

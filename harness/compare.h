@@ -8,6 +8,7 @@
 enum verdict {
     VERDICT_WORSE,                  /* beyond the slack, or of --ab: beyond the effect that fails */
     VERDICT_GONE,                   /* defined in OLD only */
+    VERDICT_CHANGED,                /* better by much or in many rows, as a fault in the measuring would look */
     VERDICT_WARNING,                /* of --ab: slower, beyond the effect that warns */
     VERDICT_NOISY,                  /* of --ab: too noisy to tell */
     VERDICT_BETTER,
@@ -37,11 +38,18 @@ struct compare {
     int finding_count, finding_room;
     struct finding *findings;
     int counts[CLASSES][VERDICTS];
+    bool to_baseline;                                   /* OLD is a baseline: what changed asks for a new one */
     int text_count, text_room;
     char **texts;                                       /* that findings and notes point to */
     int note_count;
     const char *notes[64];                              /* remarks to read before the findings */
 };
+
+/* A value of quality or work that is better by more than CHANGED_SLACKS slacks (of work, which has none: by more than
+   CHANGED_WORK), a metric that is better in CHANGED_ROWS rows or more, and a row that was refused and is not any more are
+   VERDICT_CHANGED instead of VERDICT_BETTER. */
+enum { CHANGED_SLACKS = 10, CHANGED_ROWS = 5 };
+#define CHANGED_WORK 0.01
 
 /* Judge two results folders or CSV files (a folder and a file: the folder's file of that kind). A row is matched by scene
    (and its content), algorithm, options and precision, and in targets.csv by target, axis and definition. Errors:
@@ -55,7 +63,7 @@ enum status compare_add(struct compare *compare, const struct finding *finding);
 enum status compare_note(struct compare *compare, const char *format, ...) __attribute__((format(printf, 2, 3)));
 const char *compare_text(struct compare *compare, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* STATUS_FAILED, with a message that says how many, when anything got worse or is gone. */
+/* STATUS_FAILED, with a message that says how many, when anything got worse or is gone, or changed from a baseline. */
 enum status compare_judge(const struct compare *compare);
 void compare_free(struct compare *compare);
 

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "shown_text.h"
 #include "text_file.h"
 
 enum { MARKDOWN_MOST = 100 };           /* findings: a comment has room for 65536 characters */
@@ -20,6 +21,7 @@ static struct cell cell_value(double value, const char *text)
         snprintf(cell.text, sizeof cell.text, "%s", text);
     else if (!isnan(value))
         snprintf(cell.text, sizeof cell.text, "%.6g", value);
+    shown_make(cell.text);
     return cell;
 }
 
@@ -93,6 +95,9 @@ static const char *headline(const struct compare *compare)
 {
     if (verdict_occurs(compare, VERDICT_WORSE) || verdict_occurs(compare, VERDICT_GONE))
         return "something got worse";
+    if (verdict_occurs(compare, VERDICT_CHANGED))
+        return compare->to_baseline ? "changed for the better: where that is meant, a new baseline is needed"
+                                    : "nothing got worse; what changed for the better is to be reviewed";
     if (verdict_occurs(compare, VERDICT_WARNING))
         return "nothing failed, with a warning";
     return verdict_occurs(compare, VERDICT_NOISY) ? "nothing failed, not all could be told" : "nothing got worse";
@@ -104,12 +109,18 @@ static int widest(int width, const char *text)
     return length > width ? length : width;
 }
 
+static void line_write(FILE *stream, const char *text)
+{
+    shown_write(stream, text);
+    fputc('\n', stream);
+}
+
 void compare_print(const struct compare *compare, FILE *stream)
 {
     int count;
     const struct finding **list = changed(compare, &count);
     for (int k = 0; k < compare->note_count; k++)
-        fprintf(stream, "%s\n", compare->notes[k]);
+        line_write(stream, compare->notes[k]);
     int verdict_width = 8, change_width = 11;
     for (int k = 0; list && k < count; k++) {
         verdict_width = widest(verdict_width, verdict_names[list[k]->verdict]);
@@ -120,9 +131,13 @@ void compare_print(const struct compare *compare, FILE *stream)
                 change_width, "change", "of");
     for (int k = 0; list && k < count; k++) {
         const struct finding *f = list[k];
-        fprintf(stream, "%-*s %-17s %13s %13s %*s  %s %s%s%s\n", verdict_width, verdict_names[f->verdict], f->metric,
+        fprintf(stream, "%-*s %-17s %13s %13s %*s  ", verdict_width, verdict_names[f->verdict], f->metric,
                 cell_value(f->before, f->before_text).text, cell_value(f->after, f->after_text).text,
-                change_width, cell_change(f).text, f->scene, f->spec, *f->detail ? " " : "", f->detail);
+                change_width, cell_change(f).text);
+        const char *const parts[] = {f->scene, " ", f->spec, *f->detail ? " " : "", f->detail};
+        for (size_t n = 0; n < sizeof parts / sizeof *parts; n++)
+            shown_write(stream, parts[n]);
+        fputc('\n', stream);
     }
     fputc('\n', stream);
     print_counts(compare, stream, "", "\n");
@@ -130,15 +145,10 @@ void compare_print(const struct compare *compare, FILE *stream)
     free(list);
 }
 
-/* Text in a table of Markdown, where a bar ends a cell. */
 static void markdown_cell(FILE *stream, const char *text)
 {
     fputs("| ", stream);
-    for (; *text; text++) {
-        if (strchr("|\\`*_<>[]#", *text))
-            fputc('\\', stream);
-        fputc((unsigned char)*text < ' ' ? ' ' : *text, stream);
-    }
+    shown_markdown(stream, text);
     fputc(' ', stream);
 }
 
@@ -170,8 +180,11 @@ enum status compare_markdown(const struct compare *compare, const char *path)
         if (count > MARKDOWN_MOST)
             fprintf(file.stream, "\n%d more are not shown.\n", count - MARKDOWN_MOST);
         fputc('\n', file.stream);
-        for (int k = 0; k < compare->note_count; k++)
-            fprintf(file.stream, "- %s\n", compare->notes[k]);
+        for (int k = 0; k < compare->note_count; k++) {
+            fputs("- ", file.stream);
+            shown_markdown(file.stream, compare->notes[k]);
+            fputc('\n', file.stream);
+        }
         status = text_file_close(&file, status);
     }
     free(list);
@@ -180,13 +193,15 @@ enum status compare_markdown(const struct compare *compare, const char *path)
 
 static void json_text(FILE *stream, const char *text)
 {
-    for (; *text; text++) {
+    while (*text) {
+        size_t length = shown_length(text);
         if (strchr("\"\\", *text))
             fputc('\\', stream);
-        if ((unsigned char)*text < ' ')
-            fprintf(stream, "\\u%04x", (unsigned)*text);
+        if (length)
+            fwrite(text, 1, length, stream);
         else
-            fputc(*text, stream);
+            fputs("\\ufffd", stream);
+        text += length ? length : 1;
     }
 }
 

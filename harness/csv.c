@@ -1,12 +1,16 @@
-/* CSV files after RFC 4180: a reader that holds the whole file in memory, and the writer of single fields. */
+/* CSV files after RFC 4180, without line ends in fields: a reader that holds the whole file in memory, and the writer of single fields. */
 #include "csv.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <locale.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
+
+static const char byte_order_mark[] = "\xef\xbb\xbf";     /* as spreadsheets write it */
 
 /* Far above what years of runs write; a bound, so that a wrong path cannot fill the memory. */
 #define SIZE_MAX_BYTES ((size_t)256 << 20)
@@ -28,9 +32,14 @@ static bool array_grow(void *array, int count, size_t element_size)
 static enum status file_load(const char *path, char **text, size_t *size)
 {
     struct stat info;
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return status_set(STATUS_INVALID, "%s: %s; a readable CSV file is needed", path, strerror(errno));
+    int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);     /* not blocking: a pipe would wait for a writer */
+    FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "rb");
+    if (!file) {
+        enum status status = status_set(STATUS_INVALID, "%s: %s; a readable CSV file is needed", path, strerror(errno));
+        if (descriptor >= 0)
+            close(descriptor);
+        return status;
+    }
     enum status status = STATUS_OK;
     if (fstat(fileno(file), &info) != 0 || !S_ISREG(info.st_mode) || (size_t)info.st_size > SIZE_MAX_BYTES)
         status = status_set(STATUS_INVALID, "%s: not a CSV file: a regular file of at most %zu bytes is needed", path,
@@ -62,14 +71,12 @@ static enum status field_read(struct cursor *cursor, char **field, char *separat
     char *at = cursor->at, *out = at;
     *field = out;
     if (*at == '"') {
-        int first_line = cursor->line;
         for (at++; *at != '"' || at[1] == '"'; at++) {
-            if (!*at) {
+            if (!*at || *at == '\n') {
                 *separator = 0;
-                return status_set(STATUS_INVALID, "%s:%d: a quoted field never ends; '\"' is missing", cursor->path,
-                                  first_line);
+                return status_set(STATUS_INVALID, "%s:%d: a quoted field never ends; '\"' is missing before the end of "
+                                  "its line", cursor->path, cursor->line);
             }
-            cursor->line += *at == '\n';
             at += *at == '"';
             *out++ = *at;
         }
@@ -138,20 +145,28 @@ static enum status row_read(struct cursor *cursor, struct csv *csv, int *cell_co
     return STATUS_OK;
 }
 
-/* Cut the text behind the last newline that stands outside quotes. A quote opens a field only at its beginning. */
-static void tail_drop(char *text)
+/* Of ASCII, or of the second set (U+0080 to U+009F), which terminals obey as well. */
+static bool is_control(const char *at)
 {
-    char *end = text;
-    bool quoted = false, comment = false;
-    for (char *at = text; *at; at++) {
-        if (at == end)
-            comment = *at == '#';
-        if (*at == '"' && !comment && (quoted || at == end || strchr(",\"", at[-1])))
-            quoted = !quoted;
-        if (*at == '\n' && !quoted)
-            end = at + 1;
+    unsigned char first = (unsigned char)at[0], second = first ? (unsigned char)at[1] : 0;
+    return (first > 0 && first < ' ') || first == 0x7f || (first == 0xc2 && second >= 0x80 && second < 0xa0);
+}
+
+/* Texts go to terminals, web pages and gnuplot, where control characters are commands: none are accepted but line ends. */
+static enum status controls_refuse(const char *path, const char *text)
+{
+    int line = 1;
+    const char *start = text;
+    for (const char *at = text; *at; at++) {
+        if (*at == '\n') {
+            line++;
+            start = at + 1;
+        } else if (is_control(at) && !(*at == '\r' && at[1] == '\n')) {
+            return status_set(STATUS_INVALID, "%s:%d:%td: control character 0x%02x; text is needed", path, line,
+                              at - start + 1, (unsigned char)(*at == (char)0xc2 ? at[1] : *at));
+        }
     }
-    *end = '\0';
+    return STATUS_OK;
 }
 
 enum status csv_read(const char *path, enum csv_tail tail, struct csv *csv)
@@ -161,9 +176,15 @@ enum status csv_read(const char *path, enum csv_tail tail, struct csv *csv)
     enum status status = file_load(path, &csv->text, &size);
     if (!status && !(csv->path = strdup(path)))
         status = status_set(STATUS_FAILED, "%s: no memory", path);
-    if (!status && tail == CSV_TAIL_DROP)
-        tail_drop(csv->text);
+    if (!status && tail == CSV_TAIL_DROP) {
+        char *newline = strrchr(csv->text, '\n');
+        *(newline ? newline + 1 : csv->text) = '\0';
+    }
+    if (!status)
+        status = controls_refuse(path, csv->text);
     struct cursor cursor = {path, csv->text, 1};
+    if (!status && strncmp(csv->text, byte_order_mark, strlen(byte_order_mark)) == 0)
+        cursor.at += strlen(byte_order_mark);
     int cell_count = 0;
     while (!status && *cursor.at) {
         if (*cursor.at == '#') {
@@ -242,17 +263,16 @@ void csv_write_text(FILE *file, const char *text)
 {
     if (!text)
         return;
-    if (*text != '#' && !strpbrk(text, ",\"\r\n")) {
-        fputs(text, file);
-        return;
-    }
-    fputc('"', file);
+    bool quoted = *text == '#' || strpbrk(text, ",\"");
+    if (quoted)
+        fputc('"', file);
     for (; *text; text++) {
         if (*text == '"')
             fputc('"', file);
-        fputc(*text, file);
+        fputc(is_control(text) ? '?' : *text, file);
     }
-    fputc('"', file);
+    if (quoted)
+        fputc('"', file);
 }
 
 void csv_write_number(FILE *file, double value)

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "shown_text.h"
 #include "task.h"
 
 struct command {
@@ -140,6 +141,9 @@ static enum status parse(const struct command *command, int argc, char **argv, s
             if (texts[k].letter == letter) {
                 if (*texts[k].field)
                     return option_unknown(command, given, "is given twice");
+                if (!*optarg)
+                    return status_set(STATUS_INVALID, "%s: option '%s' has an empty value; a name or number is needed",
+                                      command->name, given);
                 *texts[k].field = optarg;
             }
         if (letter == 'a')
@@ -178,8 +182,7 @@ static enum status command_find(const char *name, const struct command **found)
 static void print_error(const char *message)
 {
     fputs("sasbench: ", stderr);
-    for (; *message; message++)
-        fputc((unsigned char)*message < ' ' ? '?' : *message, stderr);
+    shown_write(stderr, message);
     fputc('\n', stderr);
 }
 

@@ -6,13 +6,17 @@
 #include <string.h>
 
 #include "metrics.h"
+#include "shown_text.h"
 #include "task.h"
 
 /* A picture that cannot be drawn is told, but does not fail what was measured. */
 static void tell(enum status status)
 {
-    if (status != STATUS_OK)
-        fprintf(stderr, "sasbench: %s\n", status_message());
+    if (status == STATUS_OK)
+        return;
+    fputs("sasbench: ", stderr);
+    shown_write(stderr, status_message());
+    fputc('\n', stderr);
 }
 
 enum status pictures_begin(const char *directory, const struct scene *scene, int spec_count, struct pictures *pictures)

@@ -199,7 +199,7 @@ static enum status plots_show(struct page *page, const struct folder *folder)
 }
 
 struct pictures_count {
-    int shown, left_out;
+    int shown, left_out, irregular;
 };
 
 /* A picture of the folder as long as the page has room. */
@@ -207,8 +207,12 @@ static enum status picture_show(struct page *page, const char *path, const char 
                                 struct pictures_count *count)
 {
     struct stat info;
-    if (stat(path, &info) != 0)
+    if (lstat(path, &info) != 0)
         return STATUS_OK;               /* not drawn: a sweep's images, a run without gnuplot */
+    if (!S_ISREG(info.st_mode)) {
+        count->irregular++;
+        return STATUS_OK;
+    }
     if (ftell(page->stream) + info.st_size / 3 * 4 > REPORT_HTML_BYTES) {
         count->left_out++;
         return STATUS_OK;
@@ -248,6 +252,11 @@ static enum status pictures_show(struct page *page, const struct folder *folder)
     }
     if (count.shown == 0)
         page_paragraph(page, "None in this folder: `run` draws them, `sweep` does not.");
+    if (count.irregular) {
+        snprintf(caption, sizeof caption, "%d pictures are left out: links, folders or pipes; only regular files of the folder "
+                 "itself are shown.", count.irregular);
+        page_paragraph(page, caption);
+    }
     if (count.left_out) {
         snprintf(caption, sizeof caption, "%d pictures are left out to keep this page below %d MB; they lie beside "
                  "it.", count.left_out, REPORT_HTML_BYTES >> 20);

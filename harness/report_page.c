@@ -2,9 +2,13 @@
 #include "report_page.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
+
+#include "shown_text.h"
 
 static const char style[] =
     "<style>\n"
@@ -63,38 +67,32 @@ static const char style[] =
 
 /* --- Text ------------------------------------------------------------------------------------------------------ */
 
-/* What a sign becomes; NULL: it stays. */
-static const char *escape(enum page_format format, char sign)
+/* The character at *text, which is then the next one. */
+static void character_write(struct page *page, const char **text)
 {
     static const struct {
         char sign;
-        const char *html, *markdown;
-    } escapes[] = {
-        {'&', "&amp;", "&amp;"}, {'<', "&lt;", "&lt;"}, {'>', "&gt;", "&gt;"}, {'"', "&quot;", NULL},
-        {'\'', "&#39;", NULL},   {'|', NULL, "\\|"},    {'*', NULL, "\\*"},    {'`', NULL, "\\`"},
-        {'[', NULL, "\\["},     {'\\', NULL, "\\\\"},
-    };
-    if ((unsigned char)sign < ' ')
-        return " ";
+        const char *instead;
+    } escapes[] = {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
+    size_t length = shown_length(*text);
+    const char *instead = length ? NULL : "\ufffd";
     for (size_t k = 0; k < sizeof escapes / sizeof *escapes; k++)
-        if (escapes[k].sign == sign)
-            return format == PAGE_HTML ? escapes[k].html : escapes[k].markdown;
-    return NULL;
-}
-
-static void sign_write(struct page *page, char sign)
-{
-    const char *instead = escape(page->format, sign);
+        if (escapes[k].sign == **text)
+            instead = escapes[k].instead;
     if (instead)
         fputs(instead, page->stream);
     else
-        fputc(sign, page->stream);
+        fwrite(*text, 1, length, page->stream);
+    *text += length ? length : 1;
 }
 
 static void text_write(struct page *page, const char *text)
 {
-    for (; *text; text++)
-        sign_write(page, *text);
+    if (page->format == PAGE_MARKDOWN)
+        shown_markdown(page->stream, text);
+    else
+        while (*text)
+            character_write(page, &text);
 }
 
 /* <NAME ATTRIBUTE="VALUE">TEXT</NAME>; without a value no attribute. */
@@ -211,9 +209,10 @@ static bool row_left_out(struct page *page)
 static void name_write(struct page *page, const char *name)
 {
     fputs("<th>", page->stream);
-    for (; *name; name++) {
-        sign_write(page, *name);
-        if (*name == ':' || *name == ',')
+    while (*name) {
+        char sign = *name;
+        character_write(page, &name);
+        if (sign == ':' || sign == ',')
             fputs("<wbr/>", page->stream);
     }
     fputs("</th>", page->stream);
@@ -281,23 +280,30 @@ void page_table_end(struct page *page)
 
 /* --- Pictures -------------------------------------------------------------------------------------------------- */
 
+/* A picture lies in the folder itself: a link would show another file's content, and a pipe would wait for a writer. */
 static enum status file_read(const char *path, char **bytes, size_t *size)
 {
     struct stat info;
-    FILE *file = fopen(path, "rb");
+    int descriptor = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "rb");
     *bytes = NULL;
-    if (file && fstat(fileno(file), &info) == 0 && (*bytes = malloc((size_t)info.st_size + 1)))
+    bool regular = file && fstat(descriptor, &info) == 0 && S_ISREG(info.st_mode);
+    if (regular && (*bytes = malloc((size_t)info.st_size + 1)))
         *size = fread(*bytes, 1, (size_t)info.st_size, file);
     bool good = *bytes && !ferror(file);
+    enum status status = good ? STATUS_OK : status_set(STATUS_FAILED, "%s: cannot be read: %s", path,
+                                                       file && !regular ? "no regular file" : strerror(errno));
     if (file)
         fclose(file);
+    else if (descriptor >= 0)
+        close(descriptor);
     if (good) {
         (*bytes)[*size] = '\0';
-        return STATUS_OK;
+    } else {
+        free(*bytes);
+        *bytes = NULL;
     }
-    free(*bytes);
-    *bytes = NULL;
-    return status_set(STATUS_FAILED, "%s: cannot be read: %s", path, strerror(errno));
+    return status;
 }
 
 /* An SVG file's root element. Its names are unique within the file only: each gets the drawing's number in front. */
@@ -309,11 +315,14 @@ static void drawing_write(struct page *page, const char *svg)
         for (size_t k = 0; k < sizeof marks / sizeof *marks && !length; k++)
             if (strncmp(svg, marks[k], strlen(marks[k])) == 0)
                 length = strlen(marks[k]);
+        size_t character = strchr("\n\t", *svg) ? 1 : shown_length(svg);
         if (length)
             fprintf(page->stream, "%.*sd%d-", (int)length, svg, page->drawings);
+        else if (character)
+            fwrite(svg, 1, character, page->stream);
         else
-            fputc(*svg, page->stream);
-        svg += length ? length : 1;
+            fputs("\ufffd", page->stream);
+        svg += length ? length : character ? character : 1;
     }
 }
 

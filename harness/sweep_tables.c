@@ -9,6 +9,7 @@
 
 #include "csv.h"
 #include "scene.h"
+#include "shown_text.h"
 #include "table.h"
 #include "task.h"
 #include "text_file.h"
@@ -234,6 +235,7 @@ static void cheapest_write(struct group *group, FILE *file)
             char threshold[16], spec[512];
             snprintf(threshold, sizeof threshold, "1e%d", decade);
             measurement_spec(row, spec, sizeof spec);
+            shown_make(spec);
             printf("    %7s  %8s %8s %9s  %7.1e  %s\n", threshold, cell_time(row->run_s).text,
                    cell_significant(row->control_s / row->run_s, "x").text,
                    cell_significant(1e-6 * row->flops, "").text, row->error, spec);
@@ -260,7 +262,9 @@ static void slope_write(const struct rung *rungs, const double *rates, const dou
                             fit.first, fit.last, fit.residual_log10}, 9);
     snprintf(name, sizeof name, "%s%s%s%s", row->algorithm, *rungs->rest ? ":" : "", rungs->rest,
              strcmp(row->precision, "double") == 0 ? " double" : "");
+    shown_make(name);
     snprintf(range, sizeof range, "%s %g to %g", rungs->setting, rungs[0].value, rungs[count - 1].value);
+    shown_make(range);
     printf("  %-36s %-8s %-18s %6d  %6.3f  %7.1e  %7.1e  %8.4f\n", name, part, range, fit.points, fit.slope,
            fit.first, fit.last, fit.residual_log10);
 }

@@ -5,6 +5,8 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "shown_text.h"
+
 #define WIDTH 110
 #define SPEC_WIDTH 34
 /* Titles, units and values alike: algorithm, time, speed-up, rate, three errors, width, PSLR, ISLR. */
@@ -95,11 +97,15 @@ void measurement_spec(const struct measurement *row, char *text, size_t size)
 void table_row(FILE *stream, const struct measurement *row)
 {
     if (strcmp(last_scene, row->scene) != 0) {
-        fprintf(stream, "\n%.*s\n", WIDTH, row->scene);
+        char scene[WIDTH + 1];
+        snprintf(scene, sizeof scene, "%s", row->scene);
+        shown_make(scene);
+        fprintf(stream, "\n%s\n", scene);
         snprintf(last_scene, sizeof last_scene, "%s", row->scene);
     }
     char spec[512];
     measurement_spec(row, spec, sizeof spec);
+    shown_make(spec);
     bool ok = strcmp(row->status, "ok") == 0, own_line = !ok || strlen(spec) > SPEC_WIDTH;
     if (own_line)
         print_wrapped(stream, 2, spec);
@@ -112,6 +118,7 @@ void table_row(FILE *stream, const struct measurement *row)
     } else {
         char text[1024];
         snprintf(text, sizeof text, "%s: %s", row->status, row->reason);
+        shown_make(text);
         print_wrapped(stream, 4, text);
     }
 }

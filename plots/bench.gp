@@ -8,6 +8,7 @@
 
 if (!exists("plots")) plots = "plots"
 if (!exists("csv")) csv = ARGC >= 1 ? ARG1 : "results/bench/bench.csv"
+if (csv[1:1] ne "/") csv = "./".csv                    # one that begins with '<' would be a command
 if (!exists("output")) output = csv[1:strlen(csv) - 4].".png"
 width = 1400
 height = 620

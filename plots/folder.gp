@@ -8,7 +8,8 @@
 # Defines:    pictures; picture_scene[], picture_output[], picture_data[]: what `load` reads for a picture (scene.awk)
 
 quote(text) = strstrt(text, "'") ? text[1:strstrt(text, "'") - 1]."'\\''".quote(text[strstrt(text, "'") + 1:*]) : text
-read(one) = sprintf("< FOLDER='%s' SCENE='%s' awk -f '%s/scene.awk'", quote(folder), quote(one), quote(plots))
+# In the C locale numbers have a point, and a text is its bytes.
+read(one) = sprintf("< LC_ALL=C FOLDER='%s' SCENE='%s' awk -f '%s/scene.awk'", quote(folder), quote(one), quote(plots))
 # The name of a picture's file: signs that a path or a shell would take otherwise become '_'.
 plain(text) = strlen(text) == 0 ? "" : (strstrt("/:,= \\", text[1:1]) ? "_" : text[1:1]).plain(text[2:*])
 

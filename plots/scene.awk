@@ -19,30 +19,51 @@
 #   has_rules, bp22_rate, zp15_rate, edge_phase, linear_floor     0 or 1; NaN where unknown
 #
 # Rows that are not `ok`, or whose image is smaller than the others' (exact ones), are left out.
+#
+# What is printed is run by gnuplot, and the folder may come from anywhere: no sign of its texts is printed as it is. Numbers are
+# printed as they were understood, texts as octal codes.
 
-function quoted(text)
+function quoted(text,    codes, k)
 {
-    gsub(/'/, "''", text)
-    return "'" text "'"
+    for (k = 1; k <= length(text); k++)
+        codes = codes sprintf("\\%03o", code_of[substr(text, k, 1)])
+    return "\"" codes "\""
+}
+
+function is_number(text)
+{
+    return text ~ /^[-+]?([0-9]+[.]?[0-9]*|[.][0-9]+)([eE][-+]?[0-9]+)?$/ && text + 0 > -1e300 && text + 0 < 1e300
 }
 
 function number(text)
 {
-    return text == "" ? "NaN" : text
+    return is_number(text) ? sprintf("%.9g", text) : "NaN"
+}
+
+# gnuplot ends with the message.
+function refuse(path, place, fault)
+{
+    print "exit error " quoted(path ":" line_number[path] ":" place ": " fault)
+    exit 1
 }
 
 # The next line of a CSV file that is no comment into field[NAME]; 0 at its end or where there is no such file. Names are
-# those of the first such line.
-function row_read(path,    line, more, text, name, n, end)
+# those of the first such line. Control characters, and so lines within quotes, are refused.
+function row_read(path,    line, text, name, n, end)
 {
     do {
         if ((getline line < path) <= 0)
             return 0
+        if (++line_number[path] == 1)
+            sub(/^\357\273\277/, "", line)              # byte order mark
+        sub(/\r$/, "", line)
+        if (match(line, /[\001-\037\177]/))
+            refuse(path, RSTART, "a control character; text is needed")
         if (line ~ /^#/)
             note_read(line)
     } while (line ~ /^#/ || line == "")
-    while (gsub(/"/, "&", line) % 2 && (getline more < path) > 0)
-        line = line "\n" more
+    if (gsub(/"/, "&", line) % 2)
+        refuse(path, length(line), "a quoted field does not end in its line")
     for (n = 1; ; n++) {
         if (line ~ /^"/) {
             text = ""
@@ -88,9 +109,9 @@ function options_read(text,    option, count, k, equals)
     count = split(text, option, ",")
     for (k = 1; k <= count; k++) {
         equals = index(option[k], "=")
-        if (setting == "" && substr(option[k], equals + 1) ~ /^[-+0-9.eE]+$/) {
+        if (setting == "" && is_number(substr(option[k], equals + 1))) {
             setting = substr(option[k], 1, equals - 1)
-            value = substr(option[k], equals + 1)
+            value = number(substr(option[k], equals + 1))
         } else
             rest = rest (rest == "" ? "" : ",") option[k]
     }
@@ -120,10 +141,11 @@ function series_add(key, order, line,    at)
     lines[key, at] = line
 }
 
-function measurement_take(    key)
+function measurement_take(    key, at)
 {
     family_of(field["algorithm"])
-    if (field["scene"] != scene || field["status"] != "ok" || !(field["run_s"] > 0) || !(field["error"] > 0))
+    if (field["scene"] != scene || field["status"] != "ok" || !is_number(field["run_s"]) || !is_number(field["error"]) \
+        || !(field["run_s"] + 0 > 0) || !(field["error"] + 0 > 0))
         return
     if (field["algorithm"] == "reference") {
         reference_pslr = field["pslr_db"]
@@ -142,12 +164,14 @@ function measurement_take(    key)
         member_at[key] = member_of[field["algorithm"], rest]
         precise_at[key] = field["precision"] == "double"
     }
-    series_add(key, value + 0, rate_of(field["algorithm"]) " " field["run_s"] " " \
-        number(field["flops"]) " " field["error"] " " number(field["pslr_db"]) " " number(field["islr_db"]) " " \
-        (value == "" ? "-" : value) " " field["pairs"] + 0)
+    series_add(key, value + 0, rate_of(field["algorithm"]) " " number(field["run_s"]) " " \
+        number(field["flops"]) " " number(field["error"]) " " number(field["pslr_db"]) " " number(field["islr_db"]) " " \
+        (value == "" ? "-" : value) " " (is_number(field["pairs"]) ? number(field["pairs"]) : 0))
+    if (!is_number(field["control_s"]))
+        return
     for (at = ++control_count; at > 1 && control[at - 1] + 0 > field["control_s"] + 0; at--)
         control[at] = control[at - 1]
-    control[at] = field["control_s"]
+    control[at] = number(field["control_s"])
 }
 
 # Of all rows measured those that are shown, one after the other: point[n, COLUMN].
@@ -270,18 +294,20 @@ function front_print(axis, name,    n, at, count, order)
 }
 
 # Lines through the float ladders of the upsampling rate, and what is said at their middle.
-function slopes_print(    text)
+function slopes_print(    text, ends)
 {
-    print "$slopes << END_OF_SLOPES"
     while (row_read(folder "/slopes.csv"))
         if (field["scene"] == scene && (field["setting"] == "beta" || field["setting"] == "factor") \
-            && field["part"] != "falling" && field["precision"] == "float") {
-            printf "%s %s\n%s %s\n\n\n", field["rate_first"], field["error_first"], field["rate_last"],
-                field["error_last"]
+            && field["part"] != "falling" && field["precision"] == "float" && is_number(field["slope"]) \
+            && is_number(field["rate_first"]) && is_number(field["rate_last"]) \
+            && is_number(field["error_first"]) && is_number(field["error_last"]) \
+            && field["rate_first"]*field["rate_last"] > 0 && field["error_first"]*field["error_last"] > 0) {
+            ends = ends sprintf("%s %s\n%s %s\n\n\n", number(field["rate_first"]), number(field["error_first"]),
+                number(field["rate_last"]), number(field["error_last"]))
             text = text sprintf("%.9g %.9g \"%sslope %.2f\"\n", sqrt(field["rate_first"]*field["rate_last"]),
                 sqrt(field["error_first"]*field["error_last"]), field["part"] == "floor" ? "floor, " : "", field["slope"])
         }
-    print "END_OF_SLOPES"
+    printf "$slopes << END_OF_SLOPES\n%sEND_OF_SLOPES\n", ends
     printf "$slope_labels << END_OF_LABELS\n%sEND_OF_LABELS\nhas_slopes = %d\n", text, (text != "")
 }
 
@@ -297,6 +323,8 @@ function rules_print()
 }
 
 BEGIN {
+    for (k = 1; k < 256; k++)
+        code_of[sprintf("%c", k)] = k
     families["reference"] = family_count = 1
     folder = ENVIRON["FOLDER"]
     scene = ENVIRON["SCENE"]

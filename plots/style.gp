@@ -7,6 +7,8 @@
 reset
 if (!exists("width")) { width = 1200 }
 if (!exists("height")) { height = 900 }
+# gnuplot takes an output that begins with '|' for a command.
+if (exists("output")) { if (output[1:1] ne "/") { output = "./".output } }
 if (exists("format")) { svg = format eq "svg" } else { svg = exists("output") && output[strlen(output) - 3:*] eq ".svg" }
 set encoding utf8
 if (svg) {

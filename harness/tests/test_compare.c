@@ -194,7 +194,8 @@ static void faults_are_caught_by_name(void **state)
 
 /* --- Results -------------------------------------------------------------------------------------------------- */
 
-#define HEAD "# sasbench measurements 1\n# scene s: 0123\n" \
+#define HEAD "# sasbench measurements 1\n# scene s: 0123\n" ROW_HEAD
+#define ROW_HEAD \
     "scene,algorithm,options,precision,threads,engine,status,reason,skipped,plan_s,run_s,run_min_s,runs,control_s," \
     "stages,flops_published,flops,pairs,bytes,error,error_gain,phase_rms_rad,width_m,pslr_db,islr_db\n"
 #define TARGET_HEAD "# sasbench targets 1\n" \
@@ -230,7 +231,10 @@ static void values_are_judged_by_the_metric_table(void **state)
         {"1e6,1e6,", "1000001,1e6,", "flops_published", VERDICT_WORSE},
         {"-13.3", "-13.297", "pslr_db", VERDICT_WORSE},
         {"-13.3", "-13.299", NULL, VERDICT_SAME},
-        {"-10.4", "-10.5", "islr_db", VERDICT_BETTER},
+        {"-10.4", "-10.41", "islr_db", VERDICT_BETTER},
+        {"-10.4", "-10.5", "islr_db", VERDICT_CHANGED},             /* a fault may flatter */
+        {"-10.4", "10.4", "islr_db", VERDICT_WORSE},
+        {"1000,4096", "1000,4000", "bytes", VERDICT_CHANGED},
         {"0.04,", "0.0401,", "width_m", VERDICT_WORSE},
         {",ok,,", ",failed,no memory,", "status", VERDICT_WORSE},
         {",ok,,", ",unsupported,,", "status", VERDICT_WORSE},
@@ -256,11 +260,75 @@ static void values_are_judged_by_the_metric_table(void **state)
         for (int n = compare.finding_count - 1; n >= 0; n--)
             if (compare.findings[n].verdict != VERDICT_SAME)
                 changed = &compare.findings[n];
-        bool fails = cases[k].metric && (cases[k].verdict == VERDICT_WORSE || cases[k].verdict == VERDICT_GONE);
+        bool fails = cases[k].metric && (cases[k].verdict == VERDICT_WORSE || cases[k].verdict == VERDICT_GONE
+                                      || cases[k].verdict == VERDICT_CHANGED);
         if ((changed != NULL) != (cases[k].metric != NULL) || (compare_judge(&compare) != STATUS_OK) != fails
             || (changed && (strcmp(changed->metric, cases[k].metric) != 0 || changed->verdict != cases[k].verdict)))
             fail_msg("%s -> %s: %s %s", cases[k].before, cases[k].after, changed ? changed->metric : "",
                      changed ? verdict_names[changed->verdict] : "nothing");
+        compare_free(&compare);
+    }
+}
+
+/* Small betterments in five rows; then a row that is no longer refused. Only a baseline asks for a new one. */
+static void many_betterments_are_a_change(void **state)
+{
+    (void)state;
+    static const char row[] = "s,a,beta=%d,float,2,,ok,,,,,,,,,,,,,%s,,,,,\n";
+    for (int rows = 4; rows <= 5; rows++) {
+        char old[4096] = HEAD, new[4096] = HEAD;
+        struct compare compare;
+        for (int k = 0; k < rows; k++) {
+            snprintf(old + strlen(old), sizeof old - strlen(old), row, k, "0.1");
+            snprintf(new + strlen(new), sizeof new - strlen(new), row, k, "0.0998");
+        }
+        compare_texts(old, new, &compare);
+        assert_int_equal(compare.counts[CLASS_QUALITY][rows == 5 ? VERDICT_CHANGED : VERDICT_BETTER], rows);
+        assert_int_equal(compare_judge(&compare), rows == 5 ? STATUS_FAILED : STATUS_OK);
+        if (rows == 5)
+            assert_non_null(strstr(status_message(), "0 worse, 0 gone, 5 changed for the better: where that is meant, "
+                                                     "./sasbench baseline writes a new baseline"));
+        compare_free(&compare);
+    }
+    for (int measured = 0; measured < 2; measured++) {
+        struct compare compare;
+        char old[4096];
+        snprintf(old, sizeof old, "%s%s", HEAD, "s,a,,float,2,,unsupported,why,,,,,,,,,,,,,,,,,\n");
+        if (measured)
+            memcpy(strstr(old, "# scene s: 0123"), "# program: 0123", 15);
+        compare_texts(old, HEAD "s,a,,float,2,,ok,,,,,,,,,,,,,1,,,,,\n", &compare);
+        assert_int_equal(find(&compare, "status")->verdict, VERDICT_CHANGED);
+        assert_int_equal(compare_judge(&compare), measured ? STATUS_OK : STATUS_FAILED);
+        compare_free(&compare);
+    }
+}
+
+/* Names that continue another with signs below and above ':' and ' ', and names with colons of their own. */
+static void scenes_are_told_apart_whatever_they_are_called(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"far", "far2", "far!", "far far", "far:", "far: 1", "farz", "fa", "far/3", "-"};
+    enum { NAMES = sizeof names / sizeof *names };
+    for (int changed = 0; changed < NAMES; changed++) {
+        char texts[2][8192];
+        struct compare compare;
+        const char *columns = strstr(HEAD, "scene,");
+        for (int side = 0; side < 2; side++) {
+            char *text = texts[side];
+            size_t size = sizeof texts[side];
+            snprintf(text, size, "# sasbench measurements 1\n");
+            for (int k = 0; k < NAMES; k++)
+                snprintf(text + strlen(text), size - strlen(text), "# scene %s: %016x\n", names[k],
+                         16 * k + (side == 1 && k == changed));
+            snprintf(text + strlen(text), size - strlen(text), "%s", columns);
+            for (int k = 0; k < NAMES; k++)
+                snprintf(text + strlen(text), size - strlen(text), "%s,a,,float,2,,ok,,,,,,,,,,,,,1,,,,,\n", names[k]);
+        }
+        compare_texts(texts[0], texts[1], &compare);
+        const struct finding *gone = find(&compare, "row");
+        if (!gone || gone->verdict != VERDICT_GONE || strcmp(gone->scene, names[changed]) != 0
+            || compare.counts[CLASS_QUALITY][VERDICT_GONE] != 1 || compare.counts[CLASS_QUALITY][VERDICT_NEW] != 1)
+            fail_msg("a change of scene '%s' is not seen, or another's is", names[changed]);
         compare_free(&compare);
     }
 }
@@ -407,6 +475,45 @@ static void shown_as_text_markdown_and_json(void **state)
     compare_free(&compare);
 }
 
+/* What a file from elsewhere holds must neither command the terminal nor act in a comment. */
+static void names_are_shown_without_effect(void **state)
+{
+    (void)state;
+    static const char *const live[] = {"@some", "<img", "![x]", "](http", "http://", "www.x", "#12", "\x1b", "\xc2\x9b", "`id",
+                                       "||"};
+    struct compare compare;
+    char text[1 << 14] = "";
+    compare_texts("# sasbench measurements 1\n# commit: @some/one ![x](http://x/y.png) <img src=x>\n"
+                  "# machine: www.x.org #12 `id` ||\n" ROW_HEAD,
+                  HEAD "\"@someone <img> ![x](http://x) www.x.org #12 a||b \\| \xff `id`\",a,,float,2,,failed,@some,"
+                       ",,,,,,,,,,,,,,,,\n", &compare);
+    assert_int_equal(compare_markdown(&compare, path_of("out.md")), STATUS_OK);
+    const char *markdown = text_read("out.md");
+    for (size_t k = 0; k < sizeof live / sizeof *live; k++)
+        for (const char *at = markdown; (at = strstr(at, live[k])); at++)
+            if (at[-1] != '\\')
+                fail_msg("'%s' is in the comment: %s", live[k], markdown);
+    assert_non_null(strstr(markdown, "@&#8203;someone &lt;img&gt; !\\[x\\](http&#58;//x) www&#46;x.org #&#8203;12 a\\|\\|b \\\\\\| ? "));
+    FILE *stream = fmemopen(text, sizeof text - 1, "w");
+    struct finding odd = {.verdict = VERDICT_GONE, .scene = "a\x1b[31mb\xc2\x9b" "c\xff", .spec = "\t", .detail = "\x7f",
+                          .metric = "row", .unit = "", .before = NAN, .after = NAN, .change = NAN, .slack = NAN,
+                          .before_text = "\x1b]0;x", .after_text = ""};
+    assert_int_equal(compare_add(&compare, &odd), STATUS_OK);
+    assert_int_equal(compare_note(&compare, "\x1b[2J"), STATUS_OK);
+    compare_print(&compare, stream);
+    fclose(stream);
+    assert_non_null(strstr(text, "a?[31mb??c? ? ?\n"));
+    for (const char *at = text; *at; at++)
+        assert_true(*at == '\n' || ((unsigned char)*at >= ' ' && *at != 0x7f));
+    assert_non_null(strstr(text, "?[2J\n"));
+    odd.lower_is_better = true;
+    odd.after = 1;
+    assert_int_equal(compare_add(&compare, &odd), STATUS_OK);
+    assert_int_equal(compare_json(&compare, path_of("out.json")), STATUS_OK);
+    assert_non_null(strstr(text_read("out.json"), "a\\ufffd[31mb\\ufffd\\ufffdc\\ufffd"));
+    compare_free(&compare);
+}
+
 int main(void)
 {
     omp_set_num_threads(1);             /* the same bits, and quick beside other tests */
@@ -416,12 +523,15 @@ int main(void)
         IN_FOLDER(baseline_holds_without_vector_extensions),
         IN_FOLDER(faults_are_caught_by_name),
         IN_FOLDER(values_are_judged_by_the_metric_table),
+        IN_FOLDER(many_betterments_are_a_change),
+        IN_FOLDER(scenes_are_told_apart_whatever_they_are_called),
         IN_FOLDER(rounding_of_float_is_no_change_but_of_double),
         IN_FOLDER(rows_of_another_scene_content_are_not_compared),
         IN_FOLDER(folders_are_compared_with_their_targets),
         IN_FOLDER(malformed_and_mixed_files_are_refused),
         IN_FOLDER(many_rows),
         IN_FOLDER(shown_as_text_markdown_and_json),
+        IN_FOLDER(names_are_shown_without_effect),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

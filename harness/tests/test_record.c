@@ -71,20 +71,20 @@ static void test_csv_read(void **state)
     (void)state;
     struct csv csv;
     file_write(measurements_path, "w",
-               "# key: first\r\n# other: x: y\na,\"b,c\",\r\n1,\"say \"\"hi\"\",\nthere\",\n\n#between: rows\n"
+               "# key: first\r\n# other: x: y\na,\"b,c\",\r\n1,\"say \"\"hi\"\", there\",\n\n#between: rows\n"
                "\"# no comment\",,3\n,\"\",\"last\"");
     assert_int_equal(csv_read(measurements_path, CSV_TAIL_KEEP, &csv), STATUS_OK);
     assert_int_equal(csv.column_count, 3);
     assert_int_equal(csv_column(&csv, "b,c"), 1);
     assert_int_equal(csv_column(&csv, "none"), -1);
     assert_int_equal(csv.row_count, 3);
-    assert_string_equal(csv_cell(&csv, 0, 1), "say \"hi\",\nthere");
+    assert_string_equal(csv_cell(&csv, 0, 1), "say \"hi\", there");
     assert_string_equal(csv_cell(&csv, 0, 2), "");
     assert_string_equal(csv_cell(&csv, 1, 0), "# no comment");
     assert_string_equal(csv_cell(&csv, 1, 2), "3");
     assert_string_equal(csv_cell(&csv, 2, 2), "last");
     assert_int_equal(csv.lines[0], 4);
-    assert_int_equal(csv.lines[1], 8);
+    assert_int_equal(csv.lines[1], 7);
     assert_int_equal(csv.comment_count, 3);
     assert_string_equal(csv_comment(&csv, "key"), "first");
     assert_string_equal(csv_comment(&csv, "other"), "x: y");
@@ -93,6 +93,11 @@ static void test_csv_read(void **state)
     csv_free(&csv);
     assert_int_equal(csv_read(measurements_path, CSV_TAIL_DROP, &csv), STATUS_OK);
     assert_int_equal(csv.row_count, 2);
+    csv_free(&csv);
+    file_write(measurements_path, "w", "\xef\xbb\xbf# key: first\na\n1\n");      /* a byte order mark */
+    assert_int_equal(csv_read(measurements_path, CSV_TAIL_KEEP, &csv), STATUS_OK);
+    assert_string_equal(csv_comment(&csv, "key"), "first");
+    assert_int_equal(csv_column(&csv, "a"), 0);
     csv_free(&csv);
     file_write(measurements_path, "w", "");
     assert_int_equal(csv_read(measurements_path, CSV_TAIL_KEEP, &csv), STATUS_OK);
@@ -107,8 +112,12 @@ static void test_csv_faults(void **state)
         const char *text, *place;
     } faults[] = {
         {"a,b\n1,2\n3\n", ":3: 1 fields"},      {"a,b\n1,2,3\n", ":2: 3 fields"},
-        {"a\n\"x\ny\n\"z\n", ":4: stray"},      {"a\n1\n\"x\n2\n", ":3: a quoted field never ends"},
-        {"a\nx\"y\n", ":2: stray"},             {"a\nx\ry\n", ":2: stray"},
+        {"a\n\"x\"z\n", ":2: stray"},          {"a\n1\n\"x\n2\n", ":3: a quoted field never ends"},
+        {"a\nx\"y\n", ":2: stray"},             {"a\nx\ry\n", ":2:2: control character 0x0d"},
+        {"a\nb\n\x1b[31mc\n", ":3:1: control character 0x1b"},
+        {"a\n\"b\tc\"\n", ":2:3: control character 0x09"},
+        {"# k: v\x07\na\n", ":1:7: control character 0x07"},
+        {"a\nb\x7f\n", ":2:2: control character 0x7f"},
     };
     struct csv csv;
     for (size_t k = 0; k < sizeof faults / sizeof *faults; k++) {
@@ -126,13 +135,16 @@ static void test_csv_faults(void **state)
     assert_int_equal(csv_read(folder, CSV_TAIL_KEEP, &csv), STATUS_INVALID);
     assert_int_equal(csv_read(targets_path, CSV_TAIL_KEEP, &csv), STATUS_INVALID);
     assert_int_equal(csv_read("/dev/zero", CSV_TAIL_KEEP, &csv), STATUS_INVALID);
+    assert_int_equal(mkfifo(targets_path, 0600), 0);
+    assert_int_equal(csv_read(targets_path, CSV_TAIL_KEEP, &csv), STATUS_INVALID);      /* without a wait for a writer */
+    remove(targets_path);
 }
 
 /* A text cut at every byte: what is left are its whole lines. */
 static void test_csv_cut(void **state)
 {
     (void)state;
-    static const char head[] = "# c \" d\na,b\n", row_1[] = "1,\"x\"\"\ny,\"\n", comment[] = "#\"\n";
+    static const char head[] = "# c \" d\na,b\n", row_1[] = "1,\"x\"\"y,\"\n", comment[] = "#\"\n";
     static const char row_2[] = "\"\",2\n";
     char text[128];
     snprintf(text, sizeof text, "%s%s%s%s", head, row_1, comment, row_2);
@@ -244,7 +256,7 @@ static void test_round_trip(void **state)
     assert_non_null(strstr(text, "\n# scene folder/a,\"b\": 0000000000abcdef\n"));
     assert_non_null(strstr(text, "\n" MEASUREMENT_HEADER
         "\"folder/a,\"\"b\"\"\",bp_sinc,\"taps=8,window=none\",float,2,general,ok,,"
-        "\"half \"\"of\"\" it,\nand more\",0.25,0.333333333,0.3,5,2,compress=0.1;focus=0.9,,1e+12,"
+        "\"half \"\"of\"\" it,?and more\",0.25,0.333333333,0.3,5,2,compress=0.1;focus=0.9,,1e+12,"
         "1.23456789e+10,4096,1e-07,,0.001,0.0384,-13.3,-10.4\n"));
     text = file_text(targets_path);
     assert_int_equal(strncmp(text, "# sasbench targets 1\n", 21), 0);
@@ -256,7 +268,7 @@ static void test_round_trip(void **state)
     assert_int_equal(record_scene(record, "folder/a,\"b\"", 0xabcdef), STATUS_OK);
     const struct measurement *row = find(record, "folder/a,\"b\"", "bp_sinc");
     assert_non_null(row);
-    assert_string_equal(row->skipped, "half \"of\" it,\nand more");
+    assert_string_equal(row->skipped, "half \"of\" it,?and more");
     assert_string_equal(row->reason, "");
     assert_int_equal(row->runs, 5);
     assert_close(row->run_s, 1.0 / 3, 1e-9);
