@@ -116,6 +116,11 @@ static void option_text(int letter, char *text, size_t size)
             snprintf(text, size, "--%s", o->name);
 }
 
+static enum status empty_refuse(const struct command *command, const char *what)
+{
+    return status_set(STATUS_INVALID, "%s: %s is '', must be a path or a name", command->name, what);
+}
+
 /* Arguments after the command's name. */
 static enum status parse(const struct command *command, int argc, char **argv, struct task *task, bool *helped)
 {
@@ -141,9 +146,8 @@ static enum status parse(const struct command *command, int argc, char **argv, s
             if (texts[k].letter == letter) {
                 if (*texts[k].field)
                     return option_unknown(command, given, "is given twice");
-                if (!*optarg)
-                    return status_set(STATUS_INVALID, "%s: option '%s' has an empty value; a name or number is needed",
-                                      command->name, given);
+                if (!*optarg && !strchr("gt", letter))          /* which say themselves what they take */
+                    return empty_refuse(command, given);
                 *texts[k].field = optarg;
             }
         if (letter == 'a')
@@ -153,6 +157,9 @@ static enum status parse(const struct command *command, int argc, char **argv, s
     }
     task->names = (const char *const *)argv + optind;
     task->name_count = argc - optind;
+    for (int k = 0; k < task->name_count && status == STATUS_OK; k++)
+        if (!*task->names[k])
+            status = empty_refuse(command, "an argument");
     if (status == STATUS_OK && threads)
         status = threads_parse(threads);
     if (status == STATUS_OK && task->name_count < command->names_least)
