@@ -1,53 +1,34 @@
 /* Image grids: parsing, checks, and whether a grid meets any record. */
-#include <errno.h>
 #include <float.h>
 #include <limits.h>
-#include <locale.h>
 #include <math.h>
-#include <stdlib.h>
 
 #include "../algorithms/delay.h"
+#include "number.h"
 #include "scene.h"
 
 #define BYTES_MAX 0x1p40            /* of a patch in double */
 
-/* One "first:step:count", ended by `end`; NULL if it is not one. */
-static const char *axis_parse(const char *text, char end, double *first, double *step, int *count)
+/* One "first:step:count"; returns where it ends, NULL if it is not one. */
+static const char *axis_parse(const char *text, double *first, double *step, int *count)
 {
-    char *rest;
-    *first = strtod(text, &rest);
-    if (rest == text || *rest != ':') {
-        return NULL;
-    }
-    text = rest + 1;
-    *step = strtod(text, &rest);
-    if (rest == text || *rest != ':') {
-        return NULL;
-    }
-    text = rest + 1;
-    errno = 0;
-    long number = strtol(text, &rest, 10);
-    if (rest == text || *rest != end || errno == ERANGE || number < 1 || number > INT_MAX) {
-        return NULL;
-    }
+    long long number = 0;
+    text = number_read(text, first);
+    text = text && *text == ':' ? number_read(text + 1, step) : NULL;
+    text = text && *text == ':' ? whole_read(text + 1, 1, INT_MAX, &number) : NULL;
     *count = (int)number;
-    return rest + (end != '\0');
+    return text;
 }
 
 enum status grid_parse(const char *text, struct grid *grid)
 {
-    locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    if (!c_locale) {
-        return status_set(STATUS_FAILED, "out of memory for the grid");
+    const char *rest = axis_parse(text, &grid->x_first, &grid->x_step, &grid->x_count);
+    rest = rest && *rest == ',' ? axis_parse(rest + 1, &grid->r_first, &grid->r_step, &grid->r_count) : NULL;
+    if (!rest || *rest) {
+        return status_set(STATUS_INVALID, "grid '%.200s': must be xmin:xstep:xcount,rmin:rstep:rcount, lengths in m as "
+                          "plain decimal numbers and counts from 1 to %d", text, INT_MAX);
     }
-    locale_t before = uselocale(c_locale);
-    const char *rest = axis_parse(text, ',', &grid->x_first, &grid->x_step, &grid->x_count);
-    rest = rest ? axis_parse(rest, '\0', &grid->r_first, &grid->r_step, &grid->r_count) : NULL;
-    uselocale(before);
-    freelocale(c_locale);
-    return rest ? grid_check(grid, "grid")
-                : status_set(STATUS_INVALID, "grid '%.200s': must be xmin:xstep:xcount,rmin:rstep:rcount, lengths in "
-                             "m and counts from 1 to %d", text, INT_MAX);
+    return grid_check(grid, "grid");
 }
 
 enum status grid_check(const struct grid *grid, const char *place)

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "number.h"
 #include "shown_text.h"
 #include "task.h"
 
@@ -76,9 +77,9 @@ static void help(void)
 
 static enum status threads_parse(const char *text)
 {
-    char *end;
-    long threads = strtol(text, &end, 10);
-    if (end == text || *end || threads < 1 || threads > 1024)
+    long long threads;
+    const char *end = whole_read(text, 1, 1024, &threads);
+    if (!end || *end)
         return status_set(STATUS_INVALID, "--threads is '%s', must be a whole number from 1 to 1024", text);
     omp_set_num_threads((int)threads);
     return STATUS_OK;

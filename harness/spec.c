@@ -1,10 +1,13 @@
-/* SPEC parsing, driven by the algorithms' param tables. The program stays in the C locale, so strtod reads "0.5". */
+/* SPEC parsing, driven by the algorithms' param tables. */
 #include "spec.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "number.h"
 
 /* Every algorithm takes `precision` beside its own table; it goes to spec.precision. */
 static const char *const precision_names[] = {[PRECISION_FLOAT] = "float", [PRECISION_DOUBLE] = "double", NULL};
@@ -55,15 +58,15 @@ void param_format(const struct param *param, double value, char *text, size_t si
 }
 
 /* The value as a double, or NAN when it is not a number of the kind that the param takes. */
-static double number_read(const struct param *param, const char *value)
+static double value_number(const struct param *param, const char *value)
 {
-    /* strtol and strtod also take blanks, hexadecimal, "inf" and "nan"; a setting is plain decimal. */
-    const char *characters = param->type == PARAM_INTEGER ? "+-0123456789" : "+-.0123456789eE";
-    if (!*value || value[strspn(value, characters)])
+    double number = NAN;
+    long long whole = 0;
+    const char *end = param->type == PARAM_INTEGER ? whole_read(value, INT_MIN, INT_MAX, &whole)
+                                                   : number_read(value, &number);
+    if (!end || *end)
         return NAN;
-    char *end;
-    double number = param->type == PARAM_INTEGER ? (double)strtol(value, &end, 10) : strtod(value, &end);
-    return *end || !isfinite(number) ? NAN : number;
+    return param->type == PARAM_INTEGER ? (double)whole : number;
 }
 
 static enum status choice_read(const char *place, const struct param *param, const char *value, double *out)
@@ -84,7 +87,7 @@ static enum status value_read(const char *place, const struct param *param, cons
 {
     if (param->type == PARAM_CHOICE)
         return choice_read(place, param, value, out);
-    *out = number_read(param, value);
+    *out = value_number(param, value);
     if (*out >= param->min && *out <= param->max)
         return STATUS_OK;
     char min[32], max[32];
