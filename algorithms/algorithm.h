@@ -42,6 +42,8 @@ struct echoes {
     const struct acquisition *acquisition;
     enum precision precision;
     const void *samples;            /* complex float or double [pings][receivers][samples] */
+    int exponent;                   /* recorded were the samples times 2^exponent, 0 unless they would not fit the precision;
+                                       whoever calls execute multiplies the image, an algorithm need not look */
 };
 
 /* The image: sum over pings and receivers of the compressed echo at the exact delay times exp(+j 2 pi fc tau), without

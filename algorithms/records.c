@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "fft_length.h"
+#include "memory.h"
 #include "real.h"
 
 struct records {
@@ -53,6 +54,13 @@ enum status REAL_NAME(records_plan)(const struct acquisition *acquisition, int u
     records->transforms = !acquisition->compressed || upsample > 1;
     if (records->transforms) {
         records->scratch_length = (size_t)(length + fine);
+        /* Scratch, filter, the pulse's spectrum, and as much as FFTW's plans may hold. */
+        enum status status = memory_check(((threads + 1.0) * (double)records->scratch_length + length) * sizeof(complex_real)
+                                          + (double)length * sizeof(double complex), "range compression");
+        if (status != STATUS_OK) {
+            free(records);
+            return status;
+        }
         records->scratch = FFTW(malloc)((size_t)threads * records->scratch_length * sizeof *records->scratch);
         records->filter = FFTW(malloc)((size_t)length * sizeof *records->filter);
         double complex *work = fftw_malloc((size_t)length * sizeof *work);

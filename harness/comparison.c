@@ -73,6 +73,30 @@ static void format_stages(const struct stages *stages, char *text, size_t size)
                                  stages->stage[k].seconds);
 }
 
+/* A scene whose echoes cannot be made has a failed row for every algorithm that is missing, and the next one goes on. */
+static enum status fail_scene(struct comparison *comparison, const struct scene *scene, int spec_count,
+                              const struct spec *specs)
+{
+    char reason[512];
+    enum status status = STATUS_OK;
+    snprintf(reason, sizeof reason, "%s", status_message());
+    comparison->failed = true;
+    for (int k = 0; k < spec_count && status == STATUS_OK; k++, comparison->done++) {
+        struct measurement row = measurement_empty(scene->name, specs[k].algorithm->name, specs[k].text,
+                                                   specs[k].precision);
+        const struct measurement *earlier = comparison_find(comparison, scene, &specs[k]);
+        row.threads = comparison->threads;
+        row.status = "failed";
+        row.reason = reason;
+        if (!earlier)
+            status = record_add(comparison->record, &row);
+        if (status == STATUS_OK)
+            table_row(stdout, earlier ? earlier : &row);
+    }
+    fflush(stdout);
+    return status;
+}
+
 /* Measure one algorithm on one scene, record and draw it. Only a fault of the record itself is an error: what fails or
    is unsupported becomes a row. */
 static enum status measure(struct comparison *comparison, struct visit *visit, int index)
@@ -94,6 +118,8 @@ static enum status measure(struct comparison *comparison, struct visit *visit, i
     if (status == STATUS_OK)
         status = timing_measure(spec->algorithm, &problem, spec->options, &session->echoes[spec->precision],
                                 &session->echoes[PRECISION_FLOAT], &image, &timing);
+    if (status == STATUS_OK)
+        status = image_scale(&image, session->echoes[spec->precision].exponent);
     if (status == STATUS_OK) {
         row.plan_s = timing.plan_s;
         row.run_s = timing.run_s;
@@ -172,17 +198,18 @@ const struct measurement *comparison_find(const struct comparison *comparison, c
                        precision_name(spec->precision));
 }
 
-/* A row that an earlier run finished is not timed again; its image is, for the overlaid slices. */
-static enum status redraw(struct visit *visit, int index, const struct measurement *row)
+/* A row that an earlier run finished is not timed again; its image is, for the overlaid slices. What cannot be drawn now is
+   told and stops nothing. */
+static void redraw(struct visit *visit, int index, const struct measurement *row)
 {
     struct image image = {0};
     if (strcmp(row->status, "ok") != 0)
-        return STATUS_OK;
-    enum status status = session_image(&visit->session, &visit->specs[index], &image, NULL);
-    if (status == STATUS_OK)
+        return;
+    if (session_image(&visit->session, &visit->specs[index], &image, NULL) == STATUS_OK)
         draw(visit, index, &image);
+    else
+        fprintf(stderr, "sasbench: %s with %s is not drawn: %s\n", row->scene, row->algorithm, status_message());
     image_free(&image);
-    return status;
 }
 
 enum status comparison_scene(struct comparison *comparison, const struct scene *scene, int spec_count,
@@ -195,7 +222,10 @@ enum status comparison_scene(struct comparison *comparison, const struct scene *
         missing += !comparison_find(comparison, scene, &specs[k]);
     if (status == STATUS_OK && missing > 0) {
         progress(comparison, scene->name, "echoes and exact image");
-        status = visit_open(comparison, scene, spec_count, specs, &visit);
+        if (visit_open(comparison, scene, spec_count, specs, &visit) != STATUS_OK) {
+            progress_clear();
+            return fail_scene(comparison, scene, spec_count, specs);
+        }
     }
     if (status != STATUS_OK)
         return status;
@@ -205,7 +235,7 @@ enum status comparison_scene(struct comparison *comparison, const struct scene *
         if (!row)
             status = measure(comparison, &visit, k);
         else if (missing > 0 && comparison->details)
-            status = redraw(&visit, k, row);
+            redraw(&visit, k, row);
         progress_clear();
         if (row && status == STATUS_OK) {
             table_row(stdout, row);
@@ -270,12 +300,17 @@ enum status scenes_load(const char *command, int given_count, const char *const 
         status = status_set(STATUS_FAILED, "no memory for %d scenes", total);
     for (int k = 0; k < total && status == STATUS_OK; k++) {
         status = scene_load(list[k], SCENE_DIRECTORY, &(*scenes)[*count]);
-        for (int before = 0; before < *count && status == STATUS_OK; before++)
-            if (strcmp((*scenes)[before].name, (*scenes)[*count].name) == 0) {
+        for (int before = 0; before < *count && status == STATUS_OK; before++) {
+            if (strcmp((*scenes)[before].path, (*scenes)[*count].path) == 0) {
                 status = status_set(STATUS_INVALID, "%s: scene %s is given twice, must be named once",
                                     command, list[k]);
-                scene_free(&(*scenes)[*count]);
+            } else if (strcmp((*scenes)[before].name, (*scenes)[*count].name) == 0) {
+                status = scenes_tell_apart(&(*scenes)[before], &(*scenes)[*count]);
+                before = -1;                    /* the longer names may be those of others */
             }
+            if (status != STATUS_OK)
+                scene_free(&(*scenes)[*count]);
+        }
         if (status != STATUS_OK)
             break;
         if (given_count == 0 && (*scenes)[*count].full_size)

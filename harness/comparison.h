@@ -20,8 +20,8 @@ struct comparison {
 enum status comparison_open(const char *directory, int rows, bool details, struct comparison *comparison);
 
 /* Measure one scene with every spec: echoes and exact image once, then a row in the CSVs and on the terminal for each spec
-   as it is done. Rows that are there already are only printed. What fails or is unsupported becomes a row; errors:
-   STATUS_FAILED for memory, the simulation, or a record that cannot be written. */
+   as it is done. Rows that are there already are only printed. What fails or is unsupported becomes a row, and so does a scene whose
+   echoes cannot be made; errors: STATUS_FAILED for a record that cannot be written. */
 enum status comparison_scene(struct comparison *comparison, const struct scene *scene, int spec_count,
                              const struct spec *specs);
 

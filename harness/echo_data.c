@@ -73,12 +73,40 @@ enum status echoes_allocate(const struct acquisition *acquisition, enum precisio
 {
     size_t size = size_product((size_t)acquisition->pings, (size_t)acquisition->receivers,
                                (size_t)acquisition->samples, precision_size(precision));
-    *echoes = (struct echoes){acquisition, precision, allocate_zeroed(size)};
+    *echoes = (struct echoes){acquisition, precision, allocate_zeroed(size), 0};
     if (!echoes->samples) {
         return status_set(STATUS_FAILED, "out of memory for %d samples x %d receivers x %d pings",
                           acquisition->samples, acquisition->receivers, acquisition->pings);
     }
     return STATUS_OK;
+}
+
+/* The power of two that brings the largest part of the numbers below 1; 0 where it lies well within the range of
+   `precision`: room for the sums of 2^60 samples, and for parts 2^60 times smaller. */
+static int range_exponent(const double complex *numbers, size_t count, enum precision precision)
+{
+    const double reach = precision == PRECISION_FLOAT ? 0x1p40 : 0x1p400;
+    double largest = 0;
+    int exponent = 0;
+    for (size_t i = 0; i < count; i++) {
+        largest = fmax(largest, fmax(fabs(creal(numbers[i])), fabs(cimag(numbers[i]))));
+    }
+    if (largest > 0 && largest < INFINITY && !(largest >= 1 / reach && largest <= reach)) {
+        frexp(largest, &exponent);
+    }
+    return exponent;
+}
+
+static void scale_numbers(const double complex *from, int exponent, void *to, enum precision precision, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        double re = ldexp(creal(from[i]), exponent), im = ldexp(cimag(from[i]), exponent);
+        if (precision == PRECISION_FLOAT) {
+            ((float complex *)to)[i] = __builtin_complex((float)re, (float)im);
+        } else {
+            ((double complex *)to)[i] = __builtin_complex(re, im);
+        }
+    }
 }
 
 enum status echoes_convert(const struct echoes *from, enum precision precision, struct echoes *to)
@@ -87,7 +115,13 @@ enum status echoes_convert(const struct echoes *from, enum precision precision, 
     enum status status = echoes_allocate(acquisition, precision, to);
     if (status == STATUS_OK) {
         size_t count = (size_t)acquisition->pings * (size_t)acquisition->receivers * (size_t)acquisition->samples;
-        convert_numbers(from->samples, from->precision, (void *)to->samples, precision, count);
+        int exponent = from->precision == PRECISION_DOUBLE ? range_exponent(from->samples, count, precision) : 0;
+        if (exponent != 0) {
+            scale_numbers(from->samples, -exponent, (void *)to->samples, precision, count);
+        } else {
+            convert_numbers(from->samples, from->precision, (void *)to->samples, precision, count);
+        }
+        to->exponent = from->exponent + exponent;
     }
     return status;
 }
@@ -122,6 +156,25 @@ enum status image_convert(const struct image *from, enum precision precision, st
         convert_numbers(from->pixels[i], from->precision, to->pixels[i], precision, count);
     }
     return status;
+}
+
+enum status image_scale(struct image *image, int exponent)
+{
+    struct image scaled;
+    if (exponent == 0) {
+        return STATUS_OK;
+    }
+    enum status status = image_convert(image, PRECISION_DOUBLE, &scaled);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    for (int i = 0; i < scaled.patch_count; i++) {
+        size_t count = (size_t)scaled.patches[i].r_count * (size_t)scaled.patches[i].x_count;
+        scale_numbers(scaled.pixels[i], exponent, scaled.pixels[i], PRECISION_DOUBLE, count);
+    }
+    image_free(image);
+    *image = scaled;
+    return STATUS_OK;
 }
 
 void image_free(struct image *image)

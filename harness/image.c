@@ -1,19 +1,30 @@
 /* The commands `simulate` and `image`. */
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "echo_data.h"
 #include "matfile.h"
 #include "simulate.h"
 #include "task.h"
 
+/* Which file is asked for is told by its extension. */
+static enum status check_output(const char *command, const char *output)
+{
+    const char *extension = output ? strrchr(output, '.') : NULL;
+    if (!output)
+        return status_set(STATUS_INVALID, "%s: -o FILE.mat is missing", command);
+    enum status status = matfile_place(output);
+    if (status == STATUS_OK && (!extension || strcasecmp(extension, ".mat") != 0))
+        status = status_set(STATUS_INVALID, "%s: -o %s is of no known kind; accepted: FILE.mat", command, output);
+    return status;
+}
+
 enum status command_simulate(const struct task *task)
 {
     struct scene scene;
     struct echoes echoes;
-    if (!task->output)
-        return status_set(STATUS_INVALID, "simulate: -o FILE.mat is missing");
-    enum status status = matfile_place(task->output);
+    enum status status = check_output("simulate", task->output);
     if (status == STATUS_OK)
         status = scene_load(task->names[0], SCENE_DIRECTORY, &scene);
     if (status != STATUS_OK)
@@ -27,11 +38,11 @@ enum status command_simulate(const struct task *task)
     return status;
 }
 
-/* Echoes of a scene or of a file, with what must outlive them. */
+/* A scene, or the echoes of a file. */
 struct source {
     struct scene scene;                 /* zeroed with --echoes */
     struct acquisition recorded;        /* zeroed with --scene */
-    struct echoes echoes;               /* double */
+    struct echoes echoes;               /* double; with --scene they are made when a plan is there */
 };
 
 static void source_free(struct source *source)
@@ -46,33 +57,49 @@ static enum status source_open(const struct task *task, struct source *source)
     *source = (struct source){0};
     if (task->echoes)
         return echo_file_read(task->echoes, &source->recorded, &source->echoes);
-    struct scene *scene = &source->scene;
-    enum status status = scene_load(task->scene, SCENE_DIRECTORY, scene);
-    return status == STATUS_OK ? scene_simulate(scene, &source->echoes) : status;
+    return scene_load(task->scene, SCENE_DIRECTORY, &source->scene);
 }
 
-static enum status form_image(const struct spec *spec, const struct problem *problem, const struct echoes *from,
-                              struct image *image)
+static enum status execute(const struct spec *spec, void *plan, const struct problem *problem, const struct echoes *from,
+                           struct image *image)
 {
     struct echoes echoes;
     struct stages stages;
+    enum status status = echoes_convert(from, spec->precision, &echoes);
+    if (status != STATUS_OK)
+        return status;
+    status = image_allocate(problem->patch_count, problem->patches, spec->precision, image);
+    if (status == STATUS_OK) {
+        stages_begin(&stages);
+        status = spec->algorithm->execute(plan, &echoes, image, &stages);
+        if (status == STATUS_OK && !image_is_finite(image))
+            status = status_set(STATUS_FAILED, "%s made values that are not finite of finite echoes",
+                                spec->algorithm->name);
+        if (status == STATUS_OK)
+            status = image_scale(image, echoes.exponent);
+        if (status != STATUS_OK)
+            image_free(image);
+    }
+    echoes_free(&echoes);
+    return status;
+}
+
+/* The plan comes first: what cannot be imaged need not be simulated. */
+static enum status form_image(const struct spec *spec, const struct problem *problem, struct source *source,
+                              const char *place, struct image *image)
+{
     void *plan = NULL;
     enum status status = spec->algorithm->plan(problem, spec->options, &plan);
     if (status != STATUS_OK)
         return status;
-    status = echoes_convert(from, spec->precision, &echoes);
-    if (status == STATUS_OK) {
-        status = image_allocate(problem->patch_count, problem->patches, spec->precision, image);
-        if (status == STATUS_OK) {
-            stages_begin(&stages);
-            status = spec->algorithm->execute(plan, &echoes, image, &stages);
-            if (status == STATUS_OK && !image_is_finite(image))
-                status = status_set(STATUS_FAILED, "the image holds values that are not finite: the echoes are too large "
-                                    "for precision=%s", precision_name(spec->precision));
-            if (status != STATUS_OK)
-                image_free(image);
-        }
-        echoes_free(&echoes);
+    if (!source->echoes.samples)
+        status = scene_simulate(&source->scene, &source->echoes);
+    if (status == STATUS_OK)
+        status = execute(spec, plan, problem, &source->echoes, image);
+    if (status == STATUS_OK && !image_is_finite(image)) {
+        image_free(image);
+        status = status_set(STATUS_INVALID, "%s: the image of %s is beyond the range of double; %s must be smaller", place,
+                            spec->algorithm->name, source->scene.name ? "targets.points.amplitude" : "variable `samples`");
     }
     spec->algorithm->destroy(plan);
     return status;
@@ -88,9 +115,7 @@ static enum status check_usage(const struct task *task)
     if (task->spec_count != 1)
         return status_set(STATUS_INVALID, "image: %d --algorithm SPEC given, exactly one is needed",
                           task->spec_count);
-    if (!task->output)
-        return status_set(STATUS_INVALID, "image: -o FILE.mat is missing");
-    return matfile_place(task->output);
+    return check_output("image", task->output);
 }
 
 enum status command_image(const struct task *task)
@@ -106,7 +131,8 @@ enum status command_image(const struct task *task)
     status = source_open(task, &source);
     if (status == STATUS_OK) {
         const struct spec *spec = &task->specs[0];
-        struct problem problem = {source.echoes.acquisition, source.scene.patch_count, source.scene.patches,
+        const struct acquisition *acquisition = task->echoes ? &source.recorded : &source.scene.acquisition;
+        struct problem problem = {acquisition, source.scene.patch_count, source.scene.patches,
                                   spec->precision};
         if (task->grid) {
             problem.patch_count = 1;
@@ -114,7 +140,7 @@ enum status command_image(const struct task *task)
             status = grid_meets_records(problem.acquisition, 1, &grid, task->grid);
         }
         if (status == STATUS_OK)
-            status = form_image(spec, &problem, &source.echoes, &image);
+            status = form_image(spec, &problem, &source, task->scene ? task->scene : task->echoes, &image);
         if (status == STATUS_OK) {
             status = image_file_write(task->output, &image, spec->algorithm->name, spec->text,
                                       task->scene ? source.scene.name : task->echoes);

@@ -171,7 +171,7 @@ enum status echo_file_read(const char *path, struct acquisition *acquisition, st
         status = acquisition_fill(path, variables, acquisition);
     }
     if (status == STATUS_OK) {
-        *echoes = (struct echoes){acquisition, PRECISION_DOUBLE, variables[SAMPLES].values};
+        *echoes = (struct echoes){acquisition, PRECISION_DOUBLE, variables[SAMPLES].values, 0};
         variables[SAMPLES].values = NULL;
     } else {
         acquisition_free(acquisition);

@@ -6,6 +6,7 @@
    below the range step, and is taken off first. */
 #include "metrics.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -46,11 +47,19 @@ static void taps_fill(double fraction, double taps[2 * TAPS_HALF])
     }
 }
 
-/* A place in units of samples; whole where it lies on the raster. */
-static double raster_snap(double coordinate)
+/* How far from the raster, in steps, still counts as on it: coordinates far from 0 are rounded, which may be much of a fine
+   step. A quarter of a step is never on the raster. */
+static double raster_tolerance(double largest_m, double step)
 {
-    double whole = round(coordinate);
-    return fabs(coordinate - whole) <= RASTER_TOLERANCE ? whole : coordinate;
+    return fmin(0.25, RASTER_TOLERANCE + 2 * DBL_EPSILON * fabs(largest_m) / step);
+}
+
+/* The place of `value` on an axis in units of samples; whole where it lies on the raster. */
+static double raster_place(double value, double first, double step)
+{
+    double coordinate = (value - first) / step, whole = round(coordinate);
+    double tolerance = raster_tolerance(fmax(fabs(value), fabs(first)), step);
+    return fabs(coordinate - whole) <= tolerance ? whole : coordinate;
 }
 
 /* The place of a target in the patch that serves it best. */
@@ -66,8 +75,8 @@ static struct place place_find(const struct image *image, double x, double r)
     struct place best = {.patch = -1};
     for (int k = 0; k < image->patch_count; k++) {
         const struct grid *grid = &image->patches[k];
-        double column = raster_snap((x - grid->x_first) / grid->x_step);
-        double row = raster_snap((r - grid->r_first) / grid->r_step);
+        double column = raster_place(x, grid->x_first, grid->x_step);
+        double row = raster_place(r, grid->r_first, grid->r_step);
         double margin_x = grid->x_step * fmin(column, grid->x_count - 1 - column);
         double margin_r = grid->r_step * fmin(row, grid->r_count - 1 - row);
         double margin = fmin(margin_x, margin_r);
@@ -297,6 +306,11 @@ struct slice_metrics metrics_of_power(const double *power, int count, double fir
     }
     metrics.islr_db[DEFINITION_NULL] = islr_of_lobe(power, count, null_left, null_right);
     metrics.islr_db[DEFINITION_3DB] = islr_of_lobe(power, count, half_left, half_right);
+    if (!isfinite(metrics.islr_db[DEFINITION_NULL]) || isinf(metrics.pslr_db[DEFINITION_NULL])) {
+        metrics.pslr_db[DEFINITION_NULL] = metrics.islr_db[DEFINITION_NULL] = metrics.islr_db[DEFINITION_3DB] = NAN;
+        snprintf(metrics.reason, sizeof metrics.reason, "no power outside the main lobe");
+        return metrics;
+    }
     if (pixel_step > 0)
         pixel_measure(power, count, -first / step, pixel_step / step, null_left, null_right, &metrics);
     return metrics;
@@ -460,10 +474,10 @@ struct offset {
 /* Offset of a run of `count` samples within one of `whole_count`, both uniform; -1 unless all of them coincide. */
 static int raster_offset(double first, double step, int count, double whole_first, double whole_step, int whole_count)
 {
-    double begin = (first - whole_first) / whole_step;
-    double end = (first + (count - 1) * step - whole_first) / whole_step;
-    double offset = round(begin);
-    bool matches = fabs(begin - offset) <= RASTER_TOLERANCE && fabs(end - (offset + count - 1)) <= RASTER_TOLERANCE;
+    double begin = (first - whole_first) / whole_step, offset = round(begin);
+    double stretch = (count - 1) * (step / whole_step - 1);     /* by which the last sample is off, beside the first */
+    double tolerance = raster_tolerance(fmax(fabs(first), fabs(whole_first)), whole_step);
+    bool matches = fabs(begin - offset) <= tolerance && fabs(begin + stretch - offset) <= tolerance;
     return matches && offset >= 0 && offset + count <= whole_count ? (int)offset : -1;
 }
 
@@ -518,20 +532,24 @@ static void pair_add_second(struct error_sums *sums, double complex value, doubl
 
 struct error_metrics metrics_error(const struct image *image, const struct image *reference)
 {
-    const struct error_metrics undefined = {NAN, NAN, NAN, NAN};
+    struct error_metrics undefined = {NAN, NAN, NAN, NAN, "no errors: the exact image is zero"};
     void (*const passes[])(struct error_sums *, double complex, double complex) = {pair_add_first, pair_add_second};
     struct error_sums sums = {0};
     for (int pass = 0; pass < 2; pass++) {
         for (int k = 0; k < reference->patch_count; k++) {
             const struct grid *grid = &reference->patches[k];
             struct offset offset = offset_find(image, grid);
-            if (offset.patch < 0)
+            if (offset.patch < 0) {
+                undefined.reason = "no errors: no patch of the image has the exact image's pixels";
                 return undefined;
+            }
             for (int i = 0; i < grid->r_count; i++)
                 for (int j = 0; j < grid->x_count; j++)
                     passes[pass](&sums, image_pixel(image, offset.patch, offset.row + i, offset.column + j),
                                  image_pixel(reference, k, i, j));
         }
+        if (!(sums.reference < INFINITY && sums.image < INFINITY))
+            undefined.reason = "no errors: pixels that are not finite, or too large to square";
         if (!(sums.reference > 0 && sums.reference < INFINITY && sums.image < INFINITY))
             return undefined;
     }
@@ -540,5 +558,6 @@ struct error_metrics metrics_error(const struct image *image, const struct image
         .error_gain = sqrt(sums.error_gain / sums.reference),
         .phase_rms_rad = sqrt(sums.phase / sums.phase_weight),
         .peak_ratio = sqrt(sums.error_peak / sums.reference_peak),
+        .reason = isnan(sums.phase) ? "no phase error: strong pixels are zero" : "",
     };
 }

@@ -45,11 +45,12 @@ struct error_metrics {
     double error_gain;              /* after one best complex gain (over all pixels) */
     double phase_rms_rad;           /* over pixels with abs(reference) >= 0.1 max, weighted by its square */
     double peak_ratio;              /* max |image - reference| / max |reference| */
+    const char *reason;             /* why something is undefined, a static text; empty when all is well */
 };
 
 /* Over all pixels of all patches of `reference` (double), which are looked up in `image` at the same places: image
-   patches are equal to, or contain, the reference patches on the same raster. All NAN when the reference is all zero
-   or a pixel of the image is not finite. */
+   patches are equal to, or contain, the reference patches on the same raster. All NAN, with the reason, when they do not, the
+   reference is all zero or a pixel of the image is not finite; the phase, when a strong pixel of the image is zero. */
 struct error_metrics metrics_error(const struct image *image, const struct image *reference);
 
 #endif

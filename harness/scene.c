@@ -72,6 +72,23 @@ static enum status check_sizes(const struct reading *reading)
     return STATUS_OK;
 }
 
+/* Pings and receivers must stay where coordinates may be. */
+static enum status check_places(const struct reading *reading)
+{
+    const struct acquisition *a = &reading->scene.acquisition;
+    double last_offset = reading->first_offset_m + (a->receivers - 1) * reading->pitch_m;
+    double sailed = (a->pings - 1) * (reading->speed_m_s * reading->pri_s), last = reading->x_first_m + sailed;
+    if (!(fabs(last) <= COORDINATE_MAX_M)) {
+        return refuse(reading, reading->track, "track", "pri", "such that the last of %d pings at %g m/s, at %g m, stays "
+                      "within +-%g m", a->pings, reading->speed_m_s, last, COORDINATE_MAX_M);
+    }
+    if (!(fabs(last_offset) <= COORDINATE_MAX_M)) {
+        return refuse(reading, reading->array, "array", "pitch", "such that the last of %d receivers, %g m ahead of the "
+                      "transmitter, stays within +-%g m", a->receivers, last_offset, COORDINATE_MAX_M);
+    }
+    return STATUS_OK;
+}
+
 static enum status check_image_kind(const struct reading *reading)
 {
     const char *one = "one of `x` with `r`, `around_targets`, `patches`";
@@ -111,7 +128,8 @@ static enum status reading_check(const struct reading *reading)
         return refuse(reading, reading->array, "array", "pitch", "a number other than 0 m with %d receivers",
                       a->receivers);
     }
-    enum status (*const checks[])(const struct reading *) = {check_beam, check_pulse, check_sizes, check_image_kind};
+    enum status (*const checks[])(const struct reading *) = {check_beam, check_pulse, check_sizes, check_places,
+                                                             check_image_kind};
     enum status status = STATUS_OK;
     for (size_t i = 0; i < sizeof checks / sizeof *checks && status == STATUS_OK; i++) {
         status = checks[i](reading);
@@ -374,14 +392,66 @@ static char *name_below(const char *path, const char *directory)
         ? strndup(path + length + 1, strlen(path) - length - 1 - strlen(EXTENSION)) : NULL;
 }
 
-/* A scene below `directory` has one name, however its path is written; any other is called by its path. */
-static char *path_name(const char *path, const char *directory)
+/* The last `parts` parts of a full path without extension. */
+static char *name_of(const char *full_path, int parts)
 {
-    char *full_path = realpath(path, NULL), *full_directory = realpath(directory, NULL);
-    char *name = full_path && full_directory ? name_below(full_path, full_directory) : NULL;
-    free(full_path);
+    const char *end = full_path + strlen(full_path), *begin = end;
+    for (; begin > full_path && (begin[-1] != '/' || --parts > 0);)
+        begin--;
+    return strndup(begin, (size_t)(end - begin) - (has_extension(begin) ? strlen(EXTENSION) : 0));
+}
+
+static bool has_controls(const char *text)
+{
+    for (; *text; text++) {
+        if ((unsigned char)*text < ' ' || *text == 0x7f) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* A scene has one name, however its path is written: below `directory` its path there, elsewhere that of its file. */
+static enum status names_fill(struct scene *scene, const char *path, const char *directory)
+{
+    char *full_directory = realpath(directory, NULL);
+    scene->path = realpath(path, NULL);
+    if (!scene->path) {
+        scene->path = strdup(path);             /* reading it tells what is wrong */
+    }
+    if (scene->path && full_directory && has_extension(scene->path)) {
+        scene->name = name_below(scene->path, full_directory);
+    }
+    scene->shipped = scene->name != NULL;
+    if (scene->path && !scene->name) {
+        scene->name = name_of(scene->path, 1);
+    }
     free(full_directory);
-    return name ? name : strdup(path);
+    if (scene->path && has_controls(scene->path)) {     /* it would go into tables and pictures */
+        return status_set(STATUS_INVALID, "%s: the path of the scene holds control characters, must be plain text", path);
+    }
+    return scene->path && scene->name ? STATUS_OK : status_set(STATUS_FAILED, "%s: out of memory for the scene", path);
+}
+
+enum status scenes_tell_apart(struct scene *a, struct scene *b)
+{
+    int parts = 1;
+    for (const char *c = a->name; *c; c++) {
+        parts += *c == '/';
+    }
+    while (strcmp(a->name, b->name) == 0) {
+        parts++;
+        struct scene *const both[] = {a, b};
+        for (int k = 0; k < 2; k++) {
+            char *longer = both[k]->shipped ? strdup(both[k]->name) : name_of(both[k]->path, parts);
+            if (!longer) {
+                return status_set(STATUS_FAILED, "%s: out of memory for the scene", both[k]->name);
+            }
+            free(both[k]->name);
+            both[k]->name = longer;
+        }
+    }
+    return STATUS_OK;
 }
 
 enum status scene_load(const char *scene, const char *scene_directory, struct scene *out)
@@ -397,8 +467,10 @@ enum status scene_load(const char *scene, const char *scene_directory, struct sc
         sprintf(path, "%s/%s%s", scene_directory, scene, EXTENSION);
     }
     struct reading reading = {.path = path, .scene = {.hash = FNV_OFFSET}};
-    reading.scene.name = has_extension(scene) ? path_name(scene, scene_directory) : strdup(scene);
-    enum status status = reading.scene.name ? file_read(&reading, scene_directory) : out_of_memory(&reading);
+    enum status status = names_fill(&reading.scene, path, scene_directory);
+    if (status == STATUS_OK) {
+        status = file_read(&reading, scene_directory);
+    }
     if (status == STATUS_OK) {
         *out = reading.scene;
     } else {
@@ -412,6 +484,7 @@ void scene_free(struct scene *scene)
 {
     acquisition_free(&scene->acquisition);
     free(scene->name);
+    free(scene->path);
     free(scene->description);
     free(scene->targets);
     free(scene->patches);

@@ -28,7 +28,9 @@ struct target {
 
 /* Freed with scene_free. */
 struct scene {
-    char *name;                     /* path below scenes/ without extension, or the path given */
+    char *name;                     /* without extension: the path below scenes/, or the name of a file elsewhere */
+    char *path;                     /* of the file, absolute and without links */
+    bool shipped;                   /* it lies below scenes/ */
     char *description;              /* one line, from the file */
     uint64_t hash;                  /* FNV-1a of the content after @include: the same text measures the same thing */
     struct acquisition acquisition;
@@ -53,6 +55,9 @@ struct scene {
    Errors: STATUS_INVALID, the message naming file, line, key, value and what is accepted. */
 enum status scene_load(const char *scene, const char *scene_directory, struct scene *out);
 void scene_free(struct scene *scene);
+/* Two files of one name, not both shipped, get as much of their folders in their names as tells them apart. Errors:
+   STATUS_FAILED without memory. */
+enum status scenes_tell_apart(struct scene *a, struct scene *b);
 
 /* Names of all scenes below `scene_directory` (recursive, sorted, without extension; files whose name begins with '_'
    are for @include and are left out). The caller frees each name and the array (scene_names_free). */

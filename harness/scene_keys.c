@@ -10,6 +10,7 @@
 
 #define FNV_PRIME 1099511628211u
 
+#define LEVEL_MIN 1e-100            /* of amplitudes, unless they are 0 */
 #define SEED_MAX 1e15               /* seeds pass through a double, exactly up to 2^53 */
 
 struct key {
@@ -119,6 +120,22 @@ static bool read_complex(const struct key *key, config_setting_t *setting, void 
     return good;
 }
 
+/* Where neither squares nor sums leave double; nothing at all is fine too. */
+static bool is_level(double magnitude)
+{
+    return magnitude == 0 || magnitude >= LEVEL_MIN;
+}
+
+static bool read_amplitude(const struct key *key, config_setting_t *setting, void *field)
+{
+    return read_complex(key, setting, field) && is_level(cabs(*(double complex *)field));
+}
+
+static bool read_level(const struct key *key, config_setting_t *setting, void *field)
+{
+    return read_real(key, setting, field) && is_level(*(double *)field);
+}
+
 static bool read_group(const struct key *key, config_setting_t *setting, void *field)
 {
     (void)key;
@@ -140,7 +157,9 @@ static const struct type BOOLEAN = {"true or false", read_boolean, sizeof(bool)}
 static const struct type CHOICE = {"one of", read_choice, sizeof(int)};
 static const struct type TEXT = {"a text of one line", read_text, 0};
 static const struct type SPAN = {"[min, max] with min <= max, each", read_span, 2 * sizeof(double)};
-static const struct type COMPLEX = {"a number or [re, im], each", read_complex, sizeof(double complex)};
+static const struct type AMPLITUDE = {"0 or of magnitude >= 1e-100, a number or [re, im], each", read_amplitude,
+                                      sizeof(double complex)};
+static const struct type LEVEL = {"0 or >= 1e-100, a number", read_level, sizeof(double)};
 static const struct type GROUP = {"a group { ... }", read_group, 0};
 static const struct type LIST = {"a list ( ... )", read_list, 0};
 
@@ -175,8 +194,8 @@ static const struct key keys[] = {
     {"sonar", "bandwidth", "Hz", &REAL, AT(reading, scene.acquisition.bandwidth), REQUIRED, POSITIVE, NULL},
     {"pulse", "kind", "", &CHOICE, AT(reading, scene.pulse_kind), PULSE_LFM, 0, 0, pulse_names},
     {"pulse", "duration", "s", &REAL, AT(reading, scene.pulse_duration), 0, POSITIVE, NULL},
-    {"array", "tx_length", "m", &REAL, AT(reading, scene.acquisition.tx_length), 0, POSITIVE, NULL},
-    {"array", "rx_length", "m", &REAL, AT(reading, scene.acquisition.rx_length), 0, POSITIVE, NULL},
+    {"array", "tx_length", "m", &REAL, AT(reading, scene.acquisition.tx_length), 0, ABOVE_0, COORDINATE_MAX_M, NULL},
+    {"array", "rx_length", "m", &REAL, AT(reading, scene.acquisition.rx_length), 0, ABOVE_0, COORDINATE_MAX_M, NULL},
     {"array", "receivers", "", &INTEGER, AT(reading, scene.acquisition.receivers), REQUIRED, 1, INT_MAX, NULL},
     {"array", "first_offset", "m", &REAL, AT(reading, first_offset_m), 0, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
     {"array", "pitch", "m", &REAL, AT(reading, pitch_m), 0, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
@@ -194,12 +213,12 @@ static const struct key keys[] = {
     {"targets", "fields", "", &LIST, AT(reading, fields), 0, 0, 0, NULL},
     {"targets.points", "x", "m", &REAL, AT(target, x), REQUIRED, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
     {"targets.points", "r", "m", &REAL, AT(target, r), REQUIRED, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
-    {"targets.points", "amplitude", "", &COMPLEX, AT(target, amplitude), 1, -1e100, 1e100, NULL},
+    {"targets.points", "amplitude", "", &AMPLITUDE, AT(target, amplitude), 1, -1e100, 1e100, NULL},
     {"targets.fields", "x", "m", &SPAN, AT(scatter_field, x_m), REQUIRED, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
     {"targets.fields", "r", "m", &SPAN, AT(scatter_field, r_m), REQUIRED, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
     {"targets.fields", "count", "", &INTEGER, AT(scatter_field, count), REQUIRED, 1, SCATTERERS_MAX, NULL},
     {"targets.fields", "seed", "", &SEED, AT(scatter_field, seed), REQUIRED, 0, SEED_MAX, NULL},
-    {"noise", "std", "", &REAL, AT(reading, scene.noise_std), 0, 0, 1e100, NULL},
+    {"noise", "std", "", &LEVEL, AT(reading, scene.noise_std), 0, 0, 1e100, NULL},
     {"noise", "seed", "", &SEED, AT(reading, scene.noise_seed), 0, 0, SEED_MAX, NULL},
     {"image", "x", "", &GROUP, AT(reading, x), 0, 0, 0, NULL},
     {"image", "r", "", &GROUP, AT(reading, r), 0, 0, 0, NULL},

@@ -2,8 +2,10 @@
 #include "session.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "echo_data.h"
 #include "metrics.h"
@@ -46,12 +48,15 @@ enum status session_image(const struct session *session, const struct spec *spec
     stages_begin(&stages);
     if (status == STATUS_OK)
         status = spec->algorithm->execute(plan, &session->echoes[spec->precision], image, &stages);
+    if (status == STATUS_OK)
+        status = image_scale(image, session->echoes[spec->precision].exponent);
     spec->algorithm->destroy(plan);
     if (status != STATUS_OK)
         image_free(image);
     return status;
 }
 
+/* What refuses the exact image may well allow others. */
 static enum status form_reference(struct session *session)
 {
     struct spec spec;
@@ -59,8 +64,14 @@ static enum status form_reference(struct session *session)
     if (status != STATUS_OK)
         return status;
     status = session_image(session, &spec, &session->reference, NULL);
+    if (status == STATUS_OK && !image_is_finite(&session->reference)) {
+        image_free(&session->reference);
+        status = status_set(STATUS_FAILED, "it holds values that are not finite");
+    }
+    if (status != STATUS_OK)
+        snprintf(session->no_reference, sizeof session->no_reference, "%s", status_message());
     spec_free(&spec);
-    return status;
+    return STATUS_OK;
 }
 
 enum status session_open(const struct scene *scene, struct session *session)
@@ -102,6 +113,7 @@ static int target_rows(const struct session *session, const struct image *image,
     const struct target *target = &session->scene->targets[index];
     double complex here = metrics_value(image, a, target->x, target->r);
     double complex exact = metrics_value(&session->reference, a, target->x, target->r);
+    double phase_error = here != 0 && exact != 0 ? carg(here * conj(exact)) : NAN;      /* zero has no phase */
     int count = 0;
     for (int axis = 0; axis < AXES; axis++) {
         struct slice_metrics m = metrics_slice(image, a, target, (enum axis)axis);
@@ -111,16 +123,29 @@ static int target_rows(const struct session *session, const struct image *image,
             if (d != DEFINITION_PIXEL || axis == AXIS_AZIMUTH)
                 rows[count++] = (struct target_row){
                     row->scene, row->algorithm, row->options, row->precision, index, axis_names[axis],
-                    definition_names[d], m.extent_m, m.position_error_m, carg(here * conj(exact)), m.width_m,
+                    definition_names[d], m.extent_m, m.position_error_m, phase_error, m.width_m,
                     m.pslr_db[d], m.islr_db[d]};
     }
     return count;
 }
 
+/* One more reason, behind those that are there. */
+static void __attribute__((format(printf, 3, 4))) reason_add(char *reason, size_t size, const char *format, ...)
+{
+    size_t used = strlen(reason);
+    va_list arguments;
+    va_start(arguments, format);
+    if (used > 0 && used < size - 1)
+        used += (size_t)snprintf(reason + used, size - used, "; ");
+    if (used < size)
+        vsnprintf(reason + used, size - used, format, arguments);
+    va_end(arguments);
+}
+
 enum status session_quality(const struct session *session, const struct image *image, struct measurement *row,
                             char *reason, size_t reason_size, struct target_row **targets, int *count)
 {
-    int points = session->scene->point_count, defined = 0;
+    int points = session->scene->point_count, defined = 0, unmeasured = 0;
     double *values = calloc(3 * (size_t)points + 1, sizeof *values);
     *targets = calloc((size_t)points * AXES * DEFINITIONS + 1, sizeof **targets);
     *count = 0;
@@ -134,12 +159,18 @@ enum status session_quality(const struct session *session, const struct image *i
     row->error = error.error;
     row->error_gain = error.error_gain;
     row->phase_rms_rad = error.phase_rms_rad;
+    if (*session->no_reference)
+        reason_add(reason, reason_size, "no errors, for there is no exact image: %s", session->no_reference);
+    else if (*error.reason)
+        reason_add(reason, reason_size, "%s", error.reason);
+    if (points == 0)
+        reason_add(reason, reason_size, "no point targets to measure lobes of");
     double *width = values, *pslr = values + points, *islr = values + 2 * points;
     for (int t = 0; t < points; t++) {
         struct slice_metrics azimuth;
         *count += target_rows(session, image, t, row, *targets + *count, &azimuth);
-        if (*azimuth.reason)
-            snprintf(reason, reason_size, "target %d: %s", t + 1, azimuth.reason);
+        if (*azimuth.reason && unmeasured++ == 0)
+            reason_add(reason, reason_size, "target %d: %s", t + 1, azimuth.reason);
         if (isfinite(azimuth.pslr_db[DEFINITION_NULL])) {
             width[defined] = azimuth.width_m;
             pslr[defined] = azimuth.pslr_db[DEFINITION_NULL];
@@ -147,6 +178,8 @@ enum status session_quality(const struct session *session, const struct image *i
             defined++;
         }
     }
+    if (unmeasured > 1)
+        reason_add(reason, reason_size, "%d more targets likewise", unmeasured - 1);
     row->width_m = median(width, defined);
     row->pslr_db = median(pslr, defined);
     row->islr_db = median(islr, defined);

@@ -10,11 +10,12 @@
 struct session {
     const struct scene *scene;          /* borrowed, outlives the session */
     struct echoes echoes[2];            /* by enum precision */
-    struct image reference;             /* double, on the patches where images are compared */
+    struct image reference;             /* double, on the patches where images are compared; no patches without one */
+    char no_reference[512];             /* why there is none: refused, or no memory; else empty */
 };
 
-/* Simulate the echoes and form the exact image. Errors: STATUS_FAILED for memory or the simulation; *session then needs
-   no close. */
+/* Simulate the echoes and form the exact image; where there can be none, images are measured without their errors. Errors:
+   STATUS_FAILED for memory or the simulation, STATUS_INVALID as scene_simulate; *session then needs no close. */
 enum status session_open(const struct scene *scene, struct session *session);
 void session_close(struct session *session);
 
@@ -32,8 +33,8 @@ struct measurement measurement_empty(const char *scene, const char *algorithm, c
                                      enum precision precision);
 
 /* Errors of a finite image and the medians over the targets into *row, its targets' rows into *targets, malloc'ed
-   [*count], which the caller frees. `reason` receives why something is undefined; else it is left alone. Errors:
-   STATUS_FAILED without memory. */
+   [*count], which the caller frees. `reason` receives why something is undefined, for each field that is; else it is left
+   alone. Errors: STATUS_FAILED without memory. */
 enum status session_quality(const struct session *session, const struct image *image, struct measurement *row,
                             char *reason, size_t reason_size, struct target_row **targets, int *count);
 

@@ -4,11 +4,13 @@
 #include <fftw3.h>
 #include <math.h>
 #include <omp.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../algorithms/delay.h"
 #include "../algorithms/fft_length.h"
+#include "../algorithms/memory.h"
 #include "echo_data.h"
 #include "random.h"
 
@@ -43,14 +45,20 @@ struct angles {
     double tx, rx, mid;
 };
 
+/* A point at the element itself lies in no direction: it is seen as from broadside, sine 0. */
+static double sine(double along, double across)
+{
+    double distance = hypot(along, across);
+    return distance > 0 ? along / distance : 0;
+}
+
 static struct angles pair_angles(const struct acquisition *a, int ping, int receiver, struct vector p, double tau)
 {
     struct vector t = a->tx[ping], r = a->rx[(size_t)ping * (size_t)a->receivers + (size_t)receiver];
     struct vector v = a->velocity[ping];
     double ut = t.x - p.x, ur = r.x + v.x * tau - p.x, um = (ut + ur) / 2;
     double across_t = hypot(t.y - p.y, t.z - p.z), across_r = hypot(r.y + v.y * tau - p.y, r.z + v.z * tau - p.z);
-    return (struct angles){ut / hypot(ut, across_t), ur / hypot(ur, across_r),
-                           um / hypot(um, (across_t + across_r) / 2)};
+    return (struct angles){sine(ut, across_t), sine(ur, across_r), sine(um, (across_t + across_r) / 2)};
 }
 
 static double angles_weight(const struct scene *scene, const struct angles *angles, double frequency)
@@ -92,11 +100,29 @@ static void replica_free(struct replica *replica)
     *replica = (struct replica){0};
 }
 
+/* Bins of the transforms of a record and what lies ahead of it. */
+static int transform_length(const struct scene *scene)
+{
+    const struct acquisition *a = &scene->acquisition;
+    return scene->pulse_kind == PULSE_FLAT ? a->samples : fft_length(a->samples + 2LL * a->pulse_length);
+}
+
+/* The echoes, the replica, a transform for each thread, and as much again as FFTW's plans may hold. */
+static enum status check_memory(const struct scene *scene)
+{
+    const struct acquisition *a = &scene->acquisition;
+    double samples = (double)a->pings * a->receivers * a->samples, transforms = omp_get_max_threads() + 3.0;
+    char what[400];
+    snprintf(what, sizeof what, "the echoes of %.300s, %d samples x %d receivers x %d pings", scene->name, a->samples,
+             a->receivers, a->pings);
+    return memory_check((samples + transforms * transform_length(scene)) * sizeof(double complex), what);
+}
+
 static enum status replica_make(const struct scene *scene, struct replica *replica)
 {
     const struct acquisition *a = &scene->acquisition;
     bool flat = scene->pulse_kind == PULSE_FLAT;
-    int pulse = a->pulse_length, length = flat ? a->samples : fft_length(a->samples + 2LL * pulse);
+    int pulse = a->pulse_length, length = transform_length(scene);
     *replica = (struct replica){.length = length, .lead = flat ? 0 : pulse, .nyquist = length % 2 == 0};
     replica->frequency = malloc((size_t)length * sizeof *replica->frequency);
     replica->spectrum = fftw_malloc((size_t)length * sizeof *replica->spectrum);
@@ -206,11 +232,21 @@ static void simulate_pair(const struct scene *scene, const struct replica *repli
     }
 }
 
+static bool is_finite(const double complex *record, int samples)
+{
+    double sum = 0;                     /* one sample that is not finite leaves NaN */
+    for (int n = 0; n < samples; n++)
+        sum += 0 * creal(record[n]) + 0 * cimag(record[n]);
+    return sum == 0;
+}
+
 enum status scene_simulate(const struct scene *scene, struct echoes *echoes)
 {
     const struct acquisition *a = &scene->acquisition;
     struct replica replica;
-    enum status status = replica_make(scene, &replica);
+    enum status status = check_memory(scene);
+    if (status == STATUS_OK)
+        status = replica_make(scene, &replica);
     if (status != STATUS_OK)
         return status;
     status = echoes_allocate(a, PRECISION_DOUBLE, echoes);
@@ -221,12 +257,20 @@ enum status scene_simulate(const struct scene *scene, struct echoes *echoes)
     }
     if (status == STATUS_OK) {
         double complex *samples = (double complex *)echoes->samples;
-        long long pairs = (long long)a->pings * a->receivers;
-#pragma omp parallel for schedule(dynamic, 8)
-        for (long long k = 0; k < pairs; k++)
+        long long pairs = (long long)a->pings * a->receivers, unfit = pairs;
+#pragma omp parallel for schedule(dynamic, 8) reduction(min : unfit)
+        for (long long k = 0; k < pairs; k++) {
             simulate_pair(scene, &replica, (int)(k / a->receivers), (int)(k % a->receivers),
                           work + (size_t)omp_get_thread_num() * (size_t)replica.length,
                           samples + (size_t)k * (size_t)a->samples);
+            if (k < unfit && !is_finite(samples + (size_t)k * (size_t)a->samples, a->samples))
+                unfit = k;
+        }
+        if (unfit < pairs) {
+            echoes_free(echoes);
+            status = status_set(STATUS_INVALID, "%s: the echo of receiver %lld in ping %lld is not finite, its numbers must "
+                                "be less extreme", scene->name, unfit % a->receivers + 1, unfit / a->receivers + 1);
+        }
     }
     fftw_free(work);
     replica_free(&replica);

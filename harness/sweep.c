@@ -60,7 +60,7 @@ enum status command_sweep(const struct task *task)
     for (int k = 0; k < scene_count && status == STATUS_OK; k++)
         status = comparison_scene(&comparison, &scenes[k], ladder.count, ladder.specs);
     if (status == STATUS_OK)
-        status = sweep_tables(directory);
+        status = sweep_tables(directory, scenes, scene_count);
     for (int k = 0; k < scene_count && status == STATUS_OK; k++)
         draw(directory, &scenes[k]);
     if (status == STATUS_OK)

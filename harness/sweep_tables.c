@@ -309,17 +309,18 @@ static void slopes_write(struct group *group, FILE *file)
    envelope's phase at the band's edge at rate 1, which falls as 1/rate, and the floor of linear interpolation. That
    is its loss 1 - sinc^2(f/fs), about (pi f/fs)^2/3, rms over a flat band |f| <= B/2: pi^2 (B/fs)^2/(12 sqrt 5). A
    scene that is no longer there as it was measured has none. */
-static void rules_write(struct group *group, const struct csv *csv, FILE *file)
+static void rules_write(struct group *group, const struct scene *given, const struct csv *csv, FILE *file)
 {
-    struct scene scene;
+    struct scene scene = {0};
     char key[300], hash[17];
-    if (scene_load(group->scene, SCENE_DIRECTORY, &scene) != STATUS_OK)
+    if (!given && scene_load(group->scene, SCENE_DIRECTORY, &scene) != STATUS_OK)
         return;
+    given = given ? given : &scene;
     snprintf(key, sizeof key, "scene %s", group->scene);
-    snprintf(hash, sizeof hash, "%016" PRIx64, scene.hash);
+    snprintf(hash, sizeof hash, "%016" PRIx64, given->hash);
     const char *measured = csv_comment(csv, key);
     if (measured && strcmp(measured, hash) == 0) {
-        const struct acquisition *a = &scene.acquisition;
+        const struct acquisition *a = &given->acquisition;
         double lambda = a->sound_speed / a->fc, bin = a->sound_speed / (2 * a->fs);
         double resolution = a->tx_length > 0 ? a->tx_length / 2 : NAN, fraction = a->bandwidth / a->fs;
         double bp22 = 2 * bin * 10 * lambda / (resolution * resolution), zp15 = 2 * a->fc / a->fs;
@@ -348,14 +349,16 @@ static const struct {
                "scene,fc_hz,fs_hz,bandwidth_hz,bp22_eq20_rate,zp15_rate,edge_phase_rad,linear_floor"},
 };
 
-static enum status scene_tables(const struct results *results, const char *scene, struct text_file *files)
+/* `given` is the scene itself, or NULL. */
+static enum status scene_tables(const struct results *results, const char *scene, const struct scene *given,
+                                struct text_file *files)
 {
     struct group group;
     enum status status = group_fill(results, scene, &group);
     if (status == STATUS_OK && group.count > 0) {
         fronts_write(&group, files[FRONTS].stream);
         cheapest_write(&group, files[CHEAPEST].stream);
-        rules_write(&group, &results->csv, files[RULES].stream);
+        rules_write(&group, given, &results->csv, files[RULES].stream);
         slopes_write(&group, files[SLOPES].stream);
     }
     group_free(&group);
@@ -387,7 +390,15 @@ static enum status sheet_open(const char *directory, int sheet, const struct csv
     return STATUS_OK;
 }
 
-enum status sweep_tables(const char *directory)
+static const struct scene *scene_find(const struct scene *scenes, int count, const char *name)
+{
+    for (int k = 0; k < count; k++)
+        if (strcmp(scenes[k].name, name) == 0)
+            return &scenes[k];
+    return NULL;
+}
+
+enum status sweep_tables(const char *directory, const struct scene *scenes, int scene_count)
 {
     struct results results;
     struct text_file files[SHEETS];
@@ -400,8 +411,10 @@ enum status sweep_tables(const char *directory)
         opened += status == STATUS_OK;
     }
     for (int row = 0; row < results.csv.row_count && status == STATUS_OK; row++)
-        if (!scene_seen(&results, row))
-            status = scene_tables(&results, results.measurements[row].scene, files);
+        if (!scene_seen(&results, row)) {
+            const char *scene = results.measurements[row].scene;
+            status = scene_tables(&results, scene, scene_find(scenes, scene_count, scene), files);
+        }
     for (int k = 0; k < opened; k++)
         status = text_file_close(&files[k], status);
     results_free(&results);

@@ -4,6 +4,7 @@
 #define SASBENCH_SWEEP_TABLES_H
 
 #include "record.h"
+#include "scene.h"
 
 /* The points that no other point beats: none has both less or equal cost and less or equal error. Of equal points the
    first stays. Their indices go to front [count], cost ascending; returns how many. Values that are not > 0 are no
@@ -24,8 +25,9 @@ struct line_fit line_fit(int count, const double *rate, const double *error);
 int floor_find(int count, const double *error);
 
 /* Read DIR/measurements.csv, write fronts.csv, cheapest.csv, slopes.csv and rules.csv beside it (results/README.md has
-   their columns) and print the last three. Errors: as results_read; STATUS_INVALID for a folder that cannot be
-   written; STATUS_FAILED without memory. */
-enum status sweep_tables(const char *directory);
+   their columns) and print the last three. `scenes` are those that were measured; others are looked for by name, of which
+   only shipped ones are found. Errors: as results_read; STATUS_INVALID for a folder that cannot be written; STATUS_FAILED
+   without memory. */
+enum status sweep_tables(const char *directory, const struct scene *scenes, int scene_count);
 
 #endif

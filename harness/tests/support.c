@@ -39,6 +39,7 @@ enum status support_image(const char *text, struct problem problem, const struct
         stages_begin(&stages);
         status = spec.algorithm->execute(plan, &converted, image, &stages);
         assert_int_equal(status, STATUS_OK);
+        CHECK(image_scale(image, converted.exponent));
         spec.algorithm->destroy(plan);
         echoes_free(&converted);
     }

@@ -152,7 +152,7 @@ static void test_tables_of_made_up_rows(void **state)
     assert_int_equal(record_add(record, &row), STATUS_OK);
     record_close(record);
 
-    assert_int_equal(sweep_tables(folder), STATUS_OK);
+    assert_int_equal(sweep_tables(folder, NULL, 0), STATUS_OK);
     struct csv csv;
     assert_int_equal(csv_read(path_of("slopes.csv"), CSV_TAIL_KEEP, &csv), STATUS_OK);
     assert_int_equal(csv.row_count, 2);             /* all of it, and its finest half */
@@ -289,7 +289,7 @@ static void test_bad_scene_makes_nothing(void **state)
     struct task task = {.names = (const char *const[]){"no/such/scene"}, .name_count = 1, .output = output};
     assert_int_equal(command_sweep(&task), STATUS_INVALID);
     assert_false(support_exists("none"));
-    assert_int_equal(sweep_tables(folder), STATUS_INVALID);
+    assert_int_equal(sweep_tables(folder, NULL, 0), STATUS_INVALID);
     assert_false(support_exists("fronts.csv") || support_exists("fronts.csv.part"));
 }
 
