@@ -598,7 +598,7 @@ static const struct refusal {
     {"speed = 2.5;", "speed = 1500;", 5, "key 'track.speed' is 1500,", "below sonar.sound_speed (1500 m/s)"},
     {"speed = 2.5;", "speed = -1e400;", 5, "key 'track.speed' is -inf,", "a number that is finite m/s"},
     {"pri = 0.064;", "pri = -1;", 5, "key 'track.pri' is -1,", "> 0 s"},
-    {"pri = 0.064;", "pri = 1e308;", 0, "tx of ping", "finite"},
+    {"pri = 0.064;", "pri = 1e308;", 5, "key 'track.pri' is 1e+308,", "of 6 pings at 2.5 m/s"},
     {"pings = 6;", "pings = 6.5;", 5, "key 'track.pings' is 6.5,", "an integer from 1"},
     {"pings = 6;", "pings = 2147483647;", 5, "key 'track.pings' is 2147483647,", "at most 16777216 with 4 receivers"},
     {"samples = 256;", "samples = 1;", 6, "key 'record.samples' is 1,", "an integer from 2"},
