@@ -89,14 +89,16 @@ static void count_work(struct bp *bp, const struct interpolator *in)
     double all = na * pixels, transforms = 2 * na * fft_flops(nr) + 6 * na * nr;
     work->pairs = pairs_count(&bp->problem);
     work->flops = na * bp->shape.flops + work->pairs * (in->taps == 1 ? 8 : 4.0 * in->taps + 8);
-    work->published[0].source = "BP22 Eq. (11)";
-    work->published[0].flops = transforms + 6 * all + 6 * in->beta * na * (nr - 1);
-    if (in->kernel > 0) {
-        work->published[0].source = "BP22 Eq. (11) + sinc load";
-        work->published[0].flops += 2 * (2.0 * in->kernel - 1) * all;
+    if (in->factor > 0) {
+        work->published[0].source = "BP22 Eq. (11)";
+        work->published[0].flops = transforms + 6 * all + 6 * in->beta * na * (nr - 1);
+        if (in->kernel > 0) {
+            work->published[0].source = "BP22 Eq. (11) + sinc load";
+            work->published[0].flops += 2 * (2.0 * in->kernel - 1) * all;
+        }
+        work->published[1].source = "LBF21 Eq. (23)";
+        work->published[1].flops = 1.5 * na * nr * log2(nr) + na * nr + 1.5 * na * in->factor * nr * log2(in->factor * nr);
     }
-    work->published[1].source = "LBF21 Eq. (23)";
-    work->published[1].flops = 1.5 * na * nr * log2(nr) + na * nr + 1.5 * na * in->factor * nr * log2(in->factor * nr);
     snprintf(work->engine, sizeof work->engine, "%s%s", bp->engine->name,
              bp->engine == &bp_general && !(bp->medium.phase_limit > 0) ? " exact" : "");
     if (work->pairs < all)

@@ -20,7 +20,8 @@ struct interpolator {
     /* Fill w[taps] for a fraction in [0, 1). Called while planning only; NULL when taps == 1 (the weight is 1). */
     void (*weights)(const void *options, double fraction, double *w);
     /* For the published FLOPs, BP22 Eq. (11): points inserted between samples; the kernel's length where each value is
-       summed over a kernel (0: not); LBF21 Eq. (23): the interpolation factor. */
+       summed over a kernel (0: not); LBF21 Eq. (23): the interpolation factor, 0: the method is in neither paper and
+       claims none. */
     double beta;
     int kernel;
     int factor;

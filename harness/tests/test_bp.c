@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../algorithms/bp.h"
 #include "../../algorithms/delay.h"
 #include "../../algorithms/pairs.h"
 #include "../random.h"
@@ -224,11 +225,34 @@ static void invariant_equals_exact(void **state)
     print_message("largest difference: %.1e float, %.1e double\n", worst[0], worst[1]);
 }
 
+/* An interpolator of no paper claims no paper's FLOPs. */
+static void own_interpolator_claims_nothing(void **state)
+{
+    (void)state;
+    struct acquisition a;
+    struct grid grid;
+    struct echoes echoes;
+    random_case(1, &a, &grid, &echoes);
+    struct problem problem = {&a, 1, &grid, PRECISION_FLOAT};
+    const struct bp_options options = {.phase_limit = 1e-4};
+    for (int factor = 0; factor < 2; factor++) {
+        const struct interpolator own = {.upsample = 1, .phases = 1, .taps = 1, .factor = factor};
+        void *plan;
+        assert_int_equal(bp_plan(&problem, &own, &options, &plan), STATUS_OK);
+        struct work work = bp_work(plan);
+        assert_true((work.published[0].source != NULL) == factor && (work.published[1].source != NULL) == factor);
+        bp_destroy(plan);
+    }
+    echoes_free(&echoes);
+    acquisition_free(&a);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(naive_sums),
         cmocka_unit_test(invariant_equals_exact),
+        cmocka_unit_test(own_interpolator_claims_nothing),
     };
     return cmocka_run_group_tests_name("bp", tests, NULL, NULL);
 }
