@@ -79,13 +79,17 @@ static enum status check_echo_shapes(const char *path, const struct variable *v)
 static enum status check_echo_values(const char *path, const struct variable *v)
 {
     const struct variable *format = &v[FORMAT], *samples = &v[SAMPLES];
-    bool is_ours = variable_count(format) == strlen(format_text);
+    size_t length = variable_count(format);
+    while (length > 0 && creal(format->values[length - 1]) == 0) {
+        length--;                   /* texts of a fixed length are padded */
+    }
+    bool is_ours = length == strlen(format_text);
     for (size_t i = 0; is_ours && i < strlen(format_text); i++) {
         is_ours = creal(format->values[i]) == format_text[i];
     }
     if (!is_ours) {
         char text[32] = "";         /* what stands there, as far as it is plain text */
-        for (size_t i = 0; i < variable_count(format) && i < sizeof text - 1; i++) {
+        for (size_t i = 0; i < length && i < sizeof text - 1; i++) {
             double code = creal(format->values[i]);
             text[i] = code >= ' ' && code <= '~' ? (char)code : '?';
         }
@@ -110,6 +114,34 @@ static enum status check_echo_values(const char *path, const struct variable *v)
                               "%s: variable `samples` at (%zu, %zu, %zu) is %g%+gi; finite numbers are needed",
                               path, n + 1, record % samples->dims[1] + 1, record / samples->dims[1] + 1, creal(z),
                               cimag(z));
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Compression divides by the pulse's energy. A pulse so small or large that squares of it leave the precision is brought
+   to 1 by a power of two, and the samples by the same, which leaves the compressed echoes as they are. */
+static enum status normalise_pulse(const char *path, const struct variable *v)
+{
+    const struct variable *const both[] = {&v[PULSE], &v[SAMPLES]};
+    size_t pulse_count = v[PULSE].values ? variable_count(&v[PULSE]) : 0;
+    double largest = 0;
+    int exponent;
+    for (size_t k = 0; k < pulse_count; k++) {
+        largest = fmax(largest, fmax(fabs(creal(v[PULSE].values[k])), fabs(cimag(v[PULSE].values[k]))));
+    }
+    if (!(largest > 0 && largest < INFINITY) || (largest >= 0x1p-20 && largest <= 0x1p20)) {
+        return STATUS_OK;
+    }
+    frexp(largest, &exponent);
+    for (int k = 0; k < 2; k++) {
+        for (size_t i = 0; i < variable_count(both[k]); i++) {
+            double re = ldexp(creal(both[k]->values[i]), -exponent), im = ldexp(cimag(both[k]->values[i]), -exponent);
+            if (k == 1 && (!isfinite(re) || !isfinite(im))) {
+                return status_set(STATUS_INVALID, "%s: variable `samples` has %g%+gi, variable `pulse` at most %g; their ratio "
+                                  "must fit double", path, creal(both[k]->values[i]), cimag(both[k]->values[i]), largest);
+            }
+            both[k]->values[i] = __builtin_complex(re, im);
         }
     }
     return STATUS_OK;
@@ -166,6 +198,9 @@ enum status echo_file_read(const char *path, struct acquisition *acquisition, st
     status = check_echo_values(path, variables);
     if (status == STATUS_OK) {
         status = check_echo_shapes(path, variables);
+    }
+    if (status == STATUS_OK) {
+        status = normalise_pulse(path, variables);
     }
     if (status == STATUS_OK) {
         status = acquisition_fill(path, variables, acquisition);

@@ -5,7 +5,7 @@
 #include "echo_data.h"
 
 /* Read an echo file. *acquisition and *echoes (double, samples pointing to that acquisition) are the caller's:
-   acquisition_free, echoes_free. Errors: STATUS_INVALID, naming file, variable, value and what is accepted. */
+   acquisition_free, echoes_free. Of a pulse beyond 2^+-20 both pulse and samples are divided by its power of two. Errors: STATUS_INVALID, naming file, variable, value and what is accepted. */
 enum status echo_file_read(const char *path, struct acquisition *acquisition, struct echoes *echoes);
 
 /* Write one: v5, or v7.3 where v5 cannot hold a variable (2 GiB). Written beside `path` and renamed when whole, so

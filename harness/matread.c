@@ -119,7 +119,8 @@ static const struct {
 };
 
 static const char *const class_names[] = {
-    [MAT_C_EMPTY] = "empty",       [MAT_C_CELL] = "a cell array",     [MAT_C_STRUCT] = "a struct",
+    [MAT_C_EMPTY] = "empty or of no MATLAB class (a plain HDF5 text or number)",
+    [MAT_C_CELL] = "a cell array",     [MAT_C_STRUCT] = "a struct",
     [MAT_C_OBJECT] = "an object",  [MAT_C_CHAR] = "text",             [MAT_C_SPARSE] = "a sparse matrix",
     [MAT_C_DOUBLE] = "numeric",    [MAT_C_SINGLE] = "numeric",        [MAT_C_INT8] = "numeric",
     [MAT_C_UINT8] = "numeric",     [MAT_C_INT16] = "numeric",         [MAT_C_UINT16] = "numeric",

@@ -356,6 +356,38 @@ static void other_classes_and_shapes_are_read(void **state)
     }
 }
 
+/* The image of echoes does not depend on the unit that pulse and samples share, and a padded text is the text. */
+static void extreme_pulses_are_brought_to_one(void **state)
+{
+    (void)state;
+    const double powers[] = {1, 0x1p-500, 0x1p500, 0x1p-140};
+    double complex first[N * M * P], pulse[K];
+    for (int i = 0; i < 4; i++) {
+        double values[MOST];
+        for (int k = 0; k < MOST; k++) {
+            values[k] = powers[i] * 0.9 / (k + 1);
+        }
+        mat_t *mat = file_begin(MAT_FT_MAT73, true, "format");
+        add(mat, "format", MAT_C_CHAR, MAT_T_UTF8, 1, 16, 1, "sas-echoes 1\0\0\0", NULL, true);
+        Mat_VarDelete(mat, "pulse");
+        Mat_VarDelete(mat, "samples");
+        add(mat, "samples", MAT_C_DOUBLE, MAT_T_DOUBLE, N, M, P, values, values, true);
+        add(mat, "pulse", MAT_C_DOUBLE, MAT_T_DOUBLE, K, 1, 1, values, values, true);
+        Mat_Close(mat);
+        struct acquisition a;
+        struct echoes echoes;
+        assert_ok(echo_file_read(path, &a, &echoes));
+        if (i == 0) {
+            memcpy(first, echoes.samples, sizeof first);
+            memcpy(pulse, a.pulse, sizeof pulse);
+        }
+        assert_memory_equal(echoes.samples, first, sizeof first);
+        assert_memory_equal(a.pulse, pulse, sizeof pulse);
+        acquisition_free(&a);
+        echoes_free(&echoes);
+    }
+}
+
 static void unknown_variables_are_ignored(void **state)
 {
     (void)state;
@@ -727,6 +759,7 @@ int main(void)
         cmocka_unit_test(images_come_back_as_matlab_has_them),
         cmocka_unit_test(both_versions_are_read),
         cmocka_unit_test(other_classes_and_shapes_are_read),
+        cmocka_unit_test(extreme_pulses_are_brought_to_one),
         cmocka_unit_test(unknown_variables_are_ignored),
         cmocka_unit_test(each_wrong_variable_is_refused),
         cmocka_unit_test(other_files_are_refused),
