@@ -1,6 +1,8 @@
 /* Memory of samples and images, in either precision. */
 #include "echo_data.h"
 
+#include "../algorithms/memory.h"
+
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -73,6 +75,11 @@ enum status echoes_allocate(const struct acquisition *acquisition, enum precisio
 {
     size_t size = size_product((size_t)acquisition->pings, (size_t)acquisition->receivers,
                                (size_t)acquisition->samples, precision_size(precision));
+    *echoes = (struct echoes){0};
+    enum status room = memory_check((double)size, "echoes");
+    if (room != STATUS_OK) {
+        return room;
+    }
     *echoes = (struct echoes){acquisition, precision, allocate_zeroed(size), 0};
     if (!echoes->samples) {
         return status_set(STATUS_FAILED, "out of memory for %d samples x %d receivers x %d pings",
@@ -134,6 +141,15 @@ void echoes_free(struct echoes *echoes)
 
 enum status image_allocate(int patch_count, const struct grid *patches, enum precision precision, struct image *image)
 {
+    double bytes = 0;
+    for (int i = 0; i < patch_count; i++) {
+        bytes += (double)patches[i].r_count * patches[i].x_count * (double)precision_size(precision);
+    }
+    *image = (struct image){0};
+    enum status room = memory_check(bytes, "the image");
+    if (room != STATUS_OK) {
+        return room;
+    }
     *image = (struct image){patch_count, patches, precision, calloc((size_t)patch_count, sizeof *image->pixels)};
     for (int i = 0; image->pixels && i < patch_count; i++) {
         image->pixels[i] = allocate_zeroed(size_product((size_t)patches[i].r_count, (size_t)patches[i].x_count, 1,
