@@ -1,12 +1,12 @@
 /* Memory of samples and images, in either precision. */
 #include "echo_data.h"
 
-#include "../algorithms/memory.h"
-
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "../algorithms/memory.h"
 
 static const struct {
     const char *name;
