@@ -27,6 +27,8 @@ struct acquisition {
     struct vector *rx;              /* [pings][receivers] m: receivers at the transmitter's emission */
     struct vector *velocity;        /* [pings] m/s: of the receivers during propagation; zero = stop-and-hop */
     double tx_length, rx_length;    /* m: element lengths along the track; 0 = unknown */
+    double echo_sine;               /* the echoes come from |sin theta_t| <= this; 0 = unknown, INFINITY = from anywhere */
+    bool echo_tapers;               /* and their amplitude falls as both elements' sinc does */
     double aperture_limit;          /* back projection sums pairs with |sin theta_t| <= this only; INFINITY = all */
     bool compressed;                /* the samples are range compressed: a unit target peaks at 1 */
     int pulse_length;               /* K: samples of the replica; 0 if compressed */

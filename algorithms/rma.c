@@ -15,6 +15,10 @@ const char *const rma_blend_names[] = {"off", "on", NULL};
 const char *const rma_stolt_names[] = {"direct", "4", "6", "8", "12", "16", NULL};
 const char *const rma_sum_names[] = {"before", "after", NULL};
 const char *const rma_phases_names[] = {"recurrence", "libm", NULL};
+
+static const double WORK_LIMIT = 5e10;      /* operations: some ten seconds */
+static const double MEMORY_LIMIT = 5e8, MEMORY_FACTOR = 50;     /* bytes */
+
 static const char *const stage_names[RMA_STAGES] = {"bulk", "differential", "reconstruct", "stolt", "focus"};
 
 static rma_column_function *const column_functions[][2] = {
@@ -113,6 +117,29 @@ static void count_work(struct rma *rma)
                                        notes[k].values[0], notes[k].values[1]);
 }
 
+/* Scenes that back projection images in moments may ask range migration, whose transforms do not know how little is
+   wanted, for hours or for all memory: those are refused, before anything is allocated. */
+static enum status check_work(const struct rma *rma)
+{
+    const double real_bytes = rma->problem.precision == PRECISION_DOUBLE ? 8 : 4, much = 1000;
+    const double records = (double)rma->pings * rma->receivers;
+    double pixels = 0, bytes = (double)rma->threads * (double)rma->scratch_bytes;
+    for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++)
+        bytes += 2 * real_bytes * ((double)s->period * rma->receivers * s->row + (double)s->rows * (double)s->columns);
+    for (int k = 0; k < rma->patch_count; k++)
+        pixels += (double)rma->patches[k].grid.r_count * rma->patches[k].grid.x_count;
+    double given = 2 * real_bytes * (records * rma->samples + pixels), direct = 16 * records * pixels;
+    if (!(rma->work.flops <= fmax(WORK_LIMIT, much * direct)))
+        return status_set(STATUS_UNSUPPORTED, "%s: condition work: %.2g operations, %.2g times those of back projection; at "
+                          "most %g of them, or %g times, are accepted (cure: back projection; coarser pixels, or pings "
+                          "farther apart)", rma->method.name, rma->work.flops, rma->work.flops / direct, WORK_LIMIT, much);
+    if (!(bytes <= fmax(MEMORY_LIMIT, MEMORY_FACTOR * given)))
+        return status_set(STATUS_UNSUPPORTED, "%s: condition memory: %.2g bytes, %.2g times those of echoes and image; at most "
+                          "%g of them, or %g times, are accepted (cure: back projection; coarser pixels, or pings farther "
+                          "apart)", rma->method.name, bytes, bytes / given, MEMORY_LIMIT, MEMORY_FACTOR);
+    return STATUS_OK;
+}
+
 enum status rma_plan(const struct problem *problem, const struct rma_method *method,
                      const struct rma_options *options, void **plan)
 {
@@ -127,13 +154,16 @@ enum status rma_plan(const struct problem *problem, const struct rma_method *met
     rma->work.bytes = sizeof *rma;
     rma_nodes(rma);
     enum status status = rma_layout(rma);
+    if (status == STATUS_OK) {
+        count_work(rma);
+        status = check_work(rma);
+    }
     if (status == STATUS_OK)
         status = transform(rma)->plan(rma);
     if (status != STATUS_OK) {
         rma_destroy(rma);
         return status;
     }
-    count_work(rma);
     *plan = rma;
     return STATUS_OK;
 }

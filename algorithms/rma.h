@@ -6,7 +6,7 @@
    phase of d = 0: what is left looks like the echo of a monostatic sonar and is focused exactly by
 
        image(x, r) = sum over nu and F of  Z(F, nu) exp(+j (r K(F, nu) + 2 pi nu x)) w(F, nu, r),
-       w = exp(j pi/4) sqrt(c r/(2 F cos^3 theta)) / (spacing P N_f),
+       w = exp(j pi/4) F/(1 - v^2/c^2) sqrt(c r/(2 kappa^3)) / (spacing P N_f),    kappa = c K/4 pi,
 
    in the same absolute scale and phase as back projection. As K is exact and linear in r, the azimuth correction
    (LBF21 Eq. (17)) has nothing left to do. The stages, timed one by one:
@@ -64,7 +64,7 @@ extern const char *const rma_spacing_names[], *const rma_blend_names[], *const r
      .max = RMA_LIBM, .terse = true}
 
 struct rma_method {
-    const char *name;
+    const char *name, *law;         /* law: of the condition that bounds the error of `spectrum` (rma_conditions.h) */
     spectrum_function *spectrum;
     /* The paper's FLOPs for M receivers (LBF21 Eqs. (20) to (22)): numbers[0] M + numbers[1] range transforms of
        1.5 N_a N_r log2 N_r, azimuth transforms alike, products of N_a N_r; interpolations of N_a N_r (2 taps - 1). */

@@ -209,10 +209,10 @@ static void focus_interpolated(struct work_place *w, const struct rma_patch *pat
         for (int i = 0; i < n; i++) {
             double k = (from + i) * k_step, kappa = c / (4 * M_PI) * k;
             double root = sqrt(half * half + b1 * kappa * kappa), frequency = beta * half + root;
-            double s = sqrt((frequency - half) * (frequency + half)), offset = frequency - fc;
+            double offset = frequency - fc;
             position[i] = offset / stolt_bin + to_fc;
             double slope = b1 * kappa * c / (4 * M_PI) / root;      /* dF/dK */
-            weight[i] = (real)(frequency * sqrt(c / (2 * s)) / s * slope * k_step / rma->fs);
+            weight[i] = (real)(frequency / b1 * sqrt(c / (2 * kappa)) / kappa * slope * k_step / rma->fs);
             double f = k * r / (2 * M_PI) - offset * t_centre + 0.125;
             cycles[i] = f - floor(f + 0.5);
         }
@@ -252,7 +252,7 @@ static void focus_direct(struct work_place *w, const struct rma_patch *patch, co
 {
     const struct rma *rma = w->rma;
     const struct rma_swath *swath = w->swath;
-    const double c = rma->setting.sound_speed, half = c * w->line.nu / 2;
+    const double c = rma->setting.sound_speed, beta = rma->setting.speed / c, b1 = (1 - beta) * (1 + beta);
     const int rows = patch->grid.r_count;
     real *parts = buffer(w, RMA_PARTS);
     memset(parts, 0, (size_t)rows * 2 * LANES * sizeof *parts);
@@ -262,10 +262,10 @@ static void focus_direct(struct work_place *w, const struct rma_patch *patch, co
         for (int l = 0; l < LANES; l++) {
             bool exists = k + l >= w->line.begin && k + l < swath->band;
             double frequency = rma_frequency(rma, swath, exists ? k + l : swath->band - 1);
-            double s = sqrt((frequency - half) * (frequency + half));
             k_cycles[l] = spectrum_monostatic(&rma->setting, frequency, w->line.nu) / (2 * M_PI);
+            double kappa = c / 2 * k_cycles[l];
             origin_cycles[l] = 0.125 - (frequency - rma->setting.fc) * origin;
-            weight[l] = exists ? frequency * sqrt(c / (2 * s)) / s / swath->length : 0;
+            weight[l] = exists ? frequency / b1 * sqrt(c / (2 * kappa)) / kappa / swath->length : 0;
             double step = k_cycles[l] * patch->grid.r_step;
             turn(step - floor(step + 0.5), &sr[l], &si[l]);
         }

@@ -8,14 +8,15 @@
 
 #include "delay.h"
 #include "fft_length.h"
+#include "rma_conditions.h"
 #include "rma_engine.h"
 
 static const double pi = 3.14159265358979323846;
 
 static const double BAND_LOSS = 4e-6;       /* of the compressed pulse's energy may lie outside the band */
-static const double ABEAM_LIMIT = 0.2;      /* rad: a formula further off abeam breaks the absolute phase */
 static const double WIDEST_SINE = 0.95;     /* of the aperture where neither sampling nor element length bounds it */
 static const double FADE_PERIODS = 8;      /* of fs - B in a cut's fade: what it smears stays between them */
+static const double FRESNEL_ZONES = 6;      /* beyond the track's ends: what is cut farther out leaves no ripple */
 static const double EVEN = 1e-12;           /* relative: columns that divide the period but for rounding */
 static const int stolt_taps[] = {0, 4, 6, 8, 12, 16};
 
@@ -27,27 +28,6 @@ static enum status unsupported(const struct rma *rma, const char *reason)
 static double last_row(const struct grid *grid)
 {
     return grid->r_first + (grid->r_count - 1) * grid->r_step;
-}
-
-/* Near the array and at high speed a formula's phase is off even abeam. What it misses elsewhere is the method's own
-   error, which `phase` shows. */
-static enum status check_formula(const struct rma *rma)
-{
-    if (!(rma->nearest > 0))
-        return status_set(STATUS_UNSUPPORTED, "%s: image rows begin at r = %g m; range migration needs r > 0",
-                          rma->method.name, rma->nearest);
-    double fc = rma->setting.fc, beta = rma->setting.speed / rma->setting.sound_speed;
-    double abeam = -2 * fc * beta / (rma->setting.sound_speed * (1 - beta) * (1 + beta));
-    for (int k = 0; k < 4; k++) {
-        double d = rma->offset[rma->extremes[k % 2]], r = k / 2 ? rma->farthest : rma->nearest;
-        double error = fabs(rma->method.spectrum(&rma->setting, d, r, fc, abeam)
-                            - spectrum_exact(&rma->setting, d, r, fc, abeam));
-        if (!(error <= ABEAM_LIMIT))
-            return status_set(STATUS_UNSUPPORTED, "%s: its phase abeam is off by %.2g rad for the receiver at %g m "
-                              "and r = %g m, more than %g (rma_numeric has no such error)", rma->method.name, error,
-                              d, r, ABEAM_LIMIT);
-    }
-    return STATUS_OK;
 }
 
 static enum status lay_track(struct rma *rma)
@@ -95,11 +75,28 @@ static enum status lay_track(struct rma *rma)
     rma->sine = fmin(WIDEST_SINE, a->sound_speed * rma->receivers / fabs(rma->spacing) / 4 / lowest);
     if (a->tx_length > 0)
         rma->sine = fmin(rma->sine, a->sound_speed / lowest / a->tx_length);
-    rma->converts = a->receivers > 1 || fabs(rma->offset[0]) > tolerance;
     rma->setting.reference_offset = rma->offset[a->receivers / 2];
-    return check_formula(rma);
+    if (!(rma->nearest > 0))
+        return status_set(STATUS_UNSUPPORTED, "%s: image rows begin at r = %g m; range migration needs r > 0",
+                          rma->method.name, rma->nearest);
+    rma->aside = fmax(fabs(rma->offset[rma->extremes[0]]), fabs(rma->offset[rma->extremes[1]]));
+    struct rma_view view = rma_view_of(&rma->problem, &rma->method, &track);
+    for (int k = 0; k < rma->problem.patch_count; k++) {
+        const struct grid *g = &rma->problem.patches[k];
+        double last = g->x_first + (g->x_count - 1) * g->x_step;
+        rma->way = fmax(rma->way, fmax(last - view.x_low, view.x_high - g->x_first));
+    }
+    rma->converts = view.converts;
+    return rma_conditions_check(&view);
 }
 
+double rma_reach(const struct rma *rma, double r)
+{
+    const struct acquisition *a = rma->problem.acquisition;
+    double wavelength = a->sound_speed / (a->fc - a->bandwidth / 2);
+    double track = rma->way + FRESNEL_ZONES * sqrt(wavelength * r / 2);
+    return fmin(r * rma->sine / sqrt(1 - rma->sine * rma->sine), track);
+}
 
 /* The bins that hold the compressed pulse; all of them where the echoes come compressed already. */
 static enum status lay_band(struct rma *rma)
@@ -158,8 +155,9 @@ static bool blocks_suffice(struct rma *rma, int count)
 {
     blocks_place(rma, count);
     const struct acquisition *a = rma->problem.acquisition;
-    double nu = rma->receivers / (2 * fabs(rma->spacing)), largest = 0;
-    nu = fmin(nu, 2 * WIDEST_SINE * (a->fc - a->bandwidth / 2) / a->sound_speed);
+    double nu = rma->receivers / (2 * fabs(rma->spacing));
+    double beta = fabs(rma->setting.speed) / a->sound_speed;
+    nu = fmin(nu, 2 * WIDEST_SINE * (a->fc - a->bandwidth / 2) / a->sound_speed / (1 + beta));
     if (a->tx_length > 0)
         nu = fmin(nu, 1 / a->tx_length);
     for (int n = 0; n < count; n++)
@@ -173,10 +171,35 @@ static bool blocks_suffice(struct rma *rma, int count)
                 double frequency = a->fc + (k / 2 % 3 - 1) * a->bandwidth / 2, at = (k / 6 - 1) * nu;
                 double error = rma_correction(rma, rma->extremes[k % 2], r1, frequency, at)
                                - rma_correction(rma, rma->extremes[k % 2], r0, frequency, at);
-                largest = fmax(largest, 2 * pi * fabs(error));
+                if (!(2 * pi * fabs(error) <= rma->options.limit))
+                    return false;
             }
         }
-    return largest <= rma->options.limit;
+    return true;
+}
+
+/* A single block has none to blend with: root mean square over the beam, at the farther of the ends, of the phase that its
+   centre's conversion leaves. */
+static double lone_block_error(struct rma *rma)
+{
+    enum { PLACES = 16, FREQUENCIES = 3 };
+    const struct acquisition *a = rma->problem.acquisition;
+    blocks_place(rma, 1);
+    double worst = 0, r0 = rma_block_range(rma, 0), reach = fmin(rma_reach(rma, rma->nearest), rma->way);
+    for (int end = 0; end < 2; end++) {
+        double sum = 0, r = end ? rma->farthest : rma->nearest;
+        for (int m = 0; m < 2; m++)
+            for (int k = 0; k < PLACES * FREQUENCIES; k++) {
+                double u = (2 * (k / FREQUENCIES + 0.5) / PLACES - 1) * reach;
+                double frequency = a->fc + (k % FREQUENCIES - 1) * a->bandwidth / 2;
+                double nu = -frequency * spectrum_slope(&rma->setting, rma->offset[rma->extremes[m]], r, u);
+                double error = rma_correction(rma, rma->extremes[m], r, frequency, nu)
+                               - rma_correction(rma, rma->extremes[m], r0, frequency, nu);
+                sum += isfinite(error) ? 4 * pi * pi * error * error : 0;
+            }
+        worst = fmax(worst, sqrt(sum / (2 * PLACES * FREQUENCIES)));
+    }
+    return worst;
 }
 
 static enum status lay_blocks(struct rma *rma)
@@ -196,6 +219,8 @@ static enum status lay_blocks(struct rma *rma)
             int middle = (count + too_few) / 2;
             *(blocks_suffice(rma, middle) ? &count : &too_few) = middle;
         }
+        if (count == 1 && !(lone_block_error(rma) <= rma->options.limit / pi))
+            count = RMA_NODES;
     }
     blocks_place(rma, count);
     return STATUS_OK;
@@ -234,11 +259,11 @@ static void swath_blocks(const struct rma *rma, struct rma_swath *swath, int *li
    conversion. */
 static void delays_span(const struct rma *rma, double nearest, double farthest, double *first, double *last)
 {
-    double c = rma->setting.sound_speed, cosine = sqrt(1 - rma->sine * rma->sine);
+    double c = rma->setting.sound_speed, reach = rma_reach(rma, farthest);
     struct vector velocity = {rma->setting.speed, 0, 0}, target = {0, farthest, 0};
-    double delay = 2 * farthest / (c * cosine) * (1 + 2 * fabs(rma->setting.speed) / c);
+    double delay = 2 * hypot(farthest, reach) / c * (1 + 2 * fabs(rma->setting.speed) / c);
     for (int k = 0; k < 4; k++) {
-        double d = rma->offset[rma->extremes[k / 2]], u = (k % 2 ? 1 : -1) * farthest * rma->sine / cosine - d / 2;
+        double d = rma->offset[rma->extremes[k / 2]], u = (k % 2 ? 1 : -1) * reach - d / 2;
         struct vector tx = {u, 0, 0}, rx = {u + d, 0, 0};
         delay = fmax(delay, delay_exact(tx, rx, velocity, target, c));
     }
@@ -293,20 +318,22 @@ static enum status lay_patches(struct rma *rma)
    the beam's edge. */
 static enum status swath_azimuth(const struct rma *rma, struct rma_swath *swath)
 {
-    double spacing = fabs(rma->spacing), reach = swath->farthest * rma->sine / sqrt(1 - rma->sine * rma->sine);
+    double spacing = fabs(rma->spacing), angle = swath->farthest * rma->sine / sqrt(1 - rma->sine * rma->sine);
+    double reach = rma_reach(rma, swath->farthest), folds = reach < angle ? rma->way + reach : 0;
     double x_low = fmin(rma->x_first, rma->x_first + (rma->pings - 1) * rma->spacing);
     double x_high = x_low + (rma->pings - 1) * spacing;
     for (int k = 0; k < swath->patch_count; k++) {
         const struct grid *g = &swath->patches[k].grid;
         double last = g->x_first + (g->x_count - 1) * g->x_step;
-        if (g->x_first < x_low - reach || last > x_high + reach)
+        if (g->x_first < x_low - angle || last > x_high + angle)
             return status_set(STATUS_UNSUPPORTED, "%s: columns from %g to %g m leave what the wavenumbers of the "
                               "track cover, %g to %g m (squint too large)", rma->method.name, g->x_first, last,
-                              x_low - reach, x_high + reach);
+                              x_low - angle, x_high + angle);
     }
-    swath->period = fft_length((long long)fmin(1e9, rma->pings + ceil(reach / 2 / spacing)));
+    swath->period = fft_length((long long)fmin(1e9, fmax(rma->pings + ceil(reach / 2 / spacing), folds / spacing)));
     if (swath->period == 0 || (double)swath->period * rma->receivers > INT_MAX / 4)
-        return unsupported(rma, "the azimuth transform is too long");
+        return status_set(STATUS_UNSUPPORTED, "%s: the azimuth transform is too long: %g m to either side of a target, pings "
+                          "%g m apart, %d receivers", rma->method.name, reach, spacing, rma->receivers);
     swath->wavenumbers = swath->period * rma->receivers;
     swath->columns = (size_t)(swath->wavenumbers + RMA_TILE - 1) / RMA_TILE * RMA_TILE;
     return STATUS_OK;

@@ -26,15 +26,22 @@ struct rma_line rma_line(const struct rma *rma, const struct rma_swath *swath, i
     double c = s->sound_speed, beta = s->speed / c, b1 = (1 - beta) * (1 + beta);
     double period_m = swath->period * fabs(rma->spacing);
     struct rma_line line = {.nu = (q - swath->wavenumbers / 2) / period_m, .begin = swath->band};
-    line.lowest = fmax(GRAZING * (1 + fabs(beta)) * c * fabs(line.nu) / 2, 0.01 * s->fc);
+    /* What the exact spectrum ends at; the formulas know no speed there, and end at abeam's own 1 besides. */
+    double edge = line.nu > 0 ? 1 + beta : 1 - beta;
+    if (rma->method.spectrum != spectrum_exact)
+        edge = fmax(edge, 1);
+    line.lowest = fmax(GRAZING * edge * c * fabs(line.nu) / 2, 0.01 * s->fc);
     double first = rma_frequency(rma, swath, 0), last = rma_frequency(rma, swath, swath->band - 1);
     if (!(line.lowest < s->fc && line.lowest < last))
         return line;                /* `printed` takes theta at fc, which must exist */
     line.begin = (int)fmax(0, ceil((line.lowest - first) / (rma->fs / swath->length)));
     line.middle = (fmax(first, line.lowest) + last) / 2;
     line.half = fmax(last - line.middle, rma->fs / swath->length);
-    double f = line.middle / b1, along = c * line.nu / 2 + f * beta;
-    line.slowness = 2 / c * (f - along * beta) / b1 / sqrt((f - along) * (f + along));
+    double f = line.middle / b1, along = c * line.nu / 2 + f * beta, s2 = (f - along) * (f + along);
+    line.slowness = 2 / c * (f - along * beta) / b1 / sqrt(s2);
+    /* Seen by no ping, from no column: its echoes would only fold onto those that are. */
+    if (swath->nearest * fabs(along) / sqrt(s2) > rma_reach(rma, swath->nearest) + rma->aside)
+        line.begin = swath->band;
     return line;
 }
 

@@ -2,10 +2,13 @@
 #include "spectrum.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 static const double pi = 3.14159265358979323846;
 
-/* The exact delay (LBF21 Eq. (1)) and its first two derivatives, for the transmitter u metres ahead of the target. */
+/* The exact delay (LBF21 Eq. (1)) and its first two derivatives, for the transmitter u metres ahead of the target: the
+   way out, and the way back to a receiver that is b metres ahead of the target when the wave is there. Written so that
+   nothing cancels, whatever the speed. */
 struct history {
     double delay, slope, curvature;     /* s, s/m, s/m^2 */
 };
@@ -13,23 +16,52 @@ struct history {
 static struct history history_at(const struct spectrum_setting *setting, double d, double r, double u)
 {
     double c = setting->sound_speed, v = setting->speed, e = (c - v) * (c + v);
-    double range = sqrt(u * u + r * r);
-    double a = v * (u + d) + c * range, a1 = v + c * u / range, a2 = c * r * r / (range * range * range);
-    double root = sqrt(a * a + e * (2 * u + d) * d);
-    double root1 = (a * a1 + e * d) / root, root2 = (a1 * a1 + a * a2 - root1 * root1) / root;
-    return (struct history){(a + root) / e, (a1 + root1) / e, (a2 + root2) / e};
+    double range = sqrt(u * u + r * r), out1 = u / (range * c), out2 = r / range * (r / range) / (range * c);
+    double b = u + d + v * range / c, b1 = 1 + v * out1, b2 = v * out2;
+    double root = sqrt(c * b * c * b + e * r * r), along = v * b;
+    double back = along >= 0 ? (along + root) / e : (b * b + r * r) / (root - along);
+    double back1 = (v + c * b / root * c) / e, back2 = c * r / root * (c * r / root) / root;
+    return (struct history){range / c + back, out1 + back1 * b1, out2 + back2 * b1 * b1 + back1 * b2};
+}
+
+double spectrum_delay(const struct spectrum_setting *setting, double d, double r, double u)
+{
+    return history_at(setting, d, r, u).delay;
+}
+
+double spectrum_slope(const struct spectrum_setting *setting, double d, double r, double u)
+{
+    return history_at(setting, d, r, u).slope;
 }
 
 double spectrum_exact(const struct spectrum_setting *setting, double d, double r, double frequency, double nu)
 {
-    double c = setting->sound_speed, sine = c * nu / (2 * frequency), cosine = sqrt((1 - sine) * (1 + sine));
-    double u = -r * sine / cosine - d / 2 - r * setting->speed / (c * cosine);
-    struct history h = history_at(setting, d, r, u);
-    for (int step = 0; step < 2; step++) {  /* one leaves 8e-9 rad at 20 m, the second serves nearer targets */
-        u -= (h.slope + nu / frequency) / h.curvature;
-        h = history_at(setting, d, r, u);
+    const double c = setting->sound_speed, beta = setting->speed / c, b1 = (1 - beta) * (1 + beta);
+    const double f = frequency / b1, along = c * nu / 2 + f * beta, s = sqrt((f - along) * (f + along));
+    if (!(r > 0 && s > 0))
+        return NAN;
+    /* In units of the geometry, so that no square under- or overflows; a range below 1e-100 of the offset is none. */
+    const double unit = fmax(r, fabs(d)), offset = d / unit, range = fmax(r / unit, 1e-100), cycles = frequency * unit;
+    /* The delay is convex: its slope rises through -nu/F once. Newton's method from the closed form of d = 0, kept
+       between the ends that have been seen, and as long as there are none within a reach that doubles. */
+    double low = -INFINITY, high = INFINITY, reach = 1, u = -range * along / s - offset / 2;
+    for (int step = 0; step < 400; step++) {
+        const struct history h = history_at(setting, offset, range, u);
+        const double excess = h.slope + nu / frequency, newton = u - excess / h.curvature;
+        const double rounding = 1e-15 * (1 + cycles * h.delay);     /* cycles that do not count */
+        *(excess > 0 ? &high : &low) = u;
+        const double left = cycles * excess * excess / h.curvature / 2;     /* what the next step would add, at most */
+        if (left <= rounding || cycles * fabs(excess) * (high - low) <= rounding)
+            return -2 * pi * (cycles * (h.delay + nu / frequency * u) - (left <= rounding ? left : 0));
+        const double farthest = excess > 0 ? fmax(low, u - reach) : fmin(high, u + reach);
+        const bool within = excess > 0 ? newton >= farthest && newton < high : newton <= farthest && newton > low;
+        reach *= 2;
+        if (within)
+            u = newton;
+        else
+            u = isfinite(low) && isfinite(high) ? low + (high - low) / 2 : farthest;
     }
-    return -2 * pi * (frequency * h.delay + nu * u);
+    return NAN;
 }
 
 /* LBF21 Eqs. (3) to (5) for a given cos theta; `cubed` stands for S^3/F^2. */

@@ -7,7 +7,7 @@
 
        sin theta = c nu/(2F),   S = sqrt(F^2 - (c nu/2)^2) = F cos theta,   Delta = d + 2 r v/(c cos theta)
 
-   Cells with S^2 <= 0 are evanescent and give NAN. */
+   Cells with S^2 <= 0 are evanescent and give NAN (the exact spectra know their own bounds, below). */
 #ifndef SASBENCH_SPECTRUM_H
 #define SASBENCH_SPECTRUM_H
 
@@ -20,7 +20,8 @@ struct spectrum_setting {
 typedef double spectrum_function(const struct spectrum_setting *setting, double d, double r, double frequency,
                                  double nu);
 
-/* Stationary phase on the exact delay (LBF21 Eqs. (8), (9)), the stationary point by Newton's method from LBF's. */
+/* Stationary phase on the exact delay (LBF21 Eqs. (8), (9)), the stationary point found to rounding for any speed below
+   sound and any r > 0. Its spectrum lies where  -1/(1 - v/c) < sin theta < 1/(1 + v/c);  NAN elsewhere, and for r <= 0. */
 spectrum_function spectrum_exact;
 /* Loffeld's formula, -(psi + psi_i/2), LBF21 Eqs. (3) to (5). `printed` takes theta at fc, as the paper does, which
    is the whole error that it reports for its first receiver; `corrected` takes it at F. */
@@ -36,5 +37,9 @@ spectrum_function spectrum_wu;
 /* Exact for d = 0: the phase is -r times this (rad/m), b = v^2/c^2:
    (4 pi/c) sqrt((F/(1-b))^2 - (c nu/2 + F v/(c (1-b)))^2). NAN where evanescent. */
 double spectrum_monostatic(const struct spectrum_setting *setting, double frequency, double nu);
+
+/* The exact delay (s) of a target at range r, the transmitter u metres ahead of it, and its slope over u (s/m). */
+double spectrum_delay(const struct spectrum_setting *setting, double d, double r, double u);
+double spectrum_slope(const struct spectrum_setting *setting, double d, double r, double u);
 
 #endif

@@ -79,7 +79,7 @@ static enum status study_begin(const struct scene *scene, struct study *study)
         study->offset[k] = a->rx[study->receiver[k] - 1].x - a->tx[0].x;
     for (int k = 0; k < FREQUENCIES; k++)
         study->frequency[k] = (k - 1) * a->bandwidth / 2;
-    double evanescent = 2 * (a->fc - a->bandwidth / 2) / a->sound_speed;
+    double evanescent = 2 * (a->fc - a->bandwidth / 2) / a->sound_speed / (1 + fabs(track.speed) / a->sound_speed);
     study->nu_max = fmin(1 / a->tx_length, 0.99 * evanescent);
     return STATUS_OK;
 }
@@ -203,6 +203,12 @@ static enum status scene_study(const char *name, const char *directory)
 enum { COLUMNS = 7 };
 static const char *const columns[COLUMNS] = {"d", "r", "F", "f", "fc", "v", "c"};
 
+static double point_phase(const double *values, int formula)
+{
+    const struct spectrum_setting setting = {.sound_speed = values[6], .speed = values[5], .fc = values[4]};
+    return formulas[formula].function(&setting, values[0], values[1], values[2], values[3] / values[5]);
+}
+
 /* The row's numbers in the order of `columns`. */
 static enum status point_read(const struct csv *csv, int row, const int *index, double *values)
 {
@@ -212,7 +218,8 @@ static enum status point_read(const struct csv *csv, int row, const int *index, 
             return status_set(STATUS_INVALID, "%s: line %d: column %s is '%.60s'; a finite number is needed",
                               csv->path, csv->lines[row], columns[k], cell);
     }
-    double c = values[6], speed = fabs(values[5]), edge = 2 * speed / c * fmin(values[2], values[4]);
+    const double c = values[6], speed = fabs(values[5]), beta = values[5] / c, sine = c * values[3] / (2 * values[5]);
+    const double least = fmin(values[2], values[4]);
     const struct {
         int column;
         bool good;
@@ -223,24 +230,27 @@ static enum status point_read(const struct csv *csv, int row, const int *index, 
         {1, values[1] > 0, "a range > 0 m"},
         {2, values[2] > 0, "a frequency > 0 Hz"},
         {4, values[4] > 0, "a frequency > 0 Hz"},
-        {3, fabs(values[3]) < edge, "|f| below 2 |v| min(F, fc)/c (no evanescent wave)"},
+        {3, fabs(sine) < least && sine * (1 + beta) < values[2] && -sine * (1 - beta) < values[2],
+         "no evanescent wave, c f/(2 v) between -F/(1 - v/c) and F/(1 + v/c) and below min(F, fc) in magnitude,"},
     };
     for (size_t k = 0; k < sizeof checks / sizeof *checks; k++)
         if (!checks[k].good)
             return status_set(STATUS_INVALID, "%s: line %d: column %s is %.17g; %s is needed", csv->path,
                               csv->lines[row], columns[checks[k].column], values[checks[k].column],
                               checks[k].accepted);
+    for (int j = 0; j < FORMULAS; j++)
+        if (!isfinite(point_phase(values, j)))
+            return status_set(STATUS_INVALID, "%s: line %d: the phase '%s' at d = %g m and r = %g m is no finite number; a "
+                              "greater range is needed", csv->path, csv->lines[row], formulas[j].name, values[0], values[1]);
     return STATUS_OK;
 }
 
 static void point_print(const double *values)
 {
-    const struct spectrum_setting setting = {.sound_speed = values[6], .speed = values[5], .fc = values[4]};
     for (int k = 0; k < COLUMNS; k++)
         printf("%.17g,", values[k]);
     for (int j = 0; j < FORMULAS; j++)
-        printf("%.17g%c", formulas[j].function(&setting, values[0], values[1], values[2], values[3] / values[5]),
-               j < FORMULAS - 1 ? ',' : '\n');
+        printf("%.17g%c", point_phase(values, j), j < FORMULAS - 1 ? ',' : '\n');
 }
 
 static enum status points_print(const char *path)

@@ -13,6 +13,7 @@
 #include "random.h"
 #include "scene_keys.h"
 #include "simulate.h"
+#include "simulate.h"
 
 #define EXTENSION ".cfg"
 #define FNV_OFFSET 14695981039346656037u
@@ -164,6 +165,8 @@ static enum status acquisition_fill(struct reading *reading)
                 a->tx[p].x + reading->first_offset_m + m * reading->pitch_m;
         }
     }
+    a->echo_sine = beam_sine(scene);
+    a->echo_tapers = scene->beam.kind == BEAM_TXRX;
     return acquisition_check(a, reading->path);
 }
 

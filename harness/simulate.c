@@ -82,6 +82,26 @@ double beam_weight(const struct scene *scene, int ping, int receiver, struct vec
     return angles_weight(scene, &angles, frequency);
 }
 
+double beam_sine(const struct scene *scene)
+{
+    const struct acquisition *a = &scene->acquisition;
+    double lowest = scene->beam.per_frequency ? a->fc - a->bandwidth / 2 : a->fc, sine = INFINITY;
+    if (!(lowest > 0))
+        return sine;
+    double wavelength = a->sound_speed / lowest;
+    if (scene->beam.truncation != TRUNCATION_NONE)
+        sine = scene->beam.limit * wavelength / a->tx_length;
+    if (scene->beam.kind == BEAM_TXRX) {
+        double inside = 0, outside = 1 / fmax(a->tx_length, a->rx_length);      /* in 1/m: the first null */
+        for (int k = 0; k < 50; k++) {
+            double middle = (inside + outside) / 2;
+            *(sinc(a->tx_length * middle) * sinc(a->rx_length * middle) > 0.25 ? &inside : &outside) = middle;
+        }
+        sine = fmin(sine, inside * wavelength);
+    }
+    return sine;
+}
+
 /* What all pairs share: the spectrum that is delayed, on `length` bins, and where the record lies in its period. */
 struct replica {
     int length, lead;               /* lead: samples before the record, so that echoes under way at t0 are whole */
