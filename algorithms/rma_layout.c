@@ -86,6 +86,10 @@ static enum status lay_track(struct rma *rma)
         double last = g->x_first + (g->x_count - 1) * g->x_step;
         rma->way = fmax(rma->way, fmax(last - view.x_low, view.x_high - g->x_first));
     }
+    /* A record that holds what the widest angle sees needs no other bound. */
+    double tangent = rma->sine / sqrt(1 - rma->sine * rma->sine);
+    if (2 * rma->farthest * (hypot(1, tangent) - 1) / a->sound_speed * a->fs <= a->samples)
+        rma->way = INFINITY;
     rma->converts = view.converts;
     return rma_conditions_check(&view);
 }
@@ -185,7 +189,7 @@ static double lone_block_error(struct rma *rma)
     enum { PLACES = 16, FREQUENCIES = 3 };
     const struct acquisition *a = rma->problem.acquisition;
     blocks_place(rma, 1);
-    double worst = 0, r0 = rma_block_range(rma, 0), reach = fmin(rma_reach(rma, rma->nearest), rma->way);
+    double worst = 0, r0 = rma_block_range(rma, 0), reach = rma_reach(rma, rma->nearest);
     for (int end = 0; end < 2; end++) {
         double sum = 0, r = end ? rma->farthest : rma->nearest;
         for (int m = 0; m < 2; m++)
