@@ -15,7 +15,8 @@ static const double pi = 3.14159265358979323846;
 
 static const double BAND_LOSS = 4e-6;       /* of the compressed pulse's energy may lie outside the band */
 static const double WIDEST_SINE = 0.95;     /* of the aperture where neither sampling nor element length bounds it */
-static const double FADE_PERIODS = 8;      /* of fs - B in a cut's fade: what it smears stays between them */
+static const double FADE_PERIODS = 8;       /* of fs - B, or of B, in a cut's fade: what it smears stays beside the band */
+static const double PULSE_PERIODS = 8;     /* of B: beside the rows, so that no pulse wraps around the cut */
 static const double FRESNEL_ZONES = 6;      /* beyond the track's ends: what is cut farther out leaves no ripple */
 static const double EVEN = 1e-12;           /* relative: columns that divide the period but for rounding */
 static const int stolt_taps[] = {0, 4, 6, 8, 12, 16};
@@ -106,9 +107,11 @@ double rma_reach(const struct rma *rma, double r)
 static enum status lay_band(struct rma *rma)
 {
     const struct acquisition *a = rma->problem.acquisition;
-    double room = 1 - a->bandwidth / a->fs, fade = ceil(FADE_PERIODS / room);       /* infinite at fs = B */
+    double band = a->bandwidth / a->fs, fade = ceil(FADE_PERIODS / fmin(1 - band, band));       /* infinite at fs = B */
     rma->fade = fade < a->samples ? (int)fade : a->samples;
-    rma->half_band = a->fs / 2;
+    /* What was compressed elsewhere may have flanks beyond its bandwidth; twice the band holds them. Far beyond it there is
+       nothing, and the phases' polynomials would have to span it. */
+    rma->half_band = fmin(a->fs / 2, a->bandwidth);
     if (a->compressed)
         return STATUS_OK;
     int length = rma->record_length = fft_length_fast((long long)a->samples + a->pulse_length - 1);
@@ -343,18 +346,20 @@ static enum status swath_azimuth(const struct rma *rma, struct rma_swath *swath)
     return STATUS_OK;
 }
 
-/* Range: what the rows need of the record, the fades included, and zeros up to what the delays of the widest angle
-   need beyond it. */
+/* Range: what the rows need of the record, the fades included, and zeros up to what the pulse at the first row and the
+   delays of the widest angle need beyond it. */
 static enum status swath_range(const struct rma *rma, struct rma_swath *swath)
 {
     double first, last, c = rma->setting.sound_speed, end = rma->samples - 1, margin = 2 * rma->fade;
     delays_span(rma, swath->nearest, swath->farthest, &first, &last);
+    double pulse = PULSE_PERIODS * rma->fs / rma->problem.acquisition->bandwidth;
     double before = fmax(0, -first), after = fmax(0, last - end);
     if (!(before + after <= 2.0 * rma->samples))
         return status_set(STATUS_UNSUPPORTED, "%s: rows from %g to %g m lie too far outside the record's %g to %g m",
                           rma->method.name, swath->nearest, swath->farthest, c * rma->t0 / 2,
                           c * (rma->t0 + end / rma->fs) / 2);
-    double from = floor(fmin(first, fmax(first - margin, 0))), to = ceil(fmax(last, fmin(last + margin, end)));
+    double from = floor(fmin(first - pulse, fmax(first - margin, 0)));
+    double to = ceil(fmax(last + pulse, fmin(last + margin, end)));
     swath->first = (int)from;
     swath->begin = (int)fmin(fmax(from, 0), end);
     swath->end = (int)fmin(fmax(to, 0), end) + 1;

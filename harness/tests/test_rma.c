@@ -594,6 +594,38 @@ static void short_track(void **state)
     free_scene(&scene);
 }
 
+/* Sampled 65 times as fast as the band asks for, receivers 17 m astern, in a record of 1 ms: the row lies before the
+   record, where its converted echo has to have room, and what is far outside the band takes no part. */
+static void sampled_much_too_fast(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct echoes echoes;
+    struct image exact;
+    const double fs = 979137, first = 131087;
+    make_scene(4, 40, 1024, fs, first / fs, -1.2, 0.8, 0.04, &scene);
+    struct acquisition *a = &scene.acquisition;
+    a->bandwidth = 15e3;
+    a->tx_length = 0.08;
+    for (int p = 0; p < a->pings; p++) {
+        a->velocity[p].x = 2.5;
+        for (int m = 0; m < a->receivers; m++)
+            a->rx[p * a->receivers + m].x = a->tx[p].x - 17.333 + 0.04 * m;
+    }
+    scene.beam = (struct beam){BEAM_RECT, TRUNCATION_TX, 0.443, false};
+    const double r[] = {100.137};
+    const struct grid grid = {-0.16, 0.01, 33, 100.137, 1, 1};
+    add_targets(&scene, 1, r);
+    scene.targets[0].x = 0;
+    assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
+    struct problem problem = {a, 1, &grid, PRECISION_DOUBLE};
+    form("reference:precision=double", problem, &echoes, &exact);
+    assert_close(swath_error("rma_numeric:precision=double", problem, &echoes, &exact), 0, 0.02);
+    image_free(&exact);
+    echoes_free(&echoes);
+    free_scene(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -601,7 +633,7 @@ int main(void)
         cmocka_unit_test(recurrences),         cmocka_unit_test(long_swath),   cmocka_unit_test(block_counts),
         cmocka_unit_test(ghosts),              cmocka_unit_test(one_receiver), cmocka_unit_test(odd_tracks),
         cmocka_unit_test(refusals),            cmocka_unit_test(columns),      cmocka_unit_test(conditions),
-        cmocka_unit_test(short_track),
+        cmocka_unit_test(short_track),         cmocka_unit_test(sampled_much_too_fast),
     };
     return cmocka_run_group_tests_name("rma", tests, NULL, NULL);
 }
