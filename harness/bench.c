@@ -12,6 +12,7 @@
 #include "../algorithms/peak.h"
 #include "bench_rma.h"
 #include "echo_data.h"
+#include "folder.h"
 #include "plot.h"
 #include "record.h"
 #include "simulate.h"
@@ -221,8 +222,12 @@ static enum status (*const parts[])(const char *directory) = {bench_bp, bench_rm
 enum status command_bench(const struct task *task)
 {
     const char *directory = task->output ? task->output : "results/bench";
+    int lock = -1;
     enum status status = directory_make(directory);
+    if (status == STATUS_OK)
+        status = folder_take(directory, &lock);
     for (size_t k = 0; k < sizeof parts / sizeof *parts && status == STATUS_OK; k++)
         status = parts[k](directory);
+    folder_leave(lock);
     return status;
 }

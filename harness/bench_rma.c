@@ -2,7 +2,6 @@
 #define _GNU_SOURCE                 /* sincos */
 #include "bench_rma.h"
 
-#include <errno.h>
 #include <fftw3.h>
 #include <math.h>
 #include <omp.h>
@@ -14,6 +13,7 @@
 #include "scene.h"
 #include "simulate.h"
 #include "task.h"
+#include "text_file.h"
 #include "timing.h"
 
 enum { BLOCKS = 8, RECEIVERS = 48, AZIMUTH = 3840, RANGE = 4096,           /* 80 pings of 48 receivers at full rate */
@@ -167,11 +167,11 @@ enum status bench_rma(const char *directory)
     struct scene scene;
     struct echoes recorded, echoes;
     snprintf(path, sizeof path, "%s/bench_rma.csv", directory);
-    FILE *file = fopen(path, "w");
-    if (!file)
-        return status_set(STATUS_INVALID, "%.300s: cannot be written: %s; must be a writable folder", path,
-                          strerror(errno));
-    enum status status = scene_load("lbf21/real_size", SCENE_DIRECTORY, &scene);
+    struct text_file file;
+    enum status status = text_file_open(path, &file);
+    if (status != STATUS_OK)
+        return status;
+    status = scene_load("lbf21/real_size", SCENE_DIRECTORY, &scene);
     if (status == STATUS_OK) {
         status = scene_simulate(&scene, &recorded);
         if (status == STATUS_OK) {
@@ -180,13 +180,12 @@ enum status bench_rma(const char *directory)
         }
         if (status == STATUS_OK) {
             struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
-            status = measure(&problem, &echoes, file);
+            status = measure(&problem, &echoes, file.stream);
             echoes_free(&echoes);
         }
         scene_free(&scene);
     }
-    if (fclose(file) != 0 && status == STATUS_OK)
-        status = status_set(STATUS_FAILED, "%.300s: cannot be written: %s", path, strerror(errno));
+    status = text_file_close(&file, status);
     if (status == STATUS_OK)
         printf("Results: %s\n", path);
     return status;

@@ -212,6 +212,24 @@ static void redraw(struct visit *visit, int index, const struct measurement *row
     image_free(&image);
 }
 
+/* Whether an image or the slices of finished rows are still to be drawn. */
+static bool pictures_missing(const struct comparison *comparison, const struct scene *scene, int spec_count,
+                             const struct spec *specs)
+{
+    int images = 0, missing = 0;
+    char label[320];
+    for (int k = 0; k < spec_count && comparison->details; k++) {
+        const struct measurement *row = comparison_find(comparison, scene, &specs[k]);
+        if (!row || strcmp(row->status, "ok") != 0)
+            continue;
+        spec_label(&specs[k], label, sizeof label);
+        missing += !picture_exists(comparison->directory, scene->name, label);
+        images++;
+    }
+    return missing > 0 || (images > 0 && scene->point_count > 0
+                           && !picture_exists(comparison->directory, scene->name, NULL));
+}
+
 enum status comparison_scene(struct comparison *comparison, const struct scene *scene, int spec_count,
                              const struct spec *specs)
 {
@@ -220,7 +238,8 @@ enum status comparison_scene(struct comparison *comparison, const struct scene *
     enum status status = record_scene(comparison->record, scene->name, scene->hash);
     for (int k = 0; k < spec_count; k++)
         missing += !comparison_find(comparison, scene, &specs[k]);
-    if (status == STATUS_OK && missing > 0) {
+    const bool visited = missing > 0 || pictures_missing(comparison, scene, spec_count, specs);
+    if (status == STATUS_OK && visited) {
         progress(comparison, scene->name, "echoes and exact image");
         if (visit_open(comparison, scene, spec_count, specs, &visit) != STATUS_OK) {
             progress_clear();
@@ -234,20 +253,19 @@ enum status comparison_scene(struct comparison *comparison, const struct scene *
         progress(comparison, scene->name, specs[k].algorithm->name);
         if (!row)
             status = measure(comparison, &visit, k);
-        else if (missing > 0 && comparison->details)
+        else if (visited && comparison->details)
             redraw(&visit, k, row);
         progress_clear();
-        if (row && status == STATUS_OK) {
+        if (row && status == STATUS_OK)
             table_row(stdout, row);
-            comparison->failed |= strcmp(row->status, "failed") == 0;
-        }
         fflush(stdout);
     }
-    if (missing > 0) {
-        if (status == STATUS_OK && comparison->details) {
+    if (visited) {
+        if (status == STATUS_OK && comparison->details)
             pictures_slices(&visit.pictures);
+        if (status == STATUS_OK && comparison->details && missing > 0)
             print_works(&visit);
-        }
+        comparison->undrawn += visit.pictures.undrawn;
         visit_close(&visit);
     }
     return status;
@@ -273,6 +291,10 @@ enum status comparison_close(struct comparison *comparison, enum status status)
     comparison->record = NULL;
     if (status == STATUS_OK && comparison->failed)
         status = status_set(STATUS_FAILED, "at least one algorithm failed; the table and %s/measurements.csv say why",
+                            comparison->directory);
+    if (status == STATUS_OK && comparison->undrawn > 0)
+        status = status_set(STATUS_FAILED, "%d %s could not be drawn, as is said above; %s/measurements.csv is whole",
+                            comparison->undrawn, comparison->undrawn == 1 ? "picture" : "pictures",
                             comparison->directory);
     return status;
 }

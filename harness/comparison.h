@@ -11,7 +11,8 @@ struct comparison {
     struct record *record;
     int threads;
     bool details;                       /* of every scene: draw images and slices, print FLOPs by formula */
-    bool failed;                        /* a measurement failed, now or in the earlier run that is gone on with */
+    bool failed;                        /* a measurement failed */
+    int undrawn;                        /* pictures that could not be drawn */
     int done, rows;                     /* measurements, for the progress line */
 };
 
@@ -20,8 +21,9 @@ struct comparison {
 enum status comparison_open(const char *directory, int rows, bool details, struct comparison *comparison);
 
 /* Measure one scene with every spec: echoes and exact image once, then a row in the CSVs and on the terminal for each spec
-   as it is done. Rows that are there already are only printed. What fails or is unsupported becomes a row, and so does a scene whose
-   echoes cannot be made; errors: STATUS_FAILED for a record that cannot be written. */
+   as it is done. Rows that are there already are only printed, unless a picture of the scene is missing, which an
+   earlier run was cut ahead of: then its pictures are drawn. What fails or is unsupported becomes a row, and so does a
+   scene whose echoes cannot be made; errors: STATUS_FAILED for a record that cannot be written. */
 enum status comparison_scene(struct comparison *comparison, const struct scene *scene, int spec_count,
                              const struct spec *specs);
 
@@ -29,7 +31,8 @@ enum status comparison_scene(struct comparison *comparison, const struct scene *
 const struct measurement *comparison_find(const struct comparison *comparison, const struct scene *scene,
                                           const struct spec *spec);
 
-/* Close the folder. Returns `status`, or STATUS_FAILED when that is OK but a measurement failed. */
+/* Close the folder. Returns `status`, or STATUS_FAILED when that is OK but a measurement failed or a picture could not be
+   drawn. */
 enum status comparison_close(struct comparison *comparison, enum status status);
 
 /* Scenes by name or path, or with given_count 0 all shipped ones that are not full_size, in *scenes [*count]: all are read

@@ -1,14 +1,18 @@
 /* The command line: one table of commands, one of options. */
+#include <fcntl.h>
 #include <getopt.h>
 #include <limits.h>
 #include <omp.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "number.h"
 #include "shown_text.h"
 #include "task.h"
+#include "temporary.h"
 
 struct command {
     const char *name, *arguments, *summary;
@@ -194,18 +198,28 @@ static void print_error(const char *message)
     fputc('\n', stderr);
 }
 
+/* Where a standard stream is closed, a results file would take its number, and what is printed would land in it. */
+static void streams_open(void)
+{
+    int descriptor;
+    do
+        descriptor = open("/dev/null", O_RDWR);
+    while (descriptor >= 0 && descriptor <= STDERR_FILENO);
+    if (descriptor >= 0)
+        close(descriptor);
+}
+
 int main(int argc, char **argv)
 {
     const char *name = argc < 2 ? "" : argv[1];
-    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0) {
-        help();
-        return STATUS_OK;
-    }
     const struct command *command = NULL;
     struct task task = {0};
-    bool helped = false;
-    enum status status = command_find(name, &command);
-    if (status == STATUS_OK)
+    bool helped = strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0;
+    streams_open();
+    signal(SIGXFSZ, SIG_IGN);           /* a file beyond the limit is an error where it is written */
+    temporary_guard();
+    enum status status = helped ? STATUS_OK : command_find(name, &command);
+    if (status == STATUS_OK && !helped)
         status = parse(command, argc - 1, argv + 1, &task, &helped);
     if (status == STATUS_OK && helped)
         help();

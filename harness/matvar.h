@@ -44,7 +44,8 @@ int mat5_count(const char *path);
    whose failure the writer is not closed) and writer_close need be looked at. */
 struct writer {
     const char *path;
-    char temporary[PATH_MAX];       /* beside `path`: renamed when whole */
+    char place[PATH_MAX];           /* the file that a symbolic link stands for, or `path` itself */
+    char temporary[PATH_MAX];       /* beside `place`: renamed when whole */
     struct _mat_t *mat;
     int count;                      /* variables written */
     enum status status;

@@ -11,6 +11,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "temporary.h"
+#include "text_file.h"
+
 #define ACCEPTED "a new or regular file in a writable folder is needed"
 
 static enum status write_failed(struct writer *writer)
@@ -20,15 +23,21 @@ static enum status write_failed(struct writer *writer)
                                        strerror(reason));
 }
 
-enum status matfile_place(const char *path)
+/* The place that a path stands for, through symbolic links. */
+static enum status place_find(const char *path, char place[PATH_MAX])
 {
     char folder[PATH_MAX];
     struct stat old;
-    if (strlen(path) + sizeof ".4194304.tmp" > sizeof folder)
+    if (strlen(path) + NAME_MAX > sizeof folder)
         return status_set(STATUS_INVALID, "%.100s...: cannot be written: path too long; " ACCEPTED, path);
     if (stat(path, &old) == 0 && !S_ISREG(old.st_mode))
         return status_set(STATUS_INVALID, "%s: cannot be written: it is not a regular file; " ACCEPTED, path);
-    snprintf(folder, sizeof folder, "%s", path);
+    char *followed = place_follow(path);
+    if (!followed)
+        return status_set(STATUS_INVALID, "%s: cannot be written: %s; " ACCEPTED, path, strerror(errno));
+    snprintf(place, PATH_MAX, "%s", followed);
+    snprintf(folder, sizeof folder, "%s", followed);
+    free(followed);
     char *slash = strrchr(folder, '/');
     if (slash)
         slash[slash == folder] = 0;
@@ -38,13 +47,23 @@ enum status matfile_place(const char *path)
     return STATUS_OK;
 }
 
+enum status matfile_place(const char *path)
+{
+    char place[PATH_MAX];
+    return place_find(path, place);
+}
+
 /* Version 5 holds up to 2 GiB a variable. */
 enum status writer_open(struct writer *writer, const char *path, size_t largest_variable_bytes)
 {
-    *writer = (struct writer){.path = path, .status = matfile_place(path)};
+    *writer = (struct writer){.path = path};
+    writer->status = place_find(path, writer->place);
     if (writer->status != STATUS_OK)
         return writer->status;
-    snprintf(writer->temporary, sizeof writer->temporary, "%s.%ld.tmp", path, (long)getpid());
+    int descriptor = temporary_file(writer->place, writer->temporary);
+    if (descriptor < 0)
+        return write_failed(writer);
+    close(descriptor);
     matio_silence();
     H5dont_atexit();                /* its exit handler crashes after a full disk */
     bool fits_v5 = largest_variable_bytes < ((size_t)1 << 31) - 4096;
@@ -52,7 +71,7 @@ enum status writer_open(struct writer *writer, const char *path, size_t largest_
     writer->mat = Mat_CreateVer(writer->temporary, NULL, fits_v5 ? MAT_FT_MAT5 : MAT_FT_MAT73);
     if (!writer->mat) {
         write_failed(writer);
-        unlink(writer->temporary);
+        temporary_remove(writer->temporary);
     }
     return writer->status;
 }
@@ -125,11 +144,12 @@ enum status writer_close(struct writer *writer)
         errno = ENOSPC;
         write_failed(writer);
     }
-    if (writer->status == STATUS_OK && rename(writer->temporary, writer->path) != 0) {
+    if (writer->status == STATUS_OK && rename(writer->temporary, writer->place) != 0) {
         write_failed(writer);
     }
-    if (writer->status != STATUS_OK) {
-        unlink(writer->temporary);
-    }
+    if (writer->status == STATUS_OK)
+        temporary_moved(writer->temporary);
+    else
+        temporary_remove(writer->temporary);
     return writer->status;
 }

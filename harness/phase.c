@@ -7,9 +7,10 @@
 
 #include "../algorithms/spectrum.h"
 #include "csv.h"
+#include "folder.h"
 #include "plot.h"
-#include "record.h"
 #include "task.h"
+#include "text_file.h"
 
 static const struct {
     const char *name, *title;
@@ -87,9 +88,11 @@ static enum status study_begin(const struct scene *scene, struct study *study)
 /* All curves as CSV; finds the largest errors on the way. */
 static enum status study_write(struct study *study, const char *path)
 {
-    FILE *file = fopen(path, "w");
-    if (!file)
-        return status_set(STATUS_FAILED, "%s: cannot be written", path);
+    struct text_file text;
+    enum status status = text_file_open(path, &text);
+    if (status != STATUS_OK)
+        return status;
+    FILE *file = text.stream;
     fprintf(file, "# scene: %s\nreceiver,d_m,r_m,f_tau_hz,nu_per_m,f_hz,exact_rad", study->scene);
     for (int j = 1; j < FORMULAS; j++)
         fprintf(file, ",%s_error_rad", formulas[j].name);
@@ -109,9 +112,7 @@ static enum status study_write(struct study *study, const char *path)
                     }
                     fprintf(file, "\n");
                 }
-    bool written = !ferror(file);
-    written &= fclose(file) == 0;
-    return written ? STATUS_OK : status_set(STATUS_FAILED, "%s: cannot be written", path);
+    return text_file_close(&text, STATUS_OK);
 }
 
 static const char *claim_find(const struct study *study, int receiver, int formula)
@@ -168,11 +169,13 @@ static enum status study_draw(const struct study *study, int receiver, const cha
     return plot_phase(path, PLOT_DIRECTORY, title, RANGES, panels, FORMULAS - 1, lines[0]);
 }
 
-static enum status scene_study(const char *name, const char *directory)
+/* `taken`: the caller holds the folder. */
+static enum status scene_study(const char *name, const char *directory, bool taken)
 {
     struct scene scene;
     struct study study;
     char stem[4096], path[4200];
+    int lock = -1;
     enum status status = scene_load(name, SCENE_DIRECTORY, &scene);
     if (status != STATUS_OK)
         return status;
@@ -184,6 +187,8 @@ static enum status scene_study(const char *name, const char *directory)
             *p = '_';
     if (status == STATUS_OK)
         status = directory_make(directory);
+    if (status == STATUS_OK && !taken)
+        status = folder_take(directory, &lock);
     if (status == STATUS_OK) {
         snprintf(path, sizeof path, "%s.csv", stem);
         status = study_write(&study, path);
@@ -194,6 +199,7 @@ static enum status scene_study(const char *name, const char *directory)
         snprintf(path, sizeof path, "%s-receiver%d.png", stem, study.receiver[i]);
         status = study_draw(&study, i, path);
     }
+    folder_leave(lock);
     scene_free(&scene);
     return status;
 }
@@ -282,19 +288,22 @@ static enum status points_print(const char *path)
     return status;
 }
 
-enum status command_phase(const struct task *task)
+enum status phase_studies(const char *directory, bool taken)
 {
     static const char *const setups[] = {"lbf21/_phase_short", "lbf21/_phase_long"};
+    enum status status = STATUS_OK;
+    for (size_t k = 0; status == STATUS_OK && k < sizeof setups / sizeof *setups; k++)
+        status = scene_study(setups[k], directory, taken);
+    return status;
+}
+
+enum status command_phase(const struct task *task)
+{
     if (task->at && (task->name_count || task->output))
         return status_set(STATUS_INVALID, "phase: --at %s prints to standard output; neither a scene nor -o is "
                           "accepted", task->at);
     if (task->at)
         return points_print(task->at);
     const char *directory = task->output ? task->output : "results/phase";
-    if (task->name_count)
-        return scene_study(task->names[0], directory);
-    enum status status = STATUS_OK;
-    for (size_t k = 0; status == STATUS_OK && k < sizeof setups / sizeof *setups; k++)
-        status = scene_study(setups[k], directory);
-    return status;
+    return task->name_count ? scene_study(task->names[0], directory, false) : phase_studies(directory, false);
 }

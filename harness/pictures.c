@@ -4,26 +4,48 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "metrics.h"
 #include "shown_text.h"
 #include "task.h"
 
+/* A label of NULL: the slices. */
+static void path_make(const char *directory, const char *scene, const char *label, char *path, size_t size)
+{
+    char name[700];
+    snprintf(name, sizeof name, "%s.png", label ? label : "slices");
+    picture_path(directory, scene, name, path, size);
+}
+
+bool picture_exists(const char *directory, const char *scene, const char *label)
+{
+    char path[4096];
+    path_make(directory, scene, label, path, sizeof path);
+    return access(path, F_OK) == 0;
+}
+
 /* A picture that cannot be drawn is told, but does not fail what was measured. */
-static void tell(enum status status)
+static void tell(struct pictures *pictures, enum status status)
 {
     if (status == STATUS_OK)
         return;
     fputs("sasbench: ", stderr);
     shown_write(stderr, status_message());
     fputc('\n', stderr);
+    pictures->undrawn++;
 }
 
 enum status pictures_begin(const char *directory, const struct scene *scene, int spec_count, struct pictures *pictures)
 {
-    *pictures = (struct pictures){directory, scene, spec_count, NULL};
+    char path[4096];
+    *pictures = (struct pictures){directory, scene, spec_count, NULL, 0};
     pictures->lines = calloc((size_t)scene->point_count * (size_t)spec_count + 1, sizeof *pictures->lines);
-    return pictures->lines ? STATUS_OK : status_set(STATUS_FAILED, "%s: no memory for slices", scene->name);
+    if (!pictures->lines)
+        return status_set(STATUS_FAILED, "%s: no memory for slices", scene->name);
+    path_make(directory, scene->name, NULL, path, sizeof path);
+    unlink(path);
+    return STATUS_OK;
 }
 
 void pictures_free(struct pictures *pictures)
@@ -40,11 +62,11 @@ void pictures_free(struct pictures *pictures)
 void pictures_add(struct pictures *pictures, int index, const char *label, const struct image *image)
 {
     const struct scene *scene = pictures->scene;
-    char path[4096], name[700], title[700];
-    snprintf(name, sizeof name, "%s.png", label);
-    picture_path(pictures->directory, scene->name, name, path, sizeof path);
+    char path[4096], title[700];
+    path_make(pictures->directory, scene->name, label, path, sizeof path);
+    unlink(path);
     snprintf(title, sizeof title, "%s: %s", scene->name, label);
-    tell(plot_image(path, PLOT_DIRECTORY, image, title));
+    tell(pictures, plot_image(path, PLOT_DIRECTORY, image, title));
     for (int t = 0; t < scene->point_count; t++) {
         struct slice_line *line = &pictures->lines[t * pictures->spec_count + index];
         line->label = strdup(label);
@@ -53,7 +75,7 @@ void pictures_add(struct pictures *pictures, int index, const char *label, const
     }
 }
 
-void pictures_slices(const struct pictures *pictures)
+void pictures_slices(struct pictures *pictures)
 {
     const struct scene *scene = pictures->scene;
     char path[4096], title[600];
@@ -70,9 +92,10 @@ void pictures_slices(const struct pictures *pictures)
                      scene->targets[t].r);
             titles[t] = texts[t];
         }
-        picture_path(pictures->directory, scene->name, "slices.png", path, sizeof path);
+        path_make(pictures->directory, scene->name, NULL, path, sizeof path);
         snprintf(title, sizeof title, "%s: azimuth slices", scene->name);
-        tell(plot_slices(path, PLOT_DIRECTORY, title, scene->point_count, titles, count / scene->point_count, lines));
+        tell(pictures,
+             plot_slices(path, PLOT_DIRECTORY, title, scene->point_count, titles, count / scene->point_count, lines));
     }
     free(lines);
     free(texts);

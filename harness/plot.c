@@ -1,20 +1,22 @@
-/* Pictures through gnuplot: data files and a short preamble of variables go to a temporary folder, then one of the
-   scripts in plots/ draws them. The picture is drawn beside its place and renamed when whole. */
+/* Pictures through gnuplot: data files and a short preamble of variables go to a temporary folder beside the picture,
+   then one of the scripts in plots/ draws them. The picture is drawn there, too, and renamed when whole. */
 #include "plot.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
 #include <math.h>
+#include <signal.h>
 #include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "echo_data.h"
+#include "temporary.h"
 
 enum {
     PANELS_MAX = 8,             /* more do not fit a picture */
@@ -27,7 +29,7 @@ extern char **environ;
 /* One picture in the making. */
 struct plot {
     char directory[PATH_MAX];   /* temporary, with everything in it */
-    char output[PATH_MAX];      /* the picture until it is whole */
+    char output[PATH_MAX + 32]; /* the picture until it is whole */
     const char *path;           /* the picture */
     FILE *preamble;             /* sets the script's variables */
 };
@@ -35,6 +37,7 @@ struct plot {
 static void file_path(const struct plot *plot, const char *name, char path[PATH_MAX + 32])
 {
     snprintf(path, PATH_MAX + 32, "%s/%.30s", plot->directory, name);
+    temporary_inside(path);
 }
 
 static enum status file_failed(const char *path)
@@ -73,25 +76,30 @@ static void array_write(FILE *file, const char *name, int index, const char *tex
     fputc('\n', file);
 }
 
+static bool is_svg(const char *path)
+{
+    size_t length = strlen(path);
+    return length > 4 && strcmp(path + length - 4, ".svg") == 0;
+}
+
+double plot_seconds_most = 60;
+static bool hung;               /* it would hang on every further picture */
+
 static enum status plot_begin(struct plot *plot, const char *path)
 {
-    const char *temporary = getenv("TMPDIR");
-    if (!temporary || !*temporary)
-        temporary = "/tmp";
     *plot = (struct plot){.path = path};
+    if (hung)
+        return status_set(STATUS_FAILED, "plot: '%.300s' is not drawn: gnuplot did not end on a picture before", path);
 
     /* gnuplot takes an output that begins with '|' for a command. */
-    int length = snprintf(plot->output, sizeof plot->output, "%s%s.%ld.tmp", *path == '/' ? "" : "./", path,
-                          (long)getpid());
-    char directory[PATH_MAX];
-    int directory_length = snprintf(directory, sizeof directory, "%s/sasbench-plot-XXXXXX", temporary);
-    if (length >= (int)sizeof plot->output || directory_length >= (int)sizeof directory)
-        return status_set(STATUS_FAILED, "plot: the path '%.200s' or '%.200s' is too long", path, temporary);
-    if (!mkdtemp(directory))
-        return file_failed(directory);
-    memcpy(plot->directory, directory, sizeof directory);
-
-    char name[PATH_MAX + 32];
+    char beside[PATH_MAX], name[PATH_MAX + 32];
+    if (snprintf(beside, sizeof beside, "%s%s", *path == '/' ? "" : "./", path) >= (int)sizeof beside)
+        return status_set(STATUS_FAILED, "plot: the path '%.200s' is too long", path);
+    if (!temporary_folder(beside, plot->directory)) {
+        *plot->directory = '\0';
+        return file_failed(path);
+    }
+    file_path(plot, is_svg(path) ? "picture.svg" : "picture.png", plot->output);
     file_path(plot, "run.gp", name);
     plot->preamble = fopen(name, "w");
     return plot->preamble ? STATUS_OK : file_failed(name);
@@ -102,14 +110,8 @@ static void plot_end(struct plot *plot)
 {
     if (plot->preamble)
         fclose(plot->preamble);
-    unlink(plot->output);
-    DIR *directory = *plot->directory ? opendir(plot->directory) : NULL;
-    if (!directory)
-        return;
-    for (struct dirent *entry; (entry = readdir(directory));)
-        unlinkat(dirfd(directory), entry->d_name, 0);
-    closedir(directory);
-    rmdir(plot->directory);
+    if (*plot->directory)
+        temporary_remove(plot->directory);
 }
 
 /* The first line that gnuplot printed and that says something, for the message. */
@@ -131,30 +133,68 @@ static void complaint_read(const char *log, char *text, size_t size)
     fclose(file);
 }
 
-/* Run gnuplot on the preamble; what it prints goes to `log`. *exit_status is as waitpid gives it. */
-static enum status gnuplot_run(const char *preamble, const char *log, int *exit_status)
+/* gnuplot in a process group of its own, so that what it starts can be ended with it. */
+static int gnuplot_start(const char *preamble, const char *log, pid_t *child)
 {
     /* --default-settings: the user's own gnuplot start-up files stay out. */
     char *arguments[] = {"gnuplot", "--default-settings", (char *)preamble, NULL};
     posix_spawn_file_actions_t actions;
+    posix_spawnattr_t attributes;
+    sigset_t usual;
     int error = posix_spawn_file_actions_init(&actions);
     if (error)
-        return status_set(STATUS_FAILED, "plot: cannot run gnuplot: %s", strerror(error));
-    pid_t child;
-    error = posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    if (!error)
-        error = posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log, O_WRONLY | O_CREAT, 0600);
-    if (!error)
-        error = posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-    if (!error)
-        error = posix_spawnp(&child, "gnuplot", &actions, NULL, arguments, environ);
+        return error;
+    error = posix_spawnattr_init(&attributes);
+    if (!error) {
+        sigemptyset(&usual);
+        sigaddset(&usual, SIGXFSZ);     /* which main ignores */
+        error = posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+        if (!error)
+            error = posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log, O_WRONLY | O_CREAT, 0600);
+        if (!error)
+            error = posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+        if (!error)
+            error = posix_spawnattr_setsigdefault(&attributes, &usual);
+        if (!error)
+            error = posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
+        if (!error)
+            error = posix_spawnp(child, "gnuplot", &actions, &attributes, arguments, environ);
+        posix_spawnattr_destroy(&attributes);
+    }
     posix_spawn_file_actions_destroy(&actions);
+    return error;
+}
+
+/* *exit_status is as waitpid gives it. */
+static enum status gnuplot_wait(pid_t child, int *exit_status)
+{
+    double begin = seconds_now();
+    for (pid_t ended; (ended = waitpid(child, exit_status, WNOHANG)) != child;) {
+        if (ended < 0 && errno != EINTR)
+            return status_set(STATUS_FAILED, "plot: cannot wait for gnuplot: %s", strerror(errno));
+        if (ended == 0 && seconds_now() - begin > plot_seconds_most) {
+            kill(-child, SIGKILL);
+            waitpid(child, exit_status, 0);
+            hung = true;
+            return status_set(STATUS_FAILED, "plot: gnuplot did not end within %g s and was stopped; no more pictures "
+                              "are drawn", plot_seconds_most);
+        }
+        nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL);
+    }
+    return STATUS_OK;
+}
+
+/* Run gnuplot on the preamble; what it prints goes to `log`. */
+static enum status gnuplot_run(const char *preamble, const char *log, int *exit_status)
+{
+    pid_t child;
+    int error = gnuplot_start(preamble, log, &child);
     if (error)
         return status_set(STATUS_FAILED, "plot: cannot run gnuplot (Debian: gnuplot-nox): %s", strerror(error));
-    while (waitpid(child, exit_status, 0) < 0)
-        if (errno != EINTR)
-            return status_set(STATUS_FAILED, "plot: cannot wait for gnuplot: %s", strerror(errno));
-    return STATUS_OK;
+    temporary_process(child);
+    enum status status = gnuplot_wait(child, exit_status);
+    temporary_process(0);
+    return status;
 }
 
 /* Draw with plots_directory/script. */
@@ -163,8 +203,7 @@ static enum status plot_run(struct plot *plot, const char *plots_directory, cons
     char preamble[PATH_MAX + 32], log[PATH_MAX + 32];
     file_path(plot, "run.gp", preamble);
     file_path(plot, "log", log);
-    size_t length = strlen(plot->path);
-    variable_write(plot->preamble, "format", length > 4 && strcmp(plot->path + length - 4, ".svg") == 0 ? "svg" : "png");
+    variable_write(plot->preamble, "format", is_svg(plot->path) ? "svg" : "png");
     variable_write(plot->preamble, "output", plot->output);
     variable_write(plot->preamble, "plots", plots_directory);
     fprintf(plot->preamble, "load plots.'/%s'\n", script);
@@ -187,13 +226,35 @@ static enum status plot_run(struct plot *plot, const char *plots_directory, cons
     return STATUS_OK;
 }
 
-/* Draw and put the picture in its place. */
+/* Whether a picture reaches its end: gnuplot does not notice a full disk. */
+static bool picture_is_whole(const char *path)
+{
+    static const char png[] = "\0\0\0\0IEND\xae\x42\x60\x82", svg[] = "</svg>";
+    const char *wanted = is_svg(path) ? svg : png;
+    const size_t size = is_svg(path) ? sizeof svg - 1 : sizeof png - 1;
+    char end[32];
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return false;
+    size_t count = fseek(file, -(long)sizeof end, SEEK_END) == 0 ? fread(end, 1, sizeof end, file) : 0;
+    fclose(file);
+    while (is_svg(path) && count > 0 && end[count - 1] == '\n')
+        count--;
+    return count >= size && memcmp(end + count - size, wanted, size) == 0;
+}
+
+/* Put the picture in its place. */
+static enum status plot_place(const struct plot *plot)
+{
+    if (!picture_is_whole(plot->output))
+        return status_set(STATUS_FAILED, "plot: gnuplot left '%s' without its end (is the disk full?)", plot->path);
+    return rename(plot->output, plot->path) == 0 ? STATUS_OK : file_failed(plot->path);
+}
+
 static enum status plot_draw(struct plot *plot, const char *plots_directory, const char *script)
 {
     enum status status = plot_run(plot, plots_directory, script);
-    if (status == STATUS_OK && rename(plot->output, plot->path) != 0)
-        status = file_failed(plot->path);
-    return status;
+    return status == STATUS_OK ? plot_place(plot) : status;
 }
 
 /* One axis of a patch as it is drawn: blocks of pixels. */
@@ -406,8 +467,7 @@ enum status plot_folder(const char *path, const char *plots_directory, const cha
     }
     if (status == STATUS_OK && access(plot.output, F_OK) == 0) {
         *drawn = true;
-        if (rename(plot.output, path) != 0)
-            status = file_failed(path);
+        status = plot_place(&plot);
     }
     plot_end(&plot);
     return status;

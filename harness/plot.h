@@ -5,8 +5,12 @@
 #include "scene.h"
 
 /* Image in decibels below its peak (0 to -60), all patches, into `path` (PNG). Large images are reduced by taking the
-   largest magnitude of each block. Errors: STATUS_FAILED, when gnuplot is missing or fails, with what it printed. */
+   largest magnitude of each block. Errors of all pictures: STATUS_FAILED, when gnuplot is missing, fails (with what it
+   printed), leaves a picture without its end or does not end by itself; what stood at `path` is then left as it was. */
 enum status plot_image(const char *path, const char *plots_directory, const struct image *image, const char *title);
+
+/* Seconds that gnuplot may take for a picture. After one that took longer nothing is drawn. */
+extern double plot_seconds_most;
 
 /* Azimuth slices through point targets, one panel a target, one line an image (the papers' overlays). */
 struct slice_line {

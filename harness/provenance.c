@@ -9,6 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "../algorithms/isa.h"
 #include "commit.h"      /* made by the build */
 
 #ifndef SASBENCH_FLAGS
@@ -60,6 +61,7 @@ void provenance_fill(struct provenance *provenance, int threads)
     *provenance = (struct provenance){.threads = threads};
     machine_fill(provenance->machine, sizeof provenance->machine);
     program_fill(provenance->program, sizeof provenance->program);
+    snprintf(provenance->isa, sizeof provenance->isa, "%s", isa_name(isa_choose()));
     snprintf(provenance->compiler, sizeof provenance->compiler, "%s%s", COMPILER, __VERSION__);
     snprintf(provenance->flags, sizeof provenance->flags, "%s", SASBENCH_FLAGS);
     snprintf(provenance->commit, sizeof provenance->commit, "%s", SASBENCH_COMMIT);

@@ -11,6 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "folder.h"
 #include "text_file.h"
 
 #define METRIC(struct_name, name, unit, title, better, class, of_float, of_double, relative) \
@@ -90,22 +91,33 @@ static const struct sheet {
 static const struct {
     const char *key;
     size_t offset;
+    bool compared;                      /* rows of different values are not mixed */
 } notes[] = {
-    {"machine", offsetof(struct provenance, machine)},     {"compiler", offsetof(struct provenance, compiler)},
-    {"flags", offsetof(struct provenance, flags)},         {"libraries", offsetof(struct provenance, libraries)},
-    {"commit", offsetof(struct provenance, commit)},       {"program", offsetof(struct provenance, program)},
-    {"date", offsetof(struct provenance, date)},
+    {"machine", offsetof(struct provenance, machine), true},
+    {"isa", offsetof(struct provenance, isa), true},
+    {"compiler", offsetof(struct provenance, compiler), false},     /* the program's bytes tell */
+    {"flags", offsetof(struct provenance, flags), false},
+    {"libraries", offsetof(struct provenance, libraries), true},
+    {"commit", offsetof(struct provenance, commit), true},
+    {"program", offsetof(struct provenance, program), true},
+    {"date", offsetof(struct provenance, date), false},
+};
+
+/* What tells one measurement from another; an algorithm of NULL stands for all of the scene. */
+struct key {
+    const char *scene, *algorithm, *options, *precision;
 };
 
 struct record {
+    int lock;                           /* of the folder */
     struct provenance provenance;
-    char *paths[SHEETS];
+    char *prefix, *paths[SHEETS];       /* "FOLDER/", and the files in it */
     FILE *files[SHEETS];                /* open for appending */
     struct scene_hash *scenes;          /* content of every scene that has rows */
     int scene_count;
     struct csv earlier;                 /* measurements.csv as the earlier run left it; rows point into it */
     struct measurement *rows;           /* [earlier.row_count] */
-    bool *dropped;                      /* [earlier.row_count] the scene's content has changed since */
+    bool *dropped;                      /* [earlier.row_count] the scene's content has changed since, or it is replaced */
 };
 
 /* --- Writing ------------------------------------------------------------------------------------------------- */
@@ -189,10 +201,18 @@ static bool measurement_present(const struct csv *measurements, const struct csv
     return false;
 }
 
-/* One file anew from the rows of `old`, without those of `scene_except` (NULL: of none) and without rows of targets
-   whose measurement is missing, made beside the old file and renamed when whole. */
+static bool key_matches(const struct key *key, const char *scene, const char *algorithm, const char *options,
+                        const char *precision)
+{
+    return strcmp(key->scene, scene) == 0
+           && (!key->algorithm || (strcmp(key->algorithm, algorithm) == 0 && strcmp(key->options, options) == 0
+                                   && strcmp(key->precision, precision) == 0));
+}
+
+/* One file anew from the rows of `old`, without those of `except` (NULL: of none) and without rows of targets whose
+   measurement is missing, made beside the old file and renamed when whole. */
 static enum status sheet_write(const struct record *record, int sheet, const struct csv old[SHEETS],
-                               const char *scene_except)
+                               const struct key *except)
 {
     struct text_file text;
     enum status status = text_file_open(record->paths[sheet], &text);
@@ -201,7 +221,8 @@ static enum status sheet_write(const struct record *record, int sheet, const str
     FILE *file = text.stream;
     head_write(file, &sheets[sheet], &record->provenance, NULL, record->scenes, record->scene_count);
     for (int row = 0; row < old[sheet].row_count; row++) {
-        if (scene_except && strcmp(csv_cell(&old[sheet], row, 0), scene_except) == 0)
+        if (except && key_matches(except, csv_cell(&old[sheet], row, 0), csv_cell(&old[sheet], row, 1),
+                                  csv_cell(&old[sheet], row, 2), csv_cell(&old[sheet], row, 3)))
             continue;
         if (!measurement_present(&old[SHEET_MEASUREMENTS], &old[sheet], row))
             continue;
@@ -217,13 +238,13 @@ static enum status sheet_write(const struct record *record, int sheet, const str
 
 /* Both files anew. The measurements come first: a cut between the two leaves targets without a measurement, which the
    next run drops. */
-static enum status record_rewrite(struct record *record, const struct csv old[SHEETS], const char *scene_except)
+static enum status record_rewrite(struct record *record, const struct csv old[SHEETS], const struct key *except)
 {
     for (int k = 0; k < SHEETS; k++) {
         if (record->files[k])
             fclose(record->files[k]);
         record->files[k] = NULL;
-        enum status status = sheet_write(record, k, old, scene_except);
+        enum status status = sheet_write(record, k, old, except);
         if (status)
             return status;
         record->files[k] = fopen(record->paths[k], "a");
@@ -318,12 +339,19 @@ static enum status sheet_read(const char *path, const struct sheet *sheet, struc
                       "name another folder", path, sheet->format);
 }
 
-static bool same_run(const struct csv *csv, const struct provenance *provenance)
+/* Why rows of `csv` are not gone on with: text is empty when they are. */
+static void other_run(const struct csv *csv, const struct provenance *provenance, char *text, size_t size)
 {
-    const char *commit = csv_comment(csv, "commit"), *program = csv_comment(csv, "program");
     const char *threads = csv_comment(csv, "threads");
-    return commit && program && threads && strcmp(commit, provenance->commit) == 0
-           && strcmp(program, provenance->program) == 0 && strtol(threads, NULL, 10) == provenance->threads;
+    *text = '\0';
+    for (size_t k = 0; k < sizeof notes / sizeof *notes && !*text; k++) {
+        const char *then = csv_comment(csv, notes[k].key), *now = (const char *)provenance + notes[k].offset;
+        if (notes[k].compared && (!then || strcmp(then, now) != 0))
+            snprintf(text, size, "measured with %s '%.120s', now with '%.120s'", notes[k].key, then ? then : "unknown", now);
+    }
+    if (!*text && (!threads || strtol(threads, NULL, 10) != provenance->threads))
+        snprintf(text, size, "measured with threads '%.20s', now with '%d'", threads ? threads : "unknown",
+                 provenance->threads);
 }
 
 static enum status header_check(const struct csv *csv, const struct sheet *sheet)
@@ -357,45 +385,86 @@ static enum status rows_parse(struct record *record)
     return status;
 }
 
-enum status directory_make(const char *directory)
+/* "measurements.3.csv" */
+static void kept_name(int sheet, int number, char *name, size_t size)
+{
+    snprintf(name, size, "%.*s.%d.csv", (int)strcspn(sheets[sheet].file, "."), sheets[sheet].file, number);
+}
+
+/* Under another name; the file stays where it is until it is replaced, except where a file system knows no links. */
+static enum status file_keep(const char *path, const char *kept)
 {
     struct stat info;
-    char *path = strdup(directory);
-    if (!path)
-        return status_set(STATUS_FAILED, "%s: no memory", directory);
-    for (char *at = path; *at; at++) {
-        if (*at == '/' && at != path) {
-            *at = '\0';
-            mkdir(path, 0777);          /* the last one tells whether it went well */
-            *at = '/';
+    if (lstat(path, &info) != 0 || link(path, kept) == 0 || rename(path, kept) == 0)
+        return STATUS_OK;
+    return status_set(STATUS_INVALID, "%s: cannot be kept as %s: %s; name another folder", path, kept, strerror(errno));
+}
+
+/* Keep the files under the next free number before they are begun anew, and tell why. */
+static enum status files_keep(const struct record *record, const char *why)
+{
+    char names[SHEETS][64], told[SHEETS * 64] = "";
+    enum status status = STATUS_OK;
+    bool taken = true;
+    for (int number = 1; taken && !status; number++) {
+        taken = false;
+        for (int k = 0; k < SHEETS && !status; k++) {
+            struct stat info;
+            kept_name(k, number, names[k], sizeof names[k]);
+            char *kept = text_join(record->prefix, names[k]);
+            taken |= kept && lstat(kept, &info) == 0;
+            status = kept ? STATUS_OK : status_set(STATUS_FAILED, "%s: no memory", names[k]);
+            free(kept);
         }
     }
-    enum status status = STATUS_OK;
-    if (mkdir(path, 0777) != 0 && (errno != EEXIST || stat(path, &info) != 0 || !S_ISDIR(info.st_mode)))
-        status = status_set(STATUS_INVALID, "%s: cannot be made: %s; name a folder that can be written", directory,
-                            strerror(errno));
-    free(path);
+    for (int k = 0; k < SHEETS && !status; k++) {
+        char *kept = text_join(record->prefix, names[k]);
+        status = kept ? file_keep(record->paths[k], kept) : status_set(STATUS_FAILED, "%s: no memory", names[k]);
+        if (!status && access(kept, F_OK) == 0)
+            snprintf(told + strlen(told), sizeof told - strlen(told), "%s%s", *told ? " and " : "", names[k]);
+        free(kept);
+    }
+    if (!status)
+        fprintf(stderr, "sasbench: %s: %s; the old rows are kept in %s\n", record->paths[SHEET_MEASUREMENTS], why, told);
     return status;
+}
+
+/* Why the rows of the folder cannot be gone on with; empty when they can, or when there are none. */
+static void resume_refusal(const struct record *record, const struct csv old[SHEETS], char *why, size_t size)
+{
+    *why = '\0';
+    for (int k = 0; k < SHEETS && !*why; k++)
+        if (!old[k].path && old[SHEETS - 1 - k].row_count > 0)
+            snprintf(why, size, "%s is missing", sheets[k].file);
+    for (int k = 0; k < SHEETS && !*why; k++)
+        if (old[k].row_count > 0)
+            other_run(&old[k], &record->provenance, why, size);
 }
 
 static enum status record_begin(struct record *record, const char *directory)
 {
     struct csv old[SHEETS] = {0};
+    char why[400] = "";
     enum status status = directory_make(directory);
-    char *prefix = text_join(directory, "/");
-    bool resume = true;
+    if (!status)
+        status = folder_take(directory, &record->lock);
+    if (!status && !(record->prefix = text_join(directory, "/")))
+        status = status_set(STATUS_FAILED, "%s: no memory", directory);
     for (int k = 0; k < SHEETS && !status; k++) {
-        record->paths[k] = prefix ? text_join(prefix, sheets[k].file) : NULL;
+        record->paths[k] = text_join(record->prefix, sheets[k].file);
         status = record->paths[k] ? sheet_read(record->paths[k], &sheets[k], &old[k])
                                   : status_set(STATUS_FAILED, "%s: no memory", directory);
-        resume &= !status && same_run(&old[k], &record->provenance);
     }
-    free(prefix);
+    if (!status)
+        resume_refusal(record, old, why, sizeof why);
     for (int k = 0; k < SHEETS && !status; k++) {
-        if (resume)
-            status = header_check(&old[k], &sheets[k]);
-        else
+        char other[400] = "";
+        if (old[k].path)
+            other_run(&old[k], &record->provenance, other, sizeof other);
+        if (*why || *other)
             csv_free(&old[k]);
+        else if (old[k].path)
+            status = header_check(&old[k], &sheets[k]);
     }
     /* All of it is read before anything is written, so that a file with a fault is left as it is. */
     record->earlier = old[SHEET_MEASUREMENTS];
@@ -403,6 +472,8 @@ static enum status record_begin(struct record *record, const char *directory)
         status = scene_hashes_read(record, &record->earlier);
     if (!status)
         status = rows_parse(record);
+    if (!status && *why)
+        status = files_keep(record, why);
     if (!status)
         status = record_rewrite(record, old, NULL);
     csv_free(&old[SHEET_TARGETS]);
@@ -415,6 +486,7 @@ enum status record_open(const char *directory, const struct provenance *provenan
     if (!*record)
         return status_set(STATUS_FAILED, "%s: no memory", directory);
     (*record)->provenance = *provenance;
+    (*record)->lock = -1;
     enum status status = record_begin(*record, directory);
     if (status) {
         record_close(*record);
@@ -423,38 +495,66 @@ enum status record_open(const char *directory, const struct provenance *provenan
     return status;
 }
 
-enum status record_scene(struct record *record, const char *scene, uint64_t hash)
+/* Both files without the rows of `key`. */
+static enum status rows_drop(struct record *record, const struct key *key)
 {
     struct csv now[SHEETS] = {0};
-    struct scene_hash *known = scene_hash_find(record, scene);
-    if (known && known->hash == hash)
-        return STATUS_OK;
-    for (int row = 0; row < record->earlier.row_count; row++)
-        if (strcmp(record->rows[row].scene, scene) == 0)
-            record->dropped[row] = true;
-    enum status status = scene_hash_set(record, scene, hash);
+    enum status status = STATUS_OK;
+    for (int row = 0; row < record->earlier.row_count; row++) {
+        const struct measurement *found = &record->rows[row];
+        record->dropped[row] |= key_matches(key, found->scene, found->algorithm, found->options, found->precision);
+    }
     for (int k = 0; k < SHEETS && !status; k++) {
         status = csv_read(record->paths[k], CSV_TAIL_DROP, &now[k]);
         if (!status)
             status = header_check(&now[k], &sheets[k]);
     }
     if (!status)
-        status = record_rewrite(record, now, scene);
+        status = record_rewrite(record, now, key);
     for (int k = 0; k < SHEETS; k++)
         csv_free(&now[k]);
     return status;
 }
 
-const struct measurement *record_find(const struct record *record, const char *scene, const char *algorithm,
-                                      const char *options, const char *precision)
+static int earlier_find(const struct record *record, const struct key *key)
 {
     for (int row = 0; row < record->earlier.row_count; row++) {
         const struct measurement *found = &record->rows[row];
-        if (!record->dropped[row] && strcmp(found->scene, scene) == 0 && strcmp(found->algorithm, algorithm) == 0
-            && strcmp(found->options, options) == 0 && strcmp(found->precision, precision) == 0)
-            return found;
+        if (!record->dropped[row]
+            && key_matches(key, found->scene, found->algorithm, found->options, found->precision))
+            return row;
     }
-    return NULL;
+    return -1;
+}
+
+enum status record_scene(struct record *record, const char *scene, uint64_t hash)
+{
+    const struct key key = {.scene = scene};
+    struct scene_hash *known = scene_hash_find(record, scene);
+    enum status status = STATUS_OK;
+    if (known && known->hash == hash)
+        return STATUS_OK;
+    if (earlier_find(record, &key) >= 0) {
+        char why[400];
+        snprintf(why, sizeof why, "the scene %.300s has changed", scene);
+        status = files_keep(record, why);
+    }
+    if (!status)
+        status = scene_hash_set(record, scene, hash);
+    return status ? status : rows_drop(record, &key);
+}
+
+const struct measurement *record_find(const struct record *record, const char *scene, const char *algorithm,
+                                      const char *options, const char *precision)
+{
+    int row = earlier_find(record, &(struct key){scene, algorithm, options, precision});
+    return row >= 0 && strcmp(record->rows[row].status, "failed") != 0 ? &record->rows[row] : NULL;
+}
+
+/* A row that an earlier run left gives way to a new one. */
+static enum status earlier_replace(struct record *record, const struct key *key)
+{
+    return earlier_find(record, key) < 0 ? STATUS_OK : rows_drop(record, key);
 }
 
 static enum status rows_append(struct record *record, int sheet, const void *rows, int count, size_t row_size)
@@ -470,12 +570,16 @@ static enum status rows_append(struct record *record, int sheet, const void *row
 
 enum status record_targets(struct record *record, const struct target_row *rows, int count)
 {
-    return rows_append(record, SHEET_TARGETS, rows, count, sizeof *rows);
+    enum status status = STATUS_OK;
+    for (int k = 0; k < count && !status; k++)
+        status = earlier_replace(record, &(struct key){rows[k].scene, rows[k].algorithm, rows[k].options, rows[k].precision});
+    return status ? status : rows_append(record, SHEET_TARGETS, rows, count, sizeof *rows);
 }
 
 enum status record_add(struct record *record, const struct measurement *row)
 {
-    return rows_append(record, SHEET_MEASUREMENTS, row, 1, sizeof *row);
+    enum status status = earlier_replace(record, &(struct key){row->scene, row->algorithm, row->options, row->precision});
+    return status ? status : rows_append(record, SHEET_MEASUREMENTS, row, 1, sizeof *row);
 }
 
 void record_close(struct record *record)
@@ -492,7 +596,9 @@ void record_close(struct record *record)
     free(record->scenes);
     free(record->rows);
     free(record->dropped);
+    free(record->prefix);
     csv_free(&record->earlier);
+    folder_leave(record->lock);
     free(record);
 }
 

@@ -44,7 +44,7 @@ extern const struct metric target_metrics[];            /* of struct target_row 
 
 /* What makes rows comparable: written as `# key: value` lines ahead of the rows. */
 struct provenance {
-    char machine[128], compiler[160], flags[256], libraries[160], commit[80], program[32], date[32];
+    char machine[128], isa[16], compiler[160], flags[256], libraries[160], commit[80], program[32], date[32];
     int threads;
 };
 void provenance_fill(struct provenance *provenance, int threads);
@@ -73,13 +73,17 @@ enum status measurements_write(const char *path, const char *note, const struct 
                                const struct measurement *rows, int row_count);
 
 struct record;
-/* Open (make) the folder and its two files. Rows left by an earlier run are kept when commit, program and threads are
-   the same; otherwise the files are begun anew. A last line that was cut short is dropped. Errors: STATUS_INVALID for
-   a place that cannot be written or a CSV that is not ours (naming file and line). */
+/* Make the folder and take it (folder.h) until record_close; open its two files. Rows left by an earlier run are kept when
+   machine, instruction set, libraries, commit, program and threads are the same; otherwise the files are begun anew, and
+   the old ones, where they have rows, are kept beside them as measurements.N.csv and targets.N.csv, which is told on
+   standard error. A last line that was cut short is dropped. Errors: STATUS_INVALID for a place that cannot be written, a
+   folder that another program works in, or a CSV that is not ours (naming file and line). */
 enum status record_open(const char *directory, const struct provenance *provenance, struct record **record);
-/* Declare a scene before its rows: rows kept from other content (hash) of the same name are dropped. */
+/* Declare a scene before its rows. Rows kept from other content (hash) of the same name are dropped, and the old files
+   kept and told of as above. */
 enum status record_scene(struct record *record, const char *scene, uint64_t hash);
-/* The finished row of an earlier run, or NULL; belongs to the record, valid until record_close. */
+/* The finished row of an earlier run, or NULL; belongs to the record, valid until record_close. One that failed is not
+   finished: it gives way to the row that is added in its place. */
 const struct measurement *record_find(const struct record *record, const char *scene, const char *algorithm,
                                       const char *options, const char *precision);
 /* Append and flush. The rows of a measurement's targets are added before the measurement itself: when that is there,
@@ -87,8 +91,5 @@ const struct measurement *record_find(const struct record *record, const char *s
 enum status record_targets(struct record *record, const struct target_row *rows, int count);
 enum status record_add(struct record *record, const struct measurement *row);
 void record_close(struct record *record);
-
-/* Make a folder and those above it, like mkdir -p; one that exists is fine. Errors: STATUS_INVALID naming it. */
-enum status directory_make(const char *directory);
 
 #endif

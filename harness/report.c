@@ -7,6 +7,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "folder.h"
 #include "plot.h"
 #include "record.h"
 #include "report_sheets.h"
@@ -108,8 +109,8 @@ static enum status folder_read(const char *directory, struct folder *folder)
 
 static void machine_show(struct page *page, const struct folder *folder)
 {
-    static const char *const keys[] = {"machine",   "threads", "compiler", "flags",
-                                       "libraries", "commit",  "program",  "date"};
+    static const char *const keys[] = {"machine",   "isa",    "threads", "compiler", "flags",
+                                       "libraries", "commit", "program", "date"};
     static const struct page_column columns[] = {{"of the measurements", false}, {"", false}};
     page_heading(page, 2, "machine", "Machine and program");
     page_table_begin(page, 2, columns, false);
@@ -304,8 +305,11 @@ enum status report_write(const char *directory)
         enum page_format format;
         long bytes;
     } pages[] = {{"report.html", PAGE_HTML, 0}, {"report.md", PAGE_MARKDOWN, REPORT_MARKDOWN_BYTES}};
-    struct folder folder;
-    enum status status = folder_read(directory, &folder);
+    struct folder folder = {0};
+    int lock;
+    enum status status = folder_take(directory, &lock);
+    if (status == STATUS_OK)
+        status = folder_read(directory, &folder);
     for (size_t k = 0; k < sizeof pages / sizeof *pages && status == STATUS_OK; k++) {
         char path[4096];
         struct text_file file;
@@ -317,6 +321,7 @@ enum status report_write(const char *directory)
         }
     }
     folder_free(&folder);
+    folder_leave(lock);
     return status;
 }
 

@@ -55,19 +55,6 @@ static enum status scene_measure(struct comparison *comparison, struct need *nee
     return status;
 }
 
-/* *failed: a measurement failed, which is a row like any other here. */
-static enum status measure(const char *directory, struct need *needs, int count, bool *failed)
-{
-    struct comparison comparison;
-    enum status status = comparison_open(directory, count, false, &comparison);
-    for (int k = 0; k < count && status == STATUS_OK; k++)
-        if (needs[k].scene)
-            status = scene_measure(&comparison, needs + k, count - k);
-    *failed = comparison.failed;
-    comparison.failed = false;
-    return comparison_close(&comparison, status);
-}
-
 /* ---- what is written and printed ---- */
 
 /* Ahead of what is worked out: where, when and with what it was measured. */
@@ -249,8 +236,9 @@ static enum status report(const char *directory, const bool selected[TABLES_MAX]
 enum status command_reproduce(const struct task *task)
 {
     const char *directory = task->output ? task->output : "results/reproduce";
-    bool selected[TABLES_MAX] = {false}, failed = false;
+    bool selected[TABLES_MAX] = {false};
     struct need needs[NEEDS_MAX];
+    struct comparison comparison = {0};
     enum status status = tables_select(task, selected);
     if (status != STATUS_OK)
         return status;
@@ -258,13 +246,13 @@ enum status command_reproduce(const struct task *task)
     for (int k = 0; tables[k].id; k++)
         if (selected[k])
             count = table_needs(tables[k].id, needs, count, NEEDS_MAX);
-    status = measure(directory, needs, count, &failed);
+    status = comparison_open(directory, count, false, &comparison);
+    for (int k = 0; k < count && status == STATUS_OK; k++)
+        if (needs[k].scene)
+            status = scene_measure(&comparison, needs + k, count - k);
     if (status == STATUS_OK)
-        status = command_phase(&(struct task){.output = directory});
+        status = phase_studies(directory, true);
     if (status == STATUS_OK)
         status = report(directory, selected);
-    if (status == STATUS_OK && failed)
-        status = status_set(STATUS_FAILED, "at least one measurement failed; %s/measurements.csv says why",
-                            directory);
-    return status;
+    return comparison_close(&comparison, status);
 }

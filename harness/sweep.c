@@ -29,19 +29,23 @@ static enum status ladders_load(const struct task *task, struct ladder *ladder)
     return status;
 }
 
-/* A plot that cannot be drawn is told, but does not fail what was measured. */
-static void draw(const char *directory, const struct scene *scene)
+/* A plot that cannot be drawn is told and counted, but does not fail what was measured. Returns how many. */
+static int draw(const char *directory, const struct scene *scene)
 {
     static const char *const formats[] = {"png", "svg"};
+    int undrawn = 0;
     for (int k = 0; folder_plots[k]; k++)
         for (size_t f = 0; f < sizeof formats / sizeof *formats; f++) {
             char name[64], path[4096];
             bool drawn;
             snprintf(name, sizeof name, "%s.%s", folder_plots[k], formats[f]);
             picture_path(directory, scene->name, name, path, sizeof path);
-            if (plot_folder(path, PLOT_DIRECTORY, folder_plots[k], directory, scene->name, &drawn) != STATUS_OK)
+            if (plot_folder(path, PLOT_DIRECTORY, folder_plots[k], directory, scene->name, &drawn) != STATUS_OK) {
                 fprintf(stderr, "sasbench: %s\n", status_message());
+                undrawn++;
+            }
         }
+    return undrawn;
 }
 
 enum status command_sweep(const struct task *task)
@@ -62,7 +66,7 @@ enum status command_sweep(const struct task *task)
     if (status == STATUS_OK)
         status = sweep_tables(directory, scenes, scene_count);
     for (int k = 0; k < scene_count && status == STATUS_OK; k++)
-        draw(directory, &scenes[k]);
+        comparison.undrawn += draw(directory, &scenes[k]);
     if (status == STATUS_OK)
         printf("\nResults: %s/measurements.csv, targets.csv, fronts.csv, cheapest.csv, slopes.csv, rules.csv and "
                "plots.\n", directory);

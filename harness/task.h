@@ -29,6 +29,9 @@ enum status command_report(const struct task *task);
 enum status command_phase(const struct task *task);
 enum status command_bench(const struct task *task);
 
+/* `phase` without a scene, into a folder that the caller has made; `taken`: and holds (folder.h). */
+enum status phase_studies(const char *directory, bool taken);
+
 /* Folders of this installation. */
 #define SCENE_DIRECTORY SASBENCH_ROOT "/scenes"
 #define PLOT_DIRECTORY SASBENCH_ROOT "/plots"

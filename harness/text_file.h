@@ -8,8 +8,12 @@
 
 struct text_file {
     FILE *stream;                   /* write here */
-    char *path, *beside;            /* beside NULL: what is at `path` is no regular file and is written to as it is */
+    char *path, *beside;            /* beside NULL: what is at `path` is no regular file, or a standard stream, and is
+                                       written to as it is */
 };
+
+/* The path itself, or what a symbolic link stands for; the link stays. Freed by the caller; NULL: errno says why. */
+char *place_follow(const char *path);
 
 /* Begin a file beside `path`. Errors: STATUS_INVALID naming it when it cannot be written; nothing is then left to close. */
 enum status text_file_open(const char *path, struct text_file *file);

@@ -13,7 +13,6 @@
 static const char *const real_plots = SASBENCH_ROOT "/plots";
 
 static char folder[4000];       /* temporary: pictures, and our own scripts */
-static char scratch[4000];      /* TMPDIR of the code under test, which must leave it empty */
 
 static void path_in(char path[4096], const char *name)
 {
@@ -24,13 +23,8 @@ static int set_up(void **state)
 {
     (void)state;
     const char *temporary = getenv("TMPDIR");
-    snprintf(folder, sizeof folder, "%s/sasbench-test-XXXXXX", temporary && *temporary ? temporary : "/tmp");
-    if (!mkdtemp(folder))
-        return -1;
-    snprintf(scratch, sizeof scratch, "%.3900s/it's a scratch", folder);
-    char command[4096];
-    snprintf(command, sizeof command, "mkdir \"%.4000s\"", scratch);
-    return system(command) || setenv("TMPDIR", scratch, 1);
+    snprintf(folder, sizeof folder, "%s/it's a sasbench-test-XXXXXX", temporary && *temporary ? temporary : "/tmp");
+    return mkdtemp(folder) ? 0 : -1;
 }
 
 static int tear_down(void **state)
@@ -74,13 +68,12 @@ static void assert_drawn(enum status status)
         fail_msg("%s", status_message());
 }
 
-/* Nothing temporary is left behind (rmdir fails on a folder that holds something). */
-static void assert_scratch_empty(void)
+/* Nothing temporary is left behind. */
+static void assert_nothing_left(void)
 {
-    assert_int_equal(rmdir(scratch), 0);
     char command[4096];
-    snprintf(command, sizeof command, "mkdir \"%.4000s\"", scratch);
-    assert_int_equal(system(command), 0);
+    snprintf(command, sizeof command, "ls -A \"%.4000s\" | grep -q '^[.]'", folder);
+    assert_int_not_equal(system(command), 0);
 }
 
 static void image_is_drawn(void **state)
@@ -98,7 +91,7 @@ static void image_is_drawn(void **state)
     assert_drawn(plot_image(path, real_plots, &image, "with NAN"));
     assert_png("it's.png");
     image_free(&image);
-    assert_scratch_empty();
+    assert_nothing_left();
 }
 
 /* What the script is given: variables, panels, blocks by their maximum, positions of block centres. */
@@ -116,7 +109,8 @@ static void image_data_are_right(void **state)
                  "stats panels[1] binary matrix using ($3 > -50) name 'n' nooutput\n"
                  "stats panels[1] binary matrix using ($3 > -50 ? $1 : 0) name 'x' nooutput\n"
                  "stats panels[1] binary matrix using ($3 > -50 ? $2 : 0) name 'r' nooutput\n"
-                 "print sprintf('%d %.3f %.3f %.2f', n_sum, x_max, r_max, v_max)\n");
+                 "print sprintf('%d %.3f %.3f %.2f', n_sum, x_max, r_max, v_max)\n"
+                 "print '</svg>'\n");
     /* 2700 columns make blocks of 3; the brightest pixel of all is in a patch that is not shown. */
     struct grid patches[9];
     for (int p = 0; p < 9; p++)
@@ -127,14 +121,14 @@ static void image_data_are_right(void **state)
     ((double complex *)image.pixels[0])[5] = INFINITY;
     ((double complex *)image.pixels[8])[0] = 50;
     char path[4096], text[400];
-    path_in(path, "variables.txt");
+    path_in(path, "variables.svg");
     assert_drawn(plot_image(path, folder, &image, "it's\ta_title"));
-    file_to_text("variables.txt", text, sizeof text);
+    file_to_text("variables.svg", text, sizeof text);
     assert_string_equal(text, "it's a_title (1 pixel not finite) (first 8 of 9 patches)\n8\n"
                               "2700 1.000 2698.000 10.000 11.000\n"
-                              "1 301.000 11.000 -20.00\n");
+                              "1 301.000 11.000 -20.00\n</svg>\n");
     image_free(&image);
-    assert_scratch_empty();
+    assert_nothing_left();
 }
 
 static void slices_are_drawn(void **state)
@@ -158,7 +152,7 @@ static void slices_are_drawn(void **state)
         lines[l].count = 0;
     assert_drawn(plot_slices(path, real_plots, "nothing", 2, titles, 2, lines));
     assert_png("slices.png");
-    assert_scratch_empty();
+    assert_nothing_left();
 }
 
 /* An empty line must not shift the ones behind it. */
@@ -173,18 +167,19 @@ static void slice_data_are_right(void **state)
                  "    print sprintf('%d', exists('x_records') ? x_records : 0)\n"
                  "    stats data index b using ($2 == $2 ? $2 : NaN) name 'p' nooutput\n"
                  "    print exists('p_max') && b != 1 ? sprintf('%.2f %.2f', x_max, p_max) : '-'\n"
-                 "}\n");
+                 "}\n"
+                 "print '</svg>'\n");
     double position[] = {-0.5, 0, 0.25}, power[4][3] = {{-9, -1, -9}, {0}, {-9, -2, -9}, {-9, -3, -9}};
     struct slice_line lines[4];
     for (int l = 0; l < 4; l++)
         lines[l] = (struct slice_line){l % 2 ? "b" : "a", position, power[l], l == 1 ? 0 : 3};
     const char *titles[] = {"t0", "t1"};
     char path[4096], text[400];
-    path_in(path, "variables.txt");
+    path_in(path, "variables.svg");
     assert_drawn(plot_slices(path, folder, "title", 2, titles, 2, lines));
-    file_to_text("variables.txt", text, sizeof text);
-    assert_string_equal(text, "title 2 2 t1 b\n3\n0.25 -1.00\n0\n-\n3\n0.25 -2.00\n3\n0.25 -3.00\n");
-    assert_scratch_empty();
+    file_to_text("variables.svg", text, sizeof text);
+    assert_string_equal(text, "title 2 2 t1 b\n3\n0.25 -1.00\n0\n-\n3\n0.25 -2.00\n3\n0.25 -3.00\n</svg>\n");
+    assert_nothing_left();
 }
 
 static void failures_are_told(void **state)
@@ -219,10 +214,61 @@ static void failures_are_told(void **state)
     assert_non_null(strstr(status_message(), "gnuplot-nox"));
 
     image_free(&image);
-    assert_scratch_empty();
-    char command[4200];
-    snprintf(command, sizeof command, "ls \"%.4000s\" | grep -q tmp", folder);
-    assert_int_not_equal(system(command), 0);
+    assert_nothing_left();
+}
+
+/* gnuplot does not notice a full disk: what it leaves has no end. */
+static void cut_pictures_are_told(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *script;
+        bool whole;
+    } cuts[] = {
+        {"a.png", "set output output\n", false},
+        {"a.png", "set print output; print \"\\211PNG, half of it and more than 32 bytes of that\"\n", false},
+        {"a.png", "set print output; print '<svg>all of it, but another kind</svg>'\n", false},
+        {"a.svg", "set print output; print '<svg>half of it, and more than 32 bytes of that</sv'\n", false},
+        {"a.svg", "set print output; print '<svg>all of it to its end</svg>'; print ''; print ''\n", true},
+    };
+    struct grid patch = {0, 1, 4, 10, 1, 4};
+    struct image image;
+    assert_int_equal(image_allocate(1, &patch, PRECISION_FLOAT, &image), STATUS_OK);
+    for (size_t k = 0; k < sizeof cuts / sizeof *cuts; k++) {
+        char path[4096], text[64];
+        text_to_file("image.gp", cuts[k].script);
+        text_to_file(cuts[k].name, "old");
+        path_in(path, cuts[k].name);
+        assert_int_equal(plot_image(path, folder, &image, "a"), cuts[k].whole ? STATUS_OK : STATUS_FAILED);
+        file_to_text(cuts[k].name, text, sizeof text);
+        assert_string_equal(text, cuts[k].whole ? "<svg>all of it to its end</svg>\n\n\n" : "old");
+        if (!cuts[k].whole) {
+            assert_non_null(strstr(status_message(), cuts[k].name));
+            assert_non_null(strstr(status_message(), "without its end"));
+        }
+    }
+    image_free(&image);
+    assert_nothing_left();
+}
+
+/* The last test: nothing is drawn after it. */
+static void hanging_gnuplot_is_stopped(void **state)
+{
+    (void)state;
+    struct grid patch = {0, 1, 4, 10, 1, 4};
+    struct image image;
+    char path[4096];
+    assert_int_equal(image_allocate(1, &patch, PRECISION_FLOAT, &image), STATUS_OK);
+    text_to_file("image.gp", "pause 1000\n");
+    path_in(path, "a.png");
+    plot_seconds_most = 0.2;
+    assert_int_equal(plot_image(path, folder, &image, "a"), STATUS_FAILED);
+    assert_non_null(strstr(status_message(), "did not end within 0.2 s"));
+    plot_seconds_most = 60;
+    assert_int_equal(plot_image(path, real_plots, &image, "a"), STATUS_FAILED);
+    assert_non_null(strstr(status_message(), "did not end on a picture before"));
+    image_free(&image);
+    assert_nothing_left();
 }
 
 int main(void)
@@ -233,6 +279,8 @@ int main(void)
         cmocka_unit_test(slices_are_drawn),
         cmocka_unit_test(slice_data_are_right),
         cmocka_unit_test(failures_are_told),
+        cmocka_unit_test(cut_pictures_are_told),
+        cmocka_unit_test(hanging_gnuplot_is_stopped),
     };
     return cmocka_run_group_tests_name("plot", tests, set_up, tear_down);
 }

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "../csv.h"
@@ -17,6 +18,8 @@
 #define MEASUREMENT_HEADER \
     "scene,algorithm,options,precision,threads,engine,status,reason,skipped,plan_s,run_s,run_min_s,runs,control_s," \
     "stages,flops_published,flops,pairs,bytes,error,error_gain,phase_rms_rad,width_m,pslr_db,islr_db\n"
+#define PROVENANCE \
+    "# machine: a machine\n# isa: v3\n# libraries: some\n# commit: c1\n# program: 0123\n# threads: 2\n"
 #define TARGET_HEADER \
     "scene,algorithm,options,precision,target,axis,definition,extent_m,position_error_m,phase_error_rad,width_m," \
     "pslr_db,islr_db\n"
@@ -40,8 +43,14 @@ static int folder_make(void **state)
 static int folder_remove(void **state)
 {
     (void)state;
+    static const char *const kept[] = {"measurements.1.csv", "measurements.2.csv", "targets.1.csv", "targets.2.csv"};
     remove(measurements_path);
     remove(targets_path);
+    for (size_t k = 0; k < sizeof kept / sizeof *kept; k++) {
+        char path[300];
+        snprintf(path, sizeof path, "%s/%s", folder, kept[k]);
+        remove(path);
+    }
     return rmdir(folder);               /* fails when a temporary file was left behind */
 }
 
@@ -190,7 +199,7 @@ static void test_csv_numbers(void **state)
 
 static struct provenance provenance_of(const char *commit, int threads)
 {
-    struct provenance provenance = {.machine = "a machine", .compiler = "gcc\n12", .program = "0123", .date = "today",
+    struct provenance provenance = {.machine = "a machine", .isa = "v3", .libraries = "some", .compiler = "gcc\n12", .program = "0123", .date = "today",
                                     .threads = threads};
     snprintf(provenance.commit, sizeof provenance.commit, "%s", commit);
     return provenance;
@@ -250,7 +259,8 @@ static void test_round_trip(void **state)
     assert_int_equal(record_scene(record, "folder/a,\"b\"", 0xabcdef), STATUS_OK);
     add_ok(record, "folder/a,\"b\"", "bp_sinc");
     const char *text = file_text(measurements_path);
-    assert_int_equal(strncmp(text, "# sasbench measurements 1\n# machine: a machine\n# compiler: gcc?12\n", 62), 0);
+    assert_int_equal(strncmp(text, "# sasbench measurements 1\n# machine: a machine\n# isa: v3\n# compiler: gcc?12\n",
+                             72), 0);
     assert_non_null(strstr(text, "\n# commit: c1\n"));
     assert_non_null(strstr(text, "\n# threads: 2\n"));
     assert_non_null(strstr(text, "\n# scene folder/a,\"b\": 0000000000abcdef\n"));
@@ -307,25 +317,172 @@ static void test_undefined_fields(void **state)
     record_close(record);
 }
 
-/* Rows of another commit, program or number of threads do not count; the files are begun anew. */
+/* What `open` prints on standard error while it takes up the folder. */
+static const char *opening_tells(const struct provenance *provenance, struct record **record)
+{
+    static char text[2048];
+    FILE *caught = tmpfile();
+    int before = dup(STDERR_FILENO);
+    assert_non_null(caught);
+    assert_true(before >= 0 && dup2(fileno(caught), STDERR_FILENO) >= 0);
+    enum status status = record_open(folder, provenance, record);
+    assert_true(dup2(before, STDERR_FILENO) >= 0);
+    close(before);
+    assert_int_equal(status, STATUS_OK);
+    rewind(caught);
+    text[fread(text, 1, sizeof text - 1, caught)] = '\0';
+    fclose(caught);
+    return text;
+}
+
+/* Rows of another machine, instruction set, library, commit, program or number of threads do not count, nor those whose
+   targets are missing: the files are begun anew, the old ones are kept, and it is said. */
 static void test_other_run(void **state)
 {
     (void)state;
-    for (int change = 0; change < 3; change++) {
+    static const char *const told[] = {
+        "measured with commit 'c1', now with 'c2'", "measured with threads '2', now with '3'", "measured with program '0123', now with '4567'",
+        "measured with machine 'a machine', now with 'another'", "measured with isa 'v3', now with 'baseline'",
+        "measured with libraries 'some', now with 'others'", "targets.csv is missing",
+    };
+    char kept_measurements[300], kept_targets[300];
+    snprintf(kept_measurements, sizeof kept_measurements, "%s/measurements.1.csv", folder);
+    snprintf(kept_targets, sizeof kept_targets, "%s/targets.1.csv", folder);
+    for (int change = 0; change < 7; change++) {
+        struct provenance other = provenance_of(change == 0 ? "c2" : "c1", change == 1 ? 3 : 2);
         struct record *record = open_ok("c1", 2);
         assert_int_equal(record_scene(record, "s", 1), STATUS_OK);
         add_ok(record, "s", "bp_sinc");
         record_close(record);
-        struct provenance other = provenance_of(change == 0 ? "c2" : "c1", change == 1 ? 3 : 2);
         if (change == 2)
             strcpy(other.program, "4567");
-        assert_int_equal(record_open(folder, &other, &record), STATUS_OK);
+        if (change == 3)
+            strcpy(other.machine, "another");
+        if (change == 4)
+            strcpy(other.isa, "baseline");
+        if (change == 5)
+            strcpy(other.libraries, "others");
+        if (change == 6)
+            assert_int_equal(remove(targets_path), 0);
+        const char *text = opening_tells(&other, &record);
+        assert_non_null(strstr(text, told[change]));
+        assert_non_null(strstr(text, change == 6 ? "kept in measurements.1.csv\n"
+                                                 : "kept in measurements.1.csv and targets.1.csv\n"));
         assert_null(find(record, "s", "bp_sinc"));
         record_close(record);
         assert_int_equal(rows_of(measurements_path), 0);
         assert_int_equal(rows_of(targets_path), 0);
         assert_null(strstr(file_text(measurements_path), "# scene"));
+        assert_int_equal(rows_of(kept_measurements), 1);
+        assert_non_null(strstr(file_text(kept_measurements), "# scene s: "));
+        assert_int_equal(remove(kept_measurements), 0);
+        assert_int_equal(remove(kept_targets), change == 6 ? -1 : 0);
+        /* Files without rows give way without a word. */
+        assert_string_equal(opening_tells(&(struct provenance){.commit = "c3"}, &record), "");
+        record_close(record);
     }
+}
+
+/* What is kept a second time does not replace what was kept before. */
+static void test_kept_twice(void **state)
+{
+    (void)state;
+    for (int k = 1; k <= 3; k++) {
+        struct record *record = open_ok(k == 1 ? "c1" : k == 2 ? "c2" : "c3", 2);
+        assert_int_equal(record_scene(record, "s", 1), STATUS_OK);
+        add_ok(record, "s", k == 1 ? "first" : k == 2 ? "second" : "third");
+        record_close(record);
+    }
+    static const char *const names[] = {"measurements.1.csv", "measurements.2.csv", "measurements.csv"};
+    static const char *const algorithms_kept[] = {"s,first", "s,second", "s,third"};
+    for (int k = 0; k < 3; k++) {
+        char path[300];
+        snprintf(path, sizeof path, "%s/%s", folder, names[k]);
+        assert_int_equal(rows_of(path), 1);
+        assert_non_null(strstr(file_text(path), algorithms_kept[k]));
+    }
+}
+
+/* A row that failed is measured again, and gives way to what comes of it, and only to that. */
+static void test_failed_again(void **state)
+{
+    (void)state;
+    struct measurement row = measurement_of("s", "bp_sinc");
+    struct record *record = open_ok("c1", 2);
+    row.status = "failed";
+    row.reason = "no memory";
+    assert_int_equal(record_scene(record, "s", 1), STATUS_OK);
+    assert_int_equal(record_add(record, &row), STATUS_OK);
+    add_ok(record, "s", "bp_linear");
+    record_close(record);
+    for (int attempt = 0; attempt < 2; attempt++) {
+        record = open_ok("c1", 2);
+        assert_int_equal(record_scene(record, "s", 1), STATUS_OK);
+        assert_null(find(record, "s", "bp_sinc"));
+        assert_non_null(find(record, "s", "bp_linear"));
+        assert_int_equal(rows_of(measurements_path), 2);
+        if (attempt == 0)
+            assert_int_equal(record_add(record, &row), STATUS_OK);
+        else
+            add_ok(record, "s", "bp_sinc");
+        record_close(record);
+        assert_int_equal(rows_of(measurements_path), 2);
+        assert_int_equal(rows_of(targets_path), 1 + attempt);
+    }
+    record = open_ok("c1", 2);
+    assert_non_null(find(record, "s", "bp_sinc"));
+    record_close(record);
+    assert_null(strstr(file_text(measurements_path), "failed"));
+}
+
+/* A folder belongs to one record at a time, in this process or another. The lock goes with the process. */
+static void test_folder_is_locked(void **state)
+{
+    (void)state;
+    struct provenance provenance = provenance_of("c1", 2);
+    struct record *first = open_ok("c1", 2), *second;
+    assert_int_equal(record_open(folder, &provenance, &second), STATUS_INVALID);
+    assert_null(second);
+    assert_non_null(strstr(status_message(), folder));
+    assert_non_null(strstr(status_message(), "another sasbench is at work"));
+    record_close(first);
+    int told[2];
+    char byte;
+    assert_int_equal(pipe(told), 0);
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        bool good = record_open(folder, &provenance, &first) == STATUS_OK && write(told[1], "x", 1) == 1;
+        if (good)
+            pause();
+        _exit(1);
+    }
+    assert_int_equal(read(told[0], &byte, 1), 1);
+    assert_int_equal(record_open(folder, &provenance, &second), STATUS_INVALID);
+    kill(child, SIGKILL);
+    assert_int_equal(waitpid(child, NULL, 0), child);
+    record_close(open_ok("c1", 2));
+    close(told[0]);
+    close(told[1]);
+}
+
+/* What a killed run left on its way to its place goes with the next; other files stay. */
+static void test_swept(void **state)
+{
+    (void)state;
+    static const char *const names[] = {".sasbench-A1b2C3", ".sasbench-folder", ".sasbench-folder/run.gp", "mine.tmp"};
+    char paths[4][300];
+    for (int k = 0; k < 4; k++) {
+        snprintf(paths[k], sizeof paths[k], "%s/%s", folder, names[k]);
+        if (k == 1)
+            assert_int_equal(mkdir(paths[k], 0700), 0);
+        else
+            file_write(paths[k], "w", "half");
+    }
+    record_close(open_ok("c1", 2));
+    for (int k = 0; k < 4; k++)
+        assert_int_equal(access(paths[k], F_OK), k == 3 ? 0 : -1);
+    assert_int_equal(remove(paths[3]), 0);
 }
 
 static void test_changed_scene(void **state)
@@ -341,6 +498,9 @@ static void test_changed_scene(void **state)
     assert_int_equal(record_scene(record, "s: 2", 2), STATUS_OK);
     assert_int_equal(record_scene(record, "s", 3), STATUS_OK);
     assert_null(find(record, "s", "bp_sinc"));
+    char kept[300];                     /* with the row that went */
+    snprintf(kept, sizeof kept, "%s/measurements.1.csv", folder);
+    assert_int_equal(rows_of(kept), 2);
     assert_non_null(find(record, "s: 2", "bp_sinc"));
     assert_int_equal(rows_of(measurements_path), 1);
     assert_int_equal(rows_of(targets_path), 1);
@@ -408,12 +568,12 @@ static void test_foreign_files(void **state)
     check_refused("measurements.csv:1: not a file of ours");
     file_write(measurements_path, "w", "# sasbench measurements 1\na,b\n1\n");
     check_refused("measurements.csv:3: 1 fields");
-    file_write(measurements_path, "w", "# sasbench measurements 1\n# commit: c1\n# program: 0123\n# threads: 2\n"
+    file_write(measurements_path, "w", "# sasbench measurements 1\n" PROVENANCE
                MEASUREMENT_HEADER "s,a,,float,2,,ok,,,1,1,1,x,,,,,,,,,,,,\n");
-    file_write(targets_path, "w", "# sasbench targets 1\n# commit: c1\n# program: 0123\n# threads: 2\n"
+    file_write(targets_path, "w", "# sasbench targets 1\n" PROVENANCE
                TARGET_HEADER);
-    check_refused("measurements.csv:6: runs is 'x'");
-    file_write(measurements_path, "w", "# sasbench measurements 1\n# commit: c1\n# program: 0123\n# threads: 2\n"
+    check_refused("measurements.csv:9: runs is 'x'");
+    file_write(measurements_path, "w", "# sasbench measurements 1\n" PROVENANCE
                "scene,algorithm\n");
     check_refused("measurements.csv: the header line");
     remove(measurements_path);
@@ -592,6 +752,10 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_round_trip, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(test_undefined_fields, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(test_other_run, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(test_kept_twice, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(test_failed_again, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(test_folder_is_locked, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(test_swept, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(test_changed_scene, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(test_cut_row, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(test_foreign_files, folder_make, folder_remove),

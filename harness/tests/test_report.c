@@ -223,7 +223,7 @@ static void test_everything_is_on_the_page(void **state)
     struct parser *page = page_parse(html);
     /* Machine, three scenes, cheapest, slopes, rules, two papers, two reproduced tables. */
     assert_int_equal(page->tables, 11);
-    assert_int_equal(page->rows, 11 + 8 + 9 + 1 + 1 + 1 + 4 + 3);
+    assert_int_equal(page->rows, 11 + 9 + 9 + 1 + 1 + 1 + 4 + 3);
     /* All four of two scenes; the third has neither an upsampling rate nor an exact image to compare lobes with. */
     assert_int_equal(page->drawings, 4 + 4 + 2);
     /* Slices, one image, one figure of `phase`: the picture without a row is not of these results. */
