@@ -8,7 +8,8 @@
 
 /* Seconds from the emission at `tx` over the point `p` to the receiver, which is at `rx` at emission and moves with
    `velocity` (|velocity| < c) until reception: solves c tau = |tx - p| + |rx + velocity tau - p| in closed form. The
-   root is always the positive one, and e = c^2 - |velocity|^2 is built as a product so that nothing cancels (6e-17 s). */
+   root is always the positive one, (q + s)/e = n/(s - q) by whichever form adds, and e = c^2 - |velocity|^2 is built as a
+   product, so that nothing cancels at any speed (6e-17 s). */
 static inline double delay_exact(struct vector tx, struct vector rx, struct vector velocity, struct vector p, double c)
 {
     double ax = tx.x - p.x, ay = tx.y - p.y, az = tx.z - p.z;
@@ -16,8 +17,9 @@ static inline double delay_exact(struct vector tx, struct vector rx, struct vect
     double bx = rx.x - p.x + velocity.x * t, by = rx.y - p.y + velocity.y * t, bz = rx.z - p.z + velocity.z * t;
     double speed = sqrt(velocity.x * velocity.x + velocity.y * velocity.y + velocity.z * velocity.z);
     double e = (c - speed) * (c + speed);
-    double q = bx * velocity.x + by * velocity.y + bz * velocity.z;
-    return t + (q + sqrt(q * q + e * (bx * bx + by * by + bz * bz))) / e;
+    double q = bx * velocity.x + by * velocity.y + bz * velocity.z, n = bx * bx + by * by + bz * bz;
+    double s = sqrt(q * q + e * n);
+    return t + (q >= 0 ? (q + s) / e : n / (s - q));
 }
 
 #endif

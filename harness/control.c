@@ -22,7 +22,8 @@ static double sample_position(const struct acquisition *a, const struct grid *gr
     double t = sqrt((tx.x - x) * (tx.x - x) + (tx.y - r) * (tx.y - r) + tx.z * tx.z) / c;
     double bx = rx.x - x + v.x * t, by = rx.y - r + v.y * t, bz = rx.z + v.z * t;
     double e = c * c - (v.x * v.x + v.y * v.y + v.z * v.z), q = bx * v.x + by * v.y + bz * v.z;
-    *tau = t + (q + sqrt(q * q + e * (bx * bx + by * by + bz * bz))) / e;
+    double square = bx * bx + by * by + bz * bz, root = sqrt(q * q + e * square);
+    *tau = t + (q >= 0 ? (q + root) / e : square / (root - q));
     return (*tau - a->t0[ping]) * a->fs + 0.5;
 }
 
