@@ -22,64 +22,85 @@ struct vector line_pixel(const struct pixel_line *line, int i)
     return (struct vector){line->x_first + i * line->x_step, line->r_first + i * line->r_step, 0};
 }
 
-/* |sin theta_t| <= limit, from the transmitter at emission to the pixel. */
-static bool inside_aperture(struct vector tx, struct vector heading, double limit, struct vector p)
+/* The double cone |sin theta_t| <= limit about the heading, its apex the transmitter at emission. */
+struct cone {
+    struct vector tx, heading;
+    double limit;
+};
+
+static bool inside_cone(const struct cone *cone, const struct pixel_line *line, int i)
 {
+    const struct vector p = line_pixel(line, i), tx = cone->tx, h = cone->heading;
     double dx = p.x - tx.x, dy = p.y - tx.y, dz = p.z - tx.z;
-    double along = dx * heading.x + dy * heading.y + dz * heading.z;
-    return fabs(along) <= limit * sqrt(dx * dx + dy * dy + dz * dz);
+    double distance = sqrt(dx * dx + dy * dy + dz * dz);
+    return fabs(dx * h.x + dy * h.y + dz * h.z) <= cone->limit * distance
+        || distance <= apex_slack(fabs(p.x) + fabs(p.y), fabs(tx.x) + fabs(tx.y) + fabs(tx.z));
 }
 
-/* The limit is a double cone about the heading, so its edge meets the line where a quadratic in the way s from the first
-   pixel vanishes; the predicate decides the pixels beside each root. */
+/* Where the line meets the cone, in pixels, the lesser first; NaN where it does not. Counted from the point nearest to the apex,
+   where |along + slope s| = limit sqrt(s^2 + across^2) is a quadratic whose discriminant needs no difference of large terms. */
+static void cone_roots(const struct cone *cone, const struct pixel_line *line, double root[2])
+{
+    const bool along_x = line->x_step > 0;
+    const struct vector tx = cone->tx, h = cone->heading;
+    const double dx = line->x_first - tx.x, dy = line->r_first - tx.y, across = along_x ? dy : dx;
+    const double slope = along_x ? h.x : h.y, along = across * (along_x ? h.y : h.x) - tx.z * h.z;
+    const double step = along_x ? line->x_step : line->r_step, foot = -(along_x ? dx : dy) / step;
+    const double s2 = cone->limit * cone->limit, qa = slope * slope - s2, half = along * slope;
+    const double across2 = across * across + tx.z * tx.z, qc = along * along - s2 * across2;
+    double discriminant = s2 * (along * along + across2 * qa);
+    if (discriminant < 0 && discriminant > -1e-12 * s2 * along * along)
+        discriminant = 0;           /* a tangent, but for rounding */
+    const double q = -(half + copysign(sqrt(discriminant), half)), first = q / qa, second = q != 0 ? qc / q : first;
+    root[0] = foot + fmin(first, second) / step;
+    root[1] = foot + fmax(first, second) / step;
+}
+
+/* Add pixels [begin, end), which lie behind those there are. Only rounding can make a third span: it joins the second. */
+static int span_add(struct pair_span spans[2], int count, int begin, int end)
+{
+    if (begin >= end)
+        return count;
+    if (count == 2 || (count == 1 && spans[0].end == begin)) {
+        spans[count - 1].end = end;
+        return count;
+    }
+    spans[count] = (struct pair_span){begin, end};
+    return count + 1;
+}
+
+/* `value`, a whole number, as a pixel of [least, most]. */
+static int pixel_between(double value, int least, int most)
+{
+    return !(value > least) ? least : value < most ? (int)value : most;
+}
+
+/* Pixels beside a root are asked one by one, so that none is lost where the cone meets it exactly; what lies between is
+   all inside or all outside. */
 int pair_spans(const struct acquisition *a, int ping, struct vector h, const struct pixel_line *line,
                struct pair_span spans[2])
 {
-    int n = line->count;
-    double limit = a->aperture_limit;
-    if (!(limit < 1)) {
+    const int n = line->count;
+    const struct cone cone = {a->tx[ping], h, a->aperture_limit};
+    double root[2];
+    int count = 0, next = 0;        /* the first pixel that is not decided yet */
+    if (!(cone.limit < 1)) {
         spans[0] = (struct pair_span){0, n};
         return 1;
     }
-    struct vector tx = a->tx[ping];
-    bool along_x = line->x_step > 0;
-    double step = along_x ? line->x_step : line->r_step, dx = line->x_first - tx.x, dy = line->r_first - tx.y;
-    double along = dx * h.x + dy * h.y - tx.z * h.z, slope = along_x ? h.x : h.y, s2 = limit * limit;
-    double qa = slope * slope - s2, qb = 2 * (along * slope - s2 * (along_x ? dx : dy));
-    double qc = along * along - s2 * (dx * dx + dy * dy + tx.z * tx.z);
-    double discriminant = qb * qb - 4 * qa * qc, root[2] = {NAN, NAN};
-    if (fabs(qa) <= 1e-12) {
-        root[0] = root[1] = -qc / qb;
-    } else if (discriminant > 0) {
-        double q = -0.5 * (qb + copysign(sqrt(discriminant), qb)), s1 = q / qa, s2_ = q != 0 ? qc / q : s1;
-        root[0] = fmin(s1, s2_);
-        root[1] = fmax(s1, s2_);
-    }
-    int edge[4] = {0, 0, 0, n};     /* the predicate is constant between edges */
-    for (int k = 0; k < 2; k++) {
-        double pixel = ceil(root[k] / step);
-        edge[k + 1] = !(pixel > 0) ? 0 : pixel > n ? n : (int)pixel;
-    }
-#define INSIDE(i) inside_aperture(tx, h, limit, line_pixel(line, i))
-    int count = 0;
+    cone_roots(&cone, line, root);
     for (int k = 0; k < 3; k++) {
-        int begin = edge[k], end = edge[k + 1];
-        if (begin >= end || !INSIDE(begin + (end - begin) / 2))
+        const bool met = k < 2 && root[k] > -2 && root[k] < n + 1.0;
+        if (k < 2 && !met)
             continue;
-        while (begin < end && !INSIDE(begin))
-            begin++;
-        while (end > begin && !INSIDE(end - 1))
-            end--;
-        while (begin > (count ? spans[count - 1].end : 0) && INSIDE(begin - 1))
-            begin--;
-        while (end < n && INSIDE(end))
-            end++;
-        if (count && begin <= spans[count - 1].end)
-            spans[count - 1].end = end;
-        else
-            spans[count++] = (struct pair_span){begin, end};
+        const int begin = met ? pixel_between(floor(root[k]) - 1, next, n) : n;
+        const int end = met ? pixel_between(floor(root[k]) + 3, begin, n) : n;
+        if (next < begin && inside_cone(&cone, line, next + (begin - next) / 2))
+            count = span_add(spans, count, next, begin);
+        for (next = begin; next < end; next++)
+            if (inside_cone(&cone, line, next))
+                count = span_add(spans, count, next, next + 1);
     }
-#undef INSIDE
     return count;
 }
 

@@ -2,6 +2,8 @@
 #ifndef SASBENCH_PAIRS_H
 #define SASBENCH_PAIRS_H
 
+#include <float.h>
+
 #include "algorithm.h"
 
 /* Evenly spaced pixels along azimuth or range: pixel i lies at (x_first + i x_step, r_first + i r_step, 0). */
@@ -20,6 +22,13 @@ struct pair_span {
 int grid_line_count(const struct grid *grid, bool along_x);
 struct pixel_line grid_line(const struct grid *grid, bool along_x, int number);
 struct vector line_pixel(const struct pixel_line *line, int i);
+
+/* m: the distance that rounding may leave between a pixel and a transmitter in one place, given the magnitudes of their
+   coordinates. That near, the angle means nothing, and the pixel counts as inside any aperture limit. */
+static inline double apex_slack(double pixel, double transmitter)
+{
+    return 4 * DBL_EPSILON * (pixel + transmitter);
+}
 
 /* Pixels of the line with |sin theta_t| <= aperture_limit, theta_t from the transmitter at emission to the pixel, off the
    plane normal to `heading` (acquisition_heading of the ping). Fills at most two spans, in rising order; returns their
