@@ -66,6 +66,8 @@ enum status grid_check(const struct grid *grid, const char *place)
     return STATUS_OK;
 }
 
+enum { BLOCKS_MOST = 1 << 22 };     /* that are looked at before a grid passes without proof: about a second */
+
 /* One pair and one patch; the delays met on the way are kept for the message. */
 struct search {
     const struct acquisition *acquisition;
@@ -73,54 +75,74 @@ struct search {
     int ping;
     struct vector rx;
     double shortest_s, longest_s;
+    int blocks;                     /* looked at, of all pairs and patches */
 };
 
-/* Does a pixel of rows i0..i1 and columns j0..j1 meet the record? Exact: a block is given up only when no delay in it
-   can, because |grad tau| <= 2/(c - |v|) bounds how far they differ from the delay of its middle. */
-static bool block_meets(struct search *search, int i0, int i1, int j0, int j1)
+/* The sample coordinate of the place in row i and column j, which need not be whole numbers. */
+static double sample_at(struct search *search, double i, double j)
 {
     const struct acquisition *a = search->acquisition;
     const struct grid *grid = search->grid;
-    int i = i0 + (i1 - i0) / 2, j = j0 + (j1 - j0) / 2;
     struct vector p = {grid->x_first + j * grid->x_step, grid->r_first + i * grid->r_step, 0};
-    struct vector v = a->velocity[search->ping];
-    double tau = delay_exact(a->tx[search->ping], search->rx, v, p, a->sound_speed);
-    double q = (tau - a->t0[search->ping]) * a->fs, last = a->samples - 1;
+    double tau = delay_exact(a->tx[search->ping], search->rx, a->velocity[search->ping], p, a->sound_speed);
     search->shortest_s = fmin(search->shortest_s, tau);
     search->longest_s = fmax(search->longest_s, tau);
-    if (q >= 0 && q <= last) {
-        return true;
+    return (tau - a->t0[search->ping]) * a->fs;
+}
+
+/* Does a pixel of rows i0..i1 and columns j0..j1 meet the record? A block is given up only when no delay in it can: the
+   delay is convex in the place (pairs.c), so that none is longer than the longest at a corner, nor shorter than the
+   middle's by more than the longest is longer. That holds at any speed. */
+static bool block_meets(struct search *search, int i0, int i1, int j0, int j1)
+{
+    const double last = search->acquisition->samples - 1;
+    const double corner[] = {sample_at(search, i0, j0), sample_at(search, i0, j1), sample_at(search, i1, j0),
+                             sample_at(search, i1, j1)};
+    double most = -INFINITY;
+    for (int k = 0; k < 4; k++) {
+        if (corner[k] >= 0 && corner[k] <= last) {
+            return true;
+        }
+        most = fmax(most, corner[k]);
     }
-    double high = (i1 - i) * grid->r_step, wide = (j1 - j) * grid->x_step;  /* the middle is rounded down */
-    double slope = 2 / (a->sound_speed - sqrt(v.x * v.x + v.y * v.y + v.z * v.z));
-    double reach = hypot(high, wide) * slope * a->fs * (1 + 1e-9) + 1e-6;
-    if ((i0 == i1 && j0 == j1) || !(q + reach >= 0 && q - reach <= last)) {
+    if (i1 - i0 <= 1 && j1 - j0 <= 1) {
         return false;
     }
-    return high > wide ? block_meets(search, i0, i, j0, j1) || block_meets(search, i + 1, i1, j0, j1)
-                       : block_meets(search, i0, i1, j0, j) || block_meets(search, i0, i1, j + 1, j1);
+    double least = 2 * sample_at(search, 0.5 * ((double)i0 + i1), 0.5 * ((double)j0 + j1)) - most;
+    double slack = 1e-6 + 1e-9 * fabs(most);
+    if (!(most >= -slack && least <= last + slack)) {
+        return false;
+    }
+    if (++search->blocks > BLOCKS_MOST) {
+        return true;
+    }
+    int i = i0 + (i1 - i0) / 2, j = j0 + (j1 - j0) / 2;
+    return (i1 - i0) * search->grid->r_step > (j1 - j0) * search->grid->x_step
+        ? block_meets(search, i0, i, j0, j1) || block_meets(search, i + 1, i1, j0, j1)
+        : block_meets(search, i0, i1, j0, j) || block_meets(search, i0, i1, j + 1, j1);
 }
 
 enum status grid_meets_records(const struct acquisition *acquisition, int patch_count, const struct grid *patches,
                                const char *place)
 {
     const struct acquisition *a = acquisition;
-    double first_s = INFINITY, last_s = -INFINITY, shortest_s = INFINITY, longest_s = -INFINITY;
+    struct search search = {.acquisition = a, .shortest_s = INFINITY, .longest_s = -INFINITY};
+    double first_s = INFINITY, last_s = -INFINITY;
     for (int p = 0; p < a->pings; p++) {
         first_s = fmin(first_s, a->t0[p]);
         last_s = fmax(last_s, a->t0[p] + (a->samples - 1) / a->fs);
         for (int m = 0; m < a->receivers; m++) {
             for (int k = 0; k < patch_count; k++) {
-                struct search search = {a, &patches[k], p, a->rx[(size_t)p * (size_t)a->receivers + (size_t)m],
-                                        shortest_s, longest_s};
+                search.grid = &patches[k];
+                search.ping = p;
+                search.rx = a->rx[(size_t)p * (size_t)a->receivers + (size_t)m];
                 if (block_meets(&search, 0, patches[k].r_count - 1, 0, patches[k].x_count - 1)) {
                     return STATUS_OK;
                 }
-                shortest_s = search.shortest_s;
-                longest_s = search.longest_s;
             }
         }
     }
     return status_set(STATUS_INVALID, "%s: no pixel meets any record: delays of about %.6g to %.6g s, must lie in "
-                      "the records' %.6g to %.6g s after emission", place, shortest_s, longest_s, first_s, last_s);
+                      "the records' %.6g to %.6g s after emission", place, search.shortest_s, search.longest_s,
+                      first_s, last_s);
 }
