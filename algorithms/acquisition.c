@@ -7,6 +7,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#define FC_LEAST 1e-6               /* of fs: turns and samples then stay within a float's range of each other */
+
 enum status acquisition_allocate(struct acquisition *acquisition)
 {
     size_t pings = (size_t)acquisition->pings, receivers = (size_t)acquisition->receivers;
@@ -75,6 +77,10 @@ static enum status check_scalars(const struct acquisition *a, const char *place)
     if (!(a->fs >= a->bandwidth)) {
         return status_set(STATUS_INVALID, "%s: bandwidth is %.15g Hz; at most fs = %.15g Hz is accepted", place,
                           a->bandwidth, a->fs);
+    }
+    if (!(a->fc >= FC_LEAST * a->fs)) {
+        return status_set(STATUS_INVALID, "%s: fc is %.15g Hz; at least %.15g Hz, a millionth of fs, is needed", place,
+                          a->fc, FC_LEAST * a->fs);
     }
     if (!(a->aperture_limit > 0)) {
         return status_set(STATUS_INVALID, "%s: aperture limit is %g; a sine > 0 is needed", place, a->aperture_limit);

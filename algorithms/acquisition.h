@@ -16,7 +16,7 @@ struct vector {
    pointer until they are destroyed. All arrays are ping-major. */
 struct acquisition {
     double sound_speed;             /* c, m/s, > 0 */
-    double fc;                      /* carrier frequency, Hz, > 0; echo phase is exp(-j 2 pi fc tau) */
+    double fc;                      /* carrier frequency, Hz, >= 1e-6 fs; echo phase is exp(-j 2 pi fc tau) */
     double fs;                      /* sampling rate of the complex baseband, Hz, >= bandwidth */
     double bandwidth;               /* B, Hz, > 0 */
     int samples;                    /* N: fast-time samples of a record, >= 2 */
