@@ -127,7 +127,7 @@ struct algorithm {
     enum status (*plan)(const struct problem *problem, const void *options, void **plan);
     /* Echoes of the plan's acquisition and precision into an image of the plan's patches and precision. */
     enum status (*execute)(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
-    struct work (*work)(const void *plan);
+    struct work (*work)(const void *plan);      /* may take its time, to count what the timed plan need not know */
     void (*destroy)(void *plan);                /* destroy(NULL) does nothing */
 };
 

@@ -79,16 +79,16 @@ static enum status tabulate(struct bp *bp, const struct interpolator *in, const 
     return complete ? STATUS_OK : status_set(STATUS_FAILED, "no memory for interpolation weights");
 }
 
-/* The counted and the published work. BP22 Eq. (11) has N_a records, N_r samples and N_a N_r pixels, every pixel summed
-   over every record; here the pixels are counted as they are. LBF21 Eq. (23) lacks the sum over records and contradicts it. */
+/* The counted and the published work, but for the pairs. BP22 Eq. (11) has N_a records, N_r samples and N_a N_r pixels, every
+   pixel summed over every record; here the pixels are counted as they are. LBF21 Eq. (23) lacks the sum over records and
+   contradicts it. */
 static void count_work(struct bp *bp, const struct interpolator *in)
 {
     const struct acquisition *a = bp->problem.acquisition;
     struct work *work = &bp->work;
     double na = (double)a->pings * a->receivers, nr = a->samples, pixels = problem_pixels(&bp->problem);
     double all = na * pixels, transforms = 2 * na * fft_flops(nr) + 6 * na * nr;
-    work->pairs = pairs_count(&bp->problem);
-    work->flops = na * bp->shape.flops + work->pairs * (in->taps == 1 ? 8 : 4.0 * in->taps + 8);
+    work->flops = na * bp->shape.flops;
     if (in->factor > 0) {
         work->published[0].source = "BP22 Eq. (11)";
         work->published[0].flops = transforms + 6 * all + 6 * in->beta * na * (nr - 1);
@@ -101,9 +101,6 @@ static void count_work(struct bp *bp, const struct interpolator *in)
     }
     snprintf(work->engine, sizeof work->engine, "%s%s", bp->engine->name,
              bp->engine == &bp_general && !(bp->medium.phase_limit > 0) ? " exact" : "");
-    if (work->pairs < all)
-        snprintf(work->skipped, sizeof work->skipped, "%.3g %% of the pairs: outside the record%s",
-                 100 * (1 - work->pairs / all), a->aperture_limit < 1 ? " or the aperture limit" : "");
 }
 
 const char *const bp_engine_names[] = {"auto", "general", "invariant", NULL};
@@ -135,6 +132,30 @@ static enum status choose_engine(struct bp *bp, const struct bp_options *options
     return STATUS_OK;
 }
 
+/* Give up what the engine has made. */
+static void engine_discard(struct bp *bp)
+{
+    if (bp->engine)
+        bp->engine->destroy(bp->state);
+    (bp->problem.precision == PRECISION_DOUBLE ? records_destroy_double : records_destroy_float)(bp->records);
+    bp->state = NULL;
+    bp->records = NULL;
+}
+
+/* The engine's plan; where tables would be too large and nobody asked for them, the general engine's. */
+static enum status engine_plan(struct bp *bp, const struct bp_options *options)
+{
+    double bytes = bp->work.bytes;
+    enum status status = bp->engine->plan(bp);
+    if (status == STATUS_UNSUPPORTED && bp->engine == &bp_invariant && options->engine == BP_ENGINE_AUTO) {
+        engine_discard(bp);
+        bp->engine = &bp_general;
+        bp->work.bytes = bytes;
+        status = bp->engine->plan(bp);
+    }
+    return status;
+}
+
 enum status bp_plan(const struct problem *problem, const struct interpolator *interpolator, const void *options,
                     void **plan)
 {
@@ -150,7 +171,7 @@ enum status bp_plan(const struct problem *problem, const struct interpolator *in
     if (status == STATUS_OK)
         status = choose_engine(bp, options);
     if (status == STATUS_OK)
-        status = bp->engine->plan(bp);
+        status = engine_plan(bp, options);
     if (status != STATUS_OK) {
         bp_destroy(bp);
         return status;
@@ -167,9 +188,19 @@ enum status bp_execute(void *plan, const struct echoes *echoes, struct image *im
     return STATUS_OK;
 }
 
+/* Counting pairs takes longer than planning: it is left until somebody asks. */
 struct work bp_work(const void *plan)
 {
-    return ((const struct bp *)plan)->work;
+    const struct bp *bp = plan;
+    const struct acquisition *a = bp->problem.acquisition;
+    struct work work = bp->work;
+    double all = (double)a->pings * a->receivers * problem_pixels(&bp->problem);
+    work.pairs = pairs_count(&bp->problem);
+    work.flops += work.pairs * (bp->table.taps == 1 ? 8 : 4.0 * bp->table.taps + 8);
+    if (work.pairs < all)
+        snprintf(work.skipped, sizeof work.skipped, "%.3g %% of the pairs: outside the record%s",
+                 100 * (1 - work.pairs / all), a->aperture_limit < 1 ? " or the aperture limit" : "");
+    return work;
 }
 
 void bp_destroy(void *plan)
@@ -177,9 +208,7 @@ void bp_destroy(void *plan)
     struct bp *bp = plan;
     if (!bp)
         return;
-    if (bp->engine)
-        bp->engine->destroy(bp->state);
-    (bp->problem.precision == PRECISION_DOUBLE ? records_destroy_double : records_destroy_float)(bp->records);
+    engine_discard(bp);
     free(bp->weights);
     free(bp);
 }

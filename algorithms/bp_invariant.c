@@ -53,26 +53,53 @@ static int round_up(int value, int multiple)
     return (value + multiple - 1) / multiple * multiple;
 }
 
-/* The patch on the track's raster. The grid's and the pings' places must agree to 1e-7 of a wavelength over the whole
-   track, which bounds the phase by 1e-6 rad. */
+/* s: by how much ideal delays may differ from real ones: 1e-7 of a turn, which bounds the phase by 1e-6 rad, and of a sample. */
+static double tolerance(const struct acquisition *a)
+{
+    return 1e-7 / fmax(a->fc, a->fs);
+}
+
+/* The patch on the track's raster. The grid's and the pings' places must agree over the whole track. */
 static enum status raster_make(const struct bp *bp, const struct straight_track *track, const struct grid *grid,
                                struct bp_raster *raster)
 {
     const struct acquisition *a = bp->problem.acquisition;
-    double spacing = fabs(track->spacing), lambda = a->sound_speed / a->fc, steps = spacing / grid->x_step;
+    double spacing = fabs(track->spacing), steps = spacing / grid->x_step;
     double ratio = floor(steps + 0.5);
     if (a->pings == 1)                  /* every column is a phase of its own */
         ratio = grid->x_count;
     else if (!(ratio >= 1 && ratio <= INT_MAX)
-             || !(fabs(spacing - ratio * grid->x_step) * (a->pings + grid->x_count / ratio) < 1e-7 * lambda))
+             || !(fabs(spacing - ratio * grid->x_step) * (a->pings + grid->x_count / ratio) < a->sound_speed * tolerance(a)))
         return status_set(STATUS_UNSUPPORTED, "the ping spacing %g m is %.9g azimuth steps, must be a whole number",
                           spacing, steps);
+    if (!(grid->x_count + ratio + a->pings < INT_MAX / 2))
+        return status_set(STATUS_UNSUPPORTED, "%d columns, of which %.0f are a ping spacing, are too many to index",
+                          grid->x_count, ratio);
     *raster = (struct bp_raster){
         .x_first = track->spacing < 0 ? a->tx[a->pings - 1].x : a->tx[0].x,
         .spacing = a->pings == 1 ? grid->x_step * grid->x_count : spacing, .pings = a->pings, .speed = track->speed,
         .t0 = a->t0[0], .ratio = (int)ratio, .grid_first = grid->x_first, .grid_step = grid->x_step,
         .columns = grid->x_count, .blocks = (grid->x_count + (int)ratio - 1) / (int)ratio, .limit = a->aperture_limit};
+    raster->slack = apex_slack(
+        fmax(fabs(grid->x_first), fabs(grid->x_first + (grid->x_count - 1) * grid->x_step)),
+        fmax(fabs(a->tx[0].x), fabs(a->tx[a->pings - 1].x)));
     return STATUS_OK;
+}
+
+/* By how many metres a ping lies beside the ideal one that the tables hold, or its echoes beside theirs. */
+static double ping_beside(const struct acquisition *a, const struct straight_track *track, int p)
+{
+    const double c = a->sound_speed, longest = fmax(fabs(a->t0[p]), fabs(a->t0[p] + (a->samples - 1) / a->fs));
+    const struct vector v = a->velocity[p];
+    double off = fmax(fmax(fabs(a->tx[p].y), fabs(a->tx[p].z)), fabs(a->tx[p].x - a->tx[0].x - p * track->spacing));
+    off = fmax(off, c * fabs(a->t0[p] - a->t0[0]));
+    off = fmax(off, longest * fmax(fabs(v.x - track->speed), fmax(fabs(v.y), fabs(v.z))));
+    for (int m = 0; m < a->receivers; m++) {
+        struct vector rx = a->rx[(size_t)p * (size_t)a->receivers + (size_t)m];
+        off = fmax(off, fmax(fabs(rx.y), fabs(rx.z)));
+        off = fmax(off, fabs(rx.x - a->tx[p].x - (a->rx[m].x - a->tx[0].x)));
+    }
+    return off;
 }
 
 static enum status invariant_applicable(const struct bp *bp)
@@ -80,22 +107,15 @@ static enum status invariant_applicable(const struct bp *bp)
     const struct acquisition *a = bp->problem.acquisition;
     struct straight_track track;
     struct bp_raster raster;
-    double lambda = a->sound_speed / a->fc;
     if (bp->table.taps > 1 && bp->table.upsample > 1)
         return status_set(STATUS_UNSUPPORTED, "a kernel over upsampled records has no tables");
     if (!acquisition_is_straight(a, &track))
         return status_set(STATUS_UNSUPPORTED, "the track is not uniform and straight");
-    for (int p = 0; p < a->pings; p++) {    /* the tables hold ideal places, so that real ones must agree with them */
-        double off = fmax(fabs(a->tx[p].y), fabs(a->tx[p].z));
-        off = fmax(off, fabs(a->tx[p].x - a->tx[0].x - p * track.spacing));
-        for (int m = 0; m < a->receivers; m++) {
-            struct vector rx = a->rx[(size_t)p * (size_t)a->receivers + (size_t)m];
-            off = fmax(off, fmax(fabs(rx.y), fabs(rx.z)));
-            off = fmax(off, fabs(rx.x - a->tx[p].x - (a->rx[m].x - a->tx[0].x)));
-        }
-        if (!(off < 1e-7 * lambda))
-            return status_set(STATUS_UNSUPPORTED, "ping %d lies %.3g m beside a uniform straight track, must be below "
-                              "1e-7 wavelengths", p + 1, off);
+    for (int p = 0; p < a->pings; p++) {
+        double off = ping_beside(a, &track, p);
+        if (!(off < a->sound_speed * tolerance(a)))
+            return status_set(STATUS_UNSUPPORTED, "ping %d, its start of record or its velocity is %.3g m off a uniform "
+                              "straight track, must be below %.3g m", p + 1, off, a->sound_speed * tolerance(a));
     }
     for (int k = 0; k < bp->problem.patch_count; k++) {
         enum status status = raster_make(bp, &track, &bp->problem.patches[k], &raster);
@@ -139,34 +159,39 @@ static double reach(const struct bp_raster *raster, const struct grid *grid, dou
     return limit < 1 ? fmin(most, r * limit / sqrt((1 - limit) * (1 + limit))) : most;
 }
 
+/* The least and the largest distance between a row of the grid and the track, whose side is no matter. */
+static void row_ranges(const struct grid *grid, double r[2])
+{
+    const double first = grid->r_first, last = first + (grid->r_count - 1) * grid->r_step;
+    r[0] = first < 0 && last > 0 ? 0 : fmin(fabs(first), fabs(last));
+    r[1] = fmax(fabs(first), fabs(last));
+}
+
 /* The most samples of a record that one row of a patch reads: those between its nearest and its furthest pixel. */
 static double samples_read(const struct bp *bp, const struct bp_raster *raster, const struct grid *grid)
 {
-    double samples = 0;
+    double samples = 0, r[2];
+    row_ranges(grid, r);
     for (int end = 0; end < 2; end++) {
-        double r = fabs(grid->r_first + end * (grid->r_count - 1) * grid->r_step), x = reach(raster, grid, r);
-        samples = fmax(samples, 2 * (sqrt(r * r + x * x) - r) / bp->medium.sound_speed * bp->medium.fs);
+        double x = reach(raster, grid, r[end]);
+        samples = fmax(samples, 2 * (sqrt(r[end] * r[end] + x * x) - r[end]) / bp->medium.sound_speed * bp->medium.fs);
     }
     return samples + bp->table.taps;
 }
 
 /* The most samples by which the delay changes over one azimuth step, of any pair inside the aperture or one ping spacing
-   outside it. */
+   outside it: those of the row nearest to the track. */
 static double steepness(const struct bp *bp, const struct bp_raster *raster, const struct grid *grid)
 {
     const struct invariant *in = bp->state;
     const double c = bp->medium.sound_speed, v = fabs(raster->speed), e = (c - v) * (c + v);
-    double offset = 0, steepest = 0;
+    double offset = 0, ranges[2];
     for (int m = 0; m < bp->problem.acquisition->receivers; m++)
         offset = fmax(offset, fabs(in->offsets[m]));
-    for (int end = 0; end < 2; end++) {
-        double r = fabs(grid->r_first + end * (grid->r_count - 1) * grid->r_step);
-        double x = reach(raster, grid, r) + raster->spacing;
-        double leg = sqrt(x * x + r * r), b = x + offset + v * leg / c;
-        double sine = x / leg, back = b / sqrt(b * b + e / (c * c) * r * r);
-        steepest = fmax(steepest, sine / c + (v + c * back) / e * (1 + v / c * sine));
-    }
-    return steepest * grid->x_step * bp->medium.fs;
+    row_ranges(grid, ranges);
+    const double r = ranges[0], x = reach(raster, grid, r) + raster->spacing, leg = sqrt(x * x + r * r);
+    const double b = x + offset + v * leg / c, sine = x / leg, back = b / sqrt(b * b + e / (c * c) * r * r);
+    return (sine / c + (v + c * back) / e * (1 + v / c * sine)) * grid->x_step * bp->medium.fs;
 }
 
 /* Neighbouring phases that are summed together. Of up to two taps, two where they mostly read the same samples; of more
@@ -278,6 +303,8 @@ static enum status invariant_plan(struct bp *bp)
     struct arena arena = {NULL, 0};
     scratch_take(&arena, most_phases, most_shifts, entries, taps, size);
     const size_t per_thread = arena.used;
+    if (!((double)entries * (double)(taps + BP_SPREAD) < INT_MAX))
+        return status_set(STATUS_UNSUPPORTED, "tables of %zu entries are too long to index", entries);
     if (!(in->slab.receiver_stride < INT_MAX))
         return status_set(STATUS_UNSUPPORTED, "records of %zu values a receiver are too long to index",
                           in->slab.receiver_stride);

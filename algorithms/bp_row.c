@@ -60,29 +60,30 @@ static void places(const struct bp_medium *medium, const struct bp_raster *raste
 }
 
 /* Delay from transmission to a receiver `offset` ahead of the transmitter (delay.h): with b = ahead + offset,
-   tau = leg + (v b + sqrt(c^2 b^2 + (c^2 - v^2) r^2))/(c^2 - v^2). */
+   tau = leg + (v b + s)/(c^2 - v^2) = leg + (b^2 + r^2)/(s - v b), s = sqrt(c^2 b^2 + (c^2 - v^2) r^2). */
 struct delay_terms {
-    double v, c2, er2, one_e;
+    double v, c2, r2, er2, one_e;
+    bool slow;                      /* the first form will do */
 };
 
 static struct delay_terms delay_terms_make(const struct bp_medium *medium, const struct bp_raster *raster, double r)
 {
     const double c = medium->sound_speed, v = raster->speed, e = (c - v) * (c + v);
-    return (struct delay_terms){v, c * c, e * r * r, 1 / e};
+    return (struct delay_terms){v, c * c, r * r, e * r * r, 1 / e, fabs(v) <= BP_SLOW * c};
 }
 
 /* Sample coordinate and weight exp(j 2 pi fc tau) of n entries, n whole vectors; weight 0 where the gate is. Two loops, so
-   that several of each one's chains are under way at once. */
-INLINE void delays(const struct bp_medium *medium, const struct bp_raster *raster, const struct delay_terms *terms,
+   that several of each one's chains are under way at once. `slow` is a constant where this is inlined. */
+INLINE void delays(bool slow, const struct bp_medium *medium, const struct bp_raster *raster, const struct delay_terms *terms,
                    double offset, int n, const double *restrict leg, const double *restrict ahead,
                    const real *restrict gate, double *restrict q, real *restrict wr, real *restrict wi)
 {
-    const double v = terms->v, c2 = terms->c2, er2 = terms->er2, one_e = terms->one_e;
+    const double v = terms->v, c2 = terms->c2, r2 = terms->r2, er2 = terms->er2, one_e = terms->one_e;
     const double fc = medium->fc, fs = medium->fs, t0 = raster->t0;
 #pragma omp simd
     for (int i = 0; i < n; i++) {
-        double b = ahead[i] + offset;
-        double tau = leg[i] + (b * v + sqrt(c2 * (b * b) + er2)) * one_e;
+        double b = ahead[i] + offset, p = b * v, s = sqrt(c2 * (b * b) + er2);
+        double tau = leg[i] + (slow || p >= 0 ? (p + s) * one_e : (b * b + r2) / (s - p));
         double cycles = fc * tau;
         q[i] = (tau - t0) * fs;
         wr[i] = (real)(cycles - floor(cycles + 0.5));
@@ -572,23 +573,30 @@ static int clamp(double value, int least, int most)
     return !(value > least) ? least : value < most ? (int)value : most;
 }
 
+/* As pairs.c defines it, for a ping that is u ahead of the pixel. */
+static bool inside_limit(const struct bp_raster *raster, double u, double r)
+{
+    const double distance = sqrt(u * u + r * r);
+    return fabs(u) <= raster->limit * distance || distance <= raster->slack;
+}
+
 /* Shifts [begin, end) of one phase inside the aperture: |u| <= limit sqrt(u^2 + r^2), that is, |u| <= edge, u = x + s
    spacing. */
 static void shift_bounds(const struct bp_raster *raster, double edge, double x, double r, int *begin, int *end)
 {
-    const double limit = raster->limit, spacing = raster->spacing, one_spacing = 1 / spacing;
+    const double one_spacing = 1 / raster->spacing;
     const double first = (-edge - x) * one_spacing, last = (edge - x) * one_spacing;
     int low = clamp(ceil(first), *begin, *end), high = clamp(floor(last) + 1, *begin, *end);
     if (fabs(first - floor(first + 0.5)) < 1e-6 || fabs(last - floor(last + 0.5)) < 1e-6) {
         /* so near a shift that rounding decides: as it is defined */
-#define INSIDE(s) (fabs(x + (s) * spacing) <= limit * sqrt((x + (s) * spacing) * (x + (s) * spacing) + r * r))
+#define INSIDE(s) inside_limit(raster, x + (s) * raster->spacing, r)
         while (low < high && !INSIDE(low))
             low++;
         while (low > *begin && INSIDE(low - 1))
             low--;
         while (high > low && !INSIDE(high - 1))
             high--;
-        while (high < *end && high > low && INSIDE(high))
+        while (high < *end && INSIDE(high))
             high++;
 #undef INSIDE
     }
@@ -677,8 +685,12 @@ void BP_ROW(const struct bp_medium *medium, const struct bp_table *table, const 
                    && groups[chunk.end + 1].first - first <= scratch->capacity);
             const int n = groups[chunk.end].first - first;
             real *wr = scratch->wr, *wi = scratch->wi;
-            delays(medium, raster, &terms, offsets[m], n, scratch->leg + first, scratch->ahead + first,
-                   (const real *)scratch->gate + first, scratch->q, wr, wi);
+            const double *leg = scratch->leg + first, *ahead = scratch->ahead + first;
+            const real *gate = (const real *)scratch->gate + first;
+            if (terms.slow)
+                delays(true, medium, raster, &terms, offsets[m], n, leg, ahead, gate, scratch->q, wr, wi);
+            else
+                delays(false, medium, raster, &terms, offsets[m], n, leg, ahead, gate, scratch->q, wr, wi);
             for (int g = chunk.begin; g < chunk.end; g++) {
                 const int e = groups[g].first - first;
                 if (chunk.sparse)

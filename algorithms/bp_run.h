@@ -60,12 +60,15 @@ INLINE vector_real *at(const real *values)
 #if VECTOR_BYTES == 64
 #define PART(v, n) {v(0), v(1), v(2), v(3), v(4), v(5), v(6), v(7)}
 #define EVEN 0, 2, 4, 6, 8, 10, 12, 14
+#define ODD 1, 3, 5, 7, 9, 11, 13, 15
 #elif VECTOR_BYTES == 32
 #define PART(v, n) {v(0), v(1), v(2), v(3)}
 #define EVEN 0, 2, 4, 6
+#define ODD 1, 3, 5, 7
 #else
 #define PART(v, n) {v(0), v(1)}
 #define EVEN 0, 2
+#define ODD 1, 3
 #endif
 #else
 #if VECTOR_BYTES == 64

@@ -11,17 +11,20 @@
 
 #define BP_SUM REAL_ISA_NAME(bp_sum)
 
-/* Vectors of float rounded to whole ones, and to integers. */
+/* Vectors of float rounded to whole ones, and to the nearest integers; whole ones as integers. Whatever the rounding mode. */
 #if WINDOWS
 #include <immintrin.h>
 #if VECTOR_BYTES == 64
 #define ROUND(values) (vector_real)_mm512_roundscale_ps((__m512)(values), _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)
 #define FLOOR(values) (vector_real)_mm512_roundscale_ps((__m512)(values), _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC)
-#define NEAREST(values) (vector_int)_mm512_cvtps_epi32((__m512)(values))
+#define NEAREST(values) \
+    (vector_int)_mm512_cvt_roundps_epi32((__m512)(values), _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)
+#define WHOLE(values) (vector_int)_mm512_cvtps_epi32((__m512)(values))
 #else
 #define ROUND(values) (vector_real)_mm256_round_ps((__m256)(values), _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)
 #define FLOOR(values) (vector_real)_mm256_round_ps((__m256)(values), _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC)
-#define NEAREST(values) (vector_int)_mm256_cvtps_epi32((__m256)(values))
+#define NEAREST(values) WHOLE(ROUND(values))
+#define WHOLE(values) (vector_int)_mm256_cvtps_epi32((__m256)(values))
 #endif
 #endif
 
@@ -32,6 +35,7 @@ enum {
     SPAN = 4000,                    /* whole points that fit beside them in 32 bits, with a sign */
     FLAT_LEAST = 64                 /* pixels of a run below which single precision does not pay */
 };
+#define RATIO_LEAST 0x1p-40         /* turns to a point below which single precision could not hold the inverse of a bend */
 
 typedef unsigned long long vector_long __attribute__((vector_size(VECTOR_BYTES)));
 typedef unsigned vector_unsigned __attribute__((vector_size(LANES * sizeof(int)), aligned(sizeof(int)), may_alias));
@@ -58,24 +62,46 @@ static void legs_out(const struct bp_medium *medium, const struct bp_ping *ping,
     }
 }
 
-/* A ping's velocity; c^2 - |v|^2 and its inverse. */
+/* A ping's velocity; c^2 - |v|^2 and its inverse; so slow that the delay's root may be taken in one form. */
 struct motion {
     struct vector v;
     double e, one_e;
+    bool slow;
 };
 
 static struct motion motion_make(const struct bp_medium *medium, const struct bp_ping *ping)
 {
     const struct vector v = ping->velocity;
     const double c = medium->sound_speed, speed = sqrt(v.x * v.x + v.y * v.y + v.z * v.z), e = (c - speed) * (c + speed);
-    return (struct motion){v, e, 1 / e};
+    return (struct motion){v, e, 1 / e, speed <= BP_SLOW * c};
 }
 
 /* The delay (delay.h), in seconds, to the receiver that is (x, y, z) from the place when the echo leaves it, after `leg`. */
-INLINE double leg_back(const struct motion *motion, double leg, double x, double y, double z)
+INLINE double leg_back(bool slow, const struct motion *motion, double leg, double x, double y, double z)
 {
-    double p = x * motion->v.x + y * motion->v.y + z * motion->v.z;
-    return leg + (p + sqrt(p * p + motion->e * (x * x + y * y + z * z))) * motion->one_e;
+    double p = x * motion->v.x + y * motion->v.y + z * motion->v.z, n = x * x + y * y + z * z;
+    double s = sqrt(p * p + motion->e * n);
+    return leg + (slow || p >= 0 ? (p + s) * motion->one_e : n / (s - p));
+}
+
+/* The delays of all places to one receiver; `slow` is a constant where this is inlined. */
+INLINE void legs_back(bool slow, const struct motion *motion, const struct places *places, struct vector rx, double *tau)
+{
+#pragma omp simd
+    for (int i = 0; i < places->count; i++)
+        tau[i] = leg_back(slow, motion, places->leg[i], rx.x + places->bx[i], rx.y + places->by[i], rx.z + places->bz[i]);
+}
+
+/* The same to a group of receivers. */
+INLINE void group_back(bool slow, const struct motion *motion, const struct places *places, const double *x,
+                       const double *y, const double *z, double (*tau)[GROUP])
+{
+    for (int i = 0; i < places->count; i++) {
+        const double leg = places->leg[i], bx = places->bx[i], by = places->by[i], bz = places->bz[i];
+#pragma omp simd
+        for (int g = 0; g < GROUP; g++)
+            tau[i][g] = leg_back(slow, motion, leg, x[g] + bx, y[g] + by, z[g] + bz);
+    }
 }
 
 /* From a delay to a point, point = (tau - t0) fs fine + shift, whose whole part is a sample or one of a cubic's
@@ -93,7 +119,7 @@ static void sum_exact(const struct bp_medium *medium, const struct bp_table *tab
     double tau[RUN];
     const struct motion motion = motion_make(medium, ping);
     const bool cubics = table->reading == BP_CUBICS;
-    const double one = cubics ? BP_INTERVALS : table->phases;
+    const double one = cubics ? BP_INTERVALS : table->phases, last = (medium->samples - 1.0) * table->upsample;
     run.base = 0;
     for (int first = begin; first < end; first += RUN) {
         const int count = end - first < RUN ? end - first : RUN;
@@ -106,12 +132,15 @@ static void sum_exact(const struct bp_medium *medium, const struct bp_table *tab
         legs_out(medium, ping, &places);
         for (int m = 0; m < ping->receivers; m++) {
             const struct vector rx = ping->rx[m];
-#pragma omp simd
-            for (int i = 0; i < count; i++)
-                tau[i] = leg_back(&motion, places.leg[i], rx.x + places.bx[i], rx.y + places.by[i], rx.z + places.bz[i]);
+            if (motion.slow)
+                legs_back(true, &motion, &places, rx, tau);
+            else
+                legs_back(false, &motion, &places, rx, tau);
 #pragma omp simd
             for (int i = 0; i < count; i++) {
                 double q = (tau[i] - scale->t0) * scale->fs * table->upsample;
+                q = q > 0 ? q : 0;      /* the record's ends, but for rounding; nothing else becomes an index */
+                q = q < last ? q : last;
                 double point = floor(q * one + scale->shift * one), turns = medium->fc * tau[i];
                 double sample = floor((point + 0.5) / one);
                 run.sample[i] = (int)sample;
@@ -167,9 +196,10 @@ INLINE void quintics(double (*tau)[GROUP], const struct scale *scale, double hal
     }
 }
 
-/* A line reads few values of each record and comes back to the next line much later: have them fetched together. */
-INLINE void prefetch(const real *row, int row_length, int group, double (*tau)[GROUP], const struct scale *scale,
-                     int upsample)
+/* A line reads few values of each record and comes back to the next line much later: have them fetched together. False where
+   a delay is not one of the record, which ends at `last`: then no quintic through it may become an index. */
+INLINE bool prefetch(const real *row, int row_length, int group, double (*tau)[GROUP], const struct scale *scale,
+                     int upsample, double last)
 {
     enum { NEAR = 64 / sizeof(real), MOST = 16 };       /* values of a cache line, cache lines */
     double low[GROUP], high[GROUP];
@@ -183,20 +213,25 @@ INLINE void prefetch(const real *row, int row_length, int group, double (*tau)[G
         low[g] = (least - scale->t0) * scale->fs * upsample - 1;
         high[g] = (most - scale->t0) * scale->fs * upsample + 1;
     }
+    for (int g = 0; g < group; g++)
+        if (!(low[g] >= -2 && high[g] <= last + 2))
+            return false;
     for (int g = 0; g < group; g++, row += 2 * (size_t)row_length)
         for (int i = (int)low[g]; high[g] - low[g] < MOST * NEAR && i < high[g] + NEAR; i += NEAR) {
             __builtin_prefetch(row + i);
             __builtin_prefetch(row + row_length + i);
         }
+    return true;
 }
 
 /* Points of a run of pixels from `first` pixels past the block's middle on. A double that is brought to a known exponent is
-   a fixed-point number in its lower bits: the nearest sample; whole points and 19 bits of their fraction, 32 bits in all
-   but for cubics, so that the run must stay within SPAN points of its first; 32 bits of a fraction of a turn. Nothing is
-   rounded or converted. Fills whole vectors, up to LANES - 1 pixels more than `count`. `reading` is a constant where this is
+   a fixed-point number in its lower bits: whole points in its high word; whole points and 19 bits of their fraction, 32 bits
+   in all but for cubics, so that the run must stay within SPAN points of its first; 32 bits of a fraction of a turn. Bits
+   are cut off, which is floor: rounding, and with it the rounding mode, decides on the last of them only. Fills whole vectors, up to LANES - 1 pixels more than `count`. `reading` is a constant where this is
    inlined. */
 #define LANE(n) n
 #define LOW(v) (vector_int)__builtin_shufflevector((vector_bits)v[0], (vector_bits)v[PARTS - 1], EVEN)
+#define HIGH(v) (vector_int)__builtin_shufflevector((vector_bits)v[0], (vector_bits)v[PARTS - 1], ODD)
 INLINE void points(double (*quintic)[GROUP], int g, const struct scale *scale, double first, int count,
                    enum bp_reading reading, int phases, struct run *run)
 {
@@ -206,8 +241,8 @@ INLINE void points(double (*quintic)[GROUP], int g, const struct scale *scale, d
         c[k] = quintic[k][g];
         begin = begin * first + c[k];
     }
-    run->base = nearest || cubics ? 0 : (int)begin;
-    const double shift = nearest ? 0x1.8p52 : scale->shift - run->base + 0x1.8p33, ratio = scale->ratio;
+    run->base = cubics ? 0 : (int)begin;
+    const double shift = scale->shift - run->base + (nearest ? 0x1.8p20 : 0x1.8p33), ratio = scale->ratio;
     const double turns = c[0] * ratio + scale->base, base = scale->base - floor(turns) + 0x1.8p20;
     const real one_phase = 1 / (real)phases;
     vector_double u[2] = {PART(LANE, 0), PART(LANE, 2)};
@@ -224,12 +259,14 @@ INLINE void points(double (*quintic)[GROUP], int g, const struct scale *scale, d
             u[k] += LANES;
         }
         vector_int sample = LOW(point), rest = sample & ((1 << BITS) - 1);
-        if (cubics) {
+        if (nearest) {
+            sample = HIGH(point) - 0x41380000;      /* the high word of 0x1.8p20 */
+        } else if (cubics) {
             sample = LOW(whole);
             *(vector_int *)(run->phase + i) = sample & (BP_INTERVALS - 1);
             sample >>= BP_INTERVAL_BITS;
             *at(run->rest + i) = __builtin_convertvector(rest, vector_real) * (real)0x1p-19;
-        } else if (!nearest) {
+        } else {
             vector_int phase = rest * phases >> BITS;
             sample >>= BITS;
             if (reading == BP_LINE)
@@ -293,7 +330,7 @@ INLINE void points_flat(const struct flat *flat, int g, const struct scale *scal
         vector_real point = first + u * second + bend * point_turn;
         if (line) {
             vector_real whole = FLOOR(point);
-            *(vector_int *)(run->sample + i) = NEAREST(whole);
+            *(vector_int *)(run->sample + i) = WHOLE(whole);
             *at(run->rest + i) = FLOOR((point - whole) * (real)phases) * one_phase;
         } else
             *(vector_int *)(run->sample + i) = NEAREST(point);
@@ -320,7 +357,7 @@ INLINE void sum_block(const struct bp_table *table, int group, const real *row, 
     /* A bend of n turns errs by at most 1.1e-6 n rad: 0.15 of the limit. */
     const double turns = fmin(16, phase_limit * 0x1p17), half_run = sqrt(2 * turns / (bend * scale->ratio));
     const int flat_longest = 2 * half_run < RUN ? (int)(2 * half_run) / LANES * LANES : RUN;
-    const bool flat = loading == TOGETHER && flat_longest >= FLAT_LEAST
+    const bool flat = loading == TOGETHER && flat_longest >= FLAT_LEAST && scale->ratio > RATIO_LEAST
                       && (table->reading == BP_NEAREST || table->reading == BP_LINE);
     if (flat)
         longest = flat_longest;
@@ -381,18 +418,24 @@ void BP_SUM(const struct bp_medium *medium, const struct bp_table *table, const 
             y[g] = rx.y;
             z[g] = rx.z;
         }
-        for (int i = 0; i < places.count; i++) {
-            const double leg = places.leg[i], bx = places.bx[i], by = places.by[i], bz = places.bz[i];
-#pragma omp simd
-            for (int g = 0; g < GROUP; g++)
-                tau[i][g] = leg_back(&motion, leg, x[g] + bx, y[g] + by, z[g] + bz);
-        }
+        if (motion.slow)
+            group_back(true, &motion, &places, x, y, z, tau);
+        else
+            group_back(false, &motion, &places, x, y, z, tau);
+        bool readable[BP_BLOCKS];
         for (int b = 0; b < block_count; b++)
-            if (!blocks[b].exact)
-                prefetch(row + table->guard, ping->row_length, group, tau + b * NODES, &scale, table->upsample);
+            readable[b] = !blocks[b].exact && prefetch(row + table->guard, ping->row_length, group, tau + b * NODES, &scale,
+                                                       table->upsample, (medium->samples - 1.0) * table->upsample);
         for (int b = 0; b < block_count; b++)
-            if (!blocks[b].exact)
+            if (readable[b]) {
                 sum_block(table, group, row, ping->row_length, &scale, medium->phase_limit, &blocks[b], tau + b * NODES, re, im);
+            } else if (!blocks[b].exact) {
+                struct bp_ping some = *ping;
+                some.receivers = group;
+                some.rx += m;
+                some.rows = row;
+                sum_exact(medium, table, &some, line, &scale, blocks[b].begin, blocks[b].end, re, im);
+            }
     }
     for (int b = 0; b < block_count; b++)
         if (blocks[b].exact)

@@ -5,6 +5,10 @@
 
 #include "bp_blocks.h"
 
+/* Of the speed of sound, the receivers' below which the delay's root (q + s)/e loses less than a bit where it cancels
+   (delay.h): the division of the other form is spared. */
+#define BP_SLOW 0.125
+
 /* How a value between samples is read. */
 enum bp_reading {
     BP_NEAREST,                     /* the nearest value: one tap */
