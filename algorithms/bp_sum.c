@@ -227,8 +227,8 @@ INLINE bool prefetch(const real *row, int row_length, int group, double (*tau)[G
 /* Points of a run of pixels from `first` pixels past the block's middle on. A double that is brought to a known exponent is
    a fixed-point number in its lower bits: whole points in its high word; whole points and 19 bits of their fraction, 32 bits
    in all but for cubics, so that the run must stay within SPAN points of its first; 32 bits of a fraction of a turn. Bits
-   are cut off, which is floor: rounding, and with it the rounding mode, decides on the last of them only. Fills whole vectors, up to LANES - 1 pixels more than `count`. `reading` is a constant where this is
-   inlined. */
+   are cut off, which is floor: rounding, and with it the rounding mode, decides on the last of them only. Fills whole
+   vectors, up to LANES - 1 pixels more than `count`. `reading` is a constant where this is inlined. */
 #define LANE(n) n
 #define LOW(v) (vector_int)__builtin_shufflevector((vector_bits)v[0], (vector_bits)v[PARTS - 1], EVEN)
 #define HIGH(v) (vector_int)__builtin_shufflevector((vector_bits)v[0], (vector_bits)v[PARTS - 1], ODD)

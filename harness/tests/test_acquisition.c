@@ -59,6 +59,7 @@ static void each_broken_promise_is_refused(void **state)
         {&a.fc, NAN, "fc is"},
         {&a.fc, 1e-320, "wavelength"},
         {&a.fc, 2e12, "phase error"},
+        {&a.fc, 1e-36, "fc is 1e-36 Hz; at least"},
         {&a.fs, 0, "fs is 0"},
         {&a.fs, 19999, "bandwidth is 20000 Hz; at most fs = 19999 Hz"},
         {&a.bandwidth, 0, "bandwidth is 0"},

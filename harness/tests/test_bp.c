@@ -244,6 +244,130 @@ static void own_interpolator_claims_nothing(void **state)
         bp_destroy(plan);
     }
     echoes_free(&echoes);
+/* Rows on both sides of the track, where the delay is steepest between the first row and the last: a sample in two columns
+   there, and none at either end. */
+static void invariant_rows_cross_the_track(void **state)
+{
+    (void)state;
+    static const struct {
+        int pings, receivers, ratio, columns, rows, samples;
+        double step, first_offset, r_first, r_step, speed, limit, t0;
+    } cases[] = {
+        {9, 4, 8, 41, 81, 4096, 0.1, 0.04, -20, 0.5, 2.5, INFINITY, 0},
+        {9, 4, 8, 41, 81, 4096, 0.1, -0.14, -20.25, 0.5, -2.5, INFINITY, 0},   /* no row at 0; behind; backwards */
+        {20, 1, 40, 520, 5, 2048, 0.5, 0, -10000, 5000, 2.5, INFINITY, 0},      /* tables wider than a row of sums */
+        {9, 3, 8, 41, 21, 4096, 0.1, 0.04, -0.5, 0.05, 750, INFINITY, 0},
+        {9, 3, 8, 41, 21, 500, 0.1, -0.3, -0.53, 0.05, -750, 0.3, 0.001},
+        {1, 2, 1, 61, 11, 2000, 0.3, 0.04, -1, 0.2, 2.5, INFINITY, 0},
+        {9, 3, 8, 41, 11, 2, 0.1, 0.04, -5, 1, 2.5, INFINITY, 0.003},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct acquisition a = {.sound_speed = 1500, .fc = 150e3, .fs = 60e3, .bandwidth = 40e3, .samples = cases[k].samples,
+                                .receivers = cases[k].receivers, .pings = cases[k].pings, .compressed = true,
+                                .aperture_limit = cases[k].limit};
+        struct echoes echoes;
+        struct random random = random_seed(8, k);
+        assert_int_equal(acquisition_allocate(&a), STATUS_OK);
+        for (int p = 0; p < a.pings; p++) {
+            int place = cases[k].speed < 0 ? a.pings - 1 - p : p;
+            a.t0[p] = cases[k].t0;
+            a.tx[p].x = (place - a.pings / 2) * cases[k].ratio * cases[k].step + 0.003;
+            a.velocity[p].x = cases[k].speed;
+            for (int m = 0; m < a.receivers; m++)
+                a.rx[p * a.receivers + m].x = a.tx[p].x + cases[k].first_offset + 0.04 * m;
+        }
+        assert_int_equal(echoes_allocate(&a, PRECISION_DOUBLE, &echoes), STATUS_OK);
+        for (int n = 0; n < a.samples * a.receivers * a.pings; n++)
+            ((double complex *)echoes.samples)[n] = random_normal(&random);
+        struct grid grid = {-0.5 * cases[k].columns * cases[k].step, cases[k].step, cases[k].columns, cases[k].r_first,
+                            cases[k].r_step, cases[k].rows};
+        struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+        for (size_t n = 0; n < 2 * sizeof invariant_specs / sizeof *invariant_specs; n++) {
+            struct image exact, invariant;
+            char spec[96];
+            snprintf(spec, sizeof spec, "%sprecision=double,exact=true", invariant_specs[n / 2]);
+            assert_int_equal(support_image(spec, problem, &echoes, &exact), STATUS_OK);
+            snprintf(spec, sizeof spec, "%sprecision=%s,engine=invariant", invariant_specs[n / 2], n % 2 ? "double" : "float");
+            assert_int_equal(support_image(spec, problem, &echoes, &invariant), STATUS_OK);
+            double difference = support_difference(&invariant, &exact);
+            if (!(support_peak(&exact) > 0) || !(difference < (n % 2 ? 1e-10 : 3e-6)))
+                fail_msg("case %zu, %s: differs by %g", k, spec, difference);
+            image_free(&exact);
+            image_free(&invariant);
+        }
+        echoes_free(&echoes);
+        acquisition_free(&a);
+    }
+}
+
+/* The engine that `auto` takes, by a plan alone. */
+static const char *engine_of(const char *text, const struct problem *problem)
+{
+    static struct work work;
+    struct spec spec;
+    void *plan;
+    assert_int_equal(spec_parse(text, &spec), STATUS_OK);
+    if (spec.algorithm->plan(problem, spec.options, &plan) != STATUS_OK)
+        fail_msg("%s: %s", text, status_message());
+    work = spec.algorithm->work(plan);
+    spec.algorithm->destroy(plan);
+    spec_free(&spec);
+    return work.engine;
+}
+
+/* Tables serve all pings alike: what jitters by more than they may err takes the general engine, be it t0 or a velocity. */
+static void jitter_takes_the_general_engine(void **state)
+{
+    (void)state;
+    static const struct {
+        double t0, speed, across;
+        const char *engine;
+    } cases[] = {{0, 0, 0, "invariant"},  {1e-14, 1e-8, 1e-8, "invariant"}, {6e-9, 0, 0, "general"},
+                 {2e-12, 0, 0, "general"}, {0, 5e-5, 0, "general"},          {0, 0, 5e-5, "general"}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct acquisition a;
+        struct grid grid;
+        struct echoes echoes;
+        make_invariant_case(&invariant_cases[0], &a, &grid, &echoes);
+        for (int p = 1; p < a.pings; p += 2) {
+            a.t0[p] += cases[k].t0;
+            a.velocity[p].x += cases[k].speed;
+            a.velocity[p].z += cases[k].across;
+        }
+        struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+        assert_true(acquisition_is_straight(&a, NULL));         /* straight enough for range migration */
+        assert_string_equal(engine_of("bp_nearest", &problem), cases[k].engine);
+        struct image exact, image;
+        assert_int_equal(support_image("bp_nearest:precision=double,exact=true", problem, &echoes, &exact), STATUS_OK);
+        assert_int_equal(support_image("bp_nearest:precision=double", problem, &echoes, &image), STATUS_OK);
+        assert_true(support_difference(&image, &exact) < 1e-6);
+        image_free(&exact);
+        image_free(&image);
+        echoes_free(&echoes);
+        acquisition_free(&a);
+    }
+}
+
+/* Tables of 30000 pings by 80000 samples are beyond 2^31 values; nobody asked for them. */
+static void auto_falls_back(void **state)
+{
+    (void)state;
+    struct acquisition a = {.sound_speed = 1500, .fc = 150e3, .fs = 30e3, .bandwidth = 15e3, .samples = 80000, .receivers = 1,
+                            .pings = 30000, .compressed = true, .aperture_limit = 0.05};
+    assert_int_equal(acquisition_allocate(&a), STATUS_OK);
+    for (int p = 0; p < a.pings; p++) {
+        a.tx[p].x = a.rx[p].x = p * 0.04;
+        a.velocity[p].x = 1;
+    }
+    struct grid grid = {-1, 0.02, 101, 100, 0.025, 4};
+    struct problem problem = {&a, 1, &grid, PRECISION_FLOAT};
+    struct spec spec;
+    void *plan;
+    assert_string_equal(engine_of("bp_nearest", &problem), "general");
+    assert_string_equal(engine_of("bp_sinc", &problem), "general");
+    assert_int_equal(spec_parse("bp_nearest:engine=invariant", &spec), STATUS_OK);
+    assert_int_equal(spec.algorithm->plan(&problem, spec.options, &plan), STATUS_UNSUPPORTED);
+    spec_free(&spec);
     acquisition_free(&a);
 }
 
@@ -253,6 +377,9 @@ int main(void)
         cmocka_unit_test(naive_sums),
         cmocka_unit_test(invariant_equals_exact),
         cmocka_unit_test(own_interpolator_claims_nothing),
+        cmocka_unit_test(invariant_rows_cross_the_track),
+        cmocka_unit_test(jitter_takes_the_general_engine),
+        cmocka_unit_test(auto_falls_back),
     };
     return cmocka_run_group_tests_name("bp", tests, NULL, NULL);
 }
