@@ -244,6 +244,9 @@ static void own_interpolator_claims_nothing(void **state)
         bp_destroy(plan);
     }
     echoes_free(&echoes);
+    acquisition_free(&a);
+}
+
 /* Rows on both sides of the track, where the delay is steepest between the first row and the last: a sample in two columns
    there, and none at either end. */
 static void invariant_rows_cross_the_track(void **state)
