@@ -80,9 +80,6 @@ static enum status raster_make(const struct bp *bp, const struct straight_track 
         .spacing = a->pings == 1 ? grid->x_step * grid->x_count : spacing, .pings = a->pings, .speed = track->speed,
         .t0 = a->t0[0], .ratio = (int)ratio, .grid_first = grid->x_first, .grid_step = grid->x_step,
         .columns = grid->x_count, .blocks = (grid->x_count + (int)ratio - 1) / (int)ratio, .limit = a->aperture_limit};
-    raster->slack = apex_slack(
-        fmax(fabs(grid->x_first), fabs(grid->x_first + (grid->x_count - 1) * grid->x_step)),
-        fmax(fabs(a->tx[0].x), fabs(a->tx[a->pings - 1].x)));
     return STATUS_OK;
 }
 

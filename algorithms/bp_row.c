@@ -576,8 +576,10 @@ static int clamp(double value, int least, int most)
 /* As pairs.c defines it, for a ping that is u ahead of the pixel. */
 static bool inside_limit(const struct bp_raster *raster, double u, double r)
 {
-    const double distance = sqrt(u * u + r * r);
-    return fabs(u) <= raster->limit * distance || distance <= raster->slack;
+    const double distance = sqrt(u * u + r * r), grid_last = raster->grid_first + (raster->columns - 1) * raster->grid_step;
+    const double track_last = raster->x_first + (raster->pings - 1) * raster->spacing;
+    return fabs(u) <= raster->limit * distance
+        || distance <= apex_slack(fmax(fabs(raster->grid_first), fabs(grid_last)), fmax(fabs(raster->x_first), fabs(track_last)));
 }
 
 /* Shifts [begin, end) of one phase inside the aperture: |u| <= limit sqrt(u^2 + r^2), that is, |u| <= edge, u = x + s

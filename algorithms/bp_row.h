@@ -32,7 +32,7 @@ struct bp_raster {
     int ratio;                      /* azimuth steps to a ping spacing */
     double grid_first, grid_step;   /* m */
     int columns, blocks;            /* of the grid; ceil(columns/ratio) */
-    double limit, slack;            /* aperture limit; m: apex_slack of any of its pixels */
+    double limit;                   /* aperture limit */
     int together;                   /* phases summed together at most, 2 for up to two taps, 1 for upsampled records */
 };
 
