@@ -16,7 +16,7 @@ const char *const rma_stolt_names[] = {"direct", "4", "6", "8", "12", "16", NULL
 const char *const rma_sum_names[] = {"before", "after", NULL};
 const char *const rma_phases_names[] = {"recurrence", "libm", NULL};
 
-static const double WORK_LIMIT = 5e10;      /* operations: some ten seconds */
+static const double WORK_LIMIT = 1e11;      /* operations: some twenty seconds */
 static const double MEMORY_LIMIT = 5e8, MEMORY_FACTOR = 50;     /* bytes */
 
 static const char *const stage_names[RMA_STAGES] = {"bulk", "differential", "reconstruct", "stolt", "focus"};

@@ -320,15 +320,14 @@ static enum status lay_patches(struct rma *rma)
     return STATUS_OK;
 }
 
-/* Azimuth: the full rate of M receivers (LBF21 Eq. (10)), with half the widest aperture's zeros after the pings:
-   what lies beyond one end of the track and is imaged at the other has then been seen by the last pings only, by
-   the beam's edge. */
+/* Azimuth: the full rate of M receivers (LBF21 Eq. (10)), with zeros after the pings, since the period wraps around: what
+   is focused beyond either end of the track, as far as the widest angle sees, must not reach a wanted column. */
 static enum status swath_azimuth(const struct rma *rma, struct rma_swath *swath)
 {
     double spacing = fabs(rma->spacing), angle = swath->farthest * rma->sine / sqrt(1 - rma->sine * rma->sine);
     double reach = rma_reach(rma, swath->farthest), folds = reach < angle ? rma->way + reach : 0;
     double x_low = fmin(rma->x_first, rma->x_first + (rma->pings - 1) * rma->spacing);
-    double x_high = x_low + (rma->pings - 1) * spacing;
+    double x_high = x_low + (rma->pings - 1) * spacing, overhang = 0;
     for (int k = 0; k < swath->patch_count; k++) {
         const struct grid *g = &swath->patches[k].grid;
         double last = g->x_first + (g->x_count - 1) * g->x_step;
@@ -336,8 +335,10 @@ static enum status swath_azimuth(const struct rma *rma, struct rma_swath *swath)
             return status_set(STATUS_UNSUPPORTED, "%s: columns from %g to %g m leave what the wavenumbers of the "
                               "track cover, %g to %g m (squint too large)", rma->method.name, g->x_first, last,
                               x_low - angle, x_high + angle);
+        overhang = fmax(overhang, fmax(x_low - g->x_first, last - x_high));
     }
-    swath->period = fft_length((long long)fmin(1e9, fmax(rma->pings + ceil(reach / 2 / spacing), folds / spacing)));
+    double extent = x_high - x_low + overhang + angle;
+    swath->period = fft_length((long long)fmin(1e9, fmax(ceil(extent / spacing) + 1, folds / spacing)));
     if (swath->period == 0 || (double)swath->period * rma->receivers > INT_MAX / 4)
         return status_set(STATUS_UNSUPPORTED, "%s: the azimuth transform is too long: %g m to either side of a target, pings "
                           "%g m apart, %d receivers", rma->method.name, reach, spacing, rma->receivers);
