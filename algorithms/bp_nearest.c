@@ -3,7 +3,7 @@
 
    Cost: one complex product and sum a pair. Error: the envelope's phase, at most pi B/(2 fs) at the band edge; relative
    L2 about 0.10 for a point and 0.33 for speckle at fs = 2B. */
-#include "bp.h"
+#include "backprojection/bp.h"
 
 static const struct param params[] = {
     BP_PARAMS,

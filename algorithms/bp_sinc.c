@@ -3,7 +3,7 @@
 
    Cost: 4 taps + 8 FLOPs a pair. Error at fs = 2B, 8 taps: 2.4e-3 for a point, 0.05 for speckle (the rectangular
    kernel's ripple); a Kaiser window (beta = 5) on the same taps is 40 to 50 times more accurate. */
-#include "bp.h"
+#include "backprojection/bp.h"
 
 enum window { WINDOW_NONE, WINDOW_KAISER };
 

@@ -5,7 +5,7 @@
    Cost: an inverse FFT of factor N a record, then nearest neighbour's. Error: first order in 1/factor, the phase
    pi B/(2 fs factor) at the band edge; 2.8e-3 (factor 8) and 1.0e-3 (32) for a point at fs = 2B. ZP15's rule, a range
    error below lambda/8, asks for factor > 2 fc/fs. */
-#include "bp.h"
+#include "backprojection/bp.h"
 
 struct options {
     struct bp_options bp;

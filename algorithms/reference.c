@@ -2,7 +2,7 @@
    record is upsampled 4 times by zero padding (exact), then summed over 20 taps of a sinc under a Kaiser window. The
    signal fills at most a quarter of the fine band, so the kernel may roll off over three quarters of it: with beta = 21
    both its ripple and the images lie below 1e-10 of the signal. Slow on purpose: nothing here is traded for speed. */
-#include "bp.h"
+#include "backprojection/bp.h"
 
 enum { UPSAMPLE = 4, TAPS = 20 };
 

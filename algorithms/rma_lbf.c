@@ -8,7 +8,7 @@
    reports; `corrected` takes it at F. Error of the corrected phase: below 0.01 rad from 50 m on, falling with r
    (rma_numeric has none); the image's error is then that of stationary phase, 8e-3 at 40 m and 1e-3 from 135 m
    on. */
-#include "rma.h"
+#include "range_migration/rma.h"
 
 static const char *const variants[] = {[RMA_PRINTED] = "printed", [RMA_CORRECTED] = "corrected", NULL};
 

@@ -4,7 +4,7 @@
        phi = -2 pi (F tau(u) + nu u),   F tau'(u) = -nu
 
    Error: none of its own; what is left comes from the method of stationary phase and from the width of the blocks. */
-#include "rma.h"
+#include "range_migration/rma.h"
 
 static const struct param params[] = {
     RMA_PARAMS,

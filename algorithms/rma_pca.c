@@ -7,7 +7,7 @@
    It takes the way of the sonar during propagation, 2 v r/c, as if every target were abeam. Error: grows with range
    and with the beam, 0.14 rad at 300 m and 7 degrees to either side, 1 rad at twice that beam (LBF21 Figs 4, 5, 7
    and 9). */
-#include "rma.h"
+#include "range_migration/rma.h"
 
 static const struct param params[] = {
     RMA_PARAMS,

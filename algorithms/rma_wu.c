@@ -3,7 +3,7 @@
    receiver M/2, corrected together with the PCA phase of the reference receiver (spectrum.h).
 
    Error: that of PCA, as both take targets to be abeam; less only where d^4/r^3 counts. */
-#include "rma.h"
+#include "range_migration/rma.h"
 
 static const struct param params[] = {
     RMA_PARAMS,

@@ -6,11 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../algorithms/pairs.h"
-#include "../baseline.h"
-#include "../csv.h"
-#include "../metrics.h"
-#include "../simulate.h"
+#include "backprojection/pairs.h"
+#include "gate/baseline.h"
+#include "data/csv.h"
+#include "measure/metrics.h"
+#include "scene/simulate.h"
 #include "allocations.h"
 
 /* ---- scenes ---- */

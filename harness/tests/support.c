@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "../simulate.h"
+#include "scene/simulate.h"
 
 #define CHECK(status) \
     do { \

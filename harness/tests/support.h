@@ -4,9 +4,9 @@
 
 #include "assertions.h"
 
-#include "../echo_data.h"
-#include "../scene.h"
-#include "../spec.h"
+#include "data/echo_data.h"
+#include "scene/scene.h"
+#include "measure/spec.h"
 
 /* Load a shipped scene; the test fails where that fails. */
 void support_scene(const char *name, struct scene *scene);

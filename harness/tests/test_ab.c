@@ -11,9 +11,9 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "../ab.h"
-#include "../interval.h"
-#include "../random.h"
+#include "gate/ab.h"
+#include "gate/bootstrap.h"
+#include "data/random.h"
 #include "support.h"
 
 /* --- Statistics ----------------------------------------------------------------------------------------------- */

@@ -6,10 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../algorithms/bp.h"
-#include "../../algorithms/delay.h"
-#include "../../algorithms/pairs.h"
-#include "../random.h"
+#include "backprojection/bp.h"
+#include "common/delay.h"
+#include "backprojection/pairs.h"
+#include "data/random.h"
 #include "support.h"
 
 static double uniform(struct random *random, double low, double high)

@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../algorithms/bp_blocks.h"
-#include "../../algorithms/delay.h"
-#include "../random.h"
+#include "backprojection/general/blocks.h"
+#include "common/delay.h"
+#include "data/random.h"
 #include "support.h"
 
 static const double pi = 3.14159265358979323846;

@@ -16,8 +16,8 @@
 
 #include "support.h"
 
-#include "../csv.h"
-#include "../matfile.h"
+#include "data/csv.h"
+#include "scene/matfile.h"
 
 #define COUNT_OF(array) (sizeof array / sizeof *array)
 

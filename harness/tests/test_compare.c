@@ -8,10 +8,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "../../algorithms/bp.h"
-#include "../../algorithms/delay.h"
-#include "../baseline.h"
-#include "../compare.h"
+#include "backprojection/bp.h"
+#include "common/delay.h"
+#include "gate/baseline.h"
+#include "gate/diff.h"
 #include "support.h"
 
 static int folder_remove_known(void **state)

@@ -7,7 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "../../algorithms/bp.h"
+#include "backprojection/bp.h"
 #include "conformance.h"
 
 extern const struct algorithm reference;

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "../../algorithms/delay.h"
-#include "../random.h"
+#include "common/delay.h"
+#include "data/random.h"
 #include "support.h"
 
 static double uniform(struct random *random, double low, double high)

@@ -6,9 +6,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../metrics.h"
-#include "../simulate.h"
-#include "../timing.h"
+#include "measure/metrics.h"
+#include "scene/simulate.h"
+#include "measure/timing.h"
 #include "support.h"
 
 /* Point errors: the independently measured values, within a factor 1.5; `point_gain` 0 where none is stated. Speckle:

@@ -8,12 +8,12 @@
 
 #include "support.h"
 
-#include "../comparison.h"
-#include "../control.h"
-#include "../metrics.h"
-#include "../number.h"
-#include "../session.h"
-#include "../simulate.h"
+#include "study/batch.h"
+#include "measure/scalar_loop.h"
+#include "measure/metrics.h"
+#include "data/number.h"
+#include "measure/session.h"
+#include "scene/simulate.h"
 
 #define SCENES SASBENCH_ROOT "/scenes"
 

@@ -9,9 +9,9 @@
 
 #include "support.h"
 
-#include "../csv.h"
-#include "../folder.h"
-#include "../text_file.h"
+#include "data/csv.h"
+#include "data/folder.h"
+#include "data/text_file.h"
 
 #define QUICK "\"$SASBENCH_PROGRAM\" run study/quick -a bp_nearest -a bp_linear -o r"
 

@@ -12,7 +12,7 @@
 
 #include <matio.h>
 
-#include "../matfile.h"
+#include "scene/matfile.h"
 #include "assertions.h"
 
 static char directory[128];

@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../algorithms/delay.h"
-#include "../echo_data.h"
-#include "../metrics.h"
+#include "common/delay.h"
+#include "data/echo_data.h"
+#include "measure/metrics.h"
 #include "assertions.h"
 
 /* --- Exact images of one target, straight from the formulas -------------------------------------------------- */

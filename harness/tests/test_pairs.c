@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "../../algorithms/pairs.h"
-#include "../random.h"
+#include "backprojection/pairs.h"
+#include "data/random.h"
 #include "support.h"
 
 static void make(struct acquisition *a, int pings, int receivers, int samples, double spacing, double speed)

@@ -5,8 +5,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../echo_data.h"
-#include "../plot.h"
+#include "data/echo_data.h"
+#include "show/plot.h"
 #include "assertions.h"
 
 /* SASBENCH_ROOT, the repository, comes from the build. */

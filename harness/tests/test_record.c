@@ -10,9 +10,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "../csv.h"
-#include "../record.h"
-#include "../table.h"
+#include "data/csv.h"
+#include "measure/results.h"
+#include "show/table.h"
 #include "assertions.h"
 
 #define MEASUREMENT_HEADER \

@@ -7,7 +7,7 @@
 
 #include "support.h"
 
-#include "../matfile.h"
+#include "scene/matfile.h"
 
 #define COUNT_OF(array) (sizeof array / sizeof *array)
 

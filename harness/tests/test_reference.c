@@ -3,9 +3,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "../../algorithms/delay.h"
-#include "../metrics.h"
-#include "../simulate.h"
+#include "common/delay.h"
+#include "measure/metrics.h"
+#include "scene/simulate.h"
 #include "reference_numbers.h"
 #include "support.h"
 

@@ -6,9 +6,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../plot.h"
-#include "../record.h"
-#include "../report.h"
+#include "show/plot.h"
+#include "measure/results.h"
+#include "show/report.h"
 #include "support.h"
 
 static struct measurement row_of(const char *scene, const char *algorithm, const char *options, double run_s,

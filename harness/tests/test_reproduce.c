@@ -8,9 +8,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "../claims.h"
-#include "../session.h"
-#include "../task.h"
+#include "papers/claims.h"
+#include "measure/session.h"
+#include "command/task.h"
 #include "support.h"
 
 static struct record *rows;

@@ -8,9 +8,9 @@
 
 #include <fftw3.h>
 
-#include "../../algorithms/delay.h"
-#include "../metrics.h"
-#include "../simulate.h"
+#include "common/delay.h"
+#include "measure/metrics.h"
+#include "scene/simulate.h"
 #include "rma_numbers.h"
 #include "support.h"
 

@@ -9,7 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "../random.h"
+#include "data/random.h"
 #include "support.h"
 
 enum { PINGS = 9, RECEIVERS = 3, SAMPLES = 500, COLUMNS = 331, ROWS = 11, PIXELS = COLUMNS * ROWS };

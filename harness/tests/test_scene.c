@@ -6,10 +6,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "../../algorithms/delay.h"
-#include "../random.h"
-#include "../scene.h"
-#include "../simulate.h"
+#include "common/delay.h"
+#include "data/random.h"
+#include "scene/scene.h"
+#include "scene/simulate.h"
 #include "assertions.h"
 #include "reference_numbers.h"
 

@@ -2,8 +2,8 @@
    formulas in LBF21's two set-ups. */
 #include <math.h>
 
-#include "../../algorithms/delay.h"
-#include "../../algorithms/spectrum.h"
+#include "common/delay.h"
+#include "range_migration/spectrum.h"
 #include "assertions.h"
 #include "spectrum_numbers.h"
 

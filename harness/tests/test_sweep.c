@@ -8,11 +8,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "../csv.h"
-#include "../record.h"
-#include "../sweep_ladder.h"
-#include "../sweep_tables.h"
-#include "../task.h"
+#include "data/csv.h"
+#include "measure/results.h"
+#include "study/sweep_ladder.h"
+#include "study/sweep_tables.h"
+#include "command/task.h"
 #include "support.h"
 
 /* --- Made-up numbers ------------------------------------------------------------------------------------------ */

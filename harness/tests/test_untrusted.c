@@ -8,9 +8,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "../plot.h"
-#include "../report.h"
-#include "../shown_text.h"
+#include "show/plot.h"
+#include "show/report.h"
+#include "data/shown_text.h"
 #include "support.h"
 
 #define PLOTS SASBENCH_ROOT "/plots"

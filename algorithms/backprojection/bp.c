@@ -1,0 +1,214 @@
+/* Back projection (bp.h): weights, records, the choice of an engine, and the count of the work. */
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "backprojection/engine.h"
+#include "common/fft_length.h"
+#include "backprojection/pairs.h"
+
+enum status bp_plan_records(struct bp *bp)
+{
+    const struct acquisition *a = bp->problem.acquisition;
+    bool is_double = bp->problem.precision == PRECISION_DOUBLE;
+    enum status status = (is_double ? records_plan_double : records_plan_float)(
+        a, bp->table.upsample, bp->table.guard, omp_get_max_threads(), &bp->shape, &bp->records);
+    if (status == STATUS_OK)
+        bp->work.bytes += bp->shape.bytes;
+    return status;
+}
+
+void bp_fill_row(const struct bp *bp, int thread, const struct echoes *echoes, size_t index, void *row)
+{
+    size_t offset = index * (size_t)bp->shape.samples;
+    if (bp->problem.precision == PRECISION_DOUBLE)
+        records_fill_double(bp->records, thread, (const double complex *)echoes->samples + offset, row);
+    else
+        records_fill_float(bp->records, thread, (const float complex *)echoes->samples + offset, row);
+}
+
+/* Tabulate the interpolator's weights in the plan's precision. */
+static enum status tabulate(struct bp *bp, const struct interpolator *in, const void *options)
+{
+    bp->table = (struct bp_table){.upsample = in->upsample, .phases = in->phases, .taps = in->taps,
+                                  .first = in->first, .guard = in->taps};
+    if (in->taps == 1)
+        return STATUS_OK;           /* BP_NEAREST */
+    bool line = in->taps == 2 && in->phases > 0;
+    size_t rows = in->phases > 0 ? (size_t)in->phases : 4 * (size_t)BP_INTERVALS, taps = (size_t)in->taps;
+    double *w = malloc(rows * taps * sizeof *w), *at = malloc(4 * taps * sizeof *at);
+    bp->weights = malloc(rows * taps * real_size(bp->problem.precision));
+    if (w && at && bp->weights) {
+        if (in->phases > 0)
+            for (int p = 0; p < in->phases; p++) {
+                double fraction = (double)p / in->phases, *at_p = w + (size_t)p * taps;
+                in->weights(options, fraction, at_p);
+                line = line && fabs(at_p[0] - (1 - fraction)) <= 1e-15 && fabs(at_p[1] - fraction) <= 1e-15;
+            }
+        for (int k = 0; in->phases == 0 && k < BP_INTERVALS; k++) {
+            /* The cubic through the four Chebyshev points of the interval, from Newton's divided differences. */
+            double u[4], *c = w + (size_t)k * 4 * taps;
+            for (int n = 0; n < 4; n++) {
+                u[n] = 0.5 - 0.5 * cos(3.14159265358979323846 * (2 * n + 1) / 8);
+                in->weights(options, (k + u[n]) / BP_INTERVALS, at + (size_t)n * taps);
+            }
+            for (size_t t = 0; t < taps; t++) {
+                double d[4] = {at[t], at[taps + t], at[2 * taps + t], at[3 * taps + t]};
+                for (int level = 1; level < 4; level++)
+                    for (int n = 3; n >= level; n--)
+                        d[n] = (d[n] - d[n - 1]) / (u[n] - u[n - level]);
+                c[3 * taps + t] = d[3];
+                c[2 * taps + t] = d[2] - d[3] * (u[0] + u[1] + u[2]);
+                c[taps + t] = d[1] - d[2] * (u[0] + u[1]) + d[3] * (u[0] * u[1] + u[0] * u[2] + u[1] * u[2]);
+                c[t] = d[0] - d[1] * u[0] + d[2] * u[0] * u[1] - d[3] * u[0] * u[1] * u[2];
+            }
+        }
+        for (size_t i = 0; i < rows * taps; i++)
+            if (bp->problem.precision == PRECISION_DOUBLE)
+                ((double *)bp->weights)[i] = w[i];
+            else
+                ((float *)bp->weights)[i] = (float)w[i];
+    }
+    bool complete = w && at && bp->weights;
+    free(w);
+    free(at);
+    bp->table.weights = bp->weights;
+    bp->table.reading = line ? BP_LINE : in->phases > 0 ? BP_PHASES : BP_CUBICS;
+    bp->work.bytes += (double)(rows * taps * real_size(bp->problem.precision));
+    return complete ? STATUS_OK : status_set(STATUS_FAILED, "no memory for interpolation weights");
+}
+
+/* The counted and the published work, but for the pairs. BP22 Eq. (11) has N_a records, N_r samples and N_a N_r pixels, every
+   pixel summed over every record; here the pixels are counted as they are. LBF21 Eq. (23) lacks the sum over records and
+   contradicts it. */
+static void count_work(struct bp *bp, const struct interpolator *in)
+{
+    const struct acquisition *a = bp->problem.acquisition;
+    struct work *work = &bp->work;
+    double na = (double)a->pings * a->receivers, nr = a->samples, pixels = problem_pixels(&bp->problem);
+    double all = na * pixels, transforms = 2 * na * fft_flops(nr) + 6 * na * nr;
+    work->flops = na * bp->shape.flops;
+    if (in->factor > 0) {
+        work->published[0].source = "BP22 Eq. (11)";
+        work->published[0].flops = transforms + 6 * all + 6 * in->beta * na * (nr - 1);
+        if (in->kernel > 0) {
+            work->published[0].source = "BP22 Eq. (11) + sinc load";
+            work->published[0].flops += 2 * (2.0 * in->kernel - 1) * all;
+        }
+        work->published[1].source = "LBF21 Eq. (23)";
+        work->published[1].flops = 1.5 * na * nr * log2(nr) + na * nr + 1.5 * na * in->factor * nr * log2(in->factor * nr);
+    }
+    snprintf(work->engine, sizeof work->engine, "%s%s", bp->engine->name,
+             bp->engine == &bp_general && !(bp->medium.phase_limit > 0) ? " exact" : "");
+}
+
+const char *const bp_engine_names[] = {"auto", "general", "invariant", NULL};
+const char *const bp_exact_names[] = {"false", "true", NULL};
+
+/* Tables pay where they serve several columns of a phase: measured, from two ping spacings of image on. */
+static bool tables_pay(const struct bp *bp)
+{
+    const struct acquisition *a = bp->problem.acquisition;
+    double wide = 0, spacing = a->pings > 1 ? fabs(a->tx[1].x - a->tx[0].x) : INFINITY;
+    for (int k = 0; k < bp->problem.patch_count; k++)
+        wide = fmax(wide, bp->problem.patches[k].x_count * bp->problem.patches[k].x_step);
+    return wide >= 2 * spacing;
+}
+
+static enum status choose_engine(struct bp *bp, const struct bp_options *options)
+{
+    enum status status = bp_invariant.applicable(bp);
+    bp->engine = &bp_general;
+    if (options->engine == BP_ENGINE_INVARIANT && status != STATUS_OK)
+        return status_set(STATUS_UNSUPPORTED, "engine=invariant: %s", status_message());
+    if (options->engine == BP_ENGINE_INVARIANT
+        || (options->engine == BP_ENGINE_AUTO && !options->exact && status == STATUS_OK && tables_pay(bp)))
+        bp->engine = &bp_invariant;
+    /* The approximation may not move a sample coordinate by more than a quarter of the finest step either. */
+    double finest = bp->medium.fs * bp->table.upsample * (bp->table.phases > 0 ? bp->table.phases : 1);
+    if (!options->exact)
+        bp->medium.phase_limit = fmin(options->phase_limit, 1.57 * bp->medium.fc / finest);
+    return STATUS_OK;
+}
+
+/* Give up what the engine has made. */
+static void engine_discard(struct bp *bp)
+{
+    if (bp->engine)
+        bp->engine->destroy(bp->state);
+    (bp->problem.precision == PRECISION_DOUBLE ? records_destroy_double : records_destroy_float)(bp->records);
+    bp->state = NULL;
+    bp->records = NULL;
+}
+
+/* The engine's plan; where tables would be too large and nobody asked for them, the general engine's. */
+static enum status engine_plan(struct bp *bp, const struct bp_options *options)
+{
+    double bytes = bp->work.bytes;
+    enum status status = bp->engine->plan(bp);
+    if (status == STATUS_UNSUPPORTED && bp->engine == &bp_invariant && options->engine == BP_ENGINE_AUTO) {
+        engine_discard(bp);
+        bp->engine = &bp_general;
+        bp->work.bytes = bytes;
+        status = bp->engine->plan(bp);
+    }
+    return status;
+}
+
+enum status bp_plan(const struct problem *problem, const struct interpolator *interpolator, const void *options,
+                    void **plan)
+{
+    const struct acquisition *a = problem->acquisition;
+    *plan = NULL;
+    struct bp *bp = calloc(1, sizeof *bp);
+    if (!bp)
+        return status_set(STATUS_FAILED, "no memory for the plan");
+    bp->problem = *problem;
+    bp->medium = (struct bp_medium){a->sound_speed, a->fc, a->fs, a->samples, 0};
+    bp->work.bytes = sizeof *bp;
+    enum status status = tabulate(bp, interpolator, options);
+    if (status == STATUS_OK)
+        status = choose_engine(bp, options);
+    if (status == STATUS_OK)
+        status = engine_plan(bp, options);
+    if (status != STATUS_OK) {
+        bp_destroy(bp);
+        return status;
+    }
+    count_work(bp, interpolator);
+    *plan = bp;
+    return STATUS_OK;
+}
+
+enum status bp_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages)
+{
+    struct bp *bp = plan;
+    bp->engine->execute(bp, echoes, image, stages);
+    return STATUS_OK;
+}
+
+/* Counting pairs takes longer than planning: it is left until somebody asks. */
+struct work bp_work(const void *plan)
+{
+    const struct bp *bp = plan;
+    const struct acquisition *a = bp->problem.acquisition;
+    struct work work = bp->work;
+    double all = (double)a->pings * a->receivers * problem_pixels(&bp->problem);
+    work.pairs = pairs_count(&bp->problem);
+    work.flops += work.pairs * (bp->table.taps == 1 ? 8 : 4.0 * bp->table.taps + 8);
+    if (work.pairs < all)
+        snprintf(work.skipped, sizeof work.skipped, "%.3g %% of the pairs: outside the record%s",
+                 100 * (1 - work.pairs / all), a->aperture_limit < 1 ? " or the aperture limit" : "");
+    return work;
+}
+
+void bp_destroy(void *plan)
+{
+    struct bp *bp = plan;
+    if (!bp)
+        return;
+    engine_discard(bp);
+    free(bp->weights);
+    free(bp);
+}

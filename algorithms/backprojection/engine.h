@@ -1,0 +1,46 @@
+/* What bp.c and its two engines share. */
+#ifndef SASBENCH_BACKPROJECTION_ENGINE_H
+#define SASBENCH_BACKPROJECTION_ENGINE_H
+
+#include "backprojection/bp.h"
+#include "backprojection/general/sum.h"
+#include "common/isa.h"
+#include "backprojection/traces.h"
+
+struct bp {
+    struct problem problem;
+    struct bp_medium medium;
+    struct bp_table table;
+    void *weights;                  /* of table */
+    struct records *records;
+    struct records_shape shape;
+    const struct bp_engine *engine;
+    void *state;                    /* the engine's own */
+    struct work work;
+};
+
+/* One way of doing the sums. */
+struct bp_engine {
+    const char *name;
+    /* Can it do the problem of bp->problem? When not, the reason is the status message (STATUS_UNSUPPORTED). */
+    enum status (*applicable)(const struct bp *bp);
+    /* Make bp->state and bp->records; adds to bp->work.bytes. */
+    enum status (*plan)(struct bp *bp);
+    void (*execute)(struct bp *bp, const struct echoes *echoes, struct image *image, struct stages *stages);
+    void (*destroy)(void *state);   /* destroy(NULL) does nothing */
+};
+
+extern const struct bp_engine bp_general;       /* any track: delays of runs of range rows */
+extern const struct bp_engine bp_invariant;     /* uniform straight track on the pixel raster: tables of delays */
+
+static inline size_t real_size(enum precision precision)
+{
+    return precision == PRECISION_DOUBLE ? sizeof(double) : sizeof(float);
+}
+
+/* Records for up to omp_get_max_threads() threads; fills bp->records and bp->shape and counts their bytes. */
+enum status bp_plan_records(struct bp *bp);
+/* Compress record `index` into a row of bp->shape.length complex values. */
+void bp_fill_row(const struct bp *bp, int thread, const struct echoes *echoes, size_t index, void *row);
+
+#endif

@@ -1,0 +1,34 @@
+/* Where a quintic through six exact delays stands for the delays of a whole block of pixels, and how long such a block
+   may be for a phase limit. */
+#ifndef SASBENCH_BACKPROJECTION_GENERAL_BLOCKS_H
+#define SASBENCH_BACKPROJECTION_GENERAL_BLOCKS_H
+
+#include "backprojection/pairs.h"
+
+/* A box that holds a ping's transmitter, and its receivers from emission until the last echo of the image. */
+struct ping_box {
+    struct vector low, high;        /* m */
+    double reach;                   /* m^(1/6): blocks may be reach rho^(5/6) to either side, rho their distance; 0: none */
+    double longest;                 /* m: nor may they be longer: at most 2^18 turns to either side of their middle */
+};
+
+/* Pixels [begin, end) of a line. */
+struct bp_block {
+    int begin, end;
+    bool exact;                     /* too near the array: each delay is evaluated */
+};
+enum { BP_BLOCKS = 16, BP_BLOCK_LEAST = 16 };   /* blocks made at a time; pixels below which a block does not pay */
+
+/* The box of a ping for the pixels of some patches, with blocks whose phase errs by at most phase_limit (rad, >= 0). */
+struct ping_box ping_box_make(const struct acquisition *acquisition, int ping, int patch_count,
+                              const struct grid *patches, double phase_limit);
+
+/* m: least and largest distance from any point of the box to any pixel of [begin, end). */
+double ping_box_clearance(const struct ping_box *box, const struct pixel_line *line, int begin, int end);
+double ping_box_extent(const struct ping_box *box, const struct pixel_line *line, int begin, int end);
+
+/* Take up to BP_BLOCKS blocks off the beginning of *left; returns their count, 0 when nothing is left. */
+int blocks_make(const struct ping_box *box, const struct pixel_line *line, struct pair_span *left,
+                struct bp_block blocks[BP_BLOCKS]);
+
+#endif

@@ -1,0 +1,235 @@
+/* Runs of pixels take values from records, nearest samples, between two on a line or by a kernel of many taps, which are
+   turned by their phase and added to the sums. Copies of samples are the limit: those of neighbouring pixels are loaded
+   together where they lie near each other. This file is compiled once for each precision and instruction set (BP_ISA
+   names it). */
+#include "backprojection/general/run.h"
+#include "common/turn.h"
+
+/* Each one instruction. PICK: each four floats of a vector permuted by the low two bits of an index. REPEAT: four floats from
+   memory as each four of a vector. SECONDS: the second of each four. QUADS: fours side by side. */
+#if WINDOWS
+#include <immintrin.h>
+#if VECTOR_BYTES == 64
+#define PICK(values, index) (vector_real)_mm512_permutevar_ps((__m512)(values), (__m512i)(index))
+#define REPEAT(from) (vector_real)_mm512_broadcast_f32x4(_mm_loadu_ps(from))
+#define SECONDS 1, 1, 1, 1, 5, 5, 5, 5, 9, 9, 9, 9, 13, 13, 13, 13
+#define JOIN(a, b) __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7)
+#define QUADS(v) __builtin_shufflevector(JOIN(v(0), v(1)), JOIN(v(2), v(3)), \
+                                         0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
+#else
+#define PICK(values, index) (vector_real)_mm256_permutevar_ps((__m256)(values), (__m256i)(index))
+#define REPEAT(from) (vector_real)_mm256_broadcast_ps((const __m128 *)(from))
+#define SECONDS 1, 1, 1, 1, 5, 5, 5, 5
+#define QUADS(v) __builtin_shufflevector(v(0), v(1), 0, 1, 2, 3, 4, 5, 6, 7)
+#endif
+#endif
+
+typedef double two_floats __attribute__((may_alias, aligned(sizeof(real))));     /* moved at once */
+typedef float bits __attribute__((may_alias));
+typedef float quad __attribute__((vector_size(16), aligned(sizeof(float)), may_alias));
+
+TURN(turn_vector, vector_real, TURN_SINE, TURN_COSINE)
+#if WINDOWS
+TURN(turn_short, vector_real, TURN_SHORT_SINE, TURN_SHORT_COSINE)
+#endif
+
+/* LANES values: copies, which are faster than gather instructions. */
+INLINE vector_real gather(const real *from, const int *index)
+{
+#define FROM(n) from[index[n]]
+    return (vector_real)ALL(FROM);
+}
+
+/* Values and those behind them. */
+INLINE void gather_two(const real *from, const int *index, vector_real *value, vector_real *next)
+{
+#if REAL_DOUBLE
+    *value = gather(from, index);
+    *next = gather(from + 1, index);
+#else
+#define BOTH(n) *(const two_floats *)(from + index[n])
+    vector_real low = (vector_real)(vector_double)PART(BOTH, 0), high = (vector_real)(vector_double)PART(BOTH, 2);
+    *value = __builtin_shufflevector(low, high, EVEN);
+    *next = __builtin_shufflevector(low, high, ODD);
+#endif
+}
+
+#if WINDOWS
+/* Pixels' values by their places in windows of four; on a line, between two. */
+INLINE vector_real pick(bool line, vector_real windows, vector_int place, const real *rest)
+{
+    vector_real value = PICK(windows, place);
+    if (line)
+        value += *at(rest) * (PICK(windows, place + 1) - value);
+    return value;
+}
+
+/* The same out of windows that are loaded whole: from the predecessor of a middle pixel's sample on, where the others read
+   that sample or a neighbour of it. The last value is only a line's next one; else it may lie one past the row's end. */
+INLINE void take_windows(bool line, enum loading loading, const real *row, size_t row_length, const struct run *run, int i,
+                         vector_real *x, vector_real *y)
+{
+    const int *index = run->sample + i;
+    vector_int place = *(const vector_int *)index;
+    vector_real re, im;
+    if (loading == TOGETHER) {
+        const int *middle = index + LANES / 2 - 1;
+        const real *from = row + *middle - 1;
+#define MIDDLE(n) (*(const bits *)middle)       /* an int would come from its register, by two instructions for one */
+        place = place + 1 - (vector_int)(vector_bits)ALL(MIDDLE);
+        re = REPEAT(from);
+        im = REPEAT(from + row_length);
+    } else {
+#define WINDOW(n) (*(const quad *)(row + index[4 * (n) + 1] - 1))
+        place = place + 1 - __builtin_shufflevector(place, place, SECONDS);
+        re = QUADS(WINDOW);
+        row += row_length;
+        im = QUADS(WINDOW);
+    }
+    *x = pick(line, re, place, run->rest + i);
+    *y = pick(line, im, place, run->rest + i);
+}
+#endif
+
+/* The same pixel by pixel. */
+INLINE vector_real take_apart(bool line, const real *row, const struct run *run, int i)
+{
+    vector_real value, next;
+    if (!line)
+        return gather(row, run->sample + i);
+    gather_two(row, run->sample + i, &value, &next);
+    return value + *at(run->rest + i) * (next - value);
+}
+
+/* Add to LANES pixels from i on what they take from a record: the nearest value each, or between two on a line. */
+INLINE void take(bool line, enum loading loading, const real *row, size_t row_length, const struct run *run, int i,
+                 vector_real *re, vector_real *im)
+{
+    vector_real c, s, x, y;
+#if WINDOWS
+    if (loading != APART) {
+        turn_short(*at(run->turns + i), &c, &s);
+        take_windows(line, loading, row, row_length, run, i, &x, &y);
+    } else
+#endif
+    {
+        (void)loading;
+        turn_vector(*at(run->turns + i), &c, &s);
+        x = take_apart(line, row, run, i);
+        y = take_apart(line, row + row_length, run, i);
+    }
+    *re = *re + x * c - y * s;
+    *im = *im + x * s + y * c;
+}
+
+/* One run of each of `group` records, a constant where this is inlined. */
+INLINE void add_taken(bool line, enum loading loading, int group, const real *row, size_t row_length, int count,
+                      struct run *runs, real *re, real *im)
+{
+    const real *from[GROUP];
+    int i = 0;
+    for (int g = 0; g < group; g++) {
+        from[g] = row + 2 * (size_t)g * row_length + runs[g].base;
+        OPAQUE(from[g]);
+    }
+    for (; i <= count - LANES; i += LANES) {
+        vector_real x = *at(re + i), y = *at(im + i);
+        for (int g = 0; g < group; g++)
+            take(line, loading, from[g], row_length, &runs[g], i, &x, &y);
+        *at(re + i) = x;
+        *at(im + i) = y;
+    }
+    if (i == count)
+        return;
+    vector_real x = {0}, y = {0};
+    for (int g = 0; g < group; g++) {
+        for (int k = count; k < i + LANES; k++) {       /* the last vector's other pixels read what may be read */
+            runs[g].sample[k] = runs[g].sample[count - 1];
+            runs[g].rest[k] = runs[g].turns[k] = 0;
+        }
+        take(line, loading, from[g], row_length, &runs[g], i, &x, &y);
+    }
+    for (int k = 0; i + k < count; k++) {
+        re[i + k] += x[k];
+        im[i + k] += y[k];
+    }
+}
+
+INLINE void add_group(bool line, enum loading loading, int group, const real *row, size_t row_length, int count,
+                      struct run *runs, real *re, real *im)
+{
+    if (group == GROUP)
+        add_taken(line, loading, GROUP, row, row_length, count, runs, re, im);
+    else
+        for (int g = 0; g < group; g++)
+            add_taken(line, loading, 1, row + 2 * (size_t)g * row_length, row_length, count, &runs[g], re, im);
+}
+
+/* `loading` is a constant where this is inlined. */
+INLINE void add_all(bool line, enum loading loading, int group, const real *row, size_t row_length, int count,
+                    struct run *runs, real *re, real *im)
+{
+    if (line)
+        add_group(true, loading, group, row, row_length, count, runs, re, im);
+    else
+        add_group(false, loading, group, row, row_length, count, runs, re, im);
+}
+
+/* Many weights, from a grid of phases or from cubics in the fraction; the record's parts lie apart. `taps` is a constant
+   where this is inlined, so that the loops over it unroll. */
+INLINE void add_taps(const struct bp_table *table, int taps, const real *row_re, const real *row_im,
+                     int count, const struct run *run, real *re, real *im)
+{
+    const real *weights = table->weights;
+    real wr[RUN], wi[RUN];
+#pragma omp simd
+    for (int i = 0; i < count; i++)
+        turn(run->turns[i], &wr[i], &wi[i]);
+    for (int i = 0; i < count; i++) {
+        const real *x = row_re + run->sample[i], *y = row_im + run->sample[i];
+        real vr = 0, vi = 0;
+        if (table->phases > 0) {
+            const real *w = weights + (size_t)run->phase[i] * (size_t)taps;
+#pragma omp simd reduction(+ : vr, vi)
+            for (int k = 0; k < taps; k++) {
+                vr += w[k] * x[k];
+                vi += w[k] * y[k];
+            }
+        } else {
+            const real *w = weights + 4 * (size_t)run->phase[i] * (size_t)taps, u = run->rest[i];
+#pragma omp simd reduction(+ : vr, vi)
+            for (int k = 0; k < taps; k++) {
+                real weight = w[k] + u * (w[taps + k] + u * (w[2 * taps + k] + u * w[3 * taps + k]));
+                vr += weight * x[k];
+                vi += weight * y[k];
+            }
+        }
+        re[i] += vr * wr[i] - vi * wi[i];
+        im[i] += vr * wi[i] + vi * wr[i];
+    }
+}
+
+void BP_TAKE(const struct bp_table *table, enum loading loading, int group, const void *rows, int row_length, int count,
+             struct run *runs, void *re, void *im)
+{
+    const size_t length = (size_t)row_length;
+    const bool line = table->reading == BP_LINE;
+    const real *row = (const real *)rows + table->guard + table->first;
+    if (!line && table->reading != BP_NEAREST) {
+        for (int g = 0; g < group; g++, row += 2 * length) {
+            const real *from = row + runs[g].base;
+            switch (table->taps) {  /* the shipped kernels unroll, any other length works as well */
+            case 8: add_taps(table, 8, from, from + length, count, &runs[g], re, im); break;
+            case 16: add_taps(table, 16, from, from + length, count, &runs[g], re, im); break;
+            case 20: add_taps(table, 20, from, from + length, count, &runs[g], re, im); break;
+            default: add_taps(table, table->taps, from, from + length, count, &runs[g], re, im); break;
+            }
+        }
+        return;
+    }
+    switch (loading) {
+    case APART: add_all(line, APART, group, row, length, count, runs, re, im); break;
+    case FOURS: add_all(line, FOURS, group, row, length, count, runs, re, im); break;
+    case TOGETHER: add_all(line, TOGETHER, group, row, length, count, runs, re, im); break;
+    }
+}

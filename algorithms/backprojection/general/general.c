@@ -1,0 +1,261 @@
+/* Back projection for any track: records are compressed in batches that stay in the cache; each line of pixels, along
+   azimuth or range, is summed by one thread, pairs in order, so that the bits do not depend on the number of threads.
+   Delays are exact at six points of a block of pixels and quintics between them (bp_blocks.c); with exact=true, and near the
+   array, every delay is evaluated. */
+#include <limits.h>
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "backprojection/engine.h"
+#include "backprojection/pairs.h"
+
+enum {
+    BATCH_BYTES = 8 << 20,          /* rows of one batch: they stay in the shared cache while all lines read them */
+    BATCH_LEAST = 8                 /* rows of one batch at least, so that threads share the compression */
+};
+
+struct general {
+    bp_sum_function *sum;
+    struct vector *heading;         /* [pings] */
+    struct ping_box *boxes;         /* [pings] */
+    int batch;                      /* rows */
+    void *rows;                     /* [batch][2 shape.length] real: re, then im; one value more may be read */
+    void *interleaved;              /* complex [threads][shape.length] */
+    int patch_count;
+    bool *along_x;                  /* [patch_count] the lines' direction */
+    void **sums;                    /* [patch_count]: re then im, real [lines][pixels of a line] each */
+};
+
+static bp_sum_function *const sum_functions[][2] = {
+    [ISA_BASELINE] = {bp_sum_float_baseline, bp_sum_double_baseline},
+#ifdef SASBENCH_X86_64
+    [ISA_V3] = {bp_sum_float_v3, bp_sum_double_v3},
+    [ISA_V4] = {bp_sum_float_v4, bp_sum_double_v4},
+#endif
+};
+
+static enum status general_applicable(const struct bp *bp)
+{
+    (void)bp;
+    return STATUS_OK;
+}
+
+static void general_destroy(void *state)
+{
+    struct general *general = state;
+    if (!general)
+        return;
+    for (int k = 0; general->sums && k < general->patch_count; k++)
+        free(general->sums[k]);
+    free(general->sums);
+    free(general->along_x);
+    free(general->boxes);
+    free(general->heading);
+    free(general->interleaved);
+    free(general->rows);
+    free(general);
+}
+
+/* What a patch's lines cost for one ping, in pixels of a block: measured, a block's quintic takes as long as 30 pixels,
+   an exact delay as long as three. */
+static double lines_cost(const struct ping_box *box, const struct grid *grid, bool along_x)
+{
+    enum { BLOCK_COST = 30, EXACT_COST = 3, VECTOR = 16 };
+    double cost = 0;
+    for (int n = 0; n < grid_line_count(grid, along_x); n++) {
+        struct pixel_line line = grid_line(grid, along_x, n);
+        struct pair_span left = {0, line.count};
+        struct bp_block blocks[BP_BLOCKS];
+        for (int count; (count = blocks_make(box, &line, &left, blocks)) > 0;)
+            for (int b = 0; b < count; b++) {
+                int pixels = (blocks[b].end - blocks[b].begin + VECTOR - 1) / VECTOR * VECTOR;
+                cost += blocks[b].exact ? EXACT_COST * pixels : BLOCK_COST + pixels;
+            }
+    }
+    return cost;
+}
+
+static enum status general_plan(struct bp *bp)
+{
+    const struct problem *problem = &bp->problem;
+    const struct acquisition *a = problem->acquisition;
+    struct general *general = bp->state = calloc(1, sizeof *general);
+    if (!general)
+        return status_set(STATUS_FAILED, "no memory for the plan");
+    enum status status = bp_plan_records(bp);
+    if (status != STATUS_OK)
+        return status;
+    int fine = bp->table.upsample * (bp->table.reading == BP_CUBICS ? BP_INTERVALS : 1);
+    if (!((double)a->samples * fine < INT_MAX))
+        return status_set(STATUS_UNSUPPORTED, "records of %d samples with %d points each are too long to index",
+                          a->samples, fine);
+    size_t size = real_size(problem->precision), row_bytes = (size_t)bp->shape.length * 2 * size;
+    double pairs = (double)a->pings * a->receivers;
+    general->sum = sum_functions[isa_choose()][problem->precision];
+    general->batch = (int)fmin(pairs, fmax(BATCH_LEAST, (double)(BATCH_BYTES / row_bytes)));
+    general->rows = aligned_alloc(64, ((size_t)general->batch * row_bytes + size + 63) / 64 * 64);
+    general->interleaved = malloc((size_t)omp_get_max_threads() * row_bytes);
+    general->heading = calloc((size_t)a->pings, sizeof *general->heading);
+    general->boxes = calloc((size_t)a->pings, sizeof *general->boxes);
+    general->patch_count = problem->patch_count;
+    general->along_x = calloc((size_t)problem->patch_count, sizeof *general->along_x);
+    general->sums = calloc((size_t)problem->patch_count, sizeof *general->sums);
+    if (!general->rows || !general->interleaved || !general->heading || !general->boxes || !general->along_x || !general->sums)
+        return status_set(STATUS_FAILED, "no memory for %d records of %d values", general->batch, bp->shape.length);
+    /* The rest of the limit is for the sums in float (bp_sum.c). */
+    const double quintics = problem->precision == PRECISION_FLOAT ? 0.85 : 1;
+    for (int p = 0; p < a->pings; p++) {
+        general->heading[p] = acquisition_heading(a, p);
+        general->boxes[p] = ping_box_make(a, p, problem->patch_count, problem->patches, quintics * bp->medium.phase_limit);
+    }
+    for (int k = 0; k < problem->patch_count; k++) {
+        const struct grid *grid = &problem->patches[k];
+        const struct ping_box *box = &general->boxes[a->pings / 2];
+        size_t pixels = (size_t)grid->x_count * (size_t)grid->r_count;
+        general->along_x[k] = lines_cost(box, grid, true) < lines_cost(box, grid, false);
+        general->sums[k] = malloc(2 * pixels * size);
+        if (!general->sums[k])
+            return status_set(STATUS_FAILED, "no memory for the sums of %zu pixels", pixels);
+    }
+    bp->work.bytes += sizeof *general + (general->batch + 1.0) * (double)row_bytes
+                      + (double)a->pings * (double)(sizeof *general->heading + sizeof *general->boxes)
+                      + problem_pixels(problem) * 2 * (double)size;
+    return STATUS_OK;
+}
+
+/* Add some receivers to pixels `within` of a line. */
+static void sum_span(const struct bp *bp, const struct ping_box *box, const struct bp_ping *ping,
+                     const struct pixel_line *line, struct pair_span within, void *re, void *im)
+{
+    const struct general *general = bp->state;
+    struct bp_block blocks[BP_BLOCKS];
+    struct pair_span left = within;
+    for (int count; (count = blocks_make(box, line, &left, blocks)) > 0;)
+        general->sum(&bp->medium, &bp->table, ping, line, count, blocks, re, im);
+}
+
+/* Is the delay of every pixel of `within` inside every receiver's record, by the least and the longest way there is? */
+static bool inside_record(const struct bp *bp, int p, const struct pixel_line *line, struct pair_span within)
+{
+    const struct acquisition *a = bp->problem.acquisition;
+    const struct general *general = bp->state;
+    double c = a->sound_speed, first = a->t0[p], last = first + (a->samples - 1) / a->fs, slack = 1e-9 / a->fs;
+    double least = 2 * ping_box_clearance(&general->boxes[p], line, within.begin, within.end) / c;
+    double most = 2 * ping_box_extent(&general->boxes[p], line, within.begin, within.end) / c;
+    return least >= first + slack && most <= last - slack;
+}
+
+/* Add the batch's pairs, records [first, first + count), to one line of patch k. */
+static void sum_line(const struct bp *bp, int k, int number, size_t first, int count)
+{
+    const struct general *general = bp->state;
+    const struct acquisition *a = bp->problem.acquisition;
+    const struct grid *grid = &bp->problem.patches[k];
+    const struct pixel_line line = grid_line(grid, general->along_x[k], number);
+    size_t pixels = (size_t)grid->x_count * (size_t)grid->r_count, size = real_size(bp->problem.precision);
+    size_t row_bytes = (size_t)bp->shape.length * 2 * size, end = first + (size_t)count;
+    char *re = (char *)general->sums[k] + (size_t)number * (size_t)line.count * size, *im = re + pixels * size;
+    for (size_t index = first; index < end;) {
+        int p = (int)(index / (size_t)a->receivers), m = (int)(index % (size_t)a->receivers);
+        struct bp_ping ping = {a->tx[p], a->velocity[p], a->t0[p], a->receivers - m, a->rx + index,
+                               (const char *)general->rows + (index - first) * row_bytes, bp->shape.length};
+        if (end - index < (size_t)ping.receivers)
+            ping.receivers = (int)(end - index);
+        struct pair_span aperture[2], record[2];
+        int spans = pair_spans(a, p, general->heading[p], &line, aperture);
+        for (int s = 0; s < spans; s++) {
+            if (inside_record(bp, p, &line, aperture[s])) {
+                sum_span(bp, &general->boxes[p], &ping, &line, aperture[s], re, im);
+                continue;
+            }
+            struct bp_ping one = ping;
+            one.receivers = 1;
+            for (int n = 0; n < ping.receivers; n++) {
+                int parts = record_spans(a, p, m + n, &line, aperture[s], record);
+                one.rx = ping.rx + n;
+                one.rows = (const char *)ping.rows + (size_t)n * row_bytes;
+                for (int i = 0; i < parts; i++)
+                    sum_span(bp, &general->boxes[p], &one, &line, record[i], re, im);
+            }
+        }
+        index += (size_t)ping.receivers;
+    }
+}
+
+/* The planar sums into the image's [r][x] pixels. */
+static void store(const struct bp *bp, int k, void *pixels)
+{
+    const struct general *general = bp->state;
+    const struct grid *grid = &bp->problem.patches[k];
+    const void *sums = general->sums[k];
+    size_t nx = (size_t)grid->x_count, nr = (size_t)grid->r_count, count = nx * nr;
+    size_t row = general->along_x[k] ? nx : 1, column = general->along_x[k] ? 1 : nr;
+    bool is_double = bp->problem.precision == PRECISION_DOUBLE;
+#pragma omp parallel for schedule(static)
+    for (size_t i = 0; i < nr; i++)
+        for (size_t j = 0; j < nx; j++) {
+            size_t from = i * row + j * column, to = 2 * (i * nx + j);
+            if (is_double) {
+                ((double *)pixels)[to] = ((const double *)sums)[from];
+                ((double *)pixels)[to + 1] = ((const double *)sums)[count + from];
+            } else {
+                ((float *)pixels)[to] = ((const float *)sums)[from];
+                ((float *)pixels)[to + 1] = ((const float *)sums)[count + from];
+            }
+        }
+}
+
+/* Compress one record into row n of the batch. */
+static void fill(const struct bp *bp, const struct echoes *echoes, size_t index, int n)
+{
+    const struct general *general = bp->state;
+    size_t length = (size_t)bp->shape.length, row_bytes = length * 2 * real_size(bp->problem.precision);
+    int thread = omp_get_thread_num();
+    void *row = (char *)general->rows + (size_t)n * row_bytes;
+    void *from = (char *)general->interleaved + (size_t)thread * row_bytes;
+    bp_fill_row(bp, thread, echoes, index, from);
+    for (size_t i = 0; i < length; i++)
+        if (bp->problem.precision == PRECISION_DOUBLE) {
+            ((double *)row)[i] = ((const double *)from)[2 * i];
+            ((double *)row)[length + i] = ((const double *)from)[2 * i + 1];
+        } else {
+            ((float *)row)[i] = ((const float *)from)[2 * i];
+            ((float *)row)[length + i] = ((const float *)from)[2 * i + 1];
+        }
+}
+
+static void general_execute(struct bp *bp, const struct echoes *echoes, struct image *image, struct stages *stages)
+{
+    struct general *general = bp->state;
+    const struct problem *problem = &bp->problem;
+    size_t pairs = (size_t)problem->acquisition->pings * (size_t)problem->acquisition->receivers;
+    size_t size = real_size(problem->precision);
+    for (int k = 0; k < problem->patch_count; k++)
+        memset(general->sums[k], 0, 2 * (size_t)problem->patches[k].x_count * (size_t)problem->patches[k].r_count * size);
+    for (size_t first = 0; first < pairs; first += (size_t)general->batch) {
+        int count = pairs - first < (size_t)general->batch ? (int)(pairs - first) : general->batch;
+#pragma omp parallel for schedule(static)
+        for (int n = 0; n < count; n++)
+            fill(bp, echoes, first + (size_t)n, n);
+        stages_end(stages, "compress");
+        for (int k = 0; k < problem->patch_count; k++) {
+#pragma omp parallel for schedule(dynamic)
+            for (int n = 0; n < grid_line_count(&problem->patches[k], general->along_x[k]); n++)
+                sum_line(bp, k, n, first, count);
+        }
+        stages_end(stages, "focus");
+    }
+    for (int k = 0; k < problem->patch_count; k++)
+        store(bp, k, image->pixels[k]);
+    stages_end(stages, "store");
+}
+
+const struct bp_engine bp_general = {
+    .name = "general",
+    .applicable = general_applicable,
+    .plan = general_plan,
+    .execute = general_execute,
+    .destroy = general_destroy,
+};

@@ -1,0 +1,41 @@
+#include "common/fft_length.h"
+
+#include <limits.h>
+#include <math.h>
+
+int fft_length(long long n)
+{
+    static const int primes[] = {2, 3, 5, 7};
+    for (; n <= INT_MAX; n++) {
+        long long rest = n;
+        for (int i = 0; i < 4; i++)
+            while (rest % primes[i] == 0)
+                rest /= primes[i];
+        if (rest == 1)
+            return (int)n;
+    }
+    return 0;
+}
+
+int fft_length_fast(long long n)
+{
+    for (; n <= INT_MAX; n++) {
+        long long odd = n;
+        while (odd > 0 && odd % 2 == 0)
+            odd /= 2;
+        if (odd > 4 * (n / odd))
+            continue;
+        while (odd % 3 == 0)
+            odd /= 3;
+        while (odd % 5 == 0)
+            odd /= 5;
+        if (odd == 1)
+            return (int)n;
+    }
+    return 0;
+}
+
+double fft_flops(double n)
+{
+    return 5 * n * log2(n);
+}

@@ -1,0 +1,46 @@
+#include "common/memory.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+/* Memory and swap that the machine could give, by Linux's own estimate; INFINITY where it does not tell. */
+static double machine_free(void)
+{
+    double free_bytes = 0, kilobytes;
+    char line[128];
+    FILE *file = fopen("/proc/meminfo", "r");
+    while (file && fgets(line, sizeof line, file))
+        if (sscanf(line, "MemAvailable: %lf", &kilobytes) == 1 || sscanf(line, "SwapFree: %lf", &kilobytes) == 1)
+            free_bytes += 1024 * kilobytes;
+    if (file)
+        fclose(file);
+    return free_bytes > 0 ? free_bytes : INFINITY;
+}
+
+/* What the limit on the process's address space leaves. */
+static double limit_free(void)
+{
+    struct rlimit limit;
+    double pages;
+    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+        return INFINITY;
+    FILE *file = fopen("/proc/self/statm", "r");
+    bool known = file && fscanf(file, "%lf", &pages) == 1;
+    if (file)
+        fclose(file);
+    return fmax(0, (double)limit.rlim_cur - (known ? pages * (double)sysconf(_SC_PAGESIZE) : 0));
+}
+
+enum status memory_check(double bytes, const char *what)
+{
+    if (bytes < 0x1p26)
+        return STATUS_OK;
+    double free_bytes = fmin(machine_free(), limit_free());
+    if (bytes <= free_bytes)
+        return STATUS_OK;
+    return status_set(STATUS_FAILED, "no memory for %s: %.3g GB are needed, %.3g GB are free", what, bytes / 1e9,
+                      free_bytes / 1e9);
+}

@@ -1,0 +1,36 @@
+/* What rma_convert.c and rma_focus.c share: one thread at one azimuth wavenumber (for each precision and instruction
+   set; BP_ISA names it). */
+#ifndef SASBENCH_RANGE_MIGRATION_COLUMN_H
+#define SASBENCH_RANGE_MIGRATION_COLUMN_H
+
+#include "range_migration/engine.h"
+#include "common/turn.h"
+
+enum { LANES = RMA_ALIGNMENT / sizeof(real) };          /* real parts and imaginary parts of a row take turns */
+
+struct work_place {
+    const struct rma *rma;
+    const struct rma_swath *swath;
+    char *scratch;
+    double *seconds, mark;
+    struct rma_line line;
+    int q;
+};
+
+static inline void *buffer(const struct work_place *w, enum rma_buffer which)
+{
+    return w->scratch + w->rma->scratch_at[which];
+}
+
+static inline void stage_end(struct work_place *w, enum rma_stage stage)
+{
+    double now = seconds_now();
+    w->seconds[stage] += now - w->mark;
+    w->mark = now;
+}
+
+/* The receivers' spectra at this wavenumber, corrected for each block and added up (or not yet): `sums` holds
+   [needed][1 or receivers] rows. Bins that are evanescent hold anything. */
+void REAL_ISA_NAME(rma_convert)(struct work_place *w, real *sums);
+
+#endif

@@ -1,0 +1,183 @@
+/* The conditions of range migration (rma_conditions.h). Limits are measured: over several hundred scenes whose images were
+   compared with exact ones, all else accepted has errors below 0.12. */
+#include "range_migration/conditions.h"
+
+#include <math.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* The beam of echoes that do not say theirs: where the transmitter's power is half of that abeam, in lambda/D. */
+static const double LOBE = 0.443;
+
+/* rad: an image's error is that of its phases. LBF21's own Table IV asks the phase-centre approximation for 0.132. */
+static const double FORMULA_LIMIT = 0.135;
+
+struct rma_view rma_view_of(const struct problem *problem, const struct rma_method *method,
+                            const struct straight_track *track)
+{
+    const struct acquisition *a = problem->acquisition;
+    double end = track->x_first + (a->pings - 1) * track->spacing;
+    struct rma_view view = {
+        .problem = problem, .method = method, .spacing = fabs(track->spacing),
+        .setting = {a->sound_speed, track->speed, a->fc, a->rx[a->receivers / 2].x - a->tx[0].x},
+        .converts = a->receivers > 1 || fabs(a->rx[0].x - a->tx[0].x) > a->sound_speed / a->fc / 1000,
+        .x_low = fmin(track->x_first, end), .x_high = fmax(track->x_first, end),
+        .beam_sine = a->echo_sine > 0 ? a->echo_sine : INFINITY,
+    };
+    if (!(a->echo_sine > 0) && a->tx_length > 0)
+        view.beam_sine = LOBE * a->sound_speed / a->fc / a->tx_length;
+    return view;
+}
+
+bool rma_view_aperture(const struct rma_view *view, const struct grid *patch, double r, double *low, double *high)
+{
+    double sine = view->beam_sine, reach = sine < 1 ? r * sine / sqrt((1 - sine) * (1 + sine)) : INFINITY;
+    double last = patch->x_first + (patch->x_count - 1) * patch->x_step;
+    *low = fmax(view->x_low - last, -reach);
+    *high = fmin(view->x_high - patch->x_first, reach);
+    return *low <= *high;
+}
+
+/* Worst over the first and the last row of each patch, as far as they are seen. */
+typedef double row_function(const struct rma_view *view, double r, double low, double high);
+
+static double worst_row(const struct rma_view *view, row_function *function)
+{
+    double worst = 0, low, high;
+    for (int k = 0; k < view->problem->patch_count; k++) {
+        const struct grid *patch = &view->problem->patches[k];
+        for (int end = 0; end < 2; end++) {
+            double r = patch->r_first + end * (patch->r_count - 1) * patch->r_step;
+            double value = rma_view_aperture(view, patch, r, &low, &high) ? function(view, r, low, high) : 0;
+            worst = value <= worst ? worst : value;     /* a NaN is kept */
+        }
+    }
+    return worst;
+}
+
+/* Offset of the receiver that is n/2 of the way from the least to the greatest. */
+static double offset_at(const struct rma_view *view, int n)
+{
+    const struct acquisition *a = view->problem->acquisition;
+    double least = INFINITY, greatest = -INFINITY;
+    for (int m = 0; m < a->receivers; m++) {
+        least = fmin(least, a->rx[m].x - a->tx[0].x);
+        greatest = fmax(greatest, a->rx[m].x - a->tx[0].x);
+    }
+    return least + n / 2.0 * (greatest - least);
+}
+
+static struct rma_condition above_dc(const struct rma_view *view)
+{
+    const struct acquisition *a = view->problem->acquisition;
+    return (struct rma_condition){"above_dc", a->fc - a->bandwidth / 2, 0, true,
+                                  "the lowest frequency fc - B/2 (Hz)", "a higher carrier or a narrower band"};
+}
+
+static struct rma_condition subsonic(const struct rma_view *view)
+{
+    return (struct rma_condition){"subsonic", 1 - fabs(view->setting.speed) / view->setting.sound_speed, 0.1, true,
+                                  "1 - |v|/c", "a lower speed"};
+}
+
+static double stationary_at(const struct rma_view *view, double r, double low, double high)
+{
+    const struct acquisition *a = view->problem->acquisition;
+    double wavelength = a->sound_speed / (a->fc - a->bandwidth / 2), u = fmax(fabs(low), fabs(high));
+    return wavelength / (32 * pi * r) * hypot(1, u / r);
+}
+
+static struct rma_condition stationary(const struct rma_view *view)
+{
+    return (struct rma_condition){"stationary", worst_row(view, stationary_at), 0.01, false,
+                                  "the first term that stationary phase drops, lambda/(32 pi r cos theta)",
+                                  "rows farther away, or a higher frequency"};
+}
+
+static double amplitude_at(const struct rma_view *view, double r, double low, double high)
+{
+    (void)low;
+    (void)high;
+    double d = fmax(fabs(offset_at(view, 0)), fabs(offset_at(view, 2))) / (2 * r);
+    return pow(1 + d * d, 0.75) - 1;
+}
+
+static struct rma_condition spa_amplitude(const struct rma_view *view)
+{
+    return (struct rma_condition){"spa_amplitude", worst_row(view, amplitude_at), 0.05, false,
+                                  "the amplitude that a monostatic weight gets wrong, (1 + (d/2r)^2)^.75 - 1",
+                                  "rows farther away, or receivers nearer to the transmitter"};
+}
+
+static double doppler_at(const struct rma_view *view, double r, double low, double high)
+{
+    const struct acquisition *a = view->problem->acquisition;
+    double steepest = 0;
+    for (int n = 0; n < 4; n++)         /* the delay is convex: its slope is steepest at the ends */
+        steepest = fmax(steepest, fabs(spectrum_slope(&view->setting, offset_at(view, n / 2 * 2), r, n % 2 ? high : low)));
+    return (a->fc + a->bandwidth / 2) * steepest * 2 * view->spacing / a->receivers;
+}
+
+static struct rma_condition doppler(const struct rma_view *view)
+{
+    return (struct rma_condition){"doppler", worst_row(view, doppler_at), 1.05, false,
+                                  "the widest azimuth wavenumber in the beam over what the receivers sample, M/(2 spacing)",
+                                  "pings closer together, more receivers, a narrower beam or a lower speed"};
+}
+
+static double sinc(double z)
+{
+    return fabs(z) < 1e-9 ? 1 : sin(pi * z) / (pi * z);
+}
+
+/* Root mean square over the beam, the band and the array of the phase that the method's formula misses. */
+static double formula_at(const struct rma_view *view, double r, double low, double high)
+{
+    enum { PLACES = 16, FREQUENCIES = 3, RECEIVERS = 3 };
+    const struct acquisition *a = view->problem->acquisition;
+    double sum = 0, weights = 0;
+    for (int m = 0; m < RECEIVERS; m++)
+        for (int k = 0; k < PLACES; k++)
+            for (int n = 0; n < FREQUENCIES; n++) {
+                double d = offset_at(view, m), u = low + (k + 0.5) / PLACES * (high - low);
+                double frequency = a->fc + (n - 1) * a->bandwidth / 2;
+                double nu = -frequency * spectrum_slope(&view->setting, d, r, u);
+                double exact = -2 * pi * (frequency * spectrum_delay(&view->setting, d, r, u) + nu * u);
+                double error = view->method->spectrum(&view->setting, d, r, frequency, nu) - exact;
+                double sine = u / hypot(u, r) * frequency / a->sound_speed;
+                double weight = a->echo_tapers ? pow(sinc(a->tx_length * sine) * sinc(a->rx_length * sine), 2) : 1;
+                sum += weight * error * error;
+                weights += weight;
+            }
+    return sqrt(sum / weights);
+}
+
+static struct rma_condition formula(const struct rma_view *view)
+{
+    bool exact = view->method->spectrum == spectrum_exact || !view->converts;
+    return (struct rma_condition){view->method->law, exact ? 0 : worst_row(view, formula_at), FORMULA_LIMIT, false,
+                                  "the formula's phase error over the beam (rad, rms)",
+                                  "rma_numeric, which has no such error; rows farther away or nearer, a narrower beam or a "
+                                  "lower speed"};
+}
+
+rma_condition_function *const rma_conditions[RMA_CONDITIONS] = {
+    above_dc, subsonic, stationary, spa_amplitude, doppler, formula,
+};
+
+bool rma_condition_holds(const struct rma_condition *condition)
+{
+    return condition->at_least ? condition->value > condition->limit : condition->value <= condition->limit;
+}
+
+enum status rma_conditions_check(const struct rma_view *view)
+{
+    for (int k = 0; k < RMA_CONDITIONS; k++) {
+        struct rma_condition c = rma_conditions[k](view);
+        if (!rma_condition_holds(&c))
+            return status_set(STATUS_UNSUPPORTED, "%s: condition %s: %s is %.3g; %s %g is needed (cure: %s)",
+                              view->method->name, c.name, c.meaning, c.value, c.at_least ? "more than" : "at most", c.limit,
+                              c.cure);
+    }
+    return STATUS_OK;
+}

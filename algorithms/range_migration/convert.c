@@ -1,0 +1,209 @@
+/* Range migration's conversion at one azimuth wavenumber: receivers' spectra in, monostatic ones of each block out (bulk
+   and differential of rma.h). Compiled once for each precision and instruction set (BP_ISA names it).
+
+   The corrections of a group of receivers are quadratic in the receiver's number, so that a cell costs two complex
+   products a receiver and three sines and cosines a group; frequencies lie side by side in vectors. */
+#include <string.h>
+
+#include "range_migration/column.h"
+
+#if defined __AVX512F__
+enum { VECTOR_BYTES = 64 };
+#elif defined __AVX__
+enum { VECTOR_BYTES = 32 };
+#else
+enum { VECTOR_BYTES = 16 };         /* wider ones would live in memory */
+#endif
+typedef real vec __attribute__((vector_size(VECTOR_BYTES), may_alias));
+enum { VECTOR = VECTOR_BYTES / sizeof(real), PAIR = LANES > VECTOR ? 2 : 1, SPAN = RMA_SPAN };
+
+/* exp(j 2 pi poly(y)) of n bins, |y| <= 1. Polynomials below an eighth of a turn need neither double nor whole turns
+   taken off. */
+static void rotors(const double *poly, const double *restrict y, int n, real *restrict re, real *restrict im)
+{
+    const double p0 = poly[0], p1 = poly[1], p2 = poly[2], p3 = poly[3], p4 = poly[4], p5 = poly[5];
+    if (fabs(p0) + fabs(p1) + fabs(p2) + fabs(p3) + fabs(p4) + fabs(p5) <= 0.125) {
+        const real a = (real)(2 * M_PI), q0 = a * (real)p0, q1 = a * (real)p1, q2 = a * (real)p2, q3 = a * (real)p3,
+                   q4 = a * (real)p4, q5 = a * (real)p5;
+#pragma omp simd
+        for (int k = 0; k < n; k++) {
+            real u = (real)y[k];
+            turn_eighth(q0 + u * (q1 + u * (q2 + u * (q3 + u * (q4 + u * q5)))), &re[k], &im[k]);
+        }
+        return;
+    }
+#pragma omp simd
+    for (int k = 0; k < n; k++) {
+        double f = p0 + y[k] * (p1 + y[k] * (p2 + y[k] * (p3 + y[k] * (p4 + y[k] * p5))));
+        turn(f - floor(f + 0.5), &re[k], &im[k]);
+    }
+}
+
+/* Rows of vectors, `row` reals from one receiver's to the next. */
+struct rows {
+    real *values;
+    size_t row;
+};
+
+/* The group's receivers times their corrections at n bins: stored row by row, or added up into one row, or both
+   (what is NULL is left out). */
+static inline __attribute__((always_inline)) void group_apply(struct rows in, int count, int n,
+    real rotor[restrict 6][SPAN], struct rows stored, real *sum)
+{
+    for (int b = 0; b < n; b += PAIR * VECTOR) {
+        const int at = 2 * (b / LANES * LANES) + b % LANES;
+        const real *x = in.values + at;
+        real *z = stored.values ? stored.values + at : NULL;
+        vec wr[PAIR], wi[PAIR], sr[PAIR], si[PAIR], sum_r[PAIR], sum_i[PAIR];
+        for (int v = 0; v < PAIR; v++) {
+            wr[v] = *(vec *)&rotor[0][b + v * VECTOR];
+            wi[v] = *(vec *)&rotor[1][b + v * VECTOR];
+            sr[v] = *(vec *)&rotor[2][b + v * VECTOR];
+            si[v] = *(vec *)&rotor[3][b + v * VECTOR];
+            if (sum) {
+                sum_r[v] = *(vec *)(sum + at + v * VECTOR);
+                sum_i[v] = *(vec *)(sum + at + LANES + v * VECTOR);
+            }
+        }
+        for (int i = 0; i < count; i++, x += in.row)
+            for (int v = 0; v < PAIR; v++) {
+                const vec kr = *(vec *)&rotor[4][b + v * VECTOR], ki = *(vec *)&rotor[5][b + v * VECTOR];
+                vec xr = *(const vec *)(x + v * VECTOR), xi = *(const vec *)(x + LANES + v * VECTOR), t;
+                vec pr = xr * wr[v] - xi * wi[v], pi = xr * wi[v] + xi * wr[v];
+                if (sum) {
+                    sum_r[v] += pr;
+                    sum_i[v] += pi;
+                }
+                if (z) {
+                    *(vec *)(z + (size_t)i * stored.row + v * VECTOR) = pr;
+                    *(vec *)(z + (size_t)i * stored.row + LANES + v * VECTOR) = pi;
+                }
+                t = wr[v] * sr[v] - wi[v] * si[v];
+                wi[v] = wr[v] * si[v] + wi[v] * sr[v];
+                wr[v] = t;
+                t = sr[v] * kr - si[v] * ki;
+                si[v] = sr[v] * ki + si[v] * kr;
+                sr[v] = t;
+            }
+        for (int v = 0; sum && v < PAIR; v++) {
+            *(vec *)(sum + at + v * VECTOR) = sum_r[v];
+            *(vec *)(sum + at + LANES + v * VECTOR) = sum_i[v];
+        }
+    }
+}
+
+/* All receivers at bins [k, k + n) by recurrence. */
+static void apply_recurrence(const struct work_place *w, const struct rma_ramp *ramps, int k, int n, struct rows in,
+                             struct rows stored, real *sum)
+{
+    const double *y = (const double *)buffer(w, RMA_ABSCISSAS) + k;
+    const struct rows none = {NULL, 0};
+    real rotor[6][SPAN] __attribute__((aligned(RMA_ALIGNMENT)));
+    for (const struct rma_ramp *g = ramps; g < ramps + w->rma->groups; g++) {
+        rotors(g->first, y, n, rotor[0], rotor[1]);
+        rotors(g->step, y, n, rotor[2], rotor[3]);
+        if (g == ramps || memcmp(g->curve, g[-1].curve, sizeof g->curve) != 0)
+            rotors(g->curve, y, n, rotor[4], rotor[5]);
+        struct rows from = {in.values + (size_t)g->begin * in.row, in.row}, to = stored;
+        if (!stored.values) {
+            group_apply(from, g->count, n, rotor, none, sum);
+            continue;
+        }
+        to.values += (size_t)g->begin * stored.row;
+        if (sum)
+            group_apply(from, g->count, n, rotor, to, sum);
+        else
+            group_apply(from, g->count, n, rotor, to, NULL);
+    }
+}
+
+/* The same by the formula and libm for each cell: for uneven arrays, and to check the recurrence. */
+static void apply_libm(const struct work_place *w, double r, double less, int k, int n, struct rows in,
+                       struct rows stored, real *sum)
+{
+    const struct rma *rma = w->rma;
+    for (int m = 0; m < rma->receivers; m++)
+        for (int i = 0; i < n; i++) {
+            double cycles = 0;
+            if (k + i >= w->line.begin && k + i < w->swath->band) {
+                double frequency = rma_frequency(rma, w->swath, k + i);
+                cycles = rma_correction(rma, m, r, frequency, w->line.nu);
+                cycles -= less > 0 ? rma_correction(rma, m, less, frequency, w->line.nu) : 0;
+            }
+            double angle = 2 * M_PI * (cycles - floor(cycles + 0.5));
+            real wr = (real)cos(angle), wi = (real)sin(angle);
+            size_t at = 2 * (size_t)(i / LANES * LANES) + (size_t)(i % LANES);
+            const real *x = in.values + (size_t)m * in.row + at;
+            real re = x[0] * wr - x[LANES] * wi, im = x[0] * wi + x[LANES] * wr;
+            if (stored.values) {
+                real *z = stored.values + (size_t)m * stored.row + at;
+                z[0] = re;
+                z[LANES] = im;
+            }
+            if (sum) {
+                sum[at] += re;
+                sum[at + LANES] += im;
+            }
+        }
+}
+
+/* Receivers at bins [k, k + n) times exp(j 2 pi (correction at r less the one at `less`)); `ramps` are those
+   phases. */
+static void apply(const struct work_place *w, const struct rma_ramp *ramps, double r, double less, int k, int n,
+                  struct rows in, struct rows stored, real *sum)
+{
+    if (sum)
+        memset(sum, 0, 2 * (size_t)n * sizeof *sum);
+    if (w->rma->recurs)
+        apply_recurrence(w, ramps, k, n, in, stored, sum);
+    else
+        apply_libm(w, r, less, k, n, in, stored, sum);
+}
+
+void REAL_ISA_NAME(rma_convert)(struct work_place *w, real *sums)
+{
+    const struct rma *rma = w->rma;
+    const struct rma_swath *swath = w->swath;
+    const size_t row = 2 * (size_t)swath->row;
+    const int turns = w->q - swath->wavenumbers / 2, period = swath->period, reference = swath->reference;
+    const int column = ((rma->spacing < 0 ? -turns : turns) % period + period) % period;
+    const bool add = rma->options.sum == RMA_SUM_BEFORE;
+    const size_t block = (add ? 1 : (size_t)rma->receivers) * row;
+    real *data = (real *)swath->data + (size_t)column * (size_t)rma->receivers * row;
+    if (!rma->converts) {
+        memcpy(sums, data, row * sizeof *sums);
+        return;
+    }
+    double *y = buffer(w, RMA_ABSCISSAS);
+    const double y_first = (rma_frequency(rma, swath, 0) - w->line.middle) / w->line.half;
+    const double y_step = rma->fs / swath->length / w->line.half;
+    for (int k = 0; k < swath->row; k++) {
+        double at = y_first + k * y_step;
+        y[k] = at < -1 ? -1 : at > 1 ? 1 : at;
+    }
+    const double centre = rma_block_range(rma, swath->blocks[reference]);
+    struct rma_ramp *bulk = buffer(w, RMA_RAMPS), *ramps = bulk + rma->groups;
+    if (rma->recurs)
+        rma_ramps(rma, &w->line, centre, 0, bulk);
+    stage_end(w, RMA_BULK);
+    for (int b = 0; rma->recurs && b < swath->needed; b++)
+        if (b != reference)
+            rma_ramps(rma, &w->line, rma_block_range(rma, swath->blocks[b]), centre, ramps + b * rma->groups);
+    stage_end(w, RMA_DIFFERENTIAL);
+    for (int k = w->line.begin / LANES * LANES; k < swath->row; k += SPAN) {
+        const int n = swath->row - k < SPAN ? swath->row - k : SPAN;
+        const struct rows in = {data + 2 * k, row}, none = {NULL, 0};
+        real *out = sums + 2 * k, *own = out + (size_t)reference * block;
+        /* The reference's own block has no differential left: its sum, or its rows, come with the bulk. */
+        struct rows converted = {buffer(w, RMA_CONVERTED), 2 * SPAN};
+        if (!add)
+            converted = (struct rows){own, row};
+        apply(w, bulk, centre, 0, k, n, in, add && swath->needed == 1 ? none : converted, add ? own : NULL);
+        stage_end(w, RMA_BULK);
+        for (int b = 0; b < swath->needed; b++, out += block)
+            if (b != reference)
+                apply(w, ramps + b * rma->groups, rma_block_range(rma, swath->blocks[b]), centre, k, n, converted,
+                      add ? none : (struct rows){out, row}, add ? out : NULL);
+        stage_end(w, RMA_DIFFERENTIAL);
+    }
+}

@@ -1,0 +1,370 @@
+/* Range migration at one azimuth wavenumber after the conversion: blocks put together, Stolt interpolation, bulk focusing
+   (reconstruct to focus of rma.h). Compiled once for each precision and instruction set (BP_ISA names it). */
+#include <string.h>
+
+#include "range_migration/column.h"
+
+enum { SPAN = RMA_SPAN,
+       RUN = 64 };                  /* samples that a block takes or leaves together: places rise or fall along them */
+
+/* Bins that are evanescent, and those that only fill the last vector, read zero. */
+static void mask(const struct work_place *w, real *row)
+{
+    const int begin = w->line.begin, band = w->swath->band, end = w->swath->row;
+    for (int k = begin > 0 ? 0 : band; k < end; k = k + 1 == begin ? band : k + 1)
+        row[2 * (k / LANES * LANES) + k % LANES] = row[2 * (k / LANES * LANES) + k % LANES + LANES] = 0;
+}
+
+/* Where the samples from `centre` on lie: the block's number at its centre, fractions between; what lies beyond the
+   swath's blocks belongs to the nearest. */
+static void places(const struct work_place *w, real *restrict place)
+{
+    const struct rma *rma = w->rma;
+    const struct rma_swath *swath = w->swath;
+    const int length = swath->length;
+    const double first = swath->blocks[0], last = swath->blocks[swath->needed - 1];
+    const double from = rma->block_from, scale = 1 / rma->block_width, slowness = w->line.slowness;
+    const double fs = rma->fs;
+    const bool inverse = rma->options.spacing == RMA_INVERSE;
+#pragma omp simd
+    for (int j = 0; j < length; j++) {
+        int n = swath->centre + (j < length - length / 2 ? j : j - length);
+        double delay = swath->t_first + n / fs, range = (delay > 1e-9 ? delay : 1e-9) / slowness;
+        double b = ((inverse ? 1 / range : range) - from) * scale;
+        b = b < last ? b : last;
+        place[j] = (real)(b > first ? b : first);
+    }
+}
+
+/* Where a block counts, by place, and with which weight: a polynomial in the way from its centre, lowest power first. */
+struct piece {
+    real from, to, weight[RMA_NODES];
+};
+
+/* Blocks that blend: Lagrange's cubic through the nearest four, two to either side but at the ends of the swath. */
+static int block_pieces(const struct rma *rma, int block, struct piece *pieces)
+{
+    int count = 0;
+    if (!rma->options.blend) {
+        pieces[count++] = (struct piece){(real)(block - 0.5), (real)(block + 0.5), {1}};
+        return count;
+    }
+    const int nodes = rma_nodes_blended(rma), last = rma->block_count - nodes;
+    for (int first = block - nodes + 1; first <= block; first++) {      /* the nearest: first to first + nodes - 1 */
+        if (first < 0 || first > last)
+            continue;
+        struct piece *piece = &pieces[count++];
+        *piece = (struct piece){first > 0 ? (real)(first + 1) : -INFINITY, first < last ? (real)(first + 2) : INFINITY, {1}};
+        for (int node = first, degree = 1; node < first + nodes; node++)
+            if (node != block) {
+                real way = (real)(node - block);
+                for (int k = degree; k > 0; k--)
+                    piece->weight[k] = piece->weight[k] - piece->weight[k - 1] / way;
+                degree++;
+            }
+    }
+    return count;
+}
+
+static void add_weighted(const real *restrict x, const real *restrict place, int n, real block,
+                         const struct piece *piece, real *restrict cut)
+{
+    const real from = piece->from, to = piece->to, w0 = piece->weight[0], w1 = piece->weight[1],
+               w2 = piece->weight[2], w3 = piece->weight[3];
+    for (int j = 0; j < n; j++) {
+        real away = place[j] - block, weight = w0 + away * (w1 + away * (w2 + away * w3));
+        weight = place[j] >= from && place[j] < to ? weight : 0;
+        cut[2 * j] += weight * x[2 * j];
+        cut[2 * j + 1] += weight * x[2 * j + 1];
+    }
+}
+
+/* Bins [begin, end) of a row of vectors as complex numbers. */
+static void interleave(const real *restrict row, int begin, int end, real *restrict out)
+{
+    for (int k = begin, n; k < end; k += n, out += 2 * n) {
+        const int lane = k % LANES;
+        const real *from = row + 2 * (k - lane) + lane;
+        n = LANES - lane < end - k ? LANES - lane : end - k;
+        if (n == LANES)             /* the usual case, of constant length */
+            for (int i = 0; i < LANES; i++) {
+                out[2 * i] = from[i];
+                out[2 * i + 1] = from[LANES + i];
+            }
+        else
+            for (int i = 0; i < n; i++) {
+                out[2 * i] = from[i];
+                out[2 * i + 1] = from[LANES + i];
+            }
+    }
+}
+
+/* Range IFFT of a row of spectra, and what belongs to the block added to the cut; without places all of it. */
+static void add_block(const struct work_place *w, const real *row, int block, const real *place, real *cut)
+{
+    const struct rma_swath *swath = w->swath;
+    const int length = swath->length, below = -swath->band_first;
+    real *wave = buffer(w, RMA_WAVE);
+    interleave(row, 0, below, wave + 2 * (length - below));
+    interleave(row, below, swath->band, wave);
+    memset(wave + 2 * (swath->band - below), 0, 2 * (size_t)(length - swath->band) * sizeof *wave);
+    FFTW(execute_dft)(swath->range_inverse, (complex_real *)wave, (complex_real *)wave);
+    struct piece pieces[RMA_NODES];
+    const int count = place ? block_pieces(w->rma, block, pieces) : 0;
+    /* Samples from `centre` on, then those before it at the cut's end. */
+    for (int j = 0, n; j < length; j += n) {
+        const int at = (swath->centre + j) % length, ahead = length - length / 2, left = (j < ahead ? ahead : length) - j;
+        n = left < RUN ? left : RUN;
+        n = n < length - at ? n : length - at;
+        real *to = cut + 2 * (j < ahead ? j : j + swath->stolt_length - length), *x = wave + 2 * at;
+        if (!place) {
+            memcpy(to, x, 2 * (size_t)n * sizeof *to);
+            continue;
+        }
+        real low = place[j] < place[j + n - 1] ? place[j] : place[j + n - 1], high = place[j] + place[j + n - 1] - low;
+        for (int k = 0; k < count; k++)
+            if (low < pieces[k].to && high >= pieces[k].from)
+                add_weighted(x, place + j, n, (real)block, &pieces[k], to);
+    }
+}
+
+/* The cut's spectrum in rising frequency, RMA_GUARD bins of the next period at either end: all real parts, then all
+   imaginary ones. Its samples count from `centre`. */
+static void spectrum(const struct work_place *w, real *cut, real *re)
+{
+    const size_t length = (size_t)w->swath->stolt_length, low = length / 2;     /* low: bins below fc */
+    const real *scale = w->swath->apodization;
+    real *im = re + length + 2 * RMA_GUARD;
+    for (size_t j = 0; j < length; j++) {
+        cut[2 * j] *= scale[j];
+        cut[2 * j + 1] *= scale[j];
+    }
+    FFTW(execute_dft)(w->swath->stolt_forward, (complex_real *)cut, (complex_real *)cut);
+    const struct {
+        size_t from, to, count;
+    } pieces[] = {{length - low, RMA_GUARD, low}, {0, RMA_GUARD + low, length - low}};
+    for (int piece = 0; piece < 2; piece++) {
+        const real *from = cut + 2 * pieces[piece].from;
+        real *to_re = re + pieces[piece].to, *to_im = im + pieces[piece].to;
+        for (size_t k = 0; k < pieces[piece].count; k++) {
+            to_re[k] = from[2 * k];
+            to_im[k] = from[2 * k + 1];
+        }
+    }
+    for (size_t k = 0; k < RMA_GUARD; k++) {
+        re[k] = re[length + k];
+        im[k] = im[length + k];
+        re[RMA_GUARD + length + k] = re[RMA_GUARD + k];
+        im[RMA_GUARD + length + k] = im[RMA_GUARD + k];
+    }
+}
+
+/* Values of the spectrum between its bins; position counts from the first guard bin. `taps` is a constant where
+   this is inlined. */
+static inline __attribute__((always_inline)) void interpolate(const struct rma *rma, const real *restrict spectrum,
+    int length, int taps, int n, const double *restrict position, real *restrict re, real *restrict im)
+{
+    const real *kernel = rma->kernel, *imaginary = spectrum + length + 2 * RMA_GUARD;
+    for (int j = 0; j < n; j++) {
+        int bin = (int)position[j], first = bin + 1 - taps / 2;
+        double interval = (position[j] - bin) * RMA_INTERVALS;
+        const real *a = kernel + (size_t)(int)interval * (size_t)taps, *b = a + taps;
+        real u = (real)(interval - (int)interval), vr = 0, vi = 0;
+#pragma omp simd reduction(+ : vr, vi)
+        for (int k = 0; k < taps; k++) {
+            real weight = a[k] + u * (b[k] - a[k]);
+            vr += weight * spectrum[first + k];
+            vi += weight * imaginary[first + k];
+        }
+        re[j] = vr;
+        im[j] = vi;
+    }
+}
+
+/* Rows of a patch from K = j 2 pi/(length step): interpolation (LBF21 Eq. (16) for the exact K), bulk focusing at the
+   first row, weight, IFFT. */
+static void focus_interpolated(struct work_place *w, const struct rma_patch *patch, const real *z, real *stored)
+{
+    const struct rma *rma = w->rma;
+    const struct rma_swath *swath = w->swath;
+    const double c = rma->setting.sound_speed, fc = rma->setting.fc, beta = rma->setting.speed / c;
+    const double b1 = (1 - beta) * (1 + beta), half = c * w->line.nu / 2;
+    const double bin = rma->fs / swath->length, stolt_bin = rma->fs / swath->stolt_length;
+    /* The band, and some bins beside it for what the interpolation and the blocks' edges spread. */
+    const double lowest = fmax(swath->band_first - RMA_GUARD, -(swath->length / 2)) * bin;
+    const double highest = fmin(swath->band_first + swath->band - 1 + RMA_GUARD, (swath->length - 1) / 2) * bin;
+    const double low = fmax(fc + lowest, w->line.lowest), high = fc + highest;
+    const double k_step = 2 * M_PI / (patch->length * patch->step), r = patch->grid.r_first;
+    const double t_centre = swath->t_first + swath->centre / rma->fs, to_fc = swath->stolt_length / 2 + RMA_GUARD;
+    const long long first = (long long)ceil(spectrum_monostatic(&rma->setting, low, w->line.nu) / k_step);
+    const long long last = (long long)floor(spectrum_monostatic(&rma->setting, high, w->line.nu) / k_step);
+    real *wave = buffer(w, RMA_WAVE);
+    memset(wave, 0, 2 * (size_t)patch->length * sizeof *wave);
+    double position[SPAN], cycles[SPAN];
+    real weight[SPAN], re[SPAN], im[SPAN], wr[SPAN], wi[SPAN];
+    for (long long j0 = first; j0 <= last; j0 += SPAN) {
+        const int n = last - j0 + 1 < SPAN ? (int)(last - j0 + 1) : SPAN;
+        const double from = (double)j0;
+#pragma omp simd
+        for (int i = 0; i < n; i++) {
+            double k = (from + i) * k_step, kappa = c / (4 * M_PI) * k;
+            double root = sqrt(half * half + b1 * kappa * kappa), frequency = beta * half + root;
+            double offset = frequency - fc;
+            position[i] = offset / stolt_bin + to_fc;
+            double slope = b1 * kappa * c / (4 * M_PI) / root;      /* dF/dK */
+            weight[i] = (real)(frequency / b1 * sqrt(c / (2 * kappa)) / kappa * slope * k_step / rma->fs);
+            double f = k * r / (2 * M_PI) - offset * t_centre + 0.125;
+            cycles[i] = f - floor(f + 0.5);
+        }
+        switch (rma->taps) {
+        case 4: interpolate(rma, z, swath->stolt_length, 4, n, position, re, im); break;
+        case 8: interpolate(rma, z, swath->stolt_length, 8, n, position, re, im); break;
+        default: interpolate(rma, z, swath->stolt_length, rma->taps, n, position, re, im); break;
+        }
+        stage_end(w, RMA_STOLT);
+#pragma omp simd
+        for (int i = 0; i < n; i++) {
+            turn(cycles[i], &wr[i], &wi[i]);
+            wr[i] *= weight[i];
+            wi[i] *= weight[i];
+        }
+        int at = (int)(j0 % patch->length);
+        for (int i = 0; i < n; i++) {
+            wave[2 * at] += re[i] * wr[i] - im[i] * wi[i];
+            wave[2 * at + 1] += re[i] * wi[i] + im[i] * wr[i];
+            if (++at == patch->length)
+                at = 0;
+        }
+        stage_end(w, RMA_FOCUS);
+    }
+    FFTW(execute_dft)(patch->focus_plan, (complex_real *)wave, (complex_real *)wave);
+    for (int i = 0; i < patch->grid.r_count; i++) {
+        stored[2 * RMA_TILE * i] = wave[2 * i];
+        stored[2 * RMA_TILE * i + 1] = wave[2 * i + 1];
+    }
+    stage_end(w, RMA_FOCUS);
+}
+
+/* The same without interpolation: every bin of the band at every row. `z` are vectors of the band's bins whose
+   samples count from time `origin`. */
+static void focus_direct(struct work_place *w, const struct rma_patch *patch, const real *z, double origin,
+                         real *stored)
+{
+    const struct rma *rma = w->rma;
+    const struct rma_swath *swath = w->swath;
+    const double c = rma->setting.sound_speed, beta = rma->setting.speed / c, b1 = (1 - beta) * (1 + beta);
+    const int rows = patch->grid.r_count;
+    real *parts = buffer(w, RMA_PARTS);
+    memset(parts, 0, (size_t)rows * 2 * LANES * sizeof *parts);
+    for (int k = w->line.begin / LANES * LANES; k < swath->band; k += LANES) {
+        double k_cycles[LANES], origin_cycles[LANES], weight[LANES];
+        real zr[LANES], zi[LANES], wr[LANES], wi[LANES], sr[LANES], si[LANES];
+        for (int l = 0; l < LANES; l++) {
+            bool exists = k + l >= w->line.begin && k + l < swath->band;
+            double frequency = rma_frequency(rma, swath, exists ? k + l : swath->band - 1);
+            k_cycles[l] = spectrum_monostatic(&rma->setting, frequency, w->line.nu) / (2 * M_PI);
+            double kappa = c / 2 * k_cycles[l];
+            origin_cycles[l] = 0.125 - (frequency - rma->setting.fc) * origin;
+            weight[l] = exists ? frequency / b1 * sqrt(c / (2 * kappa)) / kappa / swath->length : 0;
+            double step = k_cycles[l] * patch->grid.r_step;
+            turn(step - floor(step + 0.5), &sr[l], &si[l]);
+        }
+        for (int i0 = 0; i0 < rows; i0 += RMA_STEPS) {
+            int n = rows - i0 < RMA_STEPS ? rows - i0 : RMA_STEPS;
+            for (int l = 0; l < LANES; l++) {
+                double f = k_cycles[l] * (patch->grid.r_first + i0 * patch->grid.r_step) + origin_cycles[l];
+                turn(f - floor(f + 0.5), &wr[l], &wi[l]);
+                zr[l] = z[2 * k + l] * (real)weight[l];
+                zi[l] = z[2 * k + LANES + l] * (real)weight[l];
+            }
+            for (int i = 0; i < n; i++) {
+                real *part = parts + (size_t)(i0 + i) * 2 * LANES;
+#pragma omp simd
+                for (int l = 0; l < LANES; l++) {
+                    part[l] += zr[l] * wr[l] - zi[l] * wi[l];
+                    part[LANES + l] += zr[l] * wi[l] + zi[l] * wr[l];
+                    real t = wr[l] * sr[l] - wi[l] * si[l];
+                    wi[l] = wr[l] * si[l] + wi[l] * sr[l];
+                    wr[l] = t;
+                }
+            }
+        }
+    }
+    for (int i = 0; i < rows; i++) {
+        real re = 0, im = 0;
+        for (int l = 0; l < LANES; l++) {
+            re += parts[(size_t)i * 2 * LANES + (size_t)l];
+            im += parts[(size_t)i * 2 * LANES + LANES + (size_t)l];
+        }
+        stored[2 * RMA_TILE * i] = re;
+        stored[2 * RMA_TILE * i + 1] = im;
+    }
+    stage_end(w, RMA_FOCUS);
+}
+
+/* The blocks' spectra as one signal of samples from `centre` on. */
+static void reconstruct(struct work_place *w, real *sums, real *cut)
+{
+    const struct rma_swath *swath = w->swath;
+    const int summed = w->rma->options.sum == RMA_SUM_BEFORE ? 1 : w->rma->receivers;
+    const bool whole = swath->needed * summed == 1;
+    real *place = buffer(w, RMA_PLACES);
+    memset(cut, 0, 2 * (size_t)swath->stolt_length * sizeof *cut);
+    if (!whole)
+        places(w, place);
+    for (int n = 0; n < swath->needed; n++)
+        for (int m = 0; m < summed; m++, sums += 2 * swath->row) {
+            mask(w, sums);
+            add_block(w, sums, swath->blocks[n], whole ? NULL : place, cut);
+        }
+}
+
+static void column(struct work_place *w, real *stored)
+{
+    const struct rma *rma = w->rma;
+    const struct rma_swath *swath = w->swath;
+    real *sums = buffer(w, RMA_SUMS), *cut = buffer(w, RMA_CUT), *z = buffer(w, RMA_SPECTRUM);
+    const bool direct = rma->taps == 0;
+    const bool from_sums = direct && swath->needed == 1 && rma->options.sum == RMA_SUM_BEFORE;
+    REAL_ISA_NAME(rma_convert)(w, sums);
+    if (!from_sums) {
+        reconstruct(w, sums, cut);
+        spectrum(w, cut, z);
+    }
+    if (direct && !from_sums) {     /* its transform is as long as the conversion's */
+        int first = swath->band_first + swath->length / 2 + RMA_GUARD;
+        for (int k = 0; k < swath->band; k++)
+            for (int part = 0; part < 2; part++)
+                sums[2 * (k / LANES * LANES) + k % LANES + part * LANES] =
+                    z[part * (swath->length + 2 * RMA_GUARD) + first + k];
+    }
+    if (direct)
+        mask(w, sums);
+    stage_end(w, RMA_RECONSTRUCT);
+    for (int p = 0; p < swath->patch_count; p++) {
+        const struct rma_patch *patch = &swath->patches[p];
+        real *out = stored + 2 * RMA_TILE * patch->row;
+        if (direct)
+            focus_direct(w, patch, sums, swath->t_first + (from_sums ? 0 : swath->centre) / rma->fs, out);
+        else
+            focus_interpolated(w, patch, z, out);
+    }
+}
+
+void REAL_ISA_NAME(rma_column)(const struct rma *rma, const struct rma_swath *swath, int thread, int turn,
+                               double seconds[RMA_STAGES])
+{
+    struct work_place w = {.rma = rma, .swath = swath, .seconds = seconds, .mark = seconds_now(),
+                           .scratch = (char *)rma->scratch + (size_t)thread * rma->scratch_bytes};
+    real *stored = buffer(&w, RMA_STORED), *focused = rma->focused;
+    memset(stored, 0, 2 * RMA_TILE * swath->rows * sizeof *stored);
+    for (int n = 0; n < RMA_TILE && turn + n < swath->wavenumbers; n++) {
+        w.q = rma_wavenumber(rma, swath, turn + n);
+        w.line = rma_line(rma, swath, w.q);
+        if (w.line.begin < swath->band)
+            column(&w, stored + 2 * n);
+    }
+    for (size_t i = 0; i < swath->rows; i++, stored += 2 * RMA_TILE)
+        memcpy(focused + 2 * (i * swath->columns + (size_t)turn), stored, 2 * RMA_TILE * sizeof *stored);
+    stage_end(&w, RMA_FOCUS);
+}

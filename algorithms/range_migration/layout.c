@@ -1,0 +1,469 @@
+/* What a range migration's scene needs (rma_engine.h): the track, the blocks of the conversion, and the swaths with
+   their cuts of the record and their transforms. All in double, nothing of it depends on the echoes. */
+#include <complex.h>
+#include <fftw3.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/delay.h"
+#include "common/fft_length.h"
+#include "range_migration/conditions.h"
+#include "range_migration/engine.h"
+
+static const double pi = 3.14159265358979323846;
+
+static const double BAND_LOSS = 4e-6;       /* of the compressed pulse's energy may lie outside the band */
+static const double WIDEST_SINE = 0.95;     /* of the aperture where neither sampling nor element length bounds it */
+static const double FADE_PERIODS = 8;       /* of fs - B, or of B, in a cut's fade: what it smears stays beside the band */
+static const double PULSE_PERIODS = 8;     /* of B: beside the rows, so that no pulse wraps around the cut */
+static const double FRESNEL_ZONES = 6;      /* beyond the track's ends: what is cut farther out leaves no ripple */
+static const double EVEN = 1e-12;           /* relative: columns that divide the period but for rounding */
+static const int stolt_taps[] = {0, 4, 6, 8, 12, 16};
+
+static enum status unsupported(const struct rma *rma, const char *reason)
+{
+    return status_set(STATUS_UNSUPPORTED, "%s: %s", rma->method.name, reason);
+}
+
+static double last_row(const struct grid *grid)
+{
+    return grid->r_first + (grid->r_count - 1) * grid->r_step;
+}
+
+static enum status lay_track(struct rma *rma)
+{
+    const struct acquisition *a = rma->problem.acquisition;
+    struct straight_track track;
+    if (!acquisition_is_straight(a, &track))
+        return unsupported(rma, "the track is not straight and uniform (tx, rx within lambda/1000 of even points on "
+                                "a line along x, y = z = 0, one velocity, one t0)");
+    if (a->pings < 2)
+        return unsupported(rma, "a single ping has no azimuth spectrum");
+    if (a->aperture_limit < 1)
+        return unsupported(rma, "the scene has an aperture limit, and range migration cannot choose pings pixel by "
+                                "pixel");
+    rma->x_first = track.x_first;
+    rma->spacing = track.spacing;
+    rma->t0 = a->t0[0];
+    rma->fs = a->fs;
+    rma->receivers = a->receivers;
+    rma->pings = a->pings;
+    rma->samples = a->samples;
+    rma->setting = (struct spectrum_setting){a->sound_speed, track.speed, a->fc, 0};
+    rma->offset = malloc((size_t)a->receivers * sizeof *rma->offset);
+    if (!rma->offset)
+        return status_set(STATUS_FAILED, "no memory for %d receivers", a->receivers);
+    double tolerance = a->sound_speed / a->fc / 1000;
+    rma->groups = (a->receivers + RMA_GROUP - 1) / RMA_GROUP;
+    rma->recurs = rma->options.phases == RMA_RECURRENCE;
+    for (int m = 0; m < a->receivers; m++)
+        rma->offset[m] = a->rx[m].x - a->tx[0].x;
+    for (int m = 0; m < a->receivers; m++) {
+        rma->extremes[0] = rma->offset[m] < rma->offset[rma->extremes[0]] ? m : rma->extremes[0];
+        rma->extremes[1] = rma->offset[m] > rma->offset[rma->extremes[1]] ? m : rma->extremes[1];
+        double pitch = a->receivers > 1 ? (rma->offset[a->receivers - 1] - rma->offset[0]) / (a->receivers - 1) : 0;
+        rma->recurs = rma->recurs && fabs(rma->offset[m] - rma->offset[0] - m * pitch) <= tolerance;
+    }
+    rma->nearest = INFINITY;
+    rma->farthest = -INFINITY;
+    for (int k = 0; k < rma->problem.patch_count; k++) {
+        rma->nearest = fmin(rma->nearest, rma->problem.patches[k].r_first);
+        rma->farthest = fmax(rma->farthest, last_row(&rma->problem.patches[k]));
+    }
+    /* nu of the full rate, as an angle at the lowest frequency of the pulse. */
+    double lowest = a->fc - a->bandwidth / 2;
+    rma->sine = fmin(WIDEST_SINE, a->sound_speed * rma->receivers / fabs(rma->spacing) / 4 / lowest);
+    if (a->tx_length > 0)
+        rma->sine = fmin(rma->sine, a->sound_speed / lowest / a->tx_length);
+    rma->setting.reference_offset = rma->offset[a->receivers / 2];
+    if (!(rma->nearest > 0))
+        return status_set(STATUS_UNSUPPORTED, "%s: image rows begin at r = %g m; range migration needs r > 0",
+                          rma->method.name, rma->nearest);
+    rma->aside = fmax(fabs(rma->offset[rma->extremes[0]]), fabs(rma->offset[rma->extremes[1]]));
+    struct rma_view view = rma_view_of(&rma->problem, &rma->method, &track);
+    for (int k = 0; k < rma->problem.patch_count; k++) {
+        const struct grid *g = &rma->problem.patches[k];
+        double last = g->x_first + (g->x_count - 1) * g->x_step;
+        rma->way = fmax(rma->way, fmax(last - view.x_low, view.x_high - g->x_first));
+    }
+    /* A record that holds what the widest angle sees needs no other bound. */
+    double tangent = rma->sine / sqrt(1 - rma->sine * rma->sine);
+    if (2 * rma->farthest * (hypot(1, tangent) - 1) / a->sound_speed * a->fs <= a->samples)
+        rma->way = INFINITY;
+    rma->converts = view.converts;
+    return rma_conditions_check(&view);
+}
+
+double rma_reach(const struct rma *rma, double r)
+{
+    const struct acquisition *a = rma->problem.acquisition;
+    double wavelength = a->sound_speed / (a->fc - a->bandwidth / 2);
+    double track = rma->way + FRESNEL_ZONES * sqrt(wavelength * r / 2);
+    return fmin(r * rma->sine / sqrt(1 - rma->sine * rma->sine), track);
+}
+
+/* The bins that hold the compressed pulse; all of them where the echoes come compressed already. */
+static enum status lay_band(struct rma *rma)
+{
+    const struct acquisition *a = rma->problem.acquisition;
+    double band = a->bandwidth / a->fs, fade = ceil(FADE_PERIODS / fmin(1 - band, band));       /* infinite at fs = B */
+    rma->fade = fade < a->samples ? (int)fade : a->samples;
+    /* What was compressed elsewhere may have flanks beyond its bandwidth; twice the band holds them. Far beyond it there is
+       nothing, and the phases' polynomials would have to span it. */
+    rma->half_band = fmin(a->fs / 2, a->bandwidth);
+    if (a->compressed)
+        return STATUS_OK;
+    int length = rma->record_length = fft_length_fast((long long)a->samples + a->pulse_length - 1);
+    double complex *work = length > 0 ? fftw_malloc((size_t)length * sizeof *work) : NULL;
+    if (!work)
+        return status_set(STATUS_FAILED, "no memory for the replica's spectrum");
+    memset(work, 0, (size_t)length * sizeof *work);
+    memcpy(work, a->pulse, (size_t)a->pulse_length * sizeof *work);
+    fftw_plan forward = fftw_plan_dft_1d(length, work, work, FFTW_FORWARD, FFTW_ESTIMATE);
+    fftw_execute(forward);
+    fftw_destroy_plan(forward);
+    double total = 0, outside = 0;
+    for (int k = 0; k < length; k++)
+        total += pow(cabs(work[k]), 4);
+    int half = (length - 1) / 2;
+    for (; half > a->bandwidth / 2 / a->fs * length; half--) {
+        double edge = pow(cabs(work[half]), 4) + pow(cabs(work[length - half]), 4);
+        if (outside + edge > BAND_LOSS * total)
+            break;
+        outside += edge;
+    }
+    fftw_free(work);
+    rma->loss = outside / total;
+    rma->half_band = half * a->fs / length;
+    return STATUS_OK;
+}
+
+/* ---- blocks ---- */
+
+static double block_place(const struct rma *rma, double r)
+{
+    return ((rma->options.spacing == RMA_INVERSE ? 1 / r : r) - rma->block_from) / rma->block_width;
+}
+
+/* Blocks that blend reach from the first row to the last with their centres, so that no row lies outside them; the
+   others do so with their edges. */
+static void blocks_place(struct rma *rma, int count)
+{
+    bool inverse = rma->options.spacing == RMA_INVERSE, blend = rma->options.blend && count > 1;
+    double from = inverse ? 1 / rma->nearest : rma->nearest, to = inverse ? 1 / rma->farthest : rma->farthest;
+    rma->block_count = count;
+    rma->block_width = (to - from) / (blend ? count - 1 : count);
+    rma->block_from = from + (blend ? 0 : rma->block_width / 2);
+}
+
+/* Is the error that the conversion at the blocks' centres leaves at their ends below the limit (LBF21 Eq. (13))? */
+static bool blocks_suffice(struct rma *rma, int count)
+{
+    blocks_place(rma, count);
+    const struct acquisition *a = rma->problem.acquisition;
+    double nu = rma->receivers / (2 * fabs(rma->spacing));
+    double beta = fabs(rma->setting.speed) / a->sound_speed;
+    nu = fmin(nu, 2 * WIDEST_SINE * (a->fc - a->bandwidth / 2) / a->sound_speed / (1 + beta));
+    if (a->tx_length > 0)
+        nu = fmin(nu, 1 / a->tx_length);
+    for (int n = 0; n < count; n++)
+        for (int end = -1; end <= 1; end += 2) {
+            double edge = rma->block_from + (n + end * 0.5) * rma->block_width;
+            double r0 = rma_block_range(rma, n), r1 = edge;
+            if (rma->options.spacing == RMA_INVERSE)
+                r1 = edge > 0 ? 1 / edge : rma->farthest;
+            r1 = fmin(fmax(r1, rma->nearest), rma->farthest);
+            for (int k = 0; k < 18; k++) {      /* 2 receivers, 3 frequencies, 3 wavenumbers */
+                double frequency = a->fc + (k / 2 % 3 - 1) * a->bandwidth / 2, at = (k / 6 - 1) * nu;
+                double error = rma_correction(rma, rma->extremes[k % 2], r1, frequency, at)
+                               - rma_correction(rma, rma->extremes[k % 2], r0, frequency, at);
+                if (!(2 * pi * fabs(error) <= rma->options.limit))
+                    return false;
+            }
+        }
+    return true;
+}
+
+/* A single block has none to blend with: root mean square over the beam, at the farther of the ends, of the phase that its
+   centre's conversion leaves. */
+static double lone_block_error(struct rma *rma)
+{
+    enum { PLACES = 16, FREQUENCIES = 3 };
+    const struct acquisition *a = rma->problem.acquisition;
+    blocks_place(rma, 1);
+    double worst = 0, r0 = rma_block_range(rma, 0), reach = rma_reach(rma, rma->nearest);
+    for (int end = 0; end < 2; end++) {
+        double sum = 0, r = end ? rma->farthest : rma->nearest;
+        for (int m = 0; m < 2; m++)
+            for (int k = 0; k < PLACES * FREQUENCIES; k++) {
+                double u = (2 * (k / FREQUENCIES + 0.5) / PLACES - 1) * reach;
+                double frequency = a->fc + (k % FREQUENCIES - 1) * a->bandwidth / 2;
+                double nu = -frequency * spectrum_slope(&rma->setting, rma->offset[rma->extremes[m]], r, u);
+                double error = rma_correction(rma, rma->extremes[m], r, frequency, nu)
+                               - rma_correction(rma, rma->extremes[m], r0, frequency, nu);
+                sum += isfinite(error) ? 4 * pi * pi * error * error : 0;
+            }
+        worst = fmax(worst, sqrt(sum / (2 * PLACES * FREQUENCIES)));
+    }
+    return worst;
+}
+
+static enum status lay_blocks(struct rma *rma)
+{
+    int count = rma->options.blocks;
+    if (!(rma->farthest > rma->nearest) || !rma->converts)
+        count = 1;
+    if (count == 0) {
+        int too_few = 0;
+        for (count = 1; !blocks_suffice(rma, count); count *= 2) {
+            too_few = count;
+            if (count >= 4096)
+                return status_set(STATUS_UNSUPPORTED, "%s: 4096 range blocks leave a phase error above limit = %g "
+                                  "rad", rma->method.name, rma->options.limit);
+        }
+        while (count - too_few > 1) {
+            int middle = (count + too_few) / 2;
+            *(blocks_suffice(rma, middle) ? &count : &too_few) = middle;
+        }
+        if (count == 1 && !(lone_block_error(rma) <= rma->options.limit / pi))
+            count = RMA_NODES;
+    }
+    blocks_place(rma, count);
+    return STATUS_OK;
+}
+
+/* The first of the blocks that make up the rows at a place. */
+static int block_first(const struct rma *rma, double place)
+{
+    double last = rma->block_count - 1;
+    if (!rma->options.blend)
+        return (int)fmin(fmax(floor(place + 0.5), 0), last);
+    return (int)fmin(fmax(floor(place) - 1, 0), rma->block_count - rma_nodes_blended(rma));
+}
+
+/* The blocks that make up a swath's rows. */
+static void swath_blocks(const struct rma *rma, struct rma_swath *swath, int *list)
+{
+    const int nodes = rma->options.blend ? rma_nodes_blended(rma) : 1;
+    swath->blocks = list;
+    for (int n = 0; n < rma->block_count; n++) {
+        bool wanted = rma->block_count == 1;
+        for (int k = 0; k < swath->patch_count && !wanted; k++) {
+            const struct grid *g = &swath->patches[k].grid;
+            int begin = block_first(rma, block_place(rma, g->r_first)), end = block_first(rma, block_place(rma, last_row(g)));
+            wanted = n >= (begin < end ? begin : end) && n < (begin < end ? end : begin) + nodes;
+        }
+        if (wanted)
+            list[swath->needed++] = n;
+    }
+    swath->reference = swath->needed / 2;
+}
+
+/* ---- swaths ---- */
+
+/* Samples, as fractions counted from the record's first, in which the rows' echoes lie before and after the
+   conversion. */
+static void delays_span(const struct rma *rma, double nearest, double farthest, double *first, double *last)
+{
+    double c = rma->setting.sound_speed, reach = rma_reach(rma, farthest);
+    struct vector velocity = {rma->setting.speed, 0, 0}, target = {0, farthest, 0};
+    double delay = 2 * hypot(farthest, reach) / c * (1 + 2 * fabs(rma->setting.speed) / c);
+    for (int k = 0; k < 4; k++) {
+        double d = rma->offset[rma->extremes[k / 2]], u = (k % 2 ? 1 : -1) * reach - d / 2;
+        struct vector tx = {u, 0, 0}, rx = {u + d, 0, 0};
+        delay = fmax(delay, delay_exact(tx, rx, velocity, target, c));
+    }
+    *first = (2 * nearest / c - rma->t0) * rma->fs;
+    *last = (delay - rma->t0) * rma->fs;
+}
+
+static int patches_order(const void *a, const void *b)
+{
+    const struct rma_patch *p = a, *q = b;
+    if (p->grid.r_first != q->grid.r_first)
+        return p->grid.r_first < q->grid.r_first ? -1 : 1;
+    return (p->index > q->index) - (p->index < q->index);
+}
+
+/* Patches by range; those whose cuts of the record overlap share a swath. */
+static enum status lay_patches(struct rma *rma)
+{
+    int count = rma->problem.patch_count;
+    rma->patches = calloc((size_t)count, sizeof *rma->patches);
+    rma->swaths = calloc((size_t)count, sizeof *rma->swaths);
+    if (!rma->patches || !rma->swaths)
+        return status_set(STATUS_FAILED, "no memory for %d patches", count);
+    rma->patch_count = count;
+    for (int k = 0; k < count; k++) {
+        rma->patches[k].grid = rma->problem.patches[k];
+        rma->patches[k].index = k;
+    }
+    qsort(rma->patches, (size_t)count, sizeof *rma->patches, patches_order);
+    for (int k = 0; k < count; k++) {
+        struct rma_patch *patch = &rma->patches[k];
+        struct rma_swath *swath = rma->swaths + rma->swath_count - 1;
+        double first, last, end = -INFINITY;
+        if (k > 0)
+            delays_span(rma, swath->nearest, swath->farthest, &first, &end);
+        delays_span(rma, patch->grid.r_first, patch->grid.r_first, &first, &last);
+        if (k == 0 || first - 2 * rma->fade > end + 2 * rma->fade) {
+            swath++;
+            rma->swath_count++;
+            *swath = (struct rma_swath){.nearest = patch->grid.r_first, .farthest = -INFINITY, .patches = patch};
+        }
+        patch->row = swath->rows;
+        swath->patch_count++;
+        swath->rows += (size_t)patch->grid.r_count;
+        swath->farthest = fmax(swath->farthest, last_row(&patch->grid));
+    }
+    return STATUS_OK;
+}
+
+/* Azimuth: the full rate of M receivers (LBF21 Eq. (10)), with zeros after the pings, since the period wraps around: what
+   is focused beyond either end of the track, as far as the widest angle sees, must not reach a wanted column. */
+static enum status swath_azimuth(const struct rma *rma, struct rma_swath *swath)
+{
+    double spacing = fabs(rma->spacing), angle = swath->farthest * rma->sine / sqrt(1 - rma->sine * rma->sine);
+    double reach = rma_reach(rma, swath->farthest), folds = reach < angle ? rma->way + reach : 0;
+    double x_low = fmin(rma->x_first, rma->x_first + (rma->pings - 1) * rma->spacing);
+    double x_high = x_low + (rma->pings - 1) * spacing, overhang = 0;
+    for (int k = 0; k < swath->patch_count; k++) {
+        const struct grid *g = &swath->patches[k].grid;
+        double last = g->x_first + (g->x_count - 1) * g->x_step;
+        if (g->x_first < x_low - angle || last > x_high + angle)
+            return status_set(STATUS_UNSUPPORTED, "%s: columns from %g to %g m leave what the wavenumbers of the "
+                              "track cover, %g to %g m (squint too large)", rma->method.name, g->x_first, last,
+                              x_low - angle, x_high + angle);
+        overhang = fmax(overhang, fmax(x_low - g->x_first, last - x_high));
+    }
+    double extent = x_high - x_low + overhang + angle;
+    swath->period = fft_length((long long)fmin(1e9, fmax(ceil(extent / spacing) + 1, folds / spacing)));
+    if (swath->period == 0 || (double)swath->period * rma->receivers > INT_MAX / 4)
+        return status_set(STATUS_UNSUPPORTED, "%s: the azimuth transform is too long: %g m to either side of a target, pings "
+                          "%g m apart, %d receivers", rma->method.name, reach, spacing, rma->receivers);
+    swath->wavenumbers = swath->period * rma->receivers;
+    swath->columns = (size_t)(swath->wavenumbers + RMA_TILE - 1) / RMA_TILE * RMA_TILE;
+    return STATUS_OK;
+}
+
+/* Range: what the rows need of the record, the fades included, and zeros up to what the pulse at the first row and the
+   delays of the widest angle need beyond it. */
+static enum status swath_range(const struct rma *rma, struct rma_swath *swath)
+{
+    double first, last, c = rma->setting.sound_speed, end = rma->samples - 1, margin = 2 * rma->fade;
+    delays_span(rma, swath->nearest, swath->farthest, &first, &last);
+    double pulse = PULSE_PERIODS * rma->fs / rma->problem.acquisition->bandwidth;
+    double before = fmax(0, -first), after = fmax(0, last - end);
+    if (!(before + after <= 2.0 * rma->samples))
+        return status_set(STATUS_UNSUPPORTED, "%s: rows from %g to %g m lie too far outside the record's %g to %g m",
+                          rma->method.name, swath->nearest, swath->farthest, c * rma->t0 / 2,
+                          c * (rma->t0 + end / rma->fs) / 2);
+    double from = floor(fmin(first - pulse, fmax(first - margin, 0)));
+    double to = ceil(fmax(last + pulse, fmin(last + margin, end)));
+    swath->first = (int)from;
+    swath->begin = (int)fmin(fmax(from, 0), end);
+    swath->end = (int)fmin(fmax(to, 0), end) + 1;
+    swath->t_first = rma->t0 + from / rma->fs;
+    swath->centre = (int)((to - from) / 2);
+    swath->length = fft_length_fast((long long)(to - from) + 1 + RMA_GUARD);
+    swath->stolt_length = rma->taps == 0 ? swath->length : fft_length_fast((long long)(RMA_OVERSAMPLING * swath->length));
+    if (swath->length == 0 || swath->stolt_length == 0 || swath->stolt_length > INT_MAX / 64)
+        return unsupported(rma, "the range transform is too long");
+
+    /* What the fades smear beyond the pulse's band belongs to it. */
+    int lanes = RMA_ALIGNMENT / (rma->problem.precision == PRECISION_DOUBLE ? 8 : 4);
+    double half = ceil(rma->half_band / rma->fs * swath->length);
+    if (swath->begin > 0 || swath->end < rma->samples)
+        half += 2 * ceil((double)swath->length / rma->fade);
+    swath->band_first = half < (swath->length - 1) / 2 ? -(int)half : -(swath->length / 2);
+    swath->band = half < (swath->length - 1) / 2 ? 2 * (int)half + 1 : swath->length;
+    swath->row = (swath->band + lanes - 1) / lanes * lanes;
+    return STATUS_OK;
+}
+
+static enum status swath_patches(const struct rma *rma, struct rma_swath *swath)
+{
+    double c = rma->setting.sound_speed, bin = c / (2 * rma->fs);
+    double extent = swath->length * bin * (1 + 2 * fabs(rma->setting.speed) / c);
+    for (int k = 0; k < swath->patch_count; k++) {
+        struct rma_patch *patch = &swath->patches[k];
+        patch->step = patch->grid.r_count > 1 ? patch->grid.r_step : bin;
+        double rows = fmax(ceil(extent / patch->step), patch->grid.r_count);
+        patch->length = rows < 1e8 ? fft_length_fast((long long)rows) : 0;
+        double columns = swath->period * fabs(rma->spacing) / patch->grid.x_step, whole = floor(columns + 0.5);
+        patch->folds = fabs(columns - whole) <= EVEN * whole && whole >= patch->grid.x_count && whole <= INT_MAX
+                       && fft_length((long long)whole) == whole;
+        patch->columns = patch->folds ? (int)whole
+                                      : fft_length_fast((long long)swath->wavenumbers + patch->grid.x_count - 1);
+        if (patch->length == 0 || patch->columns == 0)
+            return status_set(STATUS_UNSUPPORTED, "%s: rows %g m apart over %g m are too many to transform",
+                              rma->method.name, patch->step, extent);
+    }
+    return STATUS_OK;
+}
+
+static enum status lay_swaths(struct rma *rma)
+{
+    static enum status (*const steps[])(const struct rma *, struct rma_swath *) = {swath_azimuth, swath_range,
+                                                                                   swath_patches};
+    rma->taps = stolt_taps[rma->options.stolt];
+    double support = rma->taps * (1 - 0.5 / RMA_OVERSAMPLING);      /* the parameter of least error for this support */
+    rma->shape = pi * sqrt(fmax(support * support - 0.8, 1));
+    rma->block_list = malloc((size_t)rma->block_count * (size_t)rma->swath_count * sizeof *rma->block_list);
+    if (!rma->block_list)
+        return status_set(STATUS_FAILED, "no memory for %d blocks", rma->block_count);
+    enum status status = STATUS_OK;
+    for (int n = 0; n < rma->swath_count; n++) {
+        for (size_t k = 0; status == STATUS_OK && k < sizeof steps / sizeof *steps; k++)
+            status = steps[k](rma, &rma->swaths[n]);
+        swath_blocks(rma, &rma->swaths[n], rma->block_list + n * rma->block_count);
+    }
+    return status;
+}
+
+/* The scratch of a thread: room for each swath in turn. */
+static void lay_scratch(struct rma *rma)
+{
+    const size_t real_bytes = rma->problem.precision == PRECISION_DOUBLE ? sizeof(double) : sizeof(float);
+    const size_t receivers = (size_t)rma->receivers, summed = rma->options.sum == RMA_SUM_AFTER ? receivers : 1;
+    size_t most[RMA_BUFFERS] = {[RMA_RECORD] = 2 * (size_t)rma->record_length * real_bytes};
+    for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
+        size_t row = 2 * (size_t)s->row * real_bytes, stolt = (size_t)s->stolt_length, needed = (size_t)s->needed;
+        size_t longest = stolt, most_rows = 0;
+        for (int k = 0; k < s->patch_count; k++) {
+            size_t rows = (size_t)s->patches[k].grid.r_count, length = (size_t)s->patches[k].length;
+            longest = length > longest ? length : longest;
+            most_rows = rows > most_rows ? rows : most_rows;
+        }
+        const size_t bytes[RMA_BUFFERS] = {
+            [RMA_RAMPS] = (1 + needed) * (size_t)rma->groups * sizeof(struct rma_ramp),
+            [RMA_ABSCISSAS] = (size_t)s->row * sizeof(double),
+            [RMA_CONVERTED] = receivers * 2 * RMA_SPAN * real_bytes,
+            [RMA_SUMS] = needed * summed * row,
+            [RMA_WAVE] = 2 * longest * real_bytes,
+            [RMA_CUT] = 2 * stolt * real_bytes,
+            [RMA_PLACES] = (size_t)s->length * real_bytes,
+            [RMA_SPECTRUM] = 2 * (stolt + 2 * RMA_GUARD) * real_bytes,
+            [RMA_PARTS] = rma->taps == 0 ? most_rows * 2 * RMA_ALIGNMENT : 0,
+            [RMA_STORED] = 2 * RMA_TILE * s->rows * real_bytes,
+        };
+        for (int k = 0; k < RMA_BUFFERS; k++)
+            most[k] = bytes[k] > most[k] ? bytes[k] : most[k];
+    }
+    for (int k = 0; k < RMA_BUFFERS; k++) {
+        rma->scratch_at[k] = rma->scratch_bytes;
+        rma->scratch_bytes += (most[k] + RMA_ALIGNMENT - 1) / RMA_ALIGNMENT * RMA_ALIGNMENT;
+    }
+}
+
+enum status rma_layout(struct rma *rma)
+{
+    static enum status (*const steps[])(struct rma *) = {lay_track, lay_band, lay_blocks, lay_patches, lay_swaths};
+    enum status status = STATUS_OK;
+    for (size_t k = 0; status == STATUS_OK && k < sizeof steps / sizeof *steps; k++)
+        status = steps[k](rma);
+    if (status == STATUS_OK)
+        lay_scratch(rma);
+    return status;
+}

@@ -1,0 +1,225 @@
+/* Range migration of multi-receiver echoes (rma.h): the order of work, and its count. Each azimuth wavenumber is worked
+   on by one thread, receivers in order, so that the bits do not depend on the number of threads. */
+#include "range_migration/rma.h"
+
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "common/fft_length.h"
+#include "common/isa.h"
+#include "range_migration/engine.h"
+
+const char *const rma_spacing_names[] = {"uniform", "inverse", NULL};
+const char *const rma_blend_names[] = {"off", "on", NULL};
+const char *const rma_stolt_names[] = {"direct", "4", "6", "8", "12", "16", NULL};
+const char *const rma_sum_names[] = {"before", "after", NULL};
+const char *const rma_phases_names[] = {"recurrence", "libm", NULL};
+
+static const double WORK_LIMIT = 1e11;      /* operations: some twenty seconds */
+static const double MEMORY_LIMIT = 5e8, MEMORY_FACTOR = 50;     /* bytes */
+
+static const char *const stage_names[RMA_STAGES] = {"bulk", "differential", "reconstruct", "stolt", "focus"};
+
+static rma_column_function *const column_functions[][2] = {
+    [ISA_BASELINE] = {rma_column_float_baseline, rma_column_double_baseline},
+#ifdef SASBENCH_X86_64
+    [ISA_V3] = {rma_column_float_v3, rma_column_double_v3},
+    [ISA_V4] = {rma_column_float_v4, rma_column_double_v4},
+#endif
+};
+
+static const struct rma_transform *transform(const struct rma *rma)
+{
+    return rma->problem.precision == PRECISION_DOUBLE ? &rma_transform_double : &rma_transform_float;
+}
+
+/* One swath's share of the counted FLOPs. */
+static double swath_flops(const struct rma *rma, const struct rma_swath *swath)
+{
+    const double receivers = rma->receivers, band = swath->band, q = swath->wavenumbers, length = swath->length;
+    const double applied = 20;                  /* a receiver's cell: product, sum, and two recurrences */
+    const double phases = 3 * (2.0 * RMA_DEGREE + 30) / RMA_GROUP;
+    const double sums = rma->options.sum == RMA_SUM_AFTER ? receivers : 1;
+    const double weights = swath->needed * sums > 1 ? 10 * (rma->options.blend ? rma_nodes_blended(rma) : 1) : 0;
+    double flops = receivers * rma->pings * fft_flops(length) + receivers * band * fft_flops(swath->period)
+                   + q * receivers * band * (rma->converts ? applied + phases : 0) * swath->needed
+                   + q * (sums * (swath->needed * fft_flops(length) + weights * length)
+                          + fft_flops(swath->stolt_length) + 2 * length);
+    for (int k = 0; k < swath->patch_count; k++) {
+        const struct rma_patch *patch = &swath->patches[k];
+        double rows = patch->grid.r_count, points = patch->length * patch->step * 2 * rma->fs
+                                                    / rma->setting.sound_speed;
+        flops += q * (rma->taps ? points * (7.0 * rma->taps + 60) + fft_flops(patch->length) : rows * band * 14);
+        flops += rows * (patch->folds ? fft_flops(patch->columns) + 2 * q : 2 * fft_flops(patch->columns) + 6 * patch->columns);
+        flops += rows * 6 * (q + patch->grid.x_count);
+    }
+    return flops;
+}
+
+/* LBF21 Eqs. (20) to (22): N_a x N_r the full-rate data. Eq. (20) counts one sub-block, whatever their number: each one
+   more costs its products and its range transforms. */
+static void count_published(struct rma *rma)
+{
+    const struct rma_method *method = &rma->method;
+    struct work *work = &rma->work;
+    double receivers = rma->receivers, na = (double)rma->pings * receivers, nr = rma->samples;
+    double taps = rma->taps ? rma->taps : 8, range = method->range[0] * receivers + method->range[1];
+    double azimuth = method->azimuth[0] * receivers + method->azimuth[1];
+    double products = method->products[0] * receivers + method->products[1];
+    double paper = na * nr * (1.5 * range * log2(nr) + 1.5 * azimuth * log2(na) + products
+                              + method->interpolations * (2 * taps - 1));
+    work->published[0].source = method->source;
+    work->published[0].flops = paper;
+    work->published[1].source = "with the factor of the range blocks";
+    work->published[1].flops = paper + (rma->block_count - 1) * receivers * na * nr * (1.5 * log2(nr) + 1);
+}
+
+static void count_work(struct rma *rma)
+{
+    struct work *work = &rma->work;
+    double taken = 0, bins = 0, all = 0;
+    int needed = 0;
+    bool *used = calloc((size_t)rma->block_count, sizeof *used), differential = false;
+    if (rma->record_length > 0)
+        work->flops = (double)rma->receivers * rma->pings * (2 * fft_flops(rma->record_length) + 6 * rma->record_length);
+    for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
+        work->flops += swath_flops(rma, s);
+        taken += s->end - s->begin;
+        bins += s->band;
+        all += s->length;
+        differential = differential || s->needed > 1;
+        for (int n = 0; used && n < s->needed; n++)
+            used[s->blocks[n]] = true;
+    }
+    for (int n = 0; n < rma->block_count; n++)
+        needed += used && used[n];
+    free(used);
+    count_published(rma);
+    snprintf(work->engine, sizeof work->engine, "%d of %d blocks", needed, rma->block_count);
+    const struct {
+        bool happens;
+        const char *format;
+        double values[2];
+    } notes[] = {
+        {true, "azimuth correction: the monostatic phase is exact", {0}},
+        {!rma->converts, "; conversion: one receiver at the transmitter", {0}},
+        {rma->converts && !differential, "; differential preprocessing: one block", {0}},
+        {rma->taps == 0, "; Stolt interpolation: direct sum", {0}},
+        {needed < rma->block_count, "; %.0f blocks without rows", {rma->block_count - needed, 0}},
+        {taken < rma->samples, "; %.0f %% of each record", {100 * (1 - taken / rma->samples)}},
+        {bins < all, "; %.0f %% of the band: %.1g of the pulse's energy", {100 * (1 - bins / all), rma->loss}},
+    };
+    size_t length = 0;
+    for (size_t k = 0; k < sizeof notes / sizeof *notes; k++)
+        if (notes[k].happens && length < sizeof work->skipped)
+            length += (size_t)snprintf(work->skipped + length, sizeof work->skipped - length, notes[k].format,
+                                       notes[k].values[0], notes[k].values[1]);
+}
+
+/* Scenes that back projection images in moments may ask range migration, whose transforms do not know how little is
+   wanted, for hours or for all memory: those are refused, before anything is allocated. */
+static enum status check_work(const struct rma *rma)
+{
+    const double real_bytes = rma->problem.precision == PRECISION_DOUBLE ? 8 : 4, much = 1000;
+    const double records = (double)rma->pings * rma->receivers;
+    double pixels = 0, bytes = (double)rma->threads * (double)rma->scratch_bytes;
+    for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++)
+        bytes += 2 * real_bytes * ((double)s->period * rma->receivers * s->row + (double)s->rows * (double)s->columns);
+    for (int k = 0; k < rma->patch_count; k++)
+        pixels += (double)rma->patches[k].grid.r_count * rma->patches[k].grid.x_count;
+    double given = 2 * real_bytes * (records * rma->samples + pixels), direct = 16 * records * pixels;
+    if (!(rma->work.flops <= fmax(WORK_LIMIT, much * direct)))
+        return status_set(STATUS_UNSUPPORTED, "%s: condition work: %.2g operations, %.2g times those of back projection; at "
+                          "most %g of them, or %g times, are accepted (cure: back projection; coarser pixels, or pings "
+                          "farther apart)", rma->method.name, rma->work.flops, rma->work.flops / direct, WORK_LIMIT, much);
+    if (!(bytes <= fmax(MEMORY_LIMIT, MEMORY_FACTOR * given)))
+        return status_set(STATUS_UNSUPPORTED, "%s: condition memory: %.2g bytes, %.2g times those of echoes and image; at most "
+                          "%g of them, or %g times, are accepted (cure: back projection; coarser pixels, or pings farther "
+                          "apart)", rma->method.name, bytes, bytes / given, MEMORY_LIMIT, MEMORY_FACTOR);
+    return STATUS_OK;
+}
+
+enum status rma_plan(const struct problem *problem, const struct rma_method *method,
+                     const struct rma_options *options, void **plan)
+{
+    *plan = NULL;
+    struct rma *rma = calloc(1, sizeof *rma);
+    if (!rma)
+        return status_set(STATUS_FAILED, "no memory for the plan");
+    rma->problem = *problem;
+    rma->method = *method;
+    rma->options = *options;
+    rma->threads = omp_get_max_threads();
+    rma->work.bytes = sizeof *rma;
+    rma_nodes(rma);
+    enum status status = rma_layout(rma);
+    if (status == STATUS_OK) {
+        count_work(rma);
+        status = check_work(rma);
+    }
+    if (status == STATUS_OK)
+        status = transform(rma)->plan(rma);
+    if (status != STATUS_OK) {
+        rma_destroy(rma);
+        return status;
+    }
+    *plan = rma;
+    return STATUS_OK;
+}
+
+/* All wavenumbers of a swath, from the receivers' spectra to focused rows. */
+static void migrate(const struct rma *rma, const struct rma_swath *swath, struct stages *stages)
+{
+    rma_column_function *column = column_functions[isa_choose()][rma->problem.precision];
+    double seconds[RMA_STAGES] = {0}, sum = 0;
+#pragma omp parallel num_threads(rma->threads) reduction(+ : seconds[:RMA_STAGES])
+    {
+#pragma omp for schedule(dynamic)
+        for (int turn = 0; turn < swath->wavenumbers; turn += RMA_TILE)
+            column(rma, swath, omp_get_thread_num(), turn, seconds);
+    }
+    /* The threads' time in each stage, as shares of the time that passed. */
+    for (int k = 0; k < RMA_STAGES; k++)
+        sum += seconds[k];
+    double passed = seconds_now() - stages->mark;
+    for (int k = 0; k < RMA_STAGES; k++)
+        if (seconds[k] > 0) {
+            stages->mark = seconds_now() - passed * seconds[k] / sum;
+            stages_end(stages, stage_names[k]);
+        }
+}
+
+enum status rma_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages)
+{
+    struct rma *rma = plan;
+    transform(rma)->compress(rma, echoes->samples);
+    stages_end(stages, "compress");
+    for (const struct rma_swath *swath = rma->swaths; swath < rma->swaths + rma->swath_count; swath++) {
+        transform(rma)->spread(rma, swath);
+        stages_end(stages, "spread");
+        migrate(rma, swath, stages);
+        for (int k = 0; k < swath->patch_count; k++)
+            transform(rma)->inverse(rma, swath, &swath->patches[k], image->pixels[swath->patches[k].index]);
+        stages_end(stages, "inverse");
+    }
+    return STATUS_OK;
+}
+
+struct work rma_work(const void *plan)
+{
+    return ((const struct rma *)plan)->work;
+}
+
+void rma_destroy(void *plan)
+{
+    struct rma *rma = plan;
+    if (!rma)
+        return;
+    transform(rma)->destroy(rma);
+    free(rma->swaths);
+    free(rma->patches);
+    free(rma->block_list);
+    free(rma->offset);
+    free(rma);
+}

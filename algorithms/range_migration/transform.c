@@ -1,0 +1,341 @@
+/* The transforms of range migration along range and azimuth, with their memory (rma_engine.h). Compiled once for each
+   precision. */
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/fft_length.h"
+#include "common/real.h"
+#include "range_migration/engine.h"
+
+enum {
+    LANES = RMA_ALIGNMENT / sizeof(real),
+    BLOCKS = 4                      /* vectors of bins that go through the azimuth FFT together */
+};
+static const double pi = 3.14159265358979323846;
+
+/* Zeroed memory on the plan's account; failure shows as NULL. */
+static void *take(struct rma *rma, size_t count, size_t size, double share)
+{
+    size_t bytes = (count * size + RMA_ALIGNMENT - 1) / RMA_ALIGNMENT * RMA_ALIGNMENT;
+    void *memory = aligned_alloc(RMA_ALIGNMENT, bytes ? bytes : RMA_ALIGNMENT);
+    if (memory)
+        memset(memory, 0, bytes);
+    rma->work.bytes += share * (double)bytes;
+    return memory;
+}
+
+static real *scratch_of(const struct rma *rma, enum rma_buffer buffer)
+{
+    char *scratch = (char *)rma->scratch + (size_t)omp_get_thread_num() * rma->scratch_bytes;
+    return (real *)(scratch + rma->scratch_at[buffer]);
+}
+
+static complex_real rotor(double cycles)
+{
+    double angle = 2 * pi * (cycles - floor(cycles + 0.5));
+    return (real)cos(angle) + (real)sin(angle) * (complex_real)I;
+}
+
+/* ESTIMATE: the same algorithm, hence the same bits, at every planning. */
+static void *plan_line(int length, complex_real *memory, int sign)
+{
+    return FFTW(plan_dft_1d)(length, memory, memory, sign, FFTW_ESTIMATE);
+}
+
+/* conj(P)/sum|p|^2 and the inverse transform's 1/length; transforms in double. */
+static bool filter_fill(struct rma *rma)
+{
+    const struct acquisition *a = rma->problem.acquisition;
+    complex_real *filter = rma->filter;
+    double complex *work = take(rma, (size_t)rma->record_length, sizeof *work, 0);
+    double energy = 0;
+    if (!work)
+        return false;
+    for (int k = 0; k < a->pulse_length; k++) {
+        work[k] = a->pulse[k];
+        energy += creal(work[k]) * creal(work[k]) + cimag(work[k]) * cimag(work[k]);
+    }
+    fftw_plan forward = fftw_plan_dft_1d(rma->record_length, work, work, FFTW_FORWARD, FFTW_ESTIMATE);
+    fftw_execute(forward);
+    fftw_destroy_plan(forward);
+    for (int k = 0; k < rma->record_length; k++)
+        filter[k] = (complex_real)(conj(work[k]) / (energy * rma->record_length));
+    free(work);
+    return true;
+}
+
+/* I0(x)/exp(x) by its power series: all terms are positive. */
+static double bessel_i0(double x)
+{
+    double term = exp(-x), sum = term, y = x * x / 4;
+    for (int k = 1; term > 1e-17 * sum; k++) {
+        term *= y / ((double)k * k);
+        sum += term;
+    }
+    return sum;
+}
+
+/* The Kaiser kernel of the Stolt interpolation. */
+static void kernel_fill(const struct rma *rma)
+{
+    real *kernel = rma->kernel;
+    int taps = rma->taps;
+    double shape = rma->shape;
+    for (int i = 0; taps && i < RMA_INTERVALS + 2; i++)
+        for (int k = 0; k < taps; k++) {
+            double z = 2 * ((double)i / RMA_INTERVALS - (1 - taps / 2 + k)) / taps, inside = sqrt(fmax(1 - z * z, 0));
+            kernel[i * taps + k] = (real)(fabs(z) <= 1 ? bessel_i0(shape * inside) * exp(shape * (inside - 1)) : 0);
+        }
+}
+
+/* What samples are multiplied by so that the kernel neither weights nor blurs them, 1 over its transform; held where
+   no row lies. */
+static void apodization_fill(const struct rma *rma, const struct rma_swath *swath)
+{
+    real *apodization = swath->apodization;
+    int taps = rma->taps, length = swath->stolt_length;
+    double shape = rma->shape;
+    for (int j = 0; j < length; j++) {
+        double place = fmin(fabs((double)(j < length - length / 2 ? j : j - length) / length), 0.5 / RMA_OVERSAMPLING);
+        double x = sqrt(fmax(shape * shape - pi * pi * taps * taps * place * place, 1e-12));
+        double transform = taps ? taps * exp(-shape) * sinh(x) / x : 1;
+        apodization[j] = (real)(1 / (transform * swath->length));
+    }
+}
+
+/* The azimuth sum onto a grid's columns, wavenumbers nu = (q - Q/2) dnu and columns x = x0 + j dx: one transform where
+   1/(dnu dx) is its length, or a convolution (chirp z),  2 q j = q^2 + j^2 - (j - q)^2. */
+static bool azimuth_fill(struct rma *rma, const struct rma_swath *swath, struct rma_patch *patch)
+{
+    const int q_count = swath->wavenumbers, x_count = patch->grid.x_count, length = patch->columns;
+    complex_real *before = take(rma, (size_t)q_count, sizeof *before, 1);
+    complex_real *after = take(rma, (size_t)x_count, sizeof *after, 1);
+    complex_real *kernel = patch->folds ? NULL : take(rma, (size_t)length, sizeof *kernel, 1);
+    complex_real *wave = (complex_real *)scratch_of(rma, 0);
+    patch->before = before;
+    patch->after = after;
+    patch->kernel = kernel;
+    patch->azimuth_inverse = plan_line(length, wave, FFTW_BACKWARD);
+    if (!before || !after || !patch->azimuth_inverse)
+        return false;
+    const double period = swath->period * fabs(rma->spacing), turn = patch->folds ? 1.0 / length
+                                                                                 : patch->grid.x_step / period;
+    const double from = (patch->grid.x_first - rma->x_first) / period, square = patch->folds ? 0 : 0.5 * turn;
+    for (int q = 0; q < q_count; q++)
+        before[q] = rotor((q - q_count / 2) * from + square * q * q);
+    for (int j = 0; j < x_count; j++)
+        after[j] = rotor(square * j * j - turn * (q_count / 2) * j) / (real)(patch->folds ? period : period * length);
+    if (patch->folds)
+        return true;
+    patch->azimuth_forward = plan_line(length, wave, FFTW_FORWARD);
+    if (!kernel || !patch->azimuth_forward)
+        return false;
+    for (int i = -(q_count - 1); i < x_count; i++)
+        kernel[i < 0 ? i + length : i] = rotor(-square * i * i);
+    FFTW(execute_dft)(patch->azimuth_forward, kernel, kernel);
+    return true;
+}
+
+static bool plan_swath(struct rma *rma, struct rma_swath *swath)
+{
+    complex_real *wave = (complex_real *)scratch_of(rma, RMA_WAVE), *lines = rma->scratch;
+    swath->data = take(rma, (size_t)swath->period * (size_t)rma->receivers, 2 * (size_t)swath->row * sizeof(real), 1);
+    swath->apodization = take(rma, (size_t)swath->stolt_length, sizeof(real), 1);
+    if (!swath->data || !swath->apodization)
+        return false;
+    apodization_fill(rma, swath);
+    swath->range_forward = plan_line(swath->length, wave, FFTW_FORWARD);
+    swath->range_inverse = plan_line(swath->length, wave, FFTW_BACKWARD);
+    swath->stolt_forward = plan_line(swath->stolt_length, wave, FFTW_FORWARD);
+    swath->azimuth_forward = FFTW(plan_many_dft)(1, &swath->period, BLOCKS * LANES, lines, NULL, BLOCKS * LANES, 1,
+                                                 lines, NULL, BLOCKS * LANES, 1, FFTW_FORWARD, FFTW_ESTIMATE);
+    bool complete = swath->range_forward && swath->range_inverse && swath->stolt_forward && swath->azimuth_forward;
+    for (int k = 0; complete && k < swath->patch_count; k++) {
+        struct rma_patch *patch = &swath->patches[k];
+        patch->focus_plan = plan_line(patch->length, wave, FFTW_BACKWARD);
+        complete = patch->focus_plan && azimuth_fill(rma, swath, patch);
+    }
+    return complete;
+}
+
+static enum status plan(struct rma *rma)
+{
+    size_t strip = 0, focused = 0, at_once = BLOCKS * LANES;       /* scratch also serves the transforms of this file */
+    for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
+        strip = strip > at_once * (size_t)s->period ? strip : at_once * (size_t)s->period;
+        focused = focused > s->rows * s->columns ? focused : s->rows * s->columns;
+        for (int k = 0; k < s->patch_count; k++)
+            strip = strip > (size_t)s->patches[k].columns ? strip : (size_t)s->patches[k].columns;
+    }
+    strip *= sizeof(complex_real);
+    if (rma->scratch_bytes < strip)
+        rma->scratch_bytes = (strip / RMA_ALIGNMENT + 1) * RMA_ALIGNMENT;
+    rma->scratch = take(rma, (size_t)rma->threads, rma->scratch_bytes, 1.0 / rma->threads);
+    rma->focused = take(rma, focused, sizeof(complex_real), 1);
+    rma->fades = take(rma, (size_t)rma->fade, sizeof(real), 1);
+    rma->kernel = take(rma, (RMA_INTERVALS + 2) * (size_t)rma->taps, sizeof(real), 1);
+    rma->filter = take(rma, (size_t)rma->record_length, sizeof(complex_real), 1);
+    bool complete = rma->scratch && rma->focused && rma->fades && rma->kernel && rma->filter;
+    if (complete) {
+        real *fades = rma->fades;
+        for (int k = 0; k < rma->fade; k++)
+            fades[k] = (real)pow(sin(pi / 2 * (k + 0.5) / rma->fade), 2);
+        kernel_fill(rma);
+    }
+    if (complete && rma->record_length > 0) {
+        complex_real *record = (complex_real *)scratch_of(rma, RMA_RECORD);
+        rma->record_forward = plan_line(rma->record_length, record, FFTW_FORWARD);
+        rma->record_inverse = plan_line(rma->record_length, record, FFTW_BACKWARD);
+        complete = rma->record_forward && rma->record_inverse && filter_fill(rma);
+    }
+    for (int n = 0; complete && n < rma->swath_count; n++)
+        complete = plan_swath(rma, &rma->swaths[n]);
+    return complete ? STATUS_OK : status_set(STATUS_FAILED, "no memory for range migration (%.0f MB for a thread)",
+                                             rma->work.bytes / 1e6);
+}
+
+static void plan_destroy(void *made)
+{
+    if (made)
+        FFTW(destroy_plan)(made);
+}
+
+static void destroy(struct rma *rma)
+{
+    for (int k = 0; rma->patches && k < rma->patch_count; k++) {
+        struct rma_patch *patch = &rma->patches[k];
+        plan_destroy(patch->focus_plan);
+        plan_destroy(patch->azimuth_forward);
+        plan_destroy(patch->azimuth_inverse);
+        free(patch->before);
+        free(patch->after);
+        free(patch->kernel);
+    }
+    for (int n = 0; n < rma->swath_count; n++) {
+        struct rma_swath *swath = &rma->swaths[n];
+        plan_destroy(swath->range_forward);
+        plan_destroy(swath->range_inverse);
+        plan_destroy(swath->stolt_forward);
+        plan_destroy(swath->azimuth_forward);
+        free(swath->data);
+        free(swath->apodization);
+    }
+    plan_destroy(rma->record_forward);
+    plan_destroy(rma->record_inverse);
+    free(rma->filter);
+    free(rma->fades);
+    free(rma->kernel);
+    free(rma->focused);
+    free(rma->scratch);
+}
+
+/* a[k] *= b[k], written out: a complex product would check for NaN. */
+static inline void multiply(real *restrict a, const real *restrict b, int count)
+{
+    for (int k = 0; k < 2 * count; k += 2) {
+        real re = a[k] * b[k] - a[k + 1] * b[k + 1];
+        a[k + 1] = a[k] * b[k + 1] + a[k + 1] * b[k];
+        a[k] = re;
+    }
+}
+
+/* A swath's part of a compressed record, as the spectrum's bins of the band. */
+static void cut(const struct rma *rma, const struct rma_swath *swath, const real *record, real *row)
+{
+    const real *fades = rma->fades;
+    const int length = swath->length, count = swath->end - swath->begin, lead = swath->begin - swath->first;
+    real *wave = scratch_of(rma, RMA_WAVE), *taken = wave + 2 * lead;
+    memset(wave, 0, 2 * (size_t)lead * sizeof *wave);
+    memcpy(taken, record + 2 * swath->begin, 2 * (size_t)count * sizeof *wave);
+    memset(taken + 2 * count, 0, 2 * (size_t)(length - lead - count) * sizeof *wave);
+    for (int k = 0; k < rma->fade && k < count; k++)
+        for (int part = 0; part < 2; part++) {
+            taken[2 * k + part] *= swath->begin > 0 ? fades[k] : 1;
+            taken[2 * (count - 1 - k) + part] *= swath->end < rma->samples ? fades[k] : 1;
+        }
+    FFTW(execute_dft)(swath->range_forward, (complex_real *)wave, (complex_real *)wave);
+    const int below = -swath->band_first;
+    memcpy(row, wave + 2 * (length - below), 2 * (size_t)below * sizeof *row);
+    memcpy(row + 2 * below, wave, 2 * (size_t)(swath->band - below) * sizeof *row);
+    memset(row + 2 * swath->band, 0, 2 * (size_t)(swath->row - swath->band) * sizeof *row);
+}
+
+/* Pulse compression by a linear correlation, then each swath's cut. */
+static void compress(const struct rma *rma, const void *samples)
+{
+    const size_t n = 2 * (size_t)rma->samples, length = 2 * (size_t)rma->record_length;
+#pragma omp parallel for schedule(static) num_threads(rma->threads)
+    for (int k = 0; k < rma->pings * rma->receivers; k++) {
+        const real *record = (const real *)samples + n * (size_t)k;
+        if (length > 0) {
+            real *wave = scratch_of(rma, RMA_RECORD);
+            memcpy(wave, record, n * sizeof *wave);
+            memset(wave + n, 0, (length - n) * sizeof *wave);
+            FFTW(execute_dft)(rma->record_forward, (complex_real *)wave, (complex_real *)wave);
+            multiply(wave, rma->filter, rma->record_length);
+            FFTW(execute_dft)(rma->record_inverse, (complex_real *)wave, (complex_real *)wave);
+            record = wave;
+        }
+        for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++)
+            cut(rma, s, record, (real *)s->data + 2 * (size_t)s->row * (size_t)k);
+    }
+}
+
+/* Azimuth FFT over the pings and the zeros after them, in place; the complex numbers of a vector become its real
+   parts and then its imaginary parts. */
+static void spread(const struct rma *rma, const struct rma_swath *swath)
+{
+    const int vectors = swath->row / LANES, strips = (vectors + BLOCKS - 1) / BLOCKS;
+    const size_t row = 2 * (size_t)swath->row;
+#pragma omp parallel for schedule(static) collapse(2) num_threads(rma->threads)
+    for (int m = 0; m < rma->receivers; m++)
+        for (int s = 0; s < strips; s++) {
+            const size_t width = 2 * LANES * (size_t)(vectors - s * BLOCKS < BLOCKS ? vectors - s * BLOCKS : BLOCKS);
+            real *lines = scratch_of(rma, 0);
+            real *data = (real *)swath->data + (size_t)m * row + (size_t)s * BLOCKS * 2 * LANES;
+            const size_t ping = (size_t)rma->receivers * row, line = 2 * BLOCKS * LANES, pings = (size_t)rma->pings;
+            for (size_t p = 0; p < pings; p++)
+                memcpy(lines + p * line, data + p * ping, width * sizeof *lines);
+            memset(lines + pings * line, 0, ((size_t)swath->period - pings) * line * sizeof *lines);
+            FFTW(execute_dft)(swath->azimuth_forward, (complex_real *)lines, (complex_real *)lines);
+            for (size_t p = 0; p < (size_t)swath->period; p++)
+                for (size_t b = 0; b < width; b += 2 * LANES)
+                    for (size_t l = 0; l < LANES; l++) {
+                        data[p * ping + b + l] = lines[p * line + b + 2 * l];
+                        data[p * ping + b + LANES + l] = lines[p * line + b + 2 * l + 1];
+                    }
+        }
+}
+
+static void inverse(const struct rma *rma, const struct rma_swath *swath, const struct rma_patch *patch, void *pixels)
+{
+    const size_t x_count = (size_t)patch->grid.x_count;
+    const int length = patch->columns;
+    const real *before = patch->before;
+#pragma omp parallel for schedule(static) num_threads(rma->threads)
+    for (int i = 0; i < patch->grid.r_count; i++) {
+        real *wave = scratch_of(rma, 0);
+        real *out = (real *)pixels + 2 * x_count * (size_t)i;
+        real root = (real)sqrt(patch->grid.r_first + i * patch->grid.r_step);
+        const real *from = (const real *)rma->focused + 2 * swath->columns * (patch->row + (size_t)i);
+        memset(wave, 0, 2 * (size_t)length * sizeof *wave);
+        for (int p = 0; p < swath->period; p++)         /* in the order of rma_wavenumber */
+            for (int q = p; q < swath->wavenumbers; q += swath->period, from += 2) {
+                const real *b = before + 2 * q;
+                real *to = wave + 2 * (q < length ? q : q % length);
+                to[0] += from[0] * b[0] - from[1] * b[1];
+                to[1] += from[0] * b[1] + from[1] * b[0];
+            }
+        if (!patch->folds) {
+            FFTW(execute_dft)(patch->azimuth_forward, (complex_real *)wave, (complex_real *)wave);
+            multiply(wave, patch->kernel, length);
+        }
+        FFTW(execute_dft)(patch->azimuth_inverse, (complex_real *)wave, (complex_real *)wave);
+        multiply(wave, patch->after, patch->grid.x_count);
+        for (size_t k = 0; k < 2 * x_count; k++)
+            out[k] = wave[k] * root;
+    }
+}
+
+const struct rma_transform REAL_NAME(rma_transform) = {plan, destroy, compress, spread, inverse};

@@ -1,0 +1,75 @@
+/* The commands `list` and `info`: what the algorithm tables say of themselves. */
+#include <stdio.h>
+
+#include "command/task.h"
+
+static const struct {
+    enum trait trait;
+    const char *text;
+} traits[] = {
+    {TRAIT_EXACT, "exact"},
+    {TRAIT_ANY_TRACK, "any track"},
+    {TRAIT_APERTURE_LIMIT, "aperture limit"},
+};
+
+static void print_traits(const struct algorithm *algorithm)
+{
+    const char *separator = "";
+    for (size_t k = 0; k < sizeof traits / sizeof *traits; k++)
+        if (algorithm->traits & traits[k].trait) {
+            printf("%s%s", separator, traits[k].text);
+            separator = ", ";
+        }
+    printf("\n");
+}
+
+enum status command_list(const struct task *task)
+{
+    (void)task;
+    for (int k = 0; algorithms[k]; k++) {
+        printf("%-12s %s\n%-12s %s; ", algorithms[k]->name, algorithms[k]->summary, "", algorithms[k]->reference);
+        print_traits(algorithms[k]);
+    }
+    return STATUS_OK;
+}
+
+/* "2 to 64", or a choice's names. */
+static void accepted_format(const struct param *param, char *text, size_t size)
+{
+    char min[32], max[32];
+    if (param->type == PARAM_CHOICE) {
+        size_t used = 0;
+        for (int k = 0; param->choices[k] && used < size; k++)
+            used += (size_t)snprintf(text + used, size - used, "%s%s", k ? ", " : "", param->choices[k]);
+        return;
+    }
+    param_format(param, param->min, min, sizeof min);
+    param_format(param, param->max, max, sizeof max);
+    snprintf(text, size, "%s to %s", min, max);
+}
+
+enum status command_info(const struct task *task)
+{
+    const struct algorithm *algorithm = algorithm_find(task->names[0]);
+    struct spec spec;
+    if (!algorithm) {
+        enum status status = spec_parse(task->names[0], &spec);     /* says what is accepted */
+        if (status != STATUS_OK)
+            return status;
+        spec_free(&spec);
+        return status_set(STATUS_INVALID, "info: '%.100s' has settings, must be the name of an algorithm alone",
+                          task->names[0]);
+    }
+    printf("%s: %s\nreference: %s\ntraits: ", algorithm->name, algorithm->summary, algorithm->reference);
+    print_traits(algorithm);
+    printf("\n%-10s %-10s %-18s %-24s %s\n", "parameter", "default", "accepted", "sweep", "");
+    printf("%-10s %-10s %-18s %-24s %s\n", "precision", "float", "float, double", "float double",
+           "of samples, sums and pixels; geometry is always double");
+    for (const struct param *p = algorithm->params; p && p->name; p++) {
+        char initial[64], accepted[160];
+        param_format(p, p->initial, initial, sizeof initial);
+        accepted_format(p, accepted, sizeof accepted);
+        printf("%-10s %-10s %-18s %-24s %s\n", p->name, initial, accepted, p->sweep ? p->sweep : "-", p->summary);
+    }
+    return STATUS_OK;
+}

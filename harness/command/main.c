@@ -1,0 +1,237 @@
+/* The command line: one table of commands, one of options. */
+#include <fcntl.h>
+#include <getopt.h>
+#include <limits.h>
+#include <omp.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "data/number.h"
+#include "data/shown_text.h"
+#include "command/task.h"
+#include "data/temporary.h"
+
+struct command {
+    const char *name, *arguments, *summary;
+    const char *options;                /* the letters of the options it takes */
+    int names_least, names_most;
+    enum status (*run)(const struct task *task);
+};
+
+static const struct command commands[] = {
+    {"list", "", "the algorithms, with summary, reference and traits", "", 0, 0, command_list},
+    {"info", "NAME", "one algorithm's parameters, with default, bounds and sweep", "", 1, 1, command_info},
+    {"simulate", "SCENE -o FILE.mat", "write a scene's echoes", "ot", 1, 1, command_simulate},
+    {"image", "(--scene SCENE | --echoes FILE.mat --grid GRID) --algorithm SPEC -o FILE.mat", "form one image",
+     "oseagt", 0, 0, command_image},
+    {"run", "[SCENE ...] [--algorithm SPEC ...] [-o DIR]", "compare algorithms on scenes", "oat", 0, INT_MAX,
+     command_run},
+    {"compare", "(OLD NEW | --ab OLD_BINARY NEW_BINARY [SCENE ...] [--algorithm SPEC ...]) [--markdown FILE] [--json FILE]",
+     "what got worse between two results folders or CSV files; what got slower between two programs, run side by side",
+     "aBMJ", 2, INT_MAX, command_compare},
+    {"measure", "", "the other end of `compare --ab`, which starts it", "", 0, 0, command_measure},
+    {"baseline", "[-o FILE.csv]", "measure quality and work of the gate's scenes anew, into results/baseline.csv", "ot", 0, 0,
+     command_baseline},
+    {"reproduce", "[ID ...] [-o DIR]", "the papers' tables and claims beside ours", "ot", 0, INT_MAX, command_reproduce},
+    {"sweep", "[SCENE ...] [--algorithm SPEC ...] [-o DIR]", "error against run time, each algorithm over its ladder", "oat",
+     0, INT_MAX, command_sweep},
+    {"report", "DIR", "a results folder as one page: DIR/report.html, and DIR/report.md", "", 1, 1, command_report},
+    {"phase", "([SCENE] [-o DIR] | --at FILE.csv)", "phase errors of the two-dimensional spectra (LBF21 Figs 2-9)", "oA", 0, 1,
+     command_phase},
+    {"bench", "[-o DIR]", "speed of the engines against the processor's peak and the control loop", "ot", 0, 0,
+     command_bench},
+};
+
+static const struct option long_options[] = {
+    {"output", required_argument, NULL, 'o'}, {"scene", required_argument, NULL, 's'},
+    {"echoes", required_argument, NULL, 'e'}, {"algorithm", required_argument, NULL, 'a'},
+    {"grid", required_argument, NULL, 'g'},   {"threads", required_argument, NULL, 't'},
+    {"at", required_argument, NULL, 'A'},     {"markdown", required_argument, NULL, 'M'},
+    {"json", required_argument, NULL, 'J'},   {"ab", no_argument, NULL, 'B'},
+    {"help", no_argument, NULL, 'h'},       {NULL, 0, NULL, 0},
+};
+
+static const char *const option_texts[] = {
+    "-o, --output PATH     where the result goes",
+    "-s, --scene SCENE     a path, or a name below scenes/ without .cfg",
+    "-e, --echoes FILE     recorded echoes in MATLAB format",
+    "-a, --algorithm SPEC  NAME or NAME:key=value,...; every algorithm takes precision=float|double",
+    "-g, --grid GRID       xmin:xstep:xcount,rmin:rstep:rcount in metres",
+    "-t, --threads N       OpenMP threads, 1 to 1024",
+    "    --at FILE.csv     points of `phase`: columns d, r, F, f, fc, v, c",
+    "    --ab              `compare` runs two programs side by side, to compare their times",
+    "    --markdown FILE   what `compare` found, as a comment for a CI",
+    "    --json FILE       the same as trackers of benchmarks read it: name, unit, value, range",
+};
+
+static void help(void)
+{
+    printf("sasbench: imaging algorithms for multi-receiver synthetic aperture sonar, compared on identical "
+           "echoes\n\nUsage: sasbench COMMAND [OPTIONS]\n\n");
+    for (size_t k = 0; k < sizeof commands / sizeof *commands; k++)
+        printf("  %s %s\n        %s\n", commands[k].name, commands[k].arguments, commands[k].summary);
+    printf("  test\n        verify this build (of the ./sasbench script)\n\nOptions:\n");
+    for (size_t k = 0; k < sizeof option_texts / sizeof *option_texts; k++)
+        printf("  %s\n", option_texts[k]);
+    printf("\nExit status: 0 done, 1 a run failed or got worse, 2 bad usage or bad input.\n");
+}
+
+static enum status threads_parse(const char *text)
+{
+    long long threads;
+    const char *end = whole_read(text, 1, 1024, &threads);
+    if (!end || *end)
+        return status_set(STATUS_INVALID, "--threads is '%s', must be a whole number from 1 to 1024", text);
+    omp_set_num_threads((int)threads);
+    return STATUS_OK;
+}
+
+static enum status option_unknown(const struct command *command, const char *option, const char *fault)
+{
+    char accepted[160] = "";
+    for (const struct option *o = long_options; o->name; o++)
+        if (strchr(command->options, o->val)) {
+            size_t used = strlen(accepted);
+            snprintf(accepted + used, sizeof accepted - used, "%s--%s", used ? ", " : "", o->name);
+        }
+    return status_set(STATUS_INVALID, "%s: option '%s' %s; accepted: %s", command->name, option, fault,
+                      *accepted ? accepted : "none");
+}
+
+static enum status spec_add(struct task *task, const char *text)
+{
+    struct spec *specs = realloc(task->specs, ((size_t)task->spec_count + 1) * sizeof *specs);
+    if (!specs)
+        return status_set(STATUS_FAILED, "no memory for --algorithm %s", text);
+    task->specs = specs;
+    enum status status = spec_parse(text, &specs[task->spec_count]);
+    task->spec_count += status == STATUS_OK;
+    return status;
+}
+
+/* An option as it is written: "-o"; those with capital letters have none. */
+static void option_text(int letter, char *text, size_t size)
+{
+    snprintf(text, size, "-%c", letter);
+    for (const struct option *o = long_options; o->name; o++)
+        if (o->val == letter && letter < 'a')
+            snprintf(text, size, "--%s", o->name);
+}
+
+static enum status empty_refuse(const struct command *command, const char *what)
+{
+    return status_set(STATUS_INVALID, "%s: %s is '', must be a path or a name", command->name, what);
+}
+
+/* Arguments after the command's name. */
+static enum status parse(const struct command *command, int argc, char **argv, struct task *task, bool *helped)
+{
+    const char *threads = NULL;
+    const struct { int letter; const char **field; } texts[] = {
+        {'o', &task->output}, {'s', &task->scene}, {'e', &task->echoes}, {'g', &task->grid}, {'A', &task->at},
+        {'M', &task->markdown}, {'J', &task->json}, {'t', &threads}};
+    enum status status = STATUS_OK;
+    opterr = 0;
+    for (int letter; status == STATUS_OK && (letter = getopt_long(argc, argv, ":o:s:e:a:g:t:h", long_options, NULL)) != -1;) {
+        const char *word = argv[optind - 1];
+        if (letter == 'h') {
+            *helped = true;
+            return STATUS_OK;
+        }
+        if (letter == ':')
+            return option_unknown(command, word, "needs a value");
+        char given[16];
+        option_text(letter == '?' ? optopt : letter, given, sizeof given);
+        if (letter == '?' || !strchr(command->options, letter))
+            return option_unknown(command, optopt || letter != '?' ? given : word, "is not one of this command");
+        for (size_t k = 0; k < sizeof texts / sizeof *texts; k++)
+            if (texts[k].letter == letter) {
+                if (*texts[k].field)
+                    return option_unknown(command, given, "is given twice");
+                if (!*optarg && !strchr("gt", letter))          /* which say themselves what they take */
+                    return empty_refuse(command, given);
+                *texts[k].field = optarg;
+            }
+        if (letter == 'a')
+            status = spec_add(task, optarg);
+        if (letter == 'B')
+            task->ab = true;
+    }
+    task->names = (const char *const *)argv + optind;
+    task->name_count = argc - optind;
+    for (int k = 0; k < task->name_count && status == STATUS_OK; k++)
+        if (!*task->names[k])
+            status = empty_refuse(command, "an argument");
+    if (status == STATUS_OK && threads)
+        status = threads_parse(threads);
+    if (status == STATUS_OK && task->name_count < command->names_least)
+        return status_set(STATUS_INVALID, "%s: an argument is missing: sasbench %s %s", command->name, command->name,
+                          command->arguments);
+    if (status == STATUS_OK && task->name_count > command->names_most)
+        return status_set(STATUS_INVALID, "%s: '%s' is one argument too many: sasbench %s %s", command->name,
+                          task->names[command->names_most], command->name, command->arguments);
+    return status;
+}
+
+static enum status command_find(const char *name, const struct command **found)
+{
+    char names[160] = "";
+    for (size_t k = 0; k < sizeof commands / sizeof *commands; k++) {
+        if (strcmp(commands[k].name, name) == 0) {
+            *found = &commands[k];
+            return STATUS_OK;
+        }
+        size_t used = strlen(names);
+        snprintf(names + used, sizeof names - used, "%s, ", commands[k].name);
+    }
+    return status_set(STATUS_INVALID, "'%s' is not a command; accepted: %stest, --help", name, names);
+}
+
+/* One line, whatever the arguments that it quotes hold. */
+static void print_error(const char *message)
+{
+    fputs("sasbench: ", stderr);
+    shown_write(stderr, message);
+    fputc('\n', stderr);
+}
+
+/* Where a standard stream is closed, a results file would take its number, and what is printed would land in it. */
+static void streams_open(void)
+{
+    int descriptor;
+    do
+        descriptor = open("/dev/null", O_RDWR);
+    while (descriptor >= 0 && descriptor <= STDERR_FILENO);
+    if (descriptor >= 0)
+        close(descriptor);
+}
+
+int main(int argc, char **argv)
+{
+    const char *name = argc < 2 ? "" : argv[1];
+    const struct command *command = NULL;
+    struct task task = {0};
+    bool helped = strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0;
+    streams_open();
+    signal(SIGXFSZ, SIG_IGN);           /* a file beyond the limit is an error where it is written */
+    temporary_guard();
+    enum status status = helped ? STATUS_OK : command_find(name, &command);
+    if (status == STATUS_OK && !helped)
+        status = parse(command, argc - 1, argv + 1, &task, &helped);
+    if (status == STATUS_OK && helped)
+        help();
+    else if (status == STATUS_OK)
+        status = command->run(&task);
+    if (status == STATUS_OK && (fflush(stdout) != 0 || ferror(stdout)))
+        status = status_set(STATUS_FAILED, "standard output cannot be written");
+    for (int k = 0; k < task.spec_count; k++)
+        spec_free(&task.specs[k]);
+    free(task.specs);
+    if (status == STATUS_OK)
+        return 0;
+    print_error(status_message());
+    return status == STATUS_FAILED ? 1 : 2;
+}

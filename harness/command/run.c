@@ -1,0 +1,60 @@
+/* The command `run`: every scene with every algorithm, measured, recorded and drawn. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "study/batch.h"
+#include "command/task.h"
+#include "measure/timing.h"
+
+/* All algorithms with their defaults. */
+static enum status load_specs(struct spec **specs, int *count)
+{
+    *count = 0;
+    for (int k = 0; algorithms[k]; k++)
+        ++*count;
+    *specs = calloc((size_t)*count, sizeof **specs);
+    if (!*specs)
+        return status_set(STATUS_FAILED, "no memory for %d algorithms", *count);
+    enum status status = STATUS_OK;
+    for (int k = 0; k < *count && status == STATUS_OK; k++)
+        status = spec_parse(algorithms[k]->name, &(*specs)[k]);
+    return status;
+}
+
+static enum status check_twice(const struct task *task)
+{
+    for (int a = 0; a < task->spec_count; a++)
+        for (int b = 0; b < a; b++)
+            if (spec_equal(&task->specs[a], &task->specs[b]))
+                return status_set(STATUS_INVALID, "run: --algorithm %s is given twice with the same settings",
+                                  task->specs[a].algorithm->name);
+    return STATUS_OK;
+}
+
+enum status command_run(const struct task *task)
+{
+    struct scene *scenes = NULL;
+    struct spec *all = NULL;
+    int scene_count = 0, all_count = 0;
+    struct comparison comparison = {0};
+    enum status status = check_twice(task);
+    if (status == STATUS_OK && task->spec_count == 0)
+        status = load_specs(&all, &all_count);
+    int spec_count = task->spec_count ? task->spec_count : all_count;
+    if (status == STATUS_OK)
+        status = scenes_load("run", task->name_count, task->names, &scenes, &scene_count);
+    if (status == STATUS_OK)
+        status = comparison_open(task->output ? task->output : "results/latest", scene_count * spec_count, true,
+                                 &comparison);
+    for (int k = 0; k < scene_count && status == STATUS_OK; k++)
+        status = comparison_scene(&comparison, &scenes[k], spec_count, task->spec_count ? task->specs : all);
+    if (status == STATUS_OK)
+        printf("\nThe harness itself takes %.1f ns a run (an algorithm that does nothing). Results: %s/measurements.csv, "
+               "targets.csv and pictures.\n", 1e9 * timing_floor(), comparison.directory);
+    status = comparison_close(&comparison, status);
+    scenes_free(scenes, scene_count);
+    for (int k = 0; k < all_count; k++)
+        spec_free(&all[k]);
+    free(all);
+    return status;
+}

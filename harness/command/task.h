@@ -1,0 +1,39 @@
+/* What a command is asked to do, and the commands themselves. */
+#ifndef SASBENCH_COMMAND_TASK_H
+#define SASBENCH_COMMAND_TASK_H
+
+#include "measure/spec.h"
+
+/* The command line after parsing; texts are borrowed from argv. Unused fields are NULL or 0. */
+struct task {
+    const char *const *names;       /* [name_count] what stands without an option: scenes, an algorithm */
+    int name_count;
+    const char *output, *scene, *echoes, *grid, *at, *markdown, *json;
+    bool ab;
+    int spec_count;
+    struct spec *specs;             /* [spec_count] of --algorithm */
+};
+
+/* Each returns STATUS_OK, or a status with a message for main to print. */
+enum status command_list(const struct task *task);
+enum status command_info(const struct task *task);
+enum status command_simulate(const struct task *task);
+enum status command_image(const struct task *task);
+enum status command_run(const struct task *task);
+enum status command_compare(const struct task *task);
+enum status command_measure(const struct task *task);
+enum status command_baseline(const struct task *task);
+enum status command_reproduce(const struct task *task);
+enum status command_sweep(const struct task *task);
+enum status command_report(const struct task *task);
+enum status command_phase(const struct task *task);
+enum status command_bench(const struct task *task);
+
+/* `phase` without a scene, into a folder that the caller has made; `taken`: and holds (folder.h). */
+enum status phase_studies(const char *directory, bool taken);
+
+/* Folders of this installation. */
+#define SCENE_DIRECTORY SASBENCH_ROOT "/scenes"
+#define PLOT_DIRECTORY SASBENCH_ROOT "/plots"
+
+#endif

@@ -1,0 +1,82 @@
+/* Folders of results (folder.h). */
+#include "data/folder.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "data/temporary.h"
+
+/* With room for the longest name of a file in it. */
+enum { DIRECTORY_MAX = PATH_MAX - NAME_MAX - 2 };
+
+static enum status name_check(const char *directory)
+{
+    if (strlen(directory) > DIRECTORY_MAX)
+        return status_set(STATUS_INVALID, "%.100s...: a path of %zu bytes; a folder's may have %d", directory,
+                          strlen(directory), (int)DIRECTORY_MAX);
+    for (const char *at = directory; *at; at++)
+        if ((unsigned char)*at < ' ' || *at == 0x7f)
+            return status_set(STATUS_INVALID, "%s: the name holds the control character 0x%02x; name a folder without "
+                              "one", directory, (unsigned)*at);
+    return STATUS_OK;
+}
+
+enum status directory_make(const char *directory)
+{
+    struct stat info;
+    enum status status = name_check(directory);
+    char *path = status == STATUS_OK ? strdup(directory) : NULL;
+    if (status == STATUS_OK && !path)
+        status = status_set(STATUS_FAILED, "%s: no memory", directory);
+    if (status != STATUS_OK)
+        return status;
+    for (char *at = path; *at; at++) {
+        if (*at == '/' && at != path) {
+            *at = '\0';
+            mkdir(path, 0777);          /* the last one tells whether it went well */
+            *at = '/';
+        }
+    }
+    if (mkdir(path, 0777) != 0 && (errno != EEXIST || stat(path, &info) != 0 || !S_ISDIR(info.st_mode)))
+        status = status_set(STATUS_INVALID, "%s: cannot be made: %s; name a folder that can be written", directory,
+                            strerror(errno));
+    free(path);
+    return status;
+}
+
+enum status folder_take(const char *directory, int *lock)
+{
+    *lock = -1;
+    enum status status = name_check(directory);
+    if (status != STATUS_OK)
+        return status;
+    /* The folder itself is what is locked. Programs that we start do not inherit it. */
+    int descriptor = open(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0)
+        return status_set(STATUS_INVALID, "%s: cannot be opened: %s; a folder is needed", directory, strerror(errno));
+    if (flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+        if (errno == EWOULDBLOCK) {
+            close(descriptor);
+            return status_set(STATUS_INVALID, "%s: another sasbench is at work in this folder; let it end, or name "
+                              "another folder", directory);
+        }
+        fprintf(stderr, "sasbench: %s: this file system cannot lock a folder (%s); start no second program in it\n",
+                directory, strerror(errno));
+    }
+    temporary_sweep(directory);
+    *lock = descriptor;
+    return STATUS_OK;
+}
+
+void folder_leave(int lock)
+{
+    if (lock >= 0)
+        close(lock);
+}

@@ -1,0 +1,78 @@
+/* What may be shown of a text (shown_text.h). */
+#include "data/shown_text.h"
+
+#include <ctype.h>
+#include <stdbool.h>
+#include <string.h>
+#include <strings.h>
+
+size_t shown_length(const char *text)
+{
+    const unsigned char *at = (const unsigned char *)text;
+    size_t length = at[0] < 0x80 ? 1 : at[0] < 0xc2 ? 0 : at[0] < 0xe0 ? 2 : at[0] < 0xf0 ? 3 : at[0] < 0xf5 ? 4 : 0;
+    if (length == 1)
+        return at[0] >= ' ' && at[0] != 0x7f;
+    for (size_t k = 1; k < length; k++)
+        if ((at[k] & 0xc0) != 0x80)
+            return 0;
+    bool longer_than_needed = (at[0] == 0xe0 && at[1] < 0xa0) || (at[0] == 0xf0 && at[1] < 0x90);
+    bool no_character = (at[0] == 0xed && at[1] >= 0xa0) || (at[0] == 0xf4 && at[1] >= 0x90);
+    bool control = at[0] == 0xc2 && at[1] < 0xa0;
+    return longer_than_needed || no_character || control ? 0 : length;
+}
+
+void shown_make(char *text)
+{
+    while (*text) {
+        size_t length = shown_length(text);
+        if (length == 0)
+            *text = '?';
+        text += length ? length : 1;
+    }
+}
+
+void shown_write(FILE *stream, const char *text)
+{
+    while (*text) {
+        size_t length = shown_length(text);
+        if (length)
+            fwrite(text, 1, length, stream);
+        else
+            fputc('?', stream);
+        text += length ? length : 1;
+    }
+}
+
+/* What a sign of ASCII becomes; NULL: it stays. Links are made of bare addresses, too, and neither a backslash nor an entity
+   keeps @NAME from calling that person, or #1 from leading somewhere: a blank without width does. */
+static const char *markdown_escape(const char *start, const char *at)
+{
+    static const struct {
+        char sign;
+        const char *instead;
+    } escapes[] = {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'|', "\\|"}, {'*', "\\*"}, {'`', "\\`"}, {'[', "\\["},
+                   {']', "\\]"}, {'\\', "\\\\"}, {'~', "\\~"}, {'@', "@&#8203;"}, {'#', "#&#8203;"}};
+    for (size_t k = 0; k < sizeof escapes / sizeof *escapes; k++)
+        if (escapes[k].sign == *at)
+            return escapes[k].instead;
+    if (*at == ':' && at[1] == '/')
+        return "&#58;";
+    if (*at == '.' && at - start >= 3 && strncasecmp(at - 3, "www", 3) == 0)
+        return "&#46;";
+    if (*at == '_' && !(at > start && isalnum((unsigned char)at[-1]) && isalnum((unsigned char)at[1])))
+        return "\\_";
+    return NULL;
+}
+
+void shown_markdown(FILE *stream, const char *text)
+{
+    for (const char *at = text; *at;) {
+        size_t length = shown_length(at);
+        const char *instead = length == 0 ? "?" : length == 1 ? markdown_escape(text, at) : NULL;
+        if (instead)
+            fputs(instead, stream);
+        else
+            fwrite(at, 1, length, stream);
+        at += length ? length : 1;
+    }
+}

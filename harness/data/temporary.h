@@ -1,0 +1,28 @@
+/* What is on its way to its place: files and folders made beside it, under names of one pattern that no user gives. They
+   go when a signal ends the program, and what a killed one left is swept away by the next that works in the folder. */
+#ifndef SASBENCH_DATA_TEMPORARY_H
+#define SASBENCH_DATA_TEMPORARY_H
+
+#include <limits.h>
+#include <stdbool.h>
+#include <sys/types.h>
+
+/* An empty file open for writing, or an empty folder, beside `path`; `made` is its own path. -1 or false: errno says why.
+   Each is followed by temporary_moved or temporary_remove. */
+int temporary_file(const char *path, char made[PATH_MAX]);
+bool temporary_folder(const char *path, char made[PATH_MAX]);
+/* A file that will be made inside such a folder. */
+void temporary_inside(const char *path);
+/* It has its place now. */
+void temporary_moved(const char *made);
+/* A folder with the files in it; errno stays. */
+void temporary_remove(const char *made);
+/* What killed programs left in a folder that is ours alone (folder.h). */
+void temporary_sweep(const char *directory);
+
+/* The process group that a signal ends together with the program; 0: none. */
+void temporary_process(pid_t group);
+/* From now on, signals that end the program remove first what is on its way. One that is ignored stays so. */
+void temporary_guard(void);
+
+#endif

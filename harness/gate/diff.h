@@ -1,0 +1,78 @@
+/* What got worse between two states of the program: findings, from results (compare.c) or from both programs run side by
+   side (ab.c), and how they are shown (compare_show.c). */
+#ifndef SASBENCH_GATE_DIFF_H
+#define SASBENCH_GATE_DIFF_H
+
+#include "measure/results.h"
+
+enum verdict {
+    VERDICT_WORSE,                  /* beyond the slack, or of --ab: beyond the effect that fails */
+    VERDICT_GONE,                   /* defined in OLD only */
+    VERDICT_CHANGED,                /* better by much or in many rows, as a fault in the measuring would look */
+    VERDICT_WARNING,                /* of --ab: slower, beyond the effect that warns */
+    VERDICT_NOISY,                  /* of --ab: too noisy to tell */
+    VERDICT_BETTER,
+    VERDICT_NEW,                    /* defined in NEW only */
+    VERDICT_SAME,
+    VERDICTS
+};
+extern const char *const verdict_names[VERDICTS];
+extern const char *const class_names[];                 /* by enum metric_class */
+enum { CLASSES = CLASS_TIME + 1 };
+
+/* One judgement. Texts are borrowed or belong to the struct compare. */
+struct finding {
+    enum verdict verdict;
+    enum metric_class class;
+    const char *scene, *spec, *detail;                  /* detail: which target, which stage; may be empty */
+    const char *metric, *unit;
+    double before, after;                               /* NAN: not defined */
+    const char *before_text, *after_text;               /* instead of the numbers where not NULL */
+    double change;                                      /* after/before - 1 where that says more; else NAN */
+    double change_low, change_high;                     /* interval of the change; both 0: none is known */
+    double slack;                                       /* of `after`: changes within it are none; NAN: unknown */
+    bool lower_is_better;
+};
+
+struct compare {
+    int finding_count, finding_room;
+    struct finding *findings;
+    int counts[CLASSES][VERDICTS];
+    bool to_baseline;                                   /* OLD is a baseline: what changed asks for a new one */
+    int text_count, text_room;
+    char **texts;                                       /* that findings and notes point to */
+    int note_count;
+    const char *notes[64];                              /* remarks to read before the findings */
+};
+
+/* A value of quality or work that is better by more than CHANGED_SLACKS slacks (of work, which has none: by more than
+   CHANGED_WORK), a metric that is better in CHANGED_ROWS rows or more, and a row that was refused and is not any more are
+   VERDICT_CHANGED instead of VERDICT_BETTER. */
+enum { CHANGED_SLACKS = 10, CHANGED_ROWS = 5 };
+#define CHANGED_WORK 0.01
+
+/* Judge two results folders or CSV files (a folder and a file: the folder's file of that kind). A row is matched by scene
+   (and its content), algorithm, options and precision, and in targets.csv by target, axis and definition. Errors:
+   STATUS_INVALID as results_read, for different kinds of files, and for a row given twice; STATUS_FAILED without memory.
+   *compare is to be freed in any case. */
+enum status compare_results(const char *old, const char *new, struct compare *compare);
+
+/* For those who find: add a finding (copied, and counted), a remark, and a text that lives as long as the struct (NULL
+   without memory, with the status message set). Errors: STATUS_FAILED without memory. */
+enum status compare_add(struct compare *compare, const struct finding *finding);
+enum status compare_note(struct compare *compare, const char *format, ...) __attribute__((format(printf, 2, 3)));
+const char *compare_text(struct compare *compare, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* STATUS_FAILED, with a message that says how many, when anything got worse or is gone, or changed from a baseline. */
+enum status compare_judge(const struct compare *compare);
+void compare_free(struct compare *compare);
+
+/* Readable text: remarks, all findings but the same ones, counts. */
+void compare_print(const struct compare *compare, FILE *stream);
+/* The same for a comment of a CI, as Markdown; at most 100 findings, the worst first. Errors: of text_file. */
+enum status compare_markdown(const struct compare *compare, const char *path);
+/* What trackers of benchmarks read (github-action-benchmark's customSmallerIsBetter): [{"name", "unit", "value", "range"}]
+   of every defined value of NEW that is better when it is smaller; range is the slack. Errors: of text_file. */
+enum status compare_json(const struct compare *compare, const char *path);
+
+#endif

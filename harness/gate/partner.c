@@ -1,0 +1,164 @@
+/* The other program of partner.h: a process group of its own behind one socket. */
+#define _GNU_SOURCE                     /* sched_setaffinity */
+#include "gate/partner.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <poll.h>
+#include <sched.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "algorithm.h"
+
+static const char greeting[] = "sasbench measure 1";
+
+/* One processor for both sides of a round, so that nothing but the program differs; each in turn. */
+static void processor_choose(int turn)
+{
+    cpu_set_t all, one;
+    if (sched_getaffinity(0, sizeof all, &all) != 0)
+        return;
+    int left = turn % CPU_COUNT(&all);
+    for (int k = 0; k < CPU_SETSIZE; k++)
+        if (CPU_ISSET(k, &all) && left-- == 0) {
+            CPU_ZERO(&one);
+            CPU_SET(k, &one);
+            sched_setaffinity(0, sizeof one, &one);     /* where it is refused, the times are only noisier */
+        }
+}
+
+/* In the child: never returns. */
+static void child_run(const char *path, int turn, int socket)
+{
+    int nothing = open("/dev/null", O_WRONLY);
+    setpgid(0, 0);
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    processor_choose(turn);
+    if (nothing >= 0 && dup2(socket, STDIN_FILENO) >= 0 && dup2(socket, STDOUT_FILENO) >= 0
+        && dup2(nothing, STDERR_FILENO) >= 0)
+        execl(path, path, "measure", (char *)NULL);
+    _exit(126);
+}
+
+static void pause_ms(long ms)
+{
+    nanosleep(&(struct timespec){.tv_nsec = 1000000 * ms}, NULL);
+}
+
+/* Why it said nothing more: its process has ended, or is about to, or has but closed its output. */
+static enum status silence(struct partner *partner, const char *question)
+{
+    int state = 0;
+    pid_t ended = 0;
+    for (int k = 0; k < 100 && ended == 0; k++) {
+        ended = waitpid(partner->process, &state, WNOHANG);
+        if (ended == 0)
+            pause_ms(10);
+    }
+    char how[80] = "closed its output";
+    if (ended > 0) {
+        kill(-partner->process, SIGKILL);       /* what it may have left behind */
+        partner->process = 0;
+        if (WIFSIGNALED(state))
+            snprintf(how, sizeof how, "was ended by signal %d (%s)", WTERMSIG(state), strsignal(WTERMSIG(state)));
+        else
+            snprintf(how, sizeof how, "ended with status %d", WEXITSTATUS(state));
+    }
+    return status_set(STATUS_INVALID, "%s %s %s %s '%s'; a sasbench that has the command measure is needed",
+                      partner->role, partner->path, how, *question ? "after" : "instead of", *question ? question : greeting);
+}
+
+static enum status line_read(struct partner *partner, const char *question, char *line, size_t size)
+{
+    double end = seconds_now() + partner->patience_s;
+    for (char *stop; !(stop = memchr(partner->buffer, '\n', partner->held));) {
+        struct pollfd wait = {.fd = partner->socket, .events = POLLIN};
+        double left = fmax(end - seconds_now(), 0);
+        int ready = poll(&wait, 1, (int)(1000 * fmin(left, 1e6)));
+        if (ready < 0 && errno == EINTR)
+            continue;
+        if (ready <= 0)
+            return status_set(STATUS_INVALID, "%s %s says nothing for %g s %s '%s'", partner->role, partner->path,
+                              partner->patience_s, *question ? "after" : "instead of",
+                              *question ? question : greeting);
+        size_t room = sizeof partner->buffer - partner->held;
+        ssize_t got = recv(partner->socket, partner->buffer + partner->held, room, 0);
+        if (got <= 0)
+            return silence(partner, question);
+        partner->held += (size_t)got;
+        if (partner->held == sizeof partner->buffer && !memchr(partner->buffer, '\n', partner->held))
+            return status_set(STATUS_INVALID, "%s %s: a line is longer than %zu characters", partner->role,
+                              partner->path, sizeof partner->buffer);
+    }
+    size_t length = (size_t)((char *)memchr(partner->buffer, '\n', partner->held) - partner->buffer);
+    snprintf(line, size, "%.*s", (int)length, partner->buffer);
+    partner->held -= length + 1;
+    memmove(partner->buffer, partner->buffer + length + 1, partner->held);
+    return STATUS_OK;
+}
+
+enum status partner_start(const char *role, const char *path, int turn, double patience_s, struct partner *partner)
+{
+    int sockets[2];
+    struct stat about;
+    *partner = (struct partner){0};
+    if (stat(path, &about) != 0 || !S_ISREG(about.st_mode) || access(path, X_OK) != 0)
+        return status_set(STATUS_INVALID, "%s %s is no program that can be run; a sasbench is needed, such as "
+                          "build/harness/sasbench", role, path);
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets) != 0)
+        return status_set(STATUS_FAILED, "%s %s: no socket: %s", role, path, strerror(errno));
+    pid_t process = fork();
+    if (process == 0)
+        child_run(path, turn, sockets[1]);
+    close(sockets[1]);
+    if (process < 0) {
+        close(sockets[0]);
+        return status_set(STATUS_FAILED, "%s %s: no process: %s", role, path, strerror(errno));
+    }
+    setpgid(process, process);          /* here, too: whoever comes first */
+    *partner = (struct partner){role, path, process, sockets[0], patience_s, 0, ""};
+    char line[200];
+    enum status status = line_read(partner, "", line, sizeof line);
+    if (status == STATUS_OK && strcmp(line, greeting) != 0)
+        status = status_set(STATUS_INVALID, "%s %s says '%.60s' instead of '%s': another version, or no sasbench", role,
+                            path, line, greeting);
+    if (status != STATUS_OK)
+        partner_stop(partner);
+    return status;
+}
+
+enum status partner_ask(struct partner *partner, const char *question, char *answer, size_t size)
+{
+    char line[8192];
+    int length = snprintf(line, sizeof line, "%s\n", question);
+    if (length >= (int)sizeof line || strchr(question, '\n'))
+        return status_set(STATUS_INVALID, "'%.60s...' is too long for a question of one line", question);
+    for (int sent = 0; sent < length;) {
+        ssize_t some = send(partner->socket, line + sent, (size_t)(length - sent), MSG_NOSIGNAL);
+        if (some <= 0)
+            return silence(partner, question);
+        sent += (int)some;
+    }
+    return line_read(partner, question, answer, size);
+}
+
+void partner_stop(struct partner *partner)
+{
+    if (partner->process > 0) {
+        kill(-partner->process, SIGKILL);
+        waitpid(partner->process, NULL, 0);
+    }
+    if (partner->path)
+        close(partner->socket);
+    *partner = (struct partner){0};
+}

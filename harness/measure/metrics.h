@@ -1,0 +1,56 @@
+/* Image quality: main-lobe measures of point targets and errors against the reference image. */
+#ifndef SASBENCH_MEASURE_METRICS_H
+#define SASBENCH_MEASURE_METRICS_H
+
+#include "scene/scene.h"
+
+enum axis { AXIS_AZIMUTH, AXIS_RANGE };
+/* The main-lobe definitions in use. null: first minimum to first minimum on the fine slice (primary). 3db: the -3 dB
+   width (ISLR only), as BP22 and LBF21 Eqs. (18)-(19) write. pixel: the slice sampled at the image's own pixels from
+   the target's position on, main lobe = peak +-2 pixels, plain sums (azimuth only; what the papers' tables show). */
+enum definition { DEFINITION_NULL, DEFINITION_3DB, DEFINITION_PIXEL };
+
+/* A value that is not defined is NAN here and an empty field in every output. */
+struct slice_metrics {
+    double extent_m;                /* the slice reaches this far to either side of the target */
+    double position_error_m;        /* peak minus true position along the axis */
+    double width_m;                 /* -3 dB width: linear interpolation of power at half peak */
+    double pslr_db[3], islr_db[3];  /* by enum definition */
+    char reason[160];               /* why something is undefined; empty when all is well */
+};
+
+/* The azimuth or range slice through a point target, interpolated band-limitedly (the range carrier is removed by
+   exp(-j 4 pi fc r/c) first), from the patch that holds it, 3 m to either side or to the patch's edge. Samples beyond
+   a patch count as zero, so a target off the raster wants 24 samples around it.
+   Never fails: what cannot be measured is NAN with a reason (no patch holds the target, no main lobe that ends inside
+   the slice, steps too coarse to interpolate, all zero). */
+struct slice_metrics metrics_slice(const struct image *image, const struct acquisition *acquisition,
+                                   const struct target *target, enum axis axis);
+
+/* The same slice for plotting: positions (m, relative to the target) and power in dB relative to the peak, malloc'ed
+   arrays of *count values each, caller frees. count 0 if there is none. */
+void metrics_slice_samples(const struct image *image, const struct acquisition *acquisition,
+                           const struct target *target, enum axis axis, double **position_m, double **power_db,
+                           int *count);
+
+/* The complex value at a position, interpolated the same way; NAN outside every patch. */
+double complex metrics_value(const struct image *image, const struct acquisition *acquisition, double x, double r);
+
+/* Measures of a finished slice of power samples at uniform steps, position 0 = the target: the part of metrics_slice
+   that does not interpolate, for tests. pixel_step: the image's own step for DEFINITION_PIXEL (<= 0: undefined). */
+struct slice_metrics metrics_of_power(const double *power, int count, double first, double step, double pixel_step);
+
+struct error_metrics {
+    double error;                   /* complex relative L2 */
+    double error_gain;              /* after one best complex gain (over all pixels) */
+    double phase_rms_rad;           /* over pixels with abs(reference) >= 0.1 max, weighted by its square */
+    double peak_ratio;              /* max |image - reference| / max |reference| */
+    const char *reason;             /* why something is undefined, a static text; empty when all is well */
+};
+
+/* Over all pixels of all patches of `reference` (double), which are looked up in `image` at the same places: image
+   patches are equal to, or contain, the reference patches on the same raster. All NAN, with the reason, when they do not, the
+   reference is all zero or a pixel of the image is not finite; the phase, when a strong pixel of the image is zero. */
+struct error_metrics metrics_error(const struct image *image, const struct image *reference);
+
+#endif

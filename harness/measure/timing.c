@@ -1,0 +1,103 @@
+#include "measure/timing.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "backprojection/pairs.h"
+#include "measure/scalar_loop.h"
+
+enum { RUNS_LEAST = 5, RUNS_MOST = 1000 };
+static const double seconds_least = 0.5, seconds_most = 3, seconds_single = 10;
+
+static int compare_double(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+double median(double *values, int count)
+{
+    if (count == 0)
+        return NAN;
+    qsort(values, (size_t)count, sizeof *values, compare_double);
+    return count % 2 ? values[count / 2] : (values[count / 2 - 1] + values[count / 2]) / 2;
+}
+
+static enum status run_once(const struct algorithm *algorithm, void *plan, const struct echoes *echoes,
+                            struct image *image, struct stages *stages, double *seconds)
+{
+    stages_begin(stages);
+    double start = stages->mark;
+    enum status status = algorithm->execute(plan, echoes, image, stages);
+    *seconds = seconds_now() - start;
+    return status;
+}
+
+/* Times of the repeated runs; stages of the run nearest the median. */
+static enum status repeat(const struct algorithm *algorithm, void *plan, const struct echoes *echoes,
+                          struct image *image, struct timing *timing)
+{
+    static double seconds[RUNS_MOST], sorted[RUNS_MOST];
+    static struct stages stages[RUNS_MOST];
+    enum status status = run_once(algorithm, plan, echoes, image, &stages[0], &seconds[0]);     /* warms up */
+    int runs = seconds[0] >= seconds_single;
+    double begin = seconds_now(), elapsed = 0;
+    while (status == STATUS_OK && seconds[0] < seconds_single && runs < RUNS_MOST
+           && (runs < RUNS_LEAST || elapsed < seconds_least) && (runs == 0 || elapsed < seconds_most)) {
+        status = run_once(algorithm, plan, echoes, image, &stages[runs], &seconds[runs]);
+        runs++;
+        elapsed = seconds_now() - begin;
+    }
+    if (status != STATUS_OK)
+        return status;
+    for (int k = 0; k < runs; k++)
+        sorted[k] = seconds[k];
+    timing->runs = runs;
+    timing->run_s = median(sorted, runs);
+    timing->run_min_s = sorted[0];
+    int nearest = 0;
+    for (int k = 1; k < runs; k++)
+        if (fabs(seconds[k] - timing->run_s) < fabs(seconds[nearest] - timing->run_s))
+            nearest = k;
+    timing->stages = stages[nearest];
+    return STATUS_OK;
+}
+
+enum status timing_measure(const struct algorithm *algorithm, const struct problem *problem, const void *options,
+                           const struct echoes *echoes, const struct echoes *control_echoes, struct image *image,
+                           struct timing *timing)
+{
+    double control[4];
+    void *plan;
+    *timing = (struct timing){0};
+    double begin = seconds_now();
+    enum status status = algorithm->plan(problem, options, &plan);
+    timing->plan_s = seconds_now() - begin;
+    if (status != STATUS_OK)
+        return status;
+    timing->work = algorithm->work(plan);
+    control[0] = control_seconds_per_pair(problem, control_echoes);
+    control[1] = control_seconds_per_pair(problem, control_echoes);
+    status = repeat(algorithm, plan, echoes, image, timing);
+    algorithm->destroy(plan);
+    control[2] = control_seconds_per_pair(problem, control_echoes);
+    control[3] = control_seconds_per_pair(problem, control_echoes);
+    double pairs = timing->work.pairs > 0 ? timing->work.pairs : pairs_count(problem);
+    timing->control_s = median(control, 4) * pairs;
+    return status;
+}
+
+static enum status nothing_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages)
+{
+    (void)plan, (void)echoes, (void)image;
+    stages_end(stages, "nothing");
+    return STATUS_OK;
+}
+
+double timing_floor(void)
+{
+    const struct algorithm nothing = {.name = "nothing", .execute = nothing_execute};
+    struct timing timing;
+    repeat(&nothing, NULL, NULL, NULL, &timing);
+    return timing.run_s;
+}

@@ -1,0 +1,29 @@
+/* Timing of one algorithm on one problem. */
+#ifndef SASBENCH_MEASURE_TIMING_H
+#define SASBENCH_MEASURE_TIMING_H
+
+#include "algorithm.h"
+
+struct timing {
+    double plan_s;                  /* s, planning, once */
+    double run_s, run_min_s;        /* s, median and minimum of the timed runs */
+    int runs;                       /* timed runs; 1 when a run is so long that the first counts */
+    double control_s;               /* s, the control loop's time for all pairs of the problem, measured beside */
+    struct stages stages;           /* of the median run */
+    struct work work;
+};
+
+/* Plan, run once to warm up, then repeat until five runs and half a second are timed; long runs are repeated less (no
+   new run begins after 3 s; a first run of 10 s or more is the only one). The control is timed before and after.
+   `control_echoes`: the same echoes in float. *image (allocated by the caller) holds the result.
+   Errors: what plan or execute return. */
+enum status timing_measure(const struct algorithm *algorithm, const struct problem *problem, const void *options,
+                           const struct echoes *echoes, const struct echoes *control_echoes, struct image *image,
+                           struct timing *timing);
+
+/* Seconds that the harness itself adds to a run: the median time of an algorithm that does nothing. */
+double timing_floor(void);
+
+double median(double *values, int count);       /* sorts the values; NAN when count is 0 */
+
+#endif

@@ -1,0 +1,258 @@
+/* The command `reproduce`: measure what the papers' tables and claims rest on, set their numbers beside ours, and
+   judge what they say. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "papers/claims.h"
+#include "study/batch.h"
+#include "command/task.h"
+#include "data/text_file.h"
+
+enum { NEEDS_MAX = 256, TABLES_MAX = 64, COLUMNS_MAX = 8 };
+
+static enum status tables_select(const struct task *task, bool selected[TABLES_MAX])
+{
+    for (int n = 0; n < task->name_count; n++) {
+        char ids[512] = "";
+        bool known = false;
+        for (int k = 0; tables[k].id; k++) {
+            bool same = strcmp(tables[k].id, task->names[n]) == 0;
+            known |= same;
+            selected[k] |= same;
+            snprintf(ids + strlen(ids), sizeof ids - strlen(ids), "%s%s", k ? ", " : "", tables[k].id);
+        }
+        if (!known)
+            return status_set(STATUS_INVALID, "reproduce: '%s' is not a table; accepted: %s", task->names[n], ids);
+    }
+    for (int k = 0; tables[k].id; k++)
+        selected[k] |= task->name_count == 0;
+    return STATUS_OK;
+}
+
+/* All needs of one scene; those of `needs` that are done lose their scene. */
+static enum status scene_measure(struct comparison *comparison, struct need *needs, int count)
+{
+    struct scene scene;
+    struct spec specs[NEEDS_MAX];
+    int spec_count = 0;
+    const char *name = needs[0].scene;
+    enum status status = scene_load(name, SCENE_DIRECTORY, &scene);
+    if (status != STATUS_OK)
+        return status;
+    for (int k = 0; k < count && status == STATUS_OK; k++)
+        if (needs[k].scene && strcmp(needs[k].scene, name) == 0) {
+            status = spec_parse(needs[k].spec, &specs[spec_count]);
+            spec_count += status == STATUS_OK;
+            needs[k].scene = NULL;
+        }
+    if (status == STATUS_OK)
+        status = comparison_scene(comparison, &scene, spec_count, specs);
+    for (int k = 0; k < spec_count; k++)
+        spec_free(&specs[k]);
+    scene_free(&scene);
+    return status;
+}
+
+/* ---- what is written and printed ---- */
+
+/* Ahead of what is worked out: where, when and with what it was measured. */
+static void head_write(FILE *file, const char *what, const struct measured *measured)
+{
+    const struct csv *csv = &measured->measurements.csv;
+    fprintf(file, "# sasbench %s 1\n", what);
+    for (int k = 0; k < csv->comment_count; k++)
+        if (strncmp(csv->comments[k], "sasbench ", 9) != 0 && strncmp(csv->comments[k], "scene ", 6) != 0)
+            fprintf(file, "# %s\n", csv->comments[k]);
+}
+
+static enum status reproduced_write(const char *directory, const struct measured *measured,
+                                    const struct reproduced *lines, int count)
+{
+    char path[4200];
+    struct text_file file;
+    snprintf(path, sizeof path, "%s/reproduced.csv", directory);
+    enum status status = text_file_open(path, &file);
+    if (status != STATUS_OK)
+        return status;
+    head_write(file.stream, "reproduced", measured);
+    fputs("table,item,quantity,definition,unit,paper,ours,difference,assumption\n", file.stream);
+    for (int k = 0; k < count; k++) {
+        const struct reproduced *l = &lines[k];
+        char item[160], assumption[1200];
+        snprintf(item, sizeof item, "%s%s%s", l->target, *l->target ? ", " : "", l->method);
+        snprintf(assumption, sizeof assumption, "%s%s%s%s%s", l->assumption, *l->note ? "; " : "", l->note,
+                 *l->missing ? "; no value: " : "", l->missing);
+        const char *const texts[] = {l->table, item, l->quantity, l->definition, l->unit};
+        const double numbers[] = {l->paper, l->ours, l->ours - l->paper};
+        for (int n = 0; n < 5; n++) {
+            csv_write_text(file.stream, texts[n]);
+            fputc(',', file.stream);
+        }
+        for (int n = 0; n < 3; n++) {
+            csv_write_number(file.stream, numbers[n]);
+            fputc(',', file.stream);
+        }
+        csv_write_text(file.stream, assumption);
+        fputc('\n', file.stream);
+    }
+    return text_file_close(&file, STATUS_OK);
+}
+
+/* A number and, behind it, how far it is from the paper's. */
+static void cell_print(double value, double paper)
+{
+    char text[40] = "-", difference[40] = "";
+    double size = fmax(fabs(value), fabs(paper));
+    if (isfinite(value))
+        snprintf(text, sizeof text, size > 1e4 || size < 0.1 ? "%.4g" : "%.3f", value);
+    if (isfinite(value) && isfinite(paper))
+        snprintf(difference, sizeof difference, size > 1e4 || size < 0.1 ? "(%+.1e)" : "(%+.3f)", value - paper);
+    printf(" %10s %-10s", text, difference);
+}
+
+/* What published.csv notes on the table's numbers, once for each target. */
+static void notes_print(const struct table *table, const struct reproduced *lines, int count)
+{
+    for (int k = 0; k < count; k++) {
+        const struct reproduced *l = &lines[k];
+        bool said = strcmp(l->table, table->id) != 0 || !*l->note;
+        for (int n = 0; n < k && !said; n++)
+            said = lines[n].table == l->table && strcmp(lines[n].note, l->note) == 0
+                   && strcmp(lines[n].target, l->target) == 0;
+        if (!said)
+            printf("  %s: %s\n", *l->target ? l->target : "paper", l->note);
+    }
+}
+
+/* One table, a row a printed number, a column a definition. */
+static void table_print(const struct table *table, const struct reproduced *lines, int count)
+{
+    const char *definitions[COLUMNS_MAX];
+    int columns = 0;
+    for (int k = 0; k < count; k++) {
+        int c = 0;
+        while (c < columns && strcmp(definitions[c], lines[k].definition) != 0)
+            c++;
+        if (strcmp(lines[k].table, table->id) == 0 && c == columns && columns < COLUMNS_MAX)
+            definitions[columns++] = lines[k].definition;
+    }
+    printf("\n%s  %s\n", table->id, table->title);
+    for (int c = 0; c < columns; c++)
+        printf("  (%d) %s\n", c + 1, definitions[c]);
+    printf("  assumed: %s\n  %-36s %-15s %10s", table->assumption, "", "", "paper");
+    for (int c = 0; c < columns; c++)
+        printf(" %10s %-10s", (char[]){'(', (char)('1' + c), ')', '\0'}, "");
+    printf("\n");
+    for (int k = 0; k < count;) {
+        const struct reproduced *l = &lines[k];
+        int end = k + 1;
+        while (end < count && lines[end].table == l->table && lines[end].target == l->target
+               && lines[end].method == l->method && lines[end].quantity == l->quantity)
+            end++;
+        if (strcmp(l->table, table->id) == 0) {
+            char item[160], paper[40] = "";
+            snprintf(item, sizeof item, "%s%s%s", l->target, *l->target ? ", " : "", l->method);
+            if (isfinite(l->paper))
+                snprintf(paper, sizeof paper, "%.5g", l->paper);
+            printf("  %-36s %-15s %10s", item, l->quantity, paper);
+            for (int c = 0; c < columns; c++) {
+                int n = k;
+                while (n < end && strcmp(lines[n].definition, definitions[c]) != 0)
+                    n++;
+                if (n < end)
+                    cell_print(lines[n].ours, lines[n].paper);
+                else
+                    printf(" %10s %-10s", "", "");
+            }
+            printf("\n");
+        }
+        k = end;
+    }
+    notes_print(table, lines, count);
+}
+
+/* Into claims.csv, and printed when `print`. */
+static enum status claims_write(const char *directory, struct measured *measured, bool print)
+{
+    char path[4200];
+    struct text_file file;
+    int counts[CLAIM_VERDICTS] = {0};
+    snprintf(path, sizeof path, "%s/claims.csv", directory);
+    enum status status = text_file_open(path, &file);
+    if (status != STATUS_OK)
+        return status;
+    head_write(file.stream, "claims", measured);
+    fputs("id,paper,section,claim,verdict,evidence\n", file.stream);
+    for (int t = 0; claim_tables[t]; t++)
+        for (const struct claim *claim = claim_tables[t]; claim->id; claim++) {
+            struct finding found = claim_judge(claim, measured);
+            const char *const texts[] = {claim->id, claim->paper, claim->section, claim->claim,
+                                         claim_verdict_names[found.verdict], found.evidence};
+            for (int k = 0; k < 6; k++) {
+                csv_write_text(file.stream, texts[k]);
+                fputc(k < 5 ? ',' : '\n', file.stream);
+            }
+            counts[found.verdict]++;
+            if (print)
+                printf("\n%-17s %s\n  %s: %s\n", claim->id, claim->claim, claim_verdict_names[found.verdict],
+                       found.evidence);
+        }
+    if (print) {
+        printf("\nClaims:");
+        for (int k = 0; k < CLAIM_VERDICTS; k++)
+            printf("%s %d %s", k ? "," : "", counts[k], claim_verdict_names[k]);
+        printf(".\n");
+    }
+    return text_file_close(&file, STATUS_OK);
+}
+
+/* Everything is worked out from the folder, so that a part that was measured earlier stays in the files. */
+static enum status report(const char *directory, const bool selected[TABLES_MAX])
+{
+    struct measured measured;
+    struct reproduced *lines = NULL;
+    int count = 0;
+    enum status status = measured_read(directory, &measured);
+    if (status == STATUS_OK)
+        status = tables_evaluate(&measured, &lines, &count);
+    if (status == STATUS_OK)
+        status = reproduced_write(directory, &measured, lines, count);
+    for (int k = 0; tables[k].id && status == STATUS_OK; k++) {
+        if (strcmp(tables[k].id, "claims") == 0)
+            status = claims_write(directory, &measured, selected[k]);
+        else if (selected[k])
+            table_print(&tables[k], lines, count);
+    }
+    if (status == STATUS_OK)
+        printf("\nResults: %s/reproduced.csv, claims.csv, measurements.csv, targets.csv, phase figures.\n",
+               directory);
+    free(lines);
+    measured_free(&measured);
+    return status;
+}
+
+enum status command_reproduce(const struct task *task)
+{
+    const char *directory = task->output ? task->output : "results/reproduce";
+    bool selected[TABLES_MAX] = {false};
+    struct need needs[NEEDS_MAX];
+    struct comparison comparison = {0};
+    enum status status = tables_select(task, selected);
+    if (status != STATUS_OK)
+        return status;
+    int count = 0;
+    for (int k = 0; tables[k].id; k++)
+        if (selected[k])
+            count = table_needs(tables[k].id, needs, count, NEEDS_MAX);
+    status = comparison_open(directory, count, false, &comparison);
+    for (int k = 0; k < count && status == STATUS_OK; k++)
+        if (needs[k].scene)
+            status = scene_measure(&comparison, needs + k, count - k);
+    if (status == STATUS_OK)
+        status = phase_studies(directory, true);
+    if (status == STATUS_OK)
+        status = report(directory, selected);
+    return comparison_close(&comparison, status);
+}

@@ -1,0 +1,178 @@
+/* A results folder as the papers' tables and claims look into it (reproduce.h). */
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "data/echo_data.h"
+#include "papers/reproduce.h"
+#include "measure/spec.h"
+
+static const char *const phase_files[] = {
+    [PHASE_SHORT] = "phase-lbf21__phase_short.csv", [PHASE_LONG] = "phase-lbf21__phase_long.csv"};
+
+/* The columns of published.csv. */
+static const char *const published_columns[] = {"table", "target", "method", "quantity",
+                                                "unit", "paper", "source", "note"};
+
+static enum status published_read(struct csv *csv)
+{
+    enum status status = csv_read(SASBENCH_ROOT "/results/published.csv", CSV_TAIL_KEEP, csv);
+    for (size_t k = 0; status == STATUS_OK && k < sizeof published_columns / sizeof *published_columns; k++)
+        if (csv_column(csv, published_columns[k]) != (int)k)
+            status = status_set(STATUS_INVALID, "%s: column %zu must be '%s'", csv->path, k + 1,
+                                published_columns[k]);
+    return status;
+}
+
+static enum status results_read_if(const char *directory, const char *name, struct results *results)
+{
+    char path[4200];
+    snprintf(path, sizeof path, "%s/%s", directory, name);
+    return access(path, F_OK) == 0 ? results_read(path, results) : STATUS_OK;
+}
+
+enum status measured_read(const char *directory, struct measured *measured)
+{
+    char path[4200];
+    *measured = (struct measured){0};
+    enum status status = published_read(&measured->published);
+    if (status == STATUS_OK)
+        status = results_read_if(directory, "measurements.csv", &measured->measurements);
+    if (status == STATUS_OK)
+        status = results_read_if(directory, "targets.csv", &measured->targets);
+    for (int k = 0; k < 2 && status == STATUS_OK; k++) {
+        snprintf(path, sizeof path, "%s/%s", directory, phase_files[k]);
+        if (access(path, F_OK) == 0)
+            status = csv_read(path, CSV_TAIL_KEEP, &measured->phase[k]);
+    }
+    return status;
+}
+
+void measured_free(struct measured *measured)
+{
+    results_free(&measured->measurements);
+    results_free(&measured->targets);
+    csv_free(&measured->phase[PHASE_SHORT]);
+    csv_free(&measured->phase[PHASE_LONG]);
+    csv_free(&measured->published);
+}
+
+/* Only the first is kept: it explains the others. */
+static double __attribute__((format(printf, 2, 3))) missing(struct measured *measured, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    if (!*measured->missing)
+        vsnprintf(measured->missing, sizeof measured->missing, format, arguments);
+    va_end(arguments);
+    return NAN;
+}
+
+/* The measurement, if it is there and went well. */
+static const struct measurement *measurement_find(struct measured *measured, const char *scene, const char *spec_text)
+{
+    struct spec spec;
+    if (spec_parse(spec_text, &spec) != STATUS_OK) {
+        missing(measured, "%s", status_message());
+        return NULL;
+    }
+    const struct measurement *row = NULL;
+    for (int k = 0; k < measured->measurements.csv.row_count && !row; k++) {
+        const struct measurement *m = &measured->measurements.measurements[k];
+        if (strcmp(m->scene, scene) == 0 && strcmp(m->algorithm, spec.algorithm->name) == 0
+            && strcmp(m->options, spec.text) == 0 && strcmp(m->precision, precision_name(spec.precision)) == 0)
+            row = m;
+    }
+    spec_free(&spec);
+    if (row && strcmp(row->status, "ok") == 0)
+        return row;
+    if (row)
+        missing(measured, "%s with %s: %s, %s", scene, spec_text, row->status, row->reason);
+    else
+        missing(measured, "%s with %s was not measured", scene, spec_text);
+    return NULL;
+}
+
+double measured_value(struct measured *measured, const char *scene, const char *spec, size_t offset, const char *name)
+{
+    const struct measurement *row = measurement_find(measured, scene, spec);
+    double value = row ? *(const double *)((const char *)row + offset) : NAN;
+    if (row && !isfinite(value))
+        missing(measured, "%s with %s: %s is undefined%s%s", scene, spec, name, *row->reason ? ", " : "",
+                row->reason);
+    return value;
+}
+
+double measured_stage(struct measured *measured, const char *scene, const char *spec, const char *stage)
+{
+    const struct measurement *row = measurement_find(measured, scene, spec);
+    size_t length = strlen(stage);
+    for (const char *at = row ? row->stages : ""; *at; at += strcspn(at, ";"), at += *at == ';') {
+        char text[32];
+        double seconds;
+        snprintf(text, sizeof text, "%.*s", (int)strcspn(at, ";"), at);
+        if (strncmp(text, stage, length) == 0 && text[length] == '=' && csv_number(text + length + 1, &seconds))
+            return seconds;
+    }
+    return missing(measured, "%s with %s: there is no stage %s", scene, spec, stage);
+}
+
+double measured_target(struct measured *measured, const char *scene, const char *spec, int target,
+                       const char *definition, size_t offset, const char *name)
+{
+    const struct measurement *row = measurement_find(measured, scene, spec);
+    double value = NAN;
+    for (int k = 0; row && k < measured->targets.csv.row_count; k++) {
+        const struct target_row *t = &measured->targets.target_rows[k];
+        if (t->target == target && strcmp(t->scene, scene) == 0 && strcmp(t->algorithm, row->algorithm) == 0
+            && strcmp(t->options, row->options) == 0 && strcmp(t->precision, row->precision) == 0
+            && strcmp(t->axis, "azimuth") == 0 && strcmp(t->definition, definition) == 0)
+            value = *(const double *)((const char *)t + offset);
+    }
+    if (!isfinite(value))
+        missing(measured, "%s with %s: %s of target %d is undefined (%s)", scene, spec, name, target + 1, definition);
+    return value;
+}
+
+double measured_phase(struct measured *measured, const struct phase_part *part)
+{
+    const struct csv *csv = &measured->phase[part->setup];
+    char name[40];
+    snprintf(name, sizeof name, "%s_error_rad", part->formula);
+    int error = csv_column(csv, name), range = csv_column(csv, "r_m"), nu = csv_column(csv, "nu_per_m");
+    int receiver = csv_column(csv, "receiver");
+    if (error < 0 || range < 0 || nu < 0 || receiver < 0)
+        return missing(measured, "the phase study (%s) was not made", phase_files[part->setup]);
+    double nu_most = 0, largest = NAN, number, r, error_rad;
+    for (int row = 0; row < csv->row_count; row++)
+        if (csv_number(csv_cell(csv, row, nu), &number))
+            nu_most = fmax(nu_most, fabs(number));
+    for (int row = 0; row < csv->row_count; row++) {
+        bool last = strcmp(csv_cell(csv, row, receiver), "1") != 0;
+        if (last == part->last_receiver && csv_number(csv_cell(csv, row, range), &r) && r >= part->least_m
+            && r <= part->most_m && csv_number(csv_cell(csv, row, nu), &number)
+            && fabs(number) <= (part->share + 1e-6) * nu_most && csv_number(csv_cell(csv, row, error), &error_rad))
+            largest = fmax(largest, fabs(error_rad));
+    }
+    return isfinite(largest) ? largest : missing(measured, "%s: %s is undefined", phase_files[part->setup], name);
+}
+
+double published_value(struct measured *measured, const char *table, const char *target, const char *method,
+                       const char *quantity)
+{
+    const struct csv *csv = &measured->published;
+    const char *const wanted[] = {table, target, method, quantity};
+    double value = NAN;
+    for (int row = 0; row < csv->row_count; row++) {
+        bool match = true;
+        for (int k = 0; k < 4; k++)
+            match = match && strcmp(csv_cell(csv, row, k), wanted[k]) == 0;
+        if (match)
+            csv_number(csv_cell(csv, row, PUBLISHED_PAPER), &value);
+    }
+    return isfinite(value) ? value : missing(measured, "published.csv has no %s of %s %s in %s", quantity, method,
+                                             target, table);
+}

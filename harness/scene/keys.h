@@ -1,0 +1,81 @@
+/* The keys of a scene file: reading them, and the one form of their error messages. Used by scene.c only. */
+#ifndef SASBENCH_SCENE_KEYS_H
+#define SASBENCH_SCENE_KEYS_H
+
+#include <libconfig.h>
+
+#include "scene/scene.h"
+
+#define SCATTERERS_MAX 10000000     /* of all fields */
+
+/* Lines of the text from `first_line` on, which are those of the file `path` from `line` on. */
+struct text_piece {
+    char *path;
+    int line, first_line;
+};
+
+/* A scene file with all that it includes in place, and where each line is from. Freed with scene_text_free. */
+struct scene_text {
+    char *text;
+    size_t length, room;            /* bytes filled, allocated */
+    int line;                       /* the last one */
+    int piece_count;
+    struct text_piece *pieces;      /* [piece_count], in the order of the text */
+    const char *scene_directory;    /* of the shipped scenes */
+};
+
+/* Groups are kept as libconfig settings until they are read in turn; NULL when the file leaves them out. */
+struct reading {
+    const char *path;               /* of the scene file */
+    struct scene_text text;
+    struct scene scene;
+    const char *description;        /* belongs to libconfig */
+    config_setting_t *base, *sonar, *pulse, *array, *track, *record, *beam, *targets, *noise, *image;
+    double first_offset_m, pitch_m;
+    double speed_m_s, pri_s, x_first_m;
+    int first_sample;
+    config_setting_t *points, *fields;
+    config_setting_t *x, *r, *reference, *around_targets, *patches;
+};
+
+struct scatter_field {
+    double x_m[2], r_m[2];          /* min, max */
+    int count;
+    uint64_t seed;
+};
+
+struct axis_keys {
+    double first_m, step_m;
+    int count;
+};
+
+struct patch_keys {
+    config_setting_t *x, *r;
+};
+
+struct around_keys {
+    double half_x_m, half_r_m, x_step_m, r_step_m;
+};
+
+/* Read every key of `group` ("targets.points") from its setting (NULL: all defaults) into that group's struct, and
+   add the values to the scene's hash. Errors: STATUS_INVALID. */
+enum status group_read(struct reading *reading, config_setting_t *setting, const char *group, void *out);
+/* The same for the file itself and all groups that it has once. */
+enum status groups_read(struct reading *reading, config_setting_t *root);
+
+/* The one error of a key: "FILE:LINE: key 'sonar.fs' is -3, must be ..."; `format` says what is accepted. `name` NULL
+   means the group itself; `group_name` is used where the group is missing. Returns STATUS_INVALID. */
+enum status refuse(const struct reading *reading, const config_setting_t *group, const char *group_name,
+                   const char *name, const char *format, ...) __attribute__((format(printf, 5, 6)));
+
+/* "FILE:LINE" of a line of the scene's text as libconfig counts them; 0: "FILE", the scene's. */
+void place_format(const struct reading *reading, unsigned line, char *text, size_t size);
+
+extern const char *const truncation_names[];            /* by enum truncation_kind */
+
+/* Put the scene file at `path` and all that it includes (where includes are found: scenes/README.md) together, and
+   refuse what libconfig would take wrongly. Errors: STATUS_INVALID; nothing to free then. */
+enum status scene_text_read(const char *path, const char *scene_directory, struct scene_text *text);
+void scene_text_free(struct scene_text *text);
+
+#endif

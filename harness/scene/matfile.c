@@ -1,0 +1,399 @@
+/* Echo files and image files: which variables they have, in which shapes. */
+#include "scene/matfile.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "scene/matvar.h"
+
+enum echo_variable {
+    FORMAT, SAMPLES, COMPRESSED, PULSE, FS, FC, BANDWIDTH, SOUND_SPEED, T0, TX, RX, VELOCITY, TX_LENGTH, RX_LENGTH,
+    BEAM_LIMIT, ECHO_VARIABLES
+};
+
+static const char format_text[] = "sas-echoes 1";
+
+static const struct wanted echo_variables[ECHO_VARIABLES] = {
+    [FORMAT] = {"format", KIND_TEXT, false, "the text \"sas-echoes 1\""},
+    [SAMPLES] = {"samples", KIND_COMPLEX, false, "a complex array [N x M x P] (fast time x receivers x pings)"},
+    [COMPRESSED] = {"compressed", KIND_SCALAR, false, "0 (raw) or 1 (range compressed)"},
+    [PULSE] = {"pulse", KIND_COMPLEX, true, "a complex array [K x 1]"},
+    [FS] = {"fs", KIND_SCALAR, false, "a scalar in Hz"},
+    [FC] = {"fc", KIND_SCALAR, false, "a scalar in Hz"},
+    [BANDWIDTH] = {"bandwidth", KIND_SCALAR, false, "a scalar in Hz"},
+    [SOUND_SPEED] = {"sound_speed", KIND_SCALAR, false, "a scalar in m/s"},
+    [T0] = {"t0", KIND_REAL, false, "a real scalar or [1 x P] in s"},
+    [TX] = {"tx", KIND_REAL, false, "a real array [3 x P] in m"},
+    [RX] = {"rx", KIND_REAL, false, "a real array [3 x M x P] in m"},
+    [VELOCITY] = {"velocity", KIND_REAL, false, "a real array [3 x 1] or [3 x P] in m/s"},
+    [TX_LENGTH] = {"tx_length", KIND_SCALAR, true, "a scalar in m"},
+    [RX_LENGTH] = {"rx_length", KIND_SCALAR, true, "a scalar in m"},
+    [BEAM_LIMIT] = {"beam_limit", KIND_SCALAR, true, "a scalar in (0, 1]"},
+};
+_Static_assert((int)ECHO_VARIABLES <= (int)WANTED_MAX, "send_variables keeps a mark for each variable");
+
+static double scalar_or(const struct variable *variable, double missing)
+{
+    return variable->values ? creal(variable->values[0]) : missing;
+}
+
+static enum status check_echo_shapes(const char *path, const struct variable *v)
+{
+    const struct variable *samples = &v[SAMPLES];
+    size_t receivers = samples->dims[1], pings = samples->dims[2];
+    for (int i = 0; i < 3; i++) {
+        if (samples->dims[i] > INT_MAX) {
+            return status_set(STATUS_INVALID, "%s: variable `samples` is [%zu x %zu x %zu]; at most %d each is "
+                              "accepted", path, samples->dims[0], samples->dims[1], samples->dims[2], INT_MAX);
+        }
+    }
+    const struct variable *pulse = &v[PULSE];
+    bool is_vector = (pulse->dims[0] == 1 || pulse->dims[1] == 1) && pulse->dims[2] == 1;
+    bool pulse_fits = !pulse->values || (is_vector && variable_count(pulse) <= INT_MAX);
+    const struct {
+        enum echo_variable variable;
+        bool fits;
+    } shapes[] = {
+        {T0, variable_has_shape(&v[T0], 1, 1, 1) || variable_has_shape(&v[T0], 1, pings, 1) ||
+             variable_has_shape(&v[T0], pings, 1, 1)},
+        {TX, variable_has_shape(&v[TX], 3, pings, 1)},
+        {RX, variable_has_shape(&v[RX], 3, receivers, pings)},
+        {VELOCITY, variable_has_shape(&v[VELOCITY], 3, 1, 1) || variable_has_shape(&v[VELOCITY], 3, pings, 1)},
+        {PULSE, pulse_fits},
+    };
+    for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
+        const struct wanted *wanted = &echo_variables[shapes[i].variable];
+        const size_t *dims = v[shapes[i].variable].dims;
+        if (!shapes[i].fits) {
+            return status_set(STATUS_INVALID,
+                              "%s: variable `%s` is [%zu x %zu x %zu], samples [%zu x %zu x %zu]; %s is needed",
+                              path, wanted->name, dims[0], dims[1], dims[2], samples->dims[0], receivers, pings,
+                              wanted->accepted);
+        }
+    }
+    return STATUS_OK;
+}
+
+static enum status check_echo_values(const char *path, const struct variable *v)
+{
+    const struct variable *format = &v[FORMAT], *samples = &v[SAMPLES];
+    size_t length = variable_count(format);
+    while (length > 0 && creal(format->values[length - 1]) == 0) {
+        length--;                   /* texts of a fixed length are padded */
+    }
+    bool is_ours = length == strlen(format_text);
+    for (size_t i = 0; is_ours && i < strlen(format_text); i++) {
+        is_ours = creal(format->values[i]) == format_text[i];
+    }
+    if (!is_ours) {
+        char text[32] = "";         /* what stands there, as far as it is plain text */
+        for (size_t i = 0; i < length && i < sizeof text - 1; i++) {
+            double code = creal(format->values[i]);
+            text[i] = code >= ' ' && code <= '~' ? (char)code : '?';
+        }
+        return status_set(STATUS_INVALID, "%s: variable `format` is \"%s\"; %s is needed", path, text,
+                          echo_variables[FORMAT].accepted);
+    }
+    double compressed = scalar_or(&v[COMPRESSED], 0), beam_limit = scalar_or(&v[BEAM_LIMIT], 1);
+    if (compressed != 0 && compressed != 1) {
+        return status_set(STATUS_INVALID, "%s: variable `compressed` is %g; %s is needed", path, compressed,
+                          echo_variables[COMPRESSED].accepted);
+    }
+    if (!(beam_limit > 0 && beam_limit <= 1)) {
+        return status_set(STATUS_INVALID, "%s: variable `beam_limit` is %g; %s is needed", path, beam_limit,
+                          echo_variables[BEAM_LIMIT].accepted);
+    }
+    size_t count = variable_count(samples);
+    for (size_t i = 0; i < count; i++) {
+        double complex z = samples->values[i];
+        if (!isfinite(creal(z)) || !isfinite(cimag(z))) {
+            size_t n = i % samples->dims[0], record = i / samples->dims[0];
+            return status_set(STATUS_INVALID,
+                              "%s: variable `samples` at (%zu, %zu, %zu) is %g%+gi; finite numbers are needed",
+                              path, n + 1, record % samples->dims[1] + 1, record / samples->dims[1] + 1, creal(z),
+                              cimag(z));
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Compression divides by the pulse's energy. A pulse so small or large that squares of it leave the precision is brought
+   to 1 by a power of two, and the samples by the same, which leaves the compressed echoes as they are. */
+static enum status normalise_pulse(const char *path, const struct variable *v)
+{
+    const struct variable *const both[] = {&v[PULSE], &v[SAMPLES]};
+    size_t pulse_count = v[PULSE].values ? variable_count(&v[PULSE]) : 0;
+    double largest = 0;
+    int exponent;
+    for (size_t k = 0; k < pulse_count; k++) {
+        largest = fmax(largest, fmax(fabs(creal(v[PULSE].values[k])), fabs(cimag(v[PULSE].values[k]))));
+    }
+    if (!(largest > 0 && largest < INFINITY) || (largest >= 0x1p-20 && largest <= 0x1p20)) {
+        return STATUS_OK;
+    }
+    frexp(largest, &exponent);
+    for (int k = 0; k < 2; k++) {
+        for (size_t i = 0; i < variable_count(both[k]); i++) {
+            double re = ldexp(creal(both[k]->values[i]), -exponent), im = ldexp(cimag(both[k]->values[i]), -exponent);
+            if (k == 1 && (!isfinite(re) || !isfinite(im))) {
+                return status_set(STATUS_INVALID, "%s: variable `samples` has %g%+gi, variable `pulse` at most %g; their ratio "
+                                  "must fit double", path, creal(both[k]->values[i]), cimag(both[k]->values[i]), largest);
+            }
+            both[k]->values[i] = __builtin_complex(re, im);
+        }
+    }
+    return STATUS_OK;
+}
+
+static struct vector vector_at(const struct variable *variable, size_t index)
+{
+    const double complex *v = variable->values + 3 * index;
+    return (struct vector){creal(v[0]), creal(v[1]), creal(v[2])};
+}
+
+static enum status acquisition_fill(const char *path, const struct variable *v, struct acquisition *a)
+{
+    a->sound_speed = scalar_or(&v[SOUND_SPEED], 0);
+    a->fc = scalar_or(&v[FC], 0);
+    a->fs = scalar_or(&v[FS], 0);
+    a->bandwidth = scalar_or(&v[BANDWIDTH], 0);
+    a->samples = (int)v[SAMPLES].dims[0];
+    a->receivers = (int)v[SAMPLES].dims[1];
+    a->pings = (int)v[SAMPLES].dims[2];
+    a->tx_length = scalar_or(&v[TX_LENGTH], 0);
+    a->rx_length = scalar_or(&v[RX_LENGTH], 0);
+    a->aperture_limit = scalar_or(&v[BEAM_LIMIT], INFINITY);
+    a->compressed = scalar_or(&v[COMPRESSED], 0) == 1;
+    a->pulse_length = v[PULSE].values ? (int)variable_count(&v[PULSE]) : 0;
+    enum status status = acquisition_allocate(a);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    bool one_t0 = variable_count(&v[T0]) == 1, one_velocity = variable_count(&v[VELOCITY]) == 3;
+    for (size_t p = 0, receivers = (size_t)a->receivers; p < (size_t)a->pings; p++) {
+        a->t0[p] = creal(v[T0].values[one_t0 ? 0 : p]);
+        a->tx[p] = vector_at(&v[TX], p);
+        a->velocity[p] = vector_at(&v[VELOCITY], one_velocity ? 0 : p);
+        for (size_t m = 0; m < receivers; m++) {
+            a->rx[p * receivers + m] = vector_at(&v[RX], p * receivers + m);
+        }
+    }
+    for (int k = 0; k < a->pulse_length; k++) {
+        a->pulse[k] = v[PULSE].values[k];
+    }
+    return acquisition_check(a, path);
+}
+
+enum status echo_file_read(const char *path, struct acquisition *acquisition, struct echoes *echoes)
+{
+    *acquisition = (struct acquisition){0};
+    *echoes = (struct echoes){0};
+    struct variable variables[ECHO_VARIABLES];
+    enum status status = variables_read(path, echo_variables, ECHO_VARIABLES, variables);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    status = check_echo_values(path, variables);
+    if (status == STATUS_OK) {
+        status = check_echo_shapes(path, variables);
+    }
+    if (status == STATUS_OK) {
+        status = normalise_pulse(path, variables);
+    }
+    if (status == STATUS_OK) {
+        status = acquisition_fill(path, variables, acquisition);
+    }
+    if (status == STATUS_OK) {
+        *echoes = (struct echoes){acquisition, PRECISION_DOUBLE, variables[SAMPLES].values, 0};
+        variables[SAMPLES].values = NULL;
+    } else {
+        acquisition_free(acquisition);
+    }
+    variables_free(variables, ECHO_VARIABLES);
+    return status;
+}
+
+/* Do all pings have the first one's `size` bytes? */
+static bool is_constant(const void *values, size_t size, int pings)
+{
+    for (int p = 1; p < pings; p++) {
+        if (memcmp(values, (const char *)values + (size_t)p * size, size) != 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+enum status echo_file_write(const char *path, const struct echoes *echoes, const char *description)
+{
+    const struct acquisition *a = echoes->acquisition;
+    size_t samples = (size_t)a->samples, receivers = (size_t)a->receivers, pings = (size_t)a->pings;
+    size_t samples_bytes = samples * receivers * pings * precision_size(echoes->precision);
+    size_t rx_bytes = receivers * pings * sizeof *a->rx;
+    struct writer writer;
+    if (writer_open(&writer, path, samples_bytes > rx_bytes ? samples_bytes : rx_bytes) != STATUS_OK) {
+        return writer.status;
+    }
+    write_text(&writer, "format", format_text);
+    write_complex(&writer, "samples", (size_t[]){samples, receivers, pings}, echoes->precision, echoes->samples,
+                  samples * receivers * pings, 1);
+    if (!a->compressed) {
+        size_t length = (size_t)a->pulse_length;
+        write_complex(&writer, "pulse", (size_t[]){length, 1, 1}, PRECISION_DOUBLE, a->pulse, length, 1);
+    }
+    const struct {
+        const char *name;
+        double value;
+        bool is_written;
+    } scalars[] = {
+        {"compressed", a->compressed, true},
+        {"fs", a->fs, true},
+        {"fc", a->fc, true},
+        {"bandwidth", a->bandwidth, true},
+        {"sound_speed", a->sound_speed, true},
+        {"tx_length", a->tx_length, a->tx_length > 0},
+        {"rx_length", a->rx_length, a->rx_length > 0},
+        {"beam_limit", a->aperture_limit, a->aperture_limit <= 1},
+    };
+    for (size_t i = 0; i < sizeof scalars / sizeof *scalars; i++) {
+        if (scalars[i].is_written) {
+            write_reals(&writer, scalars[i].name, 1, 1, 1, &scalars[i].value);
+        }
+    }
+    size_t t0_count = is_constant(a->t0, sizeof *a->t0, a->pings) ? 1 : pings;
+    size_t velocity_count = is_constant(a->velocity, sizeof *a->velocity, a->pings) ? 1 : pings;
+    write_reals(&writer, "t0", 1, t0_count, 1, a->t0);
+    write_reals(&writer, "tx", 3, pings, 1, &a->tx->x);
+    write_reals(&writer, "rx", 3, receivers, pings, &a->rx->x);
+    write_reals(&writer, "velocity", 3, velocity_count, 1, &a->velocity->x);
+    if (description) {
+        write_text(&writer, "description", description);
+    }
+    return writer_close(&writer);
+}
+
+/* ---- Image files ---- */
+
+enum image_variable { IMAGE, IMAGE_X, IMAGE_R, IMAGE_VARIABLES };
+
+static const struct wanted image_variables[IMAGE_VARIABLES] = {
+    [IMAGE] = {"image", KIND_COMPLEX, false, "a complex array [R x X] (range x azimuth)"},
+    [IMAGE_X] = {"x", KIND_REAL, false, "an evenly spaced, rising row [1 x X] in m"},
+    [IMAGE_R] = {"r", KIND_REAL, false, "an evenly spaced, rising row [1 x R] in m"},
+};
+
+static void write_axis(struct writer *writer, const char *name, double first, double step, int count)
+{
+    double *values = malloc((size_t)count * sizeof *values);
+    if (!values) {
+        writer->status = status_set(STATUS_FAILED, "%s: out of memory to write %d numbers", writer->path, count);
+        return;
+    }
+    for (int i = 0; i < count; i++) {
+        values[i] = first + i * step;
+    }
+    write_reals(writer, name, 1, (size_t)count, 1, values);
+    free(values);
+}
+
+/* "image" for the first patch, "image_2" for the second. */
+static const char *patch_name(const char *name, int patch, char *text, size_t size)
+{
+    if (patch == 0)
+        return name;
+    snprintf(text, size, "%s_%d", name, patch + 1);
+    return text;
+}
+
+enum status image_file_write(const char *path, const struct image *image, const char *algorithm, const char *options,
+                             const char *scene)
+{
+    size_t largest = 0;
+    for (int k = 0; k < image->patch_count; k++) {
+        size_t bytes = (size_t)image->patches[k].r_count * (size_t)image->patches[k].x_count
+                       * precision_size(image->precision);
+        largest = bytes > largest ? bytes : largest;
+    }
+    struct writer writer;
+    if (writer_open(&writer, path, largest) != STATUS_OK) {
+        return writer.status;
+    }
+    for (int k = 0; k < image->patch_count; k++) {
+        const struct grid *grid = &image->patches[k];
+        size_t rows = (size_t)grid->r_count, columns = (size_t)grid->x_count;
+        char text[32];
+        write_complex(&writer, patch_name("image", k, text, sizeof text), (size_t[]){rows, columns, 1},
+                      image->precision, image->pixels[k], rows, columns);
+        write_axis(&writer, patch_name("x", k, text, sizeof text), grid->x_first, grid->x_step, grid->x_count);
+        write_axis(&writer, patch_name("r", k, text, sizeof text), grid->r_first, grid->r_step, grid->r_count);
+    }
+    write_text(&writer, "algorithm", algorithm);
+    write_text(&writer, "options", options);
+    write_text(&writer, "scene", scene);
+    return writer_close(&writer);
+}
+
+/* First value, step (1 for a single value) and count of an evenly spaced axis of `expected` values. */
+static enum status axis_read(const char *path, const struct wanted *wanted, const struct variable *variable,
+                             size_t expected, double *first, double *step, int *count)
+{
+    if (!variable_has_shape(variable, 1, expected, 1) || expected > INT_MAX) {
+        return status_set(STATUS_INVALID, "%s: variable `%s` is [%zu x %zu x %zu] for %zu pixels; %s is needed", path,
+                          wanted->name, variable->dims[0], variable->dims[1], variable->dims[2], expected,
+                          wanted->accepted);
+    }
+    size_t last = expected - 1;
+    *first = creal(variable->values[0]);
+    *step = last > 0 ? (creal(variable->values[last]) - *first) / (double)last : 1;
+    *count = (int)expected;
+    for (size_t i = 0; i < expected; i++) {
+        double deviation = creal(variable->values[i]) - (*first + (double)i * *step);
+        if (!(*step > 0) || !(fabs(deviation) <= 1e-6 * *step)) {
+            return status_set(STATUS_INVALID, "%s: variable `%s` has %g at place %zu; %s is needed", path,
+                              wanted->name, creal(variable->values[i]), i + 1, wanted->accepted);
+        }
+    }
+    return STATUS_OK;
+}
+
+static enum status image_fill(const char *path, const struct variable *v, struct grid *grid, double complex **pixels)
+{
+    size_t rows = v[IMAGE].dims[0], columns = v[IMAGE].dims[1];
+    if (v[IMAGE].dims[2] != 1) {
+        return status_set(STATUS_INVALID, "%s: variable `image` is [%zu x %zu x %zu]; %s is needed", path, rows,
+                          columns, v[IMAGE].dims[2], image_variables[IMAGE].accepted);
+    }
+    enum status status = axis_read(path, &image_variables[IMAGE_X], &v[IMAGE_X], columns, &grid->x_first,
+                                   &grid->x_step, &grid->x_count);
+    if (status == STATUS_OK) {
+        status = axis_read(path, &image_variables[IMAGE_R], &v[IMAGE_R], rows, &grid->r_first, &grid->r_step,
+                           &grid->r_count);
+    }
+    if (status != STATUS_OK) {
+        return status;
+    }
+    *pixels = malloc(rows * columns * sizeof **pixels);
+    if (!*pixels) {
+        return status_set(STATUS_FAILED, "%s: out of memory for an image of %zu x %zu pixels", path, rows, columns);
+    }
+    for (size_t i = 0; i < rows; i++) {
+        for (size_t j = 0; j < columns; j++) {
+            (*pixels)[i * columns + j] = v[IMAGE].values[j * rows + i];
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status image_file_read(const char *path, struct grid *grid, double complex **pixels)
+{
+    *pixels = NULL;
+    struct variable variables[IMAGE_VARIABLES];
+    enum status status = variables_read(path, image_variables, IMAGE_VARIABLES, variables);
+    if (status == STATUS_OK) {
+        status = image_fill(path, variables, grid, pixels);
+        variables_free(variables, IMAGE_VARIABLES);
+    }
+    return status;
+}

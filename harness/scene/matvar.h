@@ -1,0 +1,66 @@
+/* MATLAB files variable by variable: what matfile.c reads and writes is made of these. */
+#ifndef SASBENCH_SCENE_MATVAR_H
+#define SASBENCH_SCENE_MATVAR_H
+
+#include <limits.h>
+
+#include "data/echo_data.h"
+
+enum kind { KIND_TEXT, KIND_SCALAR, KIND_REAL, KIND_COMPLEX };
+
+/* A variable that a file may or must have. */
+struct wanted {
+    const char *name;
+    enum kind kind;
+    bool is_optional;
+    const char *accepted;           /* for messages: "X is needed" */
+};
+
+enum { WANTED_MAX = 16 };
+
+/* A variable as read: complex doubles whatever its class, text as character codes, MATLAB's order. */
+struct variable {
+    bool is_complex;
+    size_t dims[3];                 /* trailing dimensions of 1 filled in; never 0 */
+    double complex *values;         /* 64-byte aligned, free(); NULL: the file does not have it */
+};
+
+/* Read the wanted variables of a file (count <= WANTED_MAX) into variables[count], freed with variables_free. Other
+   variables are not read. Errors, with nothing to free: STATUS_INVALID naming file, variable and what is accepted,
+   for every file that is not whole or lacks one; STATUS_FAILED without memory. */
+enum status variables_read(const char *path, const struct wanted *wanted, int count, struct variable *variables);
+void variables_free(struct variable *variables, int count);
+size_t variable_count(const struct variable *variable);
+bool variable_has_shape(const struct variable *variable, size_t rows, size_t columns, size_t pages);
+
+/* Keep libmatio from printing: what matters is in the status message. */
+void matio_silence(void);
+
+/* Variables in a version 5 file by their stated lengths; -1 when these do not end where the file does. libmatio takes
+   a file that was cut short for one with fewer variables, and does not notice a full disk either. */
+int mat5_count(const char *path);
+
+/* A file on its way. The first failure is kept and what follows it does nothing, so that only writer_open (after
+   whose failure the writer is not closed) and writer_close need be looked at. */
+struct writer {
+    const char *path;
+    char place[PATH_MAX];           /* the file that a symbolic link stands for, or `path` itself */
+    char temporary[PATH_MAX];       /* beside `place`: renamed when whole */
+    struct _mat_t *mat;
+    int count;                      /* variables written */
+    enum status status;
+};
+
+/* Both return the writer's status. Errors: STATUS_INVALID when the place cannot be written, STATUS_FAILED without
+   memory. */
+enum status writer_open(struct writer *writer, const char *path, size_t largest_variable_bytes);
+enum status writer_close(struct writer *writer);
+
+void write_text(struct writer *writer, const char *name, const char *text);
+void write_reals(struct writer *writer, const char *name, size_t rows, size_t columns, size_t pages,
+                 const double *values);
+/* Complex numbers, in memory row by row [rows][columns], as MATLAB's array `dims`, column by column. */
+void write_complex(struct writer *writer, const char *name, const size_t dims[3], enum precision precision,
+                   const void *values, size_t rows, size_t columns);
+
+#endif

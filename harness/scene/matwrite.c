@@ -1,0 +1,155 @@
+/* Writing MATLAB files through libmatio: version 5, or 7.3 where that cannot hold a variable. */
+#include "scene/matfile.h"
+#include "scene/matvar.h"
+
+#include <errno.h>
+#include <hdf5.h>
+#include <matio.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "data/temporary.h"
+#include "data/text_file.h"
+
+#define ACCEPTED "a new or regular file in a writable folder is needed"
+
+static enum status write_failed(struct writer *writer)
+{
+    int reason = errno ? errno : EIO;
+    return writer->status = status_set(STATUS_INVALID, "%s: cannot be written: %s; " ACCEPTED, writer->path,
+                                       strerror(reason));
+}
+
+/* The place that a path stands for, through symbolic links. */
+static enum status place_find(const char *path, char place[PATH_MAX])
+{
+    char folder[PATH_MAX];
+    struct stat old;
+    if (strlen(path) + NAME_MAX > sizeof folder)
+        return status_set(STATUS_INVALID, "%.100s...: cannot be written: path too long; " ACCEPTED, path);
+    if (stat(path, &old) == 0 && !S_ISREG(old.st_mode))
+        return status_set(STATUS_INVALID, "%s: cannot be written: it is not a regular file; " ACCEPTED, path);
+    char *followed = place_follow(path);
+    if (!followed)
+        return status_set(STATUS_INVALID, "%s: cannot be written: %s; " ACCEPTED, path, strerror(errno));
+    snprintf(place, PATH_MAX, "%s", followed);
+    snprintf(folder, sizeof folder, "%s", followed);
+    free(followed);
+    char *slash = strrchr(folder, '/');
+    if (slash)
+        slash[slash == folder] = 0;
+    if (!*path || access(slash ? folder : ".", W_OK | X_OK) != 0)
+        return status_set(STATUS_INVALID, "%s: cannot be written: %s; " ACCEPTED, path,
+                          strerror(*path ? errno : ENOENT));
+    return STATUS_OK;
+}
+
+enum status matfile_place(const char *path)
+{
+    char place[PATH_MAX];
+    return place_find(path, place);
+}
+
+/* Version 5 holds up to 2 GiB a variable. */
+enum status writer_open(struct writer *writer, const char *path, size_t largest_variable_bytes)
+{
+    *writer = (struct writer){.path = path};
+    writer->status = place_find(path, writer->place);
+    if (writer->status != STATUS_OK)
+        return writer->status;
+    int descriptor = temporary_file(writer->place, writer->temporary);
+    if (descriptor < 0)
+        return write_failed(writer);
+    close(descriptor);
+    matio_silence();
+    H5dont_atexit();                /* its exit handler crashes after a full disk */
+    bool fits_v5 = largest_variable_bytes < ((size_t)1 << 31) - 4096;
+    errno = 0;
+    writer->mat = Mat_CreateVer(writer->temporary, NULL, fits_v5 ? MAT_FT_MAT5 : MAT_FT_MAT73);
+    if (!writer->mat) {
+        write_failed(writer);
+        temporary_remove(writer->temporary);
+    }
+    return writer->status;
+}
+
+static void write_variable(struct writer *writer, const char *name, enum matio_classes class, enum matio_types type,
+                           size_t rows, size_t columns, size_t pages, void *data, int flags)
+{
+    if (writer->status != STATUS_OK) {
+        return;
+    }
+    size_t dims[3] = {rows, columns, pages};
+    errno = 0;
+    matvar_t *matvar = Mat_VarCreate(name, class, type, pages == 1 ? 2 : 3, dims, data, MAT_F_DONT_COPY_DATA | flags);
+    /* Version 7.3 stays unpacked: HDF5 would pack real and imaginary parts in turns, which takes minutes. */
+    bool is_packed = Mat_GetVersion(writer->mat) == MAT_FT_MAT5;
+    if (!matvar || Mat_VarWrite(writer->mat, matvar, is_packed ? MAT_COMPRESSION_ZLIB : MAT_COMPRESSION_NONE) != 0) {
+        write_failed(writer);
+    }
+    Mat_VarFree(matvar);
+    writer->count++;
+}
+
+void write_reals(struct writer *writer, const char *name, size_t rows, size_t columns, size_t pages,
+                 const double *values)
+{
+    write_variable(writer, name, MAT_C_DOUBLE, MAT_T_DOUBLE, rows, columns, pages, (void *)values, 0);
+}
+
+void write_text(struct writer *writer, const char *name, const char *text)
+{
+    write_variable(writer, name, MAT_C_CHAR, MAT_T_UTF8, strlen(text) > 0, strlen(text), 1, (void *)text, 0);
+}
+
+/* libmatio wants real and imaginary parts apart. */
+void write_complex(struct writer *writer, const char *name, const size_t dims[3], enum precision precision,
+                   const void *values, size_t rows, size_t columns)
+{
+    size_t count = rows * columns, part_size = precision_size(precision) / 2;
+    mat_complex_split_t parts = {malloc(count * part_size), malloc(count * part_size)};
+    if (!parts.Re || !parts.Im) {
+        writer->status = status_set(STATUS_FAILED, "%s: out of memory to write %zu numbers", writer->path, count);
+    }
+    for (size_t i = 0; writer->status == STATUS_OK && i < rows; i++) {
+        for (size_t j = 0; j < columns; j++) {
+            size_t from = i * columns + j, to = j * rows + i;
+            if (precision == PRECISION_FLOAT) {
+                ((float *)parts.Re)[to] = crealf(((const float complex *)values)[from]);
+                ((float *)parts.Im)[to] = cimagf(((const float complex *)values)[from]);
+            } else {
+                ((double *)parts.Re)[to] = creal(((const double complex *)values)[from]);
+                ((double *)parts.Im)[to] = cimag(((const double complex *)values)[from]);
+            }
+        }
+    }
+    bool is_float = precision == PRECISION_FLOAT;
+    write_variable(writer, name, is_float ? MAT_C_SINGLE : MAT_C_DOUBLE, is_float ? MAT_T_SINGLE : MAT_T_DOUBLE,
+                   dims[0], dims[1], dims[2], &parts, MAT_F_COMPLEX);
+    free(parts.Re);
+    free(parts.Im);
+}
+
+enum status writer_close(struct writer *writer)
+{
+    bool is_v5 = Mat_GetVersion(writer->mat) == MAT_FT_MAT5;
+    errno = 0;
+    if (Mat_Close(writer->mat) != 0 && writer->status == STATUS_OK) {
+        write_failed(writer);
+    }
+    if (writer->status == STATUS_OK && is_v5 && mat5_count(writer->temporary) != writer->count) {
+        errno = ENOSPC;
+        write_failed(writer);
+    }
+    if (writer->status == STATUS_OK && rename(writer->temporary, writer->place) != 0) {
+        write_failed(writer);
+    }
+    if (writer->status == STATUS_OK)
+        temporary_moved(writer->temporary);
+    else
+        temporary_remove(writer->temporary);
+    return writer->status;
+}

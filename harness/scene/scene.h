@@ -1,0 +1,75 @@
+/* A scene: what is sailed, sounded and seen, read from a libconfig file (every key: scenes/README.md). */
+#ifndef SASBENCH_SCENE_SCENE_H
+#define SASBENCH_SCENE_SCENE_H
+
+#include <stdint.h>
+
+#include "algorithm.h"
+
+#define COORDINATE_MAX_M 1e12       /* bound of every coordinate that is read, so that no square overflows */
+
+enum pulse_kind { PULSE_LFM, PULSE_LFM_TIME, PULSE_FLAT };
+enum beam_kind { BEAM_RECT, BEAM_TXRX };
+enum truncation_kind { TRUNCATION_NONE, TRUNCATION_TX, TRUNCATION_MID, TRUNCATION_DOPPLER };
+
+/* Amplitude of the echo of one pair (element beams sinc(D sin(theta)/lambda) or rect, and their truncation).
+   theta_t is measured at emission, theta_r at reception. A property of the echoes: it never limits imaging. */
+struct beam {
+    enum beam_kind kind;            /* rect: 1; txrx: sinc(D_tx sin theta_t F/c) sinc(D_rx sin theta_r F/c) */
+    enum truncation_kind truncation;
+    double limit;                   /* tx, mid: |D_tx F sin theta/c| <= it; doppler: |D_tx F (sin + sin)/2c| <= it */
+    bool per_frequency;             /* F = fc + f_tau instead of F = fc (lambda = c/F) */
+};
+
+struct target {
+    double x, r;                    /* m */
+    double complex amplitude;       /* 1 */
+};
+
+/* Freed with scene_free. */
+struct scene {
+    char *name;                     /* without extension: the path below scenes/, or the name of a file elsewhere */
+    char *path;                     /* of the file, absolute and without links */
+    bool shipped;                   /* it lies below scenes/ */
+    char *description;              /* one line, from the file */
+    uint64_t hash;                  /* FNV-1a of the content after @include: the same text measures the same thing */
+    struct acquisition acquisition;
+    enum pulse_kind pulse_kind;     /* flat: the echoes are compressed */
+    double pulse_duration;          /* s; lfm and lfm_time */
+    struct beam beam;
+    int point_count;                /* the first targets are points, the ones that metrics measure */
+    int target_count;               /* points, then all scatterers of the fields, drawn from their seeds */
+    struct target *targets;         /* [target_count] */
+    double noise_std;               /* standard deviation of the complex noise of each sample; 0 = none */
+    uint64_t noise_seed;
+    int patch_count;
+    struct grid *patches;           /* [patch_count] the image */
+    bool full_size;                 /* left out of the default `run` */
+    /* Where `reference` is computed when that is not the whole image: sub-grids of patches[0] around each point
+       target. reference_count == 0: reference_patches is NULL and the patches themselves are meant. */
+    int reference_count;
+    struct grid *reference_patches;
+};
+
+/* SCENE is a path to a .cfg file, or a name below `scene_directory` without its extension.
+   Errors: STATUS_INVALID, the message naming file, line, key, value and what is accepted. */
+enum status scene_load(const char *scene, const char *scene_directory, struct scene *out);
+void scene_free(struct scene *scene);
+/* Two files of one name, not both shipped, get as much of their folders in their names as tells them apart. Errors:
+   STATUS_FAILED without memory. */
+enum status scenes_tell_apart(struct scene *a, struct scene *b);
+
+/* Names of all scenes below `scene_directory` (recursive, sorted, without extension; files whose name begins with '_'
+   are for @include and are left out). The caller frees each name and the array (scene_names_free). */
+enum status scene_names(const char *scene_directory, char ***names, int *count);
+void scene_names_free(char **names, int count);
+
+/* GRID as on the command line, "xmin:xstep:xcount,rmin:rstep:rcount" in metres. Errors: STATUS_INVALID. */
+enum status grid_parse(const char *text, struct grid *grid);
+/* Positive finite steps, counts >= 1, count products that fit; `place` begins the message. Errors: STATUS_INVALID. */
+enum status grid_check(const struct grid *grid, const char *place);
+/* Does any pixel of any patch meet any record? STATUS_INVALID (naming `place`, the delays and the record) if none. */
+enum status grid_meets_records(const struct acquisition *acquisition, int patch_count, const struct grid *patches,
+                               const char *place);
+
+#endif

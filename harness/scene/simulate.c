@@ -1,0 +1,298 @@
+/* Echo simulation with exact delays (simulate.h). Each pair is made by one thread from its own random stream. */
+#include "scene/simulate.h"
+
+#include <fftw3.h>
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/delay.h"
+#include "common/fft_length.h"
+#include "common/memory.h"
+#include "data/echo_data.h"
+#include "data/random.h"
+
+static const double pi = 3.14159265358979323846;
+
+int pulse_length_lfm(double duration, double fs)
+{
+    double length = floor(duration * fs * (1 + 1e-12));
+    return length < 1 ? 1 : length < 1e9 ? (int)length : 1000000000;
+}
+
+static double complex chirp(double bandwidth, double duration, double t)
+{
+    double u = t - duration / 2, cycles = bandwidth / (2 * duration) * u * u;
+    return cexp(I * (2 * pi * (cycles - floor(cycles))));
+}
+
+void pulse_lfm(double bandwidth, double duration, double fs, int length, double complex *pulse)
+{
+    for (int k = 0; k < length; k++)
+        pulse[k] = chirp(bandwidth, duration, k / fs);
+}
+
+static double sinc(double z)
+{
+    return fabs(z) < 1e-9 ? 1 : sin(pi * z) / (pi * z);
+}
+
+/* Sines of the angles off the plane across the track: of the transmitter at emission, of the receiver at reception, and
+   at the bistatic midpoint of the two. */
+struct angles {
+    double tx, rx, mid;
+};
+
+/* A point at the element itself lies in no direction: it is seen as from broadside, sine 0. */
+static double sine(double along, double across)
+{
+    double distance = hypot(along, across);
+    return distance > 0 ? along / distance : 0;
+}
+
+static struct angles pair_angles(const struct acquisition *a, int ping, int receiver, struct vector p, double tau)
+{
+    struct vector t = a->tx[ping], r = a->rx[(size_t)ping * (size_t)a->receivers + (size_t)receiver];
+    struct vector v = a->velocity[ping];
+    double ut = t.x - p.x, ur = r.x + v.x * tau - p.x, um = (ut + ur) / 2;
+    double across_t = hypot(t.y - p.y, t.z - p.z), across_r = hypot(r.y + v.y * tau - p.y, r.z + v.z * tau - p.z);
+    return (struct angles){sine(ut, across_t), sine(ur, across_r), sine(um, (across_t + across_r) / 2)};
+}
+
+static double angles_weight(const struct scene *scene, const struct angles *angles, double frequency)
+{
+    const struct acquisition *a = &scene->acquisition;
+    const struct beam *beam = &scene->beam;
+    double elements = frequency / a->sound_speed;       /* 1/lambda */
+    double tx = a->tx_length * elements * angles->tx, rx = a->rx_length * elements * angles->rx;
+    double edge = beam->limit * (1 + 1e-12);            /* an edge that is met exactly counts as inside */
+    if ((beam->truncation == TRUNCATION_TX && fabs(tx) > edge)
+        || (beam->truncation == TRUNCATION_MID && fabs(a->tx_length * elements * angles->mid) > edge)
+        || (beam->truncation == TRUNCATION_DOPPLER
+            && fabs(a->tx_length * elements * (angles->tx + angles->rx) / 2) > edge))
+        return 0;
+    return beam->kind == BEAM_RECT ? 1 : sinc(tx) * sinc(rx);
+}
+
+double beam_weight(const struct scene *scene, int ping, int receiver, struct vector p, double tau, double frequency)
+{
+    struct angles angles = pair_angles(&scene->acquisition, ping, receiver, p, tau);
+    return angles_weight(scene, &angles, frequency);
+}
+
+double beam_sine(const struct scene *scene)
+{
+    const struct acquisition *a = &scene->acquisition;
+    double lowest = scene->beam.per_frequency ? a->fc - a->bandwidth / 2 : a->fc, sine = INFINITY;
+    if (!(lowest > 0))
+        return sine;
+    double wavelength = a->sound_speed / lowest;
+    if (scene->beam.truncation != TRUNCATION_NONE)
+        sine = scene->beam.limit * wavelength / a->tx_length;
+    if (scene->beam.kind == BEAM_TXRX) {
+        double inside = 0, outside = 1 / fmax(a->tx_length, a->rx_length);      /* in 1/m: the first null */
+        for (int k = 0; k < 50; k++) {
+            double middle = (inside + outside) / 2;
+            *(sinc(a->tx_length * middle) * sinc(a->rx_length * middle) > 0.25 ? &inside : &outside) = middle;
+        }
+        sine = fmin(sine, inside * wavelength);
+    }
+    return sine;
+}
+
+/* What all pairs share: the spectrum that is delayed, on `length` bins, and where the record lies in its period. */
+struct replica {
+    int length, lead;               /* lead: samples before the record, so that echoes under way at t0 are whole */
+    double *frequency;              /* [length] Hz, -fs/2 < f <= fs/2 */
+    double complex *spectrum;       /* [length] scaled for an unnormalised inverse FFT */
+    bool nyquist;                   /* the last positive bin is fs/2, which stands for both ends of the band */
+    fftw_plan inverse;
+};
+
+static void replica_free(struct replica *replica)
+{
+    if (replica->inverse)
+        fftw_destroy_plan(replica->inverse);
+    free(replica->frequency);
+    fftw_free(replica->spectrum);
+    *replica = (struct replica){0};
+}
+
+/* Bins of the transforms of a record and what lies ahead of it. */
+static int transform_length(const struct scene *scene)
+{
+    const struct acquisition *a = &scene->acquisition;
+    return scene->pulse_kind == PULSE_FLAT ? a->samples : fft_length(a->samples + 2LL * a->pulse_length);
+}
+
+/* The echoes, the replica, a transform for each thread, and as much again as FFTW's plans may hold. */
+static enum status check_memory(const struct scene *scene)
+{
+    const struct acquisition *a = &scene->acquisition;
+    double samples = (double)a->pings * a->receivers * a->samples, transforms = omp_get_max_threads() + 3.0;
+    char what[400];
+    snprintf(what, sizeof what, "the echoes of %.300s, %d samples x %d receivers x %d pings", scene->name, a->samples,
+             a->receivers, a->pings);
+    return memory_check((samples + transforms * transform_length(scene)) * sizeof(double complex), what);
+}
+
+static enum status replica_make(const struct scene *scene, struct replica *replica)
+{
+    const struct acquisition *a = &scene->acquisition;
+    bool flat = scene->pulse_kind == PULSE_FLAT;
+    int pulse = a->pulse_length, length = transform_length(scene);
+    *replica = (struct replica){.length = length, .lead = flat ? 0 : pulse, .nyquist = length % 2 == 0};
+    replica->frequency = malloc((size_t)length * sizeof *replica->frequency);
+    replica->spectrum = fftw_malloc((size_t)length * sizeof *replica->spectrum);
+    if (!length || !replica->frequency || !replica->spectrum) {
+        replica_free(replica);
+        return status_set(STATUS_FAILED, "no memory to simulate records of %d samples", a->samples);
+    }
+    replica->inverse = fftw_plan_dft_1d(length, replica->spectrum, replica->spectrum, FFTW_BACKWARD,
+                                        FFTW_ESTIMATE | FFTW_UNALIGNED);
+    double sum = 0, bin = a->fs / length, half = a->bandwidth / 2;
+    for (int k = 0; k < length; k++) {
+        double f = replica->frequency[k] = (2 * k > length ? k - length : k) * bin, beyond = fabs(f) - half;
+        double weight = fabs(beyond) < 1e-6 * bin ? 0.5 : beyond < 0;
+        if (replica->nyquist && 2 * k == length)
+            weight *= 2;            /* both ends of the band meet here: B = fs keeps the half of each */
+        sum += weight;
+        replica->spectrum[k] = weight;
+    }
+    if (flat) {
+        for (int k = 0; k < length; k++)
+            replica->spectrum[k] /= sum;
+        return STATUS_OK;
+    }
+    memset(replica->spectrum, 0, (size_t)length * sizeof *replica->spectrum);
+    memcpy(replica->spectrum, a->pulse, (size_t)pulse * sizeof *a->pulse);
+    fftw_plan forward = fftw_plan_dft_1d(length, replica->spectrum, replica->spectrum, FFTW_FORWARD, FFTW_ESTIMATE);
+    fftw_execute(forward);
+    fftw_destroy_plan(forward);
+    for (int k = 0; k < length; k++)
+        replica->spectrum[k] /= length;
+    return STATUS_OK;
+}
+
+/* Written out: the language's complex product checks for NaN, which costs several times the product. */
+static double complex product(double complex a, double complex b)
+{
+    return __builtin_complex(creal(a) * creal(b) - cimag(a) * cimag(b), creal(a) * cimag(b) + cimag(a) * creal(b));
+}
+
+static double complex turn(double cycles)
+{
+    double angle = 2 * pi * (cycles - floor(cycles + 0.5));
+    return __builtin_complex(cos(angle), sin(angle));    /* CMPLX, which clang 14 lacks */
+}
+
+/* Add one echo to the spectrum: replica times exp(-j 2 pi f shift) with the amplitude of each bin. */
+static void add_delayed(const struct scene *scene, const struct replica *replica, const struct angles *angles,
+                        double complex amplitude, double shift, double complex *spectrum)
+{
+    const struct acquisition *a = &scene->acquisition;
+    int length = replica->length;
+    double common = angles_weight(scene, angles, a->fc), bin = a->fs / length;
+    double complex step = turn(-bin * shift), phase = 1;
+    if (common == 0 && !scene->beam.per_frequency)
+        return;
+    for (int k = 0; k < length; k++) {
+        double f = replica->frequency[k];
+        phase = k % 16 && 2 * k != length + 2 - length % 2 ? product(phase, step) : turn(-f * shift);  /* restart: 1e-15 */
+        double weight = scene->beam.per_frequency ? angles_weight(scene, angles, a->fc + f) : common;
+        double complex value = replica->nyquist && 2 * k == length ? cos(2 * pi * f * shift) : phase;
+        spectrum[k] += product(weight * amplitude, product(replica->spectrum[k], value));
+    }
+}
+
+/* The chirp sampled at n/fs - tau: not band limited, as a naive simulation makes it. */
+static void add_sampled(const struct scene *scene, const struct angles *angles, double complex amplitude, double delay,
+                        double complex *record)
+{
+    const struct acquisition *a = &scene->acquisition;
+    double weight = angles_weight(scene, angles, a->fc);
+    int first = (int)fmax(0, ceil(delay * a->fs)), end = (int)fmin(a->samples, ceil((delay + scene->pulse_duration) * a->fs));
+    for (int n = first; n < end; n++)
+        record[n] += product(weight * amplitude, chirp(a->bandwidth, scene->pulse_duration, n / a->fs - delay));
+}
+
+static void simulate_pair(const struct scene *scene, const struct replica *replica, int ping, int receiver,
+                          double complex *work, double complex *record)
+{
+    const struct acquisition *a = &scene->acquisition;
+    size_t samples = (size_t)a->samples, index = (size_t)ping * (size_t)a->receivers + (size_t)receiver;
+    bool sampled = scene->pulse_kind == PULSE_LFM_TIME, any = false;
+    double window = a->samples / a->fs, duration = a->pulse_length / a->fs;
+    memset(work, 0, (size_t)replica->length * sizeof *work);
+    for (int k = 0; k < scene->target_count; k++) {
+        const struct target *target = &scene->targets[k];
+        struct vector p = {target->x, target->r, 0};
+        double tau = delay_exact(a->tx[ping], a->rx[index], a->velocity[ping], p, a->sound_speed);
+        double delay = tau - a->t0[ping];
+        if (!(delay > -duration && delay < window))     /* no part of the echo lies in the record */
+            continue;
+        struct angles angles = pair_angles(a, ping, receiver, p, tau);
+        double complex amplitude = target->amplitude * turn(-a->fc * tau);
+        any = true;
+        if (sampled)
+            add_sampled(scene, &angles, amplitude, delay, record);
+        else
+            add_delayed(scene, replica, &angles, amplitude, delay + replica->lead / a->fs, work);
+    }
+    if (any && !sampled) {
+        fftw_execute_dft(replica->inverse, work, work);
+        memcpy(record, work + replica->lead, samples * sizeof *record);
+    }
+    if (scene->noise_std > 0) {
+        struct random random = random_seed(scene->noise_seed, index);
+        for (size_t n = 0; n < samples; n++)
+            record[n] += scene->noise_std * random_normal(&random);
+    }
+}
+
+static bool is_finite(const double complex *record, int samples)
+{
+    double sum = 0;                     /* one sample that is not finite leaves NaN */
+    for (int n = 0; n < samples; n++)
+        sum += 0 * creal(record[n]) + 0 * cimag(record[n]);
+    return sum == 0;
+}
+
+enum status scene_simulate(const struct scene *scene, struct echoes *echoes)
+{
+    const struct acquisition *a = &scene->acquisition;
+    struct replica replica;
+    enum status status = check_memory(scene);
+    if (status == STATUS_OK)
+        status = replica_make(scene, &replica);
+    if (status != STATUS_OK)
+        return status;
+    status = echoes_allocate(a, PRECISION_DOUBLE, echoes);
+    double complex *work = fftw_malloc((size_t)omp_get_max_threads() * (size_t)replica.length * sizeof *work);
+    if (status == STATUS_OK && !work) {
+        echoes_free(echoes);
+        status = status_set(STATUS_FAILED, "no memory to simulate records of %d samples", a->samples);
+    }
+    if (status == STATUS_OK) {
+        double complex *samples = (double complex *)echoes->samples;
+        long long pairs = (long long)a->pings * a->receivers, unfit = pairs;
+#pragma omp parallel for schedule(dynamic, 8) reduction(min : unfit)
+        for (long long k = 0; k < pairs; k++) {
+            simulate_pair(scene, &replica, (int)(k / a->receivers), (int)(k % a->receivers),
+                          work + (size_t)omp_get_thread_num() * (size_t)replica.length,
+                          samples + (size_t)k * (size_t)a->samples);
+            if (k < unfit && !is_finite(samples + (size_t)k * (size_t)a->samples, a->samples))
+                unfit = k;
+        }
+        if (unfit < pairs) {
+            echoes_free(echoes);
+            status = status_set(STATUS_INVALID, "%s: the echo of receiver %lld in ping %lld is not finite, its numbers must "
+                                "be less extreme", scene->name, unfit % a->receivers + 1, unfit / a->receivers + 1);
+        }
+    }
+    fftw_free(work);
+    replica_free(&replica);
+    return status;
+}

@@ -1,0 +1,24 @@
+/* Echoes of a scene with exact delays, without the stop-and-hop approximation. */
+#ifndef SASBENCH_SCENE_SIMULATE_H
+#define SASBENCH_SCENE_SIMULATE_H
+
+#include "scene/scene.h"
+
+/* Allocates *echoes (double) and fills it; freed with echoes_free. lfm: the replica's spectrum delayed by
+   exp(-j 2 pi (fc+f) tau), raw; lfm_time: the chirp sampled at n/fs - tau, raw; flat: spectrum 1 on |f| <= B/2 (bins
+   at B/2 weigh 1/2), compressed. The same bits for any number of threads. Errors: STATUS_FAILED without memory,
+   STATUS_INVALID for numbers so extreme that an echo is not finite; nothing to free then. */
+enum status scene_simulate(const struct scene *scene, struct echoes *echoes);
+
+/* The replica of an LFM pulse: exp(j pi (B/T)(t - T/2)^2), t = k/fs in [0, T): floor(T fs) samples, at least 1. */
+int pulse_length_lfm(double duration, double fs);
+void pulse_lfm(double bandwidth, double duration, double fs, int length, double complex *pulse);
+
+/* Amplitude of a pair's echo from target point p at total frequency F (Hz), tau = the exact delay. */
+double beam_weight(const struct scene *scene, int ping, int receiver, struct vector p, double tau, double frequency);
+
+/* |sin theta_t| up to which the scene's beam sees targets: its truncation, or where the amplitude of both elements abeam of
+   each other falls to a quarter; INFINITY where nothing bounds it. */
+double beam_sine(const struct scene *scene);
+
+#endif

@@ -1,0 +1,59 @@
+/* A page of headings, tables and pictures, written as one self-contained HTML file or as Markdown.
+
+   The HTML is strict: every element is closed, every attribute quoted, no script, nothing from outside. Text is
+   escaped by these functions; callers give it plain. */
+#ifndef SASBENCH_SHOW_PAGE_H
+#define SASBENCH_SHOW_PAGE_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "status.h"
+
+enum page_format { PAGE_HTML, PAGE_MARKDOWN };
+
+struct page_column {
+    const char *title;
+    bool number;                        /* set to the right */
+};
+
+struct page {
+    FILE *stream;
+    enum page_format format;
+    long bytes_most;                    /* rows of tables beyond are counted and left out; 0: no limit */
+    /* For these functions alone. */
+    const struct page_column *columns;  /* [column_count] of the table that is open */
+    int column_count, rows_left_out;
+    int drawings;                       /* SVG pictures so far: what the names of their elements begin with */
+};
+
+struct page_cell {
+    const char *text;
+    const char *class;                  /* of the HTML cell: good, soft, bad, open, long; NULL for none */
+};
+
+void page_begin(struct page *page, const char *title);
+void page_end(struct page *page);
+
+/* level 2 or 3; `id` for links within the page, may be NULL. */
+void page_heading(struct page *page, int level, const char *id, const char *text);
+void page_paragraph(struct page *page, const char *text);
+/* Links to headings, in HTML only. */
+void page_contents(struct page *page, int count, const char *const *ids, const char *const *titles);
+
+/* A table scrolls sideways on a narrow screen; with `stack` its rows fall apart into blocks there, as suits long
+   texts. `columns` stays borrowed until page_table_end. A row has a cell for each column, the first being its name;
+   page_row_note writes one text in place of all others. */
+void page_table_begin(struct page *page, int count, const struct page_column *columns, bool stack);
+void page_row(struct page *page, const struct page_cell *cells);
+void page_row_note(struct page *page, const char *name, const char *note);
+void page_table_end(struct page *page);
+
+/* Pictures, in HTML only: Markdown cannot hold them. A drawing of gnuplot (SVG) stands inline, its names made unique;
+   a PNG is encoded in the page. Errors: STATUS_FAILED when the file cannot be read. */
+enum status page_drawing(struct page *page, const char *path, const char *title);
+enum status page_image(struct page *page, const char *path, const char *caption);
+void page_gallery_begin(struct page *page);
+void page_gallery_end(struct page *page);
+
+#endif

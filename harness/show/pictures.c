@@ -1,0 +1,103 @@
+/* The pictures of one scene's comparison: each image in decibels, and the azimuth slices of all overlaid. */
+#include "show/pictures.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "measure/metrics.h"
+#include "data/shown_text.h"
+#include "command/task.h"
+
+/* A label of NULL: the slices. */
+static void path_make(const char *directory, const char *scene, const char *label, char *path, size_t size)
+{
+    char name[700];
+    snprintf(name, sizeof name, "%s.png", label ? label : "slices");
+    picture_path(directory, scene, name, path, size);
+}
+
+bool picture_exists(const char *directory, const char *scene, const char *label)
+{
+    char path[4096];
+    path_make(directory, scene, label, path, sizeof path);
+    return access(path, F_OK) == 0;
+}
+
+/* A picture that cannot be drawn is told, but does not fail what was measured. */
+static void tell(struct pictures *pictures, enum status status)
+{
+    if (status == STATUS_OK)
+        return;
+    fputs("sasbench: ", stderr);
+    shown_write(stderr, status_message());
+    fputc('\n', stderr);
+    pictures->undrawn++;
+}
+
+enum status pictures_begin(const char *directory, const struct scene *scene, int spec_count, struct pictures *pictures)
+{
+    char path[4096];
+    *pictures = (struct pictures){directory, scene, spec_count, NULL, 0};
+    pictures->lines = calloc((size_t)scene->point_count * (size_t)spec_count + 1, sizeof *pictures->lines);
+    if (!pictures->lines)
+        return status_set(STATUS_FAILED, "%s: no memory for slices", scene->name);
+    path_make(directory, scene->name, NULL, path, sizeof path);
+    unlink(path);
+    return STATUS_OK;
+}
+
+void pictures_free(struct pictures *pictures)
+{
+    for (int k = 0; pictures->lines && k < pictures->scene->point_count * pictures->spec_count; k++) {
+        free((char *)pictures->lines[k].label);
+        free(pictures->lines[k].position_m);
+        free(pictures->lines[k].power_db);
+    }
+    free(pictures->lines);
+    *pictures = (struct pictures){0};
+}
+
+void pictures_add(struct pictures *pictures, int index, const char *label, const struct image *image)
+{
+    const struct scene *scene = pictures->scene;
+    char path[4096], title[700];
+    path_make(pictures->directory, scene->name, label, path, sizeof path);
+    unlink(path);
+    snprintf(title, sizeof title, "%s: %s", scene->name, label);
+    tell(pictures, plot_image(path, PLOT_DIRECTORY, image, title));
+    for (int t = 0; t < scene->point_count; t++) {
+        struct slice_line *line = &pictures->lines[t * pictures->spec_count + index];
+        line->label = strdup(label);
+        metrics_slice_samples(image, &scene->acquisition, &scene->targets[t], AXIS_AZIMUTH, &line->position_m,
+                              &line->power_db, &line->count);
+    }
+}
+
+void pictures_slices(struct pictures *pictures)
+{
+    const struct scene *scene = pictures->scene;
+    char path[4096], title[600];
+    char (*texts)[64] = calloc((size_t)scene->point_count + 1, sizeof *texts);
+    const char **titles = calloc((size_t)scene->point_count + 1, sizeof *titles);
+    struct slice_line *lines = calloc((size_t)scene->point_count * (size_t)pictures->spec_count + 1, sizeof *lines);
+    int count = 0;                      /* lines without a label have no image: unsupported or failed */
+    for (int k = 0; lines && k < scene->point_count * pictures->spec_count; k++)
+        if (pictures->lines[k % pictures->spec_count].label)
+            lines[count++] = pictures->lines[k];
+    if (count > 0 && texts && titles) {
+        for (int t = 0; t < scene->point_count; t++) {
+            snprintf(texts[t], sizeof texts[t], "T%d: x = %g m, r = %g m", t + 1, scene->targets[t].x,
+                     scene->targets[t].r);
+            titles[t] = texts[t];
+        }
+        path_make(pictures->directory, scene->name, NULL, path, sizeof path);
+        snprintf(title, sizeof title, "%s: azimuth slices", scene->name);
+        tell(pictures,
+             plot_slices(path, PLOT_DIRECTORY, title, scene->point_count, titles, count / scene->point_count, lines));
+    }
+    free(lines);
+    free(texts);
+    free(titles);
+}

@@ -1,0 +1,28 @@
+/* The pictures of one scene's comparison, drawn beside its CSVs. What cannot be drawn is told on standard error and
+   counted, but does not fail what was measured. A picture that is there is that of the row that is there: old ones are
+   removed before theirs are drawn. */
+#ifndef SASBENCH_SHOW_PICTURES_H
+#define SASBENCH_SHOW_PICTURES_H
+
+#include "show/plot.h"
+
+struct pictures {
+    const char *directory;          /* borrowed, like the scene */
+    const struct scene *scene;
+    int spec_count;
+    struct slice_line *lines;       /* [point_count][spec_count]; without a label: no image */
+    int undrawn;                    /* pictures that could not be drawn */
+};
+
+/* Whether DIR/SCENE-LABEL.png is there, or, with a label of NULL, DIR/SCENE-slices.png. */
+bool picture_exists(const char *directory, const char *scene, const char *label);
+
+/* Errors: STATUS_FAILED without memory. pictures_free accepts a zeroed struct. */
+enum status pictures_begin(const char *directory, const struct scene *scene, int spec_count, struct pictures *pictures);
+/* Draw one algorithm's image (DIR/SCENE-LABEL.png) and keep its slices. index: 0 to spec_count - 1. */
+void pictures_add(struct pictures *pictures, int index, const char *label, const struct image *image);
+/* Draw the azimuth slices of all images added (DIR/SCENE-slices.png), one panel a target. */
+void pictures_slices(struct pictures *pictures);
+void pictures_free(struct pictures *pictures);
+
+#endif

@@ -1,0 +1,43 @@
+/* Pictures through gnuplot; the scripts and their one style file are in plots/. */
+#ifndef SASBENCH_SHOW_PLOT_H
+#define SASBENCH_SHOW_PLOT_H
+
+#include "scene/scene.h"
+
+/* Image in decibels below its peak (0 to -60), all patches, into `path` (PNG). Large images are reduced by taking the
+   largest magnitude of each block. Errors of all pictures: STATUS_FAILED, when gnuplot is missing, fails (with what it
+   printed), leaves a picture without its end or does not end by itself; what stood at `path` is then left as it was. */
+enum status plot_image(const char *path, const char *plots_directory, const struct image *image, const char *title);
+
+/* Seconds that gnuplot may take for a picture. After one that took longer nothing is drawn. */
+extern double plot_seconds_most;
+
+/* Azimuth slices through point targets, one panel a target, one line an image (the papers' overlays). */
+struct slice_line {
+    const char *label;              /* SPEC */
+    double *position_m, *power_db;  /* [count], owned by the caller */
+    int count;
+};
+/* lines: [panel_count][line_count]. */
+enum status plot_slices(const char *path, const char *plots_directory, const char *title, int panel_count,
+                        const char *const *panel_titles, int line_count, const struct slice_line *lines);
+/* The same for phase errors: position in cycles a metre, `power_db` holds radians. */
+enum status plot_phase(const char *path, const char *plots_directory, const char *title, int panel_count,
+                       const char *const *panel_titles, int line_count, const struct slice_line *lines);
+
+/* The scripts about a results folder, by name; NULL ends the list. */
+extern const char *const folder_plots[];
+/* One of them for one scene, into `path`, which ends in .png or .svg. *drawn: false where the scene has nothing to show
+   there (no targets, no upsampling rate); no file is written then. */
+enum status plot_folder(const char *path, const char *plots_directory, const char *name, const char *folder,
+                        const char *scene, bool *drawn);
+
+/* A script about one CSV file, into `path`, which ends in .png or .svg. */
+enum status plot_csv(const char *path, const char *plots_directory, const char *script, const char *csv);
+
+/* What a picture of one setting is called: "bp_linear:beta=8 double". */
+void picture_label(const char *algorithm, const char *options, const char *precision, char *label, size_t size);
+/* "DIR/bp22_table3-error_time.png" for bp22/table3 and error_time.png: signs that a shell would take become '_'. */
+void picture_path(const char *directory, const char *scene, const char *rest, char *path, size_t size);
+
+#endif

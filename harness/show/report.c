@@ -1,0 +1,334 @@
+/* The command `report`: a results folder as one HTML page, and as Markdown (report.h). */
+#include "show/report.h"
+
+#include <dirent.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "data/folder.h"
+#include "show/plot.h"
+#include "measure/results.h"
+#include "show/sheets.h"
+#include "show/table.h"
+#include "command/task.h"
+#include "data/text_file.h"
+
+/* --- The folder ------------------------------------------------------------------------------------------------ */
+
+struct drawing {
+    const char *scene;                  /* borrowed from the results */
+    char title[300];                    /* "sweep/point: error_time" */
+    char path[4096];                    /* empty: the scene has nothing to show there */
+    char fault[400];                    /* why it could not be drawn; empty: drawn */
+};
+
+struct folder {
+    const char *directory;
+    struct results results;
+    const char **scenes;                /* [scene_count] borrowed, in the order of their first rows */
+    int scene_count;
+    struct csv csvs[SHEETS];            /* column_count 0: not there */
+    struct drawing *drawings;           /* [drawing_count] */
+    int drawing_count;
+    struct dirent **files;              /* [file_count] PNG files of `phase`, by name */
+    int file_count;
+};
+
+static void folder_free(struct folder *folder)
+{
+    results_free(&folder->results);
+    for (int k = 0; k < SHEETS; k++)
+        csv_free(&folder->csvs[k]);
+    for (int k = 0; k < folder->file_count; k++)
+        free(folder->files[k]);
+    free(folder->files);
+    free(folder->scenes);
+    free(folder->drawings);
+}
+
+static int is_figure(const struct dirent *entry)
+{
+    size_t length = strlen(entry->d_name);
+    return strncmp(entry->d_name, "phase-", 6) == 0 && length > 4 && strcmp(entry->d_name + length - 4, ".png") == 0;
+}
+
+static void drawings_make(struct folder *folder)
+{
+    for (int s = 0; s < folder->scene_count; s++)
+        for (int k = 0; folder_plots[k]; k++) {
+            struct drawing *drawing = &folder->drawings[folder->drawing_count++];
+            char name[64];
+            bool drawn;
+            *drawing = (struct drawing){.scene = folder->scenes[s]};
+            snprintf(drawing->title, sizeof drawing->title, "%.200s: %s", drawing->scene, folder_plots[k]);
+            snprintf(name, sizeof name, "%s.svg", folder_plots[k]);
+            picture_path(folder->directory, drawing->scene, name, drawing->path, sizeof drawing->path);
+            if (plot_folder(drawing->path, PLOT_DIRECTORY, folder_plots[k], folder->directory, drawing->scene, &drawn)
+                != STATUS_OK)
+                snprintf(drawing->fault, sizeof drawing->fault, "%s could not be drawn: %s", folder_plots[k],
+                         status_message());
+            else if (!drawn)
+                *drawing->path = '\0';
+        }
+}
+
+static enum status folder_read(const char *directory, struct folder *folder)
+{
+    char path[4096];
+    int plots = 0;
+    *folder = (struct folder){.directory = directory};
+    snprintf(path, sizeof path, "%s/measurements.csv", directory);
+    enum status status = results_read(path, &folder->results);
+    for (int k = 0; k < SHEETS && status == STATUS_OK; k++)
+        status = sheet_read(directory, &sheets[k], &folder->csvs[k]);
+    if (status != STATUS_OK)
+        return status;
+    while (folder_plots[plots])
+        plots++;
+    size_t rows = (size_t)folder->results.csv.row_count;
+    folder->scenes = calloc(rows + 1, sizeof *folder->scenes);
+    for (size_t row = 0; row < rows && folder->scenes; row++) {
+        bool known = false;
+        for (int k = 0; k < folder->scene_count; k++)
+            known |= strcmp(folder->scenes[k], folder->results.measurements[row].scene) == 0;
+        if (!known)
+            folder->scenes[folder->scene_count++] = folder->results.measurements[row].scene;
+    }
+    folder->drawings = calloc((size_t)(folder->scene_count * plots) + 1, sizeof *folder->drawings);
+    if (!folder->scenes || !folder->drawings)
+        return status_set(STATUS_FAILED, "%s: no memory for %zu rows", directory, rows);
+    drawings_make(folder);
+    int count = scandir(directory, &folder->files, is_figure, alphasort);
+    folder->file_count = count > 0 ? count : 0;
+    return STATUS_OK;
+}
+
+/* --- Sections -------------------------------------------------------------------------------------------------- */
+
+static void machine_show(struct page *page, const struct folder *folder)
+{
+    static const char *const keys[] = {"machine",   "isa",    "threads", "compiler", "flags",
+                                       "libraries", "commit", "program", "date"};
+    static const struct page_column columns[] = {{"of the measurements", false}, {"", false}};
+    page_heading(page, 2, "machine", "Machine and program");
+    page_table_begin(page, 2, columns, false);
+    for (size_t k = 0; k < sizeof keys / sizeof *keys; k++) {
+        const char *value = csv_comment(&folder->results.csv, keys[k]);
+        page_row(page, (struct page_cell[]){{keys[k], NULL}, {value ? value : "unknown", NULL}});
+    }
+    page_table_end(page);
+}
+
+enum { MEASUREMENT_COLUMNS = 13 };
+static const struct page_column measurement_columns[MEASUREMENT_COLUMNS] = {
+    {"algorithm", false},       {"run time", true},        {"speed-up", true},   {"plan", true},
+    {"GFLOP", true},            {"memory (MB)", true},     {"error", true},      {"error, best gain", true},
+    {"phase rms (rad)", true},  {"width (mm)", true},      {"PSLR (dB)", true},  {"ISLR (dB)", true},
+    {"engine, left out", false}};
+
+static void measurement_show(struct page *page, const struct measurement *row)
+{
+    char spec[512], note[1200], texts[MEASUREMENT_COLUMNS][32] = {""};
+    struct page_cell cells[MEASUREMENT_COLUMNS];
+    measurement_spec(row, spec, sizeof spec);
+    if (strcmp(row->status, "ok") != 0) {
+        snprintf(note, sizeof note, "%s: %s", row->status, row->reason);
+        page_row_note(page, spec, note);
+        return;
+    }
+    const struct {
+        double value;
+        const char *format;
+    } numbers[] = {{1e-9 * row->flops, "%.3g"}, {1e-6 * row->bytes, "%.3g"},  {row->error, "%.2e"},
+                   {row->error_gain, "%.2e"},   {row->phase_rms_rad, "%.2e"}, {1e3 * row->width_m, "%.2f"},
+                   {row->pslr_db, "%.2f"},      {row->islr_db, "%.2f"}};
+    snprintf(texts[1], sizeof texts[1], "%s", cell_time(row->run_s).text);
+    snprintf(texts[2], sizeof texts[2], "%s", cell_significant(row->control_s / row->run_s, "x").text);
+    snprintf(texts[3], sizeof texts[3], "%s", cell_time(row->plan_s).text);
+    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
+        if (isfinite(numbers[k].value))
+            snprintf(texts[4 + k], sizeof texts[4 + k], numbers[k].format, numbers[k].value);
+    for (int k = 0; k < MEASUREMENT_COLUMNS; k++)
+        cells[k] = (struct page_cell){texts[k], NULL};
+    const char *const notes[] = {row->skipped, row->reason};
+    size_t used = (size_t)snprintf(note, sizeof note, "%s", row->engine);
+    for (size_t k = 0; k < sizeof notes / sizeof *notes; k++)
+        if (*notes[k] && used < sizeof note)
+            used += (size_t)snprintf(note + used, sizeof note - used, "%s%s", used ? "; " : "", notes[k]);
+    cells[0] = (struct page_cell){spec, NULL};
+    cells[MEASUREMENT_COLUMNS - 1] = (struct page_cell){note, "long"};
+    page_row(page, cells);
+}
+
+static void measurements_show(struct page *page, const struct folder *folder)
+{
+    page_heading(page, 2, "measurements", "Measurements");
+    page_paragraph(page, "Run time: median seconds from raw echoes to complex image; speed-up: against a plain "
+                         "control loop timed beside. Errors: relative L2 against the exact image. Width, PSLR and "
+                         "ISLR: medians over the targets, azimuth, main lobe from first minimum to first minimum.");
+    for (int s = 0; s < folder->scene_count; s++) {
+        page_heading(page, 3, NULL, folder->scenes[s]);
+        page_table_begin(page, MEASUREMENT_COLUMNS, measurement_columns, false);
+        for (int row = 0; row < folder->results.csv.row_count; row++)
+            if (strcmp(folder->results.measurements[row].scene, folder->scenes[s]) == 0)
+                measurement_show(page, &folder->results.measurements[row]);
+        page_table_end(page);
+    }
+}
+
+static enum status plots_show(struct page *page, const struct folder *folder)
+{
+    enum status status = STATUS_OK;
+    const char *shown = NULL;
+    page_heading(page, 2, "plots", "Plots");
+    for (int k = 0; k < folder->drawing_count && status == STATUS_OK; k++) {
+        const struct drawing *drawing = &folder->drawings[k];
+        if (!*drawing->path)
+            continue;
+        if (shown != drawing->scene)
+            page_heading(page, 3, NULL, shown = drawing->scene);
+        if (*drawing->fault)
+            page_paragraph(page, drawing->fault);
+        else
+            status = page_drawing(page, drawing->path, drawing->title);
+    }
+    if (!shown)
+        page_paragraph(page, "No measurement here has both a time and an error.");
+    return status;
+}
+
+struct pictures_count {
+    int shown, left_out, irregular;
+};
+
+/* A picture of the folder as long as the page has room. */
+static enum status picture_show(struct page *page, const char *path, const char *caption,
+                                struct pictures_count *count)
+{
+    struct stat info;
+    if (lstat(path, &info) != 0)
+        return STATUS_OK;               /* not drawn: a sweep's images, a run without gnuplot */
+    if (!S_ISREG(info.st_mode)) {
+        count->irregular++;
+        return STATUS_OK;
+    }
+    if (ftell(page->stream) + info.st_size / 3 * 4 > REPORT_HTML_BYTES) {
+        count->left_out++;
+        return STATUS_OK;
+    }
+    count->shown++;
+    return page_image(page, path, caption);
+}
+
+/* Slices and images that `run` left, and the figures of `phase`. */
+static enum status pictures_show(struct page *page, const struct folder *folder)
+{
+    enum status status = STATUS_OK;
+    char path[4096], name[700], label[600], caption[1200];
+    struct pictures_count count = {0};
+    page_heading(page, 2, "images", "Slices and images");
+    for (int s = 0; s < folder->scene_count && status == STATUS_OK; s++) {
+        const char *scene = folder->scenes[s];
+        picture_path(folder->directory, scene, "slices.png", path, sizeof path);
+        snprintf(caption, sizeof caption, "%s: azimuth slices", scene);
+        status = picture_show(page, path, caption, &count);
+        page_gallery_begin(page);
+        for (int row = 0; row < folder->results.csv.row_count && status == STATUS_OK; row++) {
+            const struct measurement *measured = &folder->results.measurements[row];
+            if (strcmp(measured->scene, scene) != 0 || strcmp(measured->status, "ok") != 0)
+                continue;
+            picture_label(measured->algorithm, measured->options, measured->precision, label, sizeof label);
+            snprintf(name, sizeof name, "%s.png", label);
+            picture_path(folder->directory, scene, name, path, sizeof path);
+            snprintf(caption, sizeof caption, "%s: %s", scene, label);
+            status = picture_show(page, path, caption, &count);
+        }
+        page_gallery_end(page);
+    }
+    for (int k = 0; k < folder->file_count && status == STATUS_OK; k++) {
+        snprintf(path, sizeof path, "%s/%s", folder->directory, folder->files[k]->d_name);
+        status = picture_show(page, path, folder->files[k]->d_name, &count);
+    }
+    if (count.shown == 0)
+        page_paragraph(page, "None in this folder: `run` draws them, `sweep` does not.");
+    if (count.irregular) {
+        snprintf(caption, sizeof caption, "%d pictures are left out: links, folders or pipes; only regular files of the folder "
+                 "itself are shown.", count.irregular);
+        page_paragraph(page, caption);
+    }
+    if (count.left_out) {
+        snprintf(caption, sizeof caption, "%d pictures are left out to keep this page below %d MB; they lie beside "
+                 "it.", count.left_out, REPORT_HTML_BYTES >> 20);
+        page_paragraph(page, caption);
+    }
+    return status;
+}
+
+static enum status folder_show(struct page *page, const struct folder *folder)
+{
+    const char *ids[SHEETS + 4] = {"machine", "plots"}, *titles[SHEETS + 4] = {"Machine", "Plots"};
+    int count = 2;
+    char title[4200];
+    for (int k = 0; k < SHEETS; k++)
+        if (folder->csvs[k].row_count > 0) {
+            ids[count] = sheets[k].id;
+            titles[count++] = sheets[k].title;
+        }
+    ids[count] = "measurements";
+    titles[count++] = "Measurements";
+    ids[count] = "images";
+    titles[count++] = "Slices and images";
+    snprintf(title, sizeof title, "sasbench: %s", folder->directory);
+    page_begin(page, title);
+    page_contents(page, count, ids, titles);
+    machine_show(page, folder);
+    enum status status = page->format == PAGE_HTML ? plots_show(page, folder) : STATUS_OK;
+    for (int k = 0; k < SHEETS; k++)
+        if (!sheets[k].late)
+            sheet_show(page, &sheets[k], &folder->csvs[k]);
+    measurements_show(page, folder);
+    if (status == STATUS_OK && page->format == PAGE_HTML)
+        status = pictures_show(page, folder);
+    for (int k = 0; k < SHEETS; k++)
+        if (sheets[k].late)
+            sheet_show(page, &sheets[k], &folder->csvs[k]);
+    page_end(page);
+    return status;
+}
+
+enum status report_write(const char *directory)
+{
+    static const struct {
+        const char *file;
+        enum page_format format;
+        long bytes;
+    } pages[] = {{"report.html", PAGE_HTML, 0}, {"report.md", PAGE_MARKDOWN, REPORT_MARKDOWN_BYTES}};
+    struct folder folder = {0};
+    int lock;
+    enum status status = folder_take(directory, &lock);
+    if (status == STATUS_OK)
+        status = folder_read(directory, &folder);
+    for (size_t k = 0; k < sizeof pages / sizeof *pages && status == STATUS_OK; k++) {
+        char path[4096];
+        struct text_file file;
+        snprintf(path, sizeof path, "%s/%s", directory, pages[k].file);
+        status = text_file_open(path, &file);
+        if (status == STATUS_OK) {
+            struct page page = {.stream = file.stream, .format = pages[k].format, .bytes_most = pages[k].bytes};
+            status = text_file_close(&file, folder_show(&page, &folder));
+        }
+    }
+    folder_free(&folder);
+    folder_leave(lock);
+    return status;
+}
+
+enum status command_report(const struct task *task)
+{
+    enum status status = report_write(task->names[0]);
+    if (status == STATUS_OK)
+        printf("%s/report.html and report.md\n", task->names[0]);
+    return status;
+}

@@ -1,0 +1,205 @@
+/* Tables of `sweep` and `reproduce` on a page (report_sheets.h). */
+#include "show/sheets.h"
+
+#include <math.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "papers/claims.h"
+
+const struct sheet sheets[SHEETS] = {
+    {.file = "cheapest.csv",
+     .id = "cheapest",
+     .title = "Cheapest settings",
+     .text = "For each decade of error the setting that reaches it at the least cost, by run time and by counted "
+             "operations.",
+     .group = "scene",
+     .columns = {{"error_below", "error below", SHOW_TEXT},
+                 {"cost", "cost", SHOW_TEXT},
+                 {"algorithm", "algorithm", SHOW_TEXT},
+                 {"options", "options", SHOW_TEXT},
+                 {"precision", "precision", SHOW_TEXT},
+                 {"run_s", "run time (s)", SHOW_NUMBER},
+                 {"speed_up", "speed-up", SHOW_NUMBER},
+                 {"flops", "FLOP", SHOW_NUMBER},
+                 {"error", "error", SHOW_NUMBER},
+                 {"pslr_db", "PSLR (dB)", SHOW_NUMBER},
+                 {"islr_db", "ISLR (dB)", SHOW_NUMBER}}},
+    {.file = "slopes.csv",
+     .id = "slopes",
+     .title = "Slopes",
+     .text =
+         "Straight lines through log error against log rate (beta + 1, or the setting itself), by least squares: "
+         "where "
+         "the error falls, the finest half of that, and the floor. The residual is the points' rms distance from the "
+         "line in log10.",
+     .group = "scene",
+     .columns = {{"algorithm", "algorithm", SHOW_TEXT},
+                 {"options", "options", SHOW_TEXT},
+                 {"precision", "precision", SHOW_TEXT},
+                 {"part", "part", SHOW_TEXT},
+                 {"setting", "setting", SHOW_TEXT},
+                 {"first", "from", SHOW_NUMBER},
+                 {"last", "to", SHOW_NUMBER},
+                 {"points", "points", SHOW_NUMBER},
+                 {"slope", "slope", SHOW_NUMBER},
+                 {"error_first", "error from", SHOW_NUMBER},
+                 {"error_last", "error to", SHOW_NUMBER},
+                 {"residual_log10", "residual", SHOW_NUMBER}}},
+    {.file = "rules.csv",
+     .id = "rules",
+     .title = "Upsampling rules",
+     .text = "Samples for each one recorded that BP22 Eq. (20) and ZP15's lambda/8 rule ask for, and the constants "
+             "of the "
+             "error laws.",
+     .columns = {{"scene", "scene", SHOW_TEXT},
+                 {"fc_hz", "fc (Hz)", SHOW_NUMBER},
+                 {"fs_hz", "fs (Hz)", SHOW_NUMBER},
+                 {"bandwidth_hz", "B (Hz)", SHOW_NUMBER},
+                 {"bp22_eq20_rate", "BP22 Eq. (20): more than", SHOW_NUMBER},
+                 {"zp15_rate", "ZP15: more than", SHOW_NUMBER},
+                 {"edge_phase_rad", "phase at the band's edge at rate 1 (rad)", SHOW_NUMBER},
+                 {"linear_floor", "linear's floor", SHOW_NUMBER}}},
+    {.file = "claims.csv",
+     .id = "claims",
+     .title = "Claims",
+     .text = "What the papers claim, each judged from the measurements of this folder.",
+     .group = "paper",
+     .stack = true,
+     .columns = {{"id", "id", SHOW_TEXT},
+                 {"section", "section", SHOW_TEXT},
+                 {"claim", "claim", SHOW_TEXT},
+                 {"verdict", "verdict", SHOW_VERDICT},
+                 {"evidence", "evidence", SHOW_TEXT}}},
+    {.file = "reproduced.csv",
+     .id = "reproduced",
+     .title = "Papers' tables",
+     .text =
+         "The papers' numbers beside ours; difference is ours less the paper's. An assumption stands once, and holds "
+         "for the rows below it.",
+     .group = "table",
+     .stack = true,
+     .late = true,
+     .columns = {{"item", "item", SHOW_TEXT},
+                 {"quantity", "quantity", SHOW_TEXT},
+                 {"definition", "definition", SHOW_TEXT},
+                 {"unit", "unit", SHOW_TEXT},
+                 {"paper", "paper", SHOW_NUMBER},
+                 {"ours", "ours", SHOW_NUMBER},
+                 {"difference", "difference", SHOW_NUMBER},
+                 {"assumption", "assumption", SHOW_ONCE}}},
+};
+
+enum status sheet_read(const char *directory, const struct sheet *sheet, struct csv *csv)
+{
+    char path[4096];
+    struct stat info;
+    snprintf(path, sizeof path, "%s/%s", directory, sheet->file);
+    if (stat(path, &info) != 0)
+        return STATUS_OK;
+    enum status status = csv_read(path, CSV_TAIL_KEEP, csv);
+    if (status == STATUS_OK && sheet->group && csv_column(csv, sheet->group) < 0)
+        status = status_set(STATUS_INVALID, "%s: there is no column '%s', which is needed", path, sheet->group);
+    for (int k = 0; k < SHEET_COLUMNS && sheet->columns[k].title && status == STATUS_OK; k++)
+        if (csv_column(csv, sheet->columns[k].name) < 0)
+            status = status_set(STATUS_INVALID, "%s: there is no column '%s', which is needed", path,
+                                sheet->columns[k].name);
+    return status;
+}
+
+/* How a verdict looks; NULL for none of the verdicts. */
+static const char *verdict_class(const char *verdict)
+{
+    static const char *const classes[CLAIM_VERDICTS] = {
+        [CLAIM_HOLDS] = "good", [CLAIM_ASSUMED] = "soft", [CLAIM_FAILS] = "bad", [CLAIM_UNDECIDED] = "open"};
+    for (int k = 0; k < CLAIM_VERDICTS; k++)
+        if (strcmp(claim_verdict_names[k], verdict) == 0)
+            return classes[k];
+    return NULL;
+}
+
+/* How many of each verdict there are, where the sheet has verdicts. */
+static void verdicts_count_show(struct page *page, const struct sheet *sheet, const struct csv *csv)
+{
+    char text[256] = "";
+    for (int k = 0; k < SHEET_COLUMNS && sheet->columns[k].title; k++)
+        for (int verdict = 0; verdict < CLAIM_VERDICTS && sheet->columns[k].show == SHOW_VERDICT; verdict++) {
+            int count = 0;
+            for (int row = 0; row < csv->row_count; row++)
+                count += strcmp(csv_cell(csv, row, csv_column(csv, sheet->columns[k].name)),
+                                claim_verdict_names[verdict]) == 0;
+            size_t used = strlen(text);
+            snprintf(text + used, sizeof text - used, "%s%d %s", used ? ", " : "", count,
+                     claim_verdict_names[verdict]);
+        }
+    if (*text)
+        page_paragraph(page, text);
+}
+
+static void sheet_rows_show(struct page *page, const struct sheet *sheet, const struct csv *csv, const char *group)
+{
+    struct page_column columns[SHEET_COLUMNS];
+    const char *above[SHEET_COLUMNS] = {NULL};
+    int count = 0;
+    for (; count < SHEET_COLUMNS && sheet->columns[count].title; count++)
+        columns[count] = (struct page_column){sheet->columns[count].title, sheet->columns[count].show == SHOW_NUMBER};
+    page_table_begin(page, count, columns, sheet->stack);
+    for (int row = 0; row < csv->row_count; row++) {
+        struct page_cell cells[SHEET_COLUMNS];
+        char numbers[SHEET_COLUMNS][32];
+        if (group && strcmp(csv_cell(csv, row, csv_column(csv, sheet->group)), group) != 0)
+            continue;
+        for (int k = 0; k < count; k++) {
+            const char *text = csv_cell(csv, row, csv_column(csv, sheet->columns[k].name));
+            double value;
+            cells[k] = (struct page_cell){text, NULL};
+            if (sheet->columns[k].show == SHOW_VERDICT)
+                cells[k].class = verdict_class(text);
+            if (sheet->columns[k].show == SHOW_ONCE && above[k] && strcmp(above[k], text) == 0)
+                cells[k].text = "";
+            if (sheet->columns[k].show == SHOW_NUMBER && csv_number(text, &value) && isfinite(value)) {
+                snprintf(numbers[k], sizeof numbers[k], "%.4g", value);
+                cells[k].text = numbers[k];
+            }
+            above[k] = text;
+        }
+        page_row(page, cells);
+    }
+    page_table_end(page);
+}
+
+/* What a group is called: a table of the papers by its title. */
+static void group_title(const struct sheet *sheet, const char *group, char *title, size_t size)
+{
+    snprintf(title, size, "%s", group);
+    for (int k = 0; tables[k].id; k++)
+        if (strcmp(sheet->group, "table") == 0 && strcmp(tables[k].id, group) == 0)
+            snprintf(title, size, "%s", tables[k].title);
+}
+
+static bool group_seen(const struct csv *csv, int column, int row)
+{
+    for (int k = 0; k < row; k++)
+        if (strcmp(csv_cell(csv, k, column), csv_cell(csv, row, column)) == 0)
+            return true;
+    return false;
+}
+
+void sheet_show(struct page *page, const struct sheet *sheet, const struct csv *csv)
+{
+    if (csv->row_count == 0)
+        return;
+    page_heading(page, 2, sheet->id, sheet->title);
+    page_paragraph(page, sheet->text);
+    verdicts_count_show(page, sheet, csv);
+    int column = sheet->group ? csv_column(csv, sheet->group) : -1;
+    if (column < 0)
+        sheet_rows_show(page, sheet, csv, NULL);
+    for (int row = 0; column >= 0 && row < csv->row_count; row++)
+        if (!group_seen(csv, column, row)) {
+            char title[400];
+            group_title(sheet, csv_cell(csv, row, column), title, sizeof title);
+            page_heading(page, 3, NULL, title);
+            sheet_rows_show(page, sheet, csv, csv_cell(csv, row, column));
+        }
+}

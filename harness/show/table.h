@@ -1,0 +1,28 @@
+/* The terminal's table of measurements: one line a row, grouped by scene, at most 110 columns wide. */
+#ifndef SASBENCH_SHOW_TABLE_H
+#define SASBENCH_SHOW_TABLE_H
+
+#include <stdio.h>
+
+#include "measure/results.h"
+
+/* What the columns mean and their names. The next row begins with its scene's heading. */
+void table_header(FILE *stream);
+/* One measurement; a heading line whenever the scene is another than the row's before. Undefined values are "-". */
+void table_row(FILE *stream, const struct measurement *row);
+
+/* A number with its unit as the table shows it. */
+struct cell {
+    char text[24];
+};
+struct cell cell_significant(double value, const char *unit);  /* three digits, the unit directly behind; "-" for NAN */
+struct cell cell_time(double seconds);
+/* The row's SPEC as on the command line, so that it can be taken from here; float is the default there. */
+void measurement_spec(const struct measurement *row, char *text, size_t size);
+
+/* One line an algorithm: the FLOPs that the plan counted, and those of the papers' formulas, which contradict each
+   other. */
+void table_works_header(FILE *stream);
+void table_work(FILE *stream, const char *spec, const struct work *work);
+
+#endif

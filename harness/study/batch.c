@@ -1,0 +1,345 @@
+/* Scenes measured with algorithms (comparison.h). */
+#include "study/batch.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "backprojection/pairs.h"
+#include "data/echo_data.h"
+#include "show/pictures.h"
+#include "measure/session.h"
+#include "show/table.h"
+#include "command/task.h"
+#include "measure/timing.h"
+
+/* One scene while its algorithms run. */
+struct visit {
+    struct session session;
+    const struct spec *specs;
+    int spec_count;
+    struct pictures pictures;           /* all zero when none are drawn */
+    struct work *works;                 /* [spec_count] of the algorithms measured now; flops 0 otherwise */
+};
+
+static void visit_close(struct visit *visit)
+{
+    pictures_free(&visit->pictures);
+    free(visit->works);
+    session_close(&visit->session);
+}
+
+/* On failure the visit is closed. */
+static enum status visit_open(const struct comparison *comparison, const struct scene *scene, int spec_count,
+                              const struct spec *specs, struct visit *visit)
+{
+    *visit = (struct visit){.specs = specs, .spec_count = spec_count};
+    enum status status = session_open(scene, &visit->session);
+    if (status != STATUS_OK)
+        return status;
+    visit->works = calloc((size_t)spec_count, sizeof *visit->works);
+    if (!visit->works)
+        status = status_set(STATUS_FAILED, "%s: no memory for %d algorithms", scene->name, spec_count);
+    if (status == STATUS_OK && comparison->details)
+        status = pictures_begin(comparison->directory, scene, spec_count, &visit->pictures);
+    if (status != STATUS_OK)
+        visit_close(visit);
+    return status;
+}
+
+static void spec_label(const struct spec *spec, char *label, size_t size)
+{
+    picture_label(spec->algorithm->name, spec->text, precision_name(spec->precision), label, size);
+}
+
+static void draw(struct visit *visit, int index, const struct image *image)
+{
+    char label[320];
+    if (!visit->pictures.lines)
+        return;
+    spec_label(&visit->specs[index], label, sizeof label);
+    pictures_add(&visit->pictures, index, label, image);
+}
+
+static void format_stages(const struct stages *stages, char *text, size_t size)
+{
+    size_t used = 0;
+    *text = 0;
+    for (int k = 0; k < stages->count && used < size; k++)
+        used += (size_t)snprintf(text + used, size - used, "%s%s=%.4g", k ? ";" : "", stages->stage[k].name,
+                                 stages->stage[k].seconds);
+}
+
+/* A scene whose echoes cannot be made has a failed row for every algorithm that is missing, and the next one goes on. */
+static enum status fail_scene(struct comparison *comparison, const struct scene *scene, int spec_count,
+                              const struct spec *specs)
+{
+    char reason[512];
+    enum status status = STATUS_OK;
+    snprintf(reason, sizeof reason, "%s", status_message());
+    comparison->failed = true;
+    for (int k = 0; k < spec_count && status == STATUS_OK; k++, comparison->done++) {
+        struct measurement row = measurement_empty(scene->name, specs[k].algorithm->name, specs[k].text,
+                                                   specs[k].precision);
+        const struct measurement *earlier = comparison_find(comparison, scene, &specs[k]);
+        row.threads = comparison->threads;
+        row.status = "failed";
+        row.reason = reason;
+        if (!earlier)
+            status = record_add(comparison->record, &row);
+        if (status == STATUS_OK)
+            table_row(stdout, earlier ? earlier : &row);
+    }
+    fflush(stdout);
+    return status;
+}
+
+/* Measure one algorithm on one scene, record and draw it. Only a fault of the record itself is an error: what fails or
+   is unsupported becomes a row. */
+static enum status measure(struct comparison *comparison, struct visit *visit, int index)
+{
+    const struct session *session = &visit->session;
+    const struct spec *spec = &visit->specs[index];
+    const struct scene *scene = session->scene;
+    struct problem problem = session_problem(scene, spec->algorithm, spec->precision);
+    struct problem whole = {&scene->acquisition, scene->patch_count, scene->patches, spec->precision};
+    struct timing timing = {0};
+    struct image image = {0};
+    char stages[512] = "", skipped[400] = "", reason[512] = "";
+    struct measurement row = measurement_empty(scene->name, spec->algorithm->name, spec->text, spec->precision);
+    row.threads = comparison->threads;
+    row.stages = stages;
+    row.skipped = skipped;
+    row.reason = reason;
+    enum status status = image_allocate(problem.patch_count, problem.patches, spec->precision, &image);
+    if (status == STATUS_OK)
+        status = timing_measure(spec->algorithm, &problem, spec->options, &session->echoes[spec->precision],
+                                &session->echoes[PRECISION_FLOAT], &image, &timing);
+    if (status == STATUS_OK)
+        status = image_scale(&image, session->echoes[spec->precision].exponent);
+    if (status == STATUS_OK) {
+        row.plan_s = timing.plan_s;
+        row.run_s = timing.run_s;
+        row.run_min_s = timing.run_min_s;
+        row.runs = timing.runs;
+        row.control_s = timing.control_s;
+        row.flops = timing.work.flops;
+        row.flops_published = timing.work.published[0].source ? timing.work.published[0].flops : NAN;
+        row.pairs = timing.work.pairs;
+        row.bytes = timing.work.bytes;
+        row.engine = timing.work.engine;
+        visit->works[index] = timing.work;
+        format_stages(&timing.stages, stages, sizeof stages);
+        double left_out = 1 - problem_pixels(&problem) / problem_pixels(&whole);
+        if (left_out > 0)
+            snprintf(skipped, sizeof skipped, "%.3g %% of the pixels: only the patches around the targets are compared",
+                     100 * left_out);
+        if (*timing.work.skipped)
+            snprintf(skipped + strlen(skipped), sizeof skipped - strlen(skipped), "%s%s", *skipped ? "; " : "",
+                     timing.work.skipped);
+        if (!image_is_finite(&image))
+            status = status_set(STATUS_FAILED, "the image holds values that are not finite");
+    }
+    if (status == STATUS_OK) {
+        struct target_row *targets;
+        int target_count;
+        status = session_quality(session, &image, &row, reason, sizeof reason, &targets, &target_count);
+        if (status == STATUS_OK)
+            status = record_targets(comparison->record, targets, target_count);
+        free(targets);
+        if (status == STATUS_OK)
+            draw(visit, index, &image);
+    } else {
+        row.status = status == STATUS_UNSUPPORTED ? "unsupported" : "failed";
+        comparison->failed |= status != STATUS_UNSUPPORTED;
+        snprintf(reason, sizeof reason, "%s", status_message());
+        status = STATUS_OK;
+    }
+    image_free(&image);
+    if (status == STATUS_OK)
+        status = record_add(comparison->record, &row);
+    if (status == STATUS_OK)
+        table_row(stdout, &row);
+    return status;
+}
+
+static void print_works(const struct visit *visit)
+{
+    char text[512];
+    table_works_header(stdout);
+    for (int k = 0; k < visit->spec_count; k++)
+        if (visit->works[k].flops > 0) {
+            const struct spec *spec = &visit->specs[k];
+            struct measurement row = measurement_empty("", spec->algorithm->name, spec->text, spec->precision);
+            measurement_spec(&row, text, sizeof text);
+            table_work(stdout, text, &visit->works[k]);
+        }
+}
+
+static void progress(const struct comparison *comparison, const char *scene, const char *what)
+{
+    if (isatty(STDERR_FILENO))
+        fprintf(stderr, "\r\033[K[%d/%d] %s %s\r", comparison->done + 1, comparison->rows, scene, what);
+}
+
+static void progress_clear(void)
+{
+    if (isatty(STDERR_FILENO))
+        fprintf(stderr, "\r\033[K");
+}
+
+const struct measurement *comparison_find(const struct comparison *comparison, const struct scene *scene,
+                                          const struct spec *spec)
+{
+    return record_find(comparison->record, scene->name, spec->algorithm->name, spec->text,
+                       precision_name(spec->precision));
+}
+
+/* A row that an earlier run finished is not timed again; its image is, for the overlaid slices. What cannot be drawn now is
+   told and stops nothing. */
+static void redraw(struct visit *visit, int index, const struct measurement *row)
+{
+    struct image image = {0};
+    if (strcmp(row->status, "ok") != 0)
+        return;
+    if (session_image(&visit->session, &visit->specs[index], &image, NULL) == STATUS_OK)
+        draw(visit, index, &image);
+    else
+        fprintf(stderr, "sasbench: %s with %s is not drawn: %s\n", row->scene, row->algorithm, status_message());
+    image_free(&image);
+}
+
+/* Whether an image or the slices of finished rows are still to be drawn. */
+static bool pictures_missing(const struct comparison *comparison, const struct scene *scene, int spec_count,
+                             const struct spec *specs)
+{
+    int images = 0, missing = 0;
+    char label[320];
+    for (int k = 0; k < spec_count && comparison->details; k++) {
+        const struct measurement *row = comparison_find(comparison, scene, &specs[k]);
+        if (!row || strcmp(row->status, "ok") != 0)
+            continue;
+        spec_label(&specs[k], label, sizeof label);
+        missing += !picture_exists(comparison->directory, scene->name, label);
+        images++;
+    }
+    return missing > 0 || (images > 0 && scene->point_count > 0
+                           && !picture_exists(comparison->directory, scene->name, NULL));
+}
+
+enum status comparison_scene(struct comparison *comparison, const struct scene *scene, int spec_count,
+                             const struct spec *specs)
+{
+    struct visit visit;
+    int missing = 0;
+    enum status status = record_scene(comparison->record, scene->name, scene->hash);
+    for (int k = 0; k < spec_count; k++)
+        missing += !comparison_find(comparison, scene, &specs[k]);
+    const bool visited = missing > 0 || pictures_missing(comparison, scene, spec_count, specs);
+    if (status == STATUS_OK && visited) {
+        progress(comparison, scene->name, "echoes and exact image");
+        if (visit_open(comparison, scene, spec_count, specs, &visit) != STATUS_OK) {
+            progress_clear();
+            return fail_scene(comparison, scene, spec_count, specs);
+        }
+    }
+    if (status != STATUS_OK)
+        return status;
+    for (int k = 0; k < spec_count && status == STATUS_OK; k++, comparison->done++) {
+        const struct measurement *row = comparison_find(comparison, scene, &specs[k]);
+        progress(comparison, scene->name, specs[k].algorithm->name);
+        if (!row)
+            status = measure(comparison, &visit, k);
+        else if (visited && comparison->details)
+            redraw(&visit, k, row);
+        progress_clear();
+        if (row && status == STATUS_OK)
+            table_row(stdout, row);
+        fflush(stdout);
+    }
+    if (visited) {
+        if (status == STATUS_OK && comparison->details)
+            pictures_slices(&visit.pictures);
+        if (status == STATUS_OK && comparison->details && missing > 0)
+            print_works(&visit);
+        comparison->undrawn += visit.pictures.undrawn;
+        visit_close(&visit);
+    }
+    return status;
+}
+
+enum status comparison_open(const char *directory, int rows, bool details, struct comparison *comparison)
+{
+    struct provenance provenance;
+    *comparison = (struct comparison){
+        .directory = directory, .threads = omp_get_max_threads(), .details = details, .rows = rows};
+    provenance_fill(&provenance, comparison->threads);
+    enum status status = record_open(directory, &provenance, &comparison->record);
+    if (status == STATUS_OK)
+        table_header(stdout);
+    return status;
+}
+
+enum status comparison_close(struct comparison *comparison, enum status status)
+{
+    if (!comparison->record)
+        return status;
+    record_close(comparison->record);
+    comparison->record = NULL;
+    if (status == STATUS_OK && comparison->failed)
+        status = status_set(STATUS_FAILED, "at least one algorithm failed; the table and %s/measurements.csv say why",
+                            comparison->directory);
+    if (status == STATUS_OK && comparison->undrawn > 0)
+        status = status_set(STATUS_FAILED, "%d %s could not be drawn, as is said above; %s/measurements.csv is whole",
+                            comparison->undrawn, comparison->undrawn == 1 ? "picture" : "pictures",
+                            comparison->directory);
+    return status;
+}
+
+void scenes_free(struct scene *scenes, int count)
+{
+    for (int k = 0; k < count; k++)
+        scene_free(&scenes[k]);
+    free(scenes);
+}
+
+enum status scenes_load(const char *command, int given_count, const char *const *given, struct scene **scenes,
+                        int *count)
+{
+    char **names = NULL;
+    int name_count = 0;
+    enum status status = STATUS_OK;
+    if (given_count == 0)
+        status = scene_names(SCENE_DIRECTORY, &names, &name_count);
+    const char *const *list = given_count ? given : (const char *const *)names;
+    int total = given_count ? given_count : name_count;
+    *count = 0;
+    *scenes = calloc((size_t)total + 1, sizeof **scenes);
+    if (status == STATUS_OK && !*scenes)
+        status = status_set(STATUS_FAILED, "no memory for %d scenes", total);
+    for (int k = 0; k < total && status == STATUS_OK; k++) {
+        status = scene_load(list[k], SCENE_DIRECTORY, &(*scenes)[*count]);
+        for (int before = 0; before < *count && status == STATUS_OK; before++) {
+            if (strcmp((*scenes)[before].path, (*scenes)[*count].path) == 0) {
+                status = status_set(STATUS_INVALID, "%s: scene %s is given twice, must be named once",
+                                    command, list[k]);
+            } else if (strcmp((*scenes)[before].name, (*scenes)[*count].name) == 0) {
+                status = scenes_tell_apart(&(*scenes)[before], &(*scenes)[*count]);
+                before = -1;                    /* the longer names may be those of others */
+            }
+            if (status != STATUS_OK)
+                scene_free(&(*scenes)[*count]);
+        }
+        if (status != STATUS_OK)
+            break;
+        if (given_count == 0 && (*scenes)[*count].full_size)
+            scene_free(&(*scenes)[*count]);
+        else
+            ++*count;
+    }
+    scene_names_free(names, name_count);
+    return status;
+}

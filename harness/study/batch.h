@@ -1,0 +1,45 @@
+/* Scenes measured with algorithms into a results folder: what run, sweep and reproduce have in common. */
+#ifndef SASBENCH_STUDY_BATCH_H
+#define SASBENCH_STUDY_BATCH_H
+
+#include "measure/results.h"
+#include "scene/scene.h"
+#include "measure/spec.h"
+
+struct comparison {
+    const char *directory;              /* borrowed */
+    struct record *record;
+    int threads;
+    bool details;                       /* of every scene: draw images and slices, print FLOPs by formula */
+    bool failed;                        /* a measurement failed */
+    int undrawn;                        /* pictures that could not be drawn */
+    int done, rows;                     /* measurements, for the progress line */
+};
+
+/* Open the folder (record_open: finished rows of an earlier run are kept) and print the table's head.
+   rows: how many measurements will be asked for. Errors: as record_open; *comparison is then safe to close. */
+enum status comparison_open(const char *directory, int rows, bool details, struct comparison *comparison);
+
+/* Measure one scene with every spec: echoes and exact image once, then a row in the CSVs and on the terminal for each spec
+   as it is done. Rows that are there already are only printed, unless a picture of the scene is missing, which an
+   earlier run was cut ahead of: then its pictures are drawn. What fails or is unsupported becomes a row, and so does a
+   scene whose echoes cannot be made; errors: STATUS_FAILED for a record that cannot be written. */
+enum status comparison_scene(struct comparison *comparison, const struct scene *scene, int spec_count,
+                             const struct spec *specs);
+
+/* The finished row, or NULL; belongs to the record, valid until comparison_close. */
+const struct measurement *comparison_find(const struct comparison *comparison, const struct scene *scene,
+                                          const struct spec *spec);
+
+/* Close the folder. Returns `status`, or STATUS_FAILED when that is OK but a measurement failed or a picture could not be
+   drawn. */
+enum status comparison_close(struct comparison *comparison, enum status status);
+
+/* Scenes by name or path, or with given_count 0 all shipped ones that are not full_size, in *scenes [*count]: all are read
+   before the first one runs, so that a fault in the last is known at once. `command` begins a message. Errors: as
+   scene_load, and STATUS_INVALID for a scene named twice; what was read must still be freed with scenes_free. */
+enum status scenes_load(const char *command, int given_count, const char *const *given, struct scene **scenes,
+                        int *count);
+void scenes_free(struct scene *scenes, int count);
+
+#endif

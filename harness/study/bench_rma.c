@@ -1,0 +1,192 @@
+/* Range migration in `bench`: LBF21's real-data size, 8 range blocks, float, all threads, everything in one run. */
+#define _GNU_SOURCE                 /* sincos */
+#include "study/bench_rma.h"
+
+#include <fftw3.h>
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "data/echo_data.h"
+#include "scene/scene.h"
+#include "scene/simulate.h"
+#include "command/task.h"
+#include "data/text_file.h"
+#include "measure/timing.h"
+
+enum { BLOCKS = 8, RECEIVERS = 48, AZIMUTH = 3840, RANGE = 4096,           /* 80 pings of 48 receivers at full rate */
+       BINS = RANGE / 2,                                                    /* the pulse's band */
+       TRANSFORM_RUNS = 5 };
+
+/* What a stage is counted as; a name that is not here comes before the phases. */
+static const char *const phase_stages[] = {"bulk", "differential", NULL};
+static const char *const later_stages[] = {"reconstruct", "stolt", "focus", "inverse", NULL};
+
+static double stages_seconds(const struct stages *stages, const char *const *names)
+{
+    double sum = 0;
+    for (; *names; names++)
+        for (int k = 0; k < stages->count; k++)
+            if (strcmp(stages->stage[k].name, *names) == 0)
+                sum += stages->stage[k].seconds;
+    return sum;
+}
+
+/* One SPEC at the whole size: warmed up and repeated, or a single execution. */
+static enum status image_seconds(const char *text, const struct problem *problem, const struct echoes *echoes,
+                                 bool repeated, struct timing *timing)
+{
+    struct spec spec;
+    struct image image;
+    void *plan;
+    enum status status = spec_parse(text, &spec);
+    if (status != STATUS_OK)
+        return status;
+    status = image_allocate(problem->patch_count, problem->patches, problem->precision, &image);
+    if (status == STATUS_OK && repeated) {
+        status = timing_measure(spec.algorithm, problem, spec.options, echoes, echoes, &image, timing);
+    } else if (status == STATUS_OK) {
+        status = spec.algorithm->plan(problem, spec.options, &plan);
+        if (status == STATUS_OK) {
+            stages_begin(&timing->stages);
+            status = spec.algorithm->execute(plan, echoes, &image, &timing->stages);
+            spec.algorithm->destroy(plan);
+        }
+    }
+    image_free(&image);
+    spec_free(&spec);
+    return status;
+}
+
+/* FFTW's time for one forward and one inverse transform of AZIMUTH x RANGE in place, planned by measurement. */
+static enum status transform_seconds(int threads, double *seconds)
+{
+    const size_t bytes = (size_t)AZIMUTH * RANGE * sizeof(fftwf_complex);
+    fftwf_complex *data = fftwf_malloc(bytes);
+    if (!data || !fftwf_init_threads()) {
+        fftwf_free(data);
+        return status_set(STATUS_FAILED, "no memory or no threads for a transform of %d x %d", AZIMUTH, RANGE);
+    }
+    fftwf_plan_with_nthreads(threads);
+    fftwf_plan forward = fftwf_plan_dft_2d(AZIMUTH, RANGE, data, data, FFTW_FORWARD, FFTW_MEASURE);
+    fftwf_plan inverse = fftwf_plan_dft_2d(AZIMUTH, RANGE, data, data, FFTW_BACKWARD, FFTW_MEASURE);
+    fftwf_plan_with_nthreads(1);
+    memset(data, 0, bytes);
+    *seconds = INFINITY;
+    for (int k = 0; k < TRANSFORM_RUNS; k++) {
+        double begin = seconds_now();
+        fftwf_execute(forward);
+        fftwf_execute(inverse);
+        *seconds = fmin(*seconds, seconds_now() - begin);
+    }
+    fftwf_destroy_plan(forward);
+    fftwf_destroy_plan(inverse);
+    fftwf_free(data);
+    return STATUS_OK;
+}
+
+/* What libm takes for nothing but the sine and the cosine of as many cells as one range block has in the pulse's
+   band, in float and in double: timed on one receiver's. */
+static void sincos_seconds(double seconds[2])
+{
+    double sum = 0;
+    for (int precision = 0; precision < 2; precision++) {
+        double begin = seconds_now();
+#pragma omp parallel for reduction(+ : sum)
+        for (int line = 0; line < AZIMUTH; line++)
+            for (int k = 0; k < BINS; k++) {
+                double angle = 6.28 * ((double)k / BINS - 0.5) + 1e-5 * line, s, c;
+                float angle_float = (float)angle, s_float, c_float;
+                if (precision == PRECISION_DOUBLE) {
+                    sincos(angle, &s, &c);
+                    sum += s + c;
+                } else {
+                    sincosf(angle_float, &s_float, &c_float);
+                    sum += s_float + c_float;
+                }
+            }
+        seconds[precision] = RECEIVERS * (seconds_now() - begin);
+    }
+    volatile double used = sum;     /* or nothing would be computed */
+    (void)used;
+}
+
+static enum status measure(const struct problem *problem, const struct echoes *echoes, FILE *file)
+{
+    struct timing eight = {0}, one = {0}, libm = {0};
+    enum status status = image_seconds("rma_lbf:blocks=8", problem, echoes, true, &eight);
+    if (status == STATUS_OK)
+        status = image_seconds("rma_lbf:blocks=1", problem, echoes, true, &one);
+    if (status == STATUS_OK)
+        status = image_seconds("rma_lbf:blocks=1,phases=libm", problem, echoes, false, &libm);
+    if (status != STATUS_OK)
+        return status;
+    const int threads = omp_get_max_threads();
+    const double run = eight.run_s, phase = stages_seconds(&eight.stages, phase_stages);
+    const double later = stages_seconds(&eight.stages, later_stages);
+    const double one_phase = stages_seconds(&one.stages, phase_stages);
+    const double libm_phase = stages_seconds(&libm.stages, phase_stages);
+    double fft = 0, cells[2];
+    status = transform_seconds(threads, &fft);
+    if (status != STATUS_OK)
+        return status;
+    sincos_seconds(cells);
+    const struct {
+        const char *name, *unit, *meaning;
+        double value;
+    } rows[] = {
+        {"run", "s", "8 range blocks, median", run},
+        {"phase", "s", "of it the phase stage (bulk and differential)", phase},
+        {"after", "s", "of it everything after the phase stage", later},
+        {"after_share", "1", "share of the run (0.40 at most)", later / run},
+        {"phase_one", "s", "phase stage with one range block", one_phase},
+        {"phase_one_libm", "s", "the same by formula and libm for each cell", libm_phase},
+        {"phase_ratio", "1", "how much slower that is (10 at least)", libm_phase / one_phase},
+        {"phase_ratio_blocks", "1", "and with 8 blocks, each as long as the one", BLOCKS * libm_phase / phase},
+        {"sincos_double", "s", "sines and cosines alone, of one block's cells: libm in double", cells[PRECISION_DOUBLE]},
+        {"sincos_float", "s", "and libm in float", cells[PRECISION_FLOAT]},
+        {"sincos_ratio", "1", "libm's double ones alone, to the whole phase stage", cells[PRECISION_DOUBLE] / one_phase},
+        {"fft2", "s", "FFTW, 2-D forward and inverse of 3840 x 4096, best of five", fft},
+        {"run_ratio", "1", "run in these transforms (12 at most)", run / fft},
+    };
+    fprintf(file, "# sasbench bench_rma 1\n# threads: %d\nscene,algorithm,precision,quantity,unit,value\n", threads);
+    printf("\nRange migration of LBF21's real-data size, float, %d threads\n", threads);
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        fprintf(file, "lbf21/real_size,rma_lbf,float,%s,%s,%.6g\n", rows[k].name, rows[k].unit, rows[k].value);
+        printf("%9.4g %-2s %s\n", rows[k].value, strcmp(rows[k].unit, "s") == 0 ? "s" : "", rows[k].meaning);
+    }
+    fflush(stdout);
+    return STATUS_OK;
+}
+
+enum status bench_rma(const char *directory)
+{
+    char path[4096];
+    struct scene scene;
+    struct echoes recorded, echoes;
+    snprintf(path, sizeof path, "%s/bench_rma.csv", directory);
+    struct text_file file;
+    enum status status = text_file_open(path, &file);
+    if (status != STATUS_OK)
+        return status;
+    status = scene_load("lbf21/real_size", SCENE_DIRECTORY, &scene);
+    if (status == STATUS_OK) {
+        status = scene_simulate(&scene, &recorded);
+        if (status == STATUS_OK) {
+            status = echoes_convert(&recorded, PRECISION_FLOAT, &echoes);
+            echoes_free(&recorded);
+        }
+        if (status == STATUS_OK) {
+            struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
+            status = measure(&problem, &echoes, file.stream);
+            echoes_free(&echoes);
+        }
+        scene_free(&scene);
+    }
+    status = text_file_close(&file, status);
+    if (status == STATUS_OK)
+        printf("Results: %s\n", path);
+    return status;
+}

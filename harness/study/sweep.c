@@ -1,0 +1,77 @@
+/* The command `sweep`: every algorithm over its ladder of settings, error against run time. */
+#include <stdio.h>
+
+#include "study/batch.h"
+#include "show/plot.h"
+#include "study/sweep_ladder.h"
+#include "study/sweep_tables.h"
+#include "command/task.h"
+
+/* A point, speckle, and the two ends of the range. */
+static const char *const default_scenes[] = {"sweep/point", "sweep/speckle", "sweep/near", "sweep/far"};
+
+/* The exact image's own cost comes first: what the others save, and what their PSLR and ISLR are compared with. */
+static enum status ladders_load(const struct task *task, struct ladder *ladder)
+{
+    struct spec spec;
+    enum status status = spec_parse("reference", &spec);
+    if (status == STATUS_OK)
+        status = ladder_add(ladder, &spec);
+    spec_free(&spec);
+    for (int k = 0; k < task->spec_count && status == STATUS_OK; k++)
+        status = ladder_add(ladder, &task->specs[k]);
+    for (int k = 0; task->spec_count == 0 && algorithms[k] && status == STATUS_OK; k++) {
+        status = spec_parse(algorithms[k]->name, &spec);
+        if (status == STATUS_OK)
+            status = ladder_add(ladder, &spec);
+        spec_free(&spec);
+    }
+    return status;
+}
+
+/* A plot that cannot be drawn is told and counted, but does not fail what was measured. Returns how many. */
+static int draw(const char *directory, const struct scene *scene)
+{
+    static const char *const formats[] = {"png", "svg"};
+    int undrawn = 0;
+    for (int k = 0; folder_plots[k]; k++)
+        for (size_t f = 0; f < sizeof formats / sizeof *formats; f++) {
+            char name[64], path[4096];
+            bool drawn;
+            snprintf(name, sizeof name, "%s.%s", folder_plots[k], formats[f]);
+            picture_path(directory, scene->name, name, path, sizeof path);
+            if (plot_folder(path, PLOT_DIRECTORY, folder_plots[k], directory, scene->name, &drawn) != STATUS_OK) {
+                fprintf(stderr, "sasbench: %s\n", status_message());
+                undrawn++;
+            }
+        }
+    return undrawn;
+}
+
+enum status command_sweep(const struct task *task)
+{
+    const char *directory = task->output ? task->output : "results/sweep";
+    int default_count = sizeof default_scenes / sizeof *default_scenes, scene_count = 0;
+    struct scene *scenes = NULL;
+    struct ladder ladder = {0};
+    struct comparison comparison = {0};
+    enum status status = ladders_load(task, &ladder);
+    if (status == STATUS_OK)
+        status = scenes_load("sweep", task->name_count ? task->name_count : default_count,
+                             task->name_count ? task->names : default_scenes, &scenes, &scene_count);
+    if (status == STATUS_OK)
+        status = comparison_open(directory, scene_count * ladder.count, false, &comparison);
+    for (int k = 0; k < scene_count && status == STATUS_OK; k++)
+        status = comparison_scene(&comparison, &scenes[k], ladder.count, ladder.specs);
+    if (status == STATUS_OK)
+        status = sweep_tables(directory, scenes, scene_count);
+    for (int k = 0; k < scene_count && status == STATUS_OK; k++)
+        comparison.undrawn += draw(directory, &scenes[k]);
+    if (status == STATUS_OK)
+        printf("\nResults: %s/measurements.csv, targets.csv, fronts.csv, cheapest.csv, slopes.csv, rules.csv and "
+               "plots.\n", directory);
+    status = comparison_close(&comparison, status);
+    scenes_free(scenes, scene_count);
+    ladder_free(&ladder);
+    return status;
+}

@@ -1,0 +1,33 @@
+/* What the rows of a sweep say: the fronts, the cheapest setting for each decade of error, how the error falls along
+   each ladder, and the papers' rules for the upsampling rate. */
+#ifndef SASBENCH_STUDY_SWEEP_TABLES_H
+#define SASBENCH_STUDY_SWEEP_TABLES_H
+
+#include "measure/results.h"
+#include "scene/scene.h"
+
+/* The points that no other point beats: none has both less or equal cost and less or equal error. Of equal points the
+   first stays. Their indices go to front [count], cost ascending; returns how many. Values that are not > 0 are no
+   points. */
+int front_find(int count, const double *cost, const double *error, int *front);
+
+/* A straight line through log10 error against log10 rate, by least squares. */
+struct line_fit {
+    int points;
+    double slope;                       /* NAN with fewer than two points, or one rate only */
+    double first, last;                 /* the line's error at the first and the last rate */
+    double residual_log10;              /* rms distance of the points from the line */
+};
+struct line_fit line_fit(int count, const double *rate, const double *error);
+
+/* The first point from which on no error differs from the last one's by more than 5 %; `count` when the last two
+   differ more: there is no floor. */
+int floor_find(int count, const double *error);
+
+/* Read DIR/measurements.csv, write fronts.csv, cheapest.csv, slopes.csv and rules.csv beside it (results/README.md has
+   their columns) and print the last three. `scenes` are those that were measured; others are looked for by name, of which
+   only shipped ones are found. Errors: as results_read; STATUS_INVALID for a folder that cannot be written; STATUS_FAILED
+   without memory. */
+enum status sweep_tables(const char *directory, const struct scene *scenes, int scene_count);
+
+#endif
