@@ -1,0 +1,55 @@
+#!/bin/sh
+# Data flows one way: every folder includes its own headers and those of folders before it only.
+# Usage: include_order.sh SOURCE_ROOT. Prints each include that breaks the order; exit status 1 if there is one.
+set -eu
+cd "$1"
+find algorithms harness -name '*.[ch]' | sort | xargs awk '
+    function place(path) { return match(path, "/[^/]*$") ? substr(path, 1, RSTART - 1) : "" }
+    BEGIN {
+        # A folder, and what it may include beside itself. What contributors read ("algorithm.h") lies in algorithms/
+        # beside the algorithms, which nobody includes.
+        order = "algorithms algorithms/common algorithms/backprojection algorithms/backprojection/general " \
+                "algorithms/backprojection/invariant algorithms/range_migration harness/data harness/scene " \
+                "harness/measure harness/show harness/study harness/gate harness/papers harness/command harness/tests"
+        count = split(order, folder, " ")
+        for (k = 1; k <= count; k++)
+            rank[folder[k]] = k
+        # Neighbours that must not know each other.
+        apart["algorithms/backprojection/general", "algorithms/backprojection/invariant"] = 1
+        apart["algorithms/backprojection", "algorithms/range_migration"] = 1
+        apart["algorithms/backprojection/general", "algorithms/range_migration"] = 1
+        apart["algorithms/backprojection/invariant", "algorithms/range_migration"] = 1
+    }
+    /^#include "/ {
+        split($0, part, "\"")
+        own = place(FILENAME)
+        if (!(own in rank)) {
+            print FILENAME ": its folder is not in the order of tests/include_order.sh"
+            faults++
+            next
+        }
+        if ((getline line < ("algorithms/" part[2])) >= 0)
+            path = "algorithms/" part[2]
+        else if ((getline line < ("harness/" part[2])) >= 0)
+            path = "harness/" part[2]
+        else if ((getline line < (own "/" part[2])) >= 0)
+            path = own "/" part[2]
+        else
+            next                        # made by the build
+        close(path)
+        other = place(path)
+        read++
+        plugin = own == "algorithms" && FILENAME ~ /[.]c$/
+        if ((!plugin && rank[other] > rank[own]) || apart[other, own] || apart[own, other]) {
+            printf "%s:%d: includes \"%s\", which comes after %s\n", FILENAME, FNR, part[2], own
+            faults++
+        }
+    }
+    END {
+        if (read < 100) {
+            print "only " read + 0 " includes read: is this the source?"
+            faults++
+        }
+        printf "%d includes, %d against the order\n", read, faults
+        exit faults > 0
+    }'
