@@ -2,6 +2,7 @@
 #ifndef SASBENCH_COMMAND_TASK_H
 #define SASBENCH_COMMAND_TASK_H
 
+#include "data/paths.h"
 #include "measure/spec.h"
 
 /* The command line after parsing; texts are borrowed from argv. Unused fields are NULL or 0. */
@@ -28,12 +29,5 @@ enum status command_sweep(const struct task *task);
 enum status command_report(const struct task *task);
 enum status command_phase(const struct task *task);
 enum status command_bench(const struct task *task);
-
-/* `phase` without a scene, into a folder that the caller has made; `taken`: and holds (folder.h). */
-enum status phase_studies(const char *directory, bool taken);
-
-/* Folders of this installation. */
-#define SCENE_DIRECTORY SASBENCH_ROOT "/scenes"
-#define PLOT_DIRECTORY SASBENCH_ROOT "/plots"
 
 #endif

@@ -1,53 +1,38 @@
-/* What BP22, ZP15 and LBF21 claim, sentence by sentence, and how our measurements judge it.
+/* What BP22, ZP15 and LBF21 claim, sentence by sentence, and how our measurements judge it: results/claims.csv, a row a
+   claim, names what is compared (quantity.h) and by which judge (judges.h).
 
-   A claim is a row of a table: a function looks up what was measured and compares it with the numbers that the
-   sentence itself gives. What counts as agreement is the printed number with its last digit's rounding; where a
-   sentence gives no number ("slightly", "far less") the evidence states the criterion that was taken. */
+   What counts as agreement is the printed number with its last digit's rounding; where a sentence gives no number
+   ("slightly", "far less") the criterion says what was taken. */
 #ifndef SASBENCH_PAPERS_CLAIMS_H
 #define SASBENCH_PAPERS_CLAIMS_H
 
-#include "papers/reproduce.h"
+#include "papers/judges.h"
+#include "papers/tables.h"
 
-enum claim_verdict { CLAIM_HOLDS, CLAIM_ASSUMED, CLAIM_FAILS, CLAIM_UNDECIDED, CLAIM_VERDICTS };
-/* "holds", "holds under stated assumption", "does not hold", "cannot be decided". */
-extern const char *const claim_verdict_names[CLAIM_VERDICTS];
+#define CLAIMS_FILE SASBENCH_ROOT "/results/claims.csv"
 
-struct finding {
-    enum claim_verdict verdict;
-    char evidence[800]; /* one line, with the numbers */
-};
-
+/* Texts belong to the file that was read. */
 struct claim {
     const char *id, *paper, *section, *claim;
-    struct finding (*judge)(struct measured *measured); /* what it asks for in vain makes the claim undecided */
+    const char *criterion; /* the judges in words, or why nothing can be decided */
+    const char *judge, *arguments;
+    int line;
 };
 
-/* All claims, in tables ended by an id of NULL; the list of tables is ended by NULL. */
-extern const struct claim claims_bp22[], claims_zp15[], claims_lbf21_phase[], claims_lbf21[];
-extern const struct claim *const claim_tables[];
+struct claims {
+    struct csv csv;
+    int count;
+    struct claim *claims; /* [count] */
+    int need_count;
+    struct need *needs; /* [need_count] all measurements that they ask for; owned */
+};
+
+/* Every row is checked to its end before the first is judged. Errors: those of csv_read; STATUS_INVALID naming file,
+   line, column, value and what is accepted. claims_free releases what was read and accepts a zeroed struct. */
+enum status claims_read(const char *path, struct claims *claims);
+void claims_free(struct claims *claims);
 
 /* The verdict on a claim. Where a measurement is missing, failed or unsupported: CLAIM_UNDECIDED with the reason. */
-struct finding claim_judge(const struct claim *claim, struct measured *measured);
-
-/* ---- for the functions of the claims ---- */
-
-/* Holds if `strict`; else under the assumption that the evidence names if `assumed`; else it does not. */
-struct finding finding(bool strict, bool assumed, const char *format, ...) __attribute__((format(printf, 3, 4)));
-struct finding finding_undecided(const char *format, ...) __attribute__((format(printf, 1, 2)));
-
-/* Of values over several targets. */
-struct spread {
-    double least, median, largest;
-};
-/* Of what `spec` has above `other` (NULL: of its own values) in a field of the azimuth slices of targets [first,
-   first + count) of a scene: SPREAD(measured, scene, spec, other, "pixel", islr_db, 0, 24). */
-#define SPREAD(measured, scene, spec, other, definition, field, first, count)                                        \
-    spread_of(measured, scene, spec, other, definition, offsetof(struct target_row, field), #field, first, count)
-struct spread spread_of(struct measured *measured, const char *scene, const char *spec, const char *other,
-                        const char *definition, size_t offset, const char *name, int first, int count);
-/* The larger magnitude of its ends. */
-double spread_magnitude(struct spread spread);
-/* Of two sets of targets together; the median is the mean of both. */
-struct spread spread_join(struct spread a, struct spread b);
+struct judgement claim_judge(const struct claims *claims, const struct claim *claim, struct measured *measured);
 
 #endif

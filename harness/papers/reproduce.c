@@ -1,33 +1,39 @@
-/* The command `reproduce`: measure what the papers' tables and claims rest on, set their numbers beside ours, and
-   judge what they say. */
+/* Measure what the papers' tables and claims rest on, set their numbers beside ours, and judge what they say
+   (reproduce.h). */
+#include "papers/reproduce.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
-#include "papers/claims.h"
-#include "study/batch.h"
-#include "command/task.h"
+#include "data/paths.h"
 #include "data/text_file.h"
+#include "measure/spec.h"
+#include "papers/claims.h"
+#include "scene/scene.h"
+#include "study/batch.h"
+#include "study/phase.h"
 
 enum { NEEDS_MAX = 256, TABLES_MAX = 64, COLUMNS_MAX = 8 };
 
-static enum status tables_select(const struct task *task, bool selected[TABLES_MAX])
+static enum status tables_select(const char *const *ids, int count, bool selected[TABLES_MAX])
 {
-    for (int n = 0; n < task->name_count; n++) {
-        char ids[512] = "";
+    for (int n = 0; n < count; n++) {
+        char accepted[512] = "";
         bool known = false;
-        for (int k = 0; tables[k].id; k++) {
-            bool same = strcmp(tables[k].id, task->names[n]) == 0;
+        for (int k = 0; paper_tables[k].id; k++) {
+            bool same = strcmp(paper_tables[k].id, ids[n]) == 0;
             known |= same;
             selected[k] |= same;
-            snprintf(ids + strlen(ids), sizeof ids - strlen(ids), "%s%s", k ? ", " : "", tables[k].id);
+            text_append(accepted, sizeof accepted, "%s%s", k ? ", " : "", paper_tables[k].id);
         }
         if (!known)
-            return status_set(STATUS_INVALID, "reproduce: '%s' is not a table; accepted: %s", task->names[n], ids);
+            return status_set(STATUS_INVALID, "reproduce: '%s' is not a table; accepted: %s", ids[n], accepted);
     }
-    for (int k = 0; tables[k].id; k++)
-        selected[k] |= task->name_count == 0;
+    for (int k = 0; paper_tables[k].id; k++)
+        selected[k] |= count == 0;
     return STATUS_OK;
 }
 
@@ -113,7 +119,7 @@ static void cell_print(double value, double paper)
 }
 
 /* What published.csv notes on the table's numbers, once for each target. */
-static void notes_print(const struct table *table, const struct reproduced *lines, int count)
+static void notes_print(const struct paper_table *table, const struct reproduced *lines, int count)
 {
     for (int k = 0; k < count; k++) {
         const struct reproduced *l = &lines[k];
@@ -127,7 +133,7 @@ static void notes_print(const struct table *table, const struct reproduced *line
 }
 
 /* One table, a row a printed number, a column a definition. */
-static void table_print(const struct table *table, const struct reproduced *lines, int count)
+static void table_print(const struct paper_table *table, const struct reproduced *lines, int count)
 {
     const char *definitions[COLUMNS_MAX];
     int columns = 0;
@@ -174,7 +180,8 @@ static void table_print(const struct table *table, const struct reproduced *line
 }
 
 /* Into claims.csv, and printed when `print`. */
-static enum status claims_write(const char *directory, struct measured *measured, bool print)
+static enum status claims_write(const char *directory, const struct claims *claims, struct measured *measured,
+                                bool print)
 {
     char path[4200];
     struct text_file file;
@@ -185,20 +192,21 @@ static enum status claims_write(const char *directory, struct measured *measured
         return status;
     head_write(file.stream, "claims", measured);
     fputs("id,paper,section,claim,verdict,evidence\n", file.stream);
-    for (int t = 0; claim_tables[t]; t++)
-        for (const struct claim *claim = claim_tables[t]; claim->id; claim++) {
-            struct finding found = claim_judge(claim, measured);
-            const char *const texts[] = {claim->id, claim->paper, claim->section, claim->claim,
-                                         claim_verdict_names[found.verdict], found.evidence};
-            for (int k = 0; k < 6; k++) {
-                csv_write_text(file.stream, texts[k]);
-                fputc(k < 5 ? ',' : '\n', file.stream);
-            }
-            counts[found.verdict]++;
-            if (print)
-                printf("\n%-17s %s\n  %s: %s\n", claim->id, claim->claim, claim_verdict_names[found.verdict],
-                       found.evidence);
+    for (int n = 0; n < claims->count; n++) {
+        const struct claim *claim = &claims->claims[n];
+        struct judgement judgement = claim_judge(claims, claim, measured);
+        const char *const texts[] = {
+            claim->id,         claim->paper, claim->section, claim->claim, claim_verdict_names[judgement.verdict],
+            judgement.evidence};
+        for (int k = 0; k < 6; k++) {
+            csv_write_text(file.stream, texts[k]);
+            fputc(k < 5 ? ',' : '\n', file.stream);
         }
+        counts[judgement.verdict]++;
+        if (print)
+            printf("\n%-17s %s\n  %s: %s\n", claim->id, claim->claim, claim_verdict_names[judgement.verdict],
+                   judgement.evidence);
+    }
     if (print) {
         printf("\nClaims:");
         for (int k = 0; k < CLAIM_VERDICTS; k++)
@@ -209,7 +217,7 @@ static enum status claims_write(const char *directory, struct measured *measured
 }
 
 /* Everything is worked out from the folder, so that a part that was measured earlier stays in the files. */
-static enum status report(const char *directory, const bool selected[TABLES_MAX])
+static enum status report(const char *directory, const struct claims *claims, const bool selected[TABLES_MAX])
 {
     struct measured measured;
     struct reproduced *lines = NULL;
@@ -219,40 +227,70 @@ static enum status report(const char *directory, const bool selected[TABLES_MAX]
         status = tables_evaluate(&measured, &lines, &count);
     if (status == STATUS_OK)
         status = reproduced_write(directory, &measured, lines, count);
-    for (int k = 0; tables[k].id && status == STATUS_OK; k++) {
-        if (strcmp(tables[k].id, "claims") == 0)
-            status = claims_write(directory, &measured, selected[k]);
+    for (int k = 0; paper_tables[k].id && status == STATUS_OK; k++) {
+        if (strcmp(paper_tables[k].id, "claims") == 0)
+            status = claims_write(directory, claims, &measured, selected[k]);
         else if (selected[k])
-            table_print(&tables[k], lines, count);
+            table_print(&paper_tables[k], lines, count);
     }
     if (status == STATUS_OK)
-        printf("\nResults: %s/reproduced.csv, claims.csv, measurements.csv, targets.csv, phase figures.\n",
-               directory);
+        printf("\nResults: %s/reproduced.csv, claims.csv, measurements.csv, targets.csv, phase figures.\n", directory);
     free(lines);
     measured_free(&measured);
     return status;
 }
 
-enum status command_reproduce(const struct task *task)
+/* What we write is named as what we read: the folder of the latter is none for the former. */
+static enum status directory_check(const char *directory)
 {
-    const char *directory = task->output ? task->output : "results/reproduce";
+    char path[4200];
+    struct stat ours, theirs;
+    snprintf(path, sizeof path, "%s/claims.csv", directory);
+    if (stat(path, &theirs) == 0 && stat(CLAIMS_FILE, &ours) == 0 && ours.st_dev == theirs.st_dev
+        && ours.st_ino == theirs.st_ino)
+        return status_set(STATUS_INVALID,
+                          "reproduce: -o %s: its claims.csv is the list of claims; another folder is "
+                          "accepted",
+                          directory);
+    return STATUS_OK;
+}
+
+/* All that the tables rest on; the claims rest on all tables and on more. */
+static int needs_collect(const bool selected[TABLES_MAX], const struct claims *claims, struct need needs[NEEDS_MAX])
+{
+    int count = 0;
+    for (int k = 0; paper_tables[k].id; k++) {
+        bool all = selected[k] && strcmp(paper_tables[k].id, "claims") == 0;
+        if (selected[k])
+            count = table_needs(paper_tables[k].id, needs, count, NEEDS_MAX);
+        for (int n = 0; all && n < claims->need_count; n++)
+            count = need_add(needs, count, NEEDS_MAX, claims->needs[n]);
+    }
+    return count;
+}
+
+enum status papers_reproduce(const char *const *ids, int count, const char *directory)
+{
     bool selected[TABLES_MAX] = {false};
     struct need needs[NEEDS_MAX];
+    struct claims claims = {0};
     struct comparison comparison = {0};
-    enum status status = tables_select(task, selected);
+    enum status status = tables_select(ids, count, selected);
+    if (status == STATUS_OK)
+        status = directory_check(directory);
+    if (status == STATUS_OK)
+        status = claims_read(CLAIMS_FILE, &claims);
     if (status != STATUS_OK)
         return status;
-    int count = 0;
-    for (int k = 0; tables[k].id; k++)
-        if (selected[k])
-            count = table_needs(tables[k].id, needs, count, NEEDS_MAX);
-    status = comparison_open(directory, count, false, &comparison);
-    for (int k = 0; k < count && status == STATUS_OK; k++)
+    int need_count = needs_collect(selected, &claims, needs);
+    status = comparison_open(directory, need_count, false, &comparison);
+    for (int k = 0; k < need_count && status == STATUS_OK; k++)
         if (needs[k].scene)
-            status = scene_measure(&comparison, needs + k, count - k);
+            status = scene_measure(&comparison, needs + k, need_count - k);
     if (status == STATUS_OK)
-        status = phase_studies(directory, true);
+        status = phase_study(directory, true);
     if (status == STATUS_OK)
-        status = report(directory, selected);
+        status = report(directory, &claims, selected);
+    claims_free(&claims);
     return comparison_close(&comparison, status);
 }

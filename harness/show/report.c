@@ -10,7 +10,7 @@
 #include "data/folder.h"
 #include "show/plot.h"
 #include "measure/results.h"
-#include "show/sheets.h"
+#include "show/report_tables.h"
 #include "show/table.h"
 #include "command/task.h"
 #include "data/text_file.h"
@@ -29,7 +29,7 @@ struct folder {
     struct results results;
     const char **scenes;                /* [scene_count] borrowed, in the order of their first rows */
     int scene_count;
-    struct csv csvs[SHEETS];            /* column_count 0: not there */
+    struct csv csvs[REPORT_TABLES];     /* column_count 0: not there */
     struct drawing *drawings;           /* [drawing_count] */
     int drawing_count;
     struct dirent **files;              /* [file_count] PNG files of `phase`, by name */
@@ -39,7 +39,7 @@ struct folder {
 static void folder_free(struct folder *folder)
 {
     results_free(&folder->results);
-    for (int k = 0; k < SHEETS; k++)
+    for (int k = 0; k < REPORT_TABLES; k++)
         csv_free(&folder->csvs[k]);
     for (int k = 0; k < folder->file_count; k++)
         free(folder->files[k]);
@@ -81,8 +81,8 @@ static enum status folder_read(const char *directory, struct folder *folder)
     *folder = (struct folder){.directory = directory};
     snprintf(path, sizeof path, "%s/measurements.csv", directory);
     enum status status = results_read(path, &folder->results);
-    for (int k = 0; k < SHEETS && status == STATUS_OK; k++)
-        status = sheet_read(directory, &sheets[k], &folder->csvs[k]);
+    for (int k = 0; k < REPORT_TABLES && status == STATUS_OK; k++)
+        status = report_table_read(directory, &report_tables[k], &folder->csvs[k]);
     if (status != STATUS_OK)
         return status;
     while (folder_plots[plots])
@@ -268,13 +268,13 @@ static enum status pictures_show(struct page *page, const struct folder *folder)
 
 static enum status folder_show(struct page *page, const struct folder *folder)
 {
-    const char *ids[SHEETS + 4] = {"machine", "plots"}, *titles[SHEETS + 4] = {"Machine", "Plots"};
+    const char *ids[REPORT_TABLES + 4] = {"machine", "plots"}, *titles[REPORT_TABLES + 4] = {"Machine", "Plots"};
     int count = 2;
     char title[4200];
-    for (int k = 0; k < SHEETS; k++)
+    for (int k = 0; k < REPORT_TABLES; k++)
         if (folder->csvs[k].row_count > 0) {
-            ids[count] = sheets[k].id;
-            titles[count++] = sheets[k].title;
+            ids[count] = report_tables[k].id;
+            titles[count++] = report_tables[k].title;
         }
     ids[count] = "measurements";
     titles[count++] = "Measurements";
@@ -285,15 +285,15 @@ static enum status folder_show(struct page *page, const struct folder *folder)
     page_contents(page, count, ids, titles);
     machine_show(page, folder);
     enum status status = page->format == PAGE_HTML ? plots_show(page, folder) : STATUS_OK;
-    for (int k = 0; k < SHEETS; k++)
-        if (!sheets[k].late)
-            sheet_show(page, &sheets[k], &folder->csvs[k]);
+    for (int k = 0; k < REPORT_TABLES; k++)
+        if (!report_tables[k].late)
+            report_table_show(page, &report_tables[k], &folder->csvs[k]);
     measurements_show(page, folder);
     if (status == STATUS_OK && page->format == PAGE_HTML)
         status = pictures_show(page, folder);
-    for (int k = 0; k < SHEETS; k++)
-        if (sheets[k].late)
-            sheet_show(page, &sheets[k], &folder->csvs[k]);
+    for (int k = 0; k < REPORT_TABLES; k++)
+        if (report_tables[k].late)
+            report_table_show(page, &report_tables[k], &folder->csvs[k]);
     page_end(page);
     return status;
 }

@@ -1,5 +1,7 @@
 /* The command `phase`: how far each formula of the two-dimensional spectrum is from the exact one (LBF21 Figs 2 to
    9), so that one sees before imaging whether LBF or PCA is good enough for a set-up. */
+#include "study/phase.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,6 +10,7 @@
 #include "range_migration/spectrum.h"
 #include "data/csv.h"
 #include "data/folder.h"
+#include "data/published.h"
 #include "show/plot.h"
 #include "command/task.h"
 #include "data/text_file.h"
@@ -27,15 +30,20 @@ enum { FORMULAS = sizeof formulas / sizeof *formulas };
 static const double ranges_m[] = {50, 135, 220, 300};
 enum { RANGES = 4, DOPPLERS = 201, FREQUENCIES = 3, RECEIVERS = 2 };
 
-/* What LBF21 says of the largest error in its two set-ups, of the first and the last receiver. */
+/* Where LBF21 says how large the error is at most in its two set-ups, of the first and the last receiver: the figure in
+   published.csv. */
 static const struct {
     const char *scene;
     int receiver;
-    const char *formula, *claim;
-} claims[] = {
-    {"lbf21/_phase_short", 0, "lbf7_fc", "0.02"},   {"lbf21/_phase_short", 1, "lbf7_fc", "0.08"},
-    {"lbf21/_phase_short", 1, "pca", "0.15"},       {"lbf21/_phase_long", 0, "lbf7_fc", "0.1"},
-    {"lbf21/_phase_long", 0, "pca", "1"},           {"lbf21/_phase_long", 1, "lbf7_fc", "< pi/4"},
+    const char *formula, *table, *target, *method;
+    bool bound;                         /* the paper says only that the error is below it */
+} figures[] = {
+    {"lbf21/_phase_short", 0, "lbf7_fc", "lbf21_f2", "1st receiver, 50 to 300 m", "LBF", false},
+    {"lbf21/_phase_short", 1, "lbf7_fc", "lbf21_f3", "66th receiver, 135 to 300 m", "LBF", false},
+    {"lbf21/_phase_short", 1, "pca", "lbf21_f5", "66th receiver, 135 to 300 m", "PCA", false},
+    {"lbf21/_phase_long", 0, "lbf7_fc", "lbf21_f6", "1st receiver, 50 to 300 m", "LBF", false},
+    {"lbf21/_phase_long", 0, "pca", "lbf21_f7", "1st receiver, 50 to 300 m", "PCA", false},
+    {"lbf21/_phase_long", 1, "lbf7_fc", "lbf21_f8", "last receiver, 50 to 300 m", "LBF", true},
 };
 
 /* One scene's errors. Along each curve the azimuth wavenumber goes evenly from -nu_max to nu_max. */
@@ -115,16 +123,19 @@ static enum status study_write(struct study *study, const char *path)
     return text_file_close(&text, STATUS_OK);
 }
 
-static const char *claim_find(const struct study *study, int receiver, int formula)
+/* What LBF21 prints for a line of the study; empty where it prints nothing. */
+static void printed_show(const struct csv *published, const struct study *study, int receiver, int formula)
 {
-    for (size_t k = 0; k < sizeof claims / sizeof *claims; k++)
-        if (strcmp(claims[k].scene, study->scene) == 0 && claims[k].receiver == receiver
-            && strcmp(claims[k].formula, formulas[formula].name) == 0)
-            return claims[k].claim;
-    return "";
+    double value;
+    for (size_t k = 0; k < sizeof figures / sizeof *figures; k++)
+        if (strcmp(figures[k].scene, study->scene) == 0 && figures[k].receiver == receiver
+            && strcmp(figures[k].formula, formulas[formula].name) == 0
+            && published_values(published, figures[k].table, figures[k].target, figures[k].method, "phase_error_rad",
+                                &value, 1) == 1)
+            printf("%s%.4g", figures[k].bound ? "< " : "", value);
 }
 
-static void study_print(const struct study *study)
+static void study_print(const struct study *study, const struct csv *published)
 {
     printf("%s: largest phase error in rad, |f/v| <= %.4g/m (|f| <= %.4g Hz), f_tau = -B/2, 0, B/2\n", study->scene,
            study->nu_max, study->nu_max * fabs(study->setting.speed));
@@ -137,7 +148,9 @@ static void study_print(const struct study *study)
             printf("%8d %7.3f  %-22s", study->receiver[i], study->offset[i], formulas[j].title);
             for (int r = 0; r < RANGES; r++)
                 printf("%9.3g", study->largest[i][j][r]);
-            printf("  %s\n", claim_find(study, i, j));
+            printf("  ");
+            printed_show(published, study, i, j);
+            printf("\n");
         }
 }
 
@@ -174,12 +187,15 @@ static enum status scene_study(const char *name, const char *directory, bool tak
 {
     struct scene scene;
     struct study study;
+    struct csv published;
     char stem[4096], path[4200];
     int lock = -1;
     enum status status = scene_load(name, SCENE_DIRECTORY, &scene);
     if (status != STATUS_OK)
         return status;
-    status = study_begin(&scene, &study);
+    status = published_read(&published);
+    if (status == STATUS_OK)
+        status = study_begin(&scene, &study);
     int used = snprintf(stem, sizeof stem, "%s/phase-", directory);
     snprintf(stem + used, sizeof stem - (size_t)used, "%s", scene.name);
     for (char *p = stem + used; *p; p++)
@@ -194,12 +210,13 @@ static enum status scene_study(const char *name, const char *directory, bool tak
         status = study_write(&study, path);
     }
     if (status == STATUS_OK)
-        study_print(&study);
+        study_print(&study, &published);
     for (int i = 0; status == STATUS_OK && i < RECEIVERS && study.receiver[i] > (i ? 1 : 0); i++) {
         snprintf(path, sizeof path, "%s-receiver%d.png", stem, study.receiver[i]);
         status = study_draw(&study, i, path);
     }
     folder_leave(lock);
+    csv_free(&published);
     scene_free(&scene);
     return status;
 }
@@ -288,7 +305,12 @@ static enum status points_print(const char *path)
     return status;
 }
 
-enum status phase_studies(const char *directory, bool taken)
+const char *phase_formula(int k)
+{
+    return k + 1 < FORMULAS ? formulas[k + 1].name : NULL;          /* the first is the exact one */
+}
+
+enum status phase_study(const char *directory, bool taken)
 {
     static const char *const setups[] = {"lbf21/_phase_short", "lbf21/_phase_long"};
     enum status status = STATUS_OK;
@@ -305,5 +327,5 @@ enum status command_phase(const struct task *task)
     if (task->at)
         return points_print(task->at);
     const char *directory = task->output ? task->output : "results/phase";
-    return task->name_count ? scene_study(task->names[0], directory, false) : phase_studies(directory, false);
+    return task->name_count ? scene_study(task->names[0], directory, false) : phase_study(directory, false);
 }

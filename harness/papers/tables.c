@@ -1,77 +1,36 @@
-/* The papers' tables and figures (reproduce.h): for each printed number, which measurement stands for it, by every
+/* The papers' tables and figures (tables.h): for each printed number, which measurement stands for it, by every
    definition that could be meant. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "papers/reproduce.h"
-#include "command/task.h"
-
-const struct table tables[] = {
-    {"bp22_t1", "BP22 Table 1, Eq. (11): FLOPs at N_a = 2880, N_r = 4800",
-     "an FFT of N counts 5 N log2 N; counted: what our plans do, which read two taps where BP22 upsamples first",
-     NULL},
-    {"bp22_t3", "BP22 Table 3: PSLR and ISLR of six targets",
-     "the layout is lost: six targets on range bins, 40 to 225 m; rect beam cut at sin theta = .405 lambda/D_tx, f_s "
-     "= 2B, pings every 0.8 m on the pixels' raster; the scatter among the printed targets does not reproduce", NULL},
-    {"bp22_t4", "BP22 Table 4: times as ratios to nearest neighbour",
-     "simulated echoes of the real data's size (2880 x 4800 pixels from 2880 records); sinc of 8 taps; machine and "
-     "language are others", "nearest"},
-    {"bp22_eq20", "BP22 Eq. (20): smallest upsampling rate",
-     "grid factor beta + 1, bin c/(2 f_s) with f_s = 2B, strict inequality", NULL},
-    {"zp15_f3", "ZP15 Fig. 3: images of one target by three methods",
-     "no numbers are printed; 8 taps, zero padding by 8 (from the lambda/8 rule), f_s = 2B, PRI 0.2 s", NULL},
-    {"zp15_f4", "ZP15 Fig. 4: azimuth slices of one target by three methods",
-     "no numbers are printed; 8 taps, zero padding by 8 (from the lambda/8 rule), f_s = 2B, PRI 0.2 s", NULL},
-    {"lbf21_t2", "LBF21 Table II: width of the sub-blocks, target at the edge of one",
-     "rect beam cut at sin theta = .405 lambda/D_tx as in BP22's simulations; ping phase unknown", NULL},
-    {"lbf21_t3", "LBF21 Table III: six targets, short integration time",
-     "the layout is lost: azimuths of Fig. 13, ranges 50, 90, 135, 180, 225, 270 m; 16 blocks; beam as in Table II",
-     NULL},
-    {"lbf21_t4", "LBF21 Table IV: four targets, long integration time",
-     "the layout is lost: ranges 50, 80, 225, 260 m; 16 blocks; pixels of 0.01 m, half those of the short array; "
-     "Wu's method is a working definition", NULL},
-    {"lbf21_t5", "LBF21 Table V: times as ratios to LBF with 16 blocks",
-     "simulated echoes of the real data's size (48 receivers, 80 pings, 4096 samples into 3200 x 4096 pixels); PCA "
-     "and Wu with 16 blocks; Wu's method is a working definition; plain range migration calls libm for each phase, "
-     "plain back projection is vectorised; machine and language are others", "LBF, 16 blocks"},
-    {"lbf21_flops", "LBF21 Eqs. (20) to (23): FLOPs of range migration and back projection",
-     "N_interp = 8; N_a is 3200 in the paper and 48 x 80 = 3840 in our plans; Eq. (20) counts one sub-block", NULL},
-    {"lbf21_f2", "LBF21 Fig. 2: phase error of LBF, first receiver, short", "d_1 = 0, |f| up to v/D_tx", NULL},
-    {"lbf21_f3", "LBF21 Fig. 3: phase error of LBF, last receiver, short", "d_1 = 0, |f| up to v/D_tx", NULL},
-    {"lbf21_f4", "LBF21 Fig. 4: phase error of PCA, first receiver, short", "d_1 = 0, |f| up to v/D_tx", NULL},
-    {"lbf21_f5", "LBF21 Fig. 5: phase error of PCA, last receiver, short", "d_1 = 0, |f| up to v/D_tx", NULL},
-    {"lbf21_f6", "LBF21 Fig. 6: phase error of LBF, first receiver, long", "d_1 = 0, |f| up to v/D_tx", NULL},
-    {"lbf21_f7", "LBF21 Fig. 7: phase error of PCA, first receiver, long", "d_1 = 0, |f| up to v/D_tx", NULL},
-    {"lbf21_f8", "LBF21 Fig. 8: phase error of LBF, last receiver, long", "d_1 = 0, |f| up to v/D_tx", NULL},
-    {"lbf21_f9", "LBF21 Fig. 9: phase error of PCA, last receiver, long", "d_1 = 0, |f| up to v/D_tx", NULL},
-    {"claims", "what the papers say in words", "", NULL},
-    {.id = NULL},
-};
+#include "data/paths.h"
+#include "papers/tables.h"
+#include "scene/scene.h"
 
 /* Which scene's target stands for a printed one. */
 static const struct place {
     const char *table, *target, *scene;
     int index;
 } places[] = {
-    {"bp22_t3", "T1", "bp22/table3", 0},          {"bp22_t3", "T2", "bp22/table3", 1},
-    {"bp22_t3", "T3", "bp22/table3", 2},          {"bp22_t3", "T4", "bp22/table3", 3},
-    {"bp22_t3", "T5", "bp22/table3", 4},          {"bp22_t3", "T6", "bp22/table3", 5},
-    {"lbf21_t3", "PT1", "lbf21/table3_near", 0},  {"lbf21_t3", "PT2", "lbf21/table3_near", 1},
-    {"lbf21_t3", "PT3", "lbf21/table3_far", 0},   {"lbf21_t3", "PT4", "lbf21/table3_far", 1},
-    {"lbf21_t3", "PT5", "lbf21/table3_far", 2},   {"lbf21_t3", "PT6", "lbf21/table3_far", 3},
-    {"lbf21_t4", "PT7", "lbf21/table4_near", 0},  {"lbf21_t4", "PT8", "lbf21/table4_near", 1},
-    {"lbf21_t4", "PT9", "lbf21/table4_far", 0},   {"lbf21_t4", "PT10", "lbf21/table4_far", 1},
+    {"bp22_t3", "T1", "bp22/table3", 0},         {"bp22_t3", "T2", "bp22/table3", 1},
+    {"bp22_t3", "T3", "bp22/table3", 2},         {"bp22_t3", "T4", "bp22/table3", 3},
+    {"bp22_t3", "T5", "bp22/table3", 4},         {"bp22_t3", "T6", "bp22/table3", 5},
+    {"lbf21_t3", "PT1", "lbf21/table3_near", 0}, {"lbf21_t3", "PT2", "lbf21/table3_near", 1},
+    {"lbf21_t3", "PT3", "lbf21/table3_far", 0},  {"lbf21_t3", "PT4", "lbf21/table3_far", 1},
+    {"lbf21_t3", "PT5", "lbf21/table3_far", 2},  {"lbf21_t3", "PT6", "lbf21/table3_far", 3},
+    {"lbf21_t4", "PT7", "lbf21/table4_near", 0}, {"lbf21_t4", "PT8", "lbf21/table4_near", 1},
+    {"lbf21_t4", "PT9", "lbf21/table4_far", 0},  {"lbf21_t4", "PT10", "lbf21/table4_far", 1},
 };
 
 /* Plain engines are timed on a part of the task, and each stage scaled to all of it: back projection on some rows, of
    which the sums depend and the compression does not; range migration with a sixth of the receivers, on which the
    conversion depends twice (receivers and wavenumbers) and all else once. */
 struct scaling {
-    double factor;                      /* of the stages in `stages` (separated by blanks) */
+    double factor; /* of the stages in `stages` (separated by blanks) */
     const char *stages;
-    double rest;                        /* of the others */
+    double rest; /* of the others */
 };
 static const struct scaling bp22_rows = {50, "focus", 1}, lbf21_rows = {4096.0 / 103, "focus", 1};
 static const struct scaling lbf21_part = {36, "bulk differential reconstruct", 6};
@@ -79,10 +38,10 @@ static const struct scaling lbf21_part = {36, "bulk differential reconstruct", 6
 /* The measurement that stands for a method. */
 static const struct source {
     const char *table, *method;
-    const char *definition;             /* of a time or a formula; NULL: by the definitions of the quantity */
-    const char *scene;                  /* NULL: the target's, from `places` */
+    const char *definition; /* of a time or a formula; NULL: by the definitions of the quantity */
+    const char *scene;      /* NULL: the target's, from `places` */
     const char *spec;
-    const struct scaling *scaling;      /* of a time; NULL: the whole was timed */
+    const struct scaling *scaling; /* of a time; NULL: the whole was timed */
 } sources[] = {
     {"bp22_t1", "nearest", "Eq. (11) by the plan", "bp22/full", NEAREST, NULL},
     {"bp22_t1", "linear, beta 2", "Eq. (11) by the plan", "bp22/full", LINEAR_2, NULL},
@@ -150,31 +109,13 @@ static const struct source {
     {"lbf21_flops", "PCA", "Eq. (21) by the plan", "lbf21/real_size", PCA_16, NULL},
     {"lbf21_flops", "Wu", "Eq. (22) by the plan", "lbf21/real_size", WU_16, NULL},
     {"lbf21_flops", "BP", "BP22 Eq. (11) by the plan", "lbf21/real_size", ZEROPAD_8, NULL},
-    /* Many targets and draws, where one would mislead. */
-    {"claims", "", NULL, "bp22/many", NEAREST, NULL},
-    {"claims", "", NULL, "bp22/many", LINEAR_1, NULL},
-    {"claims", "", NULL, "bp22/many", LINEAR_2, NULL},
-    {"claims", "", NULL, "bp22/many", LINEAR_8, NULL},
-    {"claims", "", NULL, "bp22/many", SINC_8, NULL},
-    {"claims", "", NULL, "bp22/speckle", NEAREST, NULL},
-    {"claims", "", NULL, "bp22/speckle", LINEAR_2, NULL},
-    {"claims", "", NULL, "bp22/speckle", LINEAR_8, NULL},
-    {"claims", "", NULL, "bp22/speckle", SINC_8, NULL},
-    {"claims", "", NULL, "zp15/many", NEAREST, NULL},
-    {"claims", "", NULL, "zp15/many", SINC_8, NULL},
-    {"claims", "", NULL, "zp15/many", ZEROPAD_8, NULL},
-    {"claims", "", NULL, "zp15/speckle", NEAREST, NULL},
-    {"claims", "", NULL, "zp15/speckle", SINC_8, NULL},
-    {"claims", "", NULL, "zp15/speckle", ZEROPAD_8, NULL},
-    {"claims", "", NULL, "zp15/speckle", ZEROPAD_16, NULL},
-    {"claims", "", NULL, "zp15/speckle", ZEROPAD_32, NULL},
 };
 enum { PLACES = sizeof places / sizeof *places, SOURCES = sizeof sources / sizeof *sources };
 
 /* Which part of the phase study a figure's printed maximum is of. */
 static const struct figure {
     const char *table, *target;
-    struct phase_part part;             /* the formula is the method's */
+    struct phase_part part; /* the formula is the method's */
 } figures[] = {
     {"lbf21_f2", "1st receiver, 50 to 300 m", {PHASE_SHORT, false, NULL, 50, 300, 1}},
     {"lbf21_f3", "66th receiver, 135 to 300 m", {PHASE_SHORT, true, NULL, 135, 300, 1}},
@@ -189,7 +130,7 @@ static const struct figure {
 
 /* ---- needs ---- */
 
-static int need_add(struct need *needs, int count, int room, struct need need)
+int need_add(struct need *needs, int count, int room, struct need need)
 {
     for (int k = 0; k < count; k++)
         if (strcmp(needs[k].scene, need.scene) == 0 && strcmp(needs[k].spec, need.spec) == 0)
@@ -231,14 +172,55 @@ static double source_seconds(struct measured *measured, const struct source *sou
     return scaling->factor * scaled + scaling->rest * (seconds - scaled);
 }
 
-double table_seconds(struct measured *measured, const char *id, const char *method, const char *definition)
+/* The measurement that stands for such a time; NULL if there is none. */
+static const struct source *time_source(const char *id, const char *method, const char *definition)
 {
     for (int k = 0; k < SOURCES; k++)
-        if (strcmp(sources[k].table, id) == 0 && strcmp(sources[k].method, method) == 0
+        if (strcmp(sources[k].table, id) == 0 && strcmp(sources[k].method, method) == 0 && sources[k].definition
             && strcmp(sources[k].definition, definition) == 0)
-            return source_seconds(measured, &sources[k]);
-    snprintf(measured->missing, sizeof measured->missing, "%s has no times of %s by %s", id, method, definition);
-    return NAN;
+            return &sources[k];
+    return NULL;
+}
+
+double table_seconds(struct measured *measured, const char *id, const char *method, const char *definition)
+{
+    const struct source *source = time_source(id, method, definition);
+    return source ? source_seconds(measured, source)
+                  : measured_missing(measured, "%s has no times of %s by %s", id, method, definition);
+}
+
+/* The table whose times are divided by those of `base` is one of times. */
+static bool table_has_times(const char *id)
+{
+    for (const struct paper_table *table = paper_tables; table->id; table++)
+        if (strcmp(table->id, id) == 0)
+            return table->base;
+    return false;
+}
+
+int table_seconds_check(const char *id, const char *method, const char *definition, char *accepted, size_t size)
+{
+    const char *const wanted[] = {id, method, definition};
+    bool fits[SOURCES];
+    for (int k = 0; k < SOURCES; k++)
+        fits[k] = table_has_times(sources[k].table);
+    for (int text = 0; text < 3; text++) {
+        bool known = false;
+        *accepted = '\0';
+        for (int k = 0; k < SOURCES; k++) {
+            const char *const texts[] = {sources[k].table, sources[k].method, sources[k].definition};
+            char quoted[100];
+            snprintf(quoted, sizeof quoted, "'%s'", fits[k] ? texts[text] : "");
+            size_t used = strlen(accepted);
+            if (fits[k] && !strstr(accepted, quoted))
+                snprintf(accepted + used, size - used, "%s%s", used ? ", " : "", quoted);
+            fits[k] = fits[k] && strcmp(texts[text], wanted[text]) == 0;
+            known |= fits[k];
+        }
+        if (!known)
+            return text;
+    }
+    return -1;
 }
 
 int upsampling_rate(double bin_m, double resolution_m, double wavelength_m)
@@ -255,12 +237,12 @@ struct lines {
     struct measured *measured;
     struct reproduced *line;
     int count, room;
-    bool failed;                        /* no memory */
+    bool failed; /* no memory */
 };
 
 /* A line for the printed number in `row`, with the value that was just asked for. */
-static void line_add(struct lines *lines, int row, const struct table *table, const char *definition, double paper,
-                     double ours)
+static void line_add(struct lines *lines, int row, const struct paper_table *table, const char *definition,
+                     double paper, double ours)
 {
     struct csv *csv = &lines->measured->published;
     if (lines->count == lines->room) {
@@ -273,22 +255,29 @@ static void line_add(struct lines *lines, int row, const struct table *table, co
         lines->room = room;
     }
     struct reproduced *line = &lines->line[lines->count++];
-    *line = (struct reproduced){
-        table->id, csv_cell(csv, row, PUBLISHED_TARGET), csv_cell(csv, row, PUBLISHED_METHOD),
-        csv_cell(csv, row, PUBLISHED_QUANTITY), definition, csv_cell(csv, row, PUBLISHED_UNIT), paper, ours,
-        table->assumption, csv_cell(csv, row, PUBLISHED_NOTE), ""};
+    *line = (struct reproduced){table->id,
+                                csv_cell(csv, row, PUBLISHED_TARGET),
+                                csv_cell(csv, row, PUBLISHED_METHOD),
+                                csv_cell(csv, row, PUBLISHED_QUANTITY),
+                                definition,
+                                csv_cell(csv, row, PUBLISHED_UNIT),
+                                paper,
+                                ours,
+                                table->assumption,
+                                csv_cell(csv, row, PUBLISHED_NOTE),
+                                ""};
     if (!isfinite(ours))
         snprintf(line->missing, sizeof line->missing, "%s", lines->measured->missing);
     *lines->measured->missing = '\0';
 }
 
 /* PSLR, ISLR and the like: of the target that stands for the printed one. */
-static void lines_of_target(struct lines *lines, int row, const struct table *table, double paper)
+static void lines_of_target(struct lines *lines, int row, const struct paper_table *table, double paper)
 {
     static const struct {
         const char *quantity, *definition, *label;
         size_t offset;
-        bool magnitude;                 /* is what the paper prints */
+        bool magnitude; /* is what the paper prints */
     } kinds[] = {
         {"pslr_db", "null", "null", offsetof(struct target_row, pslr_db), false},
         {"pslr_db", "pixel", "pixel", offsetof(struct target_row, pslr_db), false},
@@ -311,15 +300,15 @@ static void lines_of_target(struct lines *lines, int row, const struct table *ta
                 place = places[p];
         for (size_t k = 0; place.scene && k < sizeof kinds / sizeof *kinds; k++)
             if (strcmp(kinds[k].quantity, quantity) == 0) {
-                double ours = measured_target(measured, place.scene, sources[s].spec, place.index,
-                                              kinds[k].definition, kinds[k].offset, quantity);
+                double ours = measured_target(measured, place.scene, sources[s].spec, place.index, kinds[k].definition,
+                                              kinds[k].offset, quantity);
                 line_add(lines, row, table, kinds[k].label, paper, kinds[k].magnitude ? fabs(ours) : ours);
             }
     }
 }
 
 /* Times, as ratios of both the paper's and ours to those of the table's base. */
-static void lines_of_time(struct lines *lines, int row, const struct table *table, double paper)
+static void lines_of_time(struct lines *lines, int row, const struct paper_table *table, double paper)
 {
     struct measured *measured = lines->measured;
     const char *method = csv_cell(&measured->published, row, PUBLISHED_METHOD);
@@ -336,7 +325,7 @@ static void lines_of_time(struct lines *lines, int row, const struct table *tabl
         }
 }
 
-static void lines_of_image(struct lines *lines, int row, const struct table *table, double paper)
+static void lines_of_image(struct lines *lines, int row, const struct paper_table *table, double paper)
 {
     static const struct {
         const char *quantity;
@@ -354,20 +343,19 @@ static void lines_of_image(struct lines *lines, int row, const struct table *tab
                          measured_value(measured, sources[s].scene, sources[s].spec, kinds[k].offset, quantity));
 }
 
-static void lines_of_flops(struct lines *lines, int row, const struct table *table, double paper)
+static void lines_of_flops(struct lines *lines, int row, const struct paper_table *table, double paper)
 {
     struct measured *measured = lines->measured;
     const char *method = csv_cell(&measured->published, row, PUBLISHED_METHOD);
     for (int s = 0; s < SOURCES; s++)
         if (strcmp(sources[s].table, table->id) == 0 && strcmp(sources[s].method, method) == 0) {
             const char *scene = sources[s].scene, *spec = sources[s].spec;
-            line_add(lines, row, table, sources[s].definition, paper,
-                     MEASURED(measured, scene, spec, flops_published));
+            line_add(lines, row, table, sources[s].definition, paper, MEASURED(measured, scene, spec, flops_published));
             line_add(lines, row, table, "counted", paper, MEASURED(measured, scene, spec, flops));
         }
 }
 
-static void lines_of_phase(struct lines *lines, int row, const struct table *table, double paper)
+static void lines_of_phase(struct lines *lines, int row, const struct paper_table *table, double paper)
 {
     static const struct {
         const char *method, *formula, *label;
@@ -391,7 +379,7 @@ static void lines_of_phase(struct lines *lines, int row, const struct table *tab
 }
 
 /* By the nominal resolution, and by the one that the scene of Table 3 has. */
-static void lines_of_rate(struct lines *lines, int row, const struct table *table, double paper)
+static void lines_of_rate(struct lines *lines, int row, const struct paper_table *table, double paper)
 {
     struct scene scene;
     if (scene_load("bp22/table3", SCENE_DIRECTORY, &scene) != STATUS_OK) {
@@ -412,18 +400,18 @@ enum status tables_evaluate(struct measured *measured, struct reproduced **line,
 {
     static const struct {
         const char *quantity;
-        void (*add)(struct lines *lines, int row, const struct table *table, double paper);
+        void (*add)(struct lines *lines, int row, const struct paper_table *table, double paper);
     } kinds[] = {
-        {"pslr_db", lines_of_target}, {"islr_db", lines_of_target},   {"width_m", lines_of_target},
-        {"offset_m", lines_of_target}, {"time_s", lines_of_time},     {"error", lines_of_image},
-        {"phase_rms_rad", lines_of_image}, {"flops", lines_of_flops}, {"phase_error_rad", lines_of_phase},
+        {"pslr_db", lines_of_target},       {"islr_db", lines_of_target}, {"width_m", lines_of_target},
+        {"offset_m", lines_of_target},      {"time_s", lines_of_time},    {"error", lines_of_image},
+        {"phase_rms_rad", lines_of_image},  {"flops", lines_of_flops},    {"phase_error_rad", lines_of_phase},
         {"upsampling_rate", lines_of_rate},
     };
     struct lines lines = {.measured = measured};
     *measured->missing = '\0';
     for (int row = 0; row < measured->published.row_count; row++) {
         double paper = NAN;
-        const struct table *table = tables;
+        const struct paper_table *table = paper_tables;
         while (table->id && strcmp(table->id, csv_cell(&measured->published, row, PUBLISHED_TABLE)) != 0)
             table++;
         csv_number(csv_cell(&measured->published, row, PUBLISHED_PAPER), &paper);

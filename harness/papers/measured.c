@@ -1,4 +1,4 @@
-/* A results folder as the papers' tables and claims look into it (reproduce.h). */
+/* A results folder as the papers' tables and claims look into it (measured.h). */
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -7,25 +7,11 @@
 #include <unistd.h>
 
 #include "data/echo_data.h"
-#include "papers/reproduce.h"
+#include "papers/measured.h"
 #include "measure/spec.h"
 
 static const char *const phase_files[] = {
     [PHASE_SHORT] = "phase-lbf21__phase_short.csv", [PHASE_LONG] = "phase-lbf21__phase_long.csv"};
-
-/* The columns of published.csv. */
-static const char *const published_columns[] = {"table", "target", "method", "quantity",
-                                                "unit", "paper", "source", "note"};
-
-static enum status published_read(struct csv *csv)
-{
-    enum status status = csv_read(SASBENCH_ROOT "/results/published.csv", CSV_TAIL_KEEP, csv);
-    for (size_t k = 0; status == STATUS_OK && k < sizeof published_columns / sizeof *published_columns; k++)
-        if (csv_column(csv, published_columns[k]) != (int)k)
-            status = status_set(STATUS_INVALID, "%s: column %zu must be '%s'", csv->path, k + 1,
-                                published_columns[k]);
-    return status;
-}
 
 static enum status results_read_if(const char *directory, const char *name, struct results *results)
 {
@@ -61,7 +47,7 @@ void measured_free(struct measured *measured)
 }
 
 /* Only the first is kept: it explains the others. */
-static double __attribute__((format(printf, 2, 3))) missing(struct measured *measured, const char *format, ...)
+double measured_missing(struct measured *measured, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
@@ -76,7 +62,7 @@ static const struct measurement *measurement_find(struct measured *measured, con
 {
     struct spec spec;
     if (spec_parse(spec_text, &spec) != STATUS_OK) {
-        missing(measured, "%s", status_message());
+        measured_missing(measured, "%s", status_message());
         return NULL;
     }
     const struct measurement *row = NULL;
@@ -90,9 +76,9 @@ static const struct measurement *measurement_find(struct measured *measured, con
     if (row && strcmp(row->status, "ok") == 0)
         return row;
     if (row)
-        missing(measured, "%s with %s: %s, %s", scene, spec_text, row->status, row->reason);
+        measured_missing(measured, "%s with %s: %s, %s", scene, spec_text, row->status, row->reason);
     else
-        missing(measured, "%s with %s was not measured", scene, spec_text);
+        measured_missing(measured, "%s with %s was not measured", scene, spec_text);
     return NULL;
 }
 
@@ -101,8 +87,8 @@ double measured_value(struct measured *measured, const char *scene, const char *
     const struct measurement *row = measurement_find(measured, scene, spec);
     double value = row ? *(const double *)((const char *)row + offset) : NAN;
     if (row && !isfinite(value))
-        missing(measured, "%s with %s: %s is undefined%s%s", scene, spec, name, *row->reason ? ", " : "",
-                row->reason);
+        measured_missing(measured, "%s with %s: %s is undefined%s%s", scene, spec, name, *row->reason ? ", " : "",
+                         row->reason);
     return value;
 }
 
@@ -117,7 +103,7 @@ double measured_stage(struct measured *measured, const char *scene, const char *
         if (strncmp(text, stage, length) == 0 && text[length] == '=' && csv_number(text + length + 1, &seconds))
             return seconds;
     }
-    return missing(measured, "%s with %s: there is no stage %s", scene, spec, stage);
+    return measured_missing(measured, "%s with %s: there is no stage %s", scene, spec, stage);
 }
 
 double measured_target(struct measured *measured, const char *scene, const char *spec, int target,
@@ -133,7 +119,8 @@ double measured_target(struct measured *measured, const char *scene, const char 
             value = *(const double *)((const char *)t + offset);
     }
     if (!isfinite(value))
-        missing(measured, "%s with %s: %s of target %d is undefined (%s)", scene, spec, name, target + 1, definition);
+        measured_missing(measured, "%s with %s: %s of target %d is undefined (%s)", scene, spec, name, target + 1,
+                         definition);
     return value;
 }
 
@@ -145,7 +132,7 @@ double measured_phase(struct measured *measured, const struct phase_part *part)
     int error = csv_column(csv, name), range = csv_column(csv, "r_m"), nu = csv_column(csv, "nu_per_m");
     int receiver = csv_column(csv, "receiver");
     if (error < 0 || range < 0 || nu < 0 || receiver < 0)
-        return missing(measured, "the phase study (%s) was not made", phase_files[part->setup]);
+        return measured_missing(measured, "the phase study (%s) was not made", phase_files[part->setup]);
     double nu_most = 0, largest = NAN, number, r, error_rad;
     for (int row = 0; row < csv->row_count; row++)
         if (csv_number(csv_cell(csv, row, nu), &number))
@@ -157,22 +144,15 @@ double measured_phase(struct measured *measured, const struct phase_part *part)
             && fabs(number) <= (part->share + 1e-6) * nu_most && csv_number(csv_cell(csv, row, error), &error_rad))
             largest = fmax(largest, fabs(error_rad));
     }
-    return isfinite(largest) ? largest : missing(measured, "%s: %s is undefined", phase_files[part->setup], name);
+    return isfinite(largest) ? largest
+                             : measured_missing(measured, "%s: %s is undefined", phase_files[part->setup], name);
 }
 
 double published_value(struct measured *measured, const char *table, const char *target, const char *method,
                        const char *quantity)
 {
-    const struct csv *csv = &measured->published;
-    const char *const wanted[] = {table, target, method, quantity};
-    double value = NAN;
-    for (int row = 0; row < csv->row_count; row++) {
-        bool match = true;
-        for (int k = 0; k < 4; k++)
-            match = match && strcmp(csv_cell(csv, row, k), wanted[k]) == 0;
-        if (match)
-            csv_number(csv_cell(csv, row, PUBLISHED_PAPER), &value);
-    }
-    return isfinite(value) ? value : missing(measured, "published.csv has no %s of %s %s in %s", quantity, method,
-                                             target, table);
+    double value;
+    if (published_values(&measured->published, table, target, method, quantity, &value, 1) == 1)
+        return value;
+    return measured_missing(measured, "published.csv has no %s of %s %s in %s", quantity, method, target, table);
 }

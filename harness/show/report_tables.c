@@ -1,13 +1,14 @@
-/* Tables of `sweep` and `reproduce` on a page (report_sheets.h). */
-#include "show/sheets.h"
+/* Tables of `sweep` and `reproduce` on a page (report_tables.h). */
+#include "show/report_tables.h"
 
 #include <math.h>
 #include <string.h>
 #include <sys/stat.h>
 
-#include "papers/claims.h"
+#include "data/published.h"
+#include "data/verdict.h"
 
-const struct sheet sheets[SHEETS] = {
+const struct report_table report_tables[REPORT_TABLES] = {
     {.file = "cheapest.csv",
      .id = "cheapest",
      .title = "Cheapest settings",
@@ -90,20 +91,20 @@ const struct sheet sheets[SHEETS] = {
                  {"assumption", "assumption", SHOW_ONCE}}},
 };
 
-enum status sheet_read(const char *directory, const struct sheet *sheet, struct csv *csv)
+enum status report_table_read(const char *directory, const struct report_table *table, struct csv *csv)
 {
     char path[4096];
     struct stat info;
-    snprintf(path, sizeof path, "%s/%s", directory, sheet->file);
+    snprintf(path, sizeof path, "%s/%s", directory, table->file);
     if (stat(path, &info) != 0)
         return STATUS_OK;
     enum status status = csv_read(path, CSV_TAIL_KEEP, csv);
-    if (status == STATUS_OK && sheet->group && csv_column(csv, sheet->group) < 0)
-        status = status_set(STATUS_INVALID, "%s: there is no column '%s', which is needed", path, sheet->group);
-    for (int k = 0; k < SHEET_COLUMNS && sheet->columns[k].title && status == STATUS_OK; k++)
-        if (csv_column(csv, sheet->columns[k].name) < 0)
+    if (status == STATUS_OK && table->group && csv_column(csv, table->group) < 0)
+        status = status_set(STATUS_INVALID, "%s: there is no column '%s', which is needed", path, table->group);
+    for (int k = 0; k < REPORT_COLUMNS && table->columns[k].title && status == STATUS_OK; k++)
+        if (csv_column(csv, table->columns[k].name) < 0)
             status = status_set(STATUS_INVALID, "%s: there is no column '%s', which is needed", path,
-                                sheet->columns[k].name);
+                                table->columns[k].name);
     return status;
 }
 
@@ -118,46 +119,46 @@ static const char *verdict_class(const char *verdict)
     return NULL;
 }
 
-/* How many of each verdict there are, where the sheet has verdicts. */
-static void verdicts_count_show(struct page *page, const struct sheet *sheet, const struct csv *csv)
+/* How many of each verdict there are, where the table has verdicts. */
+static void verdicts_count_show(struct page *page, const struct report_table *table, const struct csv *csv)
 {
     char text[256] = "";
-    for (int k = 0; k < SHEET_COLUMNS && sheet->columns[k].title; k++)
-        for (int verdict = 0; verdict < CLAIM_VERDICTS && sheet->columns[k].show == SHOW_VERDICT; verdict++) {
+    for (int k = 0; k < REPORT_COLUMNS && table->columns[k].title; k++)
+        for (int verdict = 0; verdict < CLAIM_VERDICTS && table->columns[k].show == SHOW_VERDICT; verdict++) {
             int count = 0;
             for (int row = 0; row < csv->row_count; row++)
-                count += strcmp(csv_cell(csv, row, csv_column(csv, sheet->columns[k].name)),
-                                claim_verdict_names[verdict]) == 0;
+                count +=
+                    strcmp(csv_cell(csv, row, csv_column(csv, table->columns[k].name)), claim_verdict_names[verdict])
+                    == 0;
             size_t used = strlen(text);
-            snprintf(text + used, sizeof text - used, "%s%d %s", used ? ", " : "", count,
-                     claim_verdict_names[verdict]);
+            snprintf(text + used, sizeof text - used, "%s%d %s", used ? ", " : "", count, claim_verdict_names[verdict]);
         }
     if (*text)
         page_paragraph(page, text);
 }
 
-static void sheet_rows_show(struct page *page, const struct sheet *sheet, const struct csv *csv, const char *group)
+static void rows_show(struct page *page, const struct report_table *table, const struct csv *csv, const char *group)
 {
-    struct page_column columns[SHEET_COLUMNS];
-    const char *above[SHEET_COLUMNS] = {NULL};
+    struct page_column columns[REPORT_COLUMNS];
+    const char *above[REPORT_COLUMNS] = {NULL};
     int count = 0;
-    for (; count < SHEET_COLUMNS && sheet->columns[count].title; count++)
-        columns[count] = (struct page_column){sheet->columns[count].title, sheet->columns[count].show == SHOW_NUMBER};
-    page_table_begin(page, count, columns, sheet->stack);
+    for (; count < REPORT_COLUMNS && table->columns[count].title; count++)
+        columns[count] = (struct page_column){table->columns[count].title, table->columns[count].show == SHOW_NUMBER};
+    page_table_begin(page, count, columns, table->stack);
     for (int row = 0; row < csv->row_count; row++) {
-        struct page_cell cells[SHEET_COLUMNS];
-        char numbers[SHEET_COLUMNS][32];
-        if (group && strcmp(csv_cell(csv, row, csv_column(csv, sheet->group)), group) != 0)
+        struct page_cell cells[REPORT_COLUMNS];
+        char numbers[REPORT_COLUMNS][32];
+        if (group && strcmp(csv_cell(csv, row, csv_column(csv, table->group)), group) != 0)
             continue;
         for (int k = 0; k < count; k++) {
-            const char *text = csv_cell(csv, row, csv_column(csv, sheet->columns[k].name));
+            const char *text = csv_cell(csv, row, csv_column(csv, table->columns[k].name));
             double value;
             cells[k] = (struct page_cell){text, NULL};
-            if (sheet->columns[k].show == SHOW_VERDICT)
+            if (table->columns[k].show == SHOW_VERDICT)
                 cells[k].class = verdict_class(text);
-            if (sheet->columns[k].show == SHOW_ONCE && above[k] && strcmp(above[k], text) == 0)
+            if (table->columns[k].show == SHOW_ONCE && above[k] && strcmp(above[k], text) == 0)
                 cells[k].text = "";
-            if (sheet->columns[k].show == SHOW_NUMBER && csv_number(text, &value) && isfinite(value)) {
+            if (table->columns[k].show == SHOW_NUMBER && csv_number(text, &value) && isfinite(value)) {
                 snprintf(numbers[k], sizeof numbers[k], "%.4g", value);
                 cells[k].text = numbers[k];
             }
@@ -169,12 +170,12 @@ static void sheet_rows_show(struct page *page, const struct sheet *sheet, const 
 }
 
 /* What a group is called: a table of the papers by its title. */
-static void group_title(const struct sheet *sheet, const char *group, char *title, size_t size)
+static void group_title(const struct report_table *table, const char *group, char *title, size_t size)
 {
     snprintf(title, size, "%s", group);
-    for (int k = 0; tables[k].id; k++)
-        if (strcmp(sheet->group, "table") == 0 && strcmp(tables[k].id, group) == 0)
-            snprintf(title, size, "%s", tables[k].title);
+    for (int k = 0; paper_tables[k].id; k++)
+        if (strcmp(table->group, "table") == 0 && strcmp(paper_tables[k].id, group) == 0)
+            snprintf(title, size, "%s", paper_tables[k].title);
 }
 
 static bool group_seen(const struct csv *csv, int column, int row)
@@ -185,21 +186,21 @@ static bool group_seen(const struct csv *csv, int column, int row)
     return false;
 }
 
-void sheet_show(struct page *page, const struct sheet *sheet, const struct csv *csv)
+void report_table_show(struct page *page, const struct report_table *table, const struct csv *csv)
 {
     if (csv->row_count == 0)
         return;
-    page_heading(page, 2, sheet->id, sheet->title);
-    page_paragraph(page, sheet->text);
-    verdicts_count_show(page, sheet, csv);
-    int column = sheet->group ? csv_column(csv, sheet->group) : -1;
+    page_heading(page, 2, table->id, table->title);
+    page_paragraph(page, table->text);
+    verdicts_count_show(page, table, csv);
+    int column = table->group ? csv_column(csv, table->group) : -1;
     if (column < 0)
-        sheet_rows_show(page, sheet, csv, NULL);
+        rows_show(page, table, csv, NULL);
     for (int row = 0; column >= 0 && row < csv->row_count; row++)
         if (!group_seen(csv, column, row)) {
             char title[400];
-            group_title(sheet, csv_cell(csv, row, column), title, sizeof title);
+            group_title(table, csv_cell(csv, row, column), title, sizeof title);
             page_heading(page, 3, NULL, title);
-            sheet_rows_show(page, sheet, csv, csv_cell(csv, row, column));
+            rows_show(page, table, csv, csv_cell(csv, row, column));
         }
 }

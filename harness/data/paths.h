@@ -1,0 +1,8 @@
+/* Folders of this installation. */
+#ifndef SASBENCH_DATA_PATHS_H
+#define SASBENCH_DATA_PATHS_H
+
+#define SCENE_DIRECTORY SASBENCH_ROOT "/scenes"
+#define PLOT_DIRECTORY  SASBENCH_ROOT "/plots"
+
+#endif

@@ -1,0 +1,9 @@
+/* What can be said of a paper's claim, as it is written into claims.csv and shown on a page. */
+#ifndef SASBENCH_DATA_VERDICT_H
+#define SASBENCH_DATA_VERDICT_H
+
+enum claim_verdict { CLAIM_HOLDS, CLAIM_ASSUMED, CLAIM_FAILS, CLAIM_UNDECIDED, CLAIM_VERDICTS };
+/* "holds", "holds under stated assumption", "does not hold", "cannot be decided". */
+extern const char *const claim_verdict_names[CLAIM_VERDICTS];
+
+#endif

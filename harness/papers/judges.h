@@ -1,0 +1,21 @@
+/* Judges: comparisons that decide a claim, by name in claims.csv. */
+#ifndef SASBENCH_PAPERS_JUDGES_H
+#define SASBENCH_PAPERS_JUDGES_H
+
+#include "data/verdict.h"
+#include "papers/quantity.h"
+
+struct judgement {
+    enum claim_verdict verdict;
+    char evidence[1600]; /* one line, with the numbers */
+};
+
+/* Is it a cell with judges, or the word `undecided`? */
+bool judge_decides(const char *text);
+
+/* Decide by a cell "JUDGE(...) and JUDGE(...) else JUDGE(...)": the claim holds if all judges ahead of the first `else`
+   agree (a cell that begins with `else` has none), and under its assumption if all of a part behind one do. Their
+   numbers and answers are appended to the evidence. Errors: as quantities_read. */
+enum status judges_read(struct formula *formula, const char *column, const char *text, struct judgement *judgement);
+
+#endif

@@ -1,0 +1,300 @@
+/* Numbers that claims.csv asks for by name (lookup.h). */
+#include "papers/lookup.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "data/paths.h"
+#include "measure/spec.h"
+#include "papers/tables.h"
+#include "scene/scene.h"
+#include "study/phase.h"
+
+/* A call: its texts, where each stands, and the metric that the function's name means. */
+enum { TEXTS_MAX = 5 };
+struct call {
+    char text[TEXTS_MAX][160];
+    const char *at[TEXTS_MAX];
+    const struct metric *metric;
+};
+
+/* ---- checks of a call's texts ---- */
+
+static enum status scene_check(const struct formula *formula, const struct call *call, int k)
+{
+    char path[4200];
+    snprintf(path, sizeof path, "%s/%s.cfg", SCENE_DIRECTORY, call->text[k]);
+    return *call->text[k] && access(path, R_OK) == 0
+               ? STATUS_OK
+               : formula_error(formula, call->at[k], "there is no scene '%s'; a name below scenes/ is accepted",
+                               call->text[k]);
+}
+
+static enum status spec_check(const struct formula *formula, const struct call *call, int k)
+{
+    struct spec spec;
+    char message[400];
+    if (spec_parse(call->text[k], &spec) == STATUS_OK) {
+        spec_free(&spec);
+        return STATUS_OK;
+    }
+    snprintf(message, sizeof message, "%s", status_message());
+    return formula_error(formula, call->at[k], "%s", message);
+}
+
+/* Is the text one of the words, which NULL ends? */
+static enum status word_check(const struct formula *formula, const struct call *call, int k, const char *const *words)
+{
+    char known[300] = "";
+    for (int n = 0; words[n]; n++) {
+        if (strcmp(words[n], call->text[k]) == 0)
+            return STATUS_OK;
+        text_append(known, sizeof known, "%s%s", n ? ", " : "", words[n]);
+    }
+    return formula_error(formula, call->at[k], "'%s' is not accepted; %s are", call->text[k], known);
+}
+
+/* "A" or "A..B", A <= B, within [low, high]. */
+static enum status range_check(const struct formula *formula, const struct call *call, int k, double low, double high,
+                               double range[2])
+{
+    const char *text = call->text[k], *dots = strstr(text, "..");
+    char first[160];
+    snprintf(first, sizeof first, "%.*s", dots ? (int)(dots - text) : (int)strlen(text), text);
+    bool good = *first && csv_number(first, &range[0]) && csv_number(dots ? dots + 2 : first, &range[1]);
+    return good && range[0] >= low && range[1] <= high && range[0] <= range[1]
+               ? STATUS_OK
+               : formula_error(formula, call->at[k],
+                               "'%s' is not accepted; a number from %g to %g, or FIRST..LAST of "
+                               "such numbers, is",
+                               text, low, high);
+}
+
+/* Scene and SPEC are a call's first texts. */
+static enum status measurement_check(struct formula *formula, const struct call *call)
+{
+    enum status status = scene_check(formula, call, 0);
+    if (status == STATUS_OK)
+        status = spec_check(formula, call, 1);
+    if (status == STATUS_OK && formula->need)
+        formula->need(formula->to, call->text[0], call->text[1]);
+    return status;
+}
+
+/* ---- the functions; without measurements their numbers are 1 ---- */
+
+static enum status image_metric(struct formula *formula, const struct call *call, struct values *values)
+{
+    enum status status = measurement_check(formula, call);
+    *values = (struct values){1, {1}};
+    if (status == STATUS_OK && formula->measured)
+        values->at[0] =
+            measured_value(formula->measured, call->text[0], call->text[1], call->metric->offset, call->metric->name);
+    return status;
+}
+
+static enum status target_metric(struct formula *formula, const struct call *call, struct values *values)
+{
+    static const char *const definitions[] = {"null", "3db", "pixel", NULL};
+    double range[2] = {1, 1};
+    enum status status = measurement_check(formula, call);
+    if (status == STATUS_OK)
+        status = word_check(formula, call, 2, definitions);
+    if (status == STATUS_OK)
+        status = range_check(formula, call, 3, 1, VALUES_MAX, range);
+    if (status == STATUS_OK && (range[0] != floor(range[0]) || range[1] != floor(range[1])))
+        status = formula_error(formula, call->at[3], "targets are counted by whole numbers");
+    values->count = (int)(range[1] - range[0]) + 1;
+    for (int k = 0; k < values->count && status == STATUS_OK; k++)
+        values->at[k] = !formula->measured
+                            ? 1
+                            : measured_target(formula->measured, call->text[0], call->text[1], (int)range[0] - 1 + k,
+                                              call->text[2], call->metric->offset, call->metric->name);
+    return status;
+}
+
+static enum status stage(struct formula *formula, const struct call *call, struct values *values)
+{
+    enum status status = measurement_check(formula, call);
+    *values = (struct values){1, {1}};
+    if (status == STATUS_OK && !*call->text[2])
+        status = formula_error(formula, call->at[2], "the name of a stage, as in measurements.csv, is needed here");
+    if (status == STATUS_OK && formula->measured)
+        values->at[0] = measured_stage(formula->measured, call->text[0], call->text[1], call->text[2]);
+    return status;
+}
+
+static enum status table_time(struct formula *formula, const struct call *call, struct values *values)
+{
+    char accepted[600];
+    *values = (struct values){1, {1}};
+    int unknown = table_seconds_check(call->text[0], call->text[1], call->text[2], accepted, sizeof accepted);
+    if (unknown >= 0)
+        return formula_error(formula, call->at[unknown], "there is no time of '%s'; accepted: %s", call->text[unknown],
+                             accepted);
+    if (formula->measured)
+        values->at[0] = table_seconds(formula->measured, call->text[0], call->text[1], call->text[2]);
+    return STATUS_OK;
+}
+
+static enum status published(struct formula *formula, const struct call *call, struct values *values)
+{
+    values->count = published_values(formula->published, call->text[0], call->text[1], call->text[2], call->text[3],
+                                     values->at, VALUES_MAX);
+    return values->count ? STATUS_OK
+                         : formula_error(formula, call->at[0],
+                                         "published.csv has no such number; table, target (or "
+                                         "FIRST..LAST), method and quantity of a row with a number are accepted");
+}
+
+static enum status phase(struct formula *formula, const struct call *call, struct values *values)
+{
+    static const char *const setups[] = {"short", "long", NULL}, *const receivers[] = {"first", "last", NULL};
+    const char *formulas[16] = {NULL};
+    double range[2] = {0, 0}, share[2] = {0, 0};
+    for (int k = 0; k < 15 && phase_formula(k); k++)
+        formulas[k] = phase_formula(k);
+    enum status status = word_check(formula, call, 0, setups);
+    if (status == STATUS_OK)
+        status = word_check(formula, call, 1, receivers);
+    if (status == STATUS_OK)
+        status = word_check(formula, call, 2, formulas);
+    if (status == STATUS_OK)
+        status = range_check(formula, call, 3, 0, 1e6, range);
+    if (status == STATUS_OK)
+        status = range_check(formula, call, 4, 0, 1, share);
+    *values = (struct values){1, {1}};
+    const struct phase_part part = {strcmp(call->text[0], "long") == 0 ? PHASE_LONG : PHASE_SHORT,
+                                    strcmp(call->text[1], "last") == 0,
+                                    call->text[2],
+                                    range[0],
+                                    range[1],
+                                    share[1]};
+    if (status == STATUS_OK && formula->measured)
+        values->at[0] = measured_phase(formula->measured, &part);
+    return status;
+}
+
+static double recording_s(const struct acquisition *a)
+{
+    struct straight_track track;
+    return acquisition_is_straight(a, &track) ? a->pings * track.spacing / track.speed : NAN;
+}
+
+static double bin_m(const struct acquisition *a)
+{
+    return a->sound_speed / (2 * a->fs);
+}
+
+static double wavelength_m(const struct acquisition *a)
+{
+    return a->sound_speed / a->fc;
+}
+
+static double tx_length_m(const struct acquisition *a)
+{
+    return a->tx_length;
+}
+
+static enum status scene_number(struct formula *formula, const struct call *call, struct values *values)
+{
+    static const char *const names[] = {"bin_m", "wavelength_m", "tx_length_m", "recording_s", NULL};
+    static double (*const numbers[])(const struct acquisition *) = {bin_m, wavelength_m, tx_length_m, recording_s};
+    struct scene scene;
+    int k = 0;
+    *values = (struct values){1, {1}};
+    enum status status = scene_check(formula, call, 0);
+    if (status == STATUS_OK)
+        status = word_check(formula, call, 1, names);
+    if (status != STATUS_OK || !formula->measured)
+        return status;
+    status = scene_load(call->text[0], SCENE_DIRECTORY, &scene);
+    if (status != STATUS_OK)
+        return status;
+    while (strcmp(names[k], call->text[1]) != 0)
+        k++;
+    values->at[0] = numbers[k](&scene.acquisition);
+    scene_free(&scene);
+    return STATUS_OK;
+}
+
+/* ---- calls ---- */
+
+struct lookup {
+    const char *name;
+    int count; /* of texts */
+    const char *texts;
+    enum status (*read)(struct formula *formula, const struct call *call, struct values *values);
+};
+static const struct lookup lookups[] = {
+    {"stage", 3, "scene, SPEC, stage", stage},
+    {"time", 3, "table, method, definition", table_time},
+    {"published", 4, "table, target, method, quantity", published},
+    {"phase", 5, "set-up, receiver, formula, ranges, share of the Doppler band", phase},
+    {"scene", 2, "scene, number", scene_number},
+};
+static const struct lookup image_lookup = {"", 2, "scene, SPEC", image_metric};
+static const struct lookup target_lookup = {"", 4, "scene, SPEC, definition, targets", target_metric};
+
+static const struct lookup *lookup_find(const char *name, const struct metric **metric)
+{
+    static const char target[] = "target_";
+    for (size_t k = 0; k < sizeof lookups / sizeof *lookups; k++)
+        if (strcmp(lookups[k].name, name) == 0)
+            return &lookups[k];
+    for (*metric = metrics; (*metric)->name; (*metric)++)
+        if (strcmp((*metric)->name, name) == 0)
+            return &image_lookup;
+    for (*metric = target_metrics; (*metric)->name; (*metric)++)
+        if (strncmp(name, target, sizeof target - 1) == 0 && strcmp((*metric)->name, name + sizeof target - 1) == 0)
+            return &target_lookup;
+    return NULL;
+}
+
+bool lookup_known(const char *name)
+{
+    const struct metric *metric;
+    return lookup_find(name, &metric);
+}
+
+/* A text up to ',' or ')', or between quotes, into call->text[k]. */
+static enum status text_read(struct formula *formula, struct call *call, int k)
+{
+    bool quoted = formula_take(formula, '\'');
+    const char *at = call->at[k] = formula->at;
+    size_t length = strcspn(at, quoted ? "'" : ",()';");
+    if (length >= sizeof call->text[k] || (quoted && !at[length]))
+        return formula_error(formula, at, "a text that never ends; up to %zu characters%s are accepted",
+                             sizeof call->text[k] - 1, quoted ? " and a second quote" : "");
+    formula->at += length + quoted;
+    while (!quoted && length && at[length - 1] == ' ')
+        length--;
+    snprintf(call->text[k], sizeof call->text[k], "%.*s", (int)length, at);
+    return STATUS_OK;
+}
+
+enum status lookup_read(struct formula *formula, const char *at, const char *name, const char *known,
+                        struct values *values)
+{
+    struct call call = {.metric = NULL};
+    const struct lookup *lookup = lookup_find(name, &call.metric);
+    if (!lookup) {
+        char names[600];
+        snprintf(names, sizeof names, "%s", known);
+        for (size_t k = 0; k < sizeof lookups / sizeof *lookups; k++)
+            text_append(names, sizeof names, "%s, ", lookups[k].name);
+        return formula_error(formula, at,
+                             "there is no function '%s'; %sa metric of measurements.csv, or one of "
+                             "targets.csv with target_ ahead of it, are accepted",
+                             name, names);
+    }
+    enum status status = STATUS_OK;
+    for (int k = 0; k < lookup->count && status == STATUS_OK; k++) {
+        status = text_read(formula, &call, k);
+        if (status == STATUS_OK && !formula_take(formula, k < lookup->count - 1 ? ',' : ')'))
+            status = formula_error(formula, formula->at, "%s(%s) is needed", name, lookup->texts);
+    }
+    return status == STATUS_OK ? lookup->read(formula, &call, values) : status;
+}

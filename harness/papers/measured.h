@@ -1,0 +1,51 @@
+/* A results folder as the papers' tables and claims look into it. All that is said of the papers is worked out from
+   that folder and from published.csv alone, so that no number comes from anywhere else. */
+#ifndef SASBENCH_PAPERS_MEASURED_H
+#define SASBENCH_PAPERS_MEASURED_H
+
+#include "data/published.h"
+#include "measure/results.h"
+
+/* A folder's measurements. What is asked of it and not there is NAN, and `missing` then says why. */
+struct measured {
+    struct results measurements, targets; /* as results.h reads them; all zero when there is no file */
+    struct csv phase[2];                  /* of enum phase_setup, as the command `phase` writes them */
+    struct csv published;                 /* results/published.csv */
+    char missing[400];                    /* the first value that was not there since it was last cleared */
+};
+enum phase_setup { PHASE_SHORT, PHASE_LONG };
+
+/* Files that are not there yet are no error. Errors: those of results_read and csv_read; free in any case. */
+enum status measured_read(const char *directory, struct measured *measured);
+void measured_free(struct measured *measured);
+
+/* What was just asked for is not there: keep the reason unless there is one already. Returns NAN. */
+double measured_missing(struct measured *measured, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* A field of the measurement of `spec` (SPEC text) on `scene`: MEASURED(measured, scene, spec, error). */
+#define MEASURED(measured, scene, spec, field)                                                                         \
+    measured_value(measured, scene, spec, offsetof(struct measurement, field), #field)
+double measured_value(struct measured *measured, const char *scene, const char *spec, size_t offset, const char *name);
+
+/* Seconds of one stage of it ("compress"). */
+double measured_stage(struct measured *measured, const char *scene, const char *spec, const char *stage);
+
+/* A field of its azimuth slice through a target (from 0) by a definition ("pixel"); `name` is for messages. */
+double measured_target(struct measured *measured, const char *scene, const char *spec, int target,
+                       const char *definition, size_t offset, const char *name);
+
+/* The largest magnitude (rad) of a formula's phase error over a set-up's first or last receiver, ranges from
+   `least_m` to `most_m`, the three range frequencies, and |f| up to `share` of the Doppler band (0: its centre). */
+struct phase_part {
+    enum phase_setup setup;
+    bool last_receiver;
+    const char *formula; /* a name of phase.h's formulas: lbf_fc, pca */
+    double least_m, most_m, share;
+};
+double measured_phase(struct measured *measured, const struct phase_part *part);
+
+/* What a paper prints: the cell of published.csv; NAN with `missing` set when there is none. */
+double published_value(struct measured *measured, const char *table, const char *target, const char *method,
+                       const char *quantity);
+
+#endif

@@ -1,0 +1,63 @@
+/* The language in which claims.csv says what is compared: sums and products of measured and printed numbers, with
+   names. results/README.md describes it for those who write claims.
+
+   A cell is read from left to right and worked out on the way. Without measurements it is only checked: every number
+   of the folder is then 1, but lists have their lengths, and a scene, a SPEC, a metric, a time or a printed number that
+   does not exist is an error all the same. */
+#ifndef SASBENCH_PAPERS_QUANTITY_H
+#define SASBENCH_PAPERS_QUANTITY_H
+
+#include "papers/measured.h"
+
+/* One number, or one for each of several targets or ranges. */
+enum { VALUES_MAX = 64 };
+struct values {
+    int count;
+    double at[VALUES_MAX];
+};
+
+/* Where the reading of a claim stands, and the names that it has defined. */
+enum { NAMES_MAX = 24 };
+struct formula {
+    struct measured *measured; /* NULL: only check */
+    const struct csv *published;
+    void (*need)(void *to, const char *scene, const char *spec); /* hears of each measurement; may be NULL */
+    void *to;
+    const char *path; /* for messages: file, line and column of the cell */
+    int line;
+    const char *column;
+    const char *text, *at; /* the cell, and the next character */
+    int depth;             /* of nested parentheses */
+    int count;
+    struct {
+        char name[32];
+        struct values values;
+    } named[NAMES_MAX];
+};
+
+/* Define the names of a cell "name = expression; name = expression". Errors: STATUS_INVALID naming file, line, column,
+   character, what stands there and what is accepted. A number that is missing or not finite is no error but a reason in
+   measured->missing. */
+enum status quantities_read(struct formula *formula, const char *column, const char *text);
+/* The expression that stands next. Errors: as above. */
+enum status quantity_read(struct formula *formula, struct values *values);
+/* All elements of the comma-separated expressions up to the closing parenthesis, which is taken, too. */
+enum status quantity_list_read(struct formula *formula, struct values *values);
+
+/* Begin a cell. */
+void formula_begin(struct formula *formula, const char *column, const char *text);
+/* Skip blanks; then take a character if it is the next; then take the word that comes next, "" if there is none. */
+void formula_blanks(struct formula *formula);
+bool formula_take(struct formula *formula, char character);
+void formula_word(struct formula *formula, char *word, size_t size);
+/* An error where `at` points: "FILE: line N: column C, character K: 'what stands there': MESSAGE". */
+enum status formula_error(const struct formula *formula, const char *at, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* The largest or the least; NAN if one of them is. */
+double values_extreme(const struct values *values, bool largest);
+/* "0.452", or "0.01 to 0.45" of several, at the end of a text in `size` bytes. */
+void values_append(char *text, size_t size, const struct values *values);
+void text_append(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+#endif

@@ -1,0 +1,17 @@
+/* The phase study: how far each formula of the two-dimensional spectrum is from the exact one. */
+#ifndef SASBENCH_STUDY_PHASE_H
+#define SASBENCH_STUDY_PHASE_H
+
+#include <stdbool.h>
+
+#include "status.h"
+
+/* Name of formula k, of which the study's files have a column NAME_error_rad; NULL for k behind the last. */
+const char *phase_formula(int k);
+
+/* LBF21's two set-ups: CSV files and pictures in the folder, the largest errors on standard output beside those that
+   the paper prints. The caller has made the folder; `taken`: and holds it (folder.h). Errors: STATUS_INVALID for files
+   that cannot be read or written. */
+enum status phase_study(const char *directory, bool taken);
+
+#endif

@@ -1,0 +1,104 @@
+#include "planted.h"
+
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "measure/session.h"
+
+struct record *rows;
+
+void planted_begin(void)
+{
+    struct provenance provenance;
+    provenance_fill(&provenance, omp_get_max_threads());
+    assert_int_equal(record_open(folder, &provenance, &rows), STATUS_OK);
+}
+
+void planted_end(struct measured *measured)
+{
+    record_close(rows);
+    assert_int_equal(measured_read(folder, measured), STATUS_OK);
+}
+
+struct measurement planted_row(const char *scene, const struct spec *spec)
+{
+    struct measurement row = measurement_empty(scene, spec->algorithm->name, spec->text, spec->precision);
+    row.threads = omp_get_max_threads();
+    row.engine = row.skipped = row.reason = row.stages = "";
+    return row;
+}
+
+void planted_add(const char *scene, const char *spec_text, double run_s, const char *stages)
+{
+    struct spec spec;
+    assert_int_equal(spec_parse(spec_text, &spec), STATUS_OK);
+    struct measurement row = planted_row(scene, &spec);
+    row.run_s = run_s;
+    row.stages = stages;
+    row.flops_published = row.flops = 1;
+    assert_int_equal(record_add(rows, &row), STATUS_OK);
+    spec_free(&spec);
+}
+
+void planted_islr(const char *scene, const char *spec_text, int first, int count, double islr_db)
+{
+    struct spec spec;
+    assert_int_equal(spec_parse(spec_text, &spec), STATUS_OK);
+    for (int k = first; k < first + count; k++) {
+        struct target_row target = {scene,     spec.algorithm->name,
+                                    spec.text, precision_name(spec.precision),
+                                    k,         "azimuth",
+                                    "pixel",   3,
+                                    0,         0,
+                                    0.04,      -15,
+                                    islr_db};
+        assert_int_equal(record_targets(rows, &target, 1), STATUS_OK);
+    }
+    spec_free(&spec);
+}
+
+void planted_clear(struct measured *measured)
+{
+    measured_free(measured);
+    folder_remove(NULL);
+    assert_int_equal(mkdir(folder, 0700), 0);
+}
+
+struct judgement judgement_of(struct measured *measured, const char *id)
+{
+    struct claims claims;
+    struct judgement judgement = {.evidence = ""};
+    bool found = false;
+    assert_int_equal(claims_read(CLAIMS_FILE, &claims), STATUS_OK);
+    for (int k = 0; k < claims.count && !found; k++)
+        if (strcmp(claims.claims[k].id, id) == 0) {
+            judgement = claim_judge(&claims, &claims.claims[k], measured);
+            found = true;
+        }
+    claims_free(&claims);
+    if (!found)
+        fail_msg("there is no claim %s", id);
+    return judgement;
+}
+
+void expect(struct measured *measured, const char *id, enum claim_verdict verdict)
+{
+    struct judgement judgement = judgement_of(measured, id);
+    if (judgement.verdict != verdict)
+        fail_msg("%s: '%s' instead of '%s'; %s", id, claim_verdict_names[judgement.verdict],
+                 claim_verdict_names[verdict], judgement.evidence);
+}
+
+enum status planted_claim(const char *judge, const char *arguments, struct claims *claims)
+{
+    char text[2000];
+    snprintf(text, sizeof text,
+             "id,paper,section,claim,criterion,judge,arguments\n"
+             "x-1,BP22,4.1,a sentence,a criterion,\"%s\",\"%s\"\n",
+             judge, arguments);
+    support_write("bad.csv", text);
+    return claims_read(path_of("bad.csv"), claims);
+}

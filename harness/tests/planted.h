@@ -1,0 +1,28 @@
+/* A results folder with planted measurements, and the claims that are judged by it. */
+#ifndef SASBENCH_TEST_PLANTED_H
+#define SASBENCH_TEST_PLANTED_H
+
+#include "papers/claims.h"
+#include "support.h"
+
+/* Begin the test's folder anew, and read it back when all rows are there. */
+extern struct record *rows;
+void planted_begin(void);
+void planted_end(struct measured *measured);
+/* Forget its measurements. */
+void planted_clear(struct measured *measured);
+
+/* A row as if it had been measured; other fields are undefined. */
+struct measurement planted_row(const char *scene, const struct spec *spec);
+void planted_add(const char *scene, const char *spec_text, double run_s, const char *stages);
+/* Azimuth slices of targets [first, first + count) with one ISLR. */
+void planted_islr(const char *scene, const char *spec_text, int first, int count, double islr_db);
+
+/* The judgement on a claim of results/claims.csv; the test fails when its verdict is another one. */
+struct judgement judgement_of(struct measured *measured, const char *id);
+void expect(struct measured *measured, const char *id, enum claim_verdict verdict);
+
+/* Read a list of one claim with these two cells; the file is bad.csv in the test's folder. */
+enum status planted_claim(const char *judge, const char *arguments, struct claims *claims);
+
+#endif
