@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#define FC_LEAST 1e-6               /* of fs: turns and samples then stay within a float's range of each other */
+#define FC_LEAST 1e-6 /* of fs: turns and samples then stay within a float's range of each other */
 
 enum status acquisition_allocate(struct acquisition *acquisition)
 {
@@ -18,13 +18,12 @@ enum status acquisition_allocate(struct acquisition *acquisition)
     acquisition->rx = calloc(pings * receivers, sizeof *acquisition->rx);
     acquisition->velocity = calloc(pings, sizeof *acquisition->velocity);
     acquisition->pulse = pulse_length > 0 ? calloc(pulse_length, sizeof *acquisition->pulse) : NULL;
-    if (acquisition->t0 && acquisition->tx && acquisition->rx && acquisition->velocity &&
-        (acquisition->pulse || pulse_length == 0)) {
+    if (acquisition->t0 && acquisition->tx && acquisition->rx && acquisition->velocity
+        && (acquisition->pulse || pulse_length == 0)) {
         return STATUS_OK;
     }
     acquisition_free(acquisition);
-    return status_set(STATUS_FAILED, "out of memory for the geometry of %zu pings and %zu receivers", pings,
-                      receivers);
+    return status_set(STATUS_FAILED, "out of memory for the geometry of %zu pings and %zu receivers", pings, receivers);
 }
 
 void acquisition_free(struct acquisition *acquisition)
@@ -70,8 +69,8 @@ static enum status check_scalars(const struct acquisition *a, const char *place)
     for (size_t i = 0; i < sizeof scalars / sizeof *scalars; i++) {
         double value = scalars[i].value;
         if (!isfinite(value) || !(value > 0 || (scalars[i].may_be_zero && value == 0))) {
-            return status_set(STATUS_INVALID, "%s: %s is %g%s; a finite number %s 0 is needed", place,
-                              scalars[i].name, value, scalars[i].unit, scalars[i].may_be_zero ? ">=" : ">");
+            return status_set(STATUS_INVALID, "%s: %s is %g%s; a finite number %s 0 is needed", place, scalars[i].name,
+                              value, scalars[i].unit, scalars[i].may_be_zero ? ">=" : ">");
         }
     }
     if (!(a->fs >= a->bandwidth)) {
@@ -125,7 +124,7 @@ static enum status check_pulse(const struct acquisition *a, const char *place)
     for (int k = 0; k < a->pulse_length; k++) {
         energy += creal(a->pulse[k]) * creal(a->pulse[k]) + cimag(a->pulse[k]) * cimag(a->pulse[k]);
     }
-    if (!isfinite(energy) || !(energy > 0)) {       /* one sample that is not finite makes the sum so */
+    if (!isfinite(energy) || !(energy > 0)) { /* one sample that is not finite makes the sum so */
         return status_set(STATUS_INVALID, "%s: energy of pulse is %g; a finite number > 0 is needed", place, energy);
     }
     return STATUS_OK;
@@ -234,14 +233,14 @@ bool acquisition_is_straight(const struct acquisition *acquisition, struct strai
     double tolerance = a->sound_speed / a->fc / 1000;
     struct straight_track fit = fit_even_spacing(a);
     if (a->pings > 1 && !(fabs(fit.spacing) * (a->pings - 1) > tolerance)) {
-        return false;       /* standing still: the spacing is nothing but rounding */
+        return false; /* standing still: the spacing is nothing but rounding */
     }
     for (int p = 0; p < a->pings; p++) {
         struct vector place = {fit.x_first + p * fit.spacing, 0, 0};
         struct vector drift = vector_difference(a->velocity[p], (struct vector){fit.speed, 0, 0});
-        if (!is_within(vector_difference(a->tx[p], place), tolerance) ||
-            !is_within(drift, tolerance / largest_delay(a, p)) ||
-            !(fabs(a->t0[p] - a->t0[0]) * a->sound_speed <= tolerance)) {
+        if (!is_within(vector_difference(a->tx[p], place), tolerance)
+            || !is_within(drift, tolerance / largest_delay(a, p))
+            || !(fabs(a->t0[p] - a->t0[0]) * a->sound_speed <= tolerance)) {
             return false;
         }
         const struct vector *rx = a->rx + (size_t)p * (size_t)a->receivers;

@@ -15,24 +15,24 @@ struct vector {
 /* Owner: whoever made it (a scene or an echo file), freed with acquisition_free. Plans only read it and may keep the
    pointer until they are destroyed. All arrays are ping-major. */
 struct acquisition {
-    double sound_speed;             /* c, m/s, > 0 */
-    double fc;                      /* carrier frequency, Hz, >= 1e-6 fs; echo phase is exp(-j 2 pi fc tau) */
-    double fs;                      /* sampling rate of the complex baseband, Hz, >= bandwidth */
-    double bandwidth;               /* B, Hz, > 0 */
-    int samples;                    /* N: fast-time samples of a record, >= 2 */
-    int receivers;                  /* M >= 1 */
-    int pings;                      /* P >= 1 */
-    double *t0;                     /* [pings] s: time of each record's first sample after emission */
-    struct vector *tx;              /* [pings] m: transmitter at emission */
-    struct vector *rx;              /* [pings][receivers] m: receivers at the transmitter's emission */
-    struct vector *velocity;        /* [pings] m/s: of the receivers during propagation; zero = stop-and-hop */
-    double tx_length, rx_length;    /* m: element lengths along the track; 0 = unknown */
-    double echo_sine;               /* the echoes come from |sin theta_t| <= this; 0 = unknown, INFINITY = from anywhere */
-    bool echo_tapers;               /* and their amplitude falls as both elements' sinc does */
-    double aperture_limit;          /* back projection sums pairs with |sin theta_t| <= this only; INFINITY = all */
-    bool compressed;                /* the samples are range compressed: a unit target peaks at 1 */
-    int pulse_length;               /* K: samples of the replica; 0 if compressed */
-    double complex *pulse;          /* [pulse_length] replica at fs, beginning at emission; NULL if compressed */
+    double sound_speed;          /* c, m/s, > 0 */
+    double fc;                   /* carrier frequency, Hz, >= 1e-6 fs; echo phase is exp(-j 2 pi fc tau) */
+    double fs;                   /* sampling rate of the complex baseband, Hz, >= bandwidth */
+    double bandwidth;            /* B, Hz, > 0 */
+    int samples;                 /* N: fast-time samples of a record, >= 2 */
+    int receivers;               /* M >= 1 */
+    int pings;                   /* P >= 1 */
+    double *t0;                  /* [pings] s: time of each record's first sample after emission */
+    struct vector *tx;           /* [pings] m: transmitter at emission */
+    struct vector *rx;           /* [pings][receivers] m: receivers at the transmitter's emission */
+    struct vector *velocity;     /* [pings] m/s: of the receivers during propagation; zero = stop-and-hop */
+    double tx_length, rx_length; /* m: element lengths along the track; 0 = unknown */
+    double echo_sine;            /* the echoes come from |sin theta_t| <= this; 0 = unknown, INFINITY = from anywhere */
+    bool echo_tapers;            /* and their amplitude falls as both elements' sinc does */
+    double aperture_limit;       /* back projection sums pairs with |sin theta_t| <= this only; INFINITY = all */
+    bool compressed;             /* the samples are range compressed: a unit target peaks at 1 */
+    int pulse_length;            /* K: samples of the replica; 0 if compressed */
+    double complex *pulse;       /* [pulse_length] replica at fs, beginning at emission; NULL if compressed */
 };
 
 /* Allocate the arrays for `samples`, `receivers`, `pings` (set beforehand) and `pulse_length`, zeroed. Errors:
@@ -51,8 +51,8 @@ struct vector acquisition_heading(const struct acquisition *acquisition, int pin
 /* A uniform straight track: tx(p).x = x_first + p spacing, rx(p, m).x - tx(p).x = offset(m), y = z = 0, one velocity
    (speed, 0, 0) and one t0, all within lambda/1000 (offset(m) is read from the first ping). */
 struct straight_track {
-    double x_first, spacing;        /* m; spacing may be negative, never 0 with more than one ping */
-    double speed;                   /* m/s along +x, of the receivers during propagation */
+    double x_first, spacing; /* m; spacing may be negative, never 0 with more than one ping */
+    double speed;            /* m/s along +x, of the receivers during propagation */
 };
 
 /* True when the track is uniform and straight; fills *track (may be NULL). */

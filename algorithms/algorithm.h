@@ -23,26 +23,26 @@ enum precision { PRECISION_FLOAT, PRECISION_DOUBLE };
 
 /* Pixel (i, j), range row i and azimuth column j, lies at x = x_first + j x_step, r = r_first + i r_step, z = 0. */
 struct grid {
-    double x_first, x_step;         /* m, x_step > 0 */
-    int x_count;                    /* >= 1 */
-    double r_first, r_step;         /* m, r_step > 0; r of either sign */
-    int r_count;                    /* >= 1 */
+    double x_first, x_step; /* m, x_step > 0 */
+    int x_count;            /* >= 1 */
+    double r_first, r_step; /* m, r_step > 0; r of either sign */
+    int r_count;            /* >= 1 */
 };
 
 /* One imaging task: every patch of the image is wanted, and nothing else. */
 struct problem {
     const struct acquisition *acquisition;
-    int patch_count;                /* >= 1 */
-    const struct grid *patches;     /* [patch_count] */
-    enum precision precision;       /* of samples, sums and pixels; geometry and phase are always double */
+    int patch_count;            /* >= 1 */
+    const struct grid *patches; /* [patch_count] */
+    enum precision precision;   /* of samples, sums and pixels; geometry and phase are always double */
 };
 
 /* The recorded samples, read only. */
 struct echoes {
     const struct acquisition *acquisition;
     enum precision precision;
-    const void *samples;            /* complex float or double [pings][receivers][samples] */
-    int exponent;                   /* recorded were the samples times 2^exponent, 0 unless they would not fit the precision;
+    const void *samples; /* complex float or double [pings][receivers][samples] */
+    int exponent;        /* recorded were the samples times 2^exponent, 0 unless they would not fit the precision;
                                        whoever calls execute multiplies the image, an algorithm need not look */
 };
 
@@ -50,39 +50,39 @@ struct echoes {
    1/N, so that a lone unit target shows the sum of its weights with phase 0. */
 struct image {
     int patch_count;
-    const struct grid *patches;     /* [patch_count] */
+    const struct grid *patches; /* [patch_count] */
     enum precision precision;
-    void **pixels;                  /* [patch_count] of complex float or double [r_count][x_count] */
+    void **pixels; /* [patch_count] of complex float or double [r_count][x_count] */
 };
 
 /* Where the seconds of one execute went. */
 struct stages {
     int count;
-    double mark;                    /* monotonic clock at the last stages_begin or stages_end, s */
+    double mark; /* monotonic clock at the last stages_begin or stages_end, s */
     struct {
-        const char *name;           /* static text: compress, focus, ... */
+        const char *name; /* static text: compress, focus, ... */
         double seconds;
     } stage[12];
 };
 
-void stages_begin(struct stages *stages);                       /* forget all, start the clock */
-void stages_end(struct stages *stages, const char *name);       /* time since the last mark goes to `name` (summed) */
-double seconds_now(void);                                       /* monotonic clock, s */
+void stages_begin(struct stages *stages);                 /* forget all, start the clock */
+void stages_end(struct stages *stages, const char *name); /* time since the last mark goes to `name` (summed) */
+double seconds_now(void);                                 /* monotonic clock, s */
 /* From now on seconds_now, called by this thread, leaves out the time in which the thread was ready to run and other
    work had the processor (what the thread sleeps still counts). Where the system does not tell that, nothing changes. */
 void seconds_skip_waiting(void);
 
 /* What the plan will do, and what it leaves out. */
 struct work {
-    double flops;                   /* counted from the plan: 5 N log2 N an FFT, machine-independent */
-    double pairs;                   /* pixel-pulse pairs summed; 0 where an algorithm has none */
-    double bytes;                   /* the plan's own allocations with one thread */
+    double flops; /* counted from the plan: 5 N log2 N an FFT, machine-independent */
+    double pairs; /* pixel-pulse pairs summed; 0 where an algorithm has none */
+    double bytes; /* the plan's own allocations with one thread */
     struct {
-        const char *source;         /* "BP22 Eq. (11)"; NULL ends the list */
+        const char *source; /* "BP22 Eq. (11)"; NULL ends the list */
         double flops;
-    } published[3];                 /* the papers' formulas for this task, the algorithm's own paper first */
-    char engine[32];                /* which of several ways the plan chose: "general" */
-    char skipped[256];              /* what the plan left out because the scene does not need it; may be empty */
+    } published[3];    /* the papers' formulas for this task, the algorithm's own paper first */
+    char engine[32];   /* which of several ways the plan chose: "general" */
+    char skipped[256]; /* what the plan left out because the scene does not need it; may be empty */
 };
 
 enum param_type { PARAM_INTEGER, PARAM_REAL, PARAM_CHOICE };
@@ -90,45 +90,44 @@ enum param_type { PARAM_INTEGER, PARAM_REAL, PARAM_CHOICE };
 /* One setting: parsing, bounds, `info`, the CSV's options column and the sweep all come from this row. Name, type and place
    come from the field by PARAM or PARAM_NAMED. */
 struct param {
-    const char *name, *summary;     /* name NULL ends the table */
-    enum param_type type;           /* the field is an int (integer, choice: index) or a double (real) */
-    size_t offset, size;            /* of the field in the options struct */
-    double initial, min, max;       /* default and closed bounds; for a choice initial is the index */
-    const char *const *choices;     /* NULL-terminated names of a choice, else NULL */
-    const char *sweep;              /* the ladder of values that `sweep` runs, separated by blanks; may be NULL */
-    bool terse;                     /* left out of the options text while it has its default */
+    const char *name, *summary; /* name NULL ends the table */
+    enum param_type type;       /* the field is an int (integer, choice: index) or a double (real) */
+    size_t offset, size;        /* of the field in the options struct */
+    double initial, min, max;   /* default and closed bounds; for a choice initial is the index */
+    const char *const *choices; /* NULL-terminated names of a choice, else NULL */
+    const char *sweep;          /* the ladder of values that `sweep` runs, separated by blanks; may be NULL */
+    bool terse;                 /* left out of the options text while it has its default */
 };
 
 /* A row begins with  {PARAM(struct options, taps), .summary = ...  for a number, an int or a double, or with
    {PARAM_NAMED(struct options, window, windows), ...  for a choice among names, an int. A field of another type does not
    compile. */
-#define PARAM(options, field) \
-    PARAM_PLACE(options, field), \
-    .type = _Generic(((options *)NULL)->field, int: PARAM_INTEGER, double: PARAM_REAL)
-#define PARAM_NAMED(options, field, names) \
-    PARAM_PLACE(options, field), .type = _Generic(((options *)NULL)->field, int: PARAM_CHOICE), .choices = names
-#define PARAM_PLACE(options, field) \
-    .name = #field, .offset = offsetof(options, field), .size = sizeof ((options *)NULL)->field
+#define PARAM(options, field)                                                                                          \
+    PARAM_PLACE(options, field), .type = _Generic(((options *)NULL)->field, int : PARAM_INTEGER, double : PARAM_REAL)
+#define PARAM_NAMED(options, field, names)                                                                             \
+    PARAM_PLACE(options, field), .type = _Generic(((options *)NULL)->field, int : PARAM_CHOICE), .choices = names
+#define PARAM_PLACE(options, field)                                                                                    \
+    .name = #field, .offset = offsetof(options, field), .size = sizeof((options *)NULL)->field
 
 /* Promises that the conformance test checks. */
 enum trait {
-    TRAIT_EXACT = 1,                /* the image equals `reference` to 1e-8 in double */
-    TRAIT_ANY_TRACK = 2,            /* images any track in space, not only uniform straight ones */
-    TRAIT_APERTURE_LIMIT = 4        /* honours aperture_limit pixel by pixel */
+    TRAIT_EXACT = 1,         /* the image equals `reference` to 1e-8 in double */
+    TRAIT_ANY_TRACK = 2,     /* images any track in space, not only uniform straight ones */
+    TRAIT_APERTURE_LIMIT = 4 /* honours aperture_limit pixel by pixel */
 };
 
 struct algorithm {
-    const char *name, *summary, *reference;     /* reference: paper and equations */
-    unsigned traits;                            /* of enum trait */
-    size_t options_size;                        /* of the options struct; 0 without params */
-    const struct param *params;                 /* NULL-terminated; NULL without options */
+    const char *name, *summary, *reference; /* reference: paper and equations */
+    unsigned traits;                        /* of enum trait */
+    size_t options_size;                    /* of the options struct; 0 without params */
+    const struct param *params;             /* NULL-terminated; NULL without options */
 
     /* Make a plan in *plan. Errors: STATUS_UNSUPPORTED with the reason, STATUS_FAILED; *plan is then NULL. */
     enum status (*plan)(const struct problem *problem, const void *options, void **plan);
     /* Echoes of the plan's acquisition and precision into an image of the plan's patches and precision. */
     enum status (*execute)(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
-    struct work (*work)(const void *plan);      /* may take its time, to count what the timed plan need not know */
-    void (*destroy)(void *plan);                /* destroy(NULL) does nothing */
+    struct work (*work)(const void *plan); /* may take its time, to count what the timed plan need not know */
+    void (*destroy)(void *plan);           /* destroy(NULL) does nothing */
 };
 
 /* The registered algorithms in the order of algorithms/meson.build; NULL ends the list. */

@@ -13,8 +13,8 @@ struct options {
 };
 
 static const struct param params[] = {
-    {PARAM(struct options, beta), .summary = "points inserted between two samples",
-     .initial = 8, .min = 0, .max = 1024, .sweep = "0 1 2 4 8 16 32"},
+    {PARAM(struct options, beta), .summary = "points inserted between two samples", .initial = 8, .min = 0, .max = 1024,
+     .sweep = "0 1 2 4 8 16 32"},
     BP_PARAMS,
     {.name = NULL},
 };
@@ -29,8 +29,8 @@ static void weights(const void *options, double fraction, double *w)
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
     int beta = ((const struct options *)options)->beta;
-    const struct interpolator linear = {.upsample = 1, .phases = beta + 1, .taps = 2, .weights = weights,
-                                        .beta = beta, .factor = beta + 1};
+    const struct interpolator linear = {
+        .upsample = 1, .phases = beta + 1, .taps = 2, .weights = weights, .beta = beta, .factor = beta + 1};
     return bp_plan(problem, &linear, options, plan);
 }
 

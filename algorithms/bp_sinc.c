@@ -15,8 +15,8 @@ struct options {
 static const char *const windows[] = {"none", "kaiser", NULL};
 
 static const struct param params[] = {
-    {PARAM(struct options, taps), .summary = "kernel length in samples, even",
-     .initial = 8, .min = 2, .max = 64, .sweep = "4 8 16 32"},
+    {PARAM(struct options, taps), .summary = "kernel length in samples, even", .initial = 8, .min = 2, .max = 64,
+     .sweep = "4 8 16 32"},
     {PARAM_NAMED(struct options, window, windows),
      .summary = "taper of the kernel: none (the papers') or Kaiser with beta = 5", .initial = WINDOW_NONE,
      .max = WINDOW_KAISER, .sweep = "none kaiser"},
@@ -36,8 +36,8 @@ static enum status plan(const struct problem *problem, const void *options, void
     *plan = NULL;
     if (taps % 2)
         return status_set(STATUS_UNSUPPORTED, "bp_sinc: taps is %d, must be even", taps);
-    const struct interpolator sinc = {.upsample = 1, .taps = taps, .first = 1 - taps / 2, .weights = weights,
-                                      .kernel = taps, .factor = taps};
+    const struct interpolator sinc = {
+        .upsample = 1, .taps = taps, .first = 1 - taps / 2, .weights = weights, .kernel = taps, .factor = taps};
     return bp_plan(problem, &sinc, options, plan);
 }
 

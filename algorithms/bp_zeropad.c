@@ -13,8 +13,8 @@ struct options {
 };
 
 static const struct param params[] = {
-    {PARAM(struct options, factor), .summary = "length of the padded spectrum over the record's",
-     .initial = 8, .min = 1, .max = 256, .sweep = "1 2 4 8 16 32 64"},
+    {PARAM(struct options, factor), .summary = "length of the padded spectrum over the record's", .initial = 8,
+     .min = 1, .max = 256, .sweep = "1 2 4 8 16 32 64"},
     BP_PARAMS,
     {.name = NULL},
 };

@@ -24,8 +24,14 @@ static enum status plan(const struct problem *problem, const void *options, void
     static spectrum_function *const spectra[] = {
         [RMA_PRINTED] = spectrum_lbf_printed, [RMA_CORRECTED] = spectrum_lbf_corrected};
     const struct rma_method method = {
-        .name = "rma_lbf", .law = "lbf_law", .spectrum = spectra[((const struct rma_options *)options)->variant],
-        .source = "LBF21 Eq. (20)", .range = {2, 2}, .azimuth = {1, 1}, .products = {2, 2}, .interpolations = 1,
+        .name = "rma_lbf",
+        .law = "lbf_law",
+        .spectrum = spectra[((const struct rma_options *)options)->variant],
+        .source = "LBF21 Eq. (20)",
+        .range = {2, 2},
+        .azimuth = {1, 1},
+        .products = {2, 2},
+        .interpolations = 1,
     };
     return rma_plan(problem, &method, options, plan);
 }

@@ -14,8 +14,14 @@ static const struct param params[] = {
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
     static const struct rma_method method = {
-        .name = "rma_numeric", .law = "phase", .spectrum = spectrum_exact,
-        .source = "LBF21 Eq. (20)", .range = {2, 2}, .azimuth = {1, 1}, .products = {2, 2}, .interpolations = 1,
+        .name = "rma_numeric",
+        .law = "phase",
+        .spectrum = spectrum_exact,
+        .source = "LBF21 Eq. (20)",
+        .range = {2, 2},
+        .azimuth = {1, 1},
+        .products = {2, 2},
+        .interpolations = 1,
     };
     return rma_plan(problem, &method, options, plan);
 }

@@ -17,8 +17,14 @@ static const struct param params[] = {
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
     static const struct rma_method method = {
-        .name = "rma_pca", .law = "pca_law", .spectrum = spectrum_pca,
-        .source = "LBF21 Eq. (21)", .range = {2, 2}, .azimuth = {1, 1}, .products = {1, 2}, .interpolations = 2,
+        .name = "rma_pca",
+        .law = "pca_law",
+        .spectrum = spectrum_pca,
+        .source = "LBF21 Eq. (21)",
+        .range = {2, 2},
+        .azimuth = {1, 1},
+        .products = {1, 2},
+        .interpolations = 2,
     };
     return rma_plan(problem, &method, options, plan);
 }

@@ -13,8 +13,14 @@ static const struct param params[] = {
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
     static const struct rma_method method = {
-        .name = "rma_wu", .law = "wu_law", .spectrum = spectrum_wu,
-        .source = "LBF21 Eq. (22)", .range = {4, 2}, .azimuth = {0, 2}, .products = {2, 2}, .interpolations = 1,
+        .name = "rma_wu",
+        .law = "wu_law",
+        .spectrum = spectrum_wu,
+        .source = "LBF21 Eq. (22)",
+        .range = {4, 2},
+        .azimuth = {0, 2},
+        .products = {2, 2},
+        .interpolations = 1,
     };
     return rma_plan(problem, &method, options, plan);
 }

@@ -4,9 +4,9 @@
 
 enum status {
     STATUS_OK = 0,
-    STATUS_FAILED = 1,       /* a run failed: out of memory, a file could not be written */
-    STATUS_INVALID = 2,      /* bad usage or bad input: the message names place, value and what is accepted */
-    STATUS_UNSUPPORTED = 3   /* legal input that this algorithm cannot image: the message is the reason */
+    STATUS_FAILED = 1,     /* a run failed: out of memory, a file could not be written */
+    STATUS_INVALID = 2,    /* bad usage or bad input: the message names place, value and what is accepted */
+    STATUS_UNSUPPORTED = 3 /* legal input that this algorithm cannot image: the message is the reason */
 };
 
 /* Store the message (printf style, one line without newline, at most 1023 bytes) and return `status`, so that a

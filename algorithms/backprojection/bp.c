@@ -31,10 +31,10 @@ void bp_fill_row(const struct bp *bp, int thread, const struct echoes *echoes, s
 /* Tabulate the interpolator's weights in the plan's precision. */
 static enum status tabulate(struct bp *bp, const struct interpolator *in, const void *options)
 {
-    bp->table = (struct bp_table){.upsample = in->upsample, .phases = in->phases, .taps = in->taps,
-                                  .first = in->first, .guard = in->taps};
+    bp->table = (struct bp_table){
+        .upsample = in->upsample, .phases = in->phases, .taps = in->taps, .first = in->first, .guard = in->taps};
     if (in->taps == 1)
-        return STATUS_OK;           /* BP_NEAREST */
+        return STATUS_OK; /* BP_NEAREST */
     bool line = in->taps == 2 && in->phases > 0;
     size_t rows = in->phases > 0 ? (size_t)in->phases : 4 * (size_t)BP_INTERVALS, taps = (size_t)in->taps;
     double *w = malloc(rows * taps * sizeof *w), *at = malloc(4 * taps * sizeof *at);
@@ -97,7 +97,8 @@ static void count_work(struct bp *bp, const struct interpolator *in)
             work->published[0].flops += 2 * (2.0 * in->kernel - 1) * all;
         }
         work->published[1].source = "LBF21 Eq. (23)";
-        work->published[1].flops = 1.5 * na * nr * log2(nr) + na * nr + 1.5 * na * in->factor * nr * log2(in->factor * nr);
+        work->published[1].flops =
+            1.5 * na * nr * log2(nr) + na * nr + 1.5 * na * in->factor * nr * log2(in->factor * nr);
     }
     snprintf(work->engine, sizeof work->engine, "%s%s", bp->engine->name,
              bp->engine == &bp_general && !(bp->medium.phase_limit > 0) ? " exact" : "");

@@ -14,9 +14,9 @@
    w[k] s[floor(q) + first + k],  w = weights(fraction of q). Taps beyond the record's ends read zero (with upsample > 1:
    the band-limited signal's own continuation). */
 struct interpolator {
-    int upsample;                   /* records are upsampled by zero padding (exactly) by this factor first; >= 1 */
-    int phases;                     /* > 0: q is rounded to the nearest multiple of 1/phases first; 0: it is not */
-    int taps, first;                /* taps >= 1; first <= 0 */
+    int upsample;    /* records are upsampled by zero padding (exactly) by this factor first; >= 1 */
+    int phases;      /* > 0: q is rounded to the nearest multiple of 1/phases first; 0: it is not */
+    int taps, first; /* taps >= 1; first <= 0 */
     /* Fill w[taps] for a fraction in [0, 1). Called while planning only; NULL when taps == 1 (the weight is 1). */
     void (*weights)(const void *options, double fraction, double *w);
     /* For the published FLOPs, BP22 Eq. (11): points inserted between samples; the kernel's length where each value is
@@ -29,21 +29,24 @@ struct interpolator {
 
 /* Settings of every back projection: the first member of a method's options struct. */
 struct bp_options {
-    int engine;                     /* enum bp_engine_choice */
-    int exact;                      /* 1: the general engine evaluates every delay; 0: it interpolates them */
-    double phase_limit;             /* rad: what the interpolated delays may change a pair's phase by */
+    int engine;         /* enum bp_engine_choice */
+    int exact;          /* 1: the general engine evaluates every delay; 0: it interpolates them */
+    double phase_limit; /* rad: what the interpolated delays may change a pair's phase by */
 };
 enum bp_engine_choice { BP_ENGINE_AUTO, BP_ENGINE_GENERAL, BP_ENGINE_INVARIANT };
 extern const char *const bp_engine_names[], *const bp_exact_names[];
-#define BP_PARAMS \
-    {PARAM_NAMED(struct bp_options, engine, bp_engine_names), \
-     .summary = "general: any track; invariant: tables, uniform straight tracks on the pixel raster", \
-     .initial = BP_ENGINE_AUTO, .max = BP_ENGINE_INVARIANT, .terse = true}, \
-    {PARAM_NAMED(struct bp_options, exact, bp_exact_names), \
-     .summary = "general engine, every delay evaluated: the plain path that tests compare with", .max = 1, .terse = true}, \
-    {PARAM(struct bp_options, phase_limit), \
-     .summary = "rad: most that the general engine's interpolated delays change a pair's phase by", \
-     .initial = 1e-4, .min = 1e-8, .max = 0.1, .terse = true}
+#define BP_PARAMS                                                                                                      \
+    {PARAM_NAMED(struct bp_options, engine, bp_engine_names),                                                          \
+     .summary = "general: any track; invariant: tables, uniform straight tracks on the pixel raster",                  \
+     .initial = BP_ENGINE_AUTO, .max = BP_ENGINE_INVARIANT, .terse = true},                                            \
+        {PARAM_NAMED(struct bp_options, exact, bp_exact_names),                                                        \
+         .summary = "general engine, every delay evaluated: the plain path that tests compare with", .max = 1,         \
+         .terse = true},                                                                                               \
+    {                                                                                                                  \
+        PARAM(struct bp_options, phase_limit),                                                                         \
+            .summary = "rad: most that the general engine's interpolated delays change a pair's phase by",             \
+            .initial = 1e-4, .min = 1e-8, .max = 0.1, .terse = true                                                    \
+    }
 
 /* The callbacks of struct algorithm, for an interpolator. `options` begins with a struct bp_options and is only used during the
    call. Errors: STATUS_UNSUPPORTED when the engine asked for cannot do the problem, with the reason. */

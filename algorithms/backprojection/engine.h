@@ -11,11 +11,11 @@ struct bp {
     struct problem problem;
     struct bp_medium medium;
     struct bp_table table;
-    void *weights;                  /* of table */
+    void *weights; /* of table */
     struct records *records;
     struct records_shape shape;
     const struct bp_engine *engine;
-    void *state;                    /* the engine's own */
+    void *state; /* the engine's own */
     struct work work;
 };
 
@@ -27,11 +27,11 @@ struct bp_engine {
     /* Make bp->state and bp->records; adds to bp->work.bytes. */
     enum status (*plan)(struct bp *bp);
     void (*execute)(struct bp *bp, const struct echoes *echoes, struct image *image, struct stages *stages);
-    void (*destroy)(void *state);   /* destroy(NULL) does nothing */
+    void (*destroy)(void *state); /* destroy(NULL) does nothing */
 };
 
-extern const struct bp_engine bp_general;       /* any track: delays of runs of range rows */
-extern const struct bp_engine bp_invariant;     /* uniform straight track on the pixel raster: tables of delays */
+extern const struct bp_engine bp_general;   /* any track: delays of runs of range rows */
+extern const struct bp_engine bp_invariant; /* uniform straight track on the pixel raster: tables of delays */
 
 static inline size_t real_size(enum precision precision)
 {

@@ -13,7 +13,8 @@ int grid_line_count(const struct grid *grid, bool along_x)
 struct pixel_line grid_line(const struct grid *grid, bool along_x, int number)
 {
     if (along_x)
-        return (struct pixel_line){grid->x_first, grid->r_first + number * grid->r_step, grid->x_step, 0, grid->x_count};
+        return (struct pixel_line){grid->x_first, grid->r_first + number * grid->r_step, grid->x_step, 0,
+                                   grid->x_count};
     return (struct pixel_line){grid->x_first + number * grid->x_step, grid->r_first, 0, grid->r_step, grid->r_count};
 }
 
@@ -34,7 +35,7 @@ static bool inside_cone(const struct cone *cone, const struct pixel_line *line, 
     double dx = p.x - tx.x, dy = p.y - tx.y, dz = p.z - tx.z;
     double distance = sqrt(dx * dx + dy * dy + dz * dz);
     return fabs(dx * h.x + dy * h.y + dz * h.z) <= cone->limit * distance
-        || distance <= apex_slack(fabs(p.x) + fabs(p.y), fabs(tx.x) + fabs(tx.y) + fabs(tx.z));
+           || distance <= apex_slack(fabs(p.x) + fabs(p.y), fabs(tx.x) + fabs(tx.y) + fabs(tx.z));
 }
 
 /* Where the line meets the cone, in pixels, the lesser first; NaN where it does not. Counted from the point nearest to the apex,
@@ -50,7 +51,7 @@ static void cone_roots(const struct cone *cone, const struct pixel_line *line, d
     const double across2 = across * across + tx.z * tx.z, qc = along * along - s2 * across2;
     double discriminant = s2 * (along * along + across2 * qa);
     if (discriminant < 0 && discriminant > -1e-12 * s2 * along * along)
-        discriminant = 0;           /* a tangent, but for rounding */
+        discriminant = 0; /* a tangent, but for rounding */
     const double q = -(half + copysign(sqrt(discriminant), half)), first = q / qa, second = q != 0 ? qc / q : first;
     root[0] = foot + fmin(first, second) / step;
     root[1] = foot + fmax(first, second) / step;
@@ -83,7 +84,7 @@ int pair_spans(const struct acquisition *a, int ping, struct vector h, const str
     const int n = line->count;
     const struct cone cone = {a->tx[ping], h, a->aperture_limit};
     double root[2];
-    int count = 0, next = 0;        /* the first pixel that is not decided yet */
+    int count = 0, next = 0; /* the first pixel that is not decided yet */
     if (!(cone.limit < 1)) {
         spans[0] = (struct pair_span){0, n};
         return 1;
@@ -141,7 +142,7 @@ int record_spans(const struct acquisition *a, int ping, int receiver, const stru
     const struct profile profile = {a, line, ping, receiver};
     const double last = a->samples - 1;
     int begin = within.begin, end = within.end, count = 0;
-    int low = begin, high = end - 1;    /* the lowest q: where the slope turns */
+    int low = begin, high = end - 1; /* the lowest q: where the slope turns */
     if (begin >= end)
         return 0;
     if (end - begin > 1 && profile_q(&profile, begin + 1) >= profile_q(&profile, begin))
@@ -179,7 +180,7 @@ double pairs_count(const struct problem *problem)
     double pairs = 0;
     for (int k = 0; k < problem->patch_count; k++) {
         const struct grid *grid = &problem->patches[k];
-        const bool along_x = grid->x_count > grid->r_count;    /* few long lines: a search costs the same on any */
+        const bool along_x = grid->x_count > grid->r_count; /* few long lines: a search costs the same on any */
 #pragma omp parallel for schedule(dynamic) reduction(+ : pairs)
         for (int n = 0; n < grid_line_count(grid, along_x); n++) {
             struct pixel_line line = grid_line(grid, along_x, n);
@@ -189,7 +190,7 @@ double pairs_count(const struct problem *problem)
                 for (int m = 0; m < a->receivers; m++)
                     for (int s = 0; s < count; s++) {
                         int parts = record_spans(a, p, m, &line, aperture[s], record);
-                        for (int i = 0; i < parts; i++)     /* whole numbers below 2^53: the order does not matter */
+                        for (int i = 0; i < parts; i++) /* whole numbers below 2^53: the order does not matter */
                             pairs += record[i].end - record[i].begin;
                     }
             }

@@ -8,9 +8,9 @@
 
 /* Evenly spaced pixels along azimuth or range: pixel i lies at (x_first + i x_step, r_first + i r_step, 0). */
 struct pixel_line {
-    double x_first, r_first;        /* m */
-    double x_step, r_step;          /* m: one of them is > 0, the other 0 */
-    int count;                      /* pixels, >= 1 */
+    double x_first, r_first; /* m */
+    double x_step, r_step;   /* m: one of them is > 0, the other 0 */
+    int count;               /* pixels, >= 1 */
 };
 
 /* Pixels [begin, end) of a line. */

@@ -12,12 +12,12 @@
 
 struct records {
     struct records_shape shape;
-    int transform;                  /* L: period of the transformed signal, >= samples + pulse - 1 */
-    bool transforms;                /* false: compressed already and not upsampled */
-    FFTW(plan) forward, inverse;    /* of L, and of L upsample */
-    complex_real *filter;           /* [L] conj(P)/(L sum|p|^2); 1/L if compressed */
-    complex_real *scratch;          /* [threads][L + L upsample] */
-    size_t scratch_length;          /* L + L upsample */
+    int transform;               /* L: period of the transformed signal, >= samples + pulse - 1 */
+    bool transforms;             /* false: compressed already and not upsampled */
+    FFTW(plan) forward, inverse; /* of L, and of L upsample */
+    complex_real *filter;        /* [L] conj(P)/(L sum|p|^2); 1/L if compressed */
+    complex_real *scratch;       /* [threads][L + L upsample] */
+    size_t scratch_length;       /* L + L upsample */
 };
 
 static void filter_fill(const struct acquisition *acquisition, int length, double complex *work, complex_real *filter)
@@ -43,20 +43,24 @@ enum status REAL_NAME(records_plan)(const struct acquisition *acquisition, int u
     int length = acquisition->compressed ? n : fft_length((long long)n + acquisition->pulse_length - 1);
     long long fine = (long long)length * upsample, row = (long long)(n - 1) * upsample + 1 + 2LL * guard;
     if (length == 0 || fine > INT_MAX / 4 || row > INT_MAX / 4)
-        return status_set(STATUS_UNSUPPORTED, "records of %d samples upsampled by %d are too long to transform "
-                          "(at most %d values)", n, upsample, INT_MAX / 4);
+        return status_set(STATUS_UNSUPPORTED,
+                          "records of %d samples upsampled by %d are too long to transform "
+                          "(at most %d values)",
+                          n, upsample, INT_MAX / 4);
     struct records *records = calloc(1, sizeof *records);
     if (!records)
         return status_set(STATUS_FAILED, "no memory for range compression");
-    records->shape = (struct records_shape){.samples = n, .upsample = upsample, .guard = guard, .length = (int)row,
-                                            .bytes = sizeof *records};
+    records->shape = (struct records_shape){
+        .samples = n, .upsample = upsample, .guard = guard, .length = (int)row, .bytes = sizeof *records};
     records->transform = length;
     records->transforms = !acquisition->compressed || upsample > 1;
     if (records->transforms) {
         records->scratch_length = (size_t)(length + fine);
         /* Scratch, filter, the pulse's spectrum, and as much as FFTW's plans may hold. */
-        enum status status = memory_check(((threads + 1.0) * (double)records->scratch_length + length) * sizeof(complex_real)
-                                          + (double)length * sizeof(double complex), "range compression");
+        enum status status =
+            memory_check(((threads + 1.0) * (double)records->scratch_length + length) * sizeof(complex_real)
+                             + (double)length * sizeof(double complex),
+                         "range compression");
         if (status != STATUS_OK) {
             free(records);
             return status;
@@ -93,7 +97,7 @@ enum status REAL_NAME(records_plan)(const struct acquisition *acquisition, int u
 /* Place the L bins of `from` into the L upsample bins of `to`. */
 static void spectrum_pad(const complex_real *from, int length, complex_real *to, size_t fine)
 {
-    int positive = (length + 1) / 2;            /* bins 0 .. positive - 1; a bin at fs/2 stands apart */
+    int positive = (length + 1) / 2; /* bins 0 .. positive - 1; a bin at fs/2 stands apart */
     int negative = length / 2 - (length % 2 == 0);
     memcpy(to, from, (size_t)positive * sizeof *to);
     memset(to + positive, 0, (fine - (size_t)positive) * sizeof *to);
@@ -118,7 +122,7 @@ void REAL_NAME(records_fill)(const struct records *records, int thread, const co
         FFTW(execute_dft)(records->forward, a, a);
         real *x = (real *)a;
         const real *h = (const real *)records->filter;
-        for (size_t k = 0; k < 2 * length; k += 2) {    /* written out: a complex product would check for NaN */
+        for (size_t k = 0; k < 2 * length; k += 2) { /* written out: a complex product would check for NaN */
             real re = x[k] * h[k] - x[k + 1] * h[k + 1];
             x[k + 1] = x[k] * h[k + 1] + x[k + 1] * h[k];
             x[k] = re;

@@ -4,7 +4,7 @@
 
 #include "algorithm.h"
 
-struct records;                     /* the plan */
+struct records; /* the plan */
 
 /* A row holds guard + (samples - 1) upsample + 1 + guard values; value guard + i lies at sample coordinate i/upsample
    of the record, t = t0 + i/(upsample fs). Raw echoes are correlated linearly with conj(pulse)/sum|pulse|^2 (BP22
@@ -13,9 +13,9 @@ struct records;                     /* the plan */
    other continuation; with upsample = 1 the guards read zero. */
 struct records_shape {
     int samples, upsample, guard;
-    int length;                     /* of a row, complex values */
-    double flops;                   /* for one record: 5 N log2 N an FFT, 6 a complex product */
-    double bytes;                   /* held with one thread */
+    int length;   /* of a row, complex values */
+    double flops; /* for one record: 5 N log2 N an FFT, 6 a complex product */
+    double bytes; /* held with one thread */
 };
 
 /* `threads`: how many threads may call fill at once. Errors: STATUS_FAILED without memory, STATUS_UNSUPPORTED when a row

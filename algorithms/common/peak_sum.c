@@ -15,12 +15,12 @@ double REAL_ISA_NAME(peak)(long long rounds, volatile double *sink)
     }
 #define BEGIN(k) vector_real sum##k = step * (real)k;
 #define ROUND(k) sum##k = sum##k * factor + step;
-#define KEEP(k) __asm__ volatile("" : "+x"(sum##k));
-#define END(k) all += sum##k;
+#define KEEP(k)  __asm__ volatile("" : "+x"(sum##k));
+#define END(k)   all += sum##k;
     CHAINS(BEGIN)
     for (long long n = 0; n < rounds; n++) {
         CHAINS(ROUND)
-        CHAINS(KEEP)        /* the compiler may neither merge rounds nor move them out of the loop */
+        CHAINS(KEEP) /* the compiler may neither merge rounds nor move them out of the loop */
     }
     CHAINS(END)
     double total = 0;

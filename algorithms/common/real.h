@@ -9,17 +9,17 @@
 typedef double real;
 typedef double complex complex_real;
 #define REAL_NAME(name) name##_double
-#define FFTW(name) fftw_##name
+#define FFTW(name)      fftw_##name
 #else
 typedef float real;
 typedef float complex complex_real;
 #define REAL_NAME(name) name##_float
-#define FFTW(name) fftwf_##name
+#define FFTW(name)      fftwf_##name
 #endif
 
 /* Files that are also built for several instruction sets (BP_ISA): name_precision_isa. */
-#define REAL_JOIN(name, isa) name##_##isa
+#define REAL_JOIN(name, isa)          name##_##isa
 #define REAL_JOIN_EXPANDED(name, isa) REAL_JOIN(name, isa)
-#define REAL_ISA_NAME(name) REAL_JOIN_EXPANDED(REAL_NAME(name), BP_ISA)
+#define REAL_ISA_NAME(name)           REAL_JOIN_EXPANDED(REAL_NAME(name), BP_ISA)
 
 #endif

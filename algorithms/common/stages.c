@@ -7,7 +7,7 @@
 
 #include "algorithm.h"
 
-static int waits = -1;                  /* Linux's account of the thread, when waiting is left out */
+static int waits = -1; /* Linux's account of the thread, when waiting is left out */
 
 void seconds_skip_waiting(void)
 {
@@ -29,7 +29,7 @@ double seconds_now(void)
 {
     struct timespec now;
     long long waited;
-    do {                                /* again when the processor was lost between the two clocks */
+    do { /* again when the processor was lost between the two clocks */
         waited = waited_ns();
         clock_gettime(CLOCK_MONOTONIC, &now);
     } while (waited_ns() != waited);
@@ -49,7 +49,7 @@ void stages_end(struct stages *stages, const char *name)
     while (i < stages->count && strcmp(stages->stage[i].name, name) != 0)
         i++;
     if (i > last)
-        i = last;                   /* a contributor with more stages sees the rest summed in the last one */
+        i = last; /* a contributor with more stages sees the rest summed in the last one */
     else if (i == stages->count)
         stages->stage[stages->count++].name = name;
     stages->stage[i].seconds += seconds;

@@ -6,7 +6,7 @@
 #include "range_migration/engine.h"
 #include "common/turn.h"
 
-enum { LANES = RMA_ALIGNMENT / sizeof(real) };          /* real parts and imaginary parts of a row take turns */
+enum { LANES = RMA_ALIGNMENT / sizeof(real) }; /* real parts and imaginary parts of a row take turns */
 
 struct work_place {
     const struct rma *rma;

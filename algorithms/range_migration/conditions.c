@@ -18,10 +18,13 @@ struct rma_view rma_view_of(const struct problem *problem, const struct rma_meth
     const struct acquisition *a = problem->acquisition;
     double end = track->x_first + (a->pings - 1) * track->spacing;
     struct rma_view view = {
-        .problem = problem, .method = method, .spacing = fabs(track->spacing),
+        .problem = problem,
+        .method = method,
+        .spacing = fabs(track->spacing),
         .setting = {a->sound_speed, track->speed, a->fc, a->rx[a->receivers / 2].x - a->tx[0].x},
         .converts = a->receivers > 1 || fabs(a->rx[0].x - a->tx[0].x) > a->sound_speed / a->fc / 1000,
-        .x_low = fmin(track->x_first, end), .x_high = fmax(track->x_first, end),
+        .x_low = fmin(track->x_first, end),
+        .x_high = fmax(track->x_first, end),
         .beam_sine = a->echo_sine > 0 ? a->echo_sine : INFINITY,
     };
     if (!(a->echo_sine > 0) && a->tx_length > 0)
@@ -49,7 +52,7 @@ static double worst_row(const struct rma_view *view, row_function *function)
         for (int end = 0; end < 2; end++) {
             double r = patch->r_first + end * (patch->r_count - 1) * patch->r_step;
             double value = rma_view_aperture(view, patch, r, &low, &high) ? function(view, r, low, high) : 0;
-            worst = value <= worst ? worst : value;     /* a NaN is kept */
+            worst = value <= worst ? worst : value; /* a NaN is kept */
         }
     }
     return worst;
@@ -70,14 +73,18 @@ static double offset_at(const struct rma_view *view, int n)
 static struct rma_condition above_dc(const struct rma_view *view)
 {
     const struct acquisition *a = view->problem->acquisition;
-    return (struct rma_condition){"above_dc", a->fc - a->bandwidth / 2, 0, true,
-                                  "the lowest frequency fc - B/2 (Hz)", "a higher carrier or a narrower band"};
+    return (struct rma_condition){"above_dc",
+                                  a->fc - a->bandwidth / 2,
+                                  0,
+                                  true,
+                                  "the lowest frequency fc - B/2 (Hz)",
+                                  "a higher carrier or a narrower band"};
 }
 
 static struct rma_condition subsonic(const struct rma_view *view)
 {
-    return (struct rma_condition){"subsonic", 1 - fabs(view->setting.speed) / view->setting.sound_speed, 0.1, true,
-                                  "1 - |v|/c", "a lower speed"};
+    return (struct rma_condition){
+        "subsonic", 1 - fabs(view->setting.speed) / view->setting.sound_speed, 0.1, true, "1 - |v|/c", "a lower speed"};
 }
 
 static double stationary_at(const struct rma_view *view, double r, double low, double high)
@@ -89,7 +96,10 @@ static double stationary_at(const struct rma_view *view, double r, double low, d
 
 static struct rma_condition stationary(const struct rma_view *view)
 {
-    return (struct rma_condition){"stationary", worst_row(view, stationary_at), 0.01, false,
+    return (struct rma_condition){"stationary",
+                                  worst_row(view, stationary_at),
+                                  0.01,
+                                  false,
                                   "the first term that stationary phase drops, lambda/(32 pi r cos theta)",
                                   "rows farther away, or a higher frequency"};
 }
@@ -104,7 +114,10 @@ static double amplitude_at(const struct rma_view *view, double r, double low, do
 
 static struct rma_condition spa_amplitude(const struct rma_view *view)
 {
-    return (struct rma_condition){"spa_amplitude", worst_row(view, amplitude_at), 0.05, false,
+    return (struct rma_condition){"spa_amplitude",
+                                  worst_row(view, amplitude_at),
+                                  0.05,
+                                  false,
                                   "the amplitude that a monostatic weight gets wrong, (1 + (d/2r)^2)^.75 - 1",
                                   "rows farther away, or receivers nearer to the transmitter"};
 }
@@ -113,16 +126,21 @@ static double doppler_at(const struct rma_view *view, double r, double low, doub
 {
     const struct acquisition *a = view->problem->acquisition;
     double steepest = 0;
-    for (int n = 0; n < 4; n++)         /* the delay is convex: its slope is steepest at the ends */
-        steepest = fmax(steepest, fabs(spectrum_slope(&view->setting, offset_at(view, n / 2 * 2), r, n % 2 ? high : low)));
+    for (int n = 0; n < 4; n++) /* the delay is convex: its slope is steepest at the ends */
+        steepest =
+            fmax(steepest, fabs(spectrum_slope(&view->setting, offset_at(view, n / 2 * 2), r, n % 2 ? high : low)));
     return (a->fc + a->bandwidth / 2) * steepest * 2 * view->spacing / a->receivers;
 }
 
 static struct rma_condition doppler(const struct rma_view *view)
 {
-    return (struct rma_condition){"doppler", worst_row(view, doppler_at), 1.05, false,
-                                  "the widest azimuth wavenumber in the beam over what the receivers sample, M/(2 spacing)",
-                                  "pings closer together, more receivers, a narrower beam or a lower speed"};
+    return (struct rma_condition){
+        "doppler",
+        worst_row(view, doppler_at),
+        1.05,
+        false,
+        "the widest azimuth wavenumber in the beam over what the receivers sample, M/(2 spacing)",
+        "pings closer together, more receivers, a narrower beam or a lower speed"};
 }
 
 static double sinc(double z)
@@ -155,10 +173,14 @@ static double formula_at(const struct rma_view *view, double r, double low, doub
 static struct rma_condition formula(const struct rma_view *view)
 {
     bool exact = view->method->spectrum == spectrum_exact || !view->converts;
-    return (struct rma_condition){view->method->law, exact ? 0 : worst_row(view, formula_at), FORMULA_LIMIT, false,
-                                  "the formula's phase error over the beam (rad, rms)",
-                                  "rma_numeric, which has no such error; rows farther away or nearer, a narrower beam or a "
-                                  "lower speed"};
+    return (struct rma_condition){
+        view->method->law,
+        exact ? 0 : worst_row(view, formula_at),
+        FORMULA_LIMIT,
+        false,
+        "the formula's phase error over the beam (rad, rms)",
+        "rma_numeric, which has no such error; rows farther away or nearer, a narrower beam or a "
+        "lower speed"};
 }
 
 rma_condition_function *const rma_conditions[RMA_CONDITIONS] = {
@@ -176,8 +198,8 @@ enum status rma_conditions_check(const struct rma_view *view)
         struct rma_condition c = rma_conditions[k](view);
         if (!rma_condition_holds(&c))
             return status_set(STATUS_UNSUPPORTED, "%s: condition %s: %s is %.3g; %s %g is needed (cure: %s)",
-                              view->method->name, c.name, c.meaning, c.value, c.at_least ? "more than" : "at most", c.limit,
-                              c.cure);
+                              view->method->name, c.name, c.meaning, c.value, c.at_least ? "more than" : "at most",
+                              c.limit, c.cure);
     }
     return STATUS_OK;
 }

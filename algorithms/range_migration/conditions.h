@@ -10,8 +10,8 @@
 struct rma_condition {
     const char *name;
     double value, limit;
-    bool at_least;                  /* the value must lie above the limit, not below */
-    const char *meaning, *cure;     /* what the value is, and what would change it */
+    bool at_least;              /* the value must lie above the limit, not below */
+    const char *meaning, *cure; /* what the value is, and what would change it */
 };
 
 /* What the conditions look at: a uniform straight track along x, and the rows and columns wanted. */
@@ -19,9 +19,9 @@ struct rma_view {
     const struct problem *problem;
     const struct rma_method *method;
     struct spectrum_setting setting;
-    double x_low, x_high, spacing;  /* m: the track's ends; ping to ping, > 0 */
-    bool converts;                  /* not a single receiver at the transmitter, which needs no formula */
-    double beam_sine;               /* of the echoes' beam at the transmitter; INFINITY: everything is seen */
+    double x_low, x_high, spacing; /* m: the track's ends; ping to ping, > 0 */
+    bool converts;                 /* not a single receiver at the transmitter, which needs no formula */
+    double beam_sine;              /* of the echoes' beam at the transmitter; INFINITY: everything is seen */
 };
 
 struct rma_view rma_view_of(const struct problem *problem, const struct rma_method *method,

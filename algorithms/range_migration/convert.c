@@ -12,7 +12,7 @@ enum { VECTOR_BYTES = 64 };
 #elif defined __AVX__
 enum { VECTOR_BYTES = 32 };
 #else
-enum { VECTOR_BYTES = 16 };         /* wider ones would live in memory */
+enum { VECTOR_BYTES = 16 }; /* wider ones would live in memory */
 #endif
 typedef real vec __attribute__((vector_size(VECTOR_BYTES), may_alias));
 enum { VECTOR = VECTOR_BYTES / sizeof(real), PAIR = LANES > VECTOR ? 2 : 1, SPAN = RMA_SPAN };
@@ -48,7 +48,8 @@ struct rows {
 /* The group's receivers times their corrections at n bins: stored row by row, or added up into one row, or both
    (what is NULL is left out). */
 static inline __attribute__((always_inline)) void group_apply(struct rows in, int count, int n,
-    real rotor[restrict 6][SPAN], struct rows stored, real *sum)
+                                                              real rotor[restrict 6][SPAN], struct rows stored,
+                                                              real *sum)
 {
     for (int b = 0; b < n; b += PAIR * VECTOR) {
         const int at = 2 * (b / LANES * LANES) + b % LANES;

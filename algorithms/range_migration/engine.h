@@ -11,47 +11,47 @@
 #include "range_migration/rma.h"
 
 enum {
-    RMA_ALIGNMENT = 64,             /* bytes: a vector, and a line of the cache */
-    RMA_DEGREE = 5,                 /* of the phases' polynomials in frequency */
-    RMA_SPAN = 256,                 /* bins that go through all corrections together, in the cache */
-    RMA_GROUP = 24,                 /* receivers of one recurrence: float loses some 1e-6 over it */
-    RMA_TILE = 8,                   /* neighbouring wavenumbers whose rows are stored together */
-    RMA_NODES = 4,                  /* blocks that blend at one range: a cubic */
-    RMA_GUARD = 16,                 /* bins repeated beyond a spectrum's ends: the longest kernel */
-    RMA_INTERVALS = 1024,           /* of the Stolt kernel's table, linear inside each */
-    RMA_STEPS = 16                  /* range rows between fresh phases of a direct sum */
+    RMA_ALIGNMENT = 64,   /* bytes: a vector, and a line of the cache */
+    RMA_DEGREE = 5,       /* of the phases' polynomials in frequency */
+    RMA_SPAN = 256,       /* bins that go through all corrections together, in the cache */
+    RMA_GROUP = 24,       /* receivers of one recurrence: float loses some 1e-6 over it */
+    RMA_TILE = 8,         /* neighbouring wavenumbers whose rows are stored together */
+    RMA_NODES = 4,        /* blocks that blend at one range: a cubic */
+    RMA_GUARD = 16,       /* bins repeated beyond a spectrum's ends: the longest kernel */
+    RMA_INTERVALS = 1024, /* of the Stolt kernel's table, linear inside each */
+    RMA_STEPS = 16        /* range rows between fresh phases of a direct sum */
 };
 
 /* Scratch of a thread; all but the first two hold values of the plan's precision. The largest swath counts. */
 enum rma_buffer {
-    RMA_RAMPS,                      /* struct rma_ramp [1 + needed][groups]: bulk, then each block's */
-    RMA_ABSCISSAS,                  /* double [row]: y of each bin */
-    RMA_CONVERTED,                  /* [receivers][RMA_SPAN]: some bins after the bulk correction */
-    RMA_SUMS,                       /* [needed][1 or receivers][row]: spectra of each block */
-    RMA_WAVE,                       /* complex [longest transform of a swath] */
-    RMA_CUT,                        /* complex [stolt_length]: the blocks put together, from sample `centre` on */
-    RMA_PLACES,                     /* real [length]: position of those samples in blocks */
-    RMA_SPECTRUM,                   /* complex [RMA_GUARD + stolt_length + RMA_GUARD] in rising frequency */
-    RMA_PARTS,                      /* [most rows of a patch]: vectors of a direct sum's re and im */
-    RMA_STORED,                     /* complex [rows][RMA_TILE] */
-    RMA_RECORD,                     /* complex [record_length] */
+    RMA_RAMPS,     /* struct rma_ramp [1 + needed][groups]: bulk, then each block's */
+    RMA_ABSCISSAS, /* double [row]: y of each bin */
+    RMA_CONVERTED, /* [receivers][RMA_SPAN]: some bins after the bulk correction */
+    RMA_SUMS,      /* [needed][1 or receivers][row]: spectra of each block */
+    RMA_WAVE,      /* complex [longest transform of a swath] */
+    RMA_CUT,       /* complex [stolt_length]: the blocks put together, from sample `centre` on */
+    RMA_PLACES,    /* real [length]: position of those samples in blocks */
+    RMA_SPECTRUM,  /* complex [RMA_GUARD + stolt_length + RMA_GUARD] in rising frequency */
+    RMA_PARTS,     /* [most rows of a patch]: vectors of a direct sum's re and im */
+    RMA_STORED,    /* complex [rows][RMA_TILE] */
+    RMA_RECORD,    /* complex [record_length] */
     RMA_BUFFERS
 };
 
 /* Phases of a group of receivers in cycles: receiver i of it has  first + i step + i(i-1)/2 curve. Each is a
    polynomial in y = (F - middle)/half, lowest power first. */
 struct rma_ramp {
-    int begin, count;               /* receivers */
+    int begin, count; /* receivers */
     double first[RMA_DEGREE + 1], step[RMA_DEGREE + 1], curve[RMA_DEGREE + 1];
 };
 
 /* One wavenumber: what of its band exists, and how far ranges are delayed. */
 struct rma_line {
-    double nu;                      /* cycles/m */
-    double lowest;                  /* Hz: the least F that is used; below it lies the evanescent part */
-    int begin;                      /* first bin of the band from there on; `band` if there is none */
-    double middle, half;            /* Hz: the polynomials' interval */
-    double slowness;                /* s/m: delay over range, (1/2 pi) dK/dF at fc */
+    double nu;           /* cycles/m */
+    double lowest;       /* Hz: the least F that is used; below it lies the evanescent part */
+    int begin;           /* first bin of the band from there on; `band` if there is none */
+    double middle, half; /* Hz: the polynomials' interval */
+    double slowness;     /* s/m: delay over range, (1/2 pi) dK/dF at fc */
 };
 
 /* Of a swath by the transform that the Stolt interpolation reads. */
@@ -59,46 +59,46 @@ struct rma_line {
 
 struct rma_patch {
     struct grid grid;
-    int index;                      /* among the problem's patches */
-    int length;                     /* of the range IFFT onto the grid's rows: K = j 2 pi/(length step) */
-    double step;                    /* m: the grid's r_step; a range bin for a single row */
-    size_t row;                     /* of its first row among all rows of the swath */
+    int index;   /* among the problem's patches */
+    int length;  /* of the range IFFT onto the grid's rows: K = j 2 pi/(length step) */
+    double step; /* m: the grid's r_step; a range bin for a single row */
+    size_t row;  /* of its first row among all rows of the swath */
     /* azimuth: columns that divide the track's period evenly are bins of one transform (wavenumbers fold onto it);
        any other ones are a convolution with a chirp */
     bool folds;
-    int columns;                    /* length of the transform */
-    void *before, *kernel, *after;  /* complex [wavenumbers], [columns] (chirp only), [x_count]: factors on the way */
-    void *focus_plan, *azimuth_forward, *azimuth_inverse;       /* forward: chirp only */
+    int columns;                   /* length of the transform */
+    void *before, *kernel, *after; /* complex [wavenumbers], [columns] (chirp only), [x_count]: factors on the way */
+    void *focus_plan, *azimuth_forward, *azimuth_inverse; /* forward: chirp only */
 };
 
 /* Patches whose echoes lie in one stretch of the records, migrated together and apart from all others. */
 struct rma_swath {
-    double nearest, farthest;       /* m: its rows */
+    double nearest, farthest; /* m: its rows */
     int patch_count;
-    struct rma_patch *patches;      /* part of the plan's */
-    size_t rows;                    /* of all its patches */
+    struct rma_patch *patches; /* part of the plan's */
+    size_t rows;               /* of all its patches */
 
     /* cut: sample i of the swath is sample `first` + i of a record (negative and beyond it: zero); of them
        [begin, end) are taken, an end inside the record fading in or out */
     int first, begin, end;
-    double t_first;                 /* s: time of sample 0 after emission */
-    int centre;                     /* the middle sample */
+    double t_first; /* s: time of sample 0 after emission */
+    int centre;     /* the middle sample */
 
     /* azimuth: wavenumber q is (q - wavenumbers/2)/(period |spacing|) */
-    int period;                     /* pings and zeros after them */
-    int wavenumbers;                /* receivers x period: the full rate */
-    size_t columns;                 /* wavenumbers rounded up to RMA_TILE */
+    int period;      /* pings and zeros after them */
+    int wavenumbers; /* receivers x period: the full rate */
+    size_t columns;  /* wavenumbers rounded up to RMA_TILE */
 
     /* range: bin k is at (band_first + k) fs/length from fc */
-    int length;                     /* of the range transforms */
-    int band_first, band, row;      /* bins, and bins of a stored row (a multiple of the vector) */
-    int stolt_length;               /* of the transform that is interpolated: the samples fill 2/3 of it */
+    int length;                /* of the range transforms */
+    int band_first, band, row; /* bins, and bins of a stored row (a multiple of the vector) */
+    int stolt_length;          /* of the transform that is interpolated: the samples fill 2/3 of it */
 
-    int needed, *blocks;            /* [needed] the blocks that are computed; part of the plan's */
-    int reference;                  /* index into them: the bulk correction is this block's */
+    int needed, *blocks; /* [needed] the blocks that are computed; part of the plan's */
+    int reference;       /* index into them: the bulk correction is this block's */
 
-    void *data;                     /* [period][receivers][row]: spectra, vectors of re and im in turn */
-    void *apodization;              /* real [stolt_length]: 1/transform of the Stolt kernel, 1/length included */
+    void *data;        /* [period][receivers][row]: spectra, vectors of re and im in turn */
+    void *apodization; /* real [stolt_length]: 1/transform of the Stolt kernel, 1/length included */
     void *range_forward, *range_inverse, *stolt_forward, *azimuth_forward;
 };
 
@@ -112,40 +112,40 @@ struct rma {
     /* track: ping k is emitted at x_first + k spacing, receiver m is offset[m] ahead */
     double x_first, spacing, t0, fs;
     int receivers, pings, samples;
-    double *offset;                 /* [receivers] m */
-    int extremes[2];                /* the receivers of least and greatest offset */
-    double nearest, farthest;       /* m: all rows asked for */
-    double sine;                    /* of the widest angle off abeam that wavenumbers, beam and lowest frequency allow */
-    double way;                     /* m: the farthest that a ping is from a wanted column, along the track */
-    double aside;                   /* m: greatest magnitude of an offset */
-    int groups;                     /* of receivers */
-    bool recurs;                    /* by recurrence: receivers are evenly spaced, and libm is not asked for */
-    bool converts;                  /* false: one receiver, at the transmitter */
+    double *offset;           /* [receivers] m */
+    int extremes[2];          /* the receivers of least and greatest offset */
+    double nearest, farthest; /* m: all rows asked for */
+    double sine;              /* of the widest angle off abeam that wavenumbers, beam and lowest frequency allow */
+    double way;               /* m: the farthest that a ping is from a wanted column, along the track */
+    double aside;             /* m: greatest magnitude of an offset */
+    int groups;               /* of receivers */
+    bool recurs;              /* by recurrence: receivers are evenly spaced, and libm is not asked for */
+    bool converts;            /* false: one receiver, at the transmitter */
 
     /* pulse compression */
-    int record_length;              /* of its transform; 0: the echoes come compressed */
-    double half_band;               /* Hz: half of what holds the compressed pulse */
-    double loss;                    /* energy of the compressed pulse outside it, relative */
-    int fade;                       /* samples over which a cut fades, and as many between the fade and the rows */
-    void *filter;                   /* complex [record_length]: conj(replica)/energy */
-    void *fades;                    /* real [fade], rising */
+    int record_length; /* of its transform; 0: the echoes come compressed */
+    double half_band;  /* Hz: half of what holds the compressed pulse */
+    double loss;       /* energy of the compressed pulse outside it, relative */
+    int fade;          /* samples over which a cut fades, and as many between the fade and the rows */
+    void *filter;      /* complex [record_length]: conj(replica)/energy */
+    void *fades;       /* real [fade], rising */
     void *record_forward, *record_inverse;
 
     /* blocks: centre n of block_count at `block_from + n block_width` in r or 1/r */
     int block_count;
     double block_from, block_width;
-    int *block_list;                /* the swaths' blocks */
+    int *block_list; /* the swaths' blocks */
 
-    int taps;                       /* of the Stolt interpolation; 0: direct sum */
-    double shape;                   /* the Kaiser kernel's parameter */
-    void *kernel;                   /* real [RMA_INTERVALS + 2][taps] */
+    int taps;     /* of the Stolt interpolation; 0: direct sum */
+    double shape; /* the Kaiser kernel's parameter */
+    void *kernel; /* real [RMA_INTERVALS + 2][taps] */
 
     int patch_count, swath_count;
-    struct rma_patch *patches;      /* [patch_count] by range */
-    struct rma_swath *swaths;       /* [swath_count] */
+    struct rma_patch *patches; /* [patch_count] by range */
+    struct rma_swath *swaths;  /* [swath_count] */
 
-    double nodes[RMA_DEGREE + 1];   /* Chebyshev's, of the phases' polynomials */
-    double powers[RMA_DEGREE + 1][RMA_DEGREE + 1];      /* takes values at the nodes to coefficients */
+    double nodes[RMA_DEGREE + 1];                  /* Chebyshev's, of the phases' polynomials */
+    double powers[RMA_DEGREE + 1][RMA_DEGREE + 1]; /* takes values at the nodes to coefficients */
 
     int threads;
     size_t scratch_at[RMA_BUFFERS]; /* bytes: where each buffer of a thread begins */
@@ -177,20 +177,20 @@ static inline int rma_wavenumber(const struct rma *rma, const struct rma_swath *
 
 /* ---- rma_phase.c ---- */
 
-double rma_frequency(const struct rma *rma, const struct rma_swath *swath, int bin);        /* F, Hz */
+double rma_frequency(const struct rma *rma, const struct rma_swath *swath, int bin); /* F, Hz */
 /* Correction of receiver m at range r, in cycles: -(phi + r K)/2 pi. */
 double rma_correction(const struct rma *rma, int receiver, double r, double frequency, double nu);
 struct rma_line rma_line(const struct rma *rma, const struct rma_swath *swath, int q);
 /* Fit the correction at `r` less the one at `less` (0: nothing is taken off) for all groups. */
 void rma_ramps(const struct rma *rma, const struct rma_line *line, double r, double less, struct rma_ramp *ramps);
-void rma_nodes(struct rma *rma);                /* fills nodes and powers */
+void rma_nodes(struct rma *rma); /* fills nodes and powers */
 /* Range of a block's centre, m. */
 double rma_block_range(const struct rma *rma, int block);
 
 /* ---- rma_transform.c ---- */
 struct rma_transform {
-    enum status (*plan)(struct rma *rma);       /* memory, tables and FFT plans */
-    void (*destroy)(struct rma *rma);           /* accepts what `plan` left unfinished */
+    enum status (*plan)(struct rma *rma); /* memory, tables and FFT plans */
+    void (*destroy)(struct rma *rma);     /* accepts what `plan` left unfinished */
     void (*compress)(const struct rma *rma, const void *samples);
     void (*spread)(const struct rma *rma, const struct rma_swath *swath);
     void (*inverse)(const struct rma *rma, const struct rma_swath *swath, const struct rma_patch *patch, void *pixels);

@@ -4,8 +4,7 @@
 
 #include "range_migration/column.h"
 
-enum { SPAN = RMA_SPAN,
-       RUN = 64 };                  /* samples that a block takes or leaves together: places rise or fall along them */
+enum { SPAN = RMA_SPAN, RUN = 64 }; /* samples that a block takes or leaves together: places rise or fall along them */
 
 /* Bins that are evanescent, and those that only fill the last vector, read zero. */
 static void mask(const struct work_place *w, real *row)
@@ -50,11 +49,12 @@ static int block_pieces(const struct rma *rma, int block, struct piece *pieces)
         return count;
     }
     const int nodes = rma_nodes_blended(rma), last = rma->block_count - nodes;
-    for (int first = block - nodes + 1; first <= block; first++) {      /* the nearest: first to first + nodes - 1 */
+    for (int first = block - nodes + 1; first <= block; first++) { /* the nearest: first to first + nodes - 1 */
         if (first < 0 || first > last)
             continue;
         struct piece *piece = &pieces[count++];
-        *piece = (struct piece){first > 0 ? (real)(first + 1) : -INFINITY, first < last ? (real)(first + 2) : INFINITY, {1}};
+        *piece =
+            (struct piece){first > 0 ? (real)(first + 1) : -INFINITY, first < last ? (real)(first + 2) : INFINITY, {1}};
         for (int node = first, degree = 1; node < first + nodes; node++)
             if (node != block) {
                 real way = (real)(node - block);
@@ -69,8 +69,8 @@ static int block_pieces(const struct rma *rma, int block, struct piece *pieces)
 static void add_weighted(const real *restrict x, const real *restrict place, int n, real block,
                          const struct piece *piece, real *restrict cut)
 {
-    const real from = piece->from, to = piece->to, w0 = piece->weight[0], w1 = piece->weight[1],
-               w2 = piece->weight[2], w3 = piece->weight[3];
+    const real from = piece->from, to = piece->to, w0 = piece->weight[0], w1 = piece->weight[1], w2 = piece->weight[2],
+               w3 = piece->weight[3];
     for (int j = 0; j < n; j++) {
         real away = place[j] - block, weight = w0 + away * (w1 + away * (w2 + away * w3));
         weight = place[j] >= from && place[j] < to ? weight : 0;
@@ -86,7 +86,7 @@ static void interleave(const real *restrict row, int begin, int end, real *restr
         const int lane = k % LANES;
         const real *from = row + 2 * (k - lane) + lane;
         n = LANES - lane < end - k ? LANES - lane : end - k;
-        if (n == LANES)             /* the usual case, of constant length */
+        if (n == LANES) /* the usual case, of constant length */
             for (int i = 0; i < LANES; i++) {
                 out[2 * i] = from[i];
                 out[2 * i + 1] = from[LANES + i];
@@ -113,7 +113,8 @@ static void add_block(const struct work_place *w, const real *row, int block, co
     const int count = place ? block_pieces(w->rma, block, pieces) : 0;
     /* Samples from `centre` on, then those before it at the cut's end. */
     for (int j = 0, n; j < length; j += n) {
-        const int at = (swath->centre + j) % length, ahead = length - length / 2, left = (j < ahead ? ahead : length) - j;
+        const int at = (swath->centre + j) % length, ahead = length - length / 2,
+                  left = (j < ahead ? ahead : length) - j;
         n = left < RUN ? left : RUN;
         n = n < length - at ? n : length - at;
         real *to = cut + 2 * (j < ahead ? j : j + swath->stolt_length - length), *x = wave + 2 * at;
@@ -132,7 +133,7 @@ static void add_block(const struct work_place *w, const real *row, int block, co
    imaginary ones. Its samples count from `centre`. */
 static void spectrum(const struct work_place *w, real *cut, real *re)
 {
-    const size_t length = (size_t)w->swath->stolt_length, low = length / 2;     /* low: bins below fc */
+    const size_t length = (size_t)w->swath->stolt_length, low = length / 2; /* low: bins below fc */
     const real *scale = w->swath->apodization;
     real *im = re + length + 2 * RMA_GUARD;
     for (size_t j = 0; j < length; j++) {
@@ -162,7 +163,9 @@ static void spectrum(const struct work_place *w, real *cut, real *re)
 /* Values of the spectrum between its bins; position counts from the first guard bin. `taps` is a constant where
    this is inlined. */
 static inline __attribute__((always_inline)) void interpolate(const struct rma *rma, const real *restrict spectrum,
-    int length, int taps, int n, const double *restrict position, real *restrict re, real *restrict im)
+                                                              int length, int taps, int n,
+                                                              const double *restrict position, real *restrict re,
+                                                              real *restrict im)
 {
     const real *kernel = rma->kernel, *imaginary = spectrum + length + 2 * RMA_GUARD;
     for (int j = 0; j < n; j++) {
@@ -211,7 +214,7 @@ static void focus_interpolated(struct work_place *w, const struct rma_patch *pat
             double root = sqrt(half * half + b1 * kappa * kappa), frequency = beta * half + root;
             double offset = frequency - fc;
             position[i] = offset / stolt_bin + to_fc;
-            double slope = b1 * kappa * c / (4 * M_PI) / root;      /* dF/dK */
+            double slope = b1 * kappa * c / (4 * M_PI) / root; /* dF/dK */
             weight[i] = (real)(frequency / b1 * sqrt(c / (2 * kappa)) / kappa * slope * k_step / rma->fs);
             double f = k * r / (2 * M_PI) - offset * t_centre + 0.125;
             cycles[i] = f - floor(f + 0.5);
@@ -331,7 +334,7 @@ static void column(struct work_place *w, real *stored)
         reconstruct(w, sums, cut);
         spectrum(w, cut, z);
     }
-    if (direct && !from_sums) {     /* its transform is as long as the conversion's */
+    if (direct && !from_sums) { /* its transform is as long as the conversion's */
         int first = swath->band_first + swath->length / 2 + RMA_GUARD;
         for (int k = 0; k < swath->band; k++)
             for (int part = 0; part < 2; part++)
@@ -354,7 +357,10 @@ static void column(struct work_place *w, real *stored)
 void REAL_ISA_NAME(rma_column)(const struct rma *rma, const struct rma_swath *swath, int thread, int turn,
                                double seconds[RMA_STAGES])
 {
-    struct work_place w = {.rma = rma, .swath = swath, .seconds = seconds, .mark = seconds_now(),
+    struct work_place w = {.rma = rma,
+                           .swath = swath,
+                           .seconds = seconds,
+                           .mark = seconds_now(),
                            .scratch = (char *)rma->scratch + (size_t)thread * rma->scratch_bytes};
     real *stored = buffer(&w, RMA_STORED), *focused = rma->focused;
     memset(stored, 0, 2 * RMA_TILE * swath->rows * sizeof *stored);

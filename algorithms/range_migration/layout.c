@@ -13,12 +13,12 @@
 
 static const double pi = 3.14159265358979323846;
 
-static const double BAND_LOSS = 4e-6;       /* of the compressed pulse's energy may lie outside the band */
-static const double WIDEST_SINE = 0.95;     /* of the aperture where neither sampling nor element length bounds it */
-static const double FADE_PERIODS = 8;       /* of fs - B, or of B, in a cut's fade: what it smears stays beside the band */
-static const double PULSE_PERIODS = 8;     /* of B: beside the rows, so that no pulse wraps around the cut */
-static const double FRESNEL_ZONES = 6;      /* beyond the track's ends: what is cut farther out leaves no ripple */
-static const double EVEN = 1e-12;           /* relative: columns that divide the period but for rounding */
+static const double BAND_LOSS = 4e-6;   /* of the compressed pulse's energy may lie outside the band */
+static const double WIDEST_SINE = 0.95; /* of the aperture where neither sampling nor element length bounds it */
+static const double FADE_PERIODS = 8;   /* of fs - B, or of B, in a cut's fade: what it smears stays beside the band */
+static const double PULSE_PERIODS = 8;  /* of B: beside the rows, so that no pulse wraps around the cut */
+static const double FRESNEL_ZONES = 6;  /* beyond the track's ends: what is cut farther out leaves no ripple */
+static const double EVEN = 1e-12;       /* relative: columns that divide the period but for rounding */
 static const int stolt_taps[] = {0, 4, 6, 8, 12, 16};
 
 static enum status unsupported(const struct rma *rma, const char *reason)
@@ -107,7 +107,7 @@ double rma_reach(const struct rma *rma, double r)
 static enum status lay_band(struct rma *rma)
 {
     const struct acquisition *a = rma->problem.acquisition;
-    double band = a->bandwidth / a->fs, fade = ceil(FADE_PERIODS / fmin(1 - band, band));       /* infinite at fs = B */
+    double band = a->bandwidth / a->fs, fade = ceil(FADE_PERIODS / fmin(1 - band, band)); /* infinite at fs = B */
     rma->fade = fade < a->samples ? (int)fade : a->samples;
     /* What was compressed elsewhere may have flanks beyond its bandwidth; twice the band holds them. Far beyond it there is
        nothing, and the phases' polynomials would have to span it. */
@@ -174,7 +174,7 @@ static bool blocks_suffice(struct rma *rma, int count)
             if (rma->options.spacing == RMA_INVERSE)
                 r1 = edge > 0 ? 1 / edge : rma->farthest;
             r1 = fmin(fmax(r1, rma->nearest), rma->farthest);
-            for (int k = 0; k < 18; k++) {      /* 2 receivers, 3 frequencies, 3 wavenumbers */
+            for (int k = 0; k < 18; k++) { /* 2 receivers, 3 frequencies, 3 wavenumbers */
                 double frequency = a->fc + (k / 2 % 3 - 1) * a->bandwidth / 2, at = (k / 6 - 1) * nu;
                 double error = rma_correction(rma, rma->extremes[k % 2], r1, frequency, at)
                                - rma_correction(rma, rma->extremes[k % 2], r0, frequency, at);
@@ -219,8 +219,10 @@ static enum status lay_blocks(struct rma *rma)
         for (count = 1; !blocks_suffice(rma, count); count *= 2) {
             too_few = count;
             if (count >= 4096)
-                return status_set(STATUS_UNSUPPORTED, "%s: 4096 range blocks leave a phase error above limit = %g "
-                                  "rad", rma->method.name, rma->options.limit);
+                return status_set(STATUS_UNSUPPORTED,
+                                  "%s: 4096 range blocks leave a phase error above limit = %g "
+                                  "rad",
+                                  rma->method.name, rma->options.limit);
         }
         while (count - too_few > 1) {
             int middle = (count + too_few) / 2;
@@ -251,7 +253,8 @@ static void swath_blocks(const struct rma *rma, struct rma_swath *swath, int *li
         bool wanted = rma->block_count == 1;
         for (int k = 0; k < swath->patch_count && !wanted; k++) {
             const struct grid *g = &swath->patches[k].grid;
-            int begin = block_first(rma, block_place(rma, g->r_first)), end = block_first(rma, block_place(rma, last_row(g)));
+            int begin = block_first(rma, block_place(rma, g->r_first)),
+                end = block_first(rma, block_place(rma, last_row(g)));
             wanted = n >= (begin < end ? begin : end) && n < (begin < end ? end : begin) + nodes;
         }
         if (wanted)
@@ -332,16 +335,19 @@ static enum status swath_azimuth(const struct rma *rma, struct rma_swath *swath)
         const struct grid *g = &swath->patches[k].grid;
         double last = g->x_first + (g->x_count - 1) * g->x_step;
         if (g->x_first < x_low - angle || last > x_high + angle)
-            return status_set(STATUS_UNSUPPORTED, "%s: columns from %g to %g m leave what the wavenumbers of the "
-                              "track cover, %g to %g m (squint too large)", rma->method.name, g->x_first, last,
-                              x_low - angle, x_high + angle);
+            return status_set(STATUS_UNSUPPORTED,
+                              "%s: columns from %g to %g m leave what the wavenumbers of the "
+                              "track cover, %g to %g m (squint too large)",
+                              rma->method.name, g->x_first, last, x_low - angle, x_high + angle);
         overhang = fmax(overhang, fmax(x_low - g->x_first, last - x_high));
     }
     double extent = x_high - x_low + overhang + angle;
     swath->period = fft_length((long long)fmin(1e9, fmax(ceil(extent / spacing) + 1, folds / spacing)));
     if (swath->period == 0 || (double)swath->period * rma->receivers > INT_MAX / 4)
-        return status_set(STATUS_UNSUPPORTED, "%s: the azimuth transform is too long: %g m to either side of a target, pings "
-                          "%g m apart, %d receivers", rma->method.name, reach, spacing, rma->receivers);
+        return status_set(STATUS_UNSUPPORTED,
+                          "%s: the azimuth transform is too long: %g m to either side of a target, pings "
+                          "%g m apart, %d receivers",
+                          rma->method.name, reach, spacing, rma->receivers);
     swath->wavenumbers = swath->period * rma->receivers;
     swath->columns = (size_t)(swath->wavenumbers + RMA_TILE - 1) / RMA_TILE * RMA_TILE;
     return STATUS_OK;
@@ -367,7 +373,8 @@ static enum status swath_range(const struct rma *rma, struct rma_swath *swath)
     swath->t_first = rma->t0 + from / rma->fs;
     swath->centre = (int)((to - from) / 2);
     swath->length = fft_length_fast((long long)(to - from) + 1 + RMA_GUARD);
-    swath->stolt_length = rma->taps == 0 ? swath->length : fft_length_fast((long long)(RMA_OVERSAMPLING * swath->length));
+    swath->stolt_length =
+        rma->taps == 0 ? swath->length : fft_length_fast((long long)(RMA_OVERSAMPLING * swath->length));
     if (swath->length == 0 || swath->stolt_length == 0 || swath->stolt_length > INT_MAX / 64)
         return unsupported(rma, "the range transform is too long");
 
@@ -394,8 +401,8 @@ static enum status swath_patches(const struct rma *rma, struct rma_swath *swath)
         double columns = swath->period * fabs(rma->spacing) / patch->grid.x_step, whole = floor(columns + 0.5);
         patch->folds = fabs(columns - whole) <= EVEN * whole && whole >= patch->grid.x_count && whole <= INT_MAX
                        && fft_length((long long)whole) == whole;
-        patch->columns = patch->folds ? (int)whole
-                                      : fft_length_fast((long long)swath->wavenumbers + patch->grid.x_count - 1);
+        patch->columns =
+            patch->folds ? (int)whole : fft_length_fast((long long)swath->wavenumbers + patch->grid.x_count - 1);
         if (patch->length == 0 || patch->columns == 0)
             return status_set(STATUS_UNSUPPORTED, "%s: rows %g m apart over %g m are too many to transform",
                               rma->method.name, patch->step, extent);
@@ -408,7 +415,7 @@ static enum status lay_swaths(struct rma *rma)
     static enum status (*const steps[])(const struct rma *, struct rma_swath *) = {swath_azimuth, swath_range,
                                                                                    swath_patches};
     rma->taps = stolt_taps[rma->options.stolt];
-    double support = rma->taps * (1 - 0.5 / RMA_OVERSAMPLING);      /* the parameter of least error for this support */
+    double support = rma->taps * (1 - 0.5 / RMA_OVERSAMPLING); /* the parameter of least error for this support */
     rma->shape = pi * sqrt(fmax(support * support - 0.8, 1));
     rma->block_list = malloc((size_t)rma->block_count * (size_t)rma->swath_count * sizeof *rma->block_list);
     if (!rma->block_list)

@@ -6,8 +6,8 @@
 
 static const double pi = 3.14159265358979323846;
 
-static const double GRAZING = 1.005;        /* cells this near to evanescence (cos theta < 0.1) are left out too */
-static const double SAME_CURVE = 1e-10;     /* cycles: rounding, not another curvature */
+static const double GRAZING = 1.005;    /* cells this near to evanescence (cos theta < 0.1) are left out too */
+static const double SAME_CURVE = 1e-10; /* cycles: rounding, not another curvature */
 
 double rma_frequency(const struct rma *rma, const struct rma_swath *swath, int bin)
 {
@@ -33,7 +33,7 @@ struct rma_line rma_line(const struct rma *rma, const struct rma_swath *swath, i
     line.lowest = fmax(GRAZING * edge * c * fabs(line.nu) / 2, 0.01 * s->fc);
     double first = rma_frequency(rma, swath, 0), last = rma_frequency(rma, swath, swath->band - 1);
     if (!(line.lowest < s->fc && line.lowest < last))
-        return line;                /* `printed` takes theta at fc, which must exist */
+        return line; /* `printed` takes theta at fc, which must exist */
     line.begin = (int)fmax(0, ceil((line.lowest - first) / (rma->fs / swath->length)));
     line.middle = (fmax(first, line.lowest) + last) / 2;
     line.half = fmax(last - line.middle, rma->fs / swath->length);
@@ -69,7 +69,7 @@ void rma_ramps(const struct rma *rma, const struct rma_line *line, double r, dou
             double slope = count > 1 ? (at[1] - at[0]) / end : 0;
             double bend = count > 2 ? (slope - (at[2] - at[0]) / middle) / (end - middle) : 0;
             values[0][n] = at[0];
-            values[1][n] = slope - bend * (end - 1);        /* D(1) - D(0) of a i + bend i^2, a = slope - bend end */
+            values[1][n] = slope - bend * (end - 1); /* D(1) - D(0) of a i + bend i^2, a = slope - bend end */
             values[2][n] = 2 * bend;
         }
         double *const polynomials[3] = {ramps->first, ramps->step, ramps->curve};
@@ -83,7 +83,7 @@ void rma_ramps(const struct rma *rma, const struct rma_line *line, double r, dou
                     polynomials[k][power] += rma->powers[power][n] * values[k][n];
                 same = same && (k < 2 || fabs(ramps->curve[power] - ramps[-1].curve[power]) < SAME_CURVE);
             }
-        if (same || count < 3)      /* one or two receivers have none of their own */
+        if (same || count < 3) /* one or two receivers have none of their own */
             memcpy(ramps->curve, begin > 0 ? ramps[-1].curve : ramps->curve, sizeof ramps->curve);
     }
 }
@@ -109,4 +109,3 @@ void rma_nodes(struct rma *rma)
             rma->powers[power][n] = c[power] / scale;
     }
 }
-

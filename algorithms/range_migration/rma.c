@@ -16,8 +16,8 @@ const char *const rma_stolt_names[] = {"direct", "4", "6", "8", "12", "16", NULL
 const char *const rma_sum_names[] = {"before", "after", NULL};
 const char *const rma_phases_names[] = {"recurrence", "libm", NULL};
 
-static const double WORK_LIMIT = 1e11;      /* operations: some twenty seconds */
-static const double MEMORY_LIMIT = 5e8, MEMORY_FACTOR = 50;     /* bytes */
+static const double WORK_LIMIT = 1e11;                      /* operations: some twenty seconds */
+static const double MEMORY_LIMIT = 5e8, MEMORY_FACTOR = 50; /* bytes */
 
 static const char *const stage_names[RMA_STAGES] = {"bulk", "differential", "reconstruct", "stolt", "focus"};
 
@@ -38,20 +38,23 @@ static const struct rma_transform *transform(const struct rma *rma)
 static double swath_flops(const struct rma *rma, const struct rma_swath *swath)
 {
     const double receivers = rma->receivers, band = swath->band, q = swath->wavenumbers, length = swath->length;
-    const double applied = 20;                  /* a receiver's cell: product, sum, and two recurrences */
+    const double applied = 20; /* a receiver's cell: product, sum, and two recurrences */
     const double phases = 3 * (2.0 * RMA_DEGREE + 30) / RMA_GROUP;
     const double sums = rma->options.sum == RMA_SUM_AFTER ? receivers : 1;
     const double weights = swath->needed * sums > 1 ? 10 * (rma->options.blend ? rma_nodes_blended(rma) : 1) : 0;
     double flops = receivers * rma->pings * fft_flops(length) + receivers * band * fft_flops(swath->period)
                    + q * receivers * band * (rma->converts ? applied + phases : 0) * swath->needed
-                   + q * (sums * (swath->needed * fft_flops(length) + weights * length)
-                          + fft_flops(swath->stolt_length) + 2 * length);
+                   + q
+                         * (sums * (swath->needed * fft_flops(length) + weights * length)
+                            + fft_flops(swath->stolt_length) + 2 * length);
     for (int k = 0; k < swath->patch_count; k++) {
         const struct rma_patch *patch = &swath->patches[k];
-        double rows = patch->grid.r_count, points = patch->length * patch->step * 2 * rma->fs
-                                                    / rma->setting.sound_speed;
+        double rows = patch->grid.r_count,
+               points = patch->length * patch->step * 2 * rma->fs / rma->setting.sound_speed;
         flops += q * (rma->taps ? points * (7.0 * rma->taps + 60) + fft_flops(patch->length) : rows * band * 14);
-        flops += rows * (patch->folds ? fft_flops(patch->columns) + 2 * q : 2 * fft_flops(patch->columns) + 6 * patch->columns);
+        flops +=
+            rows
+            * (patch->folds ? fft_flops(patch->columns) + 2 * q : 2 * fft_flops(patch->columns) + 6 * patch->columns);
         flops += rows * 6 * (q + patch->grid.x_count);
     }
     return flops;
@@ -67,8 +70,9 @@ static void count_published(struct rma *rma)
     double taps = rma->taps ? rma->taps : 8, range = method->range[0] * receivers + method->range[1];
     double azimuth = method->azimuth[0] * receivers + method->azimuth[1];
     double products = method->products[0] * receivers + method->products[1];
-    double paper = na * nr * (1.5 * range * log2(nr) + 1.5 * azimuth * log2(na) + products
-                              + method->interpolations * (2 * taps - 1));
+    double paper =
+        na * nr
+        * (1.5 * range * log2(nr) + 1.5 * azimuth * log2(na) + products + method->interpolations * (2 * taps - 1));
     work->published[0].source = method->source;
     work->published[0].flops = paper;
     work->published[1].source = "with the factor of the range blocks";
@@ -82,7 +86,8 @@ static void count_work(struct rma *rma)
     int needed = 0;
     bool *used = calloc((size_t)rma->block_count, sizeof *used), differential = false;
     if (rma->record_length > 0)
-        work->flops = (double)rma->receivers * rma->pings * (2 * fft_flops(rma->record_length) + 6 * rma->record_length);
+        work->flops =
+            (double)rma->receivers * rma->pings * (2 * fft_flops(rma->record_length) + 6 * rma->record_length);
     for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
         work->flops += swath_flops(rma, s);
         taken += s->end - s->begin;
@@ -130,18 +135,23 @@ static enum status check_work(const struct rma *rma)
         pixels += (double)rma->patches[k].grid.r_count * rma->patches[k].grid.x_count;
     double given = 2 * real_bytes * (records * rma->samples + pixels), direct = 16 * records * pixels;
     if (!(rma->work.flops <= fmax(WORK_LIMIT, much * direct)))
-        return status_set(STATUS_UNSUPPORTED, "%s: condition work: %.2g operations, %.2g times those of back projection; at "
+        return status_set(STATUS_UNSUPPORTED,
+                          "%s: condition work: %.2g operations, %.2g times those of back projection; at "
                           "most %g of them, or %g times, are accepted (cure: back projection; coarser pixels, or pings "
-                          "farther apart)", rma->method.name, rma->work.flops, rma->work.flops / direct, WORK_LIMIT, much);
+                          "farther apart)",
+                          rma->method.name, rma->work.flops, rma->work.flops / direct, WORK_LIMIT, much);
     if (!(bytes <= fmax(MEMORY_LIMIT, MEMORY_FACTOR * given)))
-        return status_set(STATUS_UNSUPPORTED, "%s: condition memory: %.2g bytes, %.2g times those of echoes and image; at most "
-                          "%g of them, or %g times, are accepted (cure: back projection; coarser pixels, or pings farther "
-                          "apart)", rma->method.name, bytes, bytes / given, MEMORY_LIMIT, MEMORY_FACTOR);
+        return status_set(
+            STATUS_UNSUPPORTED,
+            "%s: condition memory: %.2g bytes, %.2g times those of echoes and image; at most "
+            "%g of them, or %g times, are accepted (cure: back projection; coarser pixels, or pings farther "
+            "apart)",
+            rma->method.name, bytes, bytes / given, MEMORY_LIMIT, MEMORY_FACTOR);
     return STATUS_OK;
 }
 
-enum status rma_plan(const struct problem *problem, const struct rma_method *method,
-                     const struct rma_options *options, void **plan)
+enum status rma_plan(const struct problem *problem, const struct rma_method *method, const struct rma_options *options,
+                     void **plan)
 {
     *plan = NULL;
     struct rma *rma = calloc(1, sizeof *rma);

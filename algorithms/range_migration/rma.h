@@ -28,10 +28,10 @@
 #include "range_migration/spectrum.h"
 
 struct rma_options {
-    int variant;                    /* of rma_lbf: enum rma_variant */
-    int blocks;                     /* range blocks over all rows asked for; 0: by Eq. (13) and limit */
-    double limit;                   /* rad: the phase error that Eq. (13) accepts */
-    int spacing, blend, stolt, sum, phases;     /* indices into the choices of RMA_PARAMS */
+    int variant;                            /* of rma_lbf: enum rma_variant */
+    int blocks;                             /* range blocks over all rows asked for; 0: by Eq. (13) and limit */
+    double limit;                           /* rad: the phase error that Eq. (13) accepts */
+    int spacing, blend, stolt, sum, phases; /* indices into the choices of RMA_PARAMS */
 };
 
 enum rma_variant { RMA_PRINTED, RMA_CORRECTED };
@@ -39,32 +39,52 @@ enum rma_spacing { RMA_UNIFORM, RMA_INVERSE };
 enum rma_sum { RMA_SUM_BEFORE, RMA_SUM_AFTER };
 enum rma_phases { RMA_RECURRENCE, RMA_LIBM };
 
-extern const char *const rma_spacing_names[], *const rma_blend_names[], *const rma_stolt_names[],
-    *const rma_sum_names[], *const rma_phases_names[];
+extern const char *const rma_spacing_names[],
+    *const rma_blend_names[], *const rma_stolt_names[], *const rma_sum_names[], *const rma_phases_names[];
 
 /* The parameters that all methods have. */
-#define RMA_PARAMS \
-    {PARAM(struct rma_options, blocks), .summary = "range blocks of the conversion; 0: as Eq. (13) asks for", \
-     .initial = 0, .min = 0, .max = 4096, .sweep = "1 2 4 8 16 32"}, \
-    {PARAM(struct rma_options, limit), .summary = "largest phase error inside a block (rad) where blocks = 0", \
-     .initial = 0.78539816339744831, .min = 1e-3, .max = 100, .terse = true}, \
-    {PARAM_NAMED(struct rma_options, spacing, rma_spacing_names), .summary = "blocks of equal width in r or in 1/r", \
-     .initial = RMA_INVERSE, .max = RMA_INVERSE, .sweep = "uniform inverse", .terse = true}, \
-    {PARAM_NAMED(struct rma_options, blend, rma_blend_names), \
-     .summary = "blocks blend: each row is the cubic through the nearest four", .initial = 1, .max = 1, \
-     .sweep = "off on", .terse = true}, \
-    {PARAM_NAMED(struct rma_options, stolt, rma_stolt_names), \
-     .summary = "Kaiser taps of the Stolt interpolation, or a direct sum", .initial = 3, .max = 5, \
-     .sweep = "4 6 8 12 16", .terse = true}, \
-    {PARAM_NAMED(struct rma_options, sum, rma_sum_names), \
-     .summary = "receivers are summed before or after the range IFFT (check)", .initial = RMA_SUM_BEFORE, \
-     .max = RMA_SUM_AFTER, .terse = true}, \
-    {PARAM_NAMED(struct rma_options, phases, rma_phases_names), \
-     .summary = "by recurrence over the receivers, or by libm for each cell (check)", .initial = RMA_RECURRENCE, \
-     .max = RMA_LIBM, .terse = true}
+#define RMA_PARAMS                                                                                                     \
+    {PARAM(struct rma_options, blocks),                                                                                \
+     .summary = "range blocks of the conversion; 0: as Eq. (13) asks for",                                             \
+     .initial = 0,                                                                                                     \
+     .min = 0,                                                                                                         \
+     .max = 4096,                                                                                                      \
+     .sweep = "1 2 4 8 16 32"},                                                                                        \
+        {PARAM(struct rma_options, limit),                                                                             \
+         .summary = "largest phase error inside a block (rad) where blocks = 0",                                       \
+         .initial = 0.78539816339744831,                                                                               \
+         .min = 1e-3,                                                                                                  \
+         .max = 100,                                                                                                   \
+         .terse = true},                                                                                               \
+        {PARAM_NAMED(struct rma_options, spacing, rma_spacing_names),                                                  \
+         .summary = "blocks of equal width in r or in 1/r",                                                            \
+         .initial = RMA_INVERSE,                                                                                       \
+         .max = RMA_INVERSE,                                                                                           \
+         .sweep = "uniform inverse",                                                                                   \
+         .terse = true},                                                                                               \
+        {PARAM_NAMED(struct rma_options, blend, rma_blend_names),                                                      \
+         .summary = "blocks blend: each row is the cubic through the nearest four",                                    \
+         .initial = 1,                                                                                                 \
+         .max = 1,                                                                                                     \
+         .sweep = "off on",                                                                                            \
+         .terse = true},                                                                                               \
+        {PARAM_NAMED(struct rma_options, stolt, rma_stolt_names),                                                      \
+         .summary = "Kaiser taps of the Stolt interpolation, or a direct sum",                                         \
+         .initial = 3,                                                                                                 \
+         .max = 5,                                                                                                     \
+         .sweep = "4 6 8 12 16",                                                                                       \
+         .terse = true},                                                                                               \
+        {PARAM_NAMED(struct rma_options, sum, rma_sum_names),                                                          \
+         .summary = "receivers are summed before or after the range IFFT (check)", .initial = RMA_SUM_BEFORE,          \
+         .max = RMA_SUM_AFTER, .terse = true},                                                                         \
+    {                                                                                                                  \
+        PARAM_NAMED(struct rma_options, phases, rma_phases_names),                                                     \
+            .summary = "by recurrence over the receivers, or by libm for each cell (check)",                           \
+            .initial = RMA_RECURRENCE, .max = RMA_LIBM, .terse = true                                                  \
+    }
 
 struct rma_method {
-    const char *name, *law;         /* law: of the condition that bounds the error of `spectrum` (rma_conditions.h) */
+    const char *name, *law; /* law: of the condition that bounds the error of `spectrum` (rma_conditions.h) */
     spectrum_function *spectrum;
     /* The paper's FLOPs for M receivers (LBF21 Eqs. (20) to (22)): numbers[0] M + numbers[1] range transforms of
        1.5 N_a N_r log2 N_r, azimuth transforms alike, products of N_a N_r; interpolations of N_a N_r (2 taps - 1). */
@@ -73,8 +93,8 @@ struct rma_method {
 };
 
 /* The callbacks of struct algorithm, for a method. `options` is only used during the call. */
-enum status rma_plan(const struct problem *problem, const struct rma_method *method,
-                     const struct rma_options *options, void **plan);
+enum status rma_plan(const struct problem *problem, const struct rma_method *method, const struct rma_options *options,
+                     void **plan);
 enum status rma_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
 struct work rma_work(const void *plan);
 void rma_destroy(void *plan);

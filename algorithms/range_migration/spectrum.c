@@ -10,7 +10,7 @@ static const double pi = 3.14159265358979323846;
    way out, and the way back to a receiver that is b metres ahead of the target when the wave is there. Written so that
    nothing cancels, whatever the speed. */
 struct history {
-    double delay, slope, curvature;     /* s, s/m, s/m^2 */
+    double delay, slope, curvature; /* s, s/m, s/m^2 */
 };
 
 static struct history history_at(const struct spectrum_setting *setting, double d, double r, double u)
@@ -48,9 +48,9 @@ double spectrum_exact(const struct spectrum_setting *setting, double d, double r
     for (int step = 0; step < 400; step++) {
         const struct history h = history_at(setting, offset, range, u);
         const double excess = h.slope + nu / frequency, newton = u - excess / h.curvature;
-        const double rounding = 1e-15 * (1 + cycles * h.delay);     /* cycles that do not count */
+        const double rounding = 1e-15 * (1 + cycles * h.delay); /* cycles that do not count */
         *(excess > 0 ? &high : &low) = u;
-        const double left = cycles * excess * excess / h.curvature / 2;     /* what the next step would add, at most */
+        const double left = cycles * excess * excess / h.curvature / 2; /* what the next step would add, at most */
         if (left <= rounding || cycles * fabs(excess) * (high - low) <= rounding)
             return -2 * pi * (cycles * (h.delay + nu / frequency * u) - (left <= rounding ? left : 0));
         const double farthest = excess > 0 ? fmax(low, u - reach) : fmin(high, u + reach);

@@ -12,9 +12,9 @@
 #define SASBENCH_RANGE_MIGRATION_SPECTRUM_H
 
 struct spectrum_setting {
-    double sound_speed, speed;      /* c, v: m/s */
-    double fc;                      /* Hz, for the formulas that take theta at the carrier */
-    double reference_offset;        /* m: d of the receiver that spectrum_wu refers to */
+    double sound_speed, speed; /* c, v: m/s */
+    double fc;                 /* Hz, for the formulas that take theta at the carrier */
+    double reference_offset;   /* m: d of the receiver that spectrum_wu refers to */
 };
 
 typedef double spectrum_function(const struct spectrum_setting *setting, double d, double r, double frequency,

@@ -10,7 +10,7 @@
 
 enum {
     LANES = RMA_ALIGNMENT / sizeof(real),
-    BLOCKS = 4                      /* vectors of bins that go through the azimuth FFT together */
+    BLOCKS = 4 /* vectors of bins that go through the azimuth FFT together */
 };
 static const double pi = 3.14159265358979323846;
 
@@ -119,8 +119,8 @@ static bool azimuth_fill(struct rma *rma, const struct rma_swath *swath, struct 
     patch->azimuth_inverse = plan_line(length, wave, FFTW_BACKWARD);
     if (!before || !after || !patch->azimuth_inverse)
         return false;
-    const double period = swath->period * fabs(rma->spacing), turn = patch->folds ? 1.0 / length
-                                                                                 : patch->grid.x_step / period;
+    const double period = swath->period * fabs(rma->spacing),
+                 turn = patch->folds ? 1.0 / length : patch->grid.x_step / period;
     const double from = (patch->grid.x_first - rma->x_first) / period, square = patch->folds ? 0 : 0.5 * turn;
     for (int q = 0; q < q_count; q++)
         before[q] = rotor((q - q_count / 2) * from + square * q * q);
@@ -161,7 +161,7 @@ static bool plan_swath(struct rma *rma, struct rma_swath *swath)
 
 static enum status plan(struct rma *rma)
 {
-    size_t strip = 0, focused = 0, at_once = BLOCKS * LANES;       /* scratch also serves the transforms of this file */
+    size_t strip = 0, focused = 0, at_once = BLOCKS * LANES; /* scratch also serves the transforms of this file */
     for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
         strip = strip > at_once * (size_t)s->period ? strip : at_once * (size_t)s->period;
         focused = focused > s->rows * s->columns ? focused : s->rows * s->columns;
@@ -191,8 +191,9 @@ static enum status plan(struct rma *rma)
     }
     for (int n = 0; complete && n < rma->swath_count; n++)
         complete = plan_swath(rma, &rma->swaths[n]);
-    return complete ? STATUS_OK : status_set(STATUS_FAILED, "no memory for range migration (%.0f MB for a thread)",
-                                             rma->work.bytes / 1e6);
+    return complete ? STATUS_OK
+                    : status_set(STATUS_FAILED, "no memory for range migration (%.0f MB for a thread)",
+                                 rma->work.bytes / 1e6);
 }
 
 static void plan_destroy(void *made)
@@ -320,7 +321,7 @@ static void inverse(const struct rma *rma, const struct rma_swath *swath, const 
         real root = (real)sqrt(patch->grid.r_first + i * patch->grid.r_step);
         const real *from = (const real *)rma->focused + 2 * swath->columns * (patch->row + (size_t)i);
         memset(wave, 0, 2 * (size_t)length * sizeof *wave);
-        for (int p = 0; p < swath->period; p++)         /* in the order of rma_wavenumber */
+        for (int p = 0; p < swath->period; p++) /* in the order of rma_wavenumber */
             for (int q = p; q < swath->wavenumbers; q += swath->period, from += 2) {
                 const real *b = before + 2 * q;
                 real *to = wave + 2 * (q < length ? q : q % length);

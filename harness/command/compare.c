@@ -7,8 +7,8 @@ static enum status compare_any(const struct task *task, struct compare *compare)
 {
     const char *const *names = task->names;
     if (task->ab)
-        return ab_compare(names[0], names[1], names + 2, task->name_count - 2, task->specs, task->spec_count,
-                          &ab_usual, compare);
+        return ab_compare(names[0], names[1], names + 2, task->name_count - 2, task->specs, task->spec_count, &ab_usual,
+                          compare);
     *compare = (struct compare){0};
     if (task->name_count > 2 || task->spec_count > 0)
         return status_set(STATUS_INVALID, "compare: '%s' is too much without --ab: sasbench compare OLD NEW",

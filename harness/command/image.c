@@ -40,9 +40,9 @@ enum status command_simulate(const struct task *task)
 
 /* A scene, or the echoes of a file. */
 struct source {
-    struct scene scene;                 /* zeroed with --echoes */
-    struct acquisition recorded;        /* zeroed with --scene */
-    struct echoes echoes;               /* double; with --scene they are made when a plan is there */
+    struct scene scene;          /* zeroed with --echoes */
+    struct acquisition recorded; /* zeroed with --scene */
+    struct echoes echoes;        /* double; with --scene they are made when a plan is there */
 };
 
 static void source_free(struct source *source)
@@ -60,8 +60,8 @@ static enum status source_open(const struct task *task, struct source *source)
     return scene_load(task->scene, SCENE_DIRECTORY, &source->scene);
 }
 
-static enum status execute(const struct spec *spec, void *plan, const struct problem *problem, const struct echoes *from,
-                           struct image *image)
+static enum status execute(const struct spec *spec, void *plan, const struct problem *problem,
+                           const struct echoes *from, struct image *image)
 {
     struct echoes echoes;
     struct stages stages;
@@ -73,8 +73,8 @@ static enum status execute(const struct spec *spec, void *plan, const struct pro
         stages_begin(&stages);
         status = spec->algorithm->execute(plan, &echoes, image, &stages);
         if (status == STATUS_OK && !image_is_finite(image))
-            status = status_set(STATUS_FAILED, "%s made values that are not finite of finite echoes",
-                                spec->algorithm->name);
+            status =
+                status_set(STATUS_FAILED, "%s made values that are not finite of finite echoes", spec->algorithm->name);
         if (status == STATUS_OK)
             status = image_scale(image, echoes.exponent);
         if (status != STATUS_OK)
@@ -98,8 +98,9 @@ static enum status form_image(const struct spec *spec, const struct problem *pro
         status = execute(spec, plan, problem, &source->echoes, image);
     if (status == STATUS_OK && !image_is_finite(image)) {
         image_free(image);
-        status = status_set(STATUS_INVALID, "%s: the image of %s is beyond the range of double; %s must be smaller", place,
-                            spec->algorithm->name, source->scene.name ? "targets.points.amplitude" : "variable `samples`");
+        status =
+            status_set(STATUS_INVALID, "%s: the image of %s is beyond the range of double; %s must be smaller", place,
+                       spec->algorithm->name, source->scene.name ? "targets.points.amplitude" : "variable `samples`");
     }
     spec->algorithm->destroy(plan);
     return status;
@@ -113,8 +114,7 @@ static enum status check_usage(const struct task *task)
         return status_set(STATUS_INVALID, "image: --echoes %s needs --grid xmin:xstep:xcount,rmin:rstep:rcount",
                           task->echoes);
     if (task->spec_count != 1)
-        return status_set(STATUS_INVALID, "image: %d --algorithm SPEC given, exactly one is needed",
-                          task->spec_count);
+        return status_set(STATUS_INVALID, "image: %d --algorithm SPEC given, exactly one is needed", task->spec_count);
     return check_output("image", task->output);
 }
 
@@ -132,8 +132,7 @@ enum status command_image(const struct task *task)
     if (status == STATUS_OK) {
         const struct spec *spec = &task->specs[0];
         const struct acquisition *acquisition = task->echoes ? &source.recorded : &source.scene.acquisition;
-        struct problem problem = {acquisition, source.scene.patch_count, source.scene.patches,
-                                  spec->precision};
+        struct problem problem = {acquisition, source.scene.patch_count, source.scene.patches, spec->precision};
         if (task->grid) {
             problem.patch_count = 1;
             problem.patches = &grid;

@@ -53,7 +53,7 @@ enum status command_info(const struct task *task)
     const struct algorithm *algorithm = algorithm_find(task->names[0]);
     struct spec spec;
     if (!algorithm) {
-        enum status status = spec_parse(task->names[0], &spec);     /* says what is accepted */
+        enum status status = spec_parse(task->names[0], &spec); /* says what is accepted */
         if (status != STATUS_OK)
             return status;
         spec_free(&spec);

@@ -16,7 +16,7 @@
 
 struct command {
     const char *name, *arguments, *summary;
-    const char *options;                /* the letters of the options it takes */
+    const char *options; /* the letters of the options it takes */
     int names_least, names_most;
     enum status (*run)(const struct task *task);
 };
@@ -29,18 +29,20 @@ static const struct command commands[] = {
      "oseagt", 0, 0, command_image},
     {"run", "[SCENE ...] [--algorithm SPEC ...] [-o DIR]", "compare algorithms on scenes", "oat", 0, INT_MAX,
      command_run},
-    {"compare", "(OLD NEW | --ab OLD_BINARY NEW_BINARY [SCENE ...] [--algorithm SPEC ...]) [--markdown FILE] [--json FILE]",
+    {"compare",
+     "(OLD NEW | --ab OLD_BINARY NEW_BINARY [SCENE ...] [--algorithm SPEC ...]) [--markdown FILE] [--json FILE]",
      "what got worse between two results folders or CSV files; what got slower between two programs, run side by side",
      "aBMJ", 2, INT_MAX, command_compare},
     {"measure", "", "the other end of `compare --ab`, which starts it", "", 0, 0, command_measure},
-    {"baseline", "[-o FILE.csv]", "measure quality and work of the gate's scenes anew, into results/baseline.csv", "ot", 0, 0,
-     command_baseline},
-    {"reproduce", "[ID ...] [-o DIR]", "the papers' tables and claims beside ours", "ot", 0, INT_MAX, command_reproduce},
-    {"sweep", "[SCENE ...] [--algorithm SPEC ...] [-o DIR]", "error against run time, each algorithm over its ladder", "oat",
-     0, INT_MAX, command_sweep},
+    {"baseline", "[-o FILE.csv]", "measure quality and work of the gate's scenes anew, into results/baseline.csv", "ot",
+     0, 0, command_baseline},
+    {"reproduce", "[ID ...] [-o DIR]", "the papers' tables and claims beside ours", "ot", 0, INT_MAX,
+     command_reproduce},
+    {"sweep", "[SCENE ...] [--algorithm SPEC ...] [-o DIR]", "error against run time, each algorithm over its ladder",
+     "oat", 0, INT_MAX, command_sweep},
     {"report", "DIR", "a results folder as one page: DIR/report.html, and DIR/report.md", "", 1, 1, command_report},
-    {"phase", "([SCENE] [-o DIR] | --at FILE.csv)", "phase errors of the two-dimensional spectra (LBF21 Figs 2-9)", "oA", 0, 1,
-     command_phase},
+    {"phase", "([SCENE] [-o DIR] | --at FILE.csv)", "phase errors of the two-dimensional spectra (LBF21 Figs 2-9)",
+     "oA", 0, 1, command_phase},
     {"bench", "[-o DIR]", "speed of the engines against the processor's peak and the control loop", "ot", 0, 0,
      command_bench},
 };
@@ -51,7 +53,7 @@ static const struct option long_options[] = {
     {"grid", required_argument, NULL, 'g'},   {"threads", required_argument, NULL, 't'},
     {"at", required_argument, NULL, 'A'},     {"markdown", required_argument, NULL, 'M'},
     {"json", required_argument, NULL, 'J'},   {"ab", no_argument, NULL, 'B'},
-    {"help", no_argument, NULL, 'h'},       {NULL, 0, NULL, 0},
+    {"help", no_argument, NULL, 'h'},         {NULL, 0, NULL, 0},
 };
 
 static const char *const option_texts[] = {
@@ -130,12 +132,15 @@ static enum status empty_refuse(const struct command *command, const char *what)
 static enum status parse(const struct command *command, int argc, char **argv, struct task *task, bool *helped)
 {
     const char *threads = NULL;
-    const struct { int letter; const char **field; } texts[] = {
-        {'o', &task->output}, {'s', &task->scene}, {'e', &task->echoes}, {'g', &task->grid}, {'A', &task->at},
-        {'M', &task->markdown}, {'J', &task->json}, {'t', &threads}};
+    const struct {
+        int letter;
+        const char **field;
+    } texts[] = {{'o', &task->output}, {'s', &task->scene},    {'e', &task->echoes}, {'g', &task->grid},
+                 {'A', &task->at},     {'M', &task->markdown}, {'J', &task->json},   {'t', &threads}};
     enum status status = STATUS_OK;
     opterr = 0;
-    for (int letter; status == STATUS_OK && (letter = getopt_long(argc, argv, ":o:s:e:a:g:t:h", long_options, NULL)) != -1;) {
+    for (int letter;
+         status == STATUS_OK && (letter = getopt_long(argc, argv, ":o:s:e:a:g:t:h", long_options, NULL)) != -1;) {
         const char *word = argv[optind - 1];
         if (letter == 'h') {
             *helped = true;
@@ -151,7 +156,7 @@ static enum status parse(const struct command *command, int argc, char **argv, s
             if (texts[k].letter == letter) {
                 if (*texts[k].field)
                     return option_unknown(command, given, "is given twice");
-                if (!*optarg && !strchr("gt", letter))          /* which say themselves what they take */
+                if (!*optarg && !strchr("gt", letter)) /* which say themselves what they take */
                     return empty_refuse(command, given);
                 *texts[k].field = optarg;
             }
@@ -216,7 +221,7 @@ int main(int argc, char **argv)
     struct task task = {0};
     bool helped = strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0;
     streams_open();
-    signal(SIGXFSZ, SIG_IGN);           /* a file beyond the limit is an error where it is written */
+    signal(SIGXFSZ, SIG_IGN); /* a file beyond the limit is an error where it is written */
     temporary_guard();
     enum status status = helped ? STATUS_OK : command_find(name, &command);
     if (status == STATUS_OK && !helped)

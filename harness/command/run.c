@@ -49,8 +49,10 @@ enum status command_run(const struct task *task)
     for (int k = 0; k < scene_count && status == STATUS_OK; k++)
         status = comparison_scene(&comparison, &scenes[k], spec_count, task->spec_count ? task->specs : all);
     if (status == STATUS_OK)
-        printf("\nThe harness itself takes %.1f ns a run (an algorithm that does nothing). Results: %s/measurements.csv, "
-               "targets.csv and pictures.\n", 1e9 * timing_floor(), comparison.directory);
+        printf(
+            "\nThe harness itself takes %.1f ns a run (an algorithm that does nothing). Results: %s/measurements.csv, "
+            "targets.csv and pictures.\n",
+            1e9 * timing_floor(), comparison.directory);
     status = comparison_close(&comparison, status);
     scenes_free(scenes, scene_count);
     for (int k = 0; k < all_count; k++)

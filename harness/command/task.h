@@ -7,12 +7,12 @@
 
 /* The command line after parsing; texts are borrowed from argv. Unused fields are NULL or 0. */
 struct task {
-    const char *const *names;       /* [name_count] what stands without an option: scenes, an algorithm */
+    const char *const *names; /* [name_count] what stands without an option: scenes, an algorithm */
     int name_count;
     const char *output, *scene, *echoes, *grid, *at, *markdown, *json;
     bool ab;
     int spec_count;
-    struct spec *specs;             /* [spec_count] of --algorithm */
+    struct spec *specs; /* [spec_count] of --algorithm */
 };
 
 /* Each returns STATUS_OK, or a status with a message for main to print. */

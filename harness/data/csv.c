@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static const char byte_order_mark[] = "\xef\xbb\xbf";     /* as spreadsheets write it */
+static const char byte_order_mark[] = "\xef\xbb\xbf"; /* as spreadsheets write it */
 
 /* Far above what years of runs write; a bound, so that a wrong path cannot fill the memory. */
 #define SIZE_MAX_BYTES ((size_t)256 << 20)
@@ -32,7 +32,7 @@ static bool array_grow(void *array, int count, size_t element_size)
 static enum status file_load(const char *path, char **text, size_t *size)
 {
     struct stat info;
-    int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);     /* not blocking: a pipe would wait for a writer */
+    int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); /* not blocking: a pipe would wait for a writer */
     FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "rb");
     if (!file) {
         enum status status = status_set(STATUS_INVALID, "%s: %s; a readable CSV file is needed", path, strerror(errno));
@@ -74,24 +74,27 @@ static enum status field_read(struct cursor *cursor, char **field, char *separat
         for (at++; *at != '"' || at[1] == '"'; at++) {
             if (!*at || *at == '\n') {
                 *separator = 0;
-                return status_set(STATUS_INVALID, "%s:%d: a quoted field never ends; '\"' is missing before the end of "
-                                  "its line", cursor->path, cursor->line);
+                return status_set(STATUS_INVALID,
+                                  "%s:%d: a quoted field never ends; '\"' is missing before the end of "
+                                  "its line",
+                                  cursor->path, cursor->line);
             }
             at += *at == '"';
             *out++ = *at;
         }
         at++;
     } else {
-        for (; !strchr(",\"\r\n", *at); at++)       /* strchr finds the terminating zero, too */
+        for (; !strchr(",\"\r\n", *at); at++) /* strchr finds the terminating zero, too */
             *out++ = *at;
     }
     if (at[0] == '\r' && at[1] == '\n')
         at++;
     *separator = *at;
     if (*at && *at != ',' && *at != '\n')
-        return status_set(STATUS_INVALID, "%s:%d: stray character 0x%02x in a field; ',' or a line end may follow a "
-                          "field, and quotes and carriage returns stand in quoted fields only", cursor->path,
-                          cursor->line, (unsigned char)*at);
+        return status_set(STATUS_INVALID,
+                          "%s:%d: stray character 0x%02x in a field; ',' or a line end may follow a "
+                          "field, and quotes and carriage returns stand in quoted fields only",
+                          cursor->path, cursor->line, (unsigned char)*at);
     cursor->line += *at == '\n';
     cursor->at = *at ? at + 1 : at;
     *out = '\0';
@@ -136,8 +139,8 @@ static enum status row_read(struct cursor *cursor, struct csv *csv, int *cell_co
         return STATUS_OK;
     }
     if (count != csv->column_count)
-        return status_set(STATUS_INVALID, "%s:%d: %d fields in the row; the header names %d", cursor->path, line,
-                          count, csv->column_count);
+        return status_set(STATUS_INVALID, "%s:%d: %d fields in the row; the header names %d", cursor->path, line, count,
+                          csv->column_count);
     if (!array_grow(&csv->lines, csv->row_count, sizeof *csv->lines))
         return status_set(STATUS_FAILED, "%s: no memory", cursor->path);
     csv->lines[csv->row_count++] = line;

@@ -11,13 +11,13 @@
 struct csv {
     char *path;
     int column_count;
-    char **columns;                 /* [column_count] names from the header line */
+    char **columns; /* [column_count] names from the header line */
     int row_count;
-    char **cells;                   /* [row_count][column_count]; an empty field is "" */
-    int *lines;                     /* [row_count] line of the file where the row begins, from 1 */
+    char **cells; /* [row_count][column_count]; an empty field is "" */
+    int *lines;   /* [row_count] line of the file where the row begins, from 1 */
     int comment_count;
-    char **comments;                /* [comment_count] without the leading '#' and blank */
-    char *text;                     /* the file; all texts above point into it */
+    char **comments; /* [comment_count] without the leading '#' and blank */
+    char *text;      /* the file; all texts above point into it */
 };
 
 /* What to do with a last line that has no newline: a reader of finished files takes it as RFC 4180 does, one that

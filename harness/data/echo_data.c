@@ -29,8 +29,8 @@ const char *precision_name(enum precision precision)
 size_t size_product(size_t a, size_t b, size_t c, size_t d)
 {
     size_t product;
-    if (__builtin_mul_overflow(a, b, &product) || __builtin_mul_overflow(product, c, &product) ||
-        __builtin_mul_overflow(product, d, &product)) {
+    if (__builtin_mul_overflow(a, b, &product) || __builtin_mul_overflow(product, c, &product)
+        || __builtin_mul_overflow(product, d, &product)) {
         return 0;
     }
     return product;
@@ -73,8 +73,8 @@ static void convert_numbers(const void *from, enum precision from_precision, voi
 
 enum status echoes_allocate(const struct acquisition *acquisition, enum precision precision, struct echoes *echoes)
 {
-    size_t size = size_product((size_t)acquisition->pings, (size_t)acquisition->receivers,
-                               (size_t)acquisition->samples, precision_size(precision));
+    size_t size = size_product((size_t)acquisition->pings, (size_t)acquisition->receivers, (size_t)acquisition->samples,
+                               precision_size(precision));
     *echoes = (struct echoes){0};
     enum status room = memory_check((double)size, "echoes");
     if (room != STATUS_OK) {
@@ -82,8 +82,8 @@ enum status echoes_allocate(const struct acquisition *acquisition, enum precisio
     }
     *echoes = (struct echoes){acquisition, precision, allocate_zeroed(size), 0};
     if (!echoes->samples) {
-        return status_set(STATUS_FAILED, "out of memory for %d samples x %d receivers x %d pings",
-                          acquisition->samples, acquisition->receivers, acquisition->pings);
+        return status_set(STATUS_FAILED, "out of memory for %d samples x %d receivers x %d pings", acquisition->samples,
+                          acquisition->receivers, acquisition->pings);
     }
     return STATUS_OK;
 }
@@ -152,8 +152,8 @@ enum status image_allocate(int patch_count, const struct grid *patches, enum pre
     }
     *image = (struct image){patch_count, patches, precision, calloc((size_t)patch_count, sizeof *image->pixels)};
     for (int i = 0; image->pixels && i < patch_count; i++) {
-        image->pixels[i] = allocate_zeroed(size_product((size_t)patches[i].r_count, (size_t)patches[i].x_count, 1,
-                                                        precision_size(precision)));
+        image->pixels[i] = allocate_zeroed(
+            size_product((size_t)patches[i].r_count, (size_t)patches[i].x_count, 1, precision_size(precision)));
         if (!image->pixels[i]) {
             enum status status = status_set(STATUS_FAILED, "out of memory for an image of %d x %d pixels",
                                             patches[i].r_count, patches[i].x_count);

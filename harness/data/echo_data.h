@@ -6,7 +6,7 @@
 
 /* Bytes of one complex number. */
 size_t precision_size(enum precision precision);
-const char *precision_name(enum precision precision);        /* "float", "double" */
+const char *precision_name(enum precision precision); /* "float", "double" */
 
 /* a * b * c * d bytes, or 0 when that overflows size_t. */
 size_t size_product(size_t a, size_t b, size_t c, size_t d);

@@ -23,8 +23,10 @@ static enum status name_check(const char *directory)
                           strlen(directory), (int)DIRECTORY_MAX);
     for (const char *at = directory; *at; at++)
         if ((unsigned char)*at < ' ' || *at == 0x7f)
-            return status_set(STATUS_INVALID, "%s: the name holds the control character 0x%02x; name a folder without "
-                              "one", directory, (unsigned)*at);
+            return status_set(STATUS_INVALID,
+                              "%s: the name holds the control character 0x%02x; name a folder without "
+                              "one",
+                              directory, (unsigned)*at);
     return STATUS_OK;
 }
 
@@ -40,7 +42,7 @@ enum status directory_make(const char *directory)
     for (char *at = path; *at; at++) {
         if (*at == '/' && at != path) {
             *at = '\0';
-            mkdir(path, 0777);          /* the last one tells whether it went well */
+            mkdir(path, 0777); /* the last one tells whether it went well */
             *at = '/';
         }
     }
@@ -64,8 +66,10 @@ enum status folder_take(const char *directory, int *lock)
     if (flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
         if (errno == EWOULDBLOCK) {
             close(descriptor);
-            return status_set(STATUS_INVALID, "%s: another sasbench is at work in this folder; let it end, or name "
-                              "another folder", directory);
+            return status_set(STATUS_INVALID,
+                              "%s: another sasbench is at work in this folder; let it end, or name "
+                              "another folder",
+                              directory);
         }
         fprintf(stderr, "sasbench: %s: this file system cannot lock a folder (%s); start no second program in it\n",
                 directory, strerror(errno));

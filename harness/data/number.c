@@ -31,7 +31,7 @@ const char *number_read(const char *text, double *value)
 {
     const char *end = decimal_end(text);
     if (end && (*end == 'x' || *end == 'X'))
-        return NULL;                            /* strtod would go on behind the 0 */
+        return NULL; /* strtod would go on behind the 0 */
     locale_t c_locale = end ? newlocale(LC_ALL_MASK, "C", (locale_t)0) : (locale_t)0;
     if (!c_locale)
         return NULL;

@@ -50,8 +50,8 @@ static const char *markdown_escape(const char *start, const char *at)
     static const struct {
         char sign;
         const char *instead;
-    } escapes[] = {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'|', "\\|"}, {'*', "\\*"}, {'`', "\\`"}, {'[', "\\["},
-                   {']', "\\]"}, {'\\', "\\\\"}, {'~', "\\~"}, {'@', "@&#8203;"}, {'#', "#&#8203;"}};
+    } escapes[] = {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"},  {'|', "\\|"}, {'*', "\\*"},      {'`', "\\`"},
+                   {'[', "\\["},   {']', "\\]"},  {'\\', "\\\\"}, {'~', "\\~"}, {'@', "@&#8203;"}, {'#', "#&#8203;"}};
     for (size_t k = 0; k < sizeof escapes / sizeof *escapes; k++)
         if (escapes[k].sign == *at)
             return escapes[k].instead;

@@ -1,5 +1,5 @@
 /* Temporary files and folders (temporary.h). */
-#define _GNU_SOURCE                 /* mkostemp */
+#define _GNU_SOURCE /* mkostemp */
 #include "data/temporary.h"
 
 #include <dirent.h>
@@ -57,7 +57,7 @@ int temporary_file(const char *path, char made[PATH_MAX])
     if (descriptor < 0)
         return -1;
     name_add(made);
-    mode_t mask = umask(0);             /* the rights of any new file, not mkstemp's */
+    mode_t mask = umask(0); /* the rights of any new file, not mkstemp's */
     umask(mask);
     fchmod(descriptor, 0666 & ~mask);
     return descriptor;
@@ -139,7 +139,7 @@ static void end(int number)
     for (int k = 0; k < NAMES_MAX; k++)
         if (names[k])
             rmdir(names[k]);
-    raise(number);                      /* SA_RESETHAND: it ends the program when this returns */
+    raise(number); /* SA_RESETHAND: it ends the program when this returns */
 }
 
 void temporary_guard(void)

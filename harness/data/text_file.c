@@ -66,8 +66,8 @@ enum status text_file_open(const char *path, struct text_file *file)
     }
     if (file->stream)
         return STATUS_OK;
-    enum status status = status_set(STATUS_INVALID, "%s: cannot be written: %s; name a place that can", path,
-                                    strerror(errno));
+    enum status status =
+        status_set(STATUS_INVALID, "%s: cannot be written: %s; name a place that can", path, strerror(errno));
     text_file_free(file);
     return status;
 }

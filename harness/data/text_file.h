@@ -7,8 +7,8 @@
 #include "status.h"
 
 struct text_file {
-    FILE *stream;                   /* write here */
-    char *path, *beside;            /* beside NULL: what is at `path` is no regular file, or a standard stream, and is
+    FILE *stream;        /* write here */
+    char *path, *beside; /* beside NULL: what is at `path` is no regular file, or a standard stream, and is
                                        written to as it is */
 };
 

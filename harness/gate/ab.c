@@ -22,29 +22,29 @@ const struct ab_effort ab_usual = {8, 4, 64, 240, 600};
    the time somewhere. */
 static const struct {
     const char *scene;
-    const char *specs[8];               /* none: every algorithm */
+    const char *specs[8]; /* none: every algorithm */
 } usual[] = {
-    {"gate/points", {NULL}},            /* raw echoes, few pixels */
-    {"gate/blocks", {"bp_nearest", "bp_linear", "bp_sinc", "rma_lbf"}},         /* many pixels, many sub-blocks */
+    {"gate/points", {NULL}},                                            /* raw echoes, few pixels */
+    {"gate/blocks", {"bp_nearest", "bp_linear", "bp_sinc", "rma_lbf"}}, /* many pixels, many sub-blocks */
 };
 enum { USUAL = sizeof usual / sizeof *usual };
 
-#define ERROR_PROBABILITY 0.05          /* of any false finding in all of one comparison */
-#define STAGE_LEAST 0.2                 /* of the time: smaller stages are not judged alone */
-static const double slot_s = 0.005;     /* that one question is to take, by repetition */
+#define ERROR_PROBABILITY 0.05      /* of any false finding in all of one comparison */
+#define STAGE_LEAST       0.2       /* of the time: smaller stages are not judged alone */
+static const double slot_s = 0.005; /* that one question is to take, by repetition */
 enum { BLOCKS = 3, PARTS_MOST = 13, ROUNDS_MOST = 64 };
 
 /* Seconds of one execute in one block of a round: the mean of the two runs of each program. */
 struct sample {
-    double seconds[2][PARTS_MOST];      /* by program and part; 0: no such part */
+    double seconds[2][PARTS_MOST]; /* by program and part; 0: no such part */
 };
 
 /* One scene with one SPEC. Part 0 is the total, the others are stages by name. */
 struct unit {
-    const char *scene, *spec;           /* as they are shown */
-    const char *question;               /* "plan SPEC SCENE" */
+    const char *scene, *spec; /* as they are shown */
+    const char *question;     /* "plan SPEC SCENE" */
     bool skipped, decided;
-    int plans[2];                       /* this round's number of the unit, by program */
+    int plans[2]; /* this round's number of the unit, by program */
     int rounds, part_count;
     char parts[PARTS_MOST][40];
     struct sample samples[ROUNDS_MOST * BLOCKS];
@@ -84,18 +84,29 @@ static enum status unit_plan(struct contest *contest, struct unit *unit, bool fi
             return answer_wrong(partner, unit->question, answers[k], "'planned UNIT HASH'");
     }
     if (can[0] && can[1] && hashes[0] != hashes[1])
-        return status_set(STATUS_INVALID, "scene %s: OLD and NEW read it differently, so that their times are not "
-                          "comparable", unit->scene);
+        return status_set(STATUS_INVALID,
+                          "scene %s: OLD and NEW read it differently, so that their times are not "
+                          "comparable",
+                          unit->scene);
     if (can[0] && can[1])
         return STATUS_OK;
     unit->skipped = true;
     if (!can[0] && !can[1])
         return compare_note(contest->compare, "%s with %s is left out: %s", unit->scene, unit->spec,
                             answers[1] + strlen(refused));
-    return compare_add(contest->compare, &(struct finding){
-        .verdict = can[0] ? VERDICT_GONE : VERDICT_NEW, .class = CLASS_TIME, .scene = unit->scene, .spec = unit->spec,
-        .detail = "", .metric = "time", .unit = "s", .before = NAN, .after = NAN, .change = NAN, .slack = NAN,
-        .before_text = can[0] ? "planned" : "refused", .after_text = can[1] ? "planned" : "refused"});
+    return compare_add(contest->compare, &(struct finding){.verdict = can[0] ? VERDICT_GONE : VERDICT_NEW,
+                                                           .class = CLASS_TIME,
+                                                           .scene = unit->scene,
+                                                           .spec = unit->spec,
+                                                           .detail = "",
+                                                           .metric = "time",
+                                                           .unit = "s",
+                                                           .before = NAN,
+                                                           .after = NAN,
+                                                           .change = NAN,
+                                                           .slack = NAN,
+                                                           .before_text = can[0] ? "planned" : "refused",
+                                                           .after_text = can[1] ? "planned" : "refused"});
 }
 
 static int part_index(struct unit *unit, const char *name, size_t length)
@@ -122,7 +133,7 @@ static bool times_read(struct unit *unit, const char *answer, double *seconds)
     for (const char *at = answer + strlen(took) + used; *at == ' ' || *at == ';';) {
         const char *equals = strchr(++at, '=');
         if (!equals)
-            return *at == '\0' && at[-1] == ' ';        /* no stages */
+            return *at == '\0' && at[-1] == ' '; /* no stages */
         char *end;
         double stage = strtod(equals + 1, &end);
         int part = part_index(unit, at, (size_t)(equals - at));
@@ -254,8 +265,8 @@ static enum status contest_look(struct contest *contest, const struct ab_effort 
             status = part_interval(unit, part, miss, &interval);
             enum verdict verdict = status == STATUS_OK ? interval_judge(&interval) : VERDICT_NOISY;
             worse = worse || verdict == VERDICT_WORSE;
-            clear = clear && verdict != VERDICT_NOISY
-                    && (verdict != VERDICT_WARNING || interval.high < 1 + EFFECT_FAIL);
+            clear =
+                clear && verdict != VERDICT_NOISY && (verdict != VERDICT_WARNING || interval.high < 1 + EFFECT_FAIL);
         }
         unit->decided = worse || clear;
         *open += !unit->decided;
@@ -278,11 +289,21 @@ static enum status findings_add(struct contest *contest, const struct ab_effort 
             if (status != STATUS_OK)
                 break;
             double before = part_seconds(unit, 0, part), after = part_seconds(unit, 1, part);
-            status = compare_add(contest->compare, &(struct finding){
-                .verdict = interval_judge(&interval), .class = CLASS_TIME, .scene = unit->scene, .spec = unit->spec,
-                .detail = detail, .metric = "time", .unit = "s", .before = before, .after = after,
-                .change = interval.middle - 1, .change_low = interval.low - 1, .change_high = interval.high - 1,
-                .slack = after * (interval.high - interval.low) / 2, .lower_is_better = true});
+            status =
+                compare_add(contest->compare, &(struct finding){.verdict = interval_judge(&interval),
+                                                                .class = CLASS_TIME,
+                                                                .scene = unit->scene,
+                                                                .spec = unit->spec,
+                                                                .detail = detail,
+                                                                .metric = "time",
+                                                                .unit = "s",
+                                                                .before = before,
+                                                                .after = after,
+                                                                .change = interval.middle - 1,
+                                                                .change_low = interval.low - 1,
+                                                                .change_high = interval.high - 1,
+                                                                .slack = after * (interval.high - interval.low) / 2,
+                                                                .lower_is_better = true});
         }
     }
     return status;
@@ -296,7 +317,7 @@ static enum status unit_make(struct contest *contest, const char *scene, const c
     if (!path)
         return STATUS_FAILED;
     if (access(path, R_OK) != 0)
-        path = scene;                   /* both programs are to read one and the same file */
+        path = scene; /* both programs are to read one and the same file */
     *unit = (struct unit){.scene = scene, .spec = spec};
     unit->question = compare_text(contest->compare, "plan %s %s", spec, path);
     return unit->question ? STATUS_OK : STATUS_FAILED;
@@ -320,8 +341,8 @@ static enum status scene_units(struct contest *contest, const char *scene, const
         if (!units)
             return status_set(STATUS_FAILED, "no memory for %d units", contest->unit_count + 1);
         contest->units = units;
-        status = unit_make(contest, scene, spec_count > 0 ? specs[k] : algorithms[k]->name,
-                           &units[contest->unit_count]);
+        status =
+            unit_make(contest, scene, spec_count > 0 ? specs[k] : algorithms[k]->name, &units[contest->unit_count]);
         contest->unit_count += status == STATUS_OK;
     }
     return status;
@@ -374,9 +395,11 @@ static enum status contest_run(struct contest *contest, const struct ab_effort *
         status = status_set(STATUS_INVALID, "neither program can do what is asked: %s",
                             contest->compare->note_count > 0 ? contest->compare->notes[0] : "nothing is");
     if (status == STATUS_OK)
-        status = compare_note(contest->compare, "%d rounds in %.0f s, one thread; all intervals together hold with %g %%; "
-                              "a slowdown beyond %g %% warns, beyond %g %% fails", round, seconds_now() - begin,
-                              100 * (1 - ERROR_PROBABILITY), 100 * EFFECT_WARN, 100 * EFFECT_FAIL);
+        status = compare_note(contest->compare,
+                              "%d rounds in %.0f s, one thread; all intervals together hold with %g %%; "
+                              "a slowdown beyond %g %% warns, beyond %g %% fails",
+                              round, seconds_now() - begin, 100 * (1 - ERROR_PROBABILITY), 100 * EFFECT_WARN,
+                              100 * EFFECT_FAIL);
     return status;
 }
 

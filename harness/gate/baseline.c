@@ -15,14 +15,28 @@ enum { SCENES = sizeof scene_list / sizeof *scene_list };
 
 /* Beside every algorithm as it is by default, in both precisions. */
 static const char *const settings[] = {
-    "bp_nearest:engine=general", "bp_nearest:engine=general,precision=double",
-    "bp_linear:beta=2", "bp_linear:engine=general", "bp_linear:engine=general,precision=double",
-    "bp_sinc:taps=4,engine=general", "bp_sinc:taps=16,window=kaiser", "bp_sinc:taps=16,window=kaiser,precision=double",
-    "bp_sinc:taps=16,window=kaiser,engine=general", "bp_sinc:taps=16,window=kaiser,engine=general,precision=double",
-    "bp_zeropad:factor=3", "bp_zeropad:factor=3,engine=general",
-    "rma_lbf:variant=printed", "rma_lbf:blocks=16", "rma_lbf:blocks=16,spacing=uniform", "rma_lbf:blocks=16,blend=off",
-    "rma_lbf:stolt=4", "rma_pca:blocks=16", "rma_wu:blocks=16", "rma_numeric:blocks=16,stolt=16",
-    "rma_numeric:blocks=16,stolt=16,precision=double", "rma_numeric:stolt=direct,precision=double",
+    "bp_nearest:engine=general",
+    "bp_nearest:engine=general,precision=double",
+    "bp_linear:beta=2",
+    "bp_linear:engine=general",
+    "bp_linear:engine=general,precision=double",
+    "bp_sinc:taps=4,engine=general",
+    "bp_sinc:taps=16,window=kaiser",
+    "bp_sinc:taps=16,window=kaiser,precision=double",
+    "bp_sinc:taps=16,window=kaiser,engine=general",
+    "bp_sinc:taps=16,window=kaiser,engine=general,precision=double",
+    "bp_zeropad:factor=3",
+    "bp_zeropad:factor=3,engine=general",
+    "rma_lbf:variant=printed",
+    "rma_lbf:blocks=16",
+    "rma_lbf:blocks=16,spacing=uniform",
+    "rma_lbf:blocks=16,blend=off",
+    "rma_lbf:stolt=4",
+    "rma_pca:blocks=16",
+    "rma_wu:blocks=16",
+    "rma_numeric:blocks=16,stolt=16",
+    "rma_numeric:blocks=16,stolt=16,precision=double",
+    "rma_numeric:stolt=direct,precision=double",
 };
 enum { SETTINGS = sizeof settings / sizeof *settings };
 

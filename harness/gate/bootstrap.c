@@ -33,7 +33,7 @@ static double weighted_median(const struct value *values, int count, const int *
     while (2 * (passed + drawn[values[k].round]) < count)
         passed += drawn[values[k++].round];
     int next = k;
-    if (2 * (passed + drawn[values[k].round]) == count)         /* between this one and the next that counts */
+    if (2 * (passed + drawn[values[k].round]) == count) /* between this one and the next that counts */
         do
             next++;
         while (drawn[values[next].round] == 0);
@@ -54,7 +54,8 @@ static double reach(double miss, int degrees)
     }
     double z = low, z2 = z * z;
     return (z + z * (z2 + 1) / (4 * n) + z * ((5 * z2 + 16) * z2 + 3) / (96 * n * n)
-            + z * (((3 * z2 + 19) * z2 + 17) * z2 - 15) / (384 * n * n * n)) / 1.959964;
+            + z * (((3 * z2 + 19) * z2 + 17) * z2 - 15) / (384 * n * n * n))
+           / 1.959964;
 }
 
 enum status interval_find(const double *ratios, int rounds, int blocks, double miss, struct interval *interval)

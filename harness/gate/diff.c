@@ -9,10 +9,14 @@
 
 #include "measure/timing.h"
 
-const char *const verdict_names[VERDICTS] = {
-    [VERDICT_WORSE] = "worse", [VERDICT_GONE] = "gone", [VERDICT_CHANGED] = "changed",
-    [VERDICT_WARNING] = "warning",
-    [VERDICT_NOISY] = "too noisy to tell", [VERDICT_BETTER] = "better", [VERDICT_NEW] = "new", [VERDICT_SAME] = "same"};
+const char *const verdict_names[VERDICTS] = {[VERDICT_WORSE] = "worse",
+                                             [VERDICT_GONE] = "gone",
+                                             [VERDICT_CHANGED] = "changed",
+                                             [VERDICT_WARNING] = "warning",
+                                             [VERDICT_NOISY] = "too noisy to tell",
+                                             [VERDICT_BETTER] = "better",
+                                             [VERDICT_NEW] = "new",
+                                             [VERDICT_SAME] = "same"};
 const char *const class_names[] = {[CLASS_QUALITY] = "quality", [CLASS_WORK] = "work", [CLASS_TIME] = "time"};
 
 /* --- What the findings are kept in --------------------------------------------------------------------------- */
@@ -33,8 +37,8 @@ static void *array_room(void *array, int count, int *room, size_t size)
 
 enum status compare_add(struct compare *compare, const struct finding *finding)
 {
-    struct finding *findings = array_room(compare->findings, compare->finding_count, &compare->finding_room,
-                                          sizeof *findings);
+    struct finding *findings =
+        array_room(compare->findings, compare->finding_count, &compare->finding_room, sizeof *findings);
     if (!findings)
         return STATUS_FAILED;
     compare->findings = findings;
@@ -90,7 +94,7 @@ enum status compare_note(struct compare *compare, const char *format, ...)
 static int count_of(const struct compare *compare, enum verdict verdict)
 {
     int count = 0;
-    for (int class = 0; class < CLASSES; class++)
+    for (int class = 0; class < CLASSES; class ++)
         count += compare->counts[class][verdict];
     return count;
 }
@@ -103,8 +107,10 @@ enum status compare_judge(const struct compare *compare)
         return STATUS_OK;
     if (changed == 0)
         return status_set(STATUS_FAILED, "%d worse, %d gone", worse, gone);
-    return status_set(STATUS_FAILED, "%d worse, %d gone, %d changed for the better: where that is meant, ./sasbench baseline "
-                      "writes a new baseline, to be reviewed", worse, gone, changed);
+    return status_set(STATUS_FAILED,
+                      "%d worse, %d gone, %d changed for the better: where that is meant, ./sasbench baseline "
+                      "writes a new baseline, to be reviewed",
+                      worse, gone, changed);
 }
 
 void compare_free(struct compare *compare)
@@ -128,18 +134,18 @@ struct key {
 
 /* A comment "scene NAME: HASH". A name may hold anything, so that its length is kept. */
 struct scene_content {
-    const char *name, *hash;            /* borrowed; the name ends at `length` */
+    const char *name, *hash; /* borrowed; the name ends at `length` */
     size_t length;
 };
 
 /* One of the two results, ready to be searched. */
 struct side {
     struct results results;
-    struct key *keys;                   /* [row_count] sorted */
-    struct scene_content *contents;     /* [content_count] sorted by name */
+    struct key *keys;               /* [row_count] sorted */
+    struct scene_content *contents; /* [content_count] sorted by name */
     int content_count;
-    bool *matched;                      /* [row_count] by row: found on the other side, too */
-    bool *closed;                       /* [row_count] by row: nothing more to say of what belongs to this row */
+    bool *matched; /* [row_count] by row: found on the other side, too */
+    bool *closed;  /* [row_count] by row: nothing more to say of what belongs to this row */
 };
 
 /* By measurement only. */
@@ -228,9 +234,10 @@ static enum status side_open(const char *path, struct side *side)
     qsort(side->keys, rows, sizeof *side->keys, key_order_row);
     for (int k = 1; k < csv->row_count; k++)
         if (key_order(&side->keys[k - 1], &side->keys[k]) == 0)
-            return status_set(STATUS_INVALID, "%s:%d: the row of scene %s, algorithm %s, options '%s', precision %s "
-                              "stands in line %d already; each may be given once", path,
-                              csv->lines[side->keys[k].row], side->keys[k].scene, side->keys[k].algorithm,
+            return status_set(STATUS_INVALID,
+                              "%s:%d: the row of scene %s, algorithm %s, options '%s', precision %s "
+                              "stands in line %d already; each may be given once",
+                              path, csv->lines[side->keys[k].row], side->keys[k].scene, side->keys[k].algorithm,
                               side->keys[k].options, side->keys[k].precision, csv->lines[side->keys[k - 1].row]);
     return STATUS_OK;
 }
@@ -245,8 +252,8 @@ static const struct key *side_find(const struct side *side, const struct key *ke
 static const char *side_hash(const struct side *side, const char *scene)
 {
     const struct scene_content sought = {scene, NULL, strlen(scene)};
-    const struct scene_content *found = bsearch(&sought, side->contents, (size_t)side->content_count,
-                                                sizeof *side->contents, content_order);
+    const struct scene_content *found =
+        bsearch(&sought, side->contents, (size_t)side->content_count, sizeof *side->contents, content_order);
     return found ? found->hash : NULL;
 }
 
@@ -273,8 +280,8 @@ static enum verdict judge(const struct metric *metric, double before, double aft
    time, the ratio nearer to 1. What load does to a few runs seldom moves both. NAN when it cannot be told. */
 static double time_ratio(const struct measurement *old, const struct measurement *new)
 {
-    double control = old->control_s / new->control_s, ratio = new->run_s / old->run_s * control;
-    double least = new->run_min_s / old->run_min_s * control;
+    double control = old->control_s / new->control_s, ratio = new->run_s / old->run_s *control;
+    double least = new->run_min_s / old->run_min_s *control;
     bool whole = ratio > 0 && isfinite(ratio);
     if (!whole || !(least > 0 && isfinite(least)))
         return whole ? ratio : NAN;
@@ -288,7 +295,7 @@ struct work_place {
     struct compare *compare;
     struct side *old, *new;
     const struct metric *metrics;
-    double *ratios;                     /* [ratio_count] of the times */
+    double *ratios; /* [ratio_count] of the times */
     int ratio_count;
     bool threads_differ;
 };
@@ -300,8 +307,8 @@ static enum status describe(struct compare *compare, const struct key *key, stru
     finding->scene = compare_text(compare, "%s", key->scene);
     finding->spec = compare_text(compare, "%s%s%s%s%s", key->algorithm, options || is_double ? ":" : "", key->options,
                                  options && is_double ? "," : "", is_double ? "precision=double" : "");
-    finding->detail = *key->axis ? compare_text(compare, "target %d, %s, %s", key->target + 1, key->axis,
-                                                key->definition) : "";
+    finding->detail =
+        *key->axis ? compare_text(compare, "target %d, %s, %s", key->target + 1, key->axis, key->definition) : "";
     return finding->scene && finding->spec && finding->detail ? STATUS_OK : STATUS_FAILED;
 }
 
@@ -309,8 +316,14 @@ static enum status describe(struct compare *compare, const struct key *key, stru
 static enum status add_row(struct compare *compare, const struct key *key, enum verdict verdict, const char *metric,
                            const char *before, const char *after)
 {
-    struct finding finding = {.verdict = verdict, .class = CLASS_QUALITY, .metric = metric, .unit = "",
-                              .before = NAN, .after = NAN, .change = NAN, .slack = NAN,
+    struct finding finding = {.verdict = verdict,
+                              .class = CLASS_QUALITY,
+                              .metric = metric,
+                              .unit = "",
+                              .before = NAN,
+                              .after = NAN,
+                              .change = NAN,
+                              .slack = NAN,
                               .before_text = compare_text(compare, "%s", before),
                               .after_text = compare_text(compare, "%s", after)};
     if (!finding.before_text || !finding.after_text || describe(compare, key, &finding) != STATUS_OK)
@@ -324,7 +337,8 @@ static int status_rank(const char *status)
 }
 
 /* Two rows' times; undefined on one side is no matter: a baseline has none. */
-static void judge_time(struct work_place *place, const struct key *key, const struct key *found, struct finding *finding)
+static void judge_time(struct work_place *place, const struct key *key, const struct key *found,
+                       struct finding *finding)
 {
     const struct measurement *old = &place->old->results.measurements[key->row];
     const struct measurement *new = &place->new->results.measurements[found->row];
@@ -346,10 +360,10 @@ static enum status judge_pair(struct work_place *place, const struct key *key, c
     struct compare *compare = place->compare;
     const struct results *old = &place->old->results, *new = &place->new->results;
     enum precision precision = strcmp(key->precision, "double") == 0 ? PRECISION_DOUBLE : PRECISION_FLOAT;
-    const char *old_row = old->targets ? (const char *)&old->target_rows[key->row]
-                                       : (const char *)&old->measurements[key->row];
-    const char *new_row = new->targets ? (const char *)&new->target_rows[found->row]
-                                       : (const char *)&new->measurements[found->row];
+    const char *old_row =
+        old->targets ? (const char *)&old->target_rows[key->row] : (const char *)&old->measurements[key->row];
+    const char *new_row =
+        new->targets ? (const char *)&new->target_rows[found->row] : (const char *)&new->measurements[found->row];
     if (!old->targets) {
         const char *before = old->measurements[key->row].status, *after = new->measurements[found->row].status;
         int worse = status_rank(after) - status_rank(before);
@@ -357,8 +371,12 @@ static enum status judge_pair(struct work_place *place, const struct key *key, c
             const char *reason = new->measurements[found->row].reason;
             place->old->closed[key->row] = place->new->closed[found->row] = true;
             const char *said = compare_text(compare, "%s%s%s", after, *reason ? ": " : "", reason);
-            return !said ? STATUS_FAILED : add_row(compare, key, worse > 0 ? VERDICT_WORSE
-                                                   : worse < 0 ? VERDICT_BETTER : VERDICT_SAME, "status", before, said);
+            return !said ? STATUS_FAILED
+                         : add_row(compare, key,
+                                   worse > 0   ? VERDICT_WORSE
+                                   : worse < 0 ? VERDICT_BETTER
+                                               : VERDICT_SAME,
+                                   "status", before, said);
         }
     }
     struct finding row = {.before = NAN};
@@ -409,8 +427,10 @@ static enum status judge_sides(struct work_place *place, const struct side measu
         bool changed = found && before && after && strcmp(before, after) != 0;
         if (changed && !measurements && strcmp(told, key.scene) != 0) {
             told = key.scene;
-            status = compare_note(place->compare, "scene %s has another content in NEW: its rows are not comparable, "
-                                  "so that they are gone and new", key.scene);
+            status = compare_note(place->compare,
+                                  "scene %s has another content in NEW: its rows are not comparable, "
+                                  "so that they are gone and new",
+                                  key.scene);
         }
         if (status != STATUS_OK)
             break;
@@ -424,7 +444,7 @@ static enum status judge_sides(struct work_place *place, const struct side measu
                 status = add_row(place->compare, &key, VERDICT_GONE, "row", "present", "");
         }
     }
-    for (int row = 0; row < new->results.csv.row_count && status == STATUS_OK; row++) {
+    for (int row = 0; row < new->results.csv.row_count &&status == STATUS_OK; row++) {
         struct key key = key_of(&new->results, row);
         if (new->matched[row])
             continue;
@@ -440,7 +460,8 @@ static enum status judge_sides(struct work_place *place, const struct side measu
 static enum status note_side(struct compare *compare, const char *which, const char *path, const struct side *side)
 {
     const struct csv *csv = &side->results.csv;
-    const char *commit = csv_comment(csv, "commit"), *date = csv_comment(csv, "date"), *machine = csv_comment(csv, "machine");
+    const char *commit = csv_comment(csv, "commit"), *date = csv_comment(csv, "date"),
+               *machine = csv_comment(csv, "machine");
     return compare_note(compare, "%s: %s, %d rows%s%s%s%s%s%s", which, path, csv->row_count, commit ? ", commit " : "",
                         commit ? commit : "", date ? ", " : "", date ? date : "", machine ? ", " : "",
                         machine ? machine : "");
@@ -463,7 +484,7 @@ static bool is_much(const struct finding *finding)
     double change = fabs(finding->after - finding->before);
     if (finding->class == CLASS_WORK)
         return !(change <= CHANGED_WORK * fabs(finding->before));
-    return !(change <= CHANGED_SLACKS * finding->slack);        /* a status has no numbers: always */
+    return !(change <= CHANGED_SLACKS * finding->slack); /* a status has no numbers: always */
 }
 
 /* A fault can flatter as well as harm: the findings from `first` on that are better by much, or in many rows. */
@@ -510,9 +531,10 @@ static enum status judge_files(struct compare *compare, const char *const paths[
         status = compare_note(compare, "threads differ: times are not compared where they do");
     if (status == STATUS_OK && place.ratio_count > 0) {
         int count = place.ratio_count;
-        status = compare_note(compare, "time against the control: NEW takes %.3g of OLD (median of %d rows); a row alone is "
-                              "judged beyond a factor of %g, finer by compare --ab", median(place.ratios, count), count,
-                              1 + metrics[0].relative_slack);
+        status = compare_note(compare,
+                              "time against the control: NEW takes %.3g of OLD (median of %d rows); a row alone is "
+                              "judged beyond a factor of %g, finer by compare --ab",
+                              median(place.ratios, count), count, 1 + metrics[0].relative_slack);
     }
     free(place.ratios);
     return status;

@@ -6,31 +6,31 @@
 #include "measure/results.h"
 
 enum verdict {
-    VERDICT_WORSE,                  /* beyond the slack, or of --ab: beyond the effect that fails */
-    VERDICT_GONE,                   /* defined in OLD only */
-    VERDICT_CHANGED,                /* better by much or in many rows, as a fault in the measuring would look */
-    VERDICT_WARNING,                /* of --ab: slower, beyond the effect that warns */
-    VERDICT_NOISY,                  /* of --ab: too noisy to tell */
+    VERDICT_WORSE,   /* beyond the slack, or of --ab: beyond the effect that fails */
+    VERDICT_GONE,    /* defined in OLD only */
+    VERDICT_CHANGED, /* better by much or in many rows, as a fault in the measuring would look */
+    VERDICT_WARNING, /* of --ab: slower, beyond the effect that warns */
+    VERDICT_NOISY,   /* of --ab: too noisy to tell */
     VERDICT_BETTER,
-    VERDICT_NEW,                    /* defined in NEW only */
+    VERDICT_NEW, /* defined in NEW only */
     VERDICT_SAME,
     VERDICTS
 };
 extern const char *const verdict_names[VERDICTS];
-extern const char *const class_names[];                 /* by enum metric_class */
+extern const char *const class_names[]; /* by enum metric_class */
 enum { CLASSES = CLASS_TIME + 1 };
 
 /* One judgement. Texts are borrowed or belong to the struct compare. */
 struct finding {
     enum verdict verdict;
     enum metric_class class;
-    const char *scene, *spec, *detail;                  /* detail: which target, which stage; may be empty */
+    const char *scene, *spec, *detail; /* detail: which target, which stage; may be empty */
     const char *metric, *unit;
-    double before, after;                               /* NAN: not defined */
-    const char *before_text, *after_text;               /* instead of the numbers where not NULL */
-    double change;                                      /* after/before - 1 where that says more; else NAN */
-    double change_low, change_high;                     /* interval of the change; both 0: none is known */
-    double slack;                                       /* of `after`: changes within it are none; NAN: unknown */
+    double before, after;                 /* NAN: not defined */
+    const char *before_text, *after_text; /* instead of the numbers where not NULL */
+    double change;                        /* after/before - 1 where that says more; else NAN */
+    double change_low, change_high;       /* interval of the change; both 0: none is known */
+    double slack;                         /* of `after`: changes within it are none; NAN: unknown */
     bool lower_is_better;
 };
 
@@ -38,11 +38,11 @@ struct compare {
     int finding_count, finding_room;
     struct finding *findings;
     int counts[CLASSES][VERDICTS];
-    bool to_baseline;                                   /* OLD is a baseline: what changed asks for a new one */
+    bool to_baseline; /* OLD is a baseline: what changed asks for a new one */
     int text_count, text_room;
-    char **texts;                                       /* that findings and notes point to */
+    char **texts; /* that findings and notes point to */
     int note_count;
-    const char *notes[64];                              /* remarks to read before the findings */
+    const char *notes[64]; /* remarks to read before the findings */
 };
 
 /* A value of quality or work that is better by more than CHANGED_SLACKS slacks (of work, which has none: by more than

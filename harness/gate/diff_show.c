@@ -8,7 +8,7 @@
 #include "data/shown_text.h"
 #include "data/text_file.h"
 
-enum { MARKDOWN_MOST = 100 };           /* findings: a comment has room for 65536 characters */
+enum { MARKDOWN_MOST = 100 }; /* findings: a comment has room for 65536 characters */
 
 struct cell {
     char text[200];
@@ -60,7 +60,7 @@ static const struct finding **changed(const struct compare *compare, int *count)
 
 static bool verdict_occurs(const struct compare *compare, int verdict)
 {
-    for (int class = 0; class < CLASSES; class++)
+    for (int class = 0; class < CLASSES; class ++)
         if (compare->counts[class][verdict] > 0)
             return true;
     return false;
@@ -77,7 +77,7 @@ static bool class_occurs(const struct compare *compare, int class)
 /* "quality: 3 worse, 120 same", one text a class. */
 static void print_counts(const struct compare *compare, FILE *stream, const char *before, const char *after)
 {
-    for (int class = 0; class < CLASSES; class++) {
+    for (int class = 0; class < CLASSES; class ++) {
         const char *between = "";
         if (!class_occurs(compare, class))
             continue;
@@ -132,8 +132,8 @@ void compare_print(const struct compare *compare, FILE *stream)
     for (int k = 0; list && k < count; k++) {
         const struct finding *f = list[k];
         fprintf(stream, "%-*s %-17s %13s %13s %*s  ", verdict_width, verdict_names[f->verdict], f->metric,
-                cell_value(f->before, f->before_text).text, cell_value(f->after, f->after_text).text,
-                change_width, cell_change(f).text);
+                cell_value(f->before, f->before_text).text, cell_value(f->after, f->after_text).text, change_width,
+                cell_change(f).text);
         const char *const parts[] = {f->scene, " ", f->spec, *f->detail ? " " : "", f->detail};
         for (size_t n = 0; n < sizeof parts / sizeof *parts; n++)
             shown_write(stream, parts[n]);
@@ -171,8 +171,8 @@ enum status compare_markdown(const struct compare *compare, const char *path)
             struct cell before = cell_value(f->before, f->before_text), after = cell_value(f->after, f->after_text);
             struct cell change = cell_change(f), of;
             snprintf(of.text, sizeof of.text, "%.150s%s%.40s", f->spec, *f->detail ? ", " : "", f->detail);
-            const char *const cells[] = {verdict_names[f->verdict], f->metric, before.text, after.text, change.text,
-                                         f->scene, of.text};
+            const char *const cells[] = {
+                verdict_names[f->verdict], f->metric, before.text, after.text, change.text, f->scene, of.text};
             for (size_t c = 0; c < sizeof cells / sizeof *cells; c++)
                 markdown_cell(file.stream, cells[c]);
             fputs("|\n", file.stream);

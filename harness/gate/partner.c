@@ -1,5 +1,5 @@
 /* The other program of partner.h: a process group of its own behind one socket. */
-#define _GNU_SOURCE                     /* sched_setaffinity */
+#define _GNU_SOURCE /* sched_setaffinity */
 #include "gate/partner.h"
 
 #include <errno.h>
@@ -33,7 +33,7 @@ static void processor_choose(int turn)
         if (CPU_ISSET(k, &all) && left-- == 0) {
             CPU_ZERO(&one);
             CPU_SET(k, &one);
-            sched_setaffinity(0, sizeof one, &one);     /* where it is refused, the times are only noisier */
+            sched_setaffinity(0, sizeof one, &one); /* where it is refused, the times are only noisier */
         }
 }
 
@@ -67,7 +67,7 @@ static enum status silence(struct partner *partner, const char *question)
     }
     char how[80] = "closed its output";
     if (ended > 0) {
-        kill(-partner->process, SIGKILL);       /* what it may have left behind */
+        kill(-partner->process, SIGKILL); /* what it may have left behind */
         partner->process = 0;
         if (WIFSIGNALED(state))
             snprintf(how, sizeof how, "was ended by signal %d (%s)", WTERMSIG(state), strsignal(WTERMSIG(state)));
@@ -75,7 +75,8 @@ static enum status silence(struct partner *partner, const char *question)
             snprintf(how, sizeof how, "ended with status %d", WEXITSTATUS(state));
     }
     return status_set(STATUS_INVALID, "%s %s %s %s '%s'; a sasbench that has the command measure is needed",
-                      partner->role, partner->path, how, *question ? "after" : "instead of", *question ? question : greeting);
+                      partner->role, partner->path, how, *question ? "after" : "instead of",
+                      *question ? question : greeting);
 }
 
 static enum status line_read(struct partner *partner, const char *question, char *line, size_t size)
@@ -89,8 +90,7 @@ static enum status line_read(struct partner *partner, const char *question, char
             continue;
         if (ready <= 0)
             return status_set(STATUS_INVALID, "%s %s says nothing for %g s %s '%s'", partner->role, partner->path,
-                              partner->patience_s, *question ? "after" : "instead of",
-                              *question ? question : greeting);
+                              partner->patience_s, *question ? "after" : "instead of", *question ? question : greeting);
         size_t room = sizeof partner->buffer - partner->held;
         ssize_t got = recv(partner->socket, partner->buffer + partner->held, room, 0);
         if (got <= 0)
@@ -113,8 +113,10 @@ enum status partner_start(const char *role, const char *path, int turn, double p
     struct stat about;
     *partner = (struct partner){0};
     if (stat(path, &about) != 0 || !S_ISREG(about.st_mode) || access(path, X_OK) != 0)
-        return status_set(STATUS_INVALID, "%s %s is no program that can be run; a sasbench is needed, such as "
-                          "build/harness/sasbench", role, path);
+        return status_set(STATUS_INVALID,
+                          "%s %s is no program that can be run; a sasbench is needed, such as "
+                          "build/harness/sasbench",
+                          role, path);
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets) != 0)
         return status_set(STATUS_FAILED, "%s %s: no socket: %s", role, path, strerror(errno));
     pid_t process = fork();
@@ -125,7 +127,7 @@ enum status partner_start(const char *role, const char *path, int turn, double p
         close(sockets[0]);
         return status_set(STATUS_FAILED, "%s %s: no process: %s", role, path, strerror(errno));
     }
-    setpgid(process, process);          /* here, too: whoever comes first */
+    setpgid(process, process); /* here, too: whoever comes first */
     *partner = (struct partner){role, path, process, sockets[0], patience_s, 0, ""};
     char line[200];
     enum status status = line_read(partner, "", line, sizeof line);

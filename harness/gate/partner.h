@@ -8,12 +8,12 @@
 #include "status.h"
 
 struct partner {
-    const char *role, *path;            /* of messages: "OLD"; the program. Borrowed */
-    pid_t process;                      /* 0: none */
-    int socket;                         /* to its standard input and output; its standard error is dropped */
-    double patience_s;                  /* it answers within this or has failed */
+    const char *role, *path; /* of messages: "OLD"; the program. Borrowed */
+    pid_t process;           /* 0: none */
+    int socket;              /* to its standard input and output; its standard error is dropped */
+    double patience_s;       /* it answers within this or has failed */
     size_t held;
-    char buffer[8192];                  /* [held] read and not yet taken */
+    char buffer[8192]; /* [held] read and not yet taken */
 };
 
 /* Start `path measure` on the `turn`-th of the processors that we may use, round and round, and hear its greeting.

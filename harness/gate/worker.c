@@ -21,9 +21,9 @@
 enum { UNITS_MOST = 256 };
 
 struct site {
-    char *name;                         /* as it was given */
+    char *name; /* as it was given */
     struct scene scene;
-    struct echoes echoes[2];            /* by enum precision; made when first wanted */
+    struct echoes echoes[2]; /* by enum precision; made when first wanted */
     struct site *next;
 };
 

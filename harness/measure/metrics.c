@@ -13,13 +13,13 @@
 
 #include "data/echo_data.h"
 
-#define TAPS_HALF 24                    /* samples to either side */
-#define KAISER_BETA 10.0                /* stop band of 100 dB */
-#define FINE 12                         /* fine samples an image step; doubled until ... */
-#define WIDTH_SAMPLES 20                /* ... the -3 dB width has as many as this */
-#define EXTENT_MAX_M 3.0
-#define RASTER_TOLERANCE 1e-6           /* of a step: nearer counts as on the raster */
-#define PIXEL_LOBE 2                    /* pixels to either side of the peak (DEFINITION_PIXEL) */
+#define TAPS_HALF        24   /* samples to either side */
+#define KAISER_BETA      10.0 /* stop band of 100 dB */
+#define FINE             12   /* fine samples an image step; doubled until ... */
+#define WIDTH_SAMPLES    20   /* ... the -3 dB width has as many as this */
+#define EXTENT_MAX_M     3.0
+#define RASTER_TOLERANCE 1e-6 /* of a step: nearer counts as on the raster */
+#define PIXEL_LOBE       2    /* pixels to either side of the peak (DEFINITION_PIXEL) */
 
 /* --- Interpolation ------------------------------------------------------------------------------------------- */
 
@@ -66,8 +66,8 @@ static double raster_place(double value, double first, double step)
 struct place {
     int patch;
     const struct grid *grid;
-    double column, row;                 /* sample coordinates along x and r */
-    double margin_m;                    /* to the nearest edge of the patch */
+    double column, row; /* sample coordinates along x and r */
+    double margin_m;    /* to the nearest edge of the patch */
 };
 
 static struct place place_find(const struct image *image, double x, double r)
@@ -256,8 +256,10 @@ static int peak_find(const double *power, int count, double first, double step, 
         return -1;
     }
     if (peak == 0 || peak == count - 1) {
-        snprintf(metrics->reason, sizeof metrics->reason, "the slice is strongest at its end, %+.4g m from the "
-                 "target", first + peak * step);
+        snprintf(metrics->reason, sizeof metrics->reason,
+                 "the slice is strongest at its end, %+.4g m from the "
+                 "target",
+                 first + peak * step);
         return -1;
     }
     return peak;
@@ -271,8 +273,10 @@ struct slice_metrics metrics_of_power(const double *power, int count, double fir
         sum += power[k];
     metrics.extent_m = fmax(0, fmin(-first, first + (count - 1) * step));
     if (count < 3 || !(sum > 0 && sum < INFINITY)) {
-        snprintf(metrics.reason, sizeof metrics.reason, "%s", count < 3 ? "the slice is shorter than 3 samples"
-                 : sum == 0 ? "the slice is zero" : "the slice is not finite");
+        snprintf(metrics.reason, sizeof metrics.reason, "%s",
+                 count < 3  ? "the slice is shorter than 3 samples"
+                 : sum == 0 ? "the slice is zero"
+                            : "the slice is not finite");
         return metrics;
     }
     int peak = peak_find(power, count, first, step, &metrics);
@@ -289,8 +293,10 @@ struct slice_metrics metrics_of_power(const double *power, int count, double fir
     metrics.position_error_m = first + peak_index * step;
     metrics.width_m = (half_right - half_left) * step;
     if (!(null_right > null_left)) {
-        snprintf(metrics.reason, sizeof metrics.reason, "the main lobe has no first minimum on both sides within "
-                 "%.4g m of the target", metrics.extent_m);
+        snprintf(metrics.reason, sizeof metrics.reason,
+                 "the main lobe has no first minimum on both sides within "
+                 "%.4g m of the target",
+                 metrics.extent_m);
         return metrics;
     }
     int left = maximum_find(power, 0, (int)floor(null_left));
@@ -320,9 +326,9 @@ struct slice_metrics metrics_of_power(const double *power, int count, double fir
 
 /* A line of image samples through a target, along one axis. */
 struct line {
-    double complex *samples;            /* [count], malloc'ed; NULL without memory */
+    double complex *samples; /* [count], malloc'ed; NULL without memory */
     int count;
-    double step_m, target;              /* the target as a sample coordinate */
+    double step_m, target; /* the target as a sample coordinate */
 };
 
 static struct line line_extract(const struct image *image, const struct acquisition *acquisition,
@@ -351,8 +357,8 @@ static double edge_energy(const struct line *line)
     int n = line->count;
     double total = 0, edge = 0;
     for (int k = 0; k < n; k++)
-        total += n * (creal(line->samples[k]) * creal(line->samples[k]) +
-                      cimag(line->samples[k]) * cimag(line->samples[k]));
+        total +=
+            n * (creal(line->samples[k]) * creal(line->samples[k]) + cimag(line->samples[k]) * cimag(line->samples[k]));
     for (int bin = (int)ceil(0.475 * n); bin <= (int)floor(0.525 * n); bin++) {
         double complex sum = 0;
         for (int k = 0; k < n; k++)
@@ -370,7 +376,7 @@ static double *line_refine(const struct line *line, int fine, int half_count)
         double fraction = line->target - floor(line->target) + (double)phase / fine, taps[2 * TAPS_HALF];
         int base = (int)floor(line->target) + (fraction >= 1);
         taps_fill(fraction - (fraction >= 1), taps);
-        int first = -((half_count + phase) / fine);          /* smallest with first fine + phase >= -half_count */
+        int first = -((half_count + phase) / fine); /* smallest with first fine + phase >= -half_count */
         for (int whole = first; whole * fine + phase <= half_count; whole++) {
             double complex sum = 0;
             for (int k = 0; k < 2 * TAPS_HALF; k++) {
@@ -460,7 +466,7 @@ void metrics_slice_samples(const struct image *image, const struct acquisition *
         free(power);
     for (int k = 0; k < *count; k++) {
         position[k] = (k - slice.half_count) * slice.step_m;
-        power[k] = 10 * log10(fmax(power[k] / peak, 1e-20));    /* no -inf in a plot */
+        power[k] = 10 * log10(fmax(power[k] / peak, 1e-20)); /* no -inf in a plot */
     }
 }
 
@@ -468,14 +474,14 @@ void metrics_slice_samples(const struct image *image, const struct acquisition *
 
 /* Where a reference patch lies within the image. */
 struct offset {
-    int patch, row, column;             /* patch -1: nowhere */
+    int patch, row, column; /* patch -1: nowhere */
 };
 
 /* Offset of a run of `count` samples within one of `whole_count`, both uniform; -1 unless all of them coincide. */
 static int raster_offset(double first, double step, int count, double whole_first, double whole_step, int whole_count)
 {
     double begin = (first - whole_first) / whole_step, offset = round(begin);
-    double stretch = (count - 1) * (step / whole_step - 1);     /* by which the last sample is off, beside the first */
+    double stretch = (count - 1) * (step / whole_step - 1); /* by which the last sample is off, beside the first */
     double tolerance = raster_tolerance(fmax(fabs(first), fabs(whole_first)), whole_step);
     bool matches = fabs(begin - offset) <= tolerance && fabs(begin + stretch - offset) <= tolerance;
     return matches && offset >= 0 && offset + count <= whole_count ? (int)offset : -1;
@@ -485,10 +491,10 @@ static struct offset offset_find(const struct image *image, const struct grid *p
 {
     for (int k = 0; k < image->patch_count; k++) {
         const struct grid *whole = &image->patches[k];
-        int column = raster_offset(part->x_first, part->x_step, part->x_count, whole->x_first, whole->x_step,
-                                   whole->x_count);
-        int row = raster_offset(part->r_first, part->r_step, part->r_count, whole->r_first, whole->r_step,
-                                whole->r_count);
+        int column =
+            raster_offset(part->x_first, part->x_step, part->x_count, whole->x_first, whole->x_step, whole->x_count);
+        int row =
+            raster_offset(part->r_first, part->r_step, part->r_count, whole->r_first, whole->r_step, whole->r_count);
         if (column >= 0 && row >= 0)
             return (struct offset){k, row, column};
     }
@@ -503,10 +509,10 @@ static double squared(double complex z)
 /* The sums over all pixels that the errors are made of. The gain and the peak come from a first pass, so that small
    errors are summed directly and not as differences of large sums. */
 struct error_sums {
-    double image, reference, reference_peak;            /* energies, and the largest |reference|^2 */
-    double complex cross;                               /* sum of reference conj(image) */
-    double error, error_gain, error_peak;               /* energies of the differences, and the largest of one */
-    double phase, phase_weight;                         /* squared phase errors, weighted, and the weights */
+    double image, reference, reference_peak; /* energies, and the largest |reference|^2 */
+    double complex cross;                    /* sum of reference conj(image) */
+    double error, error_gain, error_peak;    /* energies of the differences, and the largest of one */
+    double phase, phase_weight;              /* squared phase errors, weighted, and the weights */
 };
 
 static void pair_add_first(struct error_sums *sums, double complex value, double complex wanted)

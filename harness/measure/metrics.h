@@ -12,11 +12,11 @@ enum definition { DEFINITION_NULL, DEFINITION_3DB, DEFINITION_PIXEL };
 
 /* A value that is not defined is NAN here and an empty field in every output. */
 struct slice_metrics {
-    double extent_m;                /* the slice reaches this far to either side of the target */
-    double position_error_m;        /* peak minus true position along the axis */
-    double width_m;                 /* -3 dB width: linear interpolation of power at half peak */
-    double pslr_db[3], islr_db[3];  /* by enum definition */
-    char reason[160];               /* why something is undefined; empty when all is well */
+    double extent_m;               /* the slice reaches this far to either side of the target */
+    double position_error_m;       /* peak minus true position along the axis */
+    double width_m;                /* -3 dB width: linear interpolation of power at half peak */
+    double pslr_db[3], islr_db[3]; /* by enum definition */
+    char reason[160];              /* why something is undefined; empty when all is well */
 };
 
 /* The azimuth or range slice through a point target, interpolated band-limitedly (the range carrier is removed by
@@ -41,11 +41,11 @@ double complex metrics_value(const struct image *image, const struct acquisition
 struct slice_metrics metrics_of_power(const double *power, int count, double first, double step, double pixel_step);
 
 struct error_metrics {
-    double error;                   /* complex relative L2 */
-    double error_gain;              /* after one best complex gain (over all pixels) */
-    double phase_rms_rad;           /* over pixels with abs(reference) >= 0.1 max, weighted by its square */
-    double peak_ratio;              /* max |image - reference| / max |reference| */
-    const char *reason;             /* why something is undefined, a static text; empty when all is well */
+    double error;         /* complex relative L2 */
+    double error_gain;    /* after one best complex gain (over all pixels) */
+    double phase_rms_rad; /* over pixels with abs(reference) >= 0.1 max, weighted by its square */
+    double peak_ratio;    /* max |image - reference| / max |reference| */
+    const char *reason;   /* why something is undefined, a static text; empty when all is well */
 };
 
 /* Over all pixels of all patches of `reference` (double), which are looked up in `image` at the same places: image

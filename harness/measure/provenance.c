@@ -10,14 +10,14 @@
 #include <unistd.h>
 
 #include "common/isa.h"
-#include "commit.h"      /* made by the build */
+#include "commit.h" /* made by the build */
 
 #ifndef SASBENCH_FLAGS
 #define SASBENCH_FLAGS "unknown"
 #endif
 
 #ifdef __clang__
-#define COMPILER ""                     /* its __VERSION__ begins with the name */
+#define COMPILER "" /* its __VERSION__ begins with the name */
 #else
 #define COMPILER "gcc "
 #endif

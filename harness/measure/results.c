@@ -14,8 +14,10 @@
 #include "data/folder.h"
 #include "data/text_file.h"
 
-#define METRIC(struct_name, name, unit, title, better, class, of_float, of_double, relative) \
-    {#name, unit, title, better, class, {of_float, of_double}, relative, offsetof(struct struct_name, name)}
+#define METRIC(struct_name, name, unit, title, better, class, of_float, of_double, relative)                           \
+    {                                                                                                                  \
+#name, unit, title, better, class, {of_float, of_double }, relative, offsetof(struct struct_name, name)        \
+    }
 #define M_METRIC(...) METRIC(measurement, __VA_ARGS__)
 #define T_METRIC(...) METRIC(target_row, __VA_ARGS__)
 
@@ -49,39 +51,58 @@ const struct metric target_metrics[] = {
 
 /* One column: where the value lies in the row's struct. Header, writer and reader all come from these tables. */
 struct column {
-    const char *name;                   /* NULL ends the table */
+    const char *name; /* NULL ends the table */
     enum { COLUMN_TEXT, COLUMN_INTEGER, COLUMN_REAL } type;
     size_t offset;
 };
 
-#define M_TEXT(name) {#name, COLUMN_TEXT, offsetof(struct measurement, name)}
-#define M_INTEGER(name) {#name, COLUMN_INTEGER, offsetof(struct measurement, name)}
-#define M_REAL(name) {#name, COLUMN_REAL, offsetof(struct measurement, name)}
-#define T_TEXT(name) {#name, COLUMN_TEXT, offsetof(struct target_row, name)}
-#define T_INTEGER(name) {#name, COLUMN_INTEGER, offsetof(struct target_row, name)}
-#define T_REAL(name) {#name, COLUMN_REAL, offsetof(struct target_row, name)}
+#define M_TEXT(name)                                                                                                   \
+    {                                                                                                                  \
+#name, COLUMN_TEXT, offsetof(struct measurement, name)                                                         \
+    }
+#define M_INTEGER(name)                                                                                                \
+    {                                                                                                                  \
+#name, COLUMN_INTEGER, offsetof(struct measurement, name)                                                      \
+    }
+#define M_REAL(name)                                                                                                   \
+    {                                                                                                                  \
+#name, COLUMN_REAL, offsetof(struct measurement, name)                                                         \
+    }
+#define T_TEXT(name)                                                                                                   \
+    {                                                                                                                  \
+#name, COLUMN_TEXT, offsetof(struct target_row, name)                                                          \
+    }
+#define T_INTEGER(name)                                                                                                \
+    {                                                                                                                  \
+#name, COLUMN_INTEGER, offsetof(struct target_row, name)                                                       \
+    }
+#define T_REAL(name)                                                                                                   \
+    {                                                                                                                  \
+#name, COLUMN_REAL, offsetof(struct target_row, name)                                                          \
+    }
 
 /* Both tables begin with the columns that tell one measurement from another. */
 #define KEY_COLUMNS 4
 
 static const struct column measurement_columns[] = {
-    M_TEXT(scene), M_TEXT(algorithm), M_TEXT(options), M_TEXT(precision), M_INTEGER(threads), M_TEXT(engine),
-    M_TEXT(status), M_TEXT(reason), M_TEXT(skipped), M_REAL(plan_s), M_REAL(run_s), M_REAL(run_min_s),
-    M_INTEGER(runs), M_REAL(control_s), M_TEXT(stages), M_REAL(flops_published), M_REAL(flops), M_REAL(pairs),
-    M_REAL(bytes), M_REAL(error), M_REAL(error_gain), M_REAL(phase_rms_rad), M_REAL(width_m), M_REAL(pslr_db),
-    M_REAL(islr_db), {.name = NULL},
+    M_TEXT(scene),           M_TEXT(algorithm),     M_TEXT(options), M_TEXT(precision), M_INTEGER(threads),
+    M_TEXT(engine),          M_TEXT(status),        M_TEXT(reason),  M_TEXT(skipped),   M_REAL(plan_s),
+    M_REAL(run_s),           M_REAL(run_min_s),     M_INTEGER(runs), M_REAL(control_s), M_TEXT(stages),
+    M_REAL(flops_published), M_REAL(flops),         M_REAL(pairs),   M_REAL(bytes),     M_REAL(error),
+    M_REAL(error_gain),      M_REAL(phase_rms_rad), M_REAL(width_m), M_REAL(pslr_db),   M_REAL(islr_db),
+    {.name = NULL},
 };
 
 static const struct column target_columns[] = {
-    T_TEXT(scene), T_TEXT(algorithm), T_TEXT(options), T_TEXT(precision), T_INTEGER(target), T_TEXT(axis),
-    T_TEXT(definition), T_REAL(extent_m), T_REAL(position_error_m), T_REAL(phase_error_rad), T_REAL(width_m),
-    T_REAL(pslr_db), T_REAL(islr_db), {.name = NULL},
+    T_TEXT(scene),   T_TEXT(algorithm),  T_TEXT(options),  T_TEXT(precision),        T_INTEGER(target),
+    T_TEXT(axis),    T_TEXT(definition), T_REAL(extent_m), T_REAL(position_error_m), T_REAL(phase_error_rad),
+    T_REAL(width_m), T_REAL(pslr_db),    T_REAL(islr_db),  {.name = NULL},
 };
 
 enum { SHEET_MEASUREMENTS, SHEET_TARGETS, SHEETS };
 
 static const struct sheet {
-    const char *file, *format;          /* the format is the first line: by it we know a file as ours */
+    const char *file, *format; /* the format is the first line: by it we know a file as ours */
     const struct column *columns;
 } sheets[SHEETS] = {
     {"measurements.csv", "sasbench measurements 1", measurement_columns},
@@ -91,11 +112,11 @@ static const struct sheet {
 static const struct {
     const char *key;
     size_t offset;
-    bool compared;                      /* rows of different values are not mixed */
+    bool compared; /* rows of different values are not mixed */
 } notes[] = {
     {"machine", offsetof(struct provenance, machine), true},
     {"isa", offsetof(struct provenance, isa), true},
-    {"compiler", offsetof(struct provenance, compiler), false},     /* the program's bytes tell */
+    {"compiler", offsetof(struct provenance, compiler), false}, /* the program's bytes tell */
     {"flags", offsetof(struct provenance, flags), false},
     {"libraries", offsetof(struct provenance, libraries), true},
     {"commit", offsetof(struct provenance, commit), true},
@@ -109,15 +130,15 @@ struct key {
 };
 
 struct record {
-    int lock;                           /* of the folder */
+    int lock; /* of the folder */
     struct provenance provenance;
-    char *prefix, *paths[SHEETS];       /* "FOLDER/", and the files in it */
-    FILE *files[SHEETS];                /* open for appending */
-    struct scene_hash *scenes;          /* content of every scene that has rows */
+    char *prefix, *paths[SHEETS]; /* "FOLDER/", and the files in it */
+    FILE *files[SHEETS];          /* open for appending */
+    struct scene_hash *scenes;    /* content of every scene that has rows */
     int scene_count;
-    struct csv earlier;                 /* measurements.csv as the earlier run left it; rows point into it */
-    struct measurement *rows;           /* [earlier.row_count] */
-    bool *dropped;                      /* [earlier.row_count] the scene's content has changed since, or it is replaced */
+    struct csv earlier;       /* measurements.csv as the earlier run left it; rows point into it */
+    struct measurement *rows; /* [earlier.row_count] */
+    bool *dropped;            /* [earlier.row_count] the scene's content has changed since, or it is replaced */
 };
 
 /* --- Writing ------------------------------------------------------------------------------------------------- */
@@ -205,8 +226,9 @@ static bool key_matches(const struct key *key, const char *scene, const char *al
                         const char *precision)
 {
     return strcmp(key->scene, scene) == 0
-           && (!key->algorithm || (strcmp(key->algorithm, algorithm) == 0 && strcmp(key->options, options) == 0
-                                   && strcmp(key->precision, precision) == 0));
+           && (!key->algorithm
+               || (strcmp(key->algorithm, algorithm) == 0 && strcmp(key->options, options) == 0
+                   && strcmp(key->precision, precision) == 0));
 }
 
 /* One file anew from the rows of `old`, without those of `except` (NULL: of none) and without rows of targets whose
@@ -221,8 +243,9 @@ static enum status sheet_write(const struct record *record, int sheet, const str
     FILE *file = text.stream;
     head_write(file, &sheets[sheet], &record->provenance, NULL, record->scenes, record->scene_count);
     for (int row = 0; row < old[sheet].row_count; row++) {
-        if (except && key_matches(except, csv_cell(&old[sheet], row, 0), csv_cell(&old[sheet], row, 1),
-                                  csv_cell(&old[sheet], row, 2), csv_cell(&old[sheet], row, 3)))
+        if (except
+            && key_matches(except, csv_cell(&old[sheet], row, 0), csv_cell(&old[sheet], row, 1),
+                           csv_cell(&old[sheet], row, 2), csv_cell(&old[sheet], row, 3)))
             continue;
         if (!measurement_present(&old[SHEET_MEASUREMENTS], &old[sheet], row))
             continue;
@@ -335,8 +358,10 @@ static enum status sheet_read(const char *path, const struct sheet *sheet, struc
     if (csv->comment_count > 0 && strcmp(csv->comments[0], sheet->format) == 0)
         return STATUS_OK;
     csv_free(csv);
-    return status_set(STATUS_INVALID, "%s:1: not a file of ours, whose first line is '# %s'; it is left as it is, "
-                      "name another folder", path, sheet->format);
+    return status_set(STATUS_INVALID,
+                      "%s:1: not a file of ours, whose first line is '# %s'; it is left as it is, "
+                      "name another folder",
+                      path, sheet->format);
 }
 
 /* Why rows of `csv` are not gone on with: text is empty when they are. */
@@ -347,7 +372,8 @@ static void other_run(const struct csv *csv, const struct provenance *provenance
     for (size_t k = 0; k < sizeof notes / sizeof *notes && !*text; k++) {
         const char *then = csv_comment(csv, notes[k].key), *now = (const char *)provenance + notes[k].offset;
         if (notes[k].compared && (!then || strcmp(then, now) != 0))
-            snprintf(text, size, "measured with %s '%.120s', now with '%.120s'", notes[k].key, then ? then : "unknown", now);
+            snprintf(text, size, "measured with %s '%.120s', now with '%.120s'", notes[k].key, then ? then : "unknown",
+                     now);
     }
     if (!*text && (!threads || strtol(threads, NULL, 10) != provenance->threads))
         snprintf(text, size, "measured with threads '%.20s', now with '%d'", threads ? threads : "unknown",
@@ -363,8 +389,10 @@ static enum status header_check(const struct csv *csv, const struct sheet *sheet
         const char *needed = k < count ? sheet->columns[k].name : "no more";
         const char *found = k < csv->column_count ? csv->columns[k] : "missing";
         if (strcmp(needed, found) != 0)
-            return status_set(STATUS_INVALID, "%s: the header line names '%.60s' as column %d; '%s' is needed (another "
-                              "version?)", csv->path, found, k + 1, needed);
+            return status_set(STATUS_INVALID,
+                              "%s: the header line names '%.60s' as column %d; '%s' is needed (another "
+                              "version?)",
+                              csv->path, found, k + 1, needed);
     }
     return STATUS_OK;
 }
@@ -425,7 +453,8 @@ static enum status files_keep(const struct record *record, const char *why)
         free(kept);
     }
     if (!status)
-        fprintf(stderr, "sasbench: %s: %s; the old rows are kept in %s\n", record->paths[SHEET_MEASUREMENTS], why, told);
+        fprintf(stderr, "sasbench: %s: %s; the old rows are kept in %s\n", record->paths[SHEET_MEASUREMENTS], why,
+                told);
     return status;
 }
 
@@ -520,8 +549,7 @@ static int earlier_find(const struct record *record, const struct key *key)
 {
     for (int row = 0; row < record->earlier.row_count; row++) {
         const struct measurement *found = &record->rows[row];
-        if (!record->dropped[row]
-            && key_matches(key, found->scene, found->algorithm, found->options, found->precision))
+        if (!record->dropped[row] && key_matches(key, found->scene, found->algorithm, found->options, found->precision))
             return row;
     }
     return -1;
@@ -572,13 +600,15 @@ enum status record_targets(struct record *record, const struct target_row *rows,
 {
     enum status status = STATUS_OK;
     for (int k = 0; k < count && !status; k++)
-        status = earlier_replace(record, &(struct key){rows[k].scene, rows[k].algorithm, rows[k].options, rows[k].precision});
+        status = earlier_replace(record,
+                                 &(struct key){rows[k].scene, rows[k].algorithm, rows[k].options, rows[k].precision});
     return status ? status : rows_append(record, SHEET_TARGETS, rows, count, sizeof *rows);
 }
 
 enum status record_add(struct record *record, const struct measurement *row)
 {
-    enum status status = earlier_replace(record, &(struct key){row->scene, row->algorithm, row->options, row->precision});
+    enum status status =
+        earlier_replace(record, &(struct key){row->scene, row->algorithm, row->options, row->precision});
     return status ? status : rows_append(record, SHEET_MEASUREMENTS, row, 1, sizeof *row);
 }
 
@@ -617,8 +647,8 @@ static enum status measurement_check(const struct csv *csv, int row, const struc
 static enum status results_parse(struct results *results, const struct sheet *sheet)
 {
     const struct csv *csv = &results->csv;
-    size_t count = (size_t)csv->row_count + 1, size = results->targets ? sizeof *results->target_rows
-                                                                       : sizeof *results->measurements;
+    size_t count = (size_t)csv->row_count + 1,
+           size = results->targets ? sizeof *results->target_rows : sizeof *results->measurements;
     char *rows = calloc(count, size);
     if (!rows)
         return status_set(STATUS_FAILED, "%s: no memory for %d rows", csv->path, csv->row_count);

@@ -12,20 +12,20 @@
 struct measurement {
     const char *scene, *algorithm, *options, *precision;
     int threads;
-    const char *engine, *status, *reason, *skipped;     /* status: ok, unsupported, failed */
+    const char *engine, *status, *reason, *skipped; /* status: ok, unsupported, failed */
     double plan_s, run_s, run_min_s;
     int runs;
     double control_s;
-    const char *stages;                                 /* "compress=0.1;focus=0.9" */
+    const char *stages; /* "compress=0.1;focus=0.9" */
     double flops_published, flops, pairs, bytes;
     double error, error_gain, phase_rms_rad;
-    double width_m, pslr_db, islr_db;                   /* null definition, azimuth, medians over the targets */
+    double width_m, pslr_db, islr_db; /* null definition, azimuth, medians over the targets */
 };
 
 /* One row of targets.csv. */
 struct target_row {
     const char *scene, *algorithm, *options, *precision;
-    int target;                                         /* index from 0 */
+    int target; /* index from 0 */
     const char *axis, *definition;
     double extent_m, position_error_m, phase_error_rad, width_m, pslr_db, islr_db;
 };
@@ -33,14 +33,14 @@ struct target_row {
 /* The one metric table: CSV header, terminal table, plot labels and the regression gate come from it. */
 struct metric {
     const char *name, *unit, *title;
-    enum { BETTER_NONE, BETTER_LOWER, BETTER_HIGHER, BETTER_SMALL } better;     /* small: of magnitude */
+    enum { BETTER_NONE, BETTER_LOWER, BETTER_HIGHER, BETTER_SMALL } better; /* small: of magnitude */
     enum metric_class { CLASS_QUALITY, CLASS_WORK, CLASS_TIME } class;
-    double absolute_slack[2];                           /* by enum precision; a change within either slack is none */
+    double absolute_slack[2]; /* by enum precision; a change within either slack is none */
     double relative_slack;
-    size_t offset;                                      /* of the double in struct measurement or target_row */
+    size_t offset; /* of the double in struct measurement or target_row */
 };
-extern const struct metric metrics[];                   /* of struct measurement; name NULL ends the table */
-extern const struct metric target_metrics[];            /* of struct target_row */
+extern const struct metric metrics[];        /* of struct measurement; name NULL ends the table */
+extern const struct metric target_metrics[]; /* of struct target_row */
 
 /* What makes rows comparable: written as `# key: value` lines ahead of the rows. */
 struct provenance {
@@ -59,9 +59,9 @@ struct scene_hash {
    struct. Texts of the rows belong to the csv. */
 struct results {
     struct csv csv;
-    bool targets;                                       /* which of the two it is */
-    struct measurement *measurements;                   /* [csv.row_count], or NULL */
-    struct target_row *target_rows;                     /* [csv.row_count], or NULL */
+    bool targets;                     /* which of the two it is */
+    struct measurement *measurements; /* [csv.row_count], or NULL */
+    struct target_row *target_rows;   /* [csv.row_count], or NULL */
 };
 /* Errors: STATUS_INVALID naming file, line, column and value: not a file of ours or of another version, other columns, a
    number that is none or not finite, a status that is none. */

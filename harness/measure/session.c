@@ -97,12 +97,31 @@ void session_close(struct session *session)
 struct measurement measurement_empty(const char *scene, const char *algorithm, const char *options,
                                      enum precision precision)
 {
-    return (struct measurement){
-        .scene = scene, .algorithm = algorithm, .options = options, .precision = precision_name(precision),
-        .threads = -1, .engine = "", .status = "ok", .reason = "", .skipped = "", .plan_s = NAN, .run_s = NAN,
-        .run_min_s = NAN, .runs = -1, .control_s = NAN, .stages = "", .flops_published = NAN, .flops = NAN,
-        .pairs = NAN, .bytes = NAN, .error = NAN, .error_gain = NAN, .phase_rms_rad = NAN, .width_m = NAN,
-        .pslr_db = NAN, .islr_db = NAN};
+    return (struct measurement){.scene = scene,
+                                .algorithm = algorithm,
+                                .options = options,
+                                .precision = precision_name(precision),
+                                .threads = -1,
+                                .engine = "",
+                                .status = "ok",
+                                .reason = "",
+                                .skipped = "",
+                                .plan_s = NAN,
+                                .run_s = NAN,
+                                .run_min_s = NAN,
+                                .runs = -1,
+                                .control_s = NAN,
+                                .stages = "",
+                                .flops_published = NAN,
+                                .flops = NAN,
+                                .pairs = NAN,
+                                .bytes = NAN,
+                                .error = NAN,
+                                .error_gain = NAN,
+                                .phase_rms_rad = NAN,
+                                .width_m = NAN,
+                                .pslr_db = NAN,
+                                .islr_db = NAN};
 }
 
 /* The rows of one target, and its azimuth slice by the primary definition. Returns how many rows. */
@@ -113,7 +132,7 @@ static int target_rows(const struct session *session, const struct image *image,
     const struct target *target = &session->scene->targets[index];
     double complex here = metrics_value(image, a, target->x, target->r);
     double complex exact = metrics_value(&session->reference, a, target->x, target->r);
-    double phase_error = here != 0 && exact != 0 ? carg(here * conj(exact)) : NAN;      /* zero has no phase */
+    double phase_error = here != 0 && exact != 0 ? carg(here * conj(exact)) : NAN; /* zero has no phase */
     int count = 0;
     for (int axis = 0; axis < AXES; axis++) {
         struct slice_metrics m = metrics_slice(image, a, target, (enum axis)axis);
@@ -122,9 +141,9 @@ static int target_rows(const struct session *session, const struct image *image,
         for (int d = 0; d < DEFINITIONS; d++)
             if (d != DEFINITION_PIXEL || axis == AXIS_AZIMUTH)
                 rows[count++] = (struct target_row){
-                    row->scene, row->algorithm, row->options, row->precision, index, axis_names[axis],
-                    definition_names[d], m.extent_m, m.position_error_m, phase_error, m.width_m,
-                    m.pslr_db[d], m.islr_db[d]};
+                    row->scene,       row->algorithm,      row->options, row->precision,     index,
+                    axis_names[axis], definition_names[d], m.extent_m,   m.position_error_m, phase_error,
+                    m.width_m,        m.pslr_db[d],        m.islr_db[d]};
     }
     return count;
 }

@@ -8,10 +8,10 @@
 
 /* Made by session_open, released by session_close. */
 struct session {
-    const struct scene *scene;          /* borrowed, outlives the session */
-    struct echoes echoes[2];            /* by enum precision */
-    struct image reference;             /* double, on the patches where images are compared; no patches without one */
-    char no_reference[512];             /* why there is none: refused, or no memory; else empty */
+    const struct scene *scene; /* borrowed, outlives the session */
+    struct echoes echoes[2];   /* by enum precision */
+    struct image reference;    /* double, on the patches where images are compared; no patches without one */
+    char no_reference[512];    /* why there is none: refused, or no memory; else empty */
 };
 
 /* Simulate the echoes and form the exact image; where there can be none, images are measured without their errors. Errors:

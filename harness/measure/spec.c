@@ -13,8 +13,11 @@
 static const char *const precision_names[] = {[PRECISION_FLOAT] = "float", [PRECISION_DOUBLE] = "double", NULL};
 
 static const struct param precision_param = {
-    .name = "precision", .summary = "of samples, sums and pixels", .type = PARAM_CHOICE,
-    .initial = PRECISION_FLOAT, .choices = precision_names,
+    .name = "precision",
+    .summary = "of samples, sums and pixels",
+    .type = PARAM_CHOICE,
+    .initial = PRECISION_FLOAT,
+    .choices = precision_names,
 };
 
 /* Names for a message: "a, b, c". Truncates where the message would anyway. */
@@ -25,8 +28,8 @@ struct name_list {
 
 static void name_list_add(struct name_list *list, const char *name)
 {
-    int added = snprintf(list->text + list->length, sizeof list->text - list->length, "%s%s",
-                         list->length ? ", " : "", name);
+    int added =
+        snprintf(list->text + list->length, sizeof list->text - list->length, "%s%s", list->length ? ", " : "", name);
     list->length += (size_t)added;
     if (list->length >= sizeof list->text)
         list->length = sizeof list->text - 1;
@@ -62,8 +65,8 @@ static double value_number(const struct param *param, const char *value)
 {
     double number = NAN;
     long long whole = 0;
-    const char *end = param->type == PARAM_INTEGER ? whole_read(value, INT_MIN, INT_MAX, &whole)
-                                                   : number_read(value, &number);
+    const char *end =
+        param->type == PARAM_INTEGER ? whole_read(value, INT_MIN, INT_MAX, &whole) : number_read(value, &number);
     if (!end || *end)
         return NAN;
     return param->type == PARAM_INTEGER ? (double)whole : number;
@@ -136,8 +139,7 @@ static enum status setting_read(const char *place, char *setting, struct spec *s
     }
     uint64_t bit = UINT64_C(1) << index;
     if (spec->given & bit)
-        return status_set(STATUS_INVALID, "SPEC '%.100s': %s is given twice; accepted: each key once", place,
-                          setting);
+        return status_set(STATUS_INVALID, "SPEC '%.100s': %s is given twice; accepted: each key once", place, setting);
     spec->given |= bit;
 
     double number = 0;
@@ -161,8 +163,8 @@ static enum status text_build(struct spec *spec)
         if (param->terse && value_load(param, spec->options) == param->initial)
             continue;
         param_format(param, value_load(param, spec->options), value, sizeof value);
-        int added = snprintf(spec->text + length, sizeof spec->text - length, "%s%s=%s", length ? "," : "",
-                             param->name, value);
+        int added =
+            snprintf(spec->text + length, sizeof spec->text - length, "%s%s=%s", length ? "," : "", param->name, value);
         length += (size_t)added;
         if (length >= sizeof spec->text)
             return status_set(STATUS_FAILED, "algorithm %s: its options are longer than %zu characters as text",

@@ -9,9 +9,9 @@
 struct spec {
     const struct algorithm *algorithm;
     enum precision precision;
-    void *options;                  /* options_size bytes, malloc'ed; NULL without options */
-    char text[256];                 /* canonical options without precision, every param: "taps=8,window=none" */
-    uint64_t given;                 /* bit k: params[k] was named in the SPEC; the bit above the last: precision */
+    void *options;  /* options_size bytes, malloc'ed; NULL without options */
+    char text[256]; /* canonical options without precision, every param: "taps=8,window=none" */
+    uint64_t given; /* bit k: params[k] was named in the SPEC; the bit above the last: precision */
 };
 
 /* Errors: STATUS_INVALID naming the SPEC, the key or value, and what is accepted. spec_free releases *spec. */

@@ -39,7 +39,7 @@ static enum status repeat(const struct algorithm *algorithm, void *plan, const s
 {
     static double seconds[RUNS_MOST], sorted[RUNS_MOST];
     static struct stages stages[RUNS_MOST];
-    enum status status = run_once(algorithm, plan, echoes, image, &stages[0], &seconds[0]);     /* warms up */
+    enum status status = run_once(algorithm, plan, echoes, image, &stages[0], &seconds[0]); /* warms up */
     int runs = seconds[0] >= seconds_single;
     double begin = seconds_now(), elapsed = 0;
     while (status == STATUS_OK && seconds[0] < seconds_single && runs < RUNS_MOST

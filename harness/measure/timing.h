@@ -5,11 +5,11 @@
 #include "algorithm.h"
 
 struct timing {
-    double plan_s;                  /* s, planning, once */
-    double run_s, run_min_s;        /* s, median and minimum of the timed runs */
-    int runs;                       /* timed runs; 1 when a run is so long that the first counts */
-    double control_s;               /* s, the control loop's time for all pairs of the problem, measured beside */
-    struct stages stages;           /* of the median run */
+    double plan_s;           /* s, planning, once */
+    double run_s, run_min_s; /* s, median and minimum of the timed runs */
+    int runs;                /* timed runs; 1 when a run is so long that the first counts */
+    double control_s;        /* s, the control loop's time for all pairs of the problem, measured beside */
+    struct stages stages;    /* of the median run */
     struct work work;
 };
 
@@ -24,6 +24,6 @@ enum status timing_measure(const struct algorithm *algorithm, const struct probl
 /* Seconds that the harness itself adds to a run: the median time of an algorithm that does nothing. */
 double timing_floor(void);
 
-double median(double *values, int count);       /* sorts the values; NAN when count is 0 */
+double median(double *values, int count); /* sorts the values; NAN when count is 0 */
 
 #endif

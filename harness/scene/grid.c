@@ -7,7 +7,7 @@
 #include "data/number.h"
 #include "scene/scene.h"
 
-#define BYTES_MAX 0x1p40            /* of a patch in double */
+#define BYTES_MAX 0x1p40 /* of a patch in double */
 
 /* One "first:step:count"; returns where it ends, NULL if it is not one. */
 static const char *axis_parse(const char *text, double *first, double *step, int *count)
@@ -25,8 +25,10 @@ enum status grid_parse(const char *text, struct grid *grid)
     const char *rest = axis_parse(text, &grid->x_first, &grid->x_step, &grid->x_count);
     rest = rest && *rest == ',' ? axis_parse(rest + 1, &grid->r_first, &grid->r_step, &grid->r_count) : NULL;
     if (!rest || *rest) {
-        return status_set(STATUS_INVALID, "grid '%.200s': must be xmin:xstep:xcount,rmin:rstep:rcount, lengths in m as "
-                          "plain decimal numbers and counts from 1 to %d", text, INT_MAX);
+        return status_set(STATUS_INVALID,
+                          "grid '%.200s': must be xmin:xstep:xcount,rmin:rstep:rcount, lengths in m as "
+                          "plain decimal numbers and counts from 1 to %d",
+                          text, INT_MAX);
     }
     return grid_check(grid, "grid");
 }
@@ -54,8 +56,10 @@ enum status grid_check(const struct grid *grid, const char *place)
                               name, first, last, COORDINATE_MAX_M);
         }
         if (!(fmax(fabs(first), fabs(last)) * 4 * DBL_EPSILON < step)) {
-            return status_set(STATUS_INVALID, "%s: grid step along %s is %g m, must be > %g m for pixels at %g m to "
-                              "differ", place, name, step, fmax(fabs(first), fabs(last)) * 4 * DBL_EPSILON, last);
+            return status_set(STATUS_INVALID,
+                              "%s: grid step along %s is %g m, must be > %g m for pixels at %g m to "
+                              "differ",
+                              place, name, step, fmax(fabs(first), fabs(last)) * 4 * DBL_EPSILON, last);
         }
     }
     double pixels = (double)grid->x_count * grid->r_count, most = BYTES_MAX / sizeof(double complex);
@@ -66,7 +70,7 @@ enum status grid_check(const struct grid *grid, const char *place)
     return STATUS_OK;
 }
 
-enum { BLOCKS_MOST = 1 << 22 };     /* that are looked at before a grid passes without proof: about a second */
+enum { BLOCKS_MOST = 1 << 22 }; /* that are looked at before a grid passes without proof: about a second */
 
 /* One pair and one patch; the delays met on the way are kept for the message. */
 struct search {
@@ -75,7 +79,7 @@ struct search {
     int ping;
     struct vector rx;
     double shortest_s, longest_s;
-    int blocks;                     /* looked at, of all pairs and patches */
+    int blocks; /* looked at, of all pairs and patches */
 };
 
 /* The sample coordinate of the place in row i and column j, which need not be whole numbers. */
@@ -118,8 +122,8 @@ static bool block_meets(struct search *search, int i0, int i1, int j0, int j1)
     }
     int i = i0 + (i1 - i0) / 2, j = j0 + (j1 - j0) / 2;
     return (i1 - i0) * search->grid->r_step > (j1 - j0) * search->grid->x_step
-        ? block_meets(search, i0, i, j0, j1) || block_meets(search, i + 1, i1, j0, j1)
-        : block_meets(search, i0, i1, j0, j) || block_meets(search, i0, i1, j + 1, j1);
+               ? block_meets(search, i0, i, j0, j1) || block_meets(search, i + 1, i1, j0, j1)
+               : block_meets(search, i0, i1, j0, j) || block_meets(search, i0, i1, j + 1, j1);
 }
 
 enum status grid_meets_records(const struct acquisition *acquisition, int patch_count, const struct grid *patches,
@@ -142,7 +146,8 @@ enum status grid_meets_records(const struct acquisition *acquisition, int patch_
             }
         }
     }
-    return status_set(STATUS_INVALID, "%s: no pixel meets any record: delays of about %.6g to %.6g s, must lie in "
-                      "the records' %.6g to %.6g s after emission", place, search.shortest_s, search.longest_s,
-                      first_s, last_s);
+    return status_set(STATUS_INVALID,
+                      "%s: no pixel meets any record: delays of about %.6g to %.6g s, must lie in "
+                      "the records' %.6g to %.6g s after emission",
+                      place, search.shortest_s, search.longest_s, first_s, last_s);
 }

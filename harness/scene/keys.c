@@ -10,22 +10,22 @@
 
 #define FNV_PRIME 1099511628211u
 
-#define LEVEL_MIN 1e-100            /* of amplitudes, unless they are 0 */
-#define SEED_MAX 1e15               /* seeds pass through a double, exactly up to 2^53 */
+#define LEVEL_MIN 1e-100 /* of amplitudes, unless they are 0 */
+#define SEED_MAX  1e15   /* seeds pass through a double, exactly up to 2^53 */
 
 struct key {
     const char *group, *name, *unit;
     const struct type *type;
-    size_t offset;                  /* of the field in the group's struct */
-    double initial, min, max;       /* default (REQUIRED: none) and closed bounds */
-    const char *const *choices;     /* NULL-terminated, else NULL */
+    size_t offset;              /* of the field in the group's struct */
+    double initial, min, max;   /* default (REQUIRED: none) and closed bounds */
+    const char *const *choices; /* NULL-terminated, else NULL */
 };
 
 /* read: a setting into its field, or the default when the setting is NULL; false when it is not acceptable. */
 struct type {
     const char *accepts;
     bool (*read)(const struct key *key, config_setting_t *setting, void *field);
-    size_t bytes;                   /* of the field that enter the hash; 0 = none */
+    size_t bytes; /* of the field that enter the hash; 0 = none */
 };
 
 static bool within(const struct key *key, double value)
@@ -37,7 +37,7 @@ static bool read_real(const struct key *key, config_setting_t *setting, void *fi
 {
     double value = key->initial;
     if (setting) {
-        value = config_setting_get_float(setting);      /* whole numbers are converted (config_set_auto_convert) */
+        value = config_setting_get_float(setting); /* whole numbers are converted (config_set_auto_convert) */
     }
     *(double *)field = value;
     return !setting || (config_setting_is_number(setting) && within(key, value));
@@ -100,9 +100,9 @@ static bool read_text(const struct key *key, config_setting_t *setting, void *fi
 
 static bool read_two(const struct key *key, config_setting_t *setting, double *two)
 {
-    return (config_setting_is_array(setting) || config_setting_is_list(setting)) &&
-           config_setting_length(setting) == 2 && read_real(key, config_setting_get_elem(setting, 0), &two[0]) &&
-           read_real(key, config_setting_get_elem(setting, 1), &two[1]);
+    return (config_setting_is_array(setting) || config_setting_is_list(setting)) && config_setting_length(setting) == 2
+           && read_real(key, config_setting_get_elem(setting, 0), &two[0])
+           && read_real(key, config_setting_get_elem(setting, 1), &two[1]);
 }
 
 static bool read_span(const struct key *key, config_setting_t *setting, void *field)
@@ -163,14 +163,14 @@ static const struct type LEVEL = {"0 or >= 1e-100, a number", read_level, sizeof
 static const struct type GROUP = {"a group { ... }", read_group, 0};
 static const struct type LIST = {"a list ( ... )", read_list, 0};
 
-static const char *const pulse_names[] = {"lfm", "lfm_time", "flat", NULL};             /* enum pulse_kind */
-static const char *const beam_names[] = {"rect", "txrx", NULL};                         /* enum beam_kind */
-const char *const truncation_names[] = {"none", "tx", "mid", "doppler", NULL};   /* enum truncation_kind */
+static const char *const pulse_names[] = {"lfm", "lfm_time", "flat", NULL};    /* enum pulse_kind */
+static const char *const beam_names[] = {"rect", "txrx", NULL};                /* enum beam_kind */
+const char *const truncation_names[] = {"none", "tx", "mid", "doppler", NULL}; /* enum truncation_kind */
 
-#define REQUIRED NAN
-#define ABOVE_0 DBL_TRUE_MIN        /* as a lower bound: > 0 */
-#define ANY -DBL_MAX, DBL_MAX
-#define POSITIVE ABOVE_0, DBL_MAX
+#define REQUIRED        NAN
+#define ABOVE_0         DBL_TRUE_MIN /* as a lower bound: > 0 */
+#define ANY             -DBL_MAX, DBL_MAX
+#define POSITIVE        ABOVE_0, DBL_MAX
 #define AT(type, field) offsetof(struct type, field)
 
 /* All keys of all groups, and the only place where bounds are. "" is the file itself; "axis" serves every x and r. */
@@ -269,26 +269,22 @@ static void append_value(char *text, size_t size, const config_setting_t *settin
     char number[40];
     const char *string;
     switch (config_setting_type(setting)) {
-    case CONFIG_TYPE_INT:
-        text_append(text, size, "%d", config_setting_get_int(setting));
-        break;
-    case CONFIG_TYPE_INT64:
-        text_append(text, size, "%lld", config_setting_get_int64(setting));
-        break;
+    case CONFIG_TYPE_INT: text_append(text, size, "%d", config_setting_get_int(setting)); break;
+    case CONFIG_TYPE_INT64: text_append(text, size, "%lld", config_setting_get_int64(setting)); break;
     case CONFIG_TYPE_FLOAT:
         snprintf(number, sizeof number, "%.10g", config_setting_get_float(setting));
-        text_append(text, size, "%s%s", number, strpbrk(number, ".en") ? "" : ".0");    /* 40.0 is no integer */
+        text_append(text, size, "%s%s", number, strpbrk(number, ".en") ? "" : ".0"); /* 40.0 is no integer */
         break;
-    case CONFIG_TYPE_BOOL:
-        text_append(text, size, "%s", config_setting_get_bool(setting) ? "true" : "false");
-        break;
+    case CONFIG_TYPE_BOOL: text_append(text, size, "%s", config_setting_get_bool(setting) ? "true" : "false"); break;
     case CONFIG_TYPE_STRING:
         string = config_setting_get_string(setting);
         text_append(text, size, "\"%.*s\"", (int)strcspn(string, "\r\n"), string);
         break;
     default:
-        text_append(text, size, "%s", config_setting_is_group(setting) ? "a group { ... }"
-                    : config_setting_is_list(setting) ? "a list ( ... )" : "an array [ ... ]");
+        text_append(text, size, "%s",
+                    config_setting_is_group(setting)  ? "a group { ... }"
+                    : config_setting_is_list(setting) ? "a list ( ... )"
+                                                      : "an array [ ... ]");
         for (int i = 0; config_setting_is_array(setting) && i < config_setting_length(setting) && i < 3; i++) {
             text_append(text, size, "%s", i == 0 ? " of " : ", ");
             append_value(text, size, config_setting_get_elem(setting, (unsigned)i));
@@ -303,7 +299,7 @@ static void append_accepted(char *text, size_t size, const struct key *key)
         text_append(text, size, "%s \"%s\"", i == 0 ? "" : ",", key->choices[i]);
     }
     if (key->min == key->max) {
-        return;                         /* types without bounds */
+        return; /* types without bounds */
     }
     if (key->min == -DBL_MAX) {
         text_append(text, size, " that is finite");
@@ -426,11 +422,18 @@ enum status groups_read(struct reading *reading, config_setting_t *root)
 {
     const struct {
         const char *name;
-        config_setting_t **setting;     /* filled by the first */
+        config_setting_t **setting; /* filled by the first */
     } groups[] = {
-        {"", &root}, {"sonar", &reading->sonar}, {"pulse", &reading->pulse}, {"array", &reading->array},
-        {"track", &reading->track}, {"record", &reading->record}, {"beam", &reading->beam},
-        {"targets", &reading->targets}, {"noise", &reading->noise}, {"image", &reading->image},
+        {"", &root},
+        {"sonar", &reading->sonar},
+        {"pulse", &reading->pulse},
+        {"array", &reading->array},
+        {"track", &reading->track},
+        {"record", &reading->record},
+        {"beam", &reading->beam},
+        {"targets", &reading->targets},
+        {"noise", &reading->noise},
+        {"image", &reading->image},
     };
     enum status status = STATUS_OK;
     for (size_t i = 0; i < sizeof groups / sizeof *groups && status == STATUS_OK; i++) {

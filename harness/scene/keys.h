@@ -6,7 +6,7 @@
 
 #include "scene/scene.h"
 
-#define SCATTERERS_MAX 10000000     /* of all fields */
+#define SCATTERERS_MAX 10000000 /* of all fields */
 
 /* Lines of the text from `first_line` on, which are those of the file `path` from `line` on. */
 struct text_piece {
@@ -17,19 +17,19 @@ struct text_piece {
 /* A scene file with all that it includes in place, and where each line is from. Freed with scene_text_free. */
 struct scene_text {
     char *text;
-    size_t length, room;            /* bytes filled, allocated */
-    int line;                       /* the last one */
+    size_t length, room; /* bytes filled, allocated */
+    int line;            /* the last one */
     int piece_count;
-    struct text_piece *pieces;      /* [piece_count], in the order of the text */
-    const char *scene_directory;    /* of the shipped scenes */
+    struct text_piece *pieces;   /* [piece_count], in the order of the text */
+    const char *scene_directory; /* of the shipped scenes */
 };
 
 /* Groups are kept as libconfig settings until they are read in turn; NULL when the file leaves them out. */
 struct reading {
-    const char *path;               /* of the scene file */
+    const char *path; /* of the scene file */
     struct scene_text text;
     struct scene scene;
-    const char *description;        /* belongs to libconfig */
+    const char *description; /* belongs to libconfig */
     config_setting_t *base, *sonar, *pulse, *array, *track, *record, *beam, *targets, *noise, *image;
     double first_offset_m, pitch_m;
     double speed_m_s, pri_s, x_first_m;
@@ -39,7 +39,7 @@ struct reading {
 };
 
 struct scatter_field {
-    double x_m[2], r_m[2];          /* min, max */
+    double x_m[2], r_m[2]; /* min, max */
     int count;
     uint64_t seed;
 };
@@ -71,7 +71,7 @@ enum status refuse(const struct reading *reading, const config_setting_t *group,
 /* "FILE:LINE" of a line of the scene's text as libconfig counts them; 0: "FILE", the scene's. */
 void place_format(const struct reading *reading, unsigned line, char *text, size_t size);
 
-extern const char *const truncation_names[];            /* by enum truncation_kind */
+extern const char *const truncation_names[]; /* by enum truncation_kind */
 
 /* Put the scene file at `path` and all that it includes (where includes are found: scenes/README.md) together, and
    refuse what libconfig would take wrongly. Errors: STATUS_INVALID; nothing to free then. */

@@ -9,8 +9,22 @@
 #include "scene/matvar.h"
 
 enum echo_variable {
-    FORMAT, SAMPLES, COMPRESSED, PULSE, FS, FC, BANDWIDTH, SOUND_SPEED, T0, TX, RX, VELOCITY, TX_LENGTH, RX_LENGTH,
-    BEAM_LIMIT, ECHO_VARIABLES
+    FORMAT,
+    SAMPLES,
+    COMPRESSED,
+    PULSE,
+    FS,
+    FC,
+    BANDWIDTH,
+    SOUND_SPEED,
+    T0,
+    TX,
+    RX,
+    VELOCITY,
+    TX_LENGTH,
+    RX_LENGTH,
+    BEAM_LIMIT,
+    ECHO_VARIABLES
 };
 
 static const char format_text[] = "sas-echoes 1";
@@ -45,8 +59,10 @@ static enum status check_echo_shapes(const char *path, const struct variable *v)
     size_t receivers = samples->dims[1], pings = samples->dims[2];
     for (int i = 0; i < 3; i++) {
         if (samples->dims[i] > INT_MAX) {
-            return status_set(STATUS_INVALID, "%s: variable `samples` is [%zu x %zu x %zu]; at most %d each is "
-                              "accepted", path, samples->dims[0], samples->dims[1], samples->dims[2], INT_MAX);
+            return status_set(STATUS_INVALID,
+                              "%s: variable `samples` is [%zu x %zu x %zu]; at most %d each is "
+                              "accepted",
+                              path, samples->dims[0], samples->dims[1], samples->dims[2], INT_MAX);
         }
     }
     const struct variable *pulse = &v[PULSE];
@@ -56,8 +72,8 @@ static enum status check_echo_shapes(const char *path, const struct variable *v)
         enum echo_variable variable;
         bool fits;
     } shapes[] = {
-        {T0, variable_has_shape(&v[T0], 1, 1, 1) || variable_has_shape(&v[T0], 1, pings, 1) ||
-             variable_has_shape(&v[T0], pings, 1, 1)},
+        {T0, variable_has_shape(&v[T0], 1, 1, 1) || variable_has_shape(&v[T0], 1, pings, 1)
+                 || variable_has_shape(&v[T0], pings, 1, 1)},
         {TX, variable_has_shape(&v[TX], 3, pings, 1)},
         {RX, variable_has_shape(&v[RX], 3, receivers, pings)},
         {VELOCITY, variable_has_shape(&v[VELOCITY], 3, 1, 1) || variable_has_shape(&v[VELOCITY], 3, pings, 1)},
@@ -67,10 +83,9 @@ static enum status check_echo_shapes(const char *path, const struct variable *v)
         const struct wanted *wanted = &echo_variables[shapes[i].variable];
         const size_t *dims = v[shapes[i].variable].dims;
         if (!shapes[i].fits) {
-            return status_set(STATUS_INVALID,
-                              "%s: variable `%s` is [%zu x %zu x %zu], samples [%zu x %zu x %zu]; %s is needed",
-                              path, wanted->name, dims[0], dims[1], dims[2], samples->dims[0], receivers, pings,
-                              wanted->accepted);
+            return status_set(
+                STATUS_INVALID, "%s: variable `%s` is [%zu x %zu x %zu], samples [%zu x %zu x %zu]; %s is needed", path,
+                wanted->name, dims[0], dims[1], dims[2], samples->dims[0], receivers, pings, wanted->accepted);
         }
     }
     return STATUS_OK;
@@ -81,14 +96,14 @@ static enum status check_echo_values(const char *path, const struct variable *v)
     const struct variable *format = &v[FORMAT], *samples = &v[SAMPLES];
     size_t length = variable_count(format);
     while (length > 0 && creal(format->values[length - 1]) == 0) {
-        length--;                   /* texts of a fixed length are padded */
+        length--; /* texts of a fixed length are padded */
     }
     bool is_ours = length == strlen(format_text);
     for (size_t i = 0; is_ours && i < strlen(format_text); i++) {
         is_ours = creal(format->values[i]) == format_text[i];
     }
     if (!is_ours) {
-        char text[32] = "";         /* what stands there, as far as it is plain text */
+        char text[32] = ""; /* what stands there, as far as it is plain text */
         for (size_t i = 0; i < length && i < sizeof text - 1; i++) {
             double code = creal(format->values[i]);
             text[i] = code >= ' ' && code <= '~' ? (char)code : '?';
@@ -111,9 +126,8 @@ static enum status check_echo_values(const char *path, const struct variable *v)
         if (!isfinite(creal(z)) || !isfinite(cimag(z))) {
             size_t n = i % samples->dims[0], record = i / samples->dims[0];
             return status_set(STATUS_INVALID,
-                              "%s: variable `samples` at (%zu, %zu, %zu) is %g%+gi; finite numbers are needed",
-                              path, n + 1, record % samples->dims[1] + 1, record / samples->dims[1] + 1, creal(z),
-                              cimag(z));
+                              "%s: variable `samples` at (%zu, %zu, %zu) is %g%+gi; finite numbers are needed", path,
+                              n + 1, record % samples->dims[1] + 1, record / samples->dims[1] + 1, creal(z), cimag(z));
         }
     }
     return STATUS_OK;
@@ -138,8 +152,10 @@ static enum status normalise_pulse(const char *path, const struct variable *v)
         for (size_t i = 0; i < variable_count(both[k]); i++) {
             double re = ldexp(creal(both[k]->values[i]), -exponent), im = ldexp(cimag(both[k]->values[i]), -exponent);
             if (k == 1 && (!isfinite(re) || !isfinite(im))) {
-                return status_set(STATUS_INVALID, "%s: variable `samples` has %g%+gi, variable `pulse` at most %g; their ratio "
-                                  "must fit double", path, creal(both[k]->values[i]), cimag(both[k]->values[i]), largest);
+                return status_set(STATUS_INVALID,
+                                  "%s: variable `samples` has %g%+gi, variable `pulse` at most %g; their ratio "
+                                  "must fit double",
+                                  path, creal(both[k]->values[i]), cimag(both[k]->values[i]), largest);
             }
             both[k]->values[i] = __builtin_complex(re, im);
         }
@@ -312,8 +328,8 @@ enum status image_file_write(const char *path, const struct image *image, const 
 {
     size_t largest = 0;
     for (int k = 0; k < image->patch_count; k++) {
-        size_t bytes = (size_t)image->patches[k].r_count * (size_t)image->patches[k].x_count
-                       * precision_size(image->precision);
+        size_t bytes =
+            (size_t)image->patches[k].r_count * (size_t)image->patches[k].x_count * precision_size(image->precision);
         largest = bytes > largest ? bytes : largest;
     }
     struct writer writer;
@@ -351,8 +367,8 @@ static enum status axis_read(const char *path, const struct wanted *wanted, cons
     for (size_t i = 0; i < expected; i++) {
         double deviation = creal(variable->values[i]) - (*first + (double)i * *step);
         if (!(*step > 0) || !(fabs(deviation) <= 1e-6 * *step)) {
-            return status_set(STATUS_INVALID, "%s: variable `%s` has %g at place %zu; %s is needed", path,
-                              wanted->name, creal(variable->values[i]), i + 1, wanted->accepted);
+            return status_set(STATUS_INVALID, "%s: variable `%s` has %g at place %zu; %s is needed", path, wanted->name,
+                              creal(variable->values[i]), i + 1, wanted->accepted);
         }
     }
     return STATUS_OK;
@@ -365,8 +381,8 @@ static enum status image_fill(const char *path, const struct variable *v, struct
         return status_set(STATUS_INVALID, "%s: variable `image` is [%zu x %zu x %zu]; %s is needed", path, rows,
                           columns, v[IMAGE].dims[2], image_variables[IMAGE].accepted);
     }
-    enum status status = axis_read(path, &image_variables[IMAGE_X], &v[IMAGE_X], columns, &grid->x_first,
-                                   &grid->x_step, &grid->x_count);
+    enum status status =
+        axis_read(path, &image_variables[IMAGE_X], &v[IMAGE_X], columns, &grid->x_first, &grid->x_step, &grid->x_count);
     if (status == STATUS_OK) {
         status = axis_read(path, &image_variables[IMAGE_R], &v[IMAGE_R], rows, &grid->r_first, &grid->r_step,
                            &grid->r_count);

@@ -3,7 +3,7 @@
    A damaged file can make libmatio and HDF5 crash, or allocate what a few bytes claim. So every file is read by a
    child process under resource limits, which sends the variables that we want through a pipe; whatever happens to it,
    the program itself only learns that the file is no good. */
-#define _GNU_SOURCE                 /* pipe2, _Fork */
+#define _GNU_SOURCE /* pipe2, _Fork */
 #include "scene/matvar.h"
 
 #include <errno.h>
@@ -31,14 +31,14 @@
 
 enum {
     MESSAGE_SIZE = 1024,
-    BLOCK = 4096,                   /* numbers sent at a time */
-    SPARE_BYTES = 256 << 20         /* what libmatio and HDF5 may use beyond the numbers themselves */
+    BLOCK = 4096,           /* numbers sent at a time */
+    SPARE_BYTES = 256 << 20 /* what libmatio and HDF5 may use beyond the numbers themselves */
 };
 
 /* What the child sends: a packet and its values for each variable, then one with index END and the message. */
 struct packet {
-    enum { END = -1 } index;        /* of the wanted variable, or END */
-    enum status status;             /* END only */
+    enum { END = -1 } index; /* of the wanted variable, or END */
+    enum status status;      /* END only */
     struct variable variable;
 };
 
@@ -73,7 +73,7 @@ int mat5_count(const char *path)
     off_t next = sizeof header;
     int count = 0;
     while (is_readable && next < status.st_size) {
-        unsigned char tag[8];       /* type and length, 4 bytes each */
+        unsigned char tag[8]; /* type and length, 4 bytes each */
         is_readable = fseeko(file, next, SEEK_SET) == 0 && fread(tag, sizeof tag, 1, file) == 1;
         uint32_t length = 0;
         for (int i = 0; i < 4; i++) {
@@ -91,10 +91,10 @@ int mat5_count(const char *path)
 
 /* ---- The child ---- */
 
-#define DEFINE_LOAD(type)                                           \
-    static double load_##type(const void *data, size_t index)       \
-    {                                                               \
-        return (double)((const type *)data)[index];                 \
+#define DEFINE_LOAD(type)                                                                                              \
+    static double load_##type(const void *data, size_t index)                                                          \
+    {                                                                                                                  \
+        return (double)((const type *)data)[index];                                                                    \
     }
 DEFINE_LOAD(int8_t)
 DEFINE_LOAD(uint8_t)
@@ -111,21 +111,32 @@ static const struct {
     double (*load)(const void *data, size_t index);
     size_t size;
 } number_types[] = {
-    [MAT_T_INT8] = {load_int8_t, 1},      [MAT_T_UINT8] = {load_uint8_t, 1},    [MAT_T_INT16] = {load_int16_t, 2},
-    [MAT_T_UINT16] = {load_uint16_t, 2},  [MAT_T_INT32] = {load_int32_t, 4},    [MAT_T_UINT32] = {load_uint32_t, 4},
-    [MAT_T_INT64] = {load_int64_t, 8},    [MAT_T_UINT64] = {load_uint64_t, 8},  [MAT_T_SINGLE] = {load_float, 4},
-    [MAT_T_DOUBLE] = {load_double, 8},    [MAT_T_UTF8] = {load_uint8_t, 1},     [MAT_T_UTF16] = {load_uint16_t, 2},
+    [MAT_T_INT8] = {load_int8_t, 1},     [MAT_T_UINT8] = {load_uint8_t, 1},   [MAT_T_INT16] = {load_int16_t, 2},
+    [MAT_T_UINT16] = {load_uint16_t, 2}, [MAT_T_INT32] = {load_int32_t, 4},   [MAT_T_UINT32] = {load_uint32_t, 4},
+    [MAT_T_INT64] = {load_int64_t, 8},   [MAT_T_UINT64] = {load_uint64_t, 8}, [MAT_T_SINGLE] = {load_float, 4},
+    [MAT_T_DOUBLE] = {load_double, 8},   [MAT_T_UTF8] = {load_uint8_t, 1},    [MAT_T_UTF16] = {load_uint16_t, 2},
     [MAT_T_UTF32] = {load_uint32_t, 4},
 };
 
 static const char *const class_names[] = {
     [MAT_C_EMPTY] = "empty or of no MATLAB class (a plain HDF5 text or number)",
-    [MAT_C_CELL] = "a cell array",     [MAT_C_STRUCT] = "a struct",
-    [MAT_C_OBJECT] = "an object",  [MAT_C_CHAR] = "text",             [MAT_C_SPARSE] = "a sparse matrix",
-    [MAT_C_DOUBLE] = "numeric",    [MAT_C_SINGLE] = "numeric",        [MAT_C_INT8] = "numeric",
-    [MAT_C_UINT8] = "numeric",     [MAT_C_INT16] = "numeric",         [MAT_C_UINT16] = "numeric",
-    [MAT_C_INT32] = "numeric",     [MAT_C_UINT32] = "numeric",        [MAT_C_INT64] = "numeric",
-    [MAT_C_UINT64] = "numeric",    [MAT_C_FUNCTION] = "a function",   [MAT_C_OPAQUE] = "an object",
+    [MAT_C_CELL] = "a cell array",
+    [MAT_C_STRUCT] = "a struct",
+    [MAT_C_OBJECT] = "an object",
+    [MAT_C_CHAR] = "text",
+    [MAT_C_SPARSE] = "a sparse matrix",
+    [MAT_C_DOUBLE] = "numeric",
+    [MAT_C_SINGLE] = "numeric",
+    [MAT_C_INT8] = "numeric",
+    [MAT_C_UINT8] = "numeric",
+    [MAT_C_INT16] = "numeric",
+    [MAT_C_UINT16] = "numeric",
+    [MAT_C_INT32] = "numeric",
+    [MAT_C_UINT32] = "numeric",
+    [MAT_C_INT64] = "numeric",
+    [MAT_C_UINT64] = "numeric",
+    [MAT_C_FUNCTION] = "a function",
+    [MAT_C_OPAQUE] = "an object",
 };
 
 static void limit_resource(__rlimit_resource_t resource, rlim_t wish)
@@ -141,7 +152,7 @@ static void limit_resource(__rlimit_resource_t resource, rlim_t wish)
 static void limit_memory_and_time(size_t bytes)
 {
     limit_resource(RLIMIT_CPU, (rlim_t)(clock() / CLOCKS_PER_SEC) + 10 + bytes / 10000000);
-#ifndef ADDRESS_SANITIZER           /* its shadow memory alone is terabytes of address space */
+#ifndef ADDRESS_SANITIZER /* its shadow memory alone is terabytes of address space */
     unsigned long pages;
     FILE *file = fopen("/proc/self/statm", "r");
     if (file && fscanf(file, "%lu", &pages) == 1) {
@@ -169,11 +180,11 @@ static bool write_fully(int descriptor, const void *data, size_t size)
 }
 
 /* The three dimensions of a variable, if it has no more and the file can hold them: zlib packs at most 1032:1. */
-static enum status check_claim(const char *path, const struct wanted *wanted, const matvar_t *matvar,
-                               size_t file_size, struct variable *variable)
+static enum status check_claim(const char *path, const struct wanted *wanted, const matvar_t *matvar, size_t file_size,
+                               struct variable *variable)
 {
     *variable = (struct variable){.is_complex = matvar->isComplex != 0, .dims = {1, 1, 1}};
-    size_t bytes = 16;              /* at most, for one number */
+    size_t bytes = 16; /* at most, for one number */
     for (int i = 0; i < matvar->rank; i++) {
         if (i >= 3 && matvar->dims[i] != 1) {
             return status_set(STATUS_INVALID, "%s: variable `%s` has %d dimensions; %s is needed", path, wanted->name,
@@ -187,8 +198,10 @@ static enum status check_claim(const char *path, const struct wanted *wanted, co
                               wanted->accepted);
         }
         if (__builtin_mul_overflow(bytes, matvar->dims[i], &bytes) || bytes / 16 / 1032 > file_size) {
-            return status_set(STATUS_INVALID, "%s: variable `%s` claims more numbers than the file's %zu bytes can "
-                              "hold", path, wanted->name, file_size);
+            return status_set(STATUS_INVALID,
+                              "%s: variable `%s` claims more numbers than the file's %zu bytes can "
+                              "hold",
+                              path, wanted->name, file_size);
         }
     }
     /* Twice the numbers: HDF5 may hold a whole data set as one packed chunk. */
@@ -204,8 +217,8 @@ static bool variable_parts(const matvar_t *matvar, size_t count, mat_complex_spl
     if (matvar->data && matvar->isComplex) {
         *parts = *(const mat_complex_split_t *)matvar->data;
     }
-    return parts->Re && (parts->Im || !matvar->isComplex) && type < sizeof number_types / sizeof *number_types &&
-           number_types[type].load && matvar->nbytes / number_types[type].size >= count;
+    return parts->Re && (parts->Im || !matvar->isComplex) && type < sizeof number_types / sizeof *number_types
+           && number_types[type].load && matvar->nbytes / number_types[type].size >= count;
 }
 
 /* A block at a time, so that the numbers are not held twice. */
@@ -225,8 +238,8 @@ static bool send_values(mat_complex_split_t parts, enum matio_types type, size_t
     return true;
 }
 
-static enum status send_variable(const char *path, const struct wanted *wanted, int index, mat_t *mat,
-                                 matvar_t *matvar, size_t file_size, int descriptor)
+static enum status send_variable(const char *path, const struct wanted *wanted, int index, mat_t *mat, matvar_t *matvar,
+                                 size_t file_size, int descriptor)
 {
     const char *name = wanted[index].name;
     bool is_text = matvar->class_type == MAT_C_CHAR;
@@ -247,11 +260,10 @@ static enum status send_variable(const char *path, const struct wanted *wanted, 
     size_t count = variable_count(&packet.variable);
     mat_complex_split_t parts;
     if (Mat_VarReadDataAll(mat, matvar) != 0 || !variable_parts(matvar, count, &parts)) {
-        return status_set(STATUS_INVALID, "%s: variable `%s` is damaged or cut short; a whole file is needed",
-                          path, name);
+        return status_set(STATUS_INVALID, "%s: variable `%s` is damaged or cut short; a whole file is needed", path,
+                          name);
     }
-    if (!write_fully(descriptor, &packet, sizeof packet) ||
-        !send_values(parts, matvar->data_type, count, descriptor)) {
+    if (!write_fully(descriptor, &packet, sizeof packet) || !send_values(parts, matvar->data_type, count, descriptor)) {
         return status_set(STATUS_FAILED, "%s: nobody reads on", path);
     }
     return STATUS_OK;
@@ -304,7 +316,7 @@ static _Noreturn void child_run(const char *path, const struct wanted *wanted, i
     if (write_fully(descriptor, &packet, sizeof packet)) {
         write_fully(descriptor, message, sizeof message);
     }
-    _exit(0);                       /* the parent's buffers and exit handlers are not ours */
+    _exit(0); /* the parent's buffers and exit handlers are not ours */
 }
 
 /* ---- The parent ---- */
@@ -350,8 +362,10 @@ static enum status receive_variables(const char *path, int count, struct variabl
             break;
         }
     }
-    return status_set(STATUS_INVALID, "%s: is damaged (its reader crashed, or ran out of memory or time); a MATLAB "
-                      "file of version 5 or 7.3 is needed", path);
+    return status_set(STATUS_INVALID,
+                      "%s: is damaged (its reader crashed, or ran out of memory or time); a MATLAB "
+                      "file of version 5 or 7.3 is needed",
+                      path);
 }
 
 void variables_free(struct variable *variables, int count)

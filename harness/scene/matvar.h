@@ -13,7 +13,7 @@ struct wanted {
     const char *name;
     enum kind kind;
     bool is_optional;
-    const char *accepted;           /* for messages: "X is needed" */
+    const char *accepted; /* for messages: "X is needed" */
 };
 
 enum { WANTED_MAX = 16 };
@@ -21,8 +21,8 @@ enum { WANTED_MAX = 16 };
 /* A variable as read: complex doubles whatever its class, text as character codes, MATLAB's order. */
 struct variable {
     bool is_complex;
-    size_t dims[3];                 /* trailing dimensions of 1 filled in; never 0 */
-    double complex *values;         /* 64-byte aligned, free(); NULL: the file does not have it */
+    size_t dims[3];         /* trailing dimensions of 1 filled in; never 0 */
+    double complex *values; /* 64-byte aligned, free(); NULL: the file does not have it */
 };
 
 /* Read the wanted variables of a file (count <= WANTED_MAX) into variables[count], freed with variables_free. Other
@@ -44,10 +44,10 @@ int mat5_count(const char *path);
    whose failure the writer is not closed) and writer_close need be looked at. */
 struct writer {
     const char *path;
-    char place[PATH_MAX];           /* the file that a symbolic link stands for, or `path` itself */
-    char temporary[PATH_MAX];       /* beside `place`: renamed when whole */
+    char place[PATH_MAX];     /* the file that a symbolic link stands for, or `path` itself */
+    char temporary[PATH_MAX]; /* beside `place`: renamed when whole */
     struct _mat_t *mat;
-    int count;                      /* variables written */
+    int count; /* variables written */
     enum status status;
 };
 

@@ -19,8 +19,8 @@
 static enum status write_failed(struct writer *writer)
 {
     int reason = errno ? errno : EIO;
-    return writer->status = status_set(STATUS_INVALID, "%s: cannot be written: %s; " ACCEPTED, writer->path,
-                                       strerror(reason));
+    return writer->status =
+               status_set(STATUS_INVALID, "%s: cannot be written: %s; " ACCEPTED, writer->path, strerror(reason));
 }
 
 /* The place that a path stands for, through symbolic links. */
@@ -65,7 +65,7 @@ enum status writer_open(struct writer *writer, const char *path, size_t largest_
         return write_failed(writer);
     close(descriptor);
     matio_silence();
-    H5dont_atexit();                /* its exit handler crashes after a full disk */
+    H5dont_atexit(); /* its exit handler crashes after a full disk */
     bool fits_v5 = largest_variable_bytes < ((size_t)1 << 31) - 4096;
     errno = 0;
     writer->mat = Mat_CreateVer(writer->temporary, NULL, fits_v5 ? MAT_FT_MAT5 : MAT_FT_MAT73);

@@ -15,10 +15,10 @@
 #include "scene/simulate.h"
 #include "scene/simulate.h"
 
-#define EXTENSION ".cfg"
-#define FNV_OFFSET 14695981039346656037u
-#define BYTES_MAX 0x1p40            /* of double samples */
-#define RECORDS_MAX 0x1p26          /* pings times receivers */
+#define EXTENSION   ".cfg"
+#define FNV_OFFSET  14695981039346656037u
+#define BYTES_MAX   0x1p40 /* of double samples */
+#define RECORDS_MAX 0x1p26 /* pings times receivers */
 
 static enum status check_beam(const struct reading *reading)
 {
@@ -48,7 +48,8 @@ static enum status check_pulse(const struct reading *reading)
     const struct acquisition *a = &scene->acquisition;
     if (scene->pulse_kind == PULSE_FLAT) {
         return scene->pulse_duration > 0
-            ? refuse(reading, reading->pulse, "pulse", "duration", "left out with pulse.kind \"flat\"") : STATUS_OK;
+                   ? refuse(reading, reading->pulse, "pulse", "duration", "left out with pulse.kind \"flat\"")
+                   : STATUS_OK;
     }
     if (!(scene->pulse_duration * a->fs <= a->samples) || !(scene->pulse_duration > 0)) {
         return refuse(reading, reading->pulse, "pulse", "duration",
@@ -80,12 +81,16 @@ static enum status check_places(const struct reading *reading)
     double last_offset = reading->first_offset_m + (a->receivers - 1) * reading->pitch_m;
     double sailed = (a->pings - 1) * (reading->speed_m_s * reading->pri_s), last = reading->x_first_m + sailed;
     if (!(fabs(last) <= COORDINATE_MAX_M)) {
-        return refuse(reading, reading->track, "track", "pri", "such that the last of %d pings at %g m/s, at %g m, stays "
-                      "within +-%g m", a->pings, reading->speed_m_s, last, COORDINATE_MAX_M);
+        return refuse(reading, reading->track, "track", "pri",
+                      "such that the last of %d pings at %g m/s, at %g m, stays "
+                      "within +-%g m",
+                      a->pings, reading->speed_m_s, last, COORDINATE_MAX_M);
     }
     if (!(fabs(last_offset) <= COORDINATE_MAX_M)) {
-        return refuse(reading, reading->array, "array", "pitch", "such that the last of %d receivers, %g m ahead of the "
-                      "transmitter, stays within +-%g m", a->receivers, last_offset, COORDINATE_MAX_M);
+        return refuse(reading, reading->array, "array", "pitch",
+                      "such that the last of %d receivers, %g m ahead of the "
+                      "transmitter, stays within +-%g m",
+                      a->receivers, last_offset, COORDINATE_MAX_M);
     }
     return STATUS_OK;
 }
@@ -242,8 +247,8 @@ static enum status patches_around_targets(struct reading *reading)
         const struct target *target = &scene->targets[scene->patch_count];
         struct grid *grid = &scene->patches[scene->patch_count];
         *grid = (struct grid){.x_step = around.x_step_m, .r_step = around.r_step_m};
-        status = axis_around(reading, "half_x", target->x, around.half_x_m, grid->x_step, &grid->x_first,
-                             &grid->x_count);
+        status =
+            axis_around(reading, "half_x", target->x, around.half_x_m, grid->x_step, &grid->x_first, &grid->x_count);
         if (status == STATUS_OK) {
             status = axis_around(reading, "half_r", target->r, around.half_r_m, grid->r_step, &grid->r_first,
                                  &grid->r_count);
@@ -279,13 +284,14 @@ static enum status reference_fill(struct reading *reading)
     }
     for (int i = 0; i < scene->point_count; i++) {
         struct grid cut = scene->patches[0];
-        if (axis_cut(scene->targets[i].x, around.half_x_m, &cut.x_first, cut.x_step, &cut.x_count) &&
-            axis_cut(scene->targets[i].r, around.half_r_m, &cut.r_first, cut.r_step, &cut.r_count)) {
+        if (axis_cut(scene->targets[i].x, around.half_x_m, &cut.x_first, cut.x_step, &cut.x_count)
+            && axis_cut(scene->targets[i].r, around.half_r_m, &cut.r_first, cut.r_step, &cut.r_count)) {
             scene->reference_patches[scene->reference_count++] = cut;
         }
     }
     return scene->reference_count > 0 ? STATUS_OK
-        : refuse(reading, reading->reference, "image.reference", NULL, "such that it holds a pixel of the image");
+                                      : refuse(reading, reading->reference, "image.reference", NULL,
+                                               "such that it holds a pixel of the image");
 }
 
 static enum status grid_read(struct reading *reading, config_setting_t *x, config_setting_t *r, struct grid *grid)
@@ -296,8 +302,12 @@ static enum status grid_read(struct reading *reading, config_setting_t *x, confi
         status = group_read(reading, r, "axis", &across);
     }
     if (status == STATUS_OK) {
-        *grid = (struct grid){.x_first = along.first_m, .x_step = along.step_m, .x_count = along.count,
-                              .r_first = across.first_m, .r_step = across.step_m, .r_count = across.count};
+        *grid = (struct grid){.x_first = along.first_m,
+                              .x_step = along.step_m,
+                              .x_count = along.count,
+                              .r_first = across.first_m,
+                              .r_step = across.step_m,
+                              .r_count = across.count};
     }
     return status;
 }
@@ -334,7 +344,8 @@ static enum status image_fill(struct reading *reading)
         status = reference_fill(reading);
     }
     return status == STATUS_OK
-        ? grid_meets_records(&scene->acquisition, scene->patch_count, scene->patches, reading->path) : status;
+               ? grid_meets_records(&scene->acquisition, scene->patch_count, scene->patches, reading->path)
+               : status;
 }
 
 static enum status reading_fill(struct reading *reading, config_setting_t *root)
@@ -373,8 +384,10 @@ static enum status file_read(struct reading *reading, const char *scene_director
     } else {
         char place[320];
         place_format(reading, (unsigned)config_error_line(&config), place, sizeof place);
-        status = status_set(STATUS_INVALID, "%s: %s; must be libconfig text, each key once in its group, arrays of "
-                            "one type", place, config_error_text(&config));
+        status = status_set(STATUS_INVALID,
+                            "%s: %s; must be libconfig text, each key once in its group, arrays of "
+                            "one type",
+                            place, config_error_text(&config));
     }
     config_destroy(&config);
     scene_text_free(&reading->text);
@@ -392,7 +405,8 @@ static char *name_below(const char *path, const char *directory)
 {
     size_t length = strlen(directory);
     return strncmp(path, directory, length) == 0 && path[length] == '/'
-        ? strndup(path + length + 1, strlen(path) - length - 1 - strlen(EXTENSION)) : NULL;
+               ? strndup(path + length + 1, strlen(path) - length - 1 - strlen(EXTENSION))
+               : NULL;
 }
 
 /* The last `parts` parts of a full path without extension. */
@@ -420,7 +434,7 @@ static enum status names_fill(struct scene *scene, const char *path, const char 
     char *full_directory = realpath(directory, NULL);
     scene->path = realpath(path, NULL);
     if (!scene->path) {
-        scene->path = strdup(path);             /* reading it tells what is wrong */
+        scene->path = strdup(path); /* reading it tells what is wrong */
     }
     if (scene->path && full_directory && has_extension(scene->path)) {
         scene->name = name_below(scene->path, full_directory);
@@ -430,8 +444,9 @@ static enum status names_fill(struct scene *scene, const char *path, const char 
         scene->name = name_of(scene->path, 1);
     }
     free(full_directory);
-    if (scene->path && has_controls(scene->path)) {     /* it would go into tables and pictures */
-        return status_set(STATUS_INVALID, "%s: the path of the scene holds control characters, must be plain text", path);
+    if (scene->path && has_controls(scene->path)) { /* it would go into tables and pictures */
+        return status_set(STATUS_INVALID, "%s: the path of the scene holds control characters, must be plain text",
+                          path);
     }
     return scene->path && scene->name ? STATUS_OK : status_set(STATUS_FAILED, "%s: out of memory for the scene", path);
 }
@@ -507,7 +522,8 @@ enum status scene_names(const char *scene_directory, char ***names, int *count)
     char *roots[] = {(char *)scene_directory, NULL};
     struct stat about;
     FTS *tree = stat(scene_directory, &about) == 0 && S_ISDIR(about.st_mode)
-        ? fts_open(roots, FTS_LOGICAL | FTS_NOCHDIR | FTS_NOSTAT, NULL) : NULL;
+                    ? fts_open(roots, FTS_LOGICAL | FTS_NOCHDIR | FTS_NOSTAT, NULL)
+                    : NULL;
     if (!tree) {
         return status_set(STATUS_INVALID, "%s: not a readable folder; must be the folder of the scenes",
                           scene_directory);

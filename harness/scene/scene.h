@@ -6,7 +6,7 @@
 
 #include "algorithm.h"
 
-#define COORDINATE_MAX_M 1e12       /* bound of every coordinate that is read, so that no square overflows */
+#define COORDINATE_MAX_M 1e12 /* bound of every coordinate that is read, so that no square overflows */
 
 enum pulse_kind { PULSE_LFM, PULSE_LFM_TIME, PULSE_FLAT };
 enum beam_kind { BEAM_RECT, BEAM_TXRX };
@@ -15,36 +15,36 @@ enum truncation_kind { TRUNCATION_NONE, TRUNCATION_TX, TRUNCATION_MID, TRUNCATIO
 /* Amplitude of the echo of one pair (element beams sinc(D sin(theta)/lambda) or rect, and their truncation).
    theta_t is measured at emission, theta_r at reception. A property of the echoes: it never limits imaging. */
 struct beam {
-    enum beam_kind kind;            /* rect: 1; txrx: sinc(D_tx sin theta_t F/c) sinc(D_rx sin theta_r F/c) */
+    enum beam_kind kind; /* rect: 1; txrx: sinc(D_tx sin theta_t F/c) sinc(D_rx sin theta_r F/c) */
     enum truncation_kind truncation;
-    double limit;                   /* tx, mid: |D_tx F sin theta/c| <= it; doppler: |D_tx F (sin + sin)/2c| <= it */
-    bool per_frequency;             /* F = fc + f_tau instead of F = fc (lambda = c/F) */
+    double limit;       /* tx, mid: |D_tx F sin theta/c| <= it; doppler: |D_tx F (sin + sin)/2c| <= it */
+    bool per_frequency; /* F = fc + f_tau instead of F = fc (lambda = c/F) */
 };
 
 struct target {
-    double x, r;                    /* m */
-    double complex amplitude;       /* 1 */
+    double x, r;              /* m */
+    double complex amplitude; /* 1 */
 };
 
 /* Freed with scene_free. */
 struct scene {
-    char *name;                     /* without extension: the path below scenes/, or the name of a file elsewhere */
-    char *path;                     /* of the file, absolute and without links */
-    bool shipped;                   /* it lies below scenes/ */
-    char *description;              /* one line, from the file */
-    uint64_t hash;                  /* FNV-1a of the content after @include: the same text measures the same thing */
+    char *name;        /* without extension: the path below scenes/, or the name of a file elsewhere */
+    char *path;        /* of the file, absolute and without links */
+    bool shipped;      /* it lies below scenes/ */
+    char *description; /* one line, from the file */
+    uint64_t hash;     /* FNV-1a of the content after @include: the same text measures the same thing */
     struct acquisition acquisition;
-    enum pulse_kind pulse_kind;     /* flat: the echoes are compressed */
-    double pulse_duration;          /* s; lfm and lfm_time */
+    enum pulse_kind pulse_kind; /* flat: the echoes are compressed */
+    double pulse_duration;      /* s; lfm and lfm_time */
     struct beam beam;
-    int point_count;                /* the first targets are points, the ones that metrics measure */
-    int target_count;               /* points, then all scatterers of the fields, drawn from their seeds */
-    struct target *targets;         /* [target_count] */
-    double noise_std;               /* standard deviation of the complex noise of each sample; 0 = none */
+    int point_count;        /* the first targets are points, the ones that metrics measure */
+    int target_count;       /* points, then all scatterers of the fields, drawn from their seeds */
+    struct target *targets; /* [target_count] */
+    double noise_std;       /* standard deviation of the complex noise of each sample; 0 = none */
     uint64_t noise_seed;
     int patch_count;
-    struct grid *patches;           /* [patch_count] the image */
-    bool full_size;                 /* left out of the default `run` */
+    struct grid *patches; /* [patch_count] the image */
+    bool full_size;       /* left out of the default `run` */
     /* Where `reference` is computed when that is not the whole image: sub-grids of patches[0] around each point
        target. reference_count == 0: reference_patches is NULL and the patches themselves are meant. */
     int reference_count;

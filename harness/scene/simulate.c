@@ -65,9 +65,9 @@ static double angles_weight(const struct scene *scene, const struct angles *angl
 {
     const struct acquisition *a = &scene->acquisition;
     const struct beam *beam = &scene->beam;
-    double elements = frequency / a->sound_speed;       /* 1/lambda */
+    double elements = frequency / a->sound_speed; /* 1/lambda */
     double tx = a->tx_length * elements * angles->tx, rx = a->rx_length * elements * angles->rx;
-    double edge = beam->limit * (1 + 1e-12);            /* an edge that is met exactly counts as inside */
+    double edge = beam->limit * (1 + 1e-12); /* an edge that is met exactly counts as inside */
     if ((beam->truncation == TRUNCATION_TX && fabs(tx) > edge)
         || (beam->truncation == TRUNCATION_MID && fabs(a->tx_length * elements * angles->mid) > edge)
         || (beam->truncation == TRUNCATION_DOPPLER
@@ -92,7 +92,7 @@ double beam_sine(const struct scene *scene)
     if (scene->beam.truncation != TRUNCATION_NONE)
         sine = scene->beam.limit * wavelength / a->tx_length;
     if (scene->beam.kind == BEAM_TXRX) {
-        double inside = 0, outside = 1 / fmax(a->tx_length, a->rx_length);      /* in 1/m: the first null */
+        double inside = 0, outside = 1 / fmax(a->tx_length, a->rx_length); /* in 1/m: the first null */
         for (int k = 0; k < 50; k++) {
             double middle = (inside + outside) / 2;
             *(sinc(a->tx_length * middle) * sinc(a->rx_length * middle) > 0.25 ? &inside : &outside) = middle;
@@ -104,10 +104,10 @@ double beam_sine(const struct scene *scene)
 
 /* What all pairs share: the spectrum that is delayed, on `length` bins, and where the record lies in its period. */
 struct replica {
-    int length, lead;               /* lead: samples before the record, so that echoes under way at t0 are whole */
-    double *frequency;              /* [length] Hz, -fs/2 < f <= fs/2 */
-    double complex *spectrum;       /* [length] scaled for an unnormalised inverse FFT */
-    bool nyquist;                   /* the last positive bin is fs/2, which stands for both ends of the band */
+    int length, lead;         /* lead: samples before the record, so that echoes under way at t0 are whole */
+    double *frequency;        /* [length] Hz, -fs/2 < f <= fs/2 */
+    double complex *spectrum; /* [length] scaled for an unnormalised inverse FFT */
+    bool nyquist;             /* the last positive bin is fs/2, which stands for both ends of the band */
     fftw_plan inverse;
 };
 
@@ -150,14 +150,14 @@ static enum status replica_make(const struct scene *scene, struct replica *repli
         replica_free(replica);
         return status_set(STATUS_FAILED, "no memory to simulate records of %d samples", a->samples);
     }
-    replica->inverse = fftw_plan_dft_1d(length, replica->spectrum, replica->spectrum, FFTW_BACKWARD,
-                                        FFTW_ESTIMATE | FFTW_UNALIGNED);
+    replica->inverse =
+        fftw_plan_dft_1d(length, replica->spectrum, replica->spectrum, FFTW_BACKWARD, FFTW_ESTIMATE | FFTW_UNALIGNED);
     double sum = 0, bin = a->fs / length, half = a->bandwidth / 2;
     for (int k = 0; k < length; k++) {
         double f = replica->frequency[k] = (2 * k > length ? k - length : k) * bin, beyond = fabs(f) - half;
         double weight = fabs(beyond) < 1e-6 * bin ? 0.5 : beyond < 0;
         if (replica->nyquist && 2 * k == length)
-            weight *= 2;            /* both ends of the band meet here: B = fs keeps the half of each */
+            weight *= 2; /* both ends of the band meet here: B = fs keeps the half of each */
         sum += weight;
         replica->spectrum[k] = weight;
     }
@@ -185,7 +185,7 @@ static double complex product(double complex a, double complex b)
 static double complex turn(double cycles)
 {
     double angle = 2 * pi * (cycles - floor(cycles + 0.5));
-    return __builtin_complex(cos(angle), sin(angle));    /* CMPLX, which clang 14 lacks */
+    return __builtin_complex(cos(angle), sin(angle)); /* CMPLX, which clang 14 lacks */
 }
 
 /* Add one echo to the spectrum: replica times exp(-j 2 pi f shift) with the amplitude of each bin. */
@@ -200,7 +200,8 @@ static void add_delayed(const struct scene *scene, const struct replica *replica
         return;
     for (int k = 0; k < length; k++) {
         double f = replica->frequency[k];
-        phase = k % 16 && 2 * k != length + 2 - length % 2 ? product(phase, step) : turn(-f * shift);  /* restart: 1e-15 */
+        phase =
+            k % 16 && 2 * k != length + 2 - length % 2 ? product(phase, step) : turn(-f * shift); /* restart: 1e-15 */
         double weight = scene->beam.per_frequency ? angles_weight(scene, angles, a->fc + f) : common;
         double complex value = replica->nyquist && 2 * k == length ? cos(2 * pi * f * shift) : phase;
         spectrum[k] += product(weight * amplitude, product(replica->spectrum[k], value));
@@ -213,7 +214,8 @@ static void add_sampled(const struct scene *scene, const struct angles *angles, 
 {
     const struct acquisition *a = &scene->acquisition;
     double weight = angles_weight(scene, angles, a->fc);
-    int first = (int)fmax(0, ceil(delay * a->fs)), end = (int)fmin(a->samples, ceil((delay + scene->pulse_duration) * a->fs));
+    int first = (int)fmax(0, ceil(delay * a->fs)),
+        end = (int)fmin(a->samples, ceil((delay + scene->pulse_duration) * a->fs));
     for (int n = first; n < end; n++)
         record[n] += product(weight * amplitude, chirp(a->bandwidth, scene->pulse_duration, n / a->fs - delay));
 }
@@ -231,7 +233,7 @@ static void simulate_pair(const struct scene *scene, const struct replica *repli
         struct vector p = {target->x, target->r, 0};
         double tau = delay_exact(a->tx[ping], a->rx[index], a->velocity[ping], p, a->sound_speed);
         double delay = tau - a->t0[ping];
-        if (!(delay > -duration && delay < window))     /* no part of the echo lies in the record */
+        if (!(delay > -duration && delay < window)) /* no part of the echo lies in the record */
             continue;
         struct angles angles = pair_angles(a, ping, receiver, p, tau);
         double complex amplitude = target->amplitude * turn(-a->fc * tau);
@@ -254,7 +256,7 @@ static void simulate_pair(const struct scene *scene, const struct replica *repli
 
 static bool is_finite(const double complex *record, int samples)
 {
-    double sum = 0;                     /* one sample that is not finite leaves NaN */
+    double sum = 0; /* one sample that is not finite leaves NaN */
     for (int n = 0; n < samples; n++)
         sum += 0 * creal(record[n]) + 0 * cimag(record[n]);
     return sum == 0;
@@ -288,8 +290,10 @@ enum status scene_simulate(const struct scene *scene, struct echoes *echoes)
         }
         if (unfit < pairs) {
             echoes_free(echoes);
-            status = status_set(STATUS_INVALID, "%s: the echo of receiver %lld in ping %lld is not finite, its numbers must "
-                                "be less extreme", scene->name, unfit % a->receivers + 1, unfit / a->receivers + 1);
+            status = status_set(STATUS_INVALID,
+                                "%s: the echo of receiver %lld in ping %lld is not finite, its numbers must "
+                                "be less extreme",
+                                scene->name, unfit % a->receivers + 1, unfit / a->receivers + 1);
         }
     }
     fftw_free(work);

@@ -10,12 +10,12 @@
 
 #include "scene/keys.h"
 
-#define INCLUDE_DEPTH 10            /* also ends files that include themselves */
-#define TEXT_MAX ((size_t)1 << 26)  /* bytes with all includes: few files can name each other very often */
+#define INCLUDE_DEPTH 10                /* also ends files that include themselves */
+#define TEXT_MAX      ((size_t)1 << 26) /* bytes with all includes: few files can name each other very often */
 
 struct source {
     const char *path;
-    int line, depth;                /* where its reading stands; number of files that include it in turn */
+    int line, depth; /* where its reading stands; number of files that include it in turn */
 };
 
 static enum status file_expand(struct scene_text *text, const char *path, const struct source *asked_by);
@@ -87,18 +87,22 @@ static enum status include_expand(struct scene_text *text, const struct source *
     bool quoted = *name++ == '"';
     size_t name_length = quoted ? strcspn(name, "\"\n") : 0;
     if (!quoted || name[name_length] != '"' || (before > content && before[-1] != '\n')) {
-        return status_set(STATUS_INVALID, "%.300s:%d: %.*s is misplaced, must be @include \"FILE\" at the beginning "
-                          "of a line", source->path, source->line, shown(strcspn(c, "\r\n")), c);
+        return status_set(STATUS_INVALID,
+                          "%.300s:%d: %.*s is misplaced, must be @include \"FILE\" at the beginning "
+                          "of a line",
+                          source->path, source->line, shown(strcspn(c, "\r\n")), c);
     }
     *length = (size_t)(name + name_length + 1 - c);
     if (source->depth == INCLUDE_DEPTH) {
-        return status_set(STATUS_INVALID, "%.300s:%d: @include of %.*s is nested too deep, must be at most %d files "
-                          "deep, and no file may include itself", source->path, source->line, shown(name_length),
-                          name, INCLUDE_DEPTH);
+        return status_set(STATUS_INVALID,
+                          "%.300s:%d: @include of %.*s is nested too deep, must be at most %d files "
+                          "deep, and no file may include itself",
+                          source->path, source->line, shown(name_length), name, INCLUDE_DEPTH);
     }
     char *path = path_find(name, name_length, source->path, text->scene_directory);
-    enum status status = path ? file_expand(text, path, source)
-        : status_set(STATUS_FAILED, "%.300s:%d: out of memory for @include", source->path, source->line);
+    enum status status =
+        path ? file_expand(text, path, source)
+             : status_set(STATUS_FAILED, "%.300s:%d: out of memory for @include", source->path, source->line);
     free(path);
     return status == STATUS_OK ? piece_begin(text, source) : status;
 }
@@ -114,9 +118,10 @@ static enum status number_check(const struct source *source, const char *c, size
     size_t suffix = strspn(end, "L");
     bool whole = end + suffix == c + length, fits = suffix > 0 || (value >= INT_MIN && value <= INT_MAX);
     if (whole && (errno == ERANGE || !fits)) {
-        return status_set(STATUS_INVALID, "%.300s:%d: %.*s is out of range, must be an integer from %d to %d; larger "
-                          "numbers are written like 5e9 or, up to 2^63, 5000000000L", source->path, source->line,
-                          shown(length), c, INT_MIN, INT_MAX);
+        return status_set(STATUS_INVALID,
+                          "%.300s:%d: %.*s is out of range, must be an integer from %d to %d; larger "
+                          "numbers are written like 5e9 or, up to 2^63, 5000000000L",
+                          source->path, source->line, shown(length), c, INT_MIN, INT_MAX);
     }
     return STATUS_OK;
 }
@@ -169,10 +174,12 @@ static enum status content_expand(struct scene_text *text, struct source *source
 /* Make room for a file of `length` characters. */
 static enum status room_make(struct scene_text *text, size_t length, const char *path)
 {
-    text->room += length + sizeof "\n\n";       /* a line's end before the file, and one after it */
+    text->room += length + sizeof "\n\n"; /* a line's end before the file, and one after it */
     if (text->room > TEXT_MAX) {
-        return status_set(STATUS_INVALID, "%.300s: the scene is too long with this file, must have at most %zu bytes "
-                          "with all that it includes", path, TEXT_MAX);
+        return status_set(STATUS_INVALID,
+                          "%.300s: the scene is too long with this file, must have at most %zu bytes "
+                          "with all that it includes",
+                          path, TEXT_MAX);
     }
     char *longer = realloc(text->text, text->room);
     if (!longer) {
@@ -189,8 +196,7 @@ static enum status file_read(FILE *file, const char *path, char **content, size_
     *length = 0;
     ssize_t count = getdelim(content, &size, '\0', file);
     if (count < 0 && !feof(file)) {
-        return status_set(STATUS_INVALID, "%.300s: cannot be read: %s; must be a readable file", path,
-                          strerror(errno));
+        return status_set(STATUS_INVALID, "%.300s: cannot be read: %s; must be a readable file", path, strerror(errno));
     }
     if (count > 0 && (*content)[count - 1] == '\0') {
         return status_set(STATUS_INVALID, "%.300s: holds a zero byte at offset %zd, must be text", path, count - 1);
@@ -209,13 +215,16 @@ static enum status file_expand(struct scene_text *text, const char *path, const 
         reason = strerror(errno);
     }
     if (!file && asked_by) {
-        return status_set(STATUS_INVALID, "%.300s:%d: @include of %.200s: %s; must be a readable file, its path "
-                          "absolute, or from the folder of this file, or from %.200s", asked_by->path,
-                          asked_by->line, path, reason, text->scene_directory);
+        return status_set(STATUS_INVALID,
+                          "%.300s:%d: @include of %.200s: %s; must be a readable file, its path "
+                          "absolute, or from the folder of this file, or from %.200s",
+                          asked_by->path, asked_by->line, path, reason, text->scene_directory);
     }
     if (!file) {
-        return status_set(STATUS_INVALID, "%.300s: scene is not readable: %s; must be the path of a .cfg file, or "
-                          "the name of a shipped scene without .cfg", path, reason);
+        return status_set(STATUS_INVALID,
+                          "%.300s: scene is not readable: %s; must be the path of a .cfg file, or "
+                          "the name of a shipped scene without .cfg",
+                          path, reason);
     }
     struct source source = {.path = path, .line = 1, .depth = asked_by ? asked_by->depth + 1 : 0};
     char *content;

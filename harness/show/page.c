@@ -121,7 +121,8 @@ void page_begin(struct page *page, const char *title)
         return;
     }
     fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n  <meta charset=\"utf-8\"/>\n"
-          "  <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n  ", page->stream);
+          "  <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n  ",
+          page->stream);
     element_write(page, "title", NULL, NULL, title);
     fprintf(page->stream, "\n%s</head>\n<body>\n", style);
     element_write(page, "h1", NULL, NULL, title);
@@ -291,8 +292,9 @@ static enum status file_read(const char *path, char **bytes, size_t *size)
     if (regular && (*bytes = malloc((size_t)info.st_size + 1)))
         *size = fread(*bytes, 1, (size_t)info.st_size, file);
     bool good = *bytes && !ferror(file);
-    enum status status = good ? STATUS_OK : status_set(STATUS_FAILED, "%s: cannot be read: %s", path,
-                                                       file && !regular ? "no regular file" : strerror(errno));
+    enum status status = good ? STATUS_OK
+                              : status_set(STATUS_FAILED, "%s: cannot be read: %s", path,
+                                           file && !regular ? "no regular file" : strerror(errno));
     if (file)
         fclose(file);
     else if (descriptor >= 0)

@@ -14,22 +14,22 @@ enum page_format { PAGE_HTML, PAGE_MARKDOWN };
 
 struct page_column {
     const char *title;
-    bool number;                        /* set to the right */
+    bool number; /* set to the right */
 };
 
 struct page {
     FILE *stream;
     enum page_format format;
-    long bytes_most;                    /* rows of tables beyond are counted and left out; 0: no limit */
+    long bytes_most; /* rows of tables beyond are counted and left out; 0: no limit */
     /* For these functions alone. */
-    const struct page_column *columns;  /* [column_count] of the table that is open */
+    const struct page_column *columns; /* [column_count] of the table that is open */
     int column_count, rows_left_out;
-    int drawings;                       /* SVG pictures so far: what the names of their elements begin with */
+    int drawings; /* SVG pictures so far: what the names of their elements begin with */
 };
 
 struct page_cell {
     const char *text;
-    const char *class;                  /* of the HTML cell: good, soft, bad, open, long; NULL for none */
+    const char *class; /* of the HTML cell: good, soft, bad, open, long; NULL for none */
 };
 
 void page_begin(struct page *page, const char *title);

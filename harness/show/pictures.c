@@ -79,10 +79,10 @@ void pictures_slices(struct pictures *pictures)
 {
     const struct scene *scene = pictures->scene;
     char path[4096], title[600];
-    char (*texts)[64] = calloc((size_t)scene->point_count + 1, sizeof *texts);
+    char(*texts)[64] = calloc((size_t)scene->point_count + 1, sizeof *texts);
     const char **titles = calloc((size_t)scene->point_count + 1, sizeof *titles);
     struct slice_line *lines = calloc((size_t)scene->point_count * (size_t)pictures->spec_count + 1, sizeof *lines);
-    int count = 0;                      /* lines without a label have no image: unsupported or failed */
+    int count = 0; /* lines without a label have no image: unsupported or failed */
     for (int k = 0; lines && k < scene->point_count * pictures->spec_count; k++)
         if (pictures->lines[k % pictures->spec_count].label)
             lines[count++] = pictures->lines[k];

@@ -7,11 +7,11 @@
 #include "show/plot.h"
 
 struct pictures {
-    const char *directory;          /* borrowed, like the scene */
+    const char *directory; /* borrowed, like the scene */
     const struct scene *scene;
     int spec_count;
-    struct slice_line *lines;       /* [point_count][spec_count]; without a label: no image */
-    int undrawn;                    /* pictures that could not be drawn */
+    struct slice_line *lines; /* [point_count][spec_count]; without a label: no image */
+    int undrawn;              /* pictures that could not be drawn */
 };
 
 /* Whether DIR/SCENE-LABEL.png is there, or, with a label of NULL, DIR/SCENE-slices.png. */

@@ -19,10 +19,10 @@
 #include "data/temporary.h"
 
 enum {
-    PANELS_MAX = 8,             /* more do not fit a picture */
-    PIXELS_MAX = 900            /* of a panel, along each axis: about what the screen shows */
+    PANELS_MAX = 8,  /* more do not fit a picture */
+    PIXELS_MAX = 900 /* of a panel, along each axis: about what the screen shows */
 };
-static const double floor_db = -200;    /* stands for zero power, far below what is shown */
+static const double floor_db = -200; /* stands for zero power, far below what is shown */
 
 extern char **environ;
 
@@ -83,7 +83,7 @@ static bool is_svg(const char *path)
 }
 
 double plot_seconds_most = 60;
-static bool hung;               /* it would hang on every further picture */
+static bool hung; /* it would hang on every further picture */
 
 static enum status plot_begin(struct plot *plot, const char *path)
 {
@@ -147,7 +147,7 @@ static int gnuplot_start(const char *preamble, const char *log, pid_t *child)
     error = posix_spawnattr_init(&attributes);
     if (!error) {
         sigemptyset(&usual);
-        sigaddset(&usual, SIGXFSZ);     /* which main ignores */
+        sigaddset(&usual, SIGXFSZ); /* which main ignores */
         error = posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
         if (!error)
             error = posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log, O_WRONLY | O_CREAT, 0600);
@@ -176,8 +176,10 @@ static enum status gnuplot_wait(pid_t child, int *exit_status)
             kill(-child, SIGKILL);
             waitpid(child, exit_status, 0);
             hung = true;
-            return status_set(STATUS_FAILED, "plot: gnuplot did not end within %g s and was stopped; no more pictures "
-                              "are drawn", plot_seconds_most);
+            return status_set(STATUS_FAILED,
+                              "plot: gnuplot did not end within %g s and was stopped; no more pictures "
+                              "are drawn",
+                              plot_seconds_most);
         }
         nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL);
     }
@@ -259,16 +261,19 @@ static enum status plot_draw(struct plot *plot, const char *plots_directory, con
 
 /* One axis of a patch as it is drawn: blocks of pixels. */
 struct drawn_axis {
-    int count, pixels, block;   /* drawn values; pixels of the image; pixels of a drawn value */
-    double first, step;         /* m */
+    int count, pixels, block; /* drawn values; pixels of the image; pixels of a drawn value */
+    double first, step;       /* m */
 };
 
 static struct drawn_axis axis_reduce(double first, double step, int pixels)
 {
     int block = (pixels - 1) / PIXELS_MAX + 1;
     struct drawn_axis axis = {
-        .count = (pixels - 1) / block + 1, .pixels = pixels, .block = block,
-        .first = first + 0.5 * (block - 1) * step, .step = block * step,
+        .count = (pixels - 1) / block + 1,
+        .pixels = pixels,
+        .block = block,
+        .first = first + 0.5 * (block - 1) * step,
+        .step = block * step,
     };
     if (axis.count == 1) {
         /* gnuplot demands two values: the one pixel as two halves. */

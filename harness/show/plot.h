@@ -14,8 +14,8 @@ extern double plot_seconds_most;
 
 /* Azimuth slices through point targets, one panel a target, one line an image (the papers' overlays). */
 struct slice_line {
-    const char *label;              /* SPEC */
-    double *position_m, *power_db;  /* [count], owned by the caller */
+    const char *label;             /* SPEC */
+    double *position_m, *power_db; /* [count], owned by the caller */
     int count;
 };
 /* lines: [panel_count][line_count]. */

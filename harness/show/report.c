@@ -18,21 +18,21 @@
 /* --- The folder ------------------------------------------------------------------------------------------------ */
 
 struct drawing {
-    const char *scene;                  /* borrowed from the results */
-    char title[300];                    /* "sweep/point: error_time" */
-    char path[4096];                    /* empty: the scene has nothing to show there */
-    char fault[400];                    /* why it could not be drawn; empty: drawn */
+    const char *scene; /* borrowed from the results */
+    char title[300];   /* "sweep/point: error_time" */
+    char path[4096];   /* empty: the scene has nothing to show there */
+    char fault[400];   /* why it could not be drawn; empty: drawn */
 };
 
 struct folder {
     const char *directory;
     struct results results;
-    const char **scenes;                /* [scene_count] borrowed, in the order of their first rows */
+    const char **scenes; /* [scene_count] borrowed, in the order of their first rows */
     int scene_count;
-    struct csv csvs[REPORT_TABLES];     /* column_count 0: not there */
-    struct drawing *drawings;           /* [drawing_count] */
+    struct csv csvs[REPORT_TABLES]; /* column_count 0: not there */
+    struct drawing *drawings;       /* [drawing_count] */
     int drawing_count;
-    struct dirent **files;              /* [file_count] PNG files of `phase`, by name */
+    struct dirent **files; /* [file_count] PNG files of `phase`, by name */
     int file_count;
 };
 
@@ -122,11 +122,19 @@ static void machine_show(struct page *page, const struct folder *folder)
 }
 
 enum { MEASUREMENT_COLUMNS = 13 };
-static const struct page_column measurement_columns[MEASUREMENT_COLUMNS] = {
-    {"algorithm", false},       {"run time", true},        {"speed-up", true},   {"plan", true},
-    {"GFLOP", true},            {"memory (MB)", true},     {"error", true},      {"error, best gain", true},
-    {"phase rms (rad)", true},  {"width (mm)", true},      {"PSLR (dB)", true},  {"ISLR (dB)", true},
-    {"engine, left out", false}};
+static const struct page_column measurement_columns[MEASUREMENT_COLUMNS] = {{"algorithm", false},
+                                                                            {"run time", true},
+                                                                            {"speed-up", true},
+                                                                            {"plan", true},
+                                                                            {"GFLOP", true},
+                                                                            {"memory (MB)", true},
+                                                                            {"error", true},
+                                                                            {"error, best gain", true},
+                                                                            {"phase rms (rad)", true},
+                                                                            {"width (mm)", true},
+                                                                            {"PSLR (dB)", true},
+                                                                            {"ISLR (dB)", true},
+                                                                            {"engine, left out", false}};
 
 static void measurement_show(struct page *page, const struct measurement *row)
 {
@@ -204,12 +212,11 @@ struct pictures_count {
 };
 
 /* A picture of the folder as long as the page has room. */
-static enum status picture_show(struct page *page, const char *path, const char *caption,
-                                struct pictures_count *count)
+static enum status picture_show(struct page *page, const char *path, const char *caption, struct pictures_count *count)
 {
     struct stat info;
     if (lstat(path, &info) != 0)
-        return STATUS_OK;               /* not drawn: a sweep's images, a run without gnuplot */
+        return STATUS_OK; /* not drawn: a sweep's images, a run without gnuplot */
     if (!S_ISREG(info.st_mode)) {
         count->irregular++;
         return STATUS_OK;
@@ -254,13 +261,17 @@ static enum status pictures_show(struct page *page, const struct folder *folder)
     if (count.shown == 0)
         page_paragraph(page, "None in this folder: `run` draws them, `sweep` does not.");
     if (count.irregular) {
-        snprintf(caption, sizeof caption, "%d pictures are left out: links, folders or pipes; only regular files of the folder "
-                 "itself are shown.", count.irregular);
+        snprintf(caption, sizeof caption,
+                 "%d pictures are left out: links, folders or pipes; only regular files of the folder "
+                 "itself are shown.",
+                 count.irregular);
         page_paragraph(page, caption);
     }
     if (count.left_out) {
-        snprintf(caption, sizeof caption, "%d pictures are left out to keep this page below %d MB; they lie beside "
-                 "it.", count.left_out, REPORT_HTML_BYTES >> 20);
+        snprintf(caption, sizeof caption,
+                 "%d pictures are left out to keep this page below %d MB; they lie beside "
+                 "it.",
+                 count.left_out, REPORT_HTML_BYTES >> 20);
         page_paragraph(page, caption);
     }
     return status;

@@ -7,7 +7,7 @@
 
 #include "data/shown_text.h"
 
-#define WIDTH 110
+#define WIDTH      110
 #define SPEC_WIDTH 34
 /* Titles, units and values alike: algorithm, time, speed-up, rate, three errors, width, PSLR, ISLR. */
 #define LAYOUT "  %-34s %8s %8s %9s %7s %7s %7s %6s %6s %6s\n"
@@ -19,8 +19,7 @@ struct cell cell_significant(double value, const char *unit)
 {
     struct cell cell = {"-"};
     if (isfinite(value))
-        snprintf(cell.text, sizeof cell.text, value < 1 ? "%.2f%s" : value < 999.5 ? "%.3g%s" : "%.0f%s", value,
-                 unit);
+        snprintf(cell.text, sizeof cell.text, value < 1 ? "%.2f%s" : value < 999.5 ? "%.3g%s" : "%.0f%s", value, unit);
     return cell;
 }
 
@@ -112,9 +111,8 @@ void table_row(FILE *stream, const struct measurement *row)
     if (ok) {
         fprintf(stream, LAYOUT, own_line ? "" : spec, cell_time(row->run_s).text,
                 cell_significant(row->control_s / row->run_s, "x").text, cell_rate(row).text,
-                cell_error(row->error).text, cell_error(row->error_gain).text,
-                cell_error(row->phase_rms_rad).text, cell_fixed(1e3 * row->width_m).text,
-                cell_fixed(row->pslr_db).text, cell_fixed(row->islr_db).text);
+                cell_error(row->error).text, cell_error(row->error_gain).text, cell_error(row->phase_rms_rad).text,
+                cell_fixed(1e3 * row->width_m).text, cell_fixed(row->pslr_db).text, cell_fixed(row->islr_db).text);
     } else {
         char text[1024];
         snprintf(text, sizeof text, "%s: %s", row->status, row->reason);

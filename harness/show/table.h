@@ -15,7 +15,7 @@ void table_row(FILE *stream, const struct measurement *row);
 struct cell {
     char text[24];
 };
-struct cell cell_significant(double value, const char *unit);  /* three digits, the unit directly behind; "-" for NAN */
+struct cell cell_significant(double value, const char *unit); /* three digits, the unit directly behind; "-" for NAN */
 struct cell cell_time(double seconds);
 /* The row's SPEC as on the command line, so that it can be taken from here; float is the default there. */
 void measurement_spec(const struct measurement *row, char *text, size_t size);

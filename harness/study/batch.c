@@ -21,8 +21,8 @@ struct visit {
     struct session session;
     const struct spec *specs;
     int spec_count;
-    struct pictures pictures;           /* all zero when none are drawn */
-    struct work *works;                 /* [spec_count] of the algorithms measured now; flops 0 otherwise */
+    struct pictures pictures; /* all zero when none are drawn */
+    struct work *works;       /* [spec_count] of the algorithms measured now; flops 0 otherwise */
 };
 
 static void visit_close(struct visit *visit)
@@ -82,8 +82,8 @@ static enum status fail_scene(struct comparison *comparison, const struct scene 
     snprintf(reason, sizeof reason, "%s", status_message());
     comparison->failed = true;
     for (int k = 0; k < spec_count && status == STATUS_OK; k++, comparison->done++) {
-        struct measurement row = measurement_empty(scene->name, specs[k].algorithm->name, specs[k].text,
-                                                   specs[k].precision);
+        struct measurement row =
+            measurement_empty(scene->name, specs[k].algorithm->name, specs[k].text, specs[k].precision);
         const struct measurement *earlier = comparison_find(comparison, scene, &specs[k]);
         row.threads = comparison->threads;
         row.status = "failed";
@@ -226,8 +226,8 @@ static bool pictures_missing(const struct comparison *comparison, const struct s
         missing += !picture_exists(comparison->directory, scene->name, label);
         images++;
     }
-    return missing > 0 || (images > 0 && scene->point_count > 0
-                           && !picture_exists(comparison->directory, scene->name, NULL));
+    return missing > 0
+           || (images > 0 && scene->point_count > 0 && !picture_exists(comparison->directory, scene->name, NULL));
 }
 
 enum status comparison_scene(struct comparison *comparison, const struct scene *scene, int spec_count,
@@ -274,8 +274,8 @@ enum status comparison_scene(struct comparison *comparison, const struct scene *
 enum status comparison_open(const char *directory, int rows, bool details, struct comparison *comparison)
 {
     struct provenance provenance;
-    *comparison = (struct comparison){
-        .directory = directory, .threads = omp_get_max_threads(), .details = details, .rows = rows};
+    *comparison =
+        (struct comparison){.directory = directory, .threads = omp_get_max_threads(), .details = details, .rows = rows};
     provenance_fill(&provenance, comparison->threads);
     enum status status = record_open(directory, &provenance, &comparison->record);
     if (status == STATUS_OK)
@@ -293,9 +293,9 @@ enum status comparison_close(struct comparison *comparison, enum status status)
         status = status_set(STATUS_FAILED, "at least one algorithm failed; the table and %s/measurements.csv say why",
                             comparison->directory);
     if (status == STATUS_OK && comparison->undrawn > 0)
-        status = status_set(STATUS_FAILED, "%d %s could not be drawn, as is said above; %s/measurements.csv is whole",
-                            comparison->undrawn, comparison->undrawn == 1 ? "picture" : "pictures",
-                            comparison->directory);
+        status =
+            status_set(STATUS_FAILED, "%d %s could not be drawn, as is said above; %s/measurements.csv is whole",
+                       comparison->undrawn, comparison->undrawn == 1 ? "picture" : "pictures", comparison->directory);
     return status;
 }
 
@@ -324,11 +324,11 @@ enum status scenes_load(const char *command, int given_count, const char *const 
         status = scene_load(list[k], SCENE_DIRECTORY, &(*scenes)[*count]);
         for (int before = 0; before < *count && status == STATUS_OK; before++) {
             if (strcmp((*scenes)[before].path, (*scenes)[*count].path) == 0) {
-                status = status_set(STATUS_INVALID, "%s: scene %s is given twice, must be named once",
-                                    command, list[k]);
+                status =
+                    status_set(STATUS_INVALID, "%s: scene %s is given twice, must be named once", command, list[k]);
             } else if (strcmp((*scenes)[before].name, (*scenes)[*count].name) == 0) {
                 status = scenes_tell_apart(&(*scenes)[before], &(*scenes)[*count]);
-                before = -1;                    /* the longer names may be those of others */
+                before = -1; /* the longer names may be those of others */
             }
             if (status != STATUS_OK)
                 scene_free(&(*scenes)[*count]);

@@ -7,13 +7,13 @@
 #include "measure/spec.h"
 
 struct comparison {
-    const char *directory;              /* borrowed */
+    const char *directory; /* borrowed */
     struct record *record;
     int threads;
-    bool details;                       /* of every scene: draw images and slices, print FLOPs by formula */
-    bool failed;                        /* a measurement failed */
-    int undrawn;                        /* pictures that could not be drawn */
-    int done, rows;                     /* measurements, for the progress line */
+    bool details;   /* of every scene: draw images and slices, print FLOPs by formula */
+    bool failed;    /* a measurement failed */
+    int undrawn;    /* pictures that could not be drawn */
+    int done, rows; /* measurements, for the progress line */
 };
 
 /* Open the folder (record_open: finished rows of an earlier run are kept) and print the table's head.

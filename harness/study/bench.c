@@ -34,8 +34,8 @@ enum { METHODS = sizeof methods / sizeof *methods };
 
 static const struct bench_case {
     const char *scene, *engine;
-    int rows;                           /* evenly spaced over the swath; 0: all */
-    int methods, alone;                 /* the first ones of the table; those also on one thread */
+    int rows;           /* evenly spaced over the swath; 0: all */
+    int methods, alone; /* the first ones of the table; those also on one thread */
 } cases[] = {
     {"bp22/full_limited", "invariant", 0, METHODS, 1},
     {"bp22/full", "invariant", 0, 1, 0},
@@ -53,7 +53,7 @@ enum { ROUNDS = 3 };
 
 /* One line of the table. */
 struct line {
-    int threads, runs;              /* of all rounds; no runs: not measured */
+    int threads, runs; /* of all rounds; no runs: not measured */
     double pairs, plan_bytes, process_bytes;
     double value[VALUES][ROUNDS];
 };
@@ -75,8 +75,8 @@ static double memory_peak(void)
 
 /* One round of a line; the peak is measured before and after, as the control is. `alone`: the line on one thread. */
 static enum status measure(const struct bench *bench, const struct bench_case *one, const struct method *method,
-                           const struct problem *problem, const struct echoes *echoes, const struct echoes *control_echoes,
-                           const struct line *alone, int round, struct line *line)
+                           const struct problem *problem, const struct echoes *echoes,
+                           const struct echoes *control_echoes, const struct line *alone, int round, struct line *line)
 {
     char text[96];
     struct spec spec;
@@ -100,9 +100,16 @@ static enum status measure(const struct bench *bench, const struct bench_case *o
         return status;
     const double sums = stage_seconds(&timing.stages, "focus"), rate = timing.work.pairs / sums;
     const double values[VALUES] = {
-        [PLAN_S] = timing.plan_s, [RUN_S] = timing.run_s, [SUM_S] = sums, [RATE] = rate, [PEAK] = peak,
-        [FRACTION] = method->pair_flops * rate / peak, [PER_PEAK] = rate / peak, [CONTROL] = timing.control_s / sums,
-        [RUN_TO_SUM] = timing.run_s / sums, [GAIN] = alone->runs > 0 ? alone->value[RUN_S][round] / timing.run_s : NAN,
+        [PLAN_S] = timing.plan_s,
+        [RUN_S] = timing.run_s,
+        [SUM_S] = sums,
+        [RATE] = rate,
+        [PEAK] = peak,
+        [FRACTION] = method->pair_flops * rate / peak,
+        [PER_PEAK] = rate / peak,
+        [CONTROL] = timing.control_s / sums,
+        [RUN_TO_SUM] = timing.run_s / sums,
+        [GAIN] = alone->runs > 0 ? alone->value[RUN_S][round] / timing.run_s : NAN,
     };
     for (int k = 0; k < VALUES; k++)
         line->value[k][round] = values[k];
@@ -129,8 +136,8 @@ static void report(const struct bench *bench, const struct bench_case *one, cons
             line->pairs, v[PLAN_S], v[RUN_S], v[SUM_S], v[RATE], v[PEAK], method->pair_flops, v[FRACTION], v[PER_PEAK],
             v[CONTROL], v[RUN_TO_SUM], gain, line->plan_bytes, line->process_bytes);
     printf("%-17s %-9s %-10s %-6s %d %7.3f %7.3f %7.3f %6.3f %8.5f %7.1f %7.2f %6s %6.0f\n", one->scene, one->engine,
-           method->name, precision, line->threads, v[RUN_S], v[SUM_S], 1e-9 * v[RATE], v[FRACTION], v[PER_PEAK], v[CONTROL],
-           v[RUN_TO_SUM], *gain ? gain : "-", line->process_bytes / 0x1p20);
+           method->name, precision, line->threads, v[RUN_S], v[SUM_S], 1e-9 * v[RATE], v[FRACTION], v[PER_PEAK],
+           v[CONTROL], v[RUN_TO_SUM], *gain ? gain : "-", line->process_bytes / 0x1p20);
     fflush(stdout);
 }
 
@@ -149,12 +156,13 @@ static enum status bench_case(struct bench *bench, const struct bench_case *one)
     status = scene_simulate(&scene, &echoes[PRECISION_DOUBLE]);
     if (status == STATUS_OK)
         status = echoes_convert(&echoes[PRECISION_DOUBLE], PRECISION_FLOAT, &echoes[PRECISION_FLOAT]);
-    struct line lines[METHODS][2][2] = {0};     /* [method][precision][on one thread, on all] */
+    struct line lines[METHODS][2][2] = {0}; /* [method][precision][on one thread, on all] */
     for (int round = 0; round < ROUNDS; round++)
         for (int m = 0; m < one->methods; m++)
             for (int p = 0; p < 2; p++)
                 for (int n = 0; n < 2 && status == STATUS_OK; n++) {
-                    const bool alone = m < one->alone && n == 0, all = n == 1 && (bench->threads > 1 || m >= one->alone);
+                    const bool alone = m < one->alone && n == 0,
+                               all = n == 1 && (bench->threads > 1 || m >= one->alone);
                     struct problem problem = {&scene.acquisition, 1, &grid, (enum precision)p};
                     lines[m][p][n].threads = n == 0 ? 1 : bench->threads;
                     if (alone || all)
@@ -182,14 +190,14 @@ static enum status measure_cases(struct bench *bench)
             provenance.machine, provenance.compiler, provenance.flags, provenance.commit, provenance.date);
     fprintf(bench->file, "# isa: %s\n", isa_name(isa_choose()));
     for (int p = 0; p < 2; p++)
-        printf("multiply-add peak, %s (%s): %.1f GFLOP/s on one thread, %.1f on %d\n", precision_name((enum precision)p),
-               isa_name(isa_choose()), 1e-9 * peak_flops((enum precision)p, 1),
+        printf("multiply-add peak, %s (%s): %.1f GFLOP/s on one thread, %.1f on %d\n",
+               precision_name((enum precision)p), isa_name(isa_choose()), 1e-9 * peak_flops((enum precision)p, 1),
                1e-9 * peak_flops((enum precision)p, bench->threads), bench->threads);
     fprintf(bench->file, "scene,engine,algorithm,precision,threads,rows,runs,pairs,plan_s,run_s,sum_s,pairs_per_s,"
                          "peak_flops,flops_per_pair,fraction_of_peak,pairs_per_peak_flop,ratio_to_control,run_to_sum,"
                          "gain_of_threads,plan_bytes,process_bytes\n");
-    printf("\n%-17s %-9s %-10s %-6s %s %7s %7s %7s %6s %8s %7s %7s %6s %6s\n", "scene", "engine", "algorithm", "prec.", "t",
-           "run s", "sums s", "Gpair/s", "peak", "pair/FL", "control", "run/sum", "gain", "MiB");
+    printf("\n%-17s %-9s %-10s %-6s %s %7s %7s %7s %6s %8s %7s %7s %6s %6s\n", "scene", "engine", "algorithm", "prec.",
+           "t", "run s", "sums s", "Gpair/s", "peak", "pair/FL", "control", "run/sum", "gain", "MiB");
     enum status status = STATUS_OK;
     for (size_t k = 0; k < sizeof cases / sizeof *cases && status == STATUS_OK; k++)
         status = bench_case(bench, &cases[k]);

@@ -1,5 +1,5 @@
 /* Range migration in `bench`: LBF21's real-data size, 8 range blocks, float, all threads, everything in one run. */
-#define _GNU_SOURCE                 /* sincos */
+#define _GNU_SOURCE /* sincos */
 #include "study/bench_rma.h"
 
 #include <fftw3.h>
@@ -16,9 +16,14 @@
 #include "data/text_file.h"
 #include "measure/timing.h"
 
-enum { BLOCKS = 8, RECEIVERS = 48, AZIMUTH = 3840, RANGE = 4096,           /* 80 pings of 48 receivers at full rate */
-       BINS = RANGE / 2,                                                    /* the pulse's band */
-       TRANSFORM_RUNS = 5 };
+enum {
+    BLOCKS = 8,
+    RECEIVERS = 48,
+    AZIMUTH = 3840,
+    RANGE = 4096,     /* 80 pings of 48 receivers at full rate */
+    BINS = RANGE / 2, /* the pulse's band */
+    TRANSFORM_RUNS = 5
+};
 
 /* What a stage is counted as; a name that is not here comes before the phases. */
 static const char *const phase_stages[] = {"bulk", "differential", NULL};
@@ -109,7 +114,7 @@ static void sincos_seconds(double seconds[2])
             }
         seconds[precision] = RECEIVERS * (seconds_now() - begin);
     }
-    volatile double used = sum;     /* or nothing would be computed */
+    volatile double used = sum; /* or nothing would be computed */
     (void)used;
 }
 
@@ -145,9 +150,11 @@ static enum status measure(const struct problem *problem, const struct echoes *e
         {"phase_one_libm", "s", "the same by formula and libm for each cell", libm_phase},
         {"phase_ratio", "1", "how much slower that is (10 at least)", libm_phase / one_phase},
         {"phase_ratio_blocks", "1", "and with 8 blocks, each as long as the one", BLOCKS * libm_phase / phase},
-        {"sincos_double", "s", "sines and cosines alone, of one block's cells: libm in double", cells[PRECISION_DOUBLE]},
+        {"sincos_double", "s", "sines and cosines alone, of one block's cells: libm in double",
+         cells[PRECISION_DOUBLE]},
         {"sincos_float", "s", "and libm in float", cells[PRECISION_FLOAT]},
-        {"sincos_ratio", "1", "libm's double ones alone, to the whole phase stage", cells[PRECISION_DOUBLE] / one_phase},
+        {"sincos_ratio", "1", "libm's double ones alone, to the whole phase stage",
+         cells[PRECISION_DOUBLE] / one_phase},
         {"fft2", "s", "FFTW, 2-D forward and inverse of 3840 x 4096, best of five", fft},
         {"run_ratio", "1", "run in these transforms (12 at most)", run / fft},
     };

@@ -36,7 +36,7 @@ static const struct {
     const char *scene;
     int receiver;
     const char *formula, *table, *target, *method;
-    bool bound;                         /* the paper says only that the error is below it */
+    bool bound; /* the paper says only that the error is below it */
 } figures[] = {
     {"lbf21/_phase_short", 0, "lbf7_fc", "lbf21_f2", "1st receiver, 50 to 300 m", "LBF", false},
     {"lbf21/_phase_short", 1, "lbf7_fc", "lbf21_f3", "66th receiver, 135 to 300 m", "LBF", false},
@@ -50,11 +50,11 @@ static const struct {
 struct study {
     const char *scene;
     struct spectrum_setting setting;
-    double offset[RECEIVERS];           /* m: of the first and the last receiver */
-    int receiver[RECEIVERS];            /* their numbers, from 1 */
-    double frequency[FREQUENCIES];      /* Hz: f_tau of -B/2, 0, B/2 */
-    double nu_max;                      /* cycles/m: the transmitter's 1/D_tx, or where the spectrum ends */
-    double largest[RECEIVERS][FORMULAS][RANGES];    /* rad */
+    double offset[RECEIVERS];                    /* m: of the first and the last receiver */
+    int receiver[RECEIVERS];                     /* their numbers, from 1 */
+    double frequency[FREQUENCIES];               /* Hz: f_tau of -B/2, 0, B/2 */
+    double nu_max;                               /* cycles/m: the transmitter's 1/D_tx, or where the spectrum ends */
+    double largest[RECEIVERS][FORMULAS][RANGES]; /* rad */
 };
 
 static double nu_at(const struct study *study, int n)
@@ -110,8 +110,8 @@ static enum status study_write(struct study *study, const char *path)
             for (int k = 0; k < FREQUENCIES; k++)
                 for (int n = 0; n < DOPPLERS; n++) {
                     double nu = nu_at(study, n), frequency = study->setting.fc + study->frequency[k];
-                    fprintf(file, "%d,%.9g,%g,%.9g,%.9g,%.9g,%.17g", study->receiver[i], study->offset[i],
-                            ranges_m[r], study->frequency[k], nu, nu * study->setting.speed,
+                    fprintf(file, "%d,%.9g,%g,%.9g,%.9g,%.9g,%.17g", study->receiver[i], study->offset[i], ranges_m[r],
+                            study->frequency[k], nu, nu * study->setting.speed,
                             spectrum_exact(&study->setting, study->offset[i], ranges_m[r], frequency, nu));
                     for (int j = 1; j < FORMULAS; j++) {
                         double error = error_at(study, i, j, r, n, k);
@@ -131,7 +131,8 @@ static void printed_show(const struct csv *published, const struct study *study,
         if (strcmp(figures[k].scene, study->scene) == 0 && figures[k].receiver == receiver
             && strcmp(figures[k].formula, formulas[formula].name) == 0
             && published_values(published, figures[k].table, figures[k].target, figures[k].method, "phase_error_rad",
-                                &value, 1) == 1)
+                                &value, 1)
+                   == 1)
             printf("%s%.4g", figures[k].bound ? "< " : "", value);
 }
 
@@ -238,8 +239,8 @@ static enum status point_read(const struct csv *csv, int row, const int *index, 
     for (int k = 0; k < COLUMNS; k++) {
         const char *cell = csv_cell(csv, row, index[k]);
         if (!csv_number(cell, &values[k]) || !isfinite(values[k]))
-            return status_set(STATUS_INVALID, "%s: line %d: column %s is '%.60s'; a finite number is needed",
-                              csv->path, csv->lines[row], columns[k], cell);
+            return status_set(STATUS_INVALID, "%s: line %d: column %s is '%.60s'; a finite number is needed", csv->path,
+                              csv->lines[row], columns[k], cell);
     }
     const double c = values[6], speed = fabs(values[5]), beta = values[5] / c, sine = c * values[3] / (2 * values[5]);
     const double least = fmin(values[2], values[4]);
@@ -259,12 +260,13 @@ static enum status point_read(const struct csv *csv, int row, const int *index, 
     for (size_t k = 0; k < sizeof checks / sizeof *checks; k++)
         if (!checks[k].good)
             return status_set(STATUS_INVALID, "%s: line %d: column %s is %.17g; %s is needed", csv->path,
-                              csv->lines[row], columns[checks[k].column], values[checks[k].column],
-                              checks[k].accepted);
+                              csv->lines[row], columns[checks[k].column], values[checks[k].column], checks[k].accepted);
     for (int j = 0; j < FORMULAS; j++)
         if (!isfinite(point_phase(values, j)))
-            return status_set(STATUS_INVALID, "%s: line %d: the phase '%s' at d = %g m and r = %g m is no finite number; a "
-                              "greater range is needed", csv->path, csv->lines[row], formulas[j].name, values[0], values[1]);
+            return status_set(STATUS_INVALID,
+                              "%s: line %d: the phase '%s' at d = %g m and r = %g m is no finite number; a "
+                              "greater range is needed",
+                              csv->path, csv->lines[row], formulas[j].name, values[0], values[1]);
     return STATUS_OK;
 }
 
@@ -285,8 +287,8 @@ static enum status points_print(const char *path)
         return status;
     for (int k = 0; status == STATUS_OK && k < COLUMNS; k++)
         if ((index[k] = csv_column(&csv, columns[k])) < 0)
-            status = status_set(STATUS_INVALID, "%s: there is no column '%s'; d,r,F,f,fc,v,c are needed", path,
-                                columns[k]);
+            status =
+                status_set(STATUS_INVALID, "%s: there is no column '%s'; d,r,F,f,fc,v,c are needed", path, columns[k]);
     double *values = calloc((size_t)csv.row_count + 1, COLUMNS * sizeof *values);
     if (status == STATUS_OK && !values)
         status = status_set(STATUS_FAILED, "%s: no memory for %d rows", path, csv.row_count);
@@ -307,7 +309,7 @@ static enum status points_print(const char *path)
 
 const char *phase_formula(int k)
 {
-    return k + 1 < FORMULAS ? formulas[k + 1].name : NULL;          /* the first is the exact one */
+    return k + 1 < FORMULAS ? formulas[k + 1].name : NULL; /* the first is the exact one */
 }
 
 enum status phase_study(const char *directory, bool taken)
@@ -322,8 +324,10 @@ enum status phase_study(const char *directory, bool taken)
 enum status command_phase(const struct task *task)
 {
     if (task->at && (task->name_count || task->output))
-        return status_set(STATUS_INVALID, "phase: --at %s prints to standard output; neither a scene nor -o is "
-                          "accepted", task->at);
+        return status_set(STATUS_INVALID,
+                          "phase: --at %s prints to standard output; neither a scene nor -o is "
+                          "accepted",
+                          task->at);
     if (task->at)
         return points_print(task->at);
     const char *directory = task->output ? task->output : "results/phase";

@@ -69,7 +69,8 @@ enum status command_sweep(const struct task *task)
         comparison.undrawn += draw(directory, &scenes[k]);
     if (status == STATUS_OK)
         printf("\nResults: %s/measurements.csv, targets.csv, fronts.csv, cheapest.csv, slopes.csv, rules.csv and "
-               "plots.\n", directory);
+               "plots.\n",
+               directory);
     status = comparison_close(&comparison, status);
     scenes_free(scenes, scene_count);
     ladder_free(&ladder);

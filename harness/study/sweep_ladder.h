@@ -6,7 +6,7 @@
 
 /* Freed with ladder_free, which accepts a zeroed struct. */
 struct ladder {
-    struct spec *specs;             /* [count], no two equal */
+    struct spec *specs; /* [count], no two equal */
     int count;
 };
 

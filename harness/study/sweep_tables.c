@@ -77,9 +77,9 @@ int floor_find(int count, const double *error)
 /* A measured setting as a rung of its ladder: the first option that is a number, and the rest, which stays. */
 struct rung {
     const struct measurement *row;
-    char setting[32], rest[256];        /* empty setting: no option is a number */
+    char setting[32], rest[256]; /* empty setting: no option is a number */
     double value;
-    bool taken;                         /* belongs to a ladder that is done */
+    bool taken; /* belongs to a ladder that is done */
 };
 
 static struct rung rung_read(const struct measurement *row)
@@ -123,11 +123,11 @@ static int compare_rungs(const void *a, const void *b)
 /* The rows of one scene that have both time and error, but for exact ones that image only a part of it. */
 struct group {
     const char *scene;
-    const struct measurement **rows;    /* [count] borrowed */
-    struct rung *rungs;                 /* [count] */
-    double *error, *cost;               /* [count] room for a front's or a ladder's values */
-    int *front;                         /* [count] room for a front */
-    struct rung *ladder;                /* [count] room for a ladder */
+    const struct measurement **rows; /* [count] borrowed */
+    struct rung *rungs;              /* [count] */
+    double *error, *cost;            /* [count] room for a front's or a ladder's values */
+    int *front;                      /* [count] room for a front */
+    struct rung *ladder;             /* [count] room for a ladder */
     int count;
 };
 
@@ -144,9 +144,12 @@ static void group_free(struct group *group)
 static enum status group_fill(const struct results *results, const char *scene, struct group *group)
 {
     size_t most = (size_t)results->csv.row_count + 1;
-    *group = (struct group){.scene = scene, .rows = calloc(most, sizeof *group->rows),
-                            .error = calloc(most, sizeof *group->error), .cost = calloc(most, sizeof *group->cost),
-                            .front = calloc(most, sizeof *group->front), .rungs = calloc(most, sizeof *group->rungs),
+    *group = (struct group){.scene = scene,
+                            .rows = calloc(most, sizeof *group->rows),
+                            .error = calloc(most, sizeof *group->error),
+                            .cost = calloc(most, sizeof *group->cost),
+                            .front = calloc(most, sizeof *group->front),
+                            .rungs = calloc(most, sizeof *group->rungs),
                             .ladder = calloc(most, sizeof *group->ladder)};
     if (!group->rows || !group->error || !group->cost || !group->front || !group->rungs || !group->ladder)
         return status_set(STATUS_FAILED, "%s: no memory for %zu rows", scene, most);
@@ -170,7 +173,7 @@ static enum status group_fill(const struct results *results, const char *scene, 
 
 static const struct cost {
     const char *name, *title;
-    size_t offset;                      /* of the double in struct measurement */
+    size_t offset; /* of the double in struct measurement */
 } costs[] = {
     {"run_s", "run time", offsetof(struct measurement, run_s)},
     {"flops", "counted FLOPs", offsetof(struct measurement, flops)},
@@ -204,9 +207,10 @@ static void fronts_write(struct group *group, FILE *file)
         int size = front_find(group->count, group->cost, group->error, group->front);
         for (int k = 0; k < size; k++) {
             const struct measurement *row = group->rows[group->front[k]];
-            fields_write(file, (const char *const[]){row->scene, costs[c].name, row->algorithm, row->options,
-                                                     row->precision, NULL},
-                         (double[]){group->cost[group->front[k]], row->error}, 2);
+            fields_write(
+                file,
+                (const char *const[]){row->scene, costs[c].name, row->algorithm, row->options, row->precision, NULL},
+                (double[]){group->cost[group->front[k]], row->error}, 2);
         }
     }
 }
@@ -239,10 +243,12 @@ static void cheapest_write(struct group *group, FILE *file)
             printf("    %7s  %8s %8s %9s  %7.1e  %s\n", threshold, cell_time(row->run_s).text,
                    cell_significant(row->control_s / row->run_s, "x").text,
                    cell_significant(1e-6 * row->flops, "").text, row->error, spec);
-            fields_write(file, (const char *const[]){row->scene, costs[c].name, threshold, row->algorithm,
-                                                     row->options, row->precision, NULL},
+            fields_write(file,
+                         (const char *const[]){row->scene, costs[c].name, threshold, row->algorithm, row->options,
+                                               row->precision, NULL},
                          (double[]){row->run_s, row->control_s / row->run_s, row->flops, row->error, row->error_gain,
-                                    row->pslr_db, row->islr_db}, 7);
+                                    row->pslr_db, row->islr_db},
+                         7);
         }
     }
 }
@@ -256,17 +262,19 @@ static void slope_write(const struct rung *rungs, const double *rates, const dou
     char name[512], range[80];
     if (isnan(fit.slope))
         return;
-    fields_write(file, (const char *const[]){row->scene, row->algorithm, rungs->rest, row->precision, rungs->setting,
-                                             part, NULL},
-                 (double[]){rungs[0].value, rungs[count - 1].value, rates[0], rates[count - 1], fit.points, fit.slope,
-                            fit.first, fit.last, fit.residual_log10}, 9);
+    fields_write(
+        file,
+        (const char *const[]){row->scene, row->algorithm, rungs->rest, row->precision, rungs->setting, part, NULL},
+        (double[]){rungs[0].value, rungs[count - 1].value, rates[0], rates[count - 1], fit.points, fit.slope, fit.first,
+                   fit.last, fit.residual_log10},
+        9);
     snprintf(name, sizeof name, "%s%s%s%s", row->algorithm, *rungs->rest ? ":" : "", rungs->rest,
              strcmp(row->precision, "double") == 0 ? " double" : "");
     shown_make(name);
     snprintf(range, sizeof range, "%s %g to %g", rungs->setting, rungs[0].value, rungs[count - 1].value);
     shown_make(range);
-    printf("  %-36s %-8s %-18s %6d  %6.3f  %7.1e  %7.1e  %8.4f\n", name, part, range, fit.points, fit.slope,
-           fit.first, fit.last, fit.residual_log10);
+    printf("  %-36s %-8s %-18s %6d  %6.3f  %7.1e  %7.1e  %8.4f\n", name, part, range, fit.points, fit.slope, fit.first,
+           fit.last, fit.residual_log10);
 }
 
 /* The ladder's parts: where the error falls and the floor; without a floor the finest half, for the order that the
@@ -284,8 +292,8 @@ static void ladder_write(const struct rung *rungs, int count, const double *rate
 static void slopes_write(struct group *group, FILE *file)
 {
     printf("\n%s: slopes of log error against log rate (beta + 1, or the setting itself)\n"
-           "  %-36s %-8s %-18s %6s  %6s  %7s  %7s  %8s\n", group->scene, "ladder", "part", "setting", "points",
-           "slope", "first", "last", "residual");
+           "  %-36s %-8s %-18s %6s  %6s  %7s  %7s  %8s\n",
+           group->scene, "ladder", "part", "setting", "points", "slope", "first", "last", "residual");
     for (int k = 0; k < group->count; k++) {
         const struct rung *start = &group->rungs[k];
         int size = 0;
@@ -326,7 +334,8 @@ static void rules_write(struct group *group, const struct scene *given, const st
         double bp22 = 2 * bin * 10 * lambda / (resolution * resolution), zp15 = 2 * a->fc / a->fs;
         fields_write(file, (const char *const[]){group->scene, NULL},
                      (double[]){a->fc, a->fs, a->bandwidth, bp22, zp15, M_PI * fraction / 2,
-                                M_PI * M_PI / (12 * sqrt(5)) * fraction * fraction}, 7);
+                                M_PI * M_PI / (12 * sqrt(5)) * fraction * fraction},
+                     7);
         printf("\n%s: upsampling rates asked for by BP22 Eq. (20) > %.3g, by ZP15's lambda/8 > %.3g\n", group->scene,
                bp22, zp15);
     }

@@ -14,9 +14,9 @@ int front_find(int count, const double *cost, const double *error, int *front);
 /* A straight line through log10 error against log10 rate, by least squares. */
 struct line_fit {
     int points;
-    double slope;                       /* NAN with fewer than two points, or one rate only */
-    double first, last;                 /* the line's error at the first and the last rate */
-    double residual_log10;              /* rms distance of the points from the line */
+    double slope;          /* NAN with fewer than two points, or one rate only */
+    double first, last;    /* the line's error at the first and the last rate */
+    double residual_log10; /* rms distance of the points from the line */
 };
 struct line_fit line_fit(int count, const double *rate, const double *error);
 

@@ -80,23 +80,23 @@ static void freed(const void *block)
     pthread_mutex_unlock(&mutex);
 }
 
-#define TAKES(name, parameters, arguments, size) \
-    void *__real_##name parameters; \
-    void *__wrap_##name parameters; \
-    void *__wrap_##name parameters \
-    { \
-        return refused() ? NULL : taken(__real_##name arguments, size); \
+#define TAKES(name, parameters, arguments, size)                                                                       \
+    void *__real_##name parameters;                                                                                    \
+    void *__wrap_##name parameters;                                                                                    \
+    void *__wrap_##name parameters                                                                                     \
+    {                                                                                                                  \
+        return refused() ? NULL : taken(__real_##name arguments, size);                                                \
     }
-#define FREES(name) \
-    void __real_##name(void *block); \
-    void __wrap_##name(void *block); \
-    void __wrap_##name(void *block) \
-    { \
-        freed(block); \
-        __real_##name(block); \
+#define FREES(name)                                                                                                    \
+    void __real_##name(void *block);                                                                                   \
+    void __wrap_##name(void *block);                                                                                   \
+    void __wrap_##name(void *block)                                                                                    \
+    {                                                                                                                  \
+        freed(block);                                                                                                  \
+        __real_##name(block);                                                                                          \
     }
 TAKES(malloc, (size_t size), (size), size)
-TAKES(calloc, (size_t n, size_t size), (n, size), n * size)
+TAKES(calloc, (size_t n, size_t size), (n, size), n *size)
 TAKES(aligned_alloc, (size_t alignment, size_t size), (alignment, size), size)
 TAKES(strdup, (const char *text), (text), strlen(text) + 1)
 FREES(free)
@@ -133,41 +133,43 @@ static void *planned(void *plan)
     return plan;
 }
 
-#define PLANS(X, name, parameters, arguments) \
-    X##_plan __real_##X##_plan_##name parameters; \
-    X##_plan __wrap_##X##_plan_##name parameters; \
-    X##_plan __wrap_##X##_plan_##name parameters \
-    { \
-        return planned(__real_##X##_plan_##name arguments); \
+#define PLANS(X, name, parameters, arguments)                                                                          \
+    X##_plan __real_##X##_plan_##name parameters;                                                                      \
+    X##_plan __wrap_##X##_plan_##name parameters;                                                                      \
+    X##_plan __wrap_##X##_plan_##name parameters                                                                       \
+    {                                                                                                                  \
+        return planned(__real_##X##_plan_##name arguments);                                                            \
     }
 /* The planners of one kind; `signs` and `sign` are the last arguments of it ahead of the flags. */
-#define KIND(X, kind, from, to, signs, sign) \
-    PLANS(X, kind##_1d, (int a, from *in, to *out, signs unsigned flags), (a, in, out, sign flags)) \
-    PLANS(X, kind##_2d, (int a, int b, from *in, to *out, signs unsigned flags), (a, b, in, out, sign flags)) \
-    PLANS(X, kind##_3d, (int a, int b, int c, from *in, to *out, signs unsigned flags), (a, b, c, in, out, sign flags)) \
-    PLANS(X, kind, (int rank, const int *n, from *in, to *out, signs unsigned flags), (rank, n, in, out, sign flags)) \
-    PLANS(X, many_##kind, \
-          (int rank, const int *n, int many, from *in, const int *ie, int is, int id, to *out, const int *oe, int os, int od, \
-           signs unsigned flags), (rank, n, many, in, ie, is, id, out, oe, os, od, sign flags)) \
-    PLANS(X, guru_##kind, \
-          (int rank, const X##_iodim *n, int loops, const X##_iodim *loop, from *in, to *out, signs unsigned flags), \
+#define KIND(X, kind, from, to, signs, sign)                                                                           \
+    PLANS(X, kind##_1d, (int a, from *in, to *out, signs unsigned flags), (a, in, out, sign flags))                    \
+    PLANS(X, kind##_2d, (int a, int b, from *in, to *out, signs unsigned flags), (a, b, in, out, sign flags))          \
+    PLANS(X, kind##_3d, (int a, int b, int c, from *in, to *out, signs unsigned flags),                                \
+          (a, b, c, in, out, sign flags))                                                                              \
+    PLANS(X, kind, (int rank, const int *n, from *in, to *out, signs unsigned flags), (rank, n, in, out, sign flags))  \
+    PLANS(X, many_##kind,                                                                                              \
+          (int rank, const int *n, int many, from *in, const int *ie, int is, int id, to *out, const int *oe, int os,  \
+           int od, signs unsigned flags),                                                                              \
+          (rank, n, many, in, ie, is, id, out, oe, os, od, sign flags))                                                \
+    PLANS(X, guru_##kind,                                                                                              \
+          (int rank, const X##_iodim *n, int loops, const X##_iodim *loop, from *in, to *out, signs unsigned flags),   \
           (rank, n, loops, loop, in, out, sign flags))
 #define COMMA ,
-#define PRECISION(X, R) \
-    TAKES(X##_malloc, (size_t size), (size), size) \
-    TAKES(X##_alloc_real, (size_t n), (n), n * sizeof(R)) \
-    TAKES(X##_alloc_complex, (size_t n), (n), n * sizeof(R complex)) \
-    FREES(X##_free) \
-    KIND(X, dft, X##_complex, X##_complex, int direction COMMA, direction COMMA) \
-    KIND(X, dft_r2c, R, X##_complex, , ) \
-    KIND(X, dft_c2r, X##_complex, R, , ) \
-    PLANS(X, r2r_1d, (int n, R *in, R *out, X##_r2r_kind kind, unsigned flags), (n, in, out, kind, flags)) \
-    void __real_##X##_destroy_plan(X##_plan plan); \
-    void __wrap_##X##_destroy_plan(X##_plan plan); \
-    void __wrap_##X##_destroy_plan(X##_plan plan) \
-    { \
-        count.plans_destroyed += counting && plan; \
-        __real_##X##_destroy_plan(plan); \
+#define PRECISION(X, R)                                                                                                \
+    TAKES(X##_malloc, (size_t size), (size), size)                                                                     \
+    TAKES(X##_alloc_real, (size_t n), (n), n * sizeof(R))                                                              \
+    TAKES(X##_alloc_complex, (size_t n), (n), n * sizeof(R complex))                                                   \
+    FREES(X##_free)                                                                                                    \
+    KIND(X, dft, X##_complex, X##_complex, int direction COMMA, direction COMMA)                                       \
+    KIND(X, dft_r2c, R, X##_complex, , )                                                                               \
+    KIND(X, dft_c2r, X##_complex, R, , )                                                                               \
+    PLANS(X, r2r_1d, (int n, R *in, R *out, X##_r2r_kind kind, unsigned flags), (n, in, out, kind, flags))             \
+    void __real_##X##_destroy_plan(X##_plan plan);                                                                     \
+    void __wrap_##X##_destroy_plan(X##_plan plan);                                                                     \
+    void __wrap_##X##_destroy_plan(X##_plan plan)                                                                      \
+    {                                                                                                                  \
+        count.plans_destroyed += counting && plan;                                                                     \
+        __real_##X##_destroy_plan(plan);                                                                               \
     }
 PRECISION(fftw, double)
 PRECISION(fftwf, float)

@@ -4,11 +4,11 @@
 #define SASBENCH_TEST_ALLOCATIONS_H
 
 struct allocations {
-    int taken, freed;               /* calls that allocate, and that free something */
-    int plans, plans_destroyed;     /* of FFTW */
-    int blocks;                     /* of those taken: still held */
-    double bytes;                   /* in them */
-    int refused;                    /* calls that got NULL */
+    int taken, freed;           /* calls that allocate, and that free something */
+    int plans, plans_destroyed; /* of FFTW */
+    int blocks;                 /* of those taken: still held */
+    double bytes;               /* in them */
+    int refused;                /* calls that got NULL */
 };
 
 /* Count from zero until allocations_end. `refuse`: the number of the one call, from 0, that allocates and gets NULL; -1: none

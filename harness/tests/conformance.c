@@ -17,9 +17,9 @@
 struct setting {
     const char *name;
     int pings, receivers;
-    double first_offset, speed, fs, r, r_first;     /* target and first image row, m */
+    double first_offset, speed, fs, r, r_first; /* target and first image row, m */
     bool raw, empty;
-    double bound;       /* of the relative error: nearest neighbour's; at fs = B every short kernel loses much of the band */
+    double bound; /* of the relative error: nearest neighbour's; at fs = B every short kernel loses much of the band */
     enum trait promise; /* which makes the scene: an algorithm with this trait may not refuse it */
 };
 
@@ -62,16 +62,25 @@ static void make_scene(const struct setting *setting, struct scene *scene, struc
     double spacing = 0.02 * (setting->receivers > 1 ? setting->receivers : 2), duration = 2e-3;
     int samples = setting->fs > 20e3 ? 1024 : 512;
     double first = floor(fmax(0, 2 * setting->r / 1500 * setting->fs - samples / 4));
-    bool straight_down = setting->r < 1 || setting->promise == TRAIT_ANY_TRACK;     /* element beams would see nothing */
-    *scene = (struct scene){
-        .pulse_kind = setting->raw ? PULSE_LFM : PULSE_FLAT, .pulse_duration = duration,
-        .beam = {straight_down ? BEAM_RECT : BEAM_TXRX, TRUNCATION_NONE, 0, false}, .patch_count = 1, .patches = grid};
+    bool straight_down = setting->r < 1 || setting->promise == TRAIT_ANY_TRACK; /* element beams would see nothing */
+    *scene = (struct scene){.pulse_kind = setting->raw ? PULSE_LFM : PULSE_FLAT,
+                            .pulse_duration = duration,
+                            .beam = {straight_down ? BEAM_RECT : BEAM_TXRX, TRUNCATION_NONE, 0, false},
+                            .patch_count = 1,
+                            .patches = grid};
     struct acquisition *a = &scene->acquisition;
-    *a = (struct acquisition){
-        .sound_speed = 1500, .fc = 150e3, .fs = setting->fs, .bandwidth = 15e3, .samples = samples,
-        .receivers = setting->receivers, .pings = setting->pings, .tx_length = 0.08, .rx_length = 0.04,
-        .aperture_limit = INFINITY, .compressed = !setting->raw,
-        .pulse_length = setting->raw ? pulse_length_lfm(duration, setting->fs) : 0};
+    *a = (struct acquisition){.sound_speed = 1500,
+                              .fc = 150e3,
+                              .fs = setting->fs,
+                              .bandwidth = 15e3,
+                              .samples = samples,
+                              .receivers = setting->receivers,
+                              .pings = setting->pings,
+                              .tx_length = 0.08,
+                              .rx_length = 0.04,
+                              .aperture_limit = INFINITY,
+                              .compressed = !setting->raw,
+                              .pulse_length = setting->raw ? pulse_length_lfm(duration, setting->fs) : 0};
     assert_int_equal(acquisition_allocate(a), STATUS_OK);
     for (int p = 0; p < a->pings; p++) {
         a->t0[p] = first / a->fs;
@@ -83,7 +92,7 @@ static void make_scene(const struct setting *setting, struct scene *scene, struc
     if (setting->promise == TRAIT_ANY_TRACK)
         bend(a);
     if (setting->promise == TRAIT_APERTURE_LIMIT)
-        a->aperture_limit = 0.008;          /* 0.24 m of an aperture of 0.84 m to either side */
+        a->aperture_limit = 0.008; /* 0.24 m of an aperture of 0.84 m to either side */
     if (setting->raw)
         pulse_lfm(a->bandwidth, duration, a->fs, a->pulse_length, a->pulse);
     *grid = (struct grid){-0.24, 0.02, 25, setting->r_first, 0.025, 21};
@@ -105,7 +114,7 @@ static struct problem problem_of(const struct scene *scene, enum precision preci
 }
 
 /* ---- the algorithm ---- */
-static const struct algorithm *current;     /* what the tests run through */
+static const struct algorithm *current; /* what the tests run through */
 
 #define REFUSE(setting, format, ...) fail_msg("%s, %s: " format, current->name, setting, __VA_ARGS__)
 
@@ -136,8 +145,8 @@ static bool make_plan(const struct setting *setting, const struct problem *probl
     if (status == STATUS_OK)
         return true;
     if (status != STATUS_UNSUPPORTED || strlen(status_message()) <= 10)
-        REFUSE(setting->name, "plan returns status %d, \"%s\", must be 0, or %d with a reason", status, status_message(),
-               STATUS_UNSUPPORTED);
+        REFUSE(setting->name, "plan returns status %d, \"%s\", must be 0, or %d with a reason", status,
+               status_message(), STATUS_UNSUPPORTED);
     if (*plan)
         REFUSE(setting->name, "%s", "plan refuses and leaves *plan set, must be NULL");
     if (setting->promise & current->traits)
@@ -173,7 +182,7 @@ static void allocate_image(const struct problem *problem, struct image *image)
 {
     assert_int_equal(image_allocate(1, problem->patches, problem->precision, image), STATUS_OK);
     size_t pixels = (size_t)problem->patches->x_count * (size_t)problem->patches->r_count;
-    memset(image->pixels[0], 0x5a, pixels * precision_size(problem->precision));    /* every pixel must be written */
+    memset(image->pixels[0], 0x5a, pixels * precision_size(problem->precision)); /* every pixel must be written */
 }
 
 /* The image by the current algorithm's defaults; false when it refuses the scene. Echoes are in double. */
@@ -209,7 +218,7 @@ static void check_images(const struct setting *setting, const struct scene *scen
     if (!setting->empty) {
         double error = support_difference(image, exact), rounding = support_difference(single, image);
         print_message("%s, %s: error %.2e, float against double %.1e\n", current->name, setting->name, error, rounding);
-        assert_true(support_peak(exact) > 0.5);     /* there is something to compare */
+        assert_true(support_peak(exact) > 0.5); /* there is something to compare */
         at_most(setting->name, "the error against reference", error,
                 current->traits & TRAIT_EXACT ? 1e-8 : setting->bound);
         at_most(setting->name, "the difference of float from double", rounding, 2e-6);
@@ -243,7 +252,8 @@ static void all_settings(void **state)
             for (int precision = 0; precision < 2; precision++) {
                 assert_true(form(setting, problem, (enum precision)precision, 1, &echoes, &again));
                 if (!same_bits(&again, &images[precision]))
-                    REFUSE(setting->name, "other bits on 1 thread than on 2, in %s", precision_name((enum precision)precision));
+                    REFUSE(setting->name, "other bits on 1 thread than on 2, in %s",
+                           precision_name((enum precision)precision));
                 image_free(&again);
             }
             check_images(setting, &scene, &exact, &images[PRECISION_DOUBLE], &images[PRECISION_FLOAT]);
@@ -271,7 +281,8 @@ static void linearity(void **state)
         scene.targets[0] = (struct target){0.1 * k - 0.08, 29.9 + 0.07 * k, 1};
         assert_int_equal(scene_simulate(&scene, &echoes[k]), STATUS_OK);
     }
-    size_t count = (size_t)scene.acquisition.samples * (size_t)scene.acquisition.receivers * (size_t)scene.acquisition.pings;
+    size_t count =
+        (size_t)scene.acquisition.samples * (size_t)scene.acquisition.receivers * (size_t)scene.acquisition.pings;
     double complex *s[3];
     for (int k = 0; k < 3; k++)
         s[k] = (double complex *)echoes[k].samples;
@@ -286,8 +297,8 @@ static void linearity(void **state)
         for (int j = 0; j < grid.x_count; j++)
             worst = worse_of(worst, cabs(2 * I * image_pixel(&image[0], 0, i, j) - 0.5 * image_pixel(&image[1], 0, i, j)
                                          - image_pixel(&image[2], 0, i, j)));
-    at_most("sum of two echoes", "the difference from the sum of two images over the peak", worst / support_peak(&image[2]),
-            1e-12);
+    at_most("sum of two echoes", "the difference from the sum of two images over the peak",
+            worst / support_peak(&image[2]), 1e-12);
     for (int k = 0; k < 3; k++) {
         image_free(&image[k]);
         echoes_free(&echoes[k]);
@@ -349,15 +360,16 @@ static void check_memory(const struct scene *scene, const struct echoes *echoes,
     current->destroy(NULL);
     struct allocations left = allocations_end();
     if (!(fabs(bytes / planned.bytes - 1) <= 0.01))
-        REFUSE(setting, "work.bytes is %.0f, must be what the plan holds on one thread, %.0f, to 1 %%", bytes, planned.bytes);
+        REFUSE(setting, "work.bytes is %.0f, must be what the plan holds on one thread, %.0f, to 1 %%", bytes,
+               planned.bytes);
     if (executed.taken != planned.taken || executed.freed != planned.freed)
         REFUSE(setting, "execute allocates %d and frees %d blocks, must be none", executed.taken - planned.taken,
                executed.freed - planned.freed);
     if (executed.plans != planned.plans)
         REFUSE(setting, "execute makes %d FFT plans, must be none", executed.plans - planned.plans);
     if (left.blocks != 0 || left.plans != left.plans_destroyed)
-        REFUSE(setting, "destroy leaves %d blocks of %.0f bytes and %d FFT plans, must be none", left.blocks, left.bytes,
-               left.plans - left.plans_destroyed);
+        REFUSE(setting, "destroy leaves %d blocks of %.0f bytes and %d FFT plans, must be none", left.blocks,
+               left.bytes, left.plans - left.plans_destroyed);
     if (!same_bits(&first, &second))
         REFUSE(setting, "%s", "other bits by the second execute of a plan");
     image_free(&first);
@@ -383,11 +395,12 @@ static void check_refused_memory(const struct scene *scene, enum precision preci
         struct allocations left = allocations_end();
         refused = left.refused > 0;
         if (status != STATUS_OK && (!refused || status != STATUS_FAILED || plan || strlen(status_message()) <= 10))
-            REFUSE("raw", "without the memory of allocation %d plan returns status %d, \"%s\", must be %d with a reason", call,
+            REFUSE("raw",
+                   "without the memory of allocation %d plan returns status %d, \"%s\", must be %d with a reason", call,
                    status, status_message(), STATUS_FAILED);
         if (left.blocks != 0 || left.plans != left.plans_destroyed)
-            REFUSE("raw", "without the memory of allocation %d plan leaves %d blocks and %d FFT plans, must be none", call,
-                   left.blocks, left.plans - left.plans_destroyed);
+            REFUSE("raw", "without the memory of allocation %d plan leaves %d blocks and %d FFT plans, must be none",
+                   call, left.blocks, left.plans - left.plans_destroyed);
     }
     spec_free(&spec);
 }
@@ -438,8 +451,8 @@ static void schedules(void **state)
                 if (k + n == 0)
                     first = again;
                 else if (!same_bits(&first, &again))
-                    REFUSE(settings[RAW].name, "other bits by execute number %d on %d threads than on one, in %s", n + 1,
-                           omp_get_max_threads(), precision_name(problem.precision));
+                    REFUSE(settings[RAW].name, "other bits by execute number %d on %d threads than on one, in %s",
+                           n + 1, omp_get_max_threads(), precision_name(problem.precision));
                 if (k + n > 0)
                     image_free(&again);
             }
@@ -458,8 +471,8 @@ static void check_param(const struct param *p)
 {
     size_t size = p->type == PARAM_REAL ? sizeof(double) : sizeof(int);
     if (p->size != size || p->offset % size != 0 || p->offset + size > current->options_size)
-        REFUSE(p->name, "a field of %zu bytes at %zu of %zu cannot hold its type; declare it by PARAM or PARAM_NAMED", p->size,
-               p->offset, current->options_size);
+        REFUSE(p->name, "a field of %zu bytes at %zu of %zu cannot hold its type; declare it by PARAM or PARAM_NAMED",
+               p->size, p->offset, current->options_size);
     if (!(p->initial >= p->min && p->initial <= p->max))
         REFUSE(p->name, "the default is %g, must lie from %g to %g", p->initial, p->min, p->max);
     if (!p->summary || !*p->summary || (p->type == PARAM_CHOICE) != (p->choices != NULL))
@@ -500,8 +513,10 @@ static void baseline_rows(void **state)
         rows += strcmp(csv_cell(&csv, row, csv_column(&csv, "algorithm")), current->name) == 0;
     csv_free(&csv);
     if (rows == 0)
-        fail_msg("%s: results/baseline.csv has no row of it; `./sasbench baseline` adds them: review and commit them with the "
-                 "algorithm", current->name);
+        fail_msg("%s: results/baseline.csv has no row of it; `./sasbench baseline` adds them: review and commit them "
+                 "with the "
+                 "algorithm",
+                 current->name);
 }
 
 int conformance_run(const struct algorithm *algorithm)

@@ -8,10 +8,10 @@
 
 #include "scene/simulate.h"
 
-#define CHECK(status) \
-    do { \
-        if ((status) != STATUS_OK) \
-            fail_msg("%s", status_message()); \
+#define CHECK(status)                                                                                                  \
+    do {                                                                                                               \
+        if ((status) != STATUS_OK)                                                                                     \
+            fail_msg("%s", status_message());                                                                          \
     } while (0)
 
 void support_scene(const char *name, struct scene *scene)

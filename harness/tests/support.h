@@ -21,10 +21,10 @@ double support_peak(const struct image *image);
 /* A folder of its own for every test: fixtures, and the path of a name in it (the last four stay valid). */
 extern char folder[256];
 int folder_make(void **state);
-int folder_remove(void **state);        /* with all that is in it */
+int folder_remove(void **state); /* with all that is in it */
 const char *path_of(const char *name);
 bool support_exists(const char *name);
 void support_write(const char *name, const char *text);
-char *support_read(const char *name);   /* the whole file, malloc'ed; NULL if it is not there */
+char *support_read(const char *name); /* the whole file, malloc'ed; NULL if it is not there */
 
 #endif

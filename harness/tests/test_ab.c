@@ -45,21 +45,18 @@ static void verdicts_of_made_up_times(void **state)
     static const struct {
         double ratio, noise_round, noise_block;
         enum verdict verdict;
-        int least;                      /* of the trials that must come to it; the others are too noisy to tell */
+        int least; /* of the trials that must come to it; the others are too noisy to tell */
     } cases[] = {
-        {1.00, 0.01, 0.02, VERDICT_SAME, TRIALS - 10},
-        {1.00, 0.02, 0.06, VERDICT_SAME, TRIALS / 10},
-        {1.00, 0.00, 0.50, VERDICT_NOISY, TRIALS},
-        {1.10, 0.01, 0.02, VERDICT_WORSE, TRIALS - 10},
-        {1.30, 0.02, 0.06, VERDICT_WORSE, TRIALS - 2},
-        {0.80, 0.01, 0.02, VERDICT_BETTER, TRIALS - 2},
+        {1.00, 0.01, 0.02, VERDICT_SAME, TRIALS - 10}, {1.00, 0.02, 0.06, VERDICT_SAME, TRIALS / 10},
+        {1.00, 0.00, 0.50, VERDICT_NOISY, TRIALS},     {1.10, 0.01, 0.02, VERDICT_WORSE, TRIALS - 10},
+        {1.30, 0.02, 0.06, VERDICT_WORSE, TRIALS - 2}, {0.80, 0.01, 0.02, VERDICT_BETTER, TRIALS - 2},
     };
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
         struct random random = random_seed(7, n);
         int counts[VERDICTS] = {0};
         for (int trial = 0; trial < TRIALS; trial++) {
-            struct interval interval = draw_interval(&random, cases[n].ratio, cases[n].noise_round,
-                                                     cases[n].noise_block, 1e-4);
+            struct interval interval =
+                draw_interval(&random, cases[n].ratio, cases[n].noise_round, cases[n].noise_block, 1e-4);
             counts[interval_judge(&interval)]++;
         }
         enum verdict verdict = cases[n].verdict;
@@ -82,7 +79,7 @@ static void intervals_hold_as_often_as_they_say(void **state)
         struct interval interval = draw_interval(&random, 1.07, 0.02, 0.02, 0.025);
         outside += interval.low > 1.07 || interval.high < 1.07;
     }
-    assert_in_range(outside, TRIALS / 100, TRIALS / 8);        /* 5 %, and what few rounds add */
+    assert_in_range(outside, TRIALS / 100, TRIALS / 8); /* 5 %, and what few rounds add */
 }
 
 static void verdicts_at_the_stated_effects(void **state)
@@ -92,10 +89,15 @@ static void verdicts_at_the_stated_effects(void **state)
         struct interval interval;
         enum verdict verdict;
     } cases[] = {
-        {{1.051, 1.06, 1.07}, VERDICT_WORSE}, {{1.049, 1.06, 1.07}, VERDICT_WARNING},
-        {{1.031, 1.04, 1.045}, VERDICT_WARNING}, {{1.029, 1.04, 1.045}, VERDICT_SAME},
-        {{0.9, 1, 1.049}, VERDICT_SAME}, {{0.9, 1, 1.051}, VERDICT_NOISY},
-        {{0.9, 0.95, 0.97}, VERDICT_BETTER}, {{0.9, 0.95, 0.98}, VERDICT_SAME}, {{0.2, 1, 4}, VERDICT_NOISY},
+        {{1.051, 1.06, 1.07}, VERDICT_WORSE},
+        {{1.049, 1.06, 1.07}, VERDICT_WARNING},
+        {{1.031, 1.04, 1.045}, VERDICT_WARNING},
+        {{1.029, 1.04, 1.045}, VERDICT_SAME},
+        {{0.9, 1, 1.049}, VERDICT_SAME},
+        {{0.9, 1, 1.051}, VERDICT_NOISY},
+        {{0.9, 0.95, 0.97}, VERDICT_BETTER},
+        {{0.9, 0.95, 0.98}, VERDICT_SAME},
+        {{0.2, 1, 4}, VERDICT_NOISY},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
         assert_int_equal(interval_judge(&cases[k].interval), cases[k].verdict);
@@ -124,11 +126,11 @@ static void script_write(const char *name, const char *text)
 }
 
 /* A program that plans and runs: what it answers to either. */
-#define HELLO "echo sasbench measure 1\n"
+#define HELLO              "echo sasbench measure 1\n"
 #define PROGRAM(plan, run) HELLO "while read what rest; do case $what in plan) " plan ";; run) " run ";; esac; done\n"
-#define PLANNED "echo planned 0 a1"
-#define TOOK(text) "echo 'took " text "'"
-#define GOOD PROGRAM(PLANNED, TOOK("0.010 clear=0.0001;compress=0.0039;focus=0.006"))
+#define PLANNED            "echo planned 0 a1"
+#define TOOK(text)         "echo 'took " text "'"
+#define GOOD               PROGRAM(PLANNED, TOOK("0.010 clear=0.0001;compress=0.0039;focus=0.006"))
 
 static enum status compare_scripts(const char *old, const char *new, struct compare *compare)
 {
@@ -142,7 +144,7 @@ static enum status compare_scripts(const char *old, const char *new, struct comp
     snprintf(paths[1], sizeof paths[1], "%s", path_of("new"));
     enum status status = ab_compare(paths[0], paths[1], scenes, 1, &spec, 1, &quick, compare);
     spec_free(&spec);
-    assert_int_equal(waitpid(-1, NULL, WNOHANG), -1);           /* no child is left */
+    assert_int_equal(waitpid(-1, NULL, WNOHANG), -1); /* no child is left */
     assert_int_equal(errno, ECHILD);
     return status;
 }
@@ -173,7 +175,7 @@ static void slower_stages_are_told(void **state)
             fail_msg("case %zu: %s", n, status_message());
         const enum verdict verdicts[] = {cases[n].total, cases[n].compress, cases[n].focus};
         static const char *const parts[] = {"total", "compress", "focus"};
-        assert_int_equal(compare.finding_count, 3);             /* clear is too small to be judged alone */
+        assert_int_equal(compare.finding_count, 3); /* clear is too small to be judged alone */
         for (int k = 0; k < 3; k++) {
             const struct finding *f = &compare.findings[k];
             assert_string_equal(f->detail, parts[k]);
@@ -237,8 +239,8 @@ static void faulty_programs_are_told(void **state)
             quick.patience_s = strstr(cases[n].says[0], "nothing") ? 1 : 30;
             const char *good = GOOD, *bad = cases[n].program;
             enum status status = compare_scripts(side ? good : bad, side ? bad : good, &compare);
-            bool said = strstr(status_message(), cases[n].says[0]) && (strstr(cases[n].says[0], "gate")
-                        || strstr(status_message(), side ? "NEW " : "OLD "));
+            bool said = strstr(status_message(), cases[n].says[0])
+                        && (strstr(cases[n].says[0], "gate") || strstr(status_message(), side ? "NEW " : "OLD "));
             for (int k = 1; k < 3 && cases[n].says[k]; k++)
                 said = said && strstr(status_message(), cases[n].says[k]);
             if (status != STATUS_INVALID || !said)
@@ -281,7 +283,7 @@ static void nothing_is_left_behind(void **state)
     assert_non_null(file);
     assert_int_equal(fscanf(file, "%d", &process), 1);
     fclose(file);
-    for (int k = 0; k < 500 && kill(process, 0) == 0; k++)      /* until its new parent has seen its end */
+    for (int k = 0; k < 500 && kill(process, 0) == 0; k++) /* until its new parent has seen its end */
         nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);
     assert_int_equal(kill(process, 0), -1);
 }

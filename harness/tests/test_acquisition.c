@@ -11,8 +11,14 @@ enum { SAMPLES = 16, RECEIVERS = 3, PINGS = 8, PULSE = 4 };
 /* A straight track: spacing 0.3 m, receivers 0.05 m apart, lambda = 0.015 m, so that the tolerance is 15 um. */
 static struct acquisition make_straight(double x_first, double spacing, double speed)
 {
-    struct acquisition a = {.sound_speed = 1500, .fc = 100e3, .fs = 30e3, .bandwidth = 20e3, .samples = SAMPLES,
-                            .receivers = RECEIVERS, .pings = PINGS, .aperture_limit = INFINITY,
+    struct acquisition a = {.sound_speed = 1500,
+                            .fc = 100e3,
+                            .fs = 30e3,
+                            .bandwidth = 20e3,
+                            .samples = SAMPLES,
+                            .receivers = RECEIVERS,
+                            .pings = PINGS,
+                            .aperture_limit = INFINITY,
                             .pulse_length = PULSE};
     assert_int_equal(acquisition_allocate(&a), STATUS_OK);
     for (int p = 0; p < PINGS; p++) {
@@ -102,8 +108,10 @@ static void broken_counts_are_refused(void **state)
         int value;
         const char *says;
     } broken[] = {
-        {&a.samples, 1, "samples is 1; at least 2"},      {&a.receivers, 0, "receivers is 0"},
-        {&a.pings, -1, "pings is -1"},                    {&a.pulse_length, 0, "pulse has 0 samples"},
+        {&a.samples, 1, "samples is 1; at least 2"},
+        {&a.receivers, 0, "receivers is 0"},
+        {&a.pings, -1, "pings is -1"},
+        {&a.pulse_length, 0, "pulse has 0 samples"},
     };
     for (size_t i = 0; i < sizeof broken / sizeof *broken; i++) {
         int kept = *broken[i].field;
@@ -119,8 +127,15 @@ static void broken_counts_are_refused(void **state)
     assert_non_null(strstr(status_message(), "compressed echoes have none"));
     acquisition_free(&a);
 
-    struct acquisition huge = {.sound_speed = 1500, .fc = 100e3, .fs = 30e3, .bandwidth = 20e3, .samples = INT32_MAX,
-                               .receivers = INT32_MAX, .pings = 2, .aperture_limit = 1, .compressed = true};
+    struct acquisition huge = {.sound_speed = 1500,
+                               .fc = 100e3,
+                               .fs = 30e3,
+                               .bandwidth = 20e3,
+                               .samples = INT32_MAX,
+                               .receivers = INT32_MAX,
+                               .pings = 2,
+                               .aperture_limit = 1,
+                               .compressed = true};
     assert_int_equal(acquisition_check(&huge, "scene"), STATUS_INVALID);
     assert_non_null(strstr(status_message(), "do not fit"));
 }
@@ -162,10 +177,10 @@ static void tolerance_is_a_thousandth_of_a_wavelength(void **state)
         {&a.rx[3 * RECEIVERS].x, 14e-6, 16e-6},
         {&a.rx[3 * RECEIVERS + 2].y, 14e-6, 16e-6},
         {&a.rx[2].z, -14e-6, -16e-6},
-        {&a.velocity[4].x, 14e-5, 16e-5},       /* times 0.1005 s */
+        {&a.velocity[4].x, 14e-5, 16e-5}, /* times 0.1005 s */
         {&a.velocity[0].y, 14e-5, 16e-5},
         {&a.velocity[7].z, 14e-5, 16e-5},
-        {&a.t0[5], 9e-9, 11e-9},                /* times 1500 m/s */
+        {&a.t0[5], 9e-9, 11e-9}, /* times 1500 m/s */
     };
     for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
         double kept = *changes[i].field;
@@ -240,7 +255,7 @@ static void heading_follows_the_track(void **state)
     a.tx[2] = (struct vector){4, 3, 0};
     a.tx[3] = (struct vector){4, 3, 2};
     assert_heading(&a, 0, 0, 1, 0);
-    assert_heading(&a, 1, 0.8, 0.6, 0);         /* from ping 0 at the origin to ping 2 */
+    assert_heading(&a, 1, 0.8, 0.6, 0); /* from ping 0 at the origin to ping 2 */
     a.pings = 1;
     a.velocity[0] = (struct vector){0, 0, -2};
     assert_heading(&a, 0, 0, 0, -1);

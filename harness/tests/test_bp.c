@@ -21,11 +21,15 @@ static double uniform(struct random *random, double low, double high)
 static void random_case(uint64_t seed, struct acquisition *a, struct grid *grid, struct echoes *echoes)
 {
     struct random random = random_seed(seed, 0);
-    *a = (struct acquisition){
-        .sound_speed = 1500, .fc = uniform(&random, 20e3, 150e3), .fs = 30e3, .bandwidth = 15e3,
-        .samples = (int)uniform(&random, 20, 300), .receivers = (int)uniform(&random, 1, 5),
-        .pings = (int)uniform(&random, 1, 9), .compressed = true,
-        .aperture_limit = seed % 2 ? INFINITY : uniform(&random, 0.05, 0.99)};
+    *a = (struct acquisition){.sound_speed = 1500,
+                              .fc = uniform(&random, 20e3, 150e3),
+                              .fs = 30e3,
+                              .bandwidth = 15e3,
+                              .samples = (int)uniform(&random, 20, 300),
+                              .receivers = (int)uniform(&random, 1, 5),
+                              .pings = (int)uniform(&random, 1, 9),
+                              .compressed = true,
+                              .aperture_limit = seed % 2 ? INFINITY : uniform(&random, 0.05, 0.99)};
     assert_int_equal(acquisition_allocate(a), STATUS_OK);
     double wobble = seed % 3 ? uniform(&random, 0, 3) : 0, height = seed % 3 ? uniform(&random, -4, 4) : 0;
     double speed = seed % 5 ? uniform(&random, -4, 4) : 0;
@@ -96,7 +100,8 @@ static double complex naive(const struct echoes *echoes, double x, double r, int
                 continue;
             ++*pairs;
             sum += methods[method].read((const double complex *)echoes->samples + (size_t)pair * (size_t)a->samples,
-                                        a->samples, q) * cexp(I * 2 * 3.14159265358979323846 * (cycles - rint(cycles)));
+                                        a->samples, q)
+                   * cexp(I * 2 * 3.14159265358979323846 * (cycles - rint(cycles)));
         }
     }
     return sum;
@@ -118,8 +123,8 @@ static void naive_sums(void **state)
         long long pairs = 0;
         for (int i = 0; i < grid.r_count; i++)
             for (int j = 0; j < grid.x_count; j++) {
-                double complex exact = naive(&echoes, grid.x_first + j * grid.x_step, grid.r_first + i * grid.r_step,
-                                             method, &pairs);
+                double complex exact =
+                    naive(&echoes, grid.x_first + j * grid.x_step, grid.r_first + i * grid.r_step, method, &pairs);
                 largest = worse_of(largest, cabs(image_pixel(&image, 0, i, j) - exact));
             }
         if ((double)pairs != pairs_count(&problem))
@@ -131,7 +136,7 @@ static void naive_sums(void **state)
         acquisition_free(&a);
     }
     print_message("%.0f of %.0f pairs summed, largest difference %.1e\n", total, possible, largest);
-    assert_true(total > 0.05 * possible && total < 0.95 * possible);    /* the cases do cut */
+    assert_true(total > 0.05 * possible && total < 0.95 * possible); /* the cases do cut */
     assert_true(largest < 1e-9);
 }
 
@@ -153,14 +158,16 @@ static const struct invariant_case {
     {"short records", 17, 2, 4, 50, 200, 0.02, 0.04, -0.5, 18.1, 2.5, INFINITY, 60, false},
     {"fast, backwards", 17, 2, 4, 50, 200, 0.02, 0.04, -0.5, 18.1, -150, INFINITY, 60, true},
     {"far receivers, short records", 17, 4, 4, 50, 200, 0.02, -20, -0.5, 18.1, -2.5, INFINITY, 300, true},
-    {"both sides of the track", 9, 2, 4, 30, 41, 0.02, 0.04, -0.5, -0.41, 2.5, 0.7, 300, false},  /* no pixel on a ping */
+    {"both sides of the track", 9, 2, 4, 30, 41, 0.02, 0.04, -0.5, -0.41, 2.5, 0.7, 300,
+     false}, /* no pixel on a ping */
     {"many columns", 120, 2, 1, 301, 3, 0.02, 0.04, -3.1, 20.1, 2.5, 0.2, 400, false},
-    {"many phases", 31, 2, 40, 403, 3, 0.02, 0.04, -3.1, 20.1, 2.5, 0.3, 400, false},     /* several groups of tables */
-    {"slanting", 31, 2, 40, 403, 3, 0.02, 0.04, -3.1, 4.1, 2.5, INFINITY, 700, false},    /* a sample in two columns */
+    {"many phases", 31, 2, 40, 403, 3, 0.02, 0.04, -3.1, 20.1, 2.5, 0.3, 400, false},  /* several groups of tables */
+    {"slanting", 31, 2, 40, 403, 3, 0.02, 0.04, -3.1, 4.1, 2.5, INFINITY, 700, false}, /* a sample in two columns */
     {"coarse grid", 13, 2, 9, 150, 5, 0.07, 0.04, -3.1, 14.1, 2.5, 0.6, 400, false},
     {"coarser grid", 13, 2, 9, 150, 5, 0.3, 0.04, -3.1, 14.1, 2.5, 0.6, 400, false},
     {"one ping, very many columns", 1, 1, 1, 70001, 1, 1e-4, 0.04, -3.1, 20.1, 2.5, INFINITY, 400, false},
-    {"long records", 31, 1, 3, 97, 3, 0.02, 0.04, -1.2, 20.0, 2.5, INFINITY, 2400, false},  /* fine samples in several passes */
+    {"long records", 31, 1, 3, 97, 3, 0.02, 0.04, -1.2, 20.0, 2.5, INFINITY, 2400,
+     false}, /* fine samples in several passes */
 };
 
 static void make_invariant_case(const struct invariant_case *c, struct acquisition *a, struct grid *grid,
@@ -168,8 +175,14 @@ static void make_invariant_case(const struct invariant_case *c, struct acquisiti
 {
     struct random random = random_seed(7, (uint64_t)c->columns);
     double spacing = c->ratio * c->step;
-    *a = (struct acquisition){.sound_speed = 1500, .fc = 150e3, .fs = 30e3, .bandwidth = 15e3, .samples = c->samples,
-                              .receivers = c->receivers, .pings = c->pings, .compressed = true,
+    *a = (struct acquisition){.sound_speed = 1500,
+                              .fc = 150e3,
+                              .fs = 30e3,
+                              .bandwidth = 15e3,
+                              .samples = c->samples,
+                              .receivers = c->receivers,
+                              .pings = c->pings,
+                              .compressed = true,
                               .aperture_limit = c->limit};
     assert_int_equal(acquisition_allocate(a), STATUS_OK);
     for (int p = 0; p < a->pings; p++) {
@@ -187,8 +200,9 @@ static void make_invariant_case(const struct invariant_case *c, struct acquisiti
 }
 
 static const char *const invariant_specs[] = {
-    "bp_nearest:", "bp_linear:beta=0,", "bp_linear:beta=2,", "bp_linear:beta=8,", "bp_sinc:taps=8,",
-    "bp_sinc:taps=6,window=kaiser,", "bp_zeropad:factor=8,", "bp_zeropad:factor=64,",
+    "bp_nearest:",          "bp_linear:beta=0,",     "bp_linear:beta=2,",
+    "bp_linear:beta=8,",    "bp_sinc:taps=8,",       "bp_sinc:taps=6,window=kaiser,",
+    "bp_zeropad:factor=8,", "bp_zeropad:factor=64,",
 };
 
 /* The invariant engine shows the exact path's image: 1e-10 in double, 3e-6 in float. The samples are noise, on which a
@@ -209,7 +223,8 @@ static void invariant_equals_exact(void **state)
                 char spec[96];
                 snprintf(spec, sizeof spec, "%sprecision=double,exact=true", invariant_specs[m]);
                 assert_int_equal(support_image(spec, problem, &echoes, &exact), STATUS_OK);
-                snprintf(spec, sizeof spec, "%sprecision=%s,engine=invariant", invariant_specs[m], p ? "double" : "float");
+                snprintf(spec, sizeof spec, "%sprecision=%s,engine=invariant", invariant_specs[m],
+                         p ? "double" : "float");
                 if (support_image(spec, problem, &echoes, &invariant) != STATUS_OK)
                     fail_msg("%s: %s", invariant_cases[k].name, status_message());
                 double difference = support_difference(&invariant, &exact);
@@ -257,16 +272,22 @@ static void invariant_rows_cross_the_track(void **state)
         double step, first_offset, r_first, r_step, speed, limit, t0;
     } cases[] = {
         {9, 4, 8, 41, 81, 4096, 0.1, 0.04, -20, 0.5, 2.5, INFINITY, 0},
-        {9, 4, 8, 41, 81, 4096, 0.1, -0.14, -20.25, 0.5, -2.5, INFINITY, 0},   /* no row at 0; behind; backwards */
-        {20, 1, 40, 520, 5, 2048, 0.5, 0, -10000, 5000, 2.5, INFINITY, 0},      /* tables wider than a row of sums */
+        {9, 4, 8, 41, 81, 4096, 0.1, -0.14, -20.25, 0.5, -2.5, INFINITY, 0}, /* no row at 0; behind; backwards */
+        {20, 1, 40, 520, 5, 2048, 0.5, 0, -10000, 5000, 2.5, INFINITY, 0},   /* tables wider than a row of sums */
         {9, 3, 8, 41, 21, 4096, 0.1, 0.04, -0.5, 0.05, 750, INFINITY, 0},
         {9, 3, 8, 41, 21, 500, 0.1, -0.3, -0.53, 0.05, -750, 0.3, 0.001},
         {1, 2, 1, 61, 11, 2000, 0.3, 0.04, -1, 0.2, 2.5, INFINITY, 0},
         {9, 3, 8, 41, 11, 2, 0.1, 0.04, -5, 1, 2.5, INFINITY, 0.003},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        struct acquisition a = {.sound_speed = 1500, .fc = 150e3, .fs = 60e3, .bandwidth = 40e3, .samples = cases[k].samples,
-                                .receivers = cases[k].receivers, .pings = cases[k].pings, .compressed = true,
+        struct acquisition a = {.sound_speed = 1500,
+                                .fc = 150e3,
+                                .fs = 60e3,
+                                .bandwidth = 40e3,
+                                .samples = cases[k].samples,
+                                .receivers = cases[k].receivers,
+                                .pings = cases[k].pings,
+                                .compressed = true,
                                 .aperture_limit = cases[k].limit};
         struct echoes echoes;
         struct random random = random_seed(8, k);
@@ -282,15 +303,20 @@ static void invariant_rows_cross_the_track(void **state)
         assert_int_equal(echoes_allocate(&a, PRECISION_DOUBLE, &echoes), STATUS_OK);
         for (int n = 0; n < a.samples * a.receivers * a.pings; n++)
             ((double complex *)echoes.samples)[n] = random_normal(&random);
-        struct grid grid = {-0.5 * cases[k].columns * cases[k].step, cases[k].step, cases[k].columns, cases[k].r_first,
-                            cases[k].r_step, cases[k].rows};
+        struct grid grid = {-0.5 * cases[k].columns * cases[k].step,
+                            cases[k].step,
+                            cases[k].columns,
+                            cases[k].r_first,
+                            cases[k].r_step,
+                            cases[k].rows};
         struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
         for (size_t n = 0; n < 2 * sizeof invariant_specs / sizeof *invariant_specs; n++) {
             struct image exact, invariant;
             char spec[96];
             snprintf(spec, sizeof spec, "%sprecision=double,exact=true", invariant_specs[n / 2]);
             assert_int_equal(support_image(spec, problem, &echoes, &exact), STATUS_OK);
-            snprintf(spec, sizeof spec, "%sprecision=%s,engine=invariant", invariant_specs[n / 2], n % 2 ? "double" : "float");
+            snprintf(spec, sizeof spec, "%sprecision=%s,engine=invariant", invariant_specs[n / 2],
+                     n % 2 ? "double" : "float");
             assert_int_equal(support_image(spec, problem, &echoes, &invariant), STATUS_OK);
             double difference = support_difference(&invariant, &exact);
             if (!(support_peak(&exact) > 0) || !(difference < (n % 2 ? 1e-10 : 3e-6)))
@@ -325,7 +351,7 @@ static void jitter_takes_the_general_engine(void **state)
     static const struct {
         double t0, speed, across;
         const char *engine;
-    } cases[] = {{0, 0, 0, "invariant"},  {1e-14, 1e-8, 1e-8, "invariant"}, {6e-9, 0, 0, "general"},
+    } cases[] = {{0, 0, 0, "invariant"},   {1e-14, 1e-8, 1e-8, "invariant"}, {6e-9, 0, 0, "general"},
                  {2e-12, 0, 0, "general"}, {0, 5e-5, 0, "general"},          {0, 0, 5e-5, "general"}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         struct acquisition a;
@@ -338,7 +364,7 @@ static void jitter_takes_the_general_engine(void **state)
             a.velocity[p].z += cases[k].across;
         }
         struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
-        assert_true(acquisition_is_straight(&a, NULL));         /* straight enough for range migration */
+        assert_true(acquisition_is_straight(&a, NULL)); /* straight enough for range migration */
         assert_string_equal(engine_of("bp_nearest", &problem), cases[k].engine);
         struct image exact, image;
         assert_int_equal(support_image("bp_nearest:precision=double,exact=true", problem, &echoes, &exact), STATUS_OK);
@@ -355,8 +381,15 @@ static void jitter_takes_the_general_engine(void **state)
 static void auto_falls_back(void **state)
 {
     (void)state;
-    struct acquisition a = {.sound_speed = 1500, .fc = 150e3, .fs = 30e3, .bandwidth = 15e3, .samples = 80000, .receivers = 1,
-                            .pings = 30000, .compressed = true, .aperture_limit = 0.05};
+    struct acquisition a = {.sound_speed = 1500,
+                            .fc = 150e3,
+                            .fs = 30e3,
+                            .bandwidth = 15e3,
+                            .samples = 80000,
+                            .receivers = 1,
+                            .pings = 30000,
+                            .compressed = true,
+                            .aperture_limit = 0.05};
     assert_int_equal(acquisition_allocate(&a), STATUS_OK);
     for (int p = 0; p < a.pings; p++) {
         a.tx[p].x = a.rx[p].x = p * 0.04;

@@ -36,21 +36,22 @@ static void random_pair(uint64_t seed, struct acquisition *a, struct grid *grid,
     struct random random = random_seed(seed, 1);
     double size = pow(10, uniform(&random, -1, 3)), c = 1500, speed = c * machs[seed % 4];
     int count = (int)uniform(&random, 17, 1200);
-    *a = (struct acquisition){.sound_speed = c, .receivers = 1, .pings = 1, .samples = 3000, .compressed = true,
-                              .aperture_limit = INFINITY};
+    *a = (struct acquisition){
+        .sound_speed = c, .receivers = 1, .pings = 1, .samples = 3000, .compressed = true, .aperture_limit = INFINITY};
     assert_int_equal(acquisition_allocate(a), STATUS_OK);
     a->tx[0] = vector_random(&random, size);
     a->tx[0].z *= 0.1;
     struct vector offset = vector_random(&random, 0.3 * size), heading = vector_random(&random, 1);
     double length = sqrt(heading.x * heading.x + heading.y * heading.y + heading.z * heading.z);
     a->rx[0] = (struct vector){a->tx[0].x + offset.x, a->tx[0].y + offset.y, a->tx[0].z + offset.z};
-    a->velocity[0] = (struct vector){speed * heading.x / length, speed * heading.y / length, speed * heading.z / length};
+    a->velocity[0] =
+        (struct vector){speed * heading.x / length, speed * heading.y / length, speed * heading.z / length};
     double step = 2 * size * random_uniform(&random) / count;
-    *grid = (struct grid){uniform(&random, -size, size), step, seed % 2 ? count : 1, uniform(&random, -size, size), step,
-                          seed % 2 ? 1 : count};
-    double longest = 2 * 8 * size / (c - speed);                /* every distance is below 8 size */
+    *grid = (struct grid){uniform(&random, -size, size), step, seed % 2 ? count : 1,
+                          uniform(&random, -size, size), step, seed % 2 ? 1 : count};
+    double longest = 2 * 8 * size / (c - speed); /* every distance is below 8 size */
     a->fs = a->bandwidth = (a->samples - 2) / longest;
-    a->fc = pow(10, uniform(&random, 1, 5.5)) / longest;        /* at most 3e5 cycles: rounding stays below 1e-9 rad */
+    a->fc = pow(10, uniform(&random, 1, 5.5)) / longest; /* at most 3e5 cycles: rounding stays below 1e-9 rad */
     assert_int_equal(echoes_allocate(a, PRECISION_DOUBLE, echoes), STATUS_OK);
     for (int n = 0; n < a->samples; n++)
         ((double complex *)echoes->samples)[n] = 1;
@@ -66,7 +67,7 @@ static double share_of_quintics(const struct acquisition *a, const struct grid *
     double pixels = 0;
     for (int count, next = 0; (count = blocks_make(&box, &line, &left, blocks)) > 0;)
         for (int b = 0; b < count; b++) {
-            assert_int_equal(blocks[b].begin, next);            /* no gap, no overlap */
+            assert_int_equal(blocks[b].begin, next); /* no gap, no overlap */
             next = blocks[b].end;
             pixels += blocks[b].exact ? 0 : blocks[b].end - blocks[b].begin;
         }
@@ -110,8 +111,9 @@ static void phase_below_limit(void **state)
             echoes_free(&echoes);
             acquisition_free(&a);
         }
-        print_message("limit %g rad: largest phase error %.1e rad (float), %.1e (double), %.0f %% of the delays from quintics\n",
-                      limits[k], worst[PRECISION_FLOAT], worst[PRECISION_DOUBLE], 100 * share);
+        print_message(
+            "limit %g rad: largest phase error %.1e rad (float), %.1e (double), %.0f %% of the delays from quintics\n",
+            limits[k], worst[PRECISION_FLOAT], worst[PRECISION_DOUBLE], 100 * share);
         assert_true(worst[PRECISION_DOUBLE] <= limits[k] + 1e-9 && worst[PRECISION_FLOAT] <= limits[k] + 2.5e-6);
         assert_true(worst[PRECISION_DOUBLE] > 0.05 * limits[k] && share > 0.5);
     }
@@ -122,7 +124,7 @@ static void phase_below_limit(void **state)
 static const struct image_case {
     const char *name;
     int pings, receivers, columns, rows;
-    double x_first, x_step, r_first, r_step;    /* of the grid */
+    double x_first, x_step, r_first, r_step; /* of the grid */
     double first_offset, wobble, speed, limit;
     int first_sample, samples;
 } image_cases[] = {
@@ -133,15 +135,22 @@ static const struct image_case {
     {"track in space, aperture limit", 11, 3, 57, 211, -1.7, 0.07, 12.3, 0.031, 0.04, 0.6, 2.5, 0.2, 300, 800},
     {"records end inside the lines", 9, 2, 151, 201, -4.5, 0.06, 18.1, 0.026, 0.04, 0.2, 2.5, INFINITY, 753, 110},
     {"pixels near and on the track", 6, 3, 91, 87, -1.1, 0.02, -0.4, 0.05, 0.04, 0.05, 2.5, INFINITY, 0, 400},
-    {"far away, 120 samples from pixel to pixel", 3, 2, 5, 101, -6.1, 3, 1803.7, 3, 0.04, 0, 2.5, INFINITY, 72100, 12200},
+    {"far away, 120 samples from pixel to pixel", 3, 2, 5, 101, -6.1, 3, 1803.7, 3, 0.04, 0, 2.5, INFINITY, 72100,
+     12200},
     {"v/c = 0.05, stands oblique", 7, 3, 121, 33, -1.3, 0.03, 15.2, 0.09, -0.04, 0.3, 75, INFINITY, 500, 600},
 };
 
 static void make_image_case(const struct image_case *c, struct acquisition *a, struct grid *grid, struct echoes *echoes)
 {
     struct random random = random_seed(11, (uint64_t)c->columns);
-    *a = (struct acquisition){.sound_speed = 1500, .fc = 150e3, .fs = 30e3, .bandwidth = 15e3, .samples = c->samples,
-                              .receivers = c->receivers, .pings = c->pings, .compressed = true,
+    *a = (struct acquisition){.sound_speed = 1500,
+                              .fc = 150e3,
+                              .fs = 30e3,
+                              .bandwidth = 15e3,
+                              .samples = c->samples,
+                              .receivers = c->receivers,
+                              .pings = c->pings,
+                              .compressed = true,
                               .aperture_limit = c->limit};
     assert_int_equal(acquisition_allocate(a), STATUS_OK);
     for (int p = 0; p < a->pings; p++) {
@@ -150,8 +159,8 @@ static void make_image_case(const struct image_case *c, struct acquisition *a, s
         a->tx[p] = (struct vector){(p - a->pings / 2) * 0.173 + sway.x, sway.y, sway.z};
         a->velocity[p] = (struct vector){c->speed, c->wobble * c->speed / 3, 0};
         for (int m = 0; m < a->receivers; m++)
-            a->rx[p * a->receivers + m] = (struct vector){a->tx[p].x + c->first_offset + 0.04 * m,
-                                                          a->tx[p].y + 0.01 * c->wobble * m, a->tx[p].z};
+            a->rx[p * a->receivers + m] =
+                (struct vector){a->tx[p].x + c->first_offset + 0.04 * m, a->tx[p].y + 0.01 * c->wobble * m, a->tx[p].z};
     }
     *grid = (struct grid){c->x_first, c->x_step, c->columns, c->r_first, c->r_step, c->rows};
     assert_int_equal(echoes_allocate(a, PRECISION_DOUBLE, echoes), STATUS_OK);
@@ -161,10 +170,11 @@ static void make_image_case(const struct image_case *c, struct acquisition *a, s
 
 static const struct {
     const char *spec;
-    int fine;                       /* points of the grid that q is rounded to; 0: it is not */
+    int fine; /* points of the grid that q is rounded to; 0: it is not */
 } methods[] = {
-    {"bp_nearest:", 1}, {"bp_linear:beta=0,", 1}, {"bp_linear:beta=8,", 9}, {"bp_sinc:taps=2,", 0}, {"bp_sinc:taps=8,", 0},
-    {"bp_sinc:taps=16,window=kaiser,", 0}, {"bp_zeropad:factor=8,", 8},
+    {"bp_nearest:", 1},          {"bp_linear:beta=0,", 1}, {"bp_linear:beta=8,", 9},
+    {"bp_sinc:taps=2,", 0},      {"bp_sinc:taps=8,", 0},   {"bp_sinc:taps=16,window=kaiser,", 0},
+    {"bp_zeropad:factor=8,", 8},
 };
 enum { METHODS = sizeof methods / sizeof *methods };
 
@@ -191,13 +201,13 @@ static int near_ties(const struct acquisition *a, struct vector p, int fine, dou
 }
 
 struct comparison {
-    double difference;              /* relative L2 over the pixels without near ties */
-    double worst;                   /* of the others: largest |difference| over the number of its near ties */
-    int ties, pixels;               /* near ties, pixels that have some */
+    double difference; /* relative L2 over the pixels without near ties */
+    double worst;      /* of the others: largest |difference| over the number of its near ties */
+    int ties, pixels;  /* near ties, pixels that have some */
 };
 
-static struct comparison compare(const struct image *fast, const struct image *exact, const struct acquisition *a, int fine,
-                                 double limit)
+static struct comparison compare(const struct image *fast, const struct image *exact, const struct acquisition *a,
+                                 int fine, double limit)
 {
     const struct grid *grid = exact->patches;
     struct comparison c = {0};
@@ -266,7 +276,7 @@ static void fast_near_exact(void **state)
         }
         print_message("%s: within %.1e (float), %.1e (double); %d pairs near a tie in %d pixels, of %.0f pairs\n",
                       image_cases[k].name, largest[0], largest[1], ties, pixels, 2 * METHODS * pairs);
-        assert_true(largest[1] > 0);            /* it is another path */
+        assert_true(largest[1] > 0); /* it is another path */
         echoes_free(&echoes);
         acquisition_free(&a);
     }
@@ -291,7 +301,7 @@ static void instruction_sets_agree(void **state)
                     char spec[96];
                     make_image_case(&image_cases[k], &a, &grid, &echoes);
                     if (n == 2)
-                        grid.x_step = 0.173 / 7;        /* on the pings' raster */
+                        grid.x_step = 0.173 / 7; /* on the pings' raster */
                     struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
                     snprintf(spec, sizeof spec, "%sprecision=%s,%s", methods[m].spec, p ? "double" : "float", paths[n]);
                     assert_int_equal(support_image(spec, problem, &echoes, &best), STATUS_OK);
@@ -307,8 +317,8 @@ static void instruction_sets_agree(void **state)
                     echoes_free(&echoes);
                     acquisition_free(&a);
                 }
-    print_message("lesser instruction sets: within %.1e (float), %.1e (float, general), %.1e (double) of the best\n", worst[0],
-                  worst_fast, worst[1]);
+    print_message("lesser instruction sets: within %.1e (float), %.1e (float, general), %.1e (double) of the best\n",
+                  worst[0], worst_fast, worst[1]);
     assert_true(worst[0] < 1e-6 && worst_fast < 0.15 * 1e-4 + 2e-6 && worst[1] < 1e-10);
 }
 
@@ -331,7 +341,7 @@ static void no_carrier_leaves_the_record(void **state)
         snprintf(spec, sizeof spec, "%sprecision=%s,engine=general", methods[n / 12].spec, n % 2 ? "double" : "float");
         assert_int_equal(support_image(spec, problem, &echoes, &fast), STATUS_OK);
         double difference = support_difference(&fast, &exact);
-        if (!(difference < 0.05))       /* positions are held to a quarter of a step only, for the phase asks for less */
+        if (!(difference < 0.05)) /* positions are held to a quarter of a step only, for the phase asks for less */
             fail_msg("%s at %g Hz: differs by %g", spec, a.fc, difference);
         image_free(&fast);
         image_free(&exact);

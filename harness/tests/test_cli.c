@@ -100,7 +100,7 @@ static char *folder_state(void)
 /* --- Processes ------------------------------------------------------------------------------------------------- */
 
 struct outcome {
-    int status;                         /* of exit, or -1 after a signal */
+    int status; /* of exit, or -1 after a signal */
     char *out, *err;
 };
 
@@ -205,9 +205,18 @@ static void assert_all_refused(const struct refusal *refusals, size_t count)
     assert_int_equal(failures, 0);
 }
 
-#define SPEC(text) {"image", "--scene", "study/quick", "-o", "x.mat", "--algorithm", text}
-#define GRID(text) {"image", "--echoes", "good.mat", "-o", "x.mat", "-a", "bp_nearest", "--grid", text}
-#define THREADS(text) {"simulate", "study/quick", "-o", "x.mat", "--threads", text}
+#define SPEC(text)                                                                                                     \
+    {                                                                                                                  \
+        "image", "--scene", "study/quick", "-o", "x.mat", "--algorithm", text                                          \
+    }
+#define GRID(text)                                                                                                     \
+    {                                                                                                                  \
+        "image", "--echoes", "good.mat", "-o", "x.mat", "-a", "bp_nearest", "--grid", text                             \
+    }
+#define THREADS(text)                                                                                                  \
+    {                                                                                                                  \
+        "simulate", "study/quick", "-o", "x.mat", "--threads", text                                                    \
+    }
 #define FORM_OF_GRID "must be xmin:xstep:xcount,rmin:rstep:rcount"
 
 static void bad_usage_is_refused(void **state)
@@ -310,8 +319,14 @@ static void bad_usage_is_refused(void **state)
 
 /* --- Bad places ------------------------------------------------------------------------------------------------ */
 
-#define ECHOES(file) {"image", "--grid", "0:0.1:5,20:0.1:5", "-a", "bp_nearest", "-o", "x.mat", "--echoes", file}
-#define RUN_INTO(place) {"run", "study/quick", "-a", "bp_nearest", "-o", place}
+#define ECHOES(file)                                                                                                   \
+    {                                                                                                                  \
+        "image", "--grid", "0:0.1:5,20:0.1:5", "-a", "bp_nearest", "-o", "x.mat", "--echoes", file                     \
+    }
+#define RUN_INTO(place)                                                                                                \
+    {                                                                                                                  \
+        "run", "study/quick", "-a", "bp_nearest", "-o", place                                                          \
+    }
 
 static void bad_places_are_refused(void **state)
 {
@@ -334,8 +349,7 @@ static void bad_places_are_refused(void **state)
         {{"image", "--scene", "study/quick", "-a", "bp_nearest", "-o", "plain.txt/x.mat"},
          {"plain.txt/x.mat: cannot be written"}},
         {{"image", "--scene", "study/quick", "-a", "bp_nearest", "-o", "foreign"}, {"foreign: cannot be written"}},
-        {{"image", "--scene", "study/quick", "-a", "bp_nearest", "-o", "/dev/full"},
-         {"/dev/full: cannot be written"}},
+        {{"image", "--scene", "study/quick", "-a", "bp_nearest", "-o", "/dev/full"}, {"/dev/full: cannot be written"}},
         {RUN_INTO("plain.txt"), {"plain.txt: cannot be made", "name a folder that can be written"}},
         {RUN_INTO("plain.txt/results"), {"plain.txt/results: cannot be made", "name a folder"}},
         {RUN_INTO(""), {"run: -o is ''", "a path"}},
@@ -347,8 +361,7 @@ static void bad_places_are_refused(void **state)
         {{"simulate", "nowhere/scene", "-o", "x.mat"}, {"nowhere/scene.cfg", "the name of a shipped scene"}},
         {{"simulate", "study", "-o", "x.mat"}, {"study.cfg", "the name of a shipped scene"}},
         {{"simulate", "", "-o", "x.mat"}, {"simulate: an argument is ''", "a name"}},
-        {{"simulate", "missing.cfg", "-o", "x.mat"},
-         {"missing.cfg: scene is not readable", "the path of a .cfg file"}},
+        {{"simulate", "missing.cfg", "-o", "x.mat"}, {"missing.cfg: scene is not readable", "the path of a .cfg file"}},
         {{"simulate", "folder.cfg", "-o", "x.mat"}, {"folder.cfg", "not a regular file", "the path of a .cfg file"}},
         {{"simulate", "empty.cfg", "-o", "x.mat"}, {"empty.cfg: key 'sonar' is missing", "must be a group"}},
         {{"simulate", "binary.cfg", "-o", "x.mat"}, {"binary.cfg:", "must be", "text"}},
@@ -453,7 +466,7 @@ static void bad_scenes_are_refused(void **state)
     static const char *const arguments[ARGUMENTS_MAX] = {"simulate", "bad.cfg", "-o", "x.mat"};
     static const char *const good[ARGUMENTS_MAX] = {"simulate", "scene.cfg", "-o", "x.mat"};
     int failures = 0;
-    program_good(good);                 /* what is refused below is refused for its fault */
+    program_good(good); /* what is refused below is refused for its fault */
     remove(path_in("x.mat"));
     for (size_t k = 0; k < COUNT_OF(scenes); k++) {
         scene_write("bad.cfg", scenes[k].find, scenes[k].replace);
@@ -468,7 +481,7 @@ static void bad_scenes_are_refused(void **state)
 /* A variable of an echo file, all its numbers `value`. */
 struct item {
     const char *name;
-    size_t dims[3];                     /* dims[0] 0: left out */
+    size_t dims[3]; /* dims[0] 0: left out */
     double value;
     enum { REAL, COMPLEX, TEXT } kind;
 };
@@ -494,9 +507,9 @@ static void item_write(mat_t *mat, const struct item *item)
     if (item->kind == TEXT)
         variable = Mat_VarCreate(item->name, MAT_C_CHAR, MAT_T_UTF8, 2, (size_t[]){1, 3}, text, 0);
     else
-        variable = Mat_VarCreate(item->name, MAT_C_DOUBLE, MAT_T_DOUBLE, dims[2] == 1 ? 2 : 3, dims,
-                                 item->kind == COMPLEX ? (void *)&parts : values,
-                                 item->kind == COMPLEX ? MAT_F_COMPLEX : 0);
+        variable =
+            Mat_VarCreate(item->name, MAT_C_DOUBLE, MAT_T_DOUBLE, dims[2] == 1 ? 2 : 3, dims,
+                          item->kind == COMPLEX ? (void *)&parts : values, item->kind == COMPLEX ? MAT_F_COMPLEX : 0);
     assert_non_null(variable);
     assert_int_equal(Mat_VarWrite(mat, variable, MAT_COMPRESSION_NONE), 0);
     Mat_VarFree(variable);
@@ -509,8 +522,8 @@ static void items_write(const char *name, const struct item *other)
     mat_t *mat = Mat_CreateVer(path_in(name), NULL, MAT_FT_MAT5);
     assert_non_null(mat);
     if (strcmp(other->name, "format") != 0) {
-        matvar_t *variable = Mat_VarCreate("format", MAT_C_CHAR, MAT_T_UTF8, 2, (size_t[]){1, strlen(format)}, format,
-                                           0);
+        matvar_t *variable =
+            Mat_VarCreate("format", MAT_C_CHAR, MAT_T_UTF8, 2, (size_t[]){1, strlen(format)}, format, 0);
         assert_int_equal(Mat_VarWrite(mat, variable, MAT_COMPRESSION_NONE), 0);
         Mat_VarFree(variable);
     }
@@ -570,7 +583,7 @@ static void bad_echoes_are_refused(void **state)
     static const struct item whole = {"beam_limit", {1, 1, 1}, 0.5, REAL};
     int failures = 0;
     items_write("bad.mat", &whole);
-    program_good(refusal.arguments);    /* what is refused below is refused for its fault */
+    program_good(refusal.arguments); /* what is refused below is refused for its fault */
     remove(path_in("x.mat"));
     for (size_t k = 0; k < COUNT_OF(files); k++) {
         items_write("bad.mat", &files[k].item);
@@ -592,8 +605,7 @@ static void help_list_and_info_tell_everything(void **state)
 {
     (void)state;
     static const char *const helps[][ARGUMENTS_MAX] = {{"--help"}, {"-h"}, {"help"}, {"run", "--help"}};
-    static const char *const commands[] = {"  list", "  info", "  simulate", "  image", "  run", "  test",
-                                            "--threads"};
+    static const char *const commands[] = {"  list", "  info", "  simulate", "  image", "  run", "  test", "--threads"};
     for (size_t k = 0; k < COUNT_OF(helps); k++) {
         char *text = program_output(helps[k]);
         for (size_t n = 0; n < COUNT_OF(commands); n++)
@@ -625,9 +637,17 @@ static void file_and_scene_give_the_same_image(void **state)
     static const char *const simulate[ARGUMENTS_MAX] = {"simulate", "study/quick", "-o", "echoes.mat"};
     static const char *const from_scene[ARGUMENTS_MAX] = {
         "image", "--scene", "study/quick", "--algorithm", "bp_sinc:precision=double", "-o", "scene.mat"};
-    static const char *const from_file[ARGUMENTS_MAX] = {
-        "image", "--echoes", "echoes.mat", "--grid", "-0.6:0.02:61,19.85:0.025:13", "--algorithm",
-        "bp_sinc:precision=double", "-o", "file.mat", "--threads", "1"};
+    static const char *const from_file[ARGUMENTS_MAX] = {"image",
+                                                         "--echoes",
+                                                         "echoes.mat",
+                                                         "--grid",
+                                                         "-0.6:0.02:61,19.85:0.025:13",
+                                                         "--algorithm",
+                                                         "bp_sinc:precision=double",
+                                                         "-o",
+                                                         "file.mat",
+                                                         "--threads",
+                                                         "1"};
     struct grid grid[2];
     double complex *pixels[2];
     program_good(simulate);
@@ -651,7 +671,7 @@ static void file_and_scene_give_the_same_image(void **state)
         }
         difference = worse_of(difference, cabs(pixels[0][i] - pixels[1][i]));
     }
-    assert_int_equal(brightest, 6 * 61 + 30);           /* the target at (0, 20) m */
+    assert_int_equal(brightest, 6 * 61 + 30); /* the target at (0, 20) m */
     if (!(difference <= 1e-9 * peak))
         fail_msg("largest difference %g of a peak of %g", difference, peak);
     free(pixels[0]);
@@ -672,7 +692,7 @@ static void assert_header(const char *name, const char *header)
     while (*line == '#')
         line += strcspn(line, "\n") + 1;
     line[strcspn(line, "\n")] = '\0';
-    assert_true(line > text);           /* a comment block tells where the rows come from */
+    assert_true(line > text); /* a comment block tells where the rows come from */
     assert_string_equal(line, header);
     free(text);
 }
@@ -738,7 +758,7 @@ static void run_leaves_its_results_and_keeps_them(void **state)
     csv_load("results/quick/measurements.csv", &first);
     assert_int_equal(first.row_count, count);
     int good = rows_with_status(&first, "ok");
-    assert_true(good >= 5);             /* reference and the back projections image everything */
+    assert_true(good >= 5); /* reference and the back projections image everything */
     assert_int_equal(rows_with_status(&first, "failed"), 0);
     assert_int_equal(pictures_count("results/quick"), good + 1);
     for (int row = 0; row < good; row++) {
@@ -753,7 +773,7 @@ static void run_leaves_its_results_and_keeps_them(void **state)
     program_good(run);
     clock_gettime(CLOCK_MONOTONIC, &end);
     double seconds = (double)(end.tv_sec - begin.tv_sec) + 1e-9 * (double)(end.tv_nsec - begin.tv_nsec);
-    if (!(seconds < 1))                 /* measuring anew takes half a second an algorithm */
+    if (!(seconds < 1)) /* measuring anew takes half a second an algorithm */
         fail_msg("a repeated run takes %g s", seconds);
     csv_load("results/quick/measurements.csv", &second);
     assert_int_equal(second.row_count, first.row_count);
@@ -791,8 +811,8 @@ static int rows_now(const char *name)
 static void interrupted_run_goes_on(void **state)
 {
     (void)state;
-    static const char *const run[ARGUMENTS_MAX] = {"run", "scene.cfg", "study/quick", "-a", "bp_nearest", "-o",
-                                                   "results/cut"};
+    static const char *const run[ARGUMENTS_MAX] = {"run",        "scene.cfg", "study/quick", "-a",
+                                                   "bp_nearest", "-o",        "results/cut"};
     static const char measurements[] = "results/cut/measurements.csv", targets[] = "results/cut/targets.csv";
     struct csv before, after;
     int status;
@@ -801,7 +821,7 @@ static void interrupted_run_goes_on(void **state)
     pid_t child = program_start(run, sink, sink);
     while (rows_now(measurements) == 0 && waitpid(child, &status, WNOHANG) == 0)
         nanosleep(&(struct timespec){0, 2000000}, NULL);
-    kill(-child, SIGKILL);              /* with the gnuplot that it may have started */
+    kill(-child, SIGKILL); /* with the gnuplot that it may have started */
     assert_int_equal(waitpid(child, &status, 0), child);
     assert_true(WIFSIGNALED(status));
     fclose(sink);
@@ -814,7 +834,7 @@ static void interrupted_run_goes_on(void **state)
     assert_int_equal(after.row_count, 2);
     assert_int_equal(rows_with_status(&after, "ok"), 2);
     assert_string_equal(csv_cell(&after, 1, csv_column(&after, "scene")), "study/quick");
-    assert_int_equal(rows_now(targets), 2 * 5);         /* one target: three definitions along x, two along r */
+    assert_int_equal(rows_now(targets), 2 * 5); /* one target: three definitions along x, two along r */
     /* Each scene's image, and the slices of the scene that the second call measured. */
     assert_in_range(pictures_count("results/cut"), 3, 4);
     csv_free(&before);
@@ -836,12 +856,12 @@ static void echo_files_write(void)
     echoes_free(&echoes);
     scene_free(&scene);
     char *bytes = bytes_read("good.mat", &size);
-    bytes_write("begun.mat", bytes, 100);               /* inside the head of 128 bytes */
+    bytes_write("begun.mat", bytes, 100); /* inside the head of 128 bytes */
     bytes_write("head.mat", bytes, 128);
     bytes_write("half.mat", bytes, size / 2);
     bytes_write("short.mat", bytes, size - 1);
-    bytes_write("long.mat", bytes, size + 1);           /* bytes_read adds one */
-    memset(bytes + size / 2, 0xff, 1000);               /* amid the packed samples */
+    bytes_write("long.mat", bytes, size + 1); /* bytes_read adds one */
+    memset(bytes + size / 2, 0xff, 1000);     /* amid the packed samples */
     bytes_write("damaged.mat", bytes, size);
     free(bytes);
 }
@@ -858,15 +878,18 @@ static int inputs_make(void **state)
     if (folder_make(state) != 0 || setenv("TMPDIR", folder, 1) != 0)
         return -1;
     memset(long_name, 'x', sizeof long_name - 1);
-    if (mkdir(path_in("folder.cfg"), 0777) != 0 || mkdir(path_in("foreign"), 0777) != 0 ||
-        mkdir(path_in("crowded"), 0777) != 0 || mkdir(path_in("crowded/targets.csv"), 0777) != 0)
+    if (mkdir(path_in("folder.cfg"), 0777) != 0 || mkdir(path_in("foreign"), 0777) != 0
+        || mkdir(path_in("crowded"), 0777) != 0 || mkdir(path_in("crowded/targets.csv"), 0777) != 0)
         return -1;
     text_write("scene.cfg", scene_text);
     text_write("plain.txt", "plain text\n");
     text_write("foreign/measurements.csv", "volt,ampere\n1,2\n");
     text_write("empty.cfg", "");
     text_write("empty.mat", "");
-    bytes_write("binary.cfg", "\x7f" "ELF\x02\x01\x00\x03\xff\xfe", 10);
+    bytes_write("binary.cfg",
+                "\x7f"
+                "ELF\x02\x01\x00\x03\xff\xfe",
+                10);
     echo_files_write();
     return 0;
 }

@@ -17,11 +17,19 @@
 static int folder_remove_known(void **state)
 {
     (void)state;
-    static const char *const names[] = {"old.csv", "new.csv", "out.md", "out.json", "old/measurements.csv",
-                                        "old/targets.csv", "new/measurements.csv", "new/targets.csv", "old", "new"};
+    static const char *const names[] = {"old.csv",
+                                        "new.csv",
+                                        "out.md",
+                                        "out.json",
+                                        "old/measurements.csv",
+                                        "old/targets.csv",
+                                        "new/measurements.csv",
+                                        "new/targets.csv",
+                                        "old",
+                                        "new"};
     for (size_t k = 0; k < sizeof names / sizeof *names; k++)
         remove(path_of(names[k]));
-    return rmdir(folder);               /* fails when a file was left behind */
+    return rmdir(folder); /* fails when a file was left behind */
 }
 
 static char *text_read(const char *name)
@@ -53,7 +61,8 @@ static void check_baseline(const char *isa)
     assert_int_equal(compare_results(BASELINE_PATH, path_of("new.csv"), &compare), STATUS_OK);
     if (compare_judge(&compare) != STATUS_OK || compare.finding_count < 500) {
         compare_print(&compare, stdout);
-        fail_msg("%s code differs from results/baseline.csv (./sasbench baseline writes a new one, to be reviewed)", isa);
+        fail_msg("%s code differs from results/baseline.csv (./sasbench baseline writes a new one, to be reviewed)",
+                 isa);
     }
     compare_free(&compare);
 }
@@ -61,7 +70,7 @@ static void check_baseline(const char *isa)
 static void baseline_holds(void **state)
 {
     (void)state;
-    check_baseline("v4");               /* the best that there is */
+    check_baseline("v4"); /* the best that there is */
 }
 
 static void baseline_holds_without_vector_extensions(void **state)
@@ -73,12 +82,26 @@ static void baseline_holds_without_vector_extensions(void **state)
 /* --- Injected faults ------------------------------------------------------------------------------------------ */
 
 enum fault {
-    FAULT_NONE, FAULT_WEIGHTS, FAULT_HALF_SAMPLE, FAULT_SIGN, FAULT_RECEIVER, FAULT_FLOAT_DELAY, FAULT_FLOAT_PHASE,
-    FAULT_STOP_AND_HOP, FAULT_BLOCK, FAULTS
+    FAULT_NONE,
+    FAULT_WEIGHTS,
+    FAULT_HALF_SAMPLE,
+    FAULT_SIGN,
+    FAULT_RECEIVER,
+    FAULT_FLOAT_DELAY,
+    FAULT_FLOAT_PHASE,
+    FAULT_STOP_AND_HOP,
+    FAULT_BLOCK,
+    FAULTS
 };
-static const char *const fault_names[FAULTS] = {
-    "none", "a swapped interpolation weight", "a half-sample shift", "a phase sign", "a dropped receiver",
-    "the delay in float", "the phase in float", "stop-and-hop", "a lost sub-block"};
+static const char *const fault_names[FAULTS] = {"none",
+                                                "a swapped interpolation weight",
+                                                "a half-sample shift",
+                                                "a phase sign",
+                                                "a dropped receiver",
+                                                "the delay in float",
+                                                "the phase in float",
+                                                "stop-and-hop",
+                                                "a lost sub-block"};
 static enum fault injected;
 
 /* bp_sinc:taps=16,window=kaiser written plainly once more, with one fault at a time. Double, compressed echoes. */
@@ -183,8 +206,8 @@ static void faults_are_caught_by_name(void **state)
     for (injected = FAULT_NONE; injected < FAULTS; injected++) {
         bool block = injected == FAULT_BLOCK;
         const char *metric;
-        bool passes = gate_passes(&session, block ? "rma_lbf:blocks=16"
-                                                       : "bp_sinc:taps=16,window=kaiser,precision=double", !block, &metric);
+        bool passes = gate_passes(
+            &session, block ? "rma_lbf:blocks=16" : "bp_sinc:taps=16,window=kaiser,precision=double", !block, &metric);
         if (passes != (injected == FAULT_NONE) || strcmp(metric, passes ? "" : "error") != 0)
             fail_msg("%s: %s, metric '%s'", fault_names[injected], passes ? "passed" : "caught", metric);
     }
@@ -195,11 +218,12 @@ static void faults_are_caught_by_name(void **state)
 /* --- Results -------------------------------------------------------------------------------------------------- */
 
 #define HEAD "# sasbench measurements 1\n# scene s: 0123\n" ROW_HEAD
-#define ROW_HEAD \
-    "scene,algorithm,options,precision,threads,engine,status,reason,skipped,plan_s,run_s,run_min_s,runs,control_s," \
+#define ROW_HEAD                                                                                                       \
+    "scene,algorithm,options,precision,threads,engine,status,reason,skipped,plan_s,run_s,run_min_s,runs,control_s,"    \
     "stages,flops_published,flops,pairs,bytes,error,error_gain,phase_rms_rad,width_m,pslr_db,islr_db\n"
-#define TARGET_HEAD "# sasbench targets 1\n" \
-    "scene,algorithm,options,precision,target,axis,definition,extent_m,position_error_m,phase_error_rad,width_m," \
+#define TARGET_HEAD                                                                                                    \
+    "# sasbench targets 1\n"                                                                                           \
+    "scene,algorithm,options,precision,target,axis,definition,extent_m,position_error_m,phase_error_rad,width_m,"      \
     "pslr_db,islr_db\n"
 #define ROW "s,a,beta=8,float,2,general,ok,,,0.1,1,0.9,5,2,focus=1,1e6,1e6,1000,4096,0.1,0.05,0.01,0.04,-13.3,-10.4\n"
 
@@ -216,15 +240,15 @@ static void values_are_judged_by_the_metric_table(void **state)
 {
     (void)state;
     static const struct {
-        const char *before, *after;     /* what is put in place of it in the row */
-        const char *metric;             /* of the finding that is not the same; NULL: all are */
+        const char *before, *after; /* what is put in place of it in the row */
+        const char *metric;         /* of the finding that is not the same; NULL: all are */
         enum verdict verdict;
     } cases[] = {
         {",0.1,0.05,", ",0.10009,0.05,", NULL, VERDICT_SAME},
         {",0.1,0.05,", ",0.1002,0.05,", "error", VERDICT_WORSE},
         {",0.1,0.05,", ",0.0998,0.05,", "error", VERDICT_BETTER},
         {",0.1,0.05,", ",,0.05,", "error", VERDICT_GONE},
-        {"1000,4096", "1001,4096", "pairs", VERDICT_WORSE},         /* neither way is better: any change is to be seen */
+        {"1000,4096", "1001,4096", "pairs", VERDICT_WORSE}, /* neither way is better: any change is to be seen */
         {"1000,4096", "999,4096", "pairs", VERDICT_WORSE},
         {"1000,4096", "1000,4095", "bytes", VERDICT_BETTER},
         {"1e6,1e6,", "1e6,1000001,", "flops", VERDICT_WORSE},
@@ -232,7 +256,7 @@ static void values_are_judged_by_the_metric_table(void **state)
         {"-13.3", "-13.297", "pslr_db", VERDICT_WORSE},
         {"-13.3", "-13.299", NULL, VERDICT_SAME},
         {"-10.4", "-10.41", "islr_db", VERDICT_BETTER},
-        {"-10.4", "-10.5", "islr_db", VERDICT_CHANGED},             /* a fault may flatter */
+        {"-10.4", "-10.5", "islr_db", VERDICT_CHANGED}, /* a fault may flatter */
         {"-10.4", "10.4", "islr_db", VERDICT_WORSE},
         {"1000,4096", "1000,4000", "bytes", VERDICT_CHANGED},
         {"0.04,", "0.0401,", "width_m", VERDICT_WORSE},
@@ -240,13 +264,13 @@ static void values_are_judged_by_the_metric_table(void **state)
         {",ok,,", ",unsupported,,", "status", VERDICT_WORSE},
         {"s,a,", "s,b,", "row", VERDICT_GONE},
         {"beta=8", "beta=9", "row", VERDICT_GONE},
-        {",1,0.9,", ",1.6,1.5,", NULL, VERDICT_SAME},               /* two runs cannot tell less than a factor */
+        {",1,0.9,", ",1.6,1.5,", NULL, VERDICT_SAME}, /* two runs cannot tell less than a factor */
         {",1,0.9,", ",2.2,1.9,", "run_s", VERDICT_WORSE},
-        {",1,0.9,", ",2.2,1.0,", NULL, VERDICT_SAME},               /* the least time says otherwise */
-        {",1,0.9,5,2,", ",3,2.7,5,6,", NULL, VERDICT_SAME},         /* a slower machine: the control took as much longer */
+        {",1,0.9,", ",2.2,1.0,", NULL, VERDICT_SAME},       /* the least time says otherwise */
+        {",1,0.9,5,2,", ",3,2.7,5,6,", NULL, VERDICT_SAME}, /* a slower machine: the control took as much longer */
         {",1,0.9,5,2,", ",0.4,0.3,5,2,", "run_s", VERDICT_BETTER},
         {"float,2,", "float,1,", NULL, VERDICT_SAME},
-        {",0.1,1,0.9,5,2,", ",,,,,,", NULL, VERDICT_SAME},          /* a baseline has no times */
+        {",0.1,1,0.9,5,2,", ",,,,,,", NULL, VERDICT_SAME}, /* a baseline has no times */
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         char old[2048], new[2048];
@@ -260,8 +284,9 @@ static void values_are_judged_by_the_metric_table(void **state)
         for (int n = compare.finding_count - 1; n >= 0; n--)
             if (compare.findings[n].verdict != VERDICT_SAME)
                 changed = &compare.findings[n];
-        bool fails = cases[k].metric && (cases[k].verdict == VERDICT_WORSE || cases[k].verdict == VERDICT_GONE
-                                      || cases[k].verdict == VERDICT_CHANGED);
+        bool fails = cases[k].metric
+                     && (cases[k].verdict == VERDICT_WORSE || cases[k].verdict == VERDICT_GONE
+                         || cases[k].verdict == VERDICT_CHANGED);
         if ((changed != NULL) != (cases[k].metric != NULL) || (compare_judge(&compare) != STATUS_OK) != fails
             || (changed && (strcmp(changed->metric, cases[k].metric) != 0 || changed->verdict != cases[k].verdict)))
             fail_msg("%s -> %s: %s %s", cases[k].before, cases[k].after, changed ? changed->metric : "",
@@ -373,7 +398,7 @@ static void folders_are_compared_with_their_targets(void **state)
     support_write("old/measurements.csv", HEAD ROW "s,b,,float,2,,ok,,,,,,,,,,,,,1,,,,,\n");
     support_write("new/measurements.csv", HEAD ROW "s,b,,float,2,,failed,why,,,,,,,,,,,,,,,,,\n");
     support_write("old/targets.csv", TARGET_HEAD "s,a,beta=8,float,0,azimuth,null,3,-1e-3,0,0.04,-13,-10\n"
-                                  "s,b,,float,0,azimuth,null,3,0,0,0.04,-13,-10\n");
+                                                 "s,b,,float,0,azimuth,null,3,0,0,0.04,-13,-10\n");
     support_write("new/targets.csv", TARGET_HEAD "s,a,beta=8,float,0,azimuth,null,3,2e-3,0,0.04,-13,-10\n");
     assert_int_equal(compare_results(path_of("old"), path_of("new"), &compare), STATUS_OK);
     const struct finding *position = find(&compare, "position_error_m"), *status = find(&compare, "status");
@@ -438,8 +463,10 @@ static void many_rows(void **state)
         fputs(HEAD, file);
         for (int k = 0; k < ROWS; k++) {
             int n = side ? ROWS - 1 - k : k;
-            fprintf(file, "s%d,a,beta=%d,float,2,general,ok,,,0.1,1,0.9,5,2,focus=1,1e6,1e6,1000,4096,%s,0.05,0.01,0.04,"
-                    "-13.3,-10.4\n", n % 50, n, side && n == 5000 ? "0.2" : "0.1");
+            fprintf(file,
+                    "s%d,a,beta=%d,float,2,general,ok,,,0.1,1,0.9,5,2,focus=1,1e6,1e6,1000,4096,%s,0.05,0.01,0.04,"
+                    "-13.3,-10.4\n",
+                    n % 50, n, side && n == 5000 ? "0.2" : "0.1");
         }
         assert_int_equal(fclose(file), 0);
     }
@@ -456,8 +483,10 @@ static void shown_as_text_markdown_and_json(void **state)
     (void)state;
     struct compare compare;
     char text[4096] = "";
-    compare_texts(HEAD ROW, HEAD "s,a,beta=8,float,2,general,ok,,,0.1,1,0.9,5,2,focus=1,1e6,1e6,1000,4096,0.15,0.05,0.01,0.04,"
-                                 "-13.2,-10.4\n\"t|\"\"x\",a,,double,,,ok,,,,,,,,,,,,,1,,,,,\n", &compare);
+    compare_texts(HEAD ROW,
+                  HEAD "s,a,beta=8,float,2,general,ok,,,0.1,1,0.9,5,2,focus=1,1e6,1e6,1000,4096,0.15,0.05,0.01,0.04,"
+                       "-13.2,-10.4\n\"t|\"\"x\",a,,double,,,ok,,,,,,,,,,,,,1,,,,,\n",
+                  &compare);
     FILE *stream = fmemopen(text, sizeof text - 1, "w");
     compare_print(&compare, stream);
     fclose(stream);
@@ -479,25 +508,37 @@ static void shown_as_text_markdown_and_json(void **state)
 static void names_are_shown_without_effect(void **state)
 {
     (void)state;
-    static const char *const live[] = {"@some", "<img", "![x]", "](http", "http://", "www.x", "#12", "\x1b", "\xc2\x9b", "`id",
-                                       "||"};
+    static const char *const live[] = {"@some", "<img", "![x]",     "](http", "http://", "www.x",
+                                       "#12",   "\x1b", "\xc2\x9b", "`id",    "||"};
     struct compare compare;
     char text[1 << 14] = "";
     compare_texts("# sasbench measurements 1\n# commit: @some/one ![x](http://x/y.png) <img src=x>\n"
                   "# machine: www.x.org #12 `id` ||\n" ROW_HEAD,
                   HEAD "\"@someone <img> ![x](http://x) www.x.org #12 a||b \\| \xff `id`\",a,,float,2,,failed,@some,"
-                       ",,,,,,,,,,,,,,,,\n", &compare);
+                       ",,,,,,,,,,,,,,,,\n",
+                  &compare);
     assert_int_equal(compare_markdown(&compare, path_of("out.md")), STATUS_OK);
     const char *markdown = text_read("out.md");
     for (size_t k = 0; k < sizeof live / sizeof *live; k++)
         for (const char *at = markdown; (at = strstr(at, live[k])); at++)
             if (at[-1] != '\\')
                 fail_msg("'%s' is in the comment: %s", live[k], markdown);
-    assert_non_null(strstr(markdown, "@&#8203;someone &lt;img&gt; !\\[x\\](http&#58;//x) www&#46;x.org #&#8203;12 a\\|\\|b \\\\\\| ? "));
+    assert_non_null(strstr(
+        markdown, "@&#8203;someone &lt;img&gt; !\\[x\\](http&#58;//x) www&#46;x.org #&#8203;12 a\\|\\|b \\\\\\| ? "));
     FILE *stream = fmemopen(text, sizeof text - 1, "w");
-    struct finding odd = {.verdict = VERDICT_GONE, .scene = "a\x1b[31mb\xc2\x9b" "c\xff", .spec = "\t", .detail = "\x7f",
-                          .metric = "row", .unit = "", .before = NAN, .after = NAN, .change = NAN, .slack = NAN,
-                          .before_text = "\x1b]0;x", .after_text = ""};
+    struct finding odd = {.verdict = VERDICT_GONE,
+                          .scene = "a\x1b[31mb\xc2\x9b"
+                                   "c\xff",
+                          .spec = "\t",
+                          .detail = "\x7f",
+                          .metric = "row",
+                          .unit = "",
+                          .before = NAN,
+                          .after = NAN,
+                          .change = NAN,
+                          .slack = NAN,
+                          .before_text = "\x1b]0;x",
+                          .after_text = ""};
     assert_int_equal(compare_add(&compare, &odd), STATUS_OK);
     assert_int_equal(compare_note(&compare, "\x1b[2J"), STATUS_OK);
     compare_print(&compare, stream);
@@ -516,7 +557,7 @@ static void names_are_shown_without_effect(void **state)
 
 int main(void)
 {
-    omp_set_num_threads(1);             /* the same bits, and quick beside other tests */
+    omp_set_num_threads(1); /* the same bits, and quick beside other tests */
 #define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, folder_make, folder_remove_known)
     const struct CMUnitTest tests[] = {
         IN_FOLDER(baseline_holds),

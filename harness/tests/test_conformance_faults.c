@@ -22,8 +22,11 @@ struct options {
 };
 
 static const struct param by_hand[] = {
-    {.name = "scale", .summary = "a double that is called an integer", .type = PARAM_INTEGER,
-     .offset = offsetof(struct options, scale), .max = 9},
+    {.name = "scale",
+     .summary = "a double that is called an integer",
+     .type = PARAM_INTEGER,
+     .offset = offsetof(struct options, scale),
+     .max = 9},
     {.name = NULL},
 };
 
@@ -51,7 +54,7 @@ static enum status plan_leaks(const struct problem *problem, const void *options
 
 static enum status plan_unlimited(const struct problem *problem, const void *options, void **plan)
 {
-    static struct acquisition changed;      /* outlives the plan */
+    static struct acquisition changed; /* outlives the plan */
     (void)options;
     changed = *problem->acquisition;
     changed.aperture_limit = INFINITY;
@@ -143,7 +146,8 @@ static enum status plan_half_made(const struct problem *problem, const void *opt
 
 /* ---- executes ---- */
 
-static enum status execute_allocates(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages)
+static enum status execute_allocates(void *plan, const struct echoes *echoes, struct image *image,
+                                     struct stages *stages)
 {
     fftw_free(fftw_alloc_complex(16));
     return bp_execute(plan, echoes, image, stages);
@@ -166,7 +170,7 @@ static enum status execute_races(void *plan, const struct echoes *echoes, struct
         wanted += 1 / (k + 1.0);
 #pragma omp parallel for schedule(dynamic)
     for (int k = 0; k < PARTS; k++) {
-        usleep(10);                 /* as if it took time: another thread comes by */
+        usleep(10); /* as if it took time: another thread comes by */
 #pragma omp critical
         for (int i = 0; i < LEAST; i++)
             sums[i] += (i + 1) / (k + 1.0);
@@ -177,7 +181,8 @@ static enum status execute_races(void *plan, const struct echoes *echoes, struct
     return status;
 }
 
-static enum status execute_last_pixel(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages)
+static enum status execute_last_pixel(void *plan, const struct echoes *echoes, struct image *image,
+                                      struct stages *stages)
 {
     size_t last = (size_t)image->patches[0].x_count * (size_t)image->patches[0].r_count - 1;
     size_t size = image->precision == PRECISION_DOUBLE ? 16 : 8;
@@ -244,8 +249,8 @@ static void destroy_nothing(void *plan)
 /* ---- the table ---- */
 
 static const struct fault {
-    const char *name, *says;        /* a part of the message */
-    struct algorithm differs;       /* what is not as in a good one */
+    const char *name, *says;  /* a part of the message */
+    struct algorithm differs; /* what is not as in a good one */
 } faults[] = {
     {"none", NULL, {0}},
     {"double declared integer", "scale: a field of 0 bytes", {.params = by_hand}},
@@ -256,13 +261,16 @@ static const struct fault {
     {"flops off by 1000", "ordinary: work.flops is", {.work = work_few_flops}},
     {"3 pairs", "ordinary: work.pairs is 3,", {.work = work_three_pairs}},
     {"1 byte", "raw, float: work.bytes is 1,", {.work = work_one_byte}},
-    {"aperture limit ignored", "aperture limit: the error against reference is",
+    {"aperture limit ignored",
+     "aperture limit: the error against reference is",
      {.plan = plan_unlimited, .work = work_without_pairs}},
     {"y ignored", "curved track in space: the error against reference is", {.plan = plan_without_y}},
     {"z ignored", "curved track in space: the error against reference is", {.plan = plan_without_z}},
     {"velocity along x only", "curved track in space: the error against reference is", {.plan = plan_along_x}},
     {"t0 of the first ping", "curved track in space: the error against reference is", {.plan = plan_one_t0}},
-    {"straight tracks only", "curved track in space: refused, \"the track is not straight\"", {.plan = plan_straight_only}},
+    {"straight tracks only",
+     "curved track in space: refused, \"the track is not straight\"",
+     {.plan = plan_straight_only}},
     {"no reason", "one ping: plan returns status 3, \"no\"", {.plan = plan_without_reason}},
     {"half a plan", "raw: without the memory of allocation 0 plan leaves 1 blocks", {.plan = plan_half_made}},
     {"races", "other bits", {.execute = execute_races}},

@@ -19,7 +19,7 @@ static double uniform(struct random *random, double low, double high)
 static long double delay_halving(double tx, double rx, double v, double x, double r, double c)
 {
     long double low = 0, high = 1, leg = sqrtl(((long double)tx - x) * ((long double)tx - x) + (long double)r * r);
-#define LATE(t) ((long double)c * (t) - leg - sqrtl((rx + v * (t) - x) * (rx + v * (t) - x) + (long double)r * r))
+#define LATE(t) ((long double)c * (t)-leg - sqrtl((rx + v * (t)-x) * (rx + v * (t)-x) + (long double)r * r))
     while (LATE(high) < 0)
         high *= 2;
     for (int k = 0; k < 200; k++) {
@@ -33,7 +33,7 @@ static long double delay_halving(double tx, double rx, double v, double x, doubl
     return high;
 }
 
-static const double rests[] = {0.9, 0.5, 0.1, 1e-3, 1e-6, 1e-9, 1e-12};        /* 1 - v/c */
+static const double rests[] = {0.9, 0.5, 0.1, 1e-3, 1e-6, 1e-9, 1e-12}; /* 1 - v/c */
 
 /* Receivers that sail towards the echo, from far astern: the root's terms cancel in one of its forms. */
 static void nothing_cancels(void **state)
@@ -63,8 +63,15 @@ static void images_at_speed(void **state)
     const double c = 1500, pi = 3.14159265358979323846;
     for (int n = 0; n < 14; n++) {
         const double v = c * (1 - rests[n / 2]) * (n % 2 ? -1 : 1), ahead = n % 2 ? 50 : -50;
-        struct acquisition a = {.sound_speed = c, .fc = 150e3, .fs = 30e3, .bandwidth = 15e3, .samples = SAMPLES,
-                                .receivers = RECEIVERS, .pings = PINGS, .compressed = true, .aperture_limit = INFINITY};
+        struct acquisition a = {.sound_speed = c,
+                                .fc = 150e3,
+                                .fs = 30e3,
+                                .bandwidth = 15e3,
+                                .samples = SAMPLES,
+                                .receivers = RECEIVERS,
+                                .pings = PINGS,
+                                .compressed = true,
+                                .aperture_limit = INFINITY};
         struct echoes echoes;
         struct random random = random_seed(2, 0);
         assert_int_equal(acquisition_allocate(&a), STATUS_OK);
@@ -88,14 +95,16 @@ static void images_at_speed(void **state)
             const double x = grid.x_first + i % COLUMNS * grid.x_step, r = grid.r_first + i / COLUMNS * grid.r_step;
             double complex sum = 0;
             for (int k = 0; k < PINGS * RECEIVERS; k++) {
-                const long double tau = delay_halving(a.tx[k / RECEIVERS].x, a.rx[k].x, v, x, r, c), cycles = a.fc * tau;
+                const long double tau = delay_halving(a.tx[k / RECEIVERS].x, a.rx[k].x, v, x, r, c),
+                                  cycles = a.fc * tau;
                 const double q = (double)((tau - a.t0[0]) * a.fs), phase = 2 * pi * (double)(cycles - floorl(cycles));
                 if (q >= 0 && q <= SAMPLES - 1)
                     sum += ((double complex *)echoes.samples)[k * SAMPLES + (int)(q + 0.5)] * cexp(I * phase);
             }
             ((double complex *)exact.pixels[0])[i] = sum;
         }
-        static const char *const specs[] = {"bp_nearest:precision=double,exact=true", "bp_nearest:precision=double,engine=general",
+        static const char *const specs[] = {"bp_nearest:precision=double,exact=true",
+                                            "bp_nearest:precision=double,engine=general",
                                             "bp_nearest:precision=double,engine=invariant"};
         for (int k = 0; k < 3; k++) {
             assert_int_equal(support_image(specs[k], problem, &echoes, &image), STATUS_OK);
@@ -130,8 +139,13 @@ static void grids_meet_records_at_speed(void **state)
     int met = 0;
     for (int n = 0; n < 1400; n++) {
         struct random random = random_seed(4, (uint64_t)n);
-        struct acquisition a = {.sound_speed = 1500, .fc = 1e5, .fs = 2e4, .bandwidth = 1e4,
-                                .samples = 2 + (int)uniform(&random, 0, 3), .receivers = 2, .pings = 2};
+        struct acquisition a = {.sound_speed = 1500,
+                                .fc = 1e5,
+                                .fs = 2e4,
+                                .bandwidth = 1e4,
+                                .samples = 2 + (int)uniform(&random, 0, 3),
+                                .receivers = 2,
+                                .pings = 2};
         assert_int_equal(acquisition_allocate(&a), STATUS_OK);
         for (int p = 0; p < 2; p++) {
             a.t0[p] = uniform(&random, 0, 0.05);
@@ -140,8 +154,8 @@ static void grids_meet_records_at_speed(void **state)
             for (int m = 0; m < 2; m++)
                 a.rx[2 * p + m] = (struct vector){a.tx[p].x + uniform(&random, -5, 5), uniform(&random, 0, 1), 0};
         }
-        struct grid grid = {uniform(&random, -9, 9), uniform(&random, 0.01, 0.8), 9, uniform(&random, -9, 9),
-                            uniform(&random, 0.01, 0.8), 12};
+        struct grid grid = {uniform(&random, -9, 9), uniform(&random, 0.01, 0.8), 9,
+                            uniform(&random, -9, 9), uniform(&random, 0.01, 0.8), 12};
         bool expected = any_pixel_meets(&a, &grid);
         assert_int_equal(grid_meets_records(&a, 1, &grid, "trial"), expected ? STATUS_OK : STATUS_INVALID);
         met += expected;
@@ -156,8 +170,13 @@ static void meeting_is_bounded(void **state)
 {
     (void)state;
     for (int n = 0; n < 2; n++) {
-        struct acquisition a = {.sound_speed = 1500, .fc = 150e3, .fs = 30e3, .bandwidth = 15e3, .samples = n ? 2 : 256,
-                                .receivers = 40, .pings = 32};
+        struct acquisition a = {.sound_speed = 1500,
+                                .fc = 150e3,
+                                .fs = 30e3,
+                                .bandwidth = 15e3,
+                                .samples = n ? 2 : 256,
+                                .receivers = 40,
+                                .pings = 32};
         assert_int_equal(acquisition_allocate(&a), STATUS_OK);
         for (int p = 0; p < a.pings; p++) {
             a.velocity[p].x = n ? 1e-3 : 1499.9985;
@@ -166,7 +185,8 @@ static void meeting_is_bounded(void **state)
             for (int m = 0; m < a.receivers; m++)
                 a.rx[p * a.receivers + m].x = a.tx[p].x + (n ? 0 : -50 + 0.04 * m);
         }
-        struct grid grid = n ? (struct grid){-1000, 200, 11, -1000, 200, 11} : (struct grid){-2, 0.01, 400, 18, 0.01, 400};
+        struct grid grid =
+            n ? (struct grid){-1000, 200, 11, -1000, 200, 11} : (struct grid){-2, 0.01, 400, 18, 0.01, 400};
         double begin = (double)clock();
         assert_int_equal(grid_meets_records(&a, 1, &grid, "trial"), STATUS_INVALID);
         assert_true(((double)clock() - begin) / CLOCKS_PER_SEC < 1);

@@ -198,7 +198,8 @@ static void coordinates_far_from_zero_are_on_the_raster(void **state)
     struct parts parts = plain;
     parts.track = "speed = 2.5; pri = 0.064; pings = 18; x_first = 3999998.48;";
     parts.targets = "{ x = 4000000.0; r = 20.0; }";
-    parts.image = "x = { first = 3999999.9984; step = 0.0001; count = 33; }; r = { first = 20.0; step = 0.025; count = 1; };";
+    parts.image =
+        "x = { first = 3999999.9984; step = 0.0001; count = 33; }; r = { first = 20.0; step = 0.025; count = 1; };";
     struct scene scene = scene_of("far.cfg", &parts);
     struct session session;
     struct spec spec;
@@ -212,7 +213,7 @@ static void coordinates_far_from_zero_are_on_the_raster(void **state)
     struct measurement row = measurement_empty(scene.name, "bp_nearest", "", PRECISION_FLOAT);
     assert_int_equal(session_quality(&session, &image, &row, reason, sizeof reason, &targets, &count), STATUS_OK);
     assert_true(row.error > 0 && row.error < 0.5 && row.phase_rms_rad < 0.5);
-    assert_says(reason, "target 1: the main lobe does not fall to half its peak");     /* 3 mm of image */
+    assert_says(reason, "target 1: the main lobe does not fall to half its peak"); /* 3 mm of image */
     free(targets);
     image_free(&image);
     spec_free(&spec);
@@ -267,7 +268,7 @@ static void echoes_without_memory_are_failed_rows(void **state)
     (void)state;
     struct parts parts = plain;
     parts.track = "speed = 2.5; pri = 0.032; pings = 2000000;";
-    parts.record = "first_sample = 0; samples = 4000;";       /* 2 TB */
+    parts.record = "first_sample = 0; samples = 4000;"; /* 2 TB */
     parts.image = "x = { first = 0.0; step = 0.02; count = 3; }; r = { first = 20.0; step = 0.025; count = 3; };";
     struct results results = results_of("huge.cfg", &parts, STATUS_FAILED);
     for (int k = 0; k < 3; k++) {
@@ -366,13 +367,13 @@ static void control_counts_what_it_sums(void **state)
 static void numbers_are_plain_decimal(void **state)
 {
     (void)state;
-    static const char *const bad[] = {"", " 1", "+", ".", "-.", "0x10", "nan", "inf", "-infinity", "e5", ".e5", "1e", "1e+",
-                                      "1e999", "0X1", ",5"};
+    static const char *const bad[] = {"",          " 1", "+",   ".",  "-.",  "0x10",  "nan", "inf",
+                                      "-infinity", "e5", ".e5", "1e", "1e+", "1e999", "0X1", ",5"};
     static const struct {
         const char *text, *rest;
         double value;
-    } good[] = {{"1.5:", ":", 1.5}, {"-.5e-3", "", -0.5e-3}, {"1.", "", 1}, {"1,5", ",5", 1},
-                {"+7e2,", ",", 700}, {"1e-999", "", 0}};
+    } good[] = {{"1.5:", ":", 1.5}, {"-.5e-3", "", -0.5e-3}, {"1.", "", 1},
+                {"1,5", ",5", 1},   {"+7e2,", ",", 700},     {"1e-999", "", 0}};
     double value = 3;
     long long whole = 3;
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++)
@@ -390,8 +391,8 @@ static void numbers_are_plain_decimal(void **state)
     assert_string_equal(whole_read("-7x", -9, 9, &whole), "x");
     assert_int_equal(whole, -7);
     struct grid grid;
-    static const char *const grids[] = {"0x0:0x1p-5:5,20:0.1:5", "0:0.1:0x5,20:0.1:5", " 0:0.1:5,20:0.1:5", "0:inf:5,20:0.1:5",
-                                        "0:0.1:5,20:0.1:5 ", "0:0,1:5,20:0.1:5"};
+    static const char *const grids[] = {"0x0:0x1p-5:5,20:0.1:5", "0:0.1:0x5,20:0.1:5", " 0:0.1:5,20:0.1:5",
+                                        "0:inf:5,20:0.1:5",      "0:0.1:5,20:0.1:5 ",  "0:0,1:5,20:0.1:5"};
     for (size_t k = 0; k < sizeof grids / sizeof *grids; k++)
         assert_int_equal(grid_parse(grids[k], &grid), STATUS_INVALID);
     assert_int_equal(grid_parse("-0.5:.02:51,19.5:25e-3:41", &grid), STATUS_OK);

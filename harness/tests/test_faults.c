@@ -24,13 +24,13 @@ static int shell(const char *line)
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-#define assert_shell(line, wanted) \
-    do { \
-        int exit_status = shell(line); \
-        if (exit_status != (wanted)) { \
-            char *said = support_read("err"); \
-            fail_msg("%s exits with %d, says: %s", line, exit_status, said ? said : ""); \
-        } \
+#define assert_shell(line, wanted)                                                                                     \
+    do {                                                                                                               \
+        int exit_status = shell(line);                                                                                 \
+        if (exit_status != (wanted)) {                                                                                 \
+            char *said = support_read("err");                                                                          \
+            fail_msg("%s exits with %d, says: %s", line, exit_status, said ? said : "");                               \
+        }                                                                                                              \
     } while (0)
 
 static void assert_says(const char *name, const char *part)
@@ -62,8 +62,12 @@ static void folders_belong_to_one_program(void **state)
 {
     (void)state;
     static const char *const commands[] = {
-        QUICK, "\"$SASBENCH_PROGRAM\" sweep gate/points -a bp_nearest -o r", "\"$SASBENCH_PROGRAM\" reproduce lbf21_flops -o r",
-        "\"$SASBENCH_PROGRAM\" report r", "\"$SASBENCH_PROGRAM\" phase -o r", "\"$SASBENCH_PROGRAM\" bench -o r",
+        QUICK,
+        "\"$SASBENCH_PROGRAM\" sweep gate/points -a bp_nearest -o r",
+        "\"$SASBENCH_PROGRAM\" reproduce lbf21_flops -o r",
+        "\"$SASBENCH_PROGRAM\" report r",
+        "\"$SASBENCH_PROGRAM\" phase -o r",
+        "\"$SASBENCH_PROGRAM\" bench -o r",
     };
     int lock;
     assert_shell(QUICK, 0);
@@ -84,7 +88,8 @@ static void programs_at_once_lose_no_row(void **state)
 {
     (void)state;
     assert_shell("for a in nearest linear sinc zeropad nearest:engine=general; do"
-                 " (\"$SASBENCH_PROGRAM\" run study/quick -a bp_$a -o r; echo $? >> codes) & done; wait", 0);
+                 " (\"$SASBENCH_PROGRAM\" run study/quick -a bp_$a -o r; echo $? >> codes) & done; wait",
+                 0);
     char *codes = support_read("codes");
     int done = 0, refused = 0;
     for (const char *at = codes; *at; at++) {
@@ -123,8 +128,11 @@ static void signals_leave_nothing(void **state)
     assert_shell("mkdir bin; mv gnuplot bin; chmod +x bin/gnuplot", 0);
     for (size_t k = 0; k < sizeof signals / sizeof *signals; k++) {
         char line[400];
-        snprintf(line, sizeof line, "export OLDPWD=\"$PWD\"; rm -f started; PATH=\"$PWD/bin:$PATH\" exec env --default-signal " QUICK " & child=$!;"
-                 " while ! [ -s started ]; do sleep .01; done; kill -%s $child; wait $child; test $? -gt 128", signals[k]);
+        snprintf(line, sizeof line,
+                 "export OLDPWD=\"$PWD\"; rm -f started; PATH=\"$PWD/bin:$PATH\" exec env --default-signal " QUICK
+                 " & child=$!;"
+                 " while ! [ -s started ]; do sleep .01; done; kill -%s $child; wait $child; test $? -gt 128",
+                 signals[k]);
         assert_shell(line, 0);
         if (strcmp(signals[k], "KILL") == 0)
             assert_shell("kill -KILL $(cat started)", 0);
@@ -140,7 +148,9 @@ static void signals_leave_nothing(void **state)
 static void missing_pictures_are_told(void **state)
 {
     (void)state;
-    support_write("gnuplot", "#!/bin/sh\nsed -n \"s/^output = '\\(.*\\)'/\\1/p\" \"$2\" | while read p; do echo half > \"$p\"; done\n");
+    support_write(
+        "gnuplot",
+        "#!/bin/sh\nsed -n \"s/^output = '\\(.*\\)'/\\1/p\" \"$2\" | while read p; do echo half > \"$p\"; done\n");
     assert_shell("mkdir bin; mv gnuplot bin; chmod +x bin/gnuplot", 0);
     assert_shell("PATH=\"$PWD/bin:$PATH\" " QUICK, 1);
     assert_says("err", "without its end (is the disk full?)");
@@ -148,7 +158,7 @@ static void missing_pictures_are_told(void **state)
     assert_int_equal(rows_of("r/measurements.csv"), 2);
     assert_shell("! ls r | grep png", 0);
     assert_nothing_temporary();
-    assert_shell(QUICK, 0);             /* the next call draws them */
+    assert_shell(QUICK, 0); /* the next call draws them */
     assert_shell("test $(ls r | grep -c png) = 3", 0);
 }
 
@@ -198,8 +208,10 @@ static void links_are_followed(void **state)
     struct stat info;
     struct text_file file;
     support_write("real.csv", "old\n");
-    assert_shell("ln -s real.csv link.csv; ln -s link.csv chain.csv; ln -s nowhere dangling.csv; ln -s real.mat link.mat;"
-                 "touch real.mat; mkdir real; ln -s real r", 0);
+    assert_shell(
+        "ln -s real.csv link.csv; ln -s link.csv chain.csv; ln -s nowhere dangling.csv; ln -s real.mat link.mat;"
+        "touch real.mat; mkdir real; ln -s real r",
+        0);
     text_put(path_of("chain.csv"), "new\n");
     assert_shell("test -L link.csv && test -L chain.csv && test \"$(cat real.csv)\" = new", 0);
     assert_int_equal(text_file_open(path_of("dangling.csv"), &file), STATUS_INVALID);
@@ -225,12 +237,15 @@ static void standard_output_by_name(void **state)
     for (int k = 0; k < 3; k++) {
         static const char *const names[] = {"/dev/stdout", "named", "/proc/self/fd/1"};
         char line[300];
-        snprintf(line, sizeof line, "{ echo ahead; \"$SASBENCH_PROGRAM\" compare a.csv a.csv --markdown %s; echo behind; } > to", names[k]);
+        snprintf(line, sizeof line,
+                 "{ echo ahead; \"$SASBENCH_PROGRAM\" compare a.csv a.csv --markdown %s; echo behind; } > to",
+                 names[k]);
         assert_shell(line, 0);
         assert_says("to", "ahead\n");
         assert_says("to", "behind\n");
         assert_says("to", "\n## ");
-        snprintf(line, sizeof line, "\"$SASBENCH_PROGRAM\" compare a.csv a.csv --markdown %s | grep -q '^## '", names[k]);
+        snprintf(line, sizeof line, "\"$SASBENCH_PROGRAM\" compare a.csv a.csv --markdown %s | grep -q '^## '",
+                 names[k]);
         assert_shell(line, 0);
     }
     assert_shell("ls -l /dev/stdout named | cmp - before", 0);
@@ -251,8 +266,10 @@ static void folder_names(void **state)
     assert_shell("\"$SASBENCH_PROGRAM\" run study/quick -o \"$(printf 'two\\nlines')\"", 2);
     assert_says("err", "two?lines: the name holds the control character 0x0a");
     assert_shell("\"$SASBENCH_PROGRAM\" run study/quick -o $(printf %05000d 0)", 2);
-    assert_shell("\"$SASBENCH_PROGRAM\" run study/quick -o $(for k in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do"
-                 " printf %0200d/ 0; done)", 2);
+    assert_shell(
+        "\"$SASBENCH_PROGRAM\" run study/quick -o $(for k in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do"
+        " printf %0200d/ 0; done)",
+        2);
     assert_says("err", "a folder's may have");
     assert_shell("ls -A | cmp - before", 0);
 }
@@ -267,8 +284,10 @@ static void files_beyond_the_limit(void **state)
         assert_shell("rm -rf r", 0);
         assert_shell(line, 0);
         assert_says("err", "sasbench: ");
-        assert_shell("! find r | grep -E '[.](png|svg)$' | while read p; do tail -c 8 \"$p\" | grep -q IEND || echo cut; done"
-                     " | grep cut", 0);
+        assert_shell(
+            "! find r | grep -E '[.](png|svg)$' | while read p; do tail -c 8 \"$p\" | grep -q IEND || echo cut; done"
+            " | grep cut",
+            0);
         assert_nothing_temporary();
         assert_shell(QUICK, 0);
         assert_int_equal(rows_of("r/measurements.csv"), 2);

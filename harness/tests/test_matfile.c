@@ -1,5 +1,5 @@
 /* MATLAB files: what is written comes back, what MATLAB may write is read, all else is refused in one line. */
-#define _GNU_SOURCE                 /* memmem */
+#define _GNU_SOURCE /* memmem */
 #include <dirent.h>
 #include <math.h>
 #include <signal.h>
@@ -16,7 +16,7 @@
 #include "assertions.h"
 
 static char directory[128];
-static char path[160];              /* the one file in it */
+static char path[160]; /* the one file in it */
 
 static int directory_make(void **state)
 {
@@ -58,8 +58,8 @@ static void assert_ok(enum status status)
 /* Refused, in one line that begins with the path and says `says`. */
 static void assert_invalid(enum status status, const char *says)
 {
-    if (status != STATUS_INVALID || strncmp(status_message(), path, strlen(path)) != 0 ||
-        strchr(status_message(), '\n') || !strstr(status_message(), says)) {
+    if (status != STATUS_INVALID || strncmp(status_message(), path, strlen(path)) != 0 || strchr(status_message(), '\n')
+        || !strstr(status_message(), says)) {
         fail_msg("status %d, \"%s\" does not say \"%s\"", status, status_message(), says);
     }
 }
@@ -77,9 +77,18 @@ static void assert_echoes_invalid(const char *says)
 
 static struct acquisition make_acquisition(int samples, int receivers, int pings, bool compressed)
 {
-    struct acquisition a = {.sound_speed = 1500.25, .fc = 150e3, .fs = 40e3, .bandwidth = 20e3, .samples = samples,
-                            .receivers = receivers, .pings = pings, .tx_length = 0.04, .rx_length = 0.03,
-                            .aperture_limit = 0.25, .compressed = compressed, .pulse_length = compressed ? 0 : 3};
+    struct acquisition a = {.sound_speed = 1500.25,
+                            .fc = 150e3,
+                            .fs = 40e3,
+                            .bandwidth = 20e3,
+                            .samples = samples,
+                            .receivers = receivers,
+                            .pings = pings,
+                            .tx_length = 0.04,
+                            .rx_length = 0.03,
+                            .aperture_limit = 0.25,
+                            .compressed = compressed,
+                            .pulse_length = compressed ? 0 : 3};
     assert_ok(acquisition_allocate(&a));
     for (int p = 0; p < pings; p++) {
         a.t0[p] = 0.05;
@@ -112,9 +121,17 @@ static void assert_same_echoes(const struct echoes *written, const struct echoes
 {
     const struct acquisition *a = written->acquisition, *b = read->acquisition;
     const double scalars[][2] = {
-        {a->sound_speed, b->sound_speed}, {a->fc, b->fc}, {a->fs, b->fs}, {a->bandwidth, b->bandwidth},
-        {a->samples, b->samples}, {a->receivers, b->receivers}, {a->pings, b->pings}, {a->tx_length, b->tx_length},
-        {a->rx_length, b->rx_length}, {a->aperture_limit, b->aperture_limit}, {a->compressed, b->compressed},
+        {a->sound_speed, b->sound_speed},
+        {a->fc, b->fc},
+        {a->fs, b->fs},
+        {a->bandwidth, b->bandwidth},
+        {a->samples, b->samples},
+        {a->receivers, b->receivers},
+        {a->pings, b->pings},
+        {a->tx_length, b->tx_length},
+        {a->rx_length, b->rx_length},
+        {a->aperture_limit, b->aperture_limit},
+        {a->compressed, b->compressed},
         {a->pulse_length, b->pulse_length},
     };
     for (size_t i = 0; i < sizeof scalars / sizeof *scalars; i++) {
@@ -159,8 +176,8 @@ static void echoes_of_every_shape_come_back(void **state)
     } shapes[] = {{5, 3, 4}, {2, 1, 1}, {7, 1, 3}, {6, 4, 1}, {3, 3, 3}, {1000, 5, 9}};
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
         for (int variant = 0; variant < 4; variant++) {
-            struct acquisition a = make_acquisition(shapes[i].samples, shapes[i].receivers, shapes[i].pings,
-                                                    variant & 1);
+            struct acquisition a =
+                make_acquisition(shapes[i].samples, shapes[i].receivers, shapes[i].pings, variant & 1);
             assert_round_trip(&a, variant & 2 ? PRECISION_FLOAT : PRECISION_DOUBLE);
             acquisition_free(&a);
         }
@@ -184,8 +201,8 @@ static void what_varies_from_ping_to_ping_comes_back(void **state)
 static void images_come_back_as_matlab_has_them(void **state)
 {
     (void)state;
-    const struct grid grids[] = {{-1, 0.02, 3, 40, 0.5, 4}, {0.1, 1, 1, -2, 0.1, 6}, {0.1, 0.3, 5, 7, 1, 1},
-                                 {3, 1, 1, 4, 1, 1}};
+    const struct grid grids[] = {
+        {-1, 0.02, 3, 40, 0.5, 4}, {0.1, 1, 1, -2, 0.1, 6}, {0.1, 0.3, 5, 7, 1, 1}, {3, 1, 1, 4, 1, 1}};
     for (int precision = PRECISION_FLOAT; precision <= PRECISION_DOUBLE; precision++) {
         struct image image;
         assert_ok(image_allocate(4, grids, (enum precision)precision, &image));
@@ -223,7 +240,7 @@ static void images_come_back_as_matlab_has_them(void **state)
             assert_int_equal(matvar->dims[0], grid->r_count);
             assert_int_equal(matvar->dims[1], grid->x_count);
             assert_int_equal(matvar->class_type, precision == PRECISION_FLOAT ? MAT_C_SINGLE : MAT_C_DOUBLE);
-            if (patch == 0 && precision == PRECISION_DOUBLE) {     /* second row, first column */
+            if (patch == 0 && precision == PRECISION_DOUBLE) { /* second row, first column */
                 assert_true(((const double *)parts->Re)[1] == creal(image_pixel(&image, 0, 1, 0)));
             }
             Mat_VarFree(matvar);
@@ -260,13 +277,21 @@ static mat_t *file_begin(enum mat_ft version, bool packed, const char *except)
         const char *name;
         size_t rows, columns, pages;
         bool is_complex;
-        double value;                       /* of a scalar */
+        double value; /* of a scalar */
     } variables[] = {
-        {"samples", N, M, P, true, 0},          {"compressed", 1, 1, 1, false, 0}, {"pulse", K, 1, 1, true, 0},
-        {"fs", 1, 1, 1, false, 30e3},           {"fc", 1, 1, 1, false, 100e3},  {"bandwidth", 1, 1, 1, false, 20e3},
-        {"sound_speed", 1, 1, 1, false, 1500},  {"t0", 1, 1, 1, false, 0.1},    {"tx_length", 1, 1, 1, false, 0.1},
-        {"tx", 3, P, 1, false, 0},              {"rx", 3, M, P, false, 0},      {"velocity", 3, 1, 1, false, 0},
-    };      /* the last one is not optional: a file cut at its beginning must not pass */
+        {"samples", N, M, P, true, 0},
+        {"compressed", 1, 1, 1, false, 0},
+        {"pulse", K, 1, 1, true, 0},
+        {"fs", 1, 1, 1, false, 30e3},
+        {"fc", 1, 1, 1, false, 100e3},
+        {"bandwidth", 1, 1, 1, false, 20e3},
+        {"sound_speed", 1, 1, 1, false, 1500},
+        {"t0", 1, 1, 1, false, 0.1},
+        {"tx_length", 1, 1, 1, false, 0.1},
+        {"tx", 3, P, 1, false, 0},
+        {"rx", 3, M, P, false, 0},
+        {"velocity", 3, 1, 1, false, 0},
+    }; /* the last one is not optional: a file cut at its beginning must not pass */
     mat_t *mat = Mat_CreateVer(path, NULL, version);
     assert_non_null(mat);
     if (strcmp(except, "format") != 0) {
@@ -324,23 +349,12 @@ static void other_classes_and_shapes_are_read(void **state)
         for (int k = 0; k < 6; k++) {
             mat_t *mat = file_begin(versions[i], true, excepts[k]);
             switch (k) {
-            case 0:
-                add(mat, "samples", MAT_C_INT16, MAT_T_INT16, N, M, P, integers, NULL, true);
-                break;
-            case 1:
-                add(mat, "fs", MAT_C_SINGLE, MAT_T_SINGLE, 1, 1, 1, &single, NULL, true);
-                break;
-            case 2:
-                add(mat, "t0", MAT_C_DOUBLE, MAT_T_DOUBLE, P, 1, 1, t0, NULL, true);
-                break;
-            case 3:
-                add(mat, "velocity", MAT_C_DOUBLE, MAT_T_DOUBLE, 3, P, 1, velocity, NULL, true);
-                break;
-            case 4:
-                add(mat, "format", MAT_C_CHAR, MAT_T_UINT16, 1, 12, 1, format, NULL, true);
-                break;
-            default:
-                add(mat, "pulse", MAT_C_DOUBLE, MAT_T_DOUBLE, 1, 3, 1, t0, NULL, true);
+            case 0: add(mat, "samples", MAT_C_INT16, MAT_T_INT16, N, M, P, integers, NULL, true); break;
+            case 1: add(mat, "fs", MAT_C_SINGLE, MAT_T_SINGLE, 1, 1, 1, &single, NULL, true); break;
+            case 2: add(mat, "t0", MAT_C_DOUBLE, MAT_T_DOUBLE, P, 1, 1, t0, NULL, true); break;
+            case 3: add(mat, "velocity", MAT_C_DOUBLE, MAT_T_DOUBLE, 3, P, 1, velocity, NULL, true); break;
+            case 4: add(mat, "format", MAT_C_CHAR, MAT_T_UINT16, 1, 12, 1, format, NULL, true); break;
+            default: add(mat, "pulse", MAT_C_DOUBLE, MAT_T_DOUBLE, 1, 3, 1, t0, NULL, true);
             }
             Mat_Close(mat);
             assert_ok(echo_file_read(path, &a, &echoes));
@@ -421,7 +435,7 @@ static void each_wrong_variable_is_refused(void **state)
     (void)state;
     static const struct {
         const char *name;
-        enum matio_classes class;           /* MAT_C_EMPTY: left out */
+        enum matio_classes class; /* MAT_C_EMPTY: left out */
         size_t rows, columns, pages;
         bool is_complex;
         double value;
@@ -558,8 +572,8 @@ static void absurd_sizes_are_refused(void **state)
     const int32_t dims[3] = {N, M, P};
     unsigned char *at = memmem(bytes, size, dims, sizeof dims);
     assert_non_null(at);
-    const int32_t claims[][3] = {{INT32_MAX, INT32_MAX, INT32_MAX}, {INT32_MAX, M, P}, {-1, -1, -1},
-                                 {1 << 20, 64, P}, {N, M, 1 << 20}};
+    const int32_t claims[][3] = {
+        {INT32_MAX, INT32_MAX, INT32_MAX}, {INT32_MAX, M, P}, {-1, -1, -1}, {1 << 20, 64, P}, {N, M, 1 << 20}};
     for (size_t i = 0; i < sizeof claims / sizeof *claims; i++) {
         memcpy(at, claims[i], sizeof dims);
         bytes_write(bytes, size);
@@ -613,7 +627,7 @@ static void damaged_files_do_no_harm(void **state)
             struct acquisition a;
             struct echoes echoes;
             enum status status = echo_file_read(path, &a, &echoes);
-            if (status == STATUS_OK) {          /* the damage is in a value */
+            if (status == STATUS_OK) { /* the damage is in a value */
                 acquisition_free(&a);
                 echoes_free(&echoes);
             } else {
@@ -710,7 +724,7 @@ static void full_disk_is_noticed(void **state)
         setrlimit(RLIMIT_FSIZE, &(struct rlimit){limit, old.rlim_max});
         enum status status = echo_file_write(path, &echoes, "first");
         setrlimit(RLIMIT_FSIZE, &old);
-        if (limit < (rlim_t)whole.st_size - 8) {        /* the header's date does not change the size by more */
+        if (limit < (rlim_t)whole.st_size - 8) { /* the header's date does not change the size by more */
             assert_invalid(status, "cannot be written: ");
         }
         assert_no_temporary_files();

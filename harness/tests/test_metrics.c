@@ -14,34 +14,98 @@
 struct exact_scene {
     double bandwidth, speed, pri;
     int receivers;
-    double rx_length, pitch;            /* the first receiver lies one pitch ahead of the transmitter */
+    double rx_length, pitch; /* the first receiver lies one pitch ahead of the transmitter */
     double tx_length;
     int pings;
     double x_first, target_r, target_x;
     bool element_beams, cut_at_midpoint;
-    double cut;                         /* of |sin theta| lambda/D_tx */
+    double cut; /* of |sin theta| lambda/D_tx */
     /* The numbers to be met, computed by an independent program: azimuth slice +-3 m. */
     double x_step, pslr_db, islr_null_db, islr_3db_db, width_m, peak;
 };
 
 static const double fc = 150e3, c = 1500;
 
-static const struct exact_scene scene_a = {
-    15e3, 2.5, 0.32, 40, 0.04, 0.04, 0.08, 25, -9.5863, 90, 0, false,
-    false, 0.443, 0.02, -13.306375854280315,
-    -10.41435956461415, -4.355839965091554, 0.0383694168274542, 520};
-static const struct exact_scene scene_b = {
-    20e3, 2.5, 0.2, 25, 0.04, 0.04, 0.08, 29, -0.9863, 74, 6, true,
-    false, 0.443, 0.02, -16.263073439530086,
-    -13.989989549264855, -5.105523566410879, 0.04118278745544757, 368.064119483484};
-static const struct exact_scene scene_c = {
-    20e3, 3, 0.44, 66, 0.04, 0.04, 0.08, 31, -3.7863, 260, 16, false,
-    true, 0.443, 0.02, -13.371362664810466,
-    -10.68692946729094, -4.454299346451544, 0.039951849404120665, 1442};
-static const struct exact_scene scene_d = {
-    20e3, 3, 0.44, 132, 0.02, 0.02, 0.04, 15, -6.7263, 50, 2.5, false,
-    false, 0.443, 0.01, -13.2787200518272,
-    -10.571800017815299, -4.40437231411396, 0.01872631694402438, 1188};
+static const struct exact_scene scene_a = {15e3,
+                                           2.5,
+                                           0.32,
+                                           40,
+                                           0.04,
+                                           0.04,
+                                           0.08,
+                                           25,
+                                           -9.5863,
+                                           90,
+                                           0,
+                                           false,
+                                           false,
+                                           0.443,
+                                           0.02,
+                                           -13.306375854280315,
+                                           -10.41435956461415,
+                                           -4.355839965091554,
+                                           0.0383694168274542,
+                                           520};
+static const struct exact_scene scene_b = {20e3,
+                                           2.5,
+                                           0.2,
+                                           25,
+                                           0.04,
+                                           0.04,
+                                           0.08,
+                                           29,
+                                           -0.9863,
+                                           74,
+                                           6,
+                                           true,
+                                           false,
+                                           0.443,
+                                           0.02,
+                                           -16.263073439530086,
+                                           -13.989989549264855,
+                                           -5.105523566410879,
+                                           0.04118278745544757,
+                                           368.064119483484};
+static const struct exact_scene scene_c = {20e3,
+                                           3,
+                                           0.44,
+                                           66,
+                                           0.04,
+                                           0.04,
+                                           0.08,
+                                           31,
+                                           -3.7863,
+                                           260,
+                                           16,
+                                           false,
+                                           true,
+                                           0.443,
+                                           0.02,
+                                           -13.371362664810466,
+                                           -10.68692946729094,
+                                           -4.454299346451544,
+                                           0.039951849404120665,
+                                           1442};
+static const struct exact_scene scene_d = {20e3,
+                                           3,
+                                           0.44,
+                                           132,
+                                           0.02,
+                                           0.02,
+                                           0.04,
+                                           15,
+                                           -6.7263,
+                                           50,
+                                           2.5,
+                                           false,
+                                           false,
+                                           0.443,
+                                           0.01,
+                                           -13.2787200518272,
+                                           -10.571800017815299,
+                                           -4.40437231411396,
+                                           0.01872631694402438,
+                                           1188};
 
 /* The pairs that see the target, with their delay and weight. */
 struct exact_pair {
@@ -114,8 +178,8 @@ static void exact_image(const struct exact_scene *s, const struct grid *grid, en
     image_make(grid, 1, precision, image);
     for (int i = 0; i < grid->r_count; i++)
         for (int j = 0; j < grid->x_count; j++)
-            pixel_set(image, 0, i, j, exact_value(s, pairs, count, grid->x_first + j * grid->x_step,
-                                                  grid->r_first + i * grid->r_step));
+            pixel_set(image, 0, i, j,
+                      exact_value(s, pairs, count, grid->x_first + j * grid->x_step, grid->r_first + i * grid->r_step));
     free(pairs);
 }
 
@@ -176,7 +240,7 @@ static void test_off_raster(void **state)
     for (int k = 0; k < 20; k++) {
         double x = 0.2 * sin(1.0 + 7 * k), r = 90 + 0.02 * sin(2.0 + 5 * k);
         double complex value = metrics_value(&image, &acquisition, x, r), wanted = exact_value(s, pairs, count, x, r);
-        assert_true(cabs(value - wanted) < 1.5e-3 * s->peak);       /* the patch ends 20 rows away */
+        assert_true(cabs(value - wanted) < 1.5e-3 * s->peak); /* the patch ends 20 rows away */
     }
     free(pairs);
     /* A flat spectrum over B makes a sinc of c t/2 in range: zeros every c/(2B), -13.26 dB, narrowed by nothing. */
@@ -239,7 +303,7 @@ static void test_pixel_definition(void **state)
     struct slice_metrics m = metrics_of_power(power, count, -side * 0.02 / 16, 0.02 / 16, 0.02);
     assert_close(m.pslr_db[DEFINITION_PIXEL], -14.84, 0.02);
     assert_close(m.islr_db[DEFINITION_PIXEL], -10.35, 0.02);
-    assert_close(m.pslr_db[DEFINITION_NULL], -13.34, 0.04);      /* known for an unstated ping phase */
+    assert_close(m.pslr_db[DEFINITION_NULL], -13.34, 0.04); /* known for an unstated ping phase */
     assert_close(m.islr_db[DEFINITION_NULL], -10.45, 0.04);
     m = metrics_of_power(power, count, -side * 0.02 / 16, 0.02 / 16, 0);
     assert_true(isnan(m.pslr_db[DEFINITION_PIXEL]));
@@ -251,7 +315,7 @@ static void test_pixel_definition(void **state)
 /* --- Closed forms -------------------------------------------------------------------------------------------- */
 
 enum { SAMPLES = 6001, MIDDLE = 3000 };
-static double power[SAMPLES];           /* step 1 mm, the target in the middle */
+static double power[SAMPLES]; /* step 1 mm, the target in the middle */
 
 static void lobe_add(double at_m, double height, double null_m)
 {
@@ -293,10 +357,10 @@ static void test_several_peaks(void **state)
     memset(power, 0, sizeof power);
     lobe_add(0, 1, 0.05);
     lobe_add(1.2, 0.25, 0.05);
-    struct slice_metrics m = measure();         /* a weaker neighbour is the largest sidelobe */
+    struct slice_metrics m = measure(); /* a weaker neighbour is the largest sidelobe */
     assert_close(m.pslr_db[DEFINITION_NULL], 10 * log10(0.25), 0.01);
     lobe_add(1.2, 0.75 + 1e-8, 0.05);
-    m = measure();                              /* an equal one must not turn on rounding */
+    m = measure(); /* an equal one must not turn on rounding */
     assert_close(m.pslr_db[DEFINITION_NULL], 0, 0.01);
     lobe_add(1.2, 1, 0.05);
     check_undefined(measure(), "the strongest peak lies +1.2 m");
@@ -309,7 +373,7 @@ static void test_lobes_cut(void **state)
 {
     (void)state;
     memset(power, 0, sizeof power);
-    lobe_add(0, 1, 4);                          /* falls to half, but not to a minimum */
+    lobe_add(0, 1, 4); /* falls to half, but not to a minimum */
     struct slice_metrics m = measure();
     check_undefined(m, "no first minimum");
     assert_close(m.width_m, 0.885893 * 4, 1e-3);
@@ -317,7 +381,7 @@ static void test_lobes_cut(void **state)
     lobe_add(0, 1, 20);
     check_undefined(measure(), "does not fall to half");
     memset(power, 0, sizeof power);
-    lobe_add(0, 1, 2.5);                        /* a minimum, but the sidelobe behind it is cut */
+    lobe_add(0, 1, 2.5); /* a minimum, but the sidelobe behind it is cut */
     m = measure();
     assert_true(isnan(m.pslr_db[DEFINITION_NULL]));
     assert_non_null(strstr(m.reason, "sidelobe is cut"));
@@ -363,13 +427,13 @@ static void test_undefined_slices(void **state)
     check_undefined(metrics_slice(&image, &acquisition, &target, AXIS_RANGE), "shorter than 3");
     image_free(&image);
 
-    struct grid coarse_range = {-1, 0.02, 101, 89.4, 0.06, 21};     /* c/(2B) = 0.05 m */
+    struct grid coarse_range = {-1, 0.02, 101, 89.4, 0.06, 21}; /* c/(2B) = 0.05 m */
     image_make(&coarse_range, 1, PRECISION_DOUBLE, &image);
     check_undefined(metrics_slice(&image, &acquisition, &target, AXIS_RANGE), "range step");
     check_undefined(metrics_slice(&image, &acquisition, &(struct target){0, 90.02, 1}, AXIS_AZIMUTH), "range step");
     image_free(&image);
 
-    struct grid coarse_azimuth = {-3, 0.05, 121, 90, 0.025, 1};     /* the spectrum reaches 22 cycles/m */
+    struct grid coarse_azimuth = {-3, 0.05, 121, 90, 0.025, 1}; /* the spectrum reaches 22 cycles/m */
     exact_image(&scene_a, &coarse_azimuth, PRECISION_DOUBLE, &image);
     check_undefined(metrics_slice(&image, &acquisition, &target, AXIS_AZIMUTH), "azimuth step");
     image_free(&image);
@@ -508,11 +572,11 @@ static void test_error_of_parts(void **state)
             for (int j = 0; j < 10; j++)
                 pixel_set(&reference, k, i, j, pattern(first[k][0] + i, first[k][1] + j));
     assert_true(metrics_error(&image, &reference).error < 1e-7);
-    pixel_set(&image, 1, 0, 0, NAN);            /* outside the parts: not looked at */
+    pixel_set(&image, 1, 0, 0, NAN); /* outside the parts: not looked at */
     assert_true(metrics_error(&image, &reference).error < 1e-7);
-    parts[1].x_first += 1e-4 * 0.02;            /* off the raster */
+    parts[1].x_first += 1e-4 * 0.02; /* off the raster */
     assert_true(isnan(metrics_error(&image, &reference).error));
-    parts[1].x_first += 0.02 - 1e-4 * 0.02;     /* sticks out by a column */
+    parts[1].x_first += 0.02 - 1e-4 * 0.02; /* sticks out by a column */
     assert_true(isnan(metrics_error(&image, &reference).error));
     parts[1] = (struct grid){-1, 0.021, 10, 100, 0.025, 5};
     assert_true(isnan(metrics_error(&image, &reference).error));

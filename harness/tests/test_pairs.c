@@ -11,8 +11,15 @@
 
 static void make(struct acquisition *a, int pings, int receivers, int samples, double spacing, double speed)
 {
-    *a = (struct acquisition){.sound_speed = 1500, .fc = 150e3, .fs = 30e3, .bandwidth = 15e3, .samples = samples,
-                              .receivers = receivers, .pings = pings, .compressed = true, .aperture_limit = INFINITY};
+    *a = (struct acquisition){.sound_speed = 1500,
+                              .fc = 150e3,
+                              .fs = 30e3,
+                              .bandwidth = 15e3,
+                              .samples = samples,
+                              .receivers = receivers,
+                              .pings = pings,
+                              .compressed = true,
+                              .aperture_limit = INFINITY};
     assert_int_equal(acquisition_allocate(a), STATUS_OK);
     for (int p = 0; p < pings; p++) {
         a->tx[p].x = (p - pings / 2) * spacing;
@@ -34,8 +41,9 @@ static void spans_hold_the_cone(void **state)
         struct acquisition a;
         make(&a, 5, 1, 2000, 0.5, 2);
         a.aperture_limit = limits[seed % 7];
-        struct grid grid = {-4 + 0.125 * (int)(8 * random_uniform(&random)), 0.125, 1 + (int)(60 * random_uniform(&random)),
-                            -2 + 0.125 * (int)(32 * random_uniform(&random)), 0.125, 1 + (int)(30 * random_uniform(&random))};
+        struct grid grid = {
+            -4 + 0.125 * (int)(8 * random_uniform(&random)),  0.125, 1 + (int)(60 * random_uniform(&random)),
+            -2 + 0.125 * (int)(32 * random_uniform(&random)), 0.125, 1 + (int)(30 * random_uniform(&random))};
         for (int n = 0; n < 2 * 5; n++) {
             const bool along_x = n % 2;
             const struct vector h = acquisition_heading(&a, n / 2), tx = a.tx[n / 2];
@@ -51,14 +59,14 @@ static void spans_hold_the_cone(void **state)
                         inside |= i >= spans[s].begin && i < spans[s].end;
                     exact += along == edge;
                     if (inside != (along <= edge))
-                        fail_msg("seed %d, limit %g: pixel (%g, %g) from (%g, 0): %d", (int)seed, a.aperture_limit, p.x, p.y,
-                                 tx.x, inside);
+                        fail_msg("seed %d, limit %g: pixel (%g, %g) from (%g, 0): %d", (int)seed, a.aperture_limit, p.x,
+                                 p.y, tx.x, inside);
                 }
             }
         }
         acquisition_free(&a);
     }
-    assert_true(exact > 1000);      /* the case does occur */
+    assert_true(exact > 1000); /* the case does occur */
 }
 
 /* Oblique cones in space, which may hold a line's middle or its ends, touch it or miss it. */
@@ -70,12 +78,17 @@ static void spans_hold_oblique_cones(void **state)
         struct random random = random_seed(seed, 6);
         struct acquisition a;
         make(&a, 1, 1, 2000, 0.5, 2);
-        a.tx[0] = (struct vector){random_uniform(&random), random_uniform(&random), seed % 3 ? random_uniform(&random) : 0};
+        a.tx[0] =
+            (struct vector){random_uniform(&random), random_uniform(&random), seed % 3 ? random_uniform(&random) : 0};
         a.aperture_limit = seed % 5 ? random_uniform(&random) : 0.01;
         double u = 6.28 * random_uniform(&random), w = seed % 2 ? 1.5 * random_uniform(&random) : 0;
         struct vector h = {cos(u) * cos(w), sin(u) * cos(w), sin(w)};
-        struct grid grid = {-1, seed % 4 ? 0.01 : 1e-6, seed % 2 ? 300 : 1, 2 * random_uniform(&random) - 1,
-                            seed % 4 ? 0.01 : 1e-6, seed % 2 ? 1 : 300};
+        struct grid grid = {-1,
+                            seed % 4 ? 0.01 : 1e-6,
+                            seed % 2 ? 300 : 1,
+                            2 * random_uniform(&random) - 1,
+                            seed % 4 ? 0.01 : 1e-6,
+                            seed % 2 ? 1 : 300};
         const struct pixel_line line = grid_line(&grid, seed % 2, 0);
         struct pair_span spans[2];
         const int count = pair_spans(&a, 0, h, &line, spans);
@@ -99,7 +112,8 @@ static void spans_hold_oblique_cones(void **state)
 static void engines_agree_on_the_track(void **state)
 {
     (void)state;
-    static const double steps[] = {0.0625, 0.02, 0.03}, limits[] = {0.5, 0.05, 1e-9, 0.9999}, firsts[] = {0, -0.25, -0.2, 1e-17};
+    static const double steps[] = {0.0625, 0.02, 0.03}, limits[] = {0.5, 0.05, 1e-9, 0.9999},
+                        firsts[] = {0, -0.25, -0.2, 1e-17};
     for (int n = 0; n < 3 * 4 * 4; n++) {
         struct acquisition a;
         struct echoes echoes;
@@ -113,9 +127,11 @@ static void engines_agree_on_the_track(void **state)
             ((double complex *)echoes.samples)[k] = random_normal(&random);
         struct grid grid = {-16 * step, step, 33, firsts[n / 12], 0.05, 9};
         struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
-        assert_int_equal(support_image("bp_sinc:window=kaiser,exact=true,precision=double", problem, &echoes, &exact), STATUS_OK);
-        assert_int_equal(support_image("bp_sinc:window=kaiser,engine=invariant,precision=double", problem, &echoes, &invariant),
+        assert_int_equal(support_image("bp_sinc:window=kaiser,exact=true,precision=double", problem, &echoes, &exact),
                          STATUS_OK);
+        assert_int_equal(
+            support_image("bp_sinc:window=kaiser,engine=invariant,precision=double", problem, &echoes, &invariant),
+            STATUS_OK);
         double difference = support_difference(&invariant, &exact);
         if (!(difference < 1e-10))
             fail_msg("step %g, limit %g, rows from %g: differ by %g", step, a.aperture_limit, grid.r_first, difference);

@@ -12,7 +12,7 @@
 /* SASBENCH_ROOT, the repository, comes from the build. */
 static const char *const real_plots = SASBENCH_ROOT "/plots";
 
-static char folder[4000];       /* temporary: pictures, and our own scripts */
+static char folder[4000]; /* temporary: pictures, and our own scripts */
 
 static void path_in(char path[4096], const char *name)
 {
@@ -98,19 +98,18 @@ static void image_is_drawn(void **state)
 static void image_data_are_right(void **state)
 {
     (void)state;
-    text_to_file("image.gp",
-                 "set print output\n"
-                 "print title\n"
-                 "print |panels|\n"
-                 "stats panels[1] binary matrix using 1 name 'x' nooutput\n"
-                 "stats panels[1] binary matrix using 2 name 'r' nooutput\n"
-                 "stats panels[1] binary matrix using 3 name 'v' nooutput\n"
-                 "print sprintf('%d %.3f %.3f %.3f %.3f', v_records, x_min, x_max, r_min, r_max)\n"
-                 "stats panels[1] binary matrix using ($3 > -50) name 'n' nooutput\n"
-                 "stats panels[1] binary matrix using ($3 > -50 ? $1 : 0) name 'x' nooutput\n"
-                 "stats panels[1] binary matrix using ($3 > -50 ? $2 : 0) name 'r' nooutput\n"
-                 "print sprintf('%d %.3f %.3f %.2f', n_sum, x_max, r_max, v_max)\n"
-                 "print '</svg>'\n");
+    text_to_file("image.gp", "set print output\n"
+                             "print title\n"
+                             "print |panels|\n"
+                             "stats panels[1] binary matrix using 1 name 'x' nooutput\n"
+                             "stats panels[1] binary matrix using 2 name 'r' nooutput\n"
+                             "stats panels[1] binary matrix using 3 name 'v' nooutput\n"
+                             "print sprintf('%d %.3f %.3f %.3f %.3f', v_records, x_min, x_max, r_min, r_max)\n"
+                             "stats panels[1] binary matrix using ($3 > -50) name 'n' nooutput\n"
+                             "stats panels[1] binary matrix using ($3 > -50 ? $1 : 0) name 'x' nooutput\n"
+                             "stats panels[1] binary matrix using ($3 > -50 ? $2 : 0) name 'r' nooutput\n"
+                             "print sprintf('%d %.3f %.3f %.2f', n_sum, x_max, r_max, v_max)\n"
+                             "print '</svg>'\n");
     /* 2700 columns make blocks of 3; the brightest pixel of all is in a patch that is not shown. */
     struct grid patches[9];
     for (int p = 0; p < 9; p++)
@@ -159,16 +158,15 @@ static void slices_are_drawn(void **state)
 static void slice_data_are_right(void **state)
 {
     (void)state;
-    text_to_file("slices.gp",
-                 "set print output\n"
-                 "print title, |panels|, |lines|, panels[2], lines[2]\n"
-                 "do for [b = 0:3] {\n"
-                 "    stats data index b using ($2 == $2 ? $1 : NaN) name 'x' nooutput\n"
-                 "    print sprintf('%d', exists('x_records') ? x_records : 0)\n"
-                 "    stats data index b using ($2 == $2 ? $2 : NaN) name 'p' nooutput\n"
-                 "    print exists('p_max') && b != 1 ? sprintf('%.2f %.2f', x_max, p_max) : '-'\n"
-                 "}\n"
-                 "print '</svg>'\n");
+    text_to_file("slices.gp", "set print output\n"
+                              "print title, |panels|, |lines|, panels[2], lines[2]\n"
+                              "do for [b = 0:3] {\n"
+                              "    stats data index b using ($2 == $2 ? $1 : NaN) name 'x' nooutput\n"
+                              "    print sprintf('%d', exists('x_records') ? x_records : 0)\n"
+                              "    stats data index b using ($2 == $2 ? $2 : NaN) name 'p' nooutput\n"
+                              "    print exists('p_max') && b != 1 ? sprintf('%.2f %.2f', x_max, p_max) : '-'\n"
+                              "}\n"
+                              "print '</svg>'\n");
     double position[] = {-0.5, 0, 0.25}, power[4][3] = {{-9, -1, -9}, {0}, {-9, -2, -9}, {-9, -3, -9}};
     struct slice_line lines[4];
     for (int l = 0; l < 4; l++)

@@ -15,13 +15,12 @@
 #include "show/table.h"
 #include "assertions.h"
 
-#define MEASUREMENT_HEADER \
-    "scene,algorithm,options,precision,threads,engine,status,reason,skipped,plan_s,run_s,run_min_s,runs,control_s," \
+#define MEASUREMENT_HEADER                                                                                             \
+    "scene,algorithm,options,precision,threads,engine,status,reason,skipped,plan_s,run_s,run_min_s,runs,control_s,"    \
     "stages,flops_published,flops,pairs,bytes,error,error_gain,phase_rms_rad,width_m,pslr_db,islr_db\n"
-#define PROVENANCE \
-    "# machine: a machine\n# isa: v3\n# libraries: some\n# commit: c1\n# program: 0123\n# threads: 2\n"
-#define TARGET_HEADER \
-    "scene,algorithm,options,precision,target,axis,definition,extent_m,position_error_m,phase_error_rad,width_m," \
+#define PROVENANCE "# machine: a machine\n# isa: v3\n# libraries: some\n# commit: c1\n# program: 0123\n# threads: 2\n"
+#define TARGET_HEADER                                                                                                  \
+    "scene,algorithm,options,precision,target,axis,definition,extent_m,position_error_m,phase_error_rad,width_m,"      \
     "pslr_db,islr_db\n"
 
 /* --- A folder of its own for every test ---------------------------------------------------------------------- */
@@ -51,7 +50,7 @@ static int folder_remove(void **state)
         snprintf(path, sizeof path, "%s/%s", folder, kept[k]);
         remove(path);
     }
-    return rmdir(folder);               /* fails when a temporary file was left behind */
+    return rmdir(folder); /* fails when a temporary file was left behind */
 }
 
 static void file_write(const char *path, const char *mode, const char *text)
@@ -103,7 +102,7 @@ static void test_csv_read(void **state)
     assert_int_equal(csv_read(measurements_path, CSV_TAIL_DROP, &csv), STATUS_OK);
     assert_int_equal(csv.row_count, 2);
     csv_free(&csv);
-    file_write(measurements_path, "w", "\xef\xbb\xbf# key: first\na\n1\n");      /* a byte order mark */
+    file_write(measurements_path, "w", "\xef\xbb\xbf# key: first\na\n1\n"); /* a byte order mark */
     assert_int_equal(csv_read(measurements_path, CSV_TAIL_KEEP, &csv), STATUS_OK);
     assert_string_equal(csv_comment(&csv, "key"), "first");
     assert_int_equal(csv_column(&csv, "a"), 0);
@@ -120,9 +119,12 @@ static void test_csv_faults(void **state)
     static const struct {
         const char *text, *place;
     } faults[] = {
-        {"a,b\n1,2\n3\n", ":3: 1 fields"},      {"a,b\n1,2,3\n", ":2: 3 fields"},
-        {"a\n\"x\"z\n", ":2: stray"},          {"a\n1\n\"x\n2\n", ":3: a quoted field never ends"},
-        {"a\nx\"y\n", ":2: stray"},             {"a\nx\ry\n", ":2:2: control character 0x0d"},
+        {"a,b\n1,2\n3\n", ":3: 1 fields"},
+        {"a,b\n1,2,3\n", ":2: 3 fields"},
+        {"a\n\"x\"z\n", ":2: stray"},
+        {"a\n1\n\"x\n2\n", ":3: a quoted field never ends"},
+        {"a\nx\"y\n", ":2: stray"},
+        {"a\nx\ry\n", ":2:2: control character 0x0d"},
         {"a\nb\n\x1b[31mc\n", ":3:1: control character 0x1b"},
         {"a\n\"b\tc\"\n", ":2:3: control character 0x09"},
         {"# k: v\x07\na\n", ":1:7: control character 0x07"},
@@ -145,7 +147,7 @@ static void test_csv_faults(void **state)
     assert_int_equal(csv_read(targets_path, CSV_TAIL_KEEP, &csv), STATUS_INVALID);
     assert_int_equal(csv_read("/dev/zero", CSV_TAIL_KEEP, &csv), STATUS_INVALID);
     assert_int_equal(mkfifo(targets_path, 0600), 0);
-    assert_int_equal(csv_read(targets_path, CSV_TAIL_KEEP, &csv), STATUS_INVALID);      /* without a wait for a writer */
+    assert_int_equal(csv_read(targets_path, CSV_TAIL_KEEP, &csv), STATUS_INVALID); /* without a wait for a writer */
     remove(targets_path);
 }
 
@@ -199,7 +201,12 @@ static void test_csv_numbers(void **state)
 
 static struct provenance provenance_of(const char *commit, int threads)
 {
-    struct provenance provenance = {.machine = "a machine", .isa = "v3", .libraries = "some", .compiler = "gcc\n12", .program = "0123", .date = "today",
+    struct provenance provenance = {.machine = "a machine",
+                                    .isa = "v3",
+                                    .libraries = "some",
+                                    .compiler = "gcc\n12",
+                                    .program = "0123",
+                                    .date = "today",
                                     .threads = threads};
     snprintf(provenance.commit, sizeof provenance.commit, "%s", commit);
     return provenance;
@@ -207,18 +214,37 @@ static struct provenance provenance_of(const char *commit, int threads)
 
 static struct measurement measurement_of(const char *scene, const char *algorithm)
 {
-    return (struct measurement){
-        .scene = scene, .algorithm = algorithm, .options = "taps=8,window=none", .precision = "float", .threads = 2,
-        .engine = "general", .status = "ok", .reason = "", .skipped = "half \"of\" it,\nand more", .plan_s = 0.25,
-        .run_s = 1.0 / 3, .run_min_s = 0.3, .runs = 5, .control_s = 2, .stages = "compress=0.1;focus=0.9",
-        .flops_published = NAN, .flops = 1e12, .pairs = 12345678901.0, .bytes = 4096, .error = 1e-7,
-        .error_gain = NAN, .phase_rms_rad = 0.001, .width_m = 0.0384, .pslr_db = -13.3, .islr_db = -10.4};
+    return (struct measurement){.scene = scene,
+                                .algorithm = algorithm,
+                                .options = "taps=8,window=none",
+                                .precision = "float",
+                                .threads = 2,
+                                .engine = "general",
+                                .status = "ok",
+                                .reason = "",
+                                .skipped = "half \"of\" it,\nand more",
+                                .plan_s = 0.25,
+                                .run_s = 1.0 / 3,
+                                .run_min_s = 0.3,
+                                .runs = 5,
+                                .control_s = 2,
+                                .stages = "compress=0.1;focus=0.9",
+                                .flops_published = NAN,
+                                .flops = 1e12,
+                                .pairs = 12345678901.0,
+                                .bytes = 4096,
+                                .error = 1e-7,
+                                .error_gain = NAN,
+                                .phase_rms_rad = 0.001,
+                                .width_m = 0.0384,
+                                .pslr_db = -13.3,
+                                .islr_db = -10.4};
 }
 
 static struct target_row target_of(const char *scene, const char *algorithm)
 {
-    return (struct target_row){scene, algorithm, "taps=8,window=none", "float", 3, "azimuth", "null", 3, 1e-5, NAN,
-                               0.0384, -13.3, -10.4};
+    return (struct target_row){
+        scene, algorithm, "taps=8,window=none", "float", 3, "azimuth", "null", 3, 1e-5, NAN, 0.0384, -13.3, -10.4};
 }
 
 static struct record *open_ok(const char *commit, int threads)
@@ -259,19 +285,19 @@ static void test_round_trip(void **state)
     assert_int_equal(record_scene(record, "folder/a,\"b\"", 0xabcdef), STATUS_OK);
     add_ok(record, "folder/a,\"b\"", "bp_sinc");
     const char *text = file_text(measurements_path);
-    assert_int_equal(strncmp(text, "# sasbench measurements 1\n# machine: a machine\n# isa: v3\n# compiler: gcc?12\n",
-                             72), 0);
+    assert_int_equal(
+        strncmp(text, "# sasbench measurements 1\n# machine: a machine\n# isa: v3\n# compiler: gcc?12\n", 72), 0);
     assert_non_null(strstr(text, "\n# commit: c1\n"));
     assert_non_null(strstr(text, "\n# threads: 2\n"));
     assert_non_null(strstr(text, "\n# scene folder/a,\"b\": 0000000000abcdef\n"));
-    assert_non_null(strstr(text, "\n" MEASUREMENT_HEADER
-        "\"folder/a,\"\"b\"\"\",bp_sinc,\"taps=8,window=none\",float,2,general,ok,,"
-        "\"half \"\"of\"\" it,?and more\",0.25,0.333333333,0.3,5,2,compress=0.1;focus=0.9,,1e+12,"
-        "1.23456789e+10,4096,1e-07,,0.001,0.0384,-13.3,-10.4\n"));
+    assert_non_null(strstr(
+        text, "\n" MEASUREMENT_HEADER "\"folder/a,\"\"b\"\"\",bp_sinc,\"taps=8,window=none\",float,2,general,ok,,"
+              "\"half \"\"of\"\" it,?and more\",0.25,0.333333333,0.3,5,2,compress=0.1;focus=0.9,,1e+12,"
+              "1.23456789e+10,4096,1e-07,,0.001,0.0384,-13.3,-10.4\n"));
     text = file_text(targets_path);
     assert_int_equal(strncmp(text, "# sasbench targets 1\n", 21), 0);
     assert_non_null(strstr(text, "\n" TARGET_HEADER "\"folder/a,\"\"b\"\"\",bp_sinc,\"taps=8,window=none\",float,3,"
-                           "azimuth,null,3,1e-05,,0.0384,-13.3,-10.4\n"));
+                                 "azimuth,null,3,1e-05,,0.0384,-13.3,-10.4\n"));
     record_close(record);
 
     record = open_ok("c1", 2);
@@ -341,9 +367,13 @@ static void test_other_run(void **state)
 {
     (void)state;
     static const char *const told[] = {
-        "measured with commit 'c1', now with 'c2'", "measured with threads '2', now with '3'", "measured with program '0123', now with '4567'",
-        "measured with machine 'a machine', now with 'another'", "measured with isa 'v3', now with 'baseline'",
-        "measured with libraries 'some', now with 'others'", "targets.csv is missing",
+        "measured with commit 'c1', now with 'c2'",
+        "measured with threads '2', now with '3'",
+        "measured with program '0123', now with '4567'",
+        "measured with machine 'a machine', now with 'another'",
+        "measured with isa 'v3', now with 'baseline'",
+        "measured with libraries 'some', now with 'others'",
+        "targets.csv is missing",
     };
     char kept_measurements[300], kept_targets[300];
     snprintf(kept_measurements, sizeof kept_measurements, "%s/measurements.1.csv", folder);
@@ -498,7 +528,7 @@ static void test_changed_scene(void **state)
     assert_int_equal(record_scene(record, "s: 2", 2), STATUS_OK);
     assert_int_equal(record_scene(record, "s", 3), STATUS_OK);
     assert_null(find(record, "s", "bp_sinc"));
-    char kept[300];                     /* with the row that went */
+    char kept[300]; /* with the row that went */
     snprintf(kept, sizeof kept, "%s/measurements.1.csv", folder);
     assert_int_equal(rows_of(kept), 2);
     assert_non_null(find(record, "s: 2", "bp_sinc"));
@@ -568,13 +598,11 @@ static void test_foreign_files(void **state)
     check_refused("measurements.csv:1: not a file of ours");
     file_write(measurements_path, "w", "# sasbench measurements 1\na,b\n1\n");
     check_refused("measurements.csv:3: 1 fields");
-    file_write(measurements_path, "w", "# sasbench measurements 1\n" PROVENANCE
-               MEASUREMENT_HEADER "s,a,,float,2,,ok,,,1,1,1,x,,,,,,,,,,,,\n");
-    file_write(targets_path, "w", "# sasbench targets 1\n" PROVENANCE
-               TARGET_HEADER);
+    file_write(measurements_path, "w",
+               "# sasbench measurements 1\n" PROVENANCE MEASUREMENT_HEADER "s,a,,float,2,,ok,,,1,1,1,x,,,,,,,,,,,,\n");
+    file_write(targets_path, "w", "# sasbench targets 1\n" PROVENANCE TARGET_HEADER);
     check_refused("measurements.csv:9: runs is 'x'");
-    file_write(measurements_path, "w", "# sasbench measurements 1\n" PROVENANCE
-               "scene,algorithm\n");
+    file_write(measurements_path, "w", "# sasbench measurements 1\n" PROVENANCE "scene,algorithm\n");
     check_refused("measurements.csv: the header line");
     remove(measurements_path);
     record_close(open_ok("c1", 2));
@@ -680,7 +708,8 @@ static void test_metric_table(void **state)
         char column[64];
         snprintf(column, sizeof column, ",%s", metric->name);
         assert_non_null(strstr(MEASUREMENT_HEADER, column));
-        assert_true(metric->unit && metric->title && metric->absolute_slack[PRECISION_FLOAT] >= metric->absolute_slack[PRECISION_DOUBLE]
+        assert_true(metric->unit && metric->title
+                    && metric->absolute_slack[PRECISION_FLOAT] >= metric->absolute_slack[PRECISION_DOUBLE]
                     && metric->absolute_slack[PRECISION_DOUBLE] >= 0 && metric->relative_slack >= 0);
         double value = *(const double *)((const char *)&row + metric->offset);
         if (strcmp(metric->name, "pslr_db") == 0)

@@ -106,7 +106,10 @@ static struct peak reference_peak(const struct recording *recording, const struc
     struct grid cut = {
         .x_first = grid->x_first + (round((expected->x_m - grid->x_first) / grid->x_step) - REACH) * grid->x_step,
         .r_first = grid->r_first + (round((expected->r_m - grid->r_first) / grid->r_step) - REACH) * grid->r_step,
-        .x_step = grid->x_step, .r_step = grid->r_step, .x_count = 2 * REACH + 1, .r_count = 2 * REACH + 1,
+        .x_step = grid->x_step,
+        .r_step = grid->r_step,
+        .x_count = 2 * REACH + 1,
+        .r_count = 2 * REACH + 1,
     };
     struct problem problem = {&recording->acquisition, 1, &cut, PRECISION_FLOAT};
     struct image image;
@@ -120,7 +123,7 @@ static void focus(const struct recording *recording, const struct expected *expe
 {
     static const struct {
         const char *spec;
-        bool is_sharp;                  /* reaches the stated peak over median */
+        bool is_sharp; /* reaches the stated peak over median */
     } methods[] = {{"bp_sinc:taps=8", true}, {"bp_zeropad", true}, {"bp_nearest", false}, {"bp_linear", false}};
     const struct grid *grid = &recording->grid;
     struct problem problem = {&recording->acquisition, 1, grid, PRECISION_FLOAT};
@@ -144,8 +147,7 @@ static void focus(const struct recording *recording, const struct expected *expe
             double x_slack = methods[k].is_sharp ? e->slack_m : grid->x_step;
             double r_slack = methods[k].is_sharp ? e->slack_m : grid->r_step;
             if (!is_at(&peak, e->x_m, e->r_m, x_slack, r_slack))
-                fail_msg("%s: peak at (%g, %g) m, not (%g, %g) m", methods[k].spec, peak.x_m, peak.r_m, e->x_m,
-                         e->r_m);
+                fail_msg("%s: peak at (%g, %g) m, not (%g, %g) m", methods[k].spec, peak.x_m, peak.r_m, e->x_m, e->r_m);
             if (methods[k].is_sharp && !(peak.over_median >= e->over_median_least))
                 fail_msg("%s: peak is %g times the median, not %g", methods[k].spec, peak.over_median,
                          e->over_median_least);
@@ -181,7 +183,7 @@ int main(void)
     };
     char path[4096];
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    bool any = recording_find("pins_in_water.mat", path, sizeof path)
-               || recording_find("gotcha_4deg.mat", path, sizeof path);
-    return failed || any ? failed : 77;     /* meson shows it as skipped */
+    bool any =
+        recording_find("pins_in_water.mat", path, sizeof path) || recording_find("gotcha_4deg.mat", path, sizeof path);
+    return failed || any ? failed : 77; /* meson shows it as skipped */
 }

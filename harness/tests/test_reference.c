@@ -12,8 +12,8 @@
 enum { SCENES = sizeof reference_scenes / sizeof *reference_scenes };
 
 static struct scene scenes[SCENES];
-static struct scene heard[SCENES];      /* the same without the pings that do not hear the target; borrows all arrays */
-static struct echoes echoes[SCENES];    /* of heard */
+static struct scene heard[SCENES];   /* the same without the pings that do not hear the target; borrows all arrays */
+static struct echoes echoes[SCENES]; /* of heard */
 
 /* Does any receiver of the ping hear the target? */
 static bool ping_sees_target(const struct scene *scene, int ping)
@@ -49,7 +49,7 @@ static int load(void **state)
     (void)state;
     for (int k = 0; k < SCENES; k++) {
         support_scene(reference_scenes[k].scene, &scenes[k]);
-        scenes[k].acquisition.samples = 8192;   /* twice the scene's: see long_records_image */
+        scenes[k].acquisition.samples = 8192; /* twice the scene's: see long_records_image */
         narrow(&scenes[k], &heard[k]);
         support_echoes(&heard[k], &echoes[k]);
     }
@@ -74,8 +74,8 @@ static void delays_and_weights(void **state)
             const struct acquisition *a = &scenes[k].acquisition;
             int ping = reference_scenes[k].delays[n].ping, receiver = reference_scenes[k].delays[n].receiver;
             struct vector p = {scenes[k].targets[0].x, scenes[k].targets[0].r, 0};
-            double tau = delay_exact(a->tx[ping], a->rx[ping * a->receivers + receiver], a->velocity[ping], p,
-                                     a->sound_speed);
+            double tau =
+                delay_exact(a->tx[ping], a->rx[ping * a->receivers + receiver], a->velocity[ping], p, a->sound_speed);
             assert_true(fabs(tau - reference_scenes[k].delays[n].tau) < 1e-15);
             double weight = beam_weight(&scenes[k], ping, receiver, p, tau, a->fc);
             assert_true(fabs(weight - reference_scenes[k].delays[n].weight) < 1e-10);
@@ -117,7 +117,8 @@ static void add_image(const struct scene *scene, int patch_count, const struct g
     echoes_free(&pings);
 }
 
-static void long_records_image(const struct scene *scene, int patch_count, const struct grid *patches, struct image *sum)
+static void long_records_image(const struct scene *scene, int patch_count, const struct grid *patches,
+                               struct image *sum)
 {
     enum { LONG = 27000 };
     struct scene one = *scene;
@@ -170,7 +171,7 @@ static void method_slices(void **state)
         struct grid slice = {numbers->azimuth.x_first, numbers->azimuth.x_step, 81, numbers->azimuth.r, 1, 1};
         struct problem problem = {&heard[k].acquisition, 1, &slice, PRECISION_DOUBLE};
         double peak = sum_of_weights(numbers);
-        int methods = k < 2 ? 7 : 6;    /* the last, factor 32, takes long transforms: two scenes do */
+        int methods = k < 2 ? 7 : 6; /* the last, factor 32, takes long transforms: two scenes do */
         for (int m = 0; m < methods; m++) {
             char spec[80];
             struct image image;

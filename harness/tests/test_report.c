@@ -14,18 +14,37 @@
 static struct measurement row_of(const char *scene, const char *algorithm, const char *options, double run_s,
                                  double error)
 {
-    return (struct measurement){
-        .scene = scene, .algorithm = algorithm, .options = options, .precision = "float", .threads = 2,
-        .engine = "invariant", .status = "ok", .reason = "", .skipped = "", .plan_s = 0.01, .run_s = run_s,
-        .run_min_s = run_s, .runs = 3, .control_s = 1, .stages = "", .flops_published = NAN, .flops = 1e9 * run_s,
-        .pairs = 1e6, .bytes = 1e6, .error = error, .error_gain = error, .phase_rms_rad = error, .width_m = 0.04,
-        .pslr_db = -13.3 - error, .islr_db = -10.4 - error};
+    return (struct measurement){.scene = scene,
+                                .algorithm = algorithm,
+                                .options = options,
+                                .precision = "float",
+                                .threads = 2,
+                                .engine = "invariant",
+                                .status = "ok",
+                                .reason = "",
+                                .skipped = "",
+                                .plan_s = 0.01,
+                                .run_s = run_s,
+                                .run_min_s = run_s,
+                                .runs = 3,
+                                .control_s = 1,
+                                .stages = "",
+                                .flops_published = NAN,
+                                .flops = 1e9 * run_s,
+                                .pairs = 1e6,
+                                .bytes = 1e6,
+                                .error = error,
+                                .error_gain = error,
+                                .phase_rms_rad = error,
+                                .width_m = 0.04,
+                                .pslr_db = -13.3 - error,
+                                .islr_db = -10.4 - error};
 }
 
 static void record_rows(const struct measurement *rows, int count)
 {
-    struct provenance provenance = {.machine = "a machine & its <cores>", .commit = "abc", .program = "def",
-                                    .date = "2026-01-01", .threads = 2};
+    struct provenance provenance = {
+        .machine = "a machine & its <cores>", .commit = "abc", .program = "def", .date = "2026-01-01", .threads = 2};
     struct record *record;
     assert_int_equal(record_open(folder, &provenance, &record), STATUS_OK);
     for (int k = 0; k < count; k++) {
@@ -41,10 +60,10 @@ enum { DEPTH_MAX = 64, IDS_MAX = 4000 };
 
 struct parser {
     const char *at;
-    char open[DEPTH_MAX][32];               /* names of the elements that are open */
+    char open[DEPTH_MAX][32]; /* names of the elements that are open */
     int depth;
     int tables, rows, drawings, images;
-    char ids[IDS_MAX][48];                  /* of elements */
+    char ids[IDS_MAX][48]; /* of elements */
     int id_count;
 };
 
@@ -172,10 +191,14 @@ static const char *const odd_scene = "b<i>it's \"b\" & c";
 static void folder_fill(void)
 {
     struct measurement rows[] = {
-        row_of("a", "reference", "", 0.9, 1e-6),        row_of("a", "bp_nearest", "", 0.01, 0.2),
-        row_of("a", "bp_linear", "beta=2", 0.02, 0.1),  row_of("a", "bp_linear", "beta=8", 0.03, 0.09),
-        row_of(odd_scene, "reference", "", 0.9, 1e-6),  row_of(odd_scene, "bp_zeropad", "factor=4", 0.2, 0.01),
-        row_of(odd_scene, "rma_pca", "blocks=2", 0, 0), row_of(odd_scene, "rma_wu", "blocks=2", 0, 0),
+        row_of("a", "reference", "", 0.9, 1e-6),
+        row_of("a", "bp_nearest", "", 0.01, 0.2),
+        row_of("a", "bp_linear", "beta=2", 0.02, 0.1),
+        row_of("a", "bp_linear", "beta=8", 0.03, 0.09),
+        row_of(odd_scene, "reference", "", 0.9, 1e-6),
+        row_of(odd_scene, "bp_zeropad", "factor=4", 0.2, 0.01),
+        row_of(odd_scene, "rma_pca", "blocks=2", 0, 0),
+        row_of(odd_scene, "rma_wu", "blocks=2", 0, 0),
         row_of("no/rate", "rma_pca", "blocks=2", 0.1, 0.1),
     };
     rows[6].status = "unsupported";
@@ -186,22 +209,22 @@ static void folder_fill(void)
         rows[k].run_s = rows[k].error = NAN;
     record_rows(rows, sizeof rows / sizeof *rows);
     support_write("cheapest.csv", "# sasbench cheapest 1\nscene,cost,error_below,algorithm,options,precision,run_s,"
-                               "speed_up,flops,error,error_gain,pslr_db,islr_db\n"
-                               "a,run_s,1e-1,bp_linear,beta=8,float,0.03,33,3e7,0.09,0.09,-13.39,\n");
+                                  "speed_up,flops,error,error_gain,pslr_db,islr_db\n"
+                                  "a,run_s,1e-1,bp_linear,beta=8,float,0.03,33,3e7,0.09,0.09,-13.39,\n");
     support_write("slopes.csv", "scene,algorithm,options,precision,setting,part,first,last,rate_first,rate_last,points,"
-                             "slope,error_first,error_last,residual_log10\n"
-                             "a,bp_zeropad,,float,factor,finest,8,64,8,64,4,-1.0321,0.1,0.01,0.00123\n");
+                                "slope,error_first,error_last,residual_log10\n"
+                                "a,bp_zeropad,,float,factor,finest,8,64,8,64,4,-1.0321,0.1,0.01,0.00123\n");
     support_write("rules.csv", "scene,fc_hz,fs_hz,bandwidth_hz,bp22_eq20_rate,zp15_rate,edge_phase_rad,linear_floor\n"
-                            "a,150000,30000,15000,3.125,10,0.785,0.0685\n");
+                               "a,150000,30000,15000,3.125,10,0.785,0.0685\n");
     support_write("claims.csv", "id,paper,section,claim,verdict,evidence\n"
-                             "x-1,BP22,4.1,\"linear, at <beta> = 2\",holds,1 < 2\n"
-                             "x-2,BP22,4.2,second,does not hold,two & three\n"
-                             "x-3,ZP15,3,third,holds under stated assumption,e\n"
-                             "x-4,ZP15,4,fourth,cannot be decided,e\n");
+                                "x-1,BP22,4.1,\"linear, at <beta> = 2\",holds,1 < 2\n"
+                                "x-2,BP22,4.2,second,does not hold,two & three\n"
+                                "x-3,ZP15,3,third,holds under stated assumption,e\n"
+                                "x-4,ZP15,4,fourth,cannot be decided,e\n");
     support_write("reproduced.csv", "table,item,quantity,definition,unit,paper,ours,difference,assumption\n"
-                                 "bp22_t3,T1,pslr_db,null,dB,-14.62,-13.46,1.159,the layout is lost\n"
-                                 "bp22_t3,T1,islr_db,null,dB,-8.08,,,the layout is lost\n"
-                                 "unheard_of,T1,islr_db,null,dB,-8.08,,,\n");
+                                    "bp22_t3,T1,pslr_db,null,dB,-14.62,-13.46,1.159,the layout is lost\n"
+                                    "bp22_t3,T1,islr_db,null,dB,-8.08,,,the layout is lost\n"
+                                    "unheard_of,T1,islr_db,null,dB,-8.08,,,\n");
     static const char *const pictures[][2] = {{"a", "slices"}, {"a", "bp_linear:beta=8"}, {"a", "not a row"}};
     for (size_t k = 0; k < sizeof pictures / sizeof *pictures; k++) {
         char path[400], name[64];
@@ -229,20 +252,30 @@ static void test_everything_is_on_the_page(void **state)
     /* Slices, one image, one figure of `phase`: the picture without a row is not of these results. */
     assert_int_equal(page->images, 3);
     static const char *const parts[] = {
-        "a machine &amp; its &lt;cores&gt;", "bp_linear:<wbr/>beta=8", "unsupported: a track of &lt;3 pings | none",
-        "failed: no &amp; memory", "b&lt;i&gt;it&#39;s &quot;b&quot; &amp; c", "-1.032", "0.00123", "3.125",
-        "class=\"good\">holds<", "class=\"bad\">does not hold<", "class=\"soft\">holds under stated assumption<",
+        "a machine &amp; its &lt;cores&gt;",
+        "bp_linear:<wbr/>beta=8",
+        "unsupported: a track of &lt;3 pings | none",
+        "failed: no &amp; memory",
+        "b&lt;i&gt;it&#39;s &quot;b&quot; &amp; c",
+        "-1.032",
+        "0.00123",
+        "3.125",
+        "class=\"good\">holds<",
+        "class=\"bad\">does not hold<",
+        "class=\"soft\">holds under stated assumption<",
         "class=\"open\">cannot be decided<",
         "<p>1 holds, 1 holds under stated assumption, 1 does not hold, 1 cannot be decided</p>",
-        "BP22 Table 3: PSLR and ISLR of six targets", "unheard_of",
-        "src=\"data:image/png;base64,bm90IGxvb2tlZCBpbnRv\"", "src=\"data:image/png;base64,YWJj\"", "@media print"};
+        "BP22 Table 3: PSLR and ISLR of six targets",
+        "unheard_of",
+        "src=\"data:image/png;base64,bm90IGxvb2tlZCBpbnRv\"",
+        "src=\"data:image/png;base64,YWJj\"",
+        "@media print"};
     for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
         assert_holds(html, parts[k]);
-    static const char *const lines[] = {
-        "|machine|a machine &amp; its &lt;cores&gt;|", "|bp_linear:beta=8|30 ms|33.3x|",
-        "|rma_pca:blocks=2|unsupported: a track of &lt;3 pings \\| none|",
-        "|x-2|4.2|second|does not hold|two &amp; three|",
-        "|bp_zeropad||float|finest|factor|8|64|4|-1.032|0.1|0.01|0.00123|"};
+    static const char *const lines[] = {"|machine|a machine &amp; its &lt;cores&gt;|", "|bp_linear:beta=8|30 ms|33.3x|",
+                                        "|rma_pca:blocks=2|unsupported: a track of &lt;3 pings \\| none|",
+                                        "|x-2|4.2|second|does not hold|two &amp; three|",
+                                        "|bp_zeropad||float|finest|factor|8|64|4|-1.032|0.1|0.01|0.00123|"};
     for (size_t k = 0; k < sizeof lines / sizeof *lines; k++)
         assert_holds(markdown, lines[k]);
     assert_non_null(strstr(html, "the layout is lost"));

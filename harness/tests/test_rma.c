@@ -23,9 +23,17 @@ static void make_scene(int pings, int receivers, int samples, double fs, double 
 {
     *scene = (struct scene){.pulse_kind = PULSE_FLAT, .beam = {BEAM_TXRX, TRUNCATION_DOPPLER, 0.5, true}};
     struct acquisition *a = &scene->acquisition;
-    *a = (struct acquisition){.sound_speed = 1500, .fc = 150e3, .fs = fs, .bandwidth = 20e3, .samples = samples,
-                              .receivers = receivers, .pings = pings, .tx_length = 0.08, .rx_length = pitch,
-                              .aperture_limit = INFINITY, .compressed = true};
+    *a = (struct acquisition){.sound_speed = 1500,
+                              .fc = 150e3,
+                              .fs = fs,
+                              .bandwidth = 20e3,
+                              .samples = samples,
+                              .receivers = receivers,
+                              .pings = pings,
+                              .tx_length = 0.08,
+                              .rx_length = pitch,
+                              .aperture_limit = INFINITY,
+                              .compressed = true};
     assert_int_equal(acquisition_allocate(a), STATUS_OK);
     for (int p = 0; p < pings; p++) {
         a->t0[p] = t0;
@@ -75,8 +83,7 @@ static void compress_lfm(const struct rma_numbers *n, struct scene *scene, struc
             for (int k = 0; k < count; k++) {
                 double u = a->t0[0] + k / a->fs - tau;
                 if (fabs(u) <= duration / 2)
-                    record[k] += weight * scene->targets[t].amplitude
-                                 * cexp(I * pi * (rate * u * u - 2 * a->fc * tau));
+                    record[k] += weight * scene->targets[t].amplitude * cexp(I * pi * (rate * u * u - 2 * a->fc * tau));
             }
         }
         fftw_execute(forward);
@@ -256,8 +263,7 @@ static void other_ways(void **state)
         {"rma_lbf:blocks=4,precision=double", "rma_lbf:blocks=4,sum=after,precision=double", 1e-14},
         {"rma_lbf:blocks=4", "rma_lbf:blocks=4,sum=after", 1e-6},
         {"rma_pca:blocks=1,precision=double", "rma_pca:blocks=1,sum=after,precision=double", 1e-14},
-        {"rma_lbf:blocks=1,stolt=16,precision=double",
-         "rma_lbf:blocks=1,stolt=direct,precision=double", 1e-5},
+        {"rma_lbf:blocks=1,stolt=16,precision=double", "rma_lbf:blocks=1,stolt=direct,precision=double", 1e-5},
     };
     struct scene scene;
     struct echoes echoes;
@@ -281,7 +287,7 @@ static void columns(void **state)
 {
     (void)state;
     static const double targets[] = {36.4};
-    static const int parts[] = {1, 5, 10, 11};          /* of 0.1 m: columns */
+    static const int parts[] = {1, 5, 10, 11}; /* of 0.1 m: columns */
     struct grid grids[4];
     struct scene scene;
     struct echoes echoes;
@@ -310,7 +316,7 @@ static void recurrences(void **state)
     struct scene scene;
     struct echoes echoes;
     const double r[] = {35.1};
-    make_scene(3, 37, 300, 24e3, 30 / 750.0, -0.74, 0.74, 0.04, &scene);    /* two whole groups and a part of one */
+    make_scene(3, 37, 300, 24e3, 30 / 750.0, -0.74, 0.74, 0.04, &scene); /* two whole groups and a part of one */
     add_targets(&scene, 1, r);
     assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
     struct problem problem = {&scene.acquisition, 1, &grid, PRECISION_DOUBLE};
@@ -338,7 +344,7 @@ static void long_swath(void **state)
     struct echoes echoes;
     struct image exact, image;
     struct grid patches[6] = {{0, 1, 1, 40, 1, 1}, {0, 1, 1, 300, 1, 1}};
-    make_scene(16, 33, 12800, 24e3, 0.032, -7.5 * speed * pri, speed * pri, 0.08, &scene);    /* 24 to 424 m */
+    make_scene(16, 33, 12800, 24e3, 0.032, -7.5 * speed * pri, speed * pri, 0.08, &scene); /* 24 to 424 m */
     scene.acquisition.tx_length = 0.16;
     add_targets(&scene, 4, targets);
     assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
@@ -527,22 +533,23 @@ static void conditions(void **state)
     (void)state;
     static const struct {
         const char *spec, *name;
-        double fc, bandwidth, spacing, first_offset, speed, r;      /* receivers 0.04 m apart, 150 m before the record's end */
+        double fc, bandwidth, spacing, first_offset, speed,
+            r; /* receivers 0.04 m apart, 150 m before the record's end */
     } cases[] = {
         {"rma_numeric", "", 150e3, 15e3, 0.4, 0, 2.5, 100},
-        {"rma_numeric", "above_dc", 10e3, 30e3, 0.4, 0, 2.5, 100},      /* was a crash */
+        {"rma_numeric", "above_dc", 10e3, 30e3, 0.4, 0, 2.5, 100}, /* was a crash */
         {"rma_numeric", "above_dc", 7.5e3, 15e3, 0.4, 0, 2.5, 100},
-        {"rma_numeric", "doppler", 150e3, 15e3, 2, 0, 2.5, 100},        /* pings too far apart: error .58 */
+        {"rma_numeric", "doppler", 150e3, 15e3, 2, 0, 2.5, 100}, /* pings too far apart: error .58 */
         {"rma_numeric", "", 150e3, 15e3, 0.16, 0, 75, 100},
-        {"rma_numeric", "doppler", 150e3, 15e3, 0.4, 0, 150, 100},      /* the whole band aside: .59 */
-        {"rma_numeric", "doppler", 150e3, 15e3, 0.4, 30, 2.5, 100},     /* receivers far ahead: 1.0 */
+        {"rma_numeric", "doppler", 150e3, 15e3, 0.4, 0, 150, 100},  /* the whole band aside: .59 */
+        {"rma_numeric", "doppler", 150e3, 15e3, 0.4, 30, 2.5, 100}, /* receivers far ahead: 1.0 */
         {"rma_numeric", "spa_amplitude", 150e3, 15e3, 0.4, 0, 2.5, 0.5},
         {"rma_numeric", "stationary", 2e3, 1e3, 0.4, 0, 2.5, 0.4},
         {"rma_numeric", "subsonic", 150e3, 15e3, 0.4, 0, -1400, 100},
         {"rma_lbf", "", 150e3, 15e3, 0.16, 0, 15, 100},
         {"rma_lbf", "lbf_law", 150e3, 15e3, 0.16, 0, 75, 100},
         {"rma_pca", "", 150e3, 15e3, 0.4, 0, 2.5, 100},
-        {"rma_pca", "pca_law", 150e3, 15e3, 0.16, 0, 75, 100},          /* abeam alone does not show it */
+        {"rma_pca", "pca_law", 150e3, 15e3, 0.16, 0, 75, 100}, /* abeam alone does not show it */
         {"rma_wu", "wu_law", 150e3, 15e3, 0.16, 0, 75, 100},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
@@ -629,11 +636,20 @@ static void sampled_much_too_fast(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(independent_numbers), cmocka_unit_test(short_swath),  cmocka_unit_test(other_ways),
-        cmocka_unit_test(recurrences),         cmocka_unit_test(long_swath),   cmocka_unit_test(block_counts),
-        cmocka_unit_test(ghosts),              cmocka_unit_test(one_receiver), cmocka_unit_test(odd_tracks),
-        cmocka_unit_test(refusals),            cmocka_unit_test(columns),      cmocka_unit_test(conditions),
-        cmocka_unit_test(short_track),         cmocka_unit_test(sampled_much_too_fast),
+        cmocka_unit_test(independent_numbers),
+        cmocka_unit_test(short_swath),
+        cmocka_unit_test(other_ways),
+        cmocka_unit_test(recurrences),
+        cmocka_unit_test(long_swath),
+        cmocka_unit_test(block_counts),
+        cmocka_unit_test(ghosts),
+        cmocka_unit_test(one_receiver),
+        cmocka_unit_test(odd_tracks),
+        cmocka_unit_test(refusals),
+        cmocka_unit_test(columns),
+        cmocka_unit_test(conditions),
+        cmocka_unit_test(short_track),
+        cmocka_unit_test(sampled_much_too_fast),
     };
     return cmocka_run_group_tests_name("rma", tests, NULL, NULL);
 }

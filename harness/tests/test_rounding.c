@@ -15,26 +15,37 @@
 enum { PINGS = 9, RECEIVERS = 3, SAMPLES = 500, COLUMNS = 331, ROWS = 11, PIXELS = COLUMNS * ROWS };
 
 static const int modes[] = {FE_TONEAREST, FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
-static const char *const isas[] = {"baseline", "v3", "v4"};        /* where the machine has less, the most that it has */
+static const char *const isas[] = {"baseline", "v3", "v4"}; /* where the machine has less, the most that it has */
 
 /* The largest difference from the image in the usual mode. In single precision a position within 2^-17 of a tie takes the other
    sample, and on a line of nine steps one within 2^-19 the other step, in either: a few of 10^5 pairs. */
 static const struct {
     const char *spec;
-    double most[2];                 /* by enum precision */
+    double most[2]; /* by enum precision */
 } methods[] = {
-    {"bp_nearest:engine=general", {2e-2, 1e-7}},   {"bp_zeropad:factor=8,engine=general", {4e-3, 1e-7}},
-    {"bp_linear:beta=8,engine=general", {4e-3, 4e-3}}, {"bp_sinc:taps=8,engine=general", {1e-4, 1e-7}},
-    {"bp_nearest:exact=true", {3e-6, 1e-9}},       {"bp_nearest:engine=invariant", {3e-6, 1e-9}},
-    {"bp_zeropad:factor=8,engine=invariant", {3e-6, 1e-9}}, {"bp_sinc:taps=8,engine=invariant", {3e-6, 1e-9}},
+    {"bp_nearest:engine=general", {2e-2, 1e-7}},
+    {"bp_zeropad:factor=8,engine=general", {4e-3, 1e-7}},
+    {"bp_linear:beta=8,engine=general", {4e-3, 4e-3}},
+    {"bp_sinc:taps=8,engine=general", {1e-4, 1e-7}},
+    {"bp_nearest:exact=true", {3e-6, 1e-9}},
+    {"bp_nearest:engine=invariant", {3e-6, 1e-9}},
+    {"bp_zeropad:factor=8,engine=invariant", {3e-6, 1e-9}},
+    {"bp_sinc:taps=8,engine=invariant", {3e-6, 1e-9}},
 };
 enum { METHODS = sizeof methods / sizeof *methods, ISAS = sizeof isas / sizeof *isas, IMAGES = METHODS * ISAS * 2 };
 
 static void make_echoes(struct acquisition *a, struct echoes *echoes)
 {
     struct random random = random_seed(5, 0);
-    *a = (struct acquisition){.sound_speed = 1500, .fc = 150e3, .fs = 30e3, .bandwidth = 15e3, .samples = SAMPLES,
-                              .receivers = RECEIVERS, .pings = PINGS, .compressed = true, .aperture_limit = INFINITY};
+    *a = (struct acquisition){.sound_speed = 1500,
+                              .fc = 150e3,
+                              .fs = 30e3,
+                              .bandwidth = 15e3,
+                              .samples = SAMPLES,
+                              .receivers = RECEIVERS,
+                              .pings = PINGS,
+                              .compressed = true,
+                              .aperture_limit = INFINITY};
     assert_int_equal(acquisition_allocate(a), STATUS_OK);
     for (int p = 0; p < PINGS; p++) {
         a->t0[p] = 700 / 30e3;
@@ -65,7 +76,7 @@ static int form_images(int mode, FILE *out)
         snprintf(spec, sizeof spec, "%s,precision=%s", methods[n / 2 % METHODS].spec, precision_name(precision));
         setenv("SASBENCH_ISA", isas[n / 2 / METHODS], 1);
         for (int t = 0; t < 3; t++) {
-            omp_set_num_threads(3 - t);         /* all threads start in this mode */
+            omp_set_num_threads(3 - t); /* all threads start in this mode */
             if (support_image(spec, problem, &echoes, &images[t]) != STATUS_OK)
                 return 3;
             if (memcmp(images[t].pixels[0], images[0].pixels[0], PIXELS * precision_size(precision)) != 0)
@@ -125,7 +136,8 @@ static void rounding_modes_agree(void **state)
             worst[method][precision] = fmax(worst[method][precision], sqrt(difference / norm));
             if (!(sqrt(difference / norm) <= methods[method].most[precision]))
                 fail_msg("%s, %s, %s: mode %d differs by %g", methods[method].spec,
-                         precision_name((enum precision)precision), isas[n / 2 / METHODS], modes[k], sqrt(difference / norm));
+                         precision_name((enum precision)precision), isas[n / 2 / METHODS], modes[k],
+                         sqrt(difference / norm));
         }
     }
     for (int m = 0; m < METHODS; m++)

@@ -13,9 +13,9 @@
 #include "assertions.h"
 #include "reference_numbers.h"
 
-#define SHIPPED SASBENCH_ROOT "/scenes"
-#define IMAGE "image = { around_targets = { half_x = 0.2; half_r = 0.1; x_step = 0.02; r_step = 0.025; }; };"
-#define NESTED 10                   /* includes, at most */
+#define SHIPPED         SASBENCH_ROOT "/scenes"
+#define IMAGE           "image = { around_targets = { half_x = 0.2; half_r = 0.1; x_step = 0.02; r_step = 0.025; }; };"
+#define NESTED          10 /* includes, at most */
 #define COUNT_OF(array) (sizeof array / sizeof *array)
 
 /* One group a line, so that every refusal can be checked for its line. */
@@ -28,8 +28,7 @@ static const char *const base_text =
     "record = { first_sample = 720; samples = 256; };\n"
     "beam = { kind = \"txrx\"; truncation = \"tx\"; limit = 0.443; };\n"
     "targets = { points = ( { x = 0.1; r = 20.0; } ); };\n"
-    "noise = { std = 0.1; seed = 3; };\n"
-    IMAGE "\n";
+    "noise = { std = 0.1; seed = 3; };\n" IMAGE "\n";
 
 static char folder[256];
 
@@ -109,8 +108,8 @@ static int setup(void **state)
 static int teardown(void **state)
 {
     (void)state;
-    const char *const files[] = {"scene.cfg", "other.cfg", "third.cfg", "_part.cfg", "sub/deep.cfg",
-                                 "sub/_part.cfg", "sub/.hidden.cfg", "sub/text.txt"};
+    const char *const files[] = {"scene.cfg",    "other.cfg",     "third.cfg",       "_part.cfg",
+                                 "sub/deep.cfg", "sub/_part.cfg", "sub/.hidden.cfg", "sub/text.txt"};
     for (size_t i = 0; i < COUNT_OF(files); i++) {
         unlink(path_in(files[i]));
     }
@@ -133,16 +132,16 @@ static void check_coverage(const struct scene *scene)
         int seen = 0;
         for (int ping = 0; ping < a->pings; ping++) {
             for (int m = 0; m < a->receivers; m++) {
-                double tau = delay_exact(a->tx[ping], a->rx[ping * a->receivers + m], a->velocity[ping], p,
-                                         a->sound_speed);
+                double tau =
+                    delay_exact(a->tx[ping], a->rx[ping * a->receivers + m], a->velocity[ping], p, a->sound_speed);
                 if (beam_weight(scene, ping, m, p, tau, widest_hz) == 0) {
                     continue;
                 }
                 seen++;
                 double q = (tau - a->t0[ping]) * a->fs;
                 if (ping == 0 || ping == a->pings - 1 || !(q >= 50 && q <= a->samples - a->pulse_length - 50)) {
-                    fail_msg("%s: target %d is seen at ping %d of %d, sample %g of %d", scene->name, t, ping,
-                             a->pings, q, a->samples);
+                    fail_msg("%s: target %d is seen at ping %d of %d, sample %g of %d", scene->name, t, ping, a->pings,
+                             q, a->samples);
                 }
             }
         }
@@ -170,7 +169,7 @@ static void shipped_scenes_load(void **state)
         for (int k = 0; k < scene.patch_count; k++) {
             pixels += (double)scene.patches[k].x_count * scene.patches[k].r_count;
         }
-        assert_true(scene.full_size || pixels * pairs < 1e8);       /* the exact image stays a matter of seconds */
+        assert_true(scene.full_size || pixels * pairs < 1e8); /* the exact image stays a matter of seconds */
         if (strncmp(names[i], "extreme/", 8) != 0) {
             check_coverage(&scene);
         }
@@ -201,8 +200,7 @@ static void reference_scenes_have_the_reference_geometry(void **state)
         assert_int_equal(active, active_pairs[i]);
         for (int k = 0; k < 3; k++) {
             int ping = expected->delays[k].ping, m = expected->delays[k].receiver;
-            double tau = delay_exact(a->tx[ping], a->rx[ping * a->receivers + m], a->velocity[ping], p,
-                                     a->sound_speed);
+            double tau = delay_exact(a->tx[ping], a->rx[ping * a->receivers + m], a->velocity[ping], p, a->sound_speed);
             assert_true(fabs(tau - expected->delays[k].tau) < 1e-12);
             assert_true(fabs(beam_weight(&scene, ping, m, p, tau, a->fc) - expected->delays[k].weight) < 1e-12);
         }
@@ -309,9 +307,9 @@ static void fields_can_be_repeated(void **state)
     assert_true(cabs(scene.targets[1].amplitude - (-0.3077237362204419 + 1.2890287949588786 * I)) < 1e-12);
     scene_free(&scene);
 
-    char *text = varied("points = ( { x = 0.1; r = 20.0; } );",
-                        "points = ( { x = 0; r = 20.0; } ); fields = "
-                        "( { x = [-2, 4]; r = [19, 21]; count = 20000; seed = 5; } );");
+    char *text =
+        varied("points = ( { x = 0.1; r = 20.0; } );", "points = ( { x = 0; r = 20.0; } ); fields = "
+                                                       "( { x = [-2, 4]; r = [19, 21]; count = 20000; seed = 5; } );");
     scene = loaded(text);
     double complex mean = 0;
     double energy = 0, x = 0, r_square = 0;
@@ -339,7 +337,7 @@ static void reference_patches_are_cut_from_the_grid(void **state)
     struct scene scene = loaded(text);
     const struct grid *cut = scene.reference_patches;
     assert_true(scene.patch_count == 1 && scene.patches[0].x_count == 40 && scene.reference_count == 1);
-    assert_true(cut->x_first == 0.03 && cut->x_step == 0.05 && cut->x_count == 6);      /* 1 - 4 < 0 to 1 + 4 */
+    assert_true(cut->x_first == 0.03 && cut->x_step == 0.05 && cut->x_count == 6); /* 1 - 4 < 0 to 1 + 4 */
     assert_true(cut->r_first == 19.5 && cut->r_step == 0.25 && cut->r_count == 5);
     scene_free(&scene);
     free(text);
@@ -355,7 +353,7 @@ static void one_scene_varies_another(void **state)
     struct scene scene = loaded("base = {\n  @include \"other.cfg\"\n};\n"
                                 "track = { speed = 1; pri = 0.1; pings = 3; };\n"
                                 "@include \"_part.cfg\"\n");
-    assert_true(scene.acquisition.pings == 3 && scene.acquisition.tx[0].x == 0);    /* x_first is not the base's */
+    assert_true(scene.acquisition.pings == 3 && scene.acquisition.tx[0].x == 0); /* x_first is not the base's */
     assert_true(scene.acquisition.fc == 100e3 && scene.acquisition.receivers == 4);
     assert_string_equal(scene.description, "test");
     uint64_t hash = scene.hash;
@@ -373,8 +371,7 @@ static void one_scene_varies_another(void **state)
     /* What an included file gets wrong is said with that file's name and line. */
     write_file("_part.cfg", "\nsonar = { fc = 100e3; bandwidth = 10e3; fs = -3; };\n");
     struct scene bad;
-    assert_int_equal(load_text("base = {\n@include \"other.cfg\"\n};\n@include \"_part.cfg\"\n", &bad),
-                     STATUS_INVALID);
+    assert_int_equal(load_text("base = {\n@include \"other.cfg\"\n};\n@include \"_part.cfg\"\n", &bad), STATUS_INVALID);
     assert_message_has(path_in("_part.cfg:2: key 'sonar.fs' is -3, must be a number > 0 Hz"), "included");
     char *text = varied("fc = 150e3;", "fc = 150e3; colour = 3;");
     write_file("other.cfg", text);
@@ -430,7 +427,7 @@ static void includes_are_relative_to_their_file(void **state)
     assert_int_equal(scene_load("sub/deep", folder, &scene), STATUS_OK);
     assert_true(scene.acquisition.fc == 200e3);
     scene_free(&scene);
-    assert_int_equal(mkdir(path_in("sub/_part.cfg"), 0777), 0);     /* no file, but there */
+    assert_int_equal(mkdir(path_in("sub/_part.cfg"), 0777), 0); /* no file, but there */
     assert_int_equal(scene_load("sub/deep", folder, &scene), STATUS_INVALID);
     assert_message_has("sub/_part.cfg: not a regular file", "folder");
     assert_int_equal(rmdir(path_in("sub/_part.cfg")), 0);
@@ -443,7 +440,7 @@ static void errors_name_the_line_of_their_file(void **state)
     assert_int_equal(mkdir(path_in("sub"), 0777), 0);
     write_file("other.cfg", base_text);
     const struct {
-        const char *scene, *deep, *part, *message;       /* scene.cfg includes sub/deep.cfg, and that sub/_part.cfg */
+        const char *scene, *deep, *part, *message; /* scene.cfg includes sub/deep.cfg, and that sub/_part.cfg */
     } cases[] = {
         {"", "", "fc = -1;", "sub/_part.cfg:1: key 'sonar.fc' is -1,"},
         {"", "", "fc = {{", "sub/_part.cfg:1: syntax error"},
@@ -467,8 +464,10 @@ static void errors_name_the_line_of_their_file(void **state)
         snprintf(text, sizeof text, "\n\n  @include \"_part.cfg\"  # at the end of deep's third line\n\n%s\n",
                  cases[i].deep);
         write_file("sub/deep.cfg", text);
-        snprintf(text, sizeof text, "base = {\n@include \"other.cfg\"\n};\nsonar = {\n@include \"sub/deep.cfg\"\n};"
-                 "\n\n%s\n", cases[i].scene);
+        snprintf(text, sizeof text,
+                 "base = {\n@include \"other.cfg\"\n};\nsonar = {\n@include \"sub/deep.cfg\"\n};"
+                 "\n\n%s\n",
+                 cases[i].scene);
         assert_int_equal(load_text(text, &scene), STATUS_INVALID);
         snprintf(expected, sizeof expected, "%s/%s", folder, cases[i].message);
         if (strncmp(status_message(), expected, strlen(expected)) != 0) {
@@ -520,8 +519,12 @@ static void hash_follows_the_content(void **state)
         {"points = (", "fields = (); points = ("},
     };
     const char *const other[][2] = {
-        {"fc = 150e3", "fc = 150.001e3"}, {"lfm", "lfm_time"}, {"x_first = -0.32", "x_first = -0.33"},
-        {"x = 0.1;", "x = 0.1000001;"}, {"seed = 3", "seed = 4"}, {"half_x = 0.2", "half_x = 0.22"},
+        {"fc = 150e3", "fc = 150.001e3"},
+        {"lfm", "lfm_time"},
+        {"x_first = -0.32", "x_first = -0.33"},
+        {"x = 0.1;", "x = 0.1000001;"},
+        {"seed = 3", "seed = 4"},
+        {"half_x = 0.2", "half_x = 0.22"},
         {"r = 20.0;", "r = 20.0; amplitude = [1.0, 0.1];"},
         {"limit = 0.443;", "limit = 0.443; per_frequency = true;"},
         {"{ x = 0.1; r = 20.0; }", "{ x = 0.1; r = 20.0; }, { x = 0.1; r = 20.0; }"},
@@ -634,27 +637,24 @@ static const struct refusal {
     {"seed = 3;", "seed = -3;", 9, "key 'noise.seed' is -3,", "an integer from 0"},
     {"image = {", "image = { x = { first = 0; step = 1; count = 1; }; r = { first = 20; step = 1; count = 1; };", 10,
      "key 'image' is a group", "exactly one of `x` with `r`, `around_targets`, `patches`"},
-    {IMAGE, "image = { };", 10,
-     "key 'image' is a group", "exactly one of"},
-    {IMAGE,
-     "image = { x = { first = 0; step = 1; count = 1; }; };", 10, "key 'image.r' is missing,", "together with `x`"},
-    {IMAGE,
-     "image = { patches = (); };", 10, "key 'image.patches' is a list", "at least one patch"},
+    {IMAGE, "image = { };", 10, "key 'image' is a group", "exactly one of"},
+    {IMAGE, "image = { x = { first = 0; step = 1; count = 1; }; };", 10, "key 'image.r' is missing,",
+     "together with `x`"},
+    {IMAGE, "image = { patches = (); };", 10, "key 'image.patches' is a list", "at least one patch"},
     {IMAGE,
      "image = { x = { first = 5; step = 0.1; count = 3; }; r = { first = 20; step = 1; count = 1; };"
-     "reference = { half_x = 1; half_r = 1; }; };", 10, "key 'image.reference' is a group",
-     "holds a pixel of the image"},
-    {IMAGE,
-     "image = { x = { first = 5; step = 0.1; count = 0; }; r = { first = 20; step = 1; count = 1; }; };", 10,
+     "reference = { half_x = 1; half_r = 1; }; };",
+     10, "key 'image.reference' is a group", "holds a pixel of the image"},
+    {IMAGE, "image = { x = { first = 5; step = 0.1; count = 0; }; r = { first = 20; step = 1; count = 1; }; };", 10,
      "key 'image.x.count' is 0,", "an integer from 1"},
     {IMAGE,
      "image = { x = { first = 5; step = 0.1; count = 2000000000; };"
-     " r = { first = 20; step = 1; count = 2000000000; }; };", 0, "2000000000 x 2000000000 pixels", "at most"},
+     " r = { first = 20; step = 1; count = 2000000000; }; };",
+     0, "2000000000 x 2000000000 pixels", "at most"},
     {"r_step = 0.025; }; };", "r_step = 0.025; }; reference = { half_x = 1; half_r = 1; }; };", 10,
      "key 'image.reference' is a group", "left out without `x` and `r`"},
     {"r_step = 0.025;", "r_step = 0;", 10, "key 'image.around_targets.r_step' is 0,", "> 0 m"},
-    {"half_x = 0.2;", "half_x = 1e11;", 10, "key 'image.around_targets.half_x' is 1e+11,",
-     "at most 1073741823 steps"},
+    {"half_x = 0.2;", "half_x = 1e11;", 10, "key 'image.around_targets.half_x' is 1e+11,", "at most 1073741823 steps"},
     {"half_x = 0.2;", "half_x = -1;", 10, "key 'image.around_targets.half_x' is -1,", "from 0"},
     {"targets = { points = ( { x = 0.1; r = 20.0; } ); };", "", 0, "key 'targets.points' is missing,",
      "at least one target"},
@@ -667,8 +667,7 @@ static const struct refusal {
     {"noise = {", "base = { @include \"scene.cfg\"\n};\nnoise = {", 9, "is misplaced", "beginning of a line"},
     {"noise = {", "/* noise = {", 9, "/* noise = { std = 0.1; seed = 3; }; is not closed", "must end with */"},
     {"noise = {", "noise = {{", 9, "syntax error", "libconfig"},
-    {"description = \"test\";", "description = \"test;", 1, "\"test; is not closed",
-     "must end with \" on its line"},
+    {"description = \"test\";", "description = \"test;", 1, "\"test; is not closed", "must end with \" on its line"},
     {"image = {", "image = { \"", 10, "is not closed", "must end with \""},
 };
 
@@ -710,7 +709,7 @@ static void files_that_are_no_scenes_are_refused(void **state)
     assert_message_has("not a regular file", "folder");
     assert_int_equal(rmdir(path_in("other.cfg")), 0);
 
-    FILE *file = fopen(path_in("scene.cfg"), "wb");     /* a zero inside, as of a damaged disk */
+    FILE *file = fopen(path_in("scene.cfg"), "wb"); /* a zero inside, as of a damaged disk */
     assert_non_null(file);
     assert_int_equal(fwrite(base_text, 1, strlen(base_text) + 1, file), strlen(base_text) + 1);
     fclose(file);
@@ -756,11 +755,29 @@ static void grid_texts(void **state)
     assert_int_equal(grid_parse("-20:0.2:201,-20:0.2:201", &grid), STATUS_OK);
     assert_true(grid.r_first == -20);
     const char *const bad[] = {
-        "", "1", "0:1:2", "0:1:2,", "0:1:2,3:4", "0:1:2,3:4:5:6", "0:1:2,3:4:5,", "0:1:2;3:4:5", "a:1:2,3:4:5",
-        "0:1:2.5,3:4:5", "0:1:0,3:4:5", "0:1:-2,3:4:5", "0:0:2,3:4:5", "0:-1:2,3:4:5", "0:1:2,3:nan:5",
+        "",
+        "1",
+        "0:1:2",
+        "0:1:2,",
+        "0:1:2,3:4",
+        "0:1:2,3:4:5:6",
+        "0:1:2,3:4:5,",
+        "0:1:2;3:4:5",
+        "a:1:2,3:4:5",
+        "0:1:2.5,3:4:5",
+        "0:1:0,3:4:5",
+        "0:1:-2,3:4:5",
+        "0:0:2,3:4:5",
+        "0:-1:2,3:4:5",
+        "0:1:2,3:nan:5",
         "inf:1:2,3:4:5",
-        "0:inf:2,3:4:5", "0:1:3000000000,3:4:5", "0:1:99999999999999999999,3:4:5", "0:1:2000000000,0:1:2000000000",
-        "1e12:1:5,0:1:1", "1e9:1e-9:5,0:1:1", "0,1:1:2,3:4:5",
+        "0:inf:2,3:4:5",
+        "0:1:3000000000,3:4:5",
+        "0:1:99999999999999999999,3:4:5",
+        "0:1:2000000000,0:1:2000000000",
+        "1e12:1:5,0:1:1",
+        "1e9:1e-9:5,0:1:1",
+        "0,1:1:2,3:4:5",
     };
     for (size_t i = 0; i < COUNT_OF(bad); i++) {
         if (grid_parse(bad[i], &grid) != STATUS_INVALID) {
@@ -795,8 +812,8 @@ static void meeting_agrees_with_trying_every_pixel(void **state)
     struct random random = random_seed(11, 0);
     int met = 0;
     for (int trial = 0; trial < 2000; trial++) {
-        struct acquisition a = {.sound_speed = 1500, .fc = 1e5, .fs = 2e4, .bandwidth = 1e4, .samples = 2,
-                                .receivers = 2, .pings = 2};
+        struct acquisition a = {
+            .sound_speed = 1500, .fc = 1e5, .fs = 2e4, .bandwidth = 1e4, .samples = 2, .receivers = 2, .pings = 2};
         assert_int_equal(acquisition_allocate(&a), STATUS_OK);
         a.samples += (int)(3 * random_uniform(&random));
         for (int k = 0; k < 2; k++) {
@@ -806,7 +823,7 @@ static void meeting_agrees_with_trying_every_pixel(void **state)
             a.rx[2 * k + 1] = (struct vector){a.tx[k].x, random_uniform(&random), 2};
             a.velocity[k] = (struct vector){700 * random_uniform(&random), 300 * random_uniform(&random), 0};
         }
-        struct grid grid = {-2 + 4 * random_uniform(&random), 0.01 + random_uniform(&random), 9,
+        struct grid grid = {-2 + 4 * random_uniform(&random),  0.01 + random_uniform(&random), 9,
                             -5 + 10 * random_uniform(&random), 0.01 + random_uniform(&random), 7};
         bool expected = any_pixel_meets(&a, &grid);
         assert_int_equal(grid_meets_records(&a, 1, &grid, "trial"), expected ? STATUS_OK : STATUS_INVALID);
@@ -826,8 +843,13 @@ static void records_hold_their_ends(void **state)
         enum status expected;
     } cases[] = {{0, 5, STATUS_OK}, {0, 4, STATUS_INVALID}, {1, 2, STATUS_OK}, {1.25, 2, STATUS_INVALID}};
     for (size_t i = 0; i < COUNT_OF(cases); i++) {
-        struct acquisition a = {.sound_speed = 2, .fc = 1, .fs = 4, .bandwidth = 1, .samples = cases[i].samples,
-                                .receivers = 1, .pings = 1};
+        struct acquisition a = {.sound_speed = 2,
+                                .fc = 1,
+                                .fs = 4,
+                                .bandwidth = 1,
+                                .samples = cases[i].samples,
+                                .receivers = 1,
+                                .pings = 1};
         assert_int_equal(acquisition_allocate(&a), STATUS_OK);
         a.t0[0] = cases[i].t0;
         assert_int_equal(grid_meets_records(&a, 1, &(struct grid){0, 1, 1, 1, 1, 1}, "ends"), cases[i].expected);
@@ -838,21 +860,21 @@ static void records_hold_their_ends(void **state)
 static void odd_grids_meet_or_not(void **state)
 {
     (void)state;
-    struct scene scene = loaded(base_text);         /* records from 24 to 32.5 ms: 18 to 24.4 m to either side */
+    struct scene scene = loaded(base_text); /* records from 24 to 32.5 ms: 18 to 24.4 m to either side */
     const struct {
         struct grid grid;
         enum status expected;
     } cases[] = {
         {{0, 0.1, 5, 20, 0.1, 5}, STATUS_OK},
-        {{0, 0.1, 5, -21, 0.1, 5}, STATUS_OK},                      /* the other side of the track */
+        {{0, 0.1, 5, -21, 0.1, 5}, STATUS_OK}, /* the other side of the track */
         {{0, 0.1, 5, -10, 0.1, 5}, STATUS_INVALID},
-        {{-1, 0.1, 21, -15, 0.1, 301}, STATUS_INVALID},             /* astride the track, all too near */
-        {{-1, 0.1, 21, -25, 0.1, 501}, STATUS_OK},                  /* astride, reaching far enough */
-        {{-1, 50, 1, -100, 50, 5}, STATUS_INVALID},                 /* -100 -50 0 50 100: steps over the records */
-        {{-1, 50, 1, -80, 50, 5}, STATUS_OK},                       /* holds 20 */
+        {{-1, 0.1, 21, -15, 0.1, 301}, STATUS_INVALID}, /* astride the track, all too near */
+        {{-1, 0.1, 21, -25, 0.1, 501}, STATUS_OK},      /* astride, reaching far enough */
+        {{-1, 50, 1, -100, 50, 5}, STATUS_INVALID},     /* -100 -50 0 50 100: steps over the records */
+        {{-1, 50, 1, -80, 50, 5}, STATUS_OK},           /* holds 20 */
         {{-1e6, 1, 2000001, 1000, 1, 1}, STATUS_INVALID},
         {{-1e6, 0.5, 4000001, 20, 1, 1}, STATUS_OK},
-        {{20, 1, 1, 0, 1, 1}, STATUS_OK},                           /* ahead, on the track */
+        {{20, 1, 1, 0, 1, 1}, STATUS_OK}, /* ahead, on the track */
         {{0, 1, 1, 1e9, 1, 1}, STATUS_INVALID},
     };
     for (size_t i = 0; i < COUNT_OF(cases); i++) {

@@ -19,7 +19,8 @@ struct full_options {
 static const char *const windows[] = {"none", "kaiser", NULL};
 
 static const struct param full_params[] = {
-    {PARAM(struct full_options, taps), .summary = "kernel length", .initial = 8, .min = -4, .max = 64, .sweep = "4 8 16"},
+    {PARAM(struct full_options, taps), .summary = "kernel length", .initial = 8, .min = -4, .max = 64,
+     .sweep = "4 8 16"},
     {PARAM_NAMED(struct full_options, window, windows), .summary = "of the kernel", .initial = 0},
     {PARAM(struct full_options, spacing), .summary = "of the blocks", .initial = 0.1, .min = 1e-3, .max = 1e3},
     {PARAM(struct full_options, length), .summary = "without an upper bound", .min = 0, .max = INFINITY},
@@ -27,7 +28,9 @@ static const struct param full_params[] = {
 };
 
 static const struct algorithm full = {
-    .name = "full", .options_size = sizeof(struct full_options), .params = full_params,
+    .name = "full",
+    .options_size = sizeof(struct full_options),
+    .params = full_params,
 };
 static const struct algorithm bare = {.name = "bare"};
 const struct algorithm *const algorithms[] = {&full, &bare, NULL};
@@ -203,12 +206,9 @@ static void values_are_formatted(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(defaults_are_used),
-        cmocka_unit_test(settings_are_read_in_any_order),
-        cmocka_unit_test(algorithm_without_params),
-        cmocka_unit_test(canonical_text_reads_back),
-        cmocka_unit_test(bad_specs_are_refused),
-        cmocka_unit_test(long_text_is_refused),
+        cmocka_unit_test(defaults_are_used),        cmocka_unit_test(settings_are_read_in_any_order),
+        cmocka_unit_test(algorithm_without_params), cmocka_unit_test(canonical_text_reads_back),
+        cmocka_unit_test(bad_specs_are_refused),    cmocka_unit_test(long_text_is_refused),
         cmocka_unit_test(values_are_formatted),
     };
     return cmocka_run_group_tests_name("spec", tests, NULL, NULL);

@@ -33,7 +33,7 @@ static void largest_errors(void **state)
     static const struct {
         double tx_length, d;
         spectrum_function *function;
-        double expected[4], tolerance;      /* rad; 0.6 of a unit of their last place */
+        double expected[4], tolerance; /* rad; 0.6 of a unit of their last place */
     } table[] = {
         {0.08, 0, spectrum_lbf_printed, {.0024, .0064, .0104, .0142}, 6e-5},
         {0.08, 0, spectrum_lbf7, {.003, .008, .013, .018}, 6e-4},
@@ -110,10 +110,12 @@ static void hard_cases(void **state)
         double least = INFINITY, expected = cases[k].expected;
         for (int n = -200000; n <= 200000; n++) {
             double u = n * 1e-3;
-            least = fmin(least, cases[k].frequency * spectrum_delay(&setting, cases[k].d, cases[k].r, u) + cases[k].nu * u);
+            least =
+                fmin(least, cases[k].frequency * spectrum_delay(&setting, cases[k].d, cases[k].r, u) + cases[k].nu * u);
         }
         assert_true(isfinite(value));
-        if (isfinite(expected) ? fabs(value - expected) > 1e-4 : !(value >= -2 * pi * least - 1e-4 && value <= -2 * pi * least + 5))
+        if (isfinite(expected) ? fabs(value - expected) > 1e-4
+                               : !(value >= -2 * pi * least - 1e-4 && value <= -2 * pi * least + 5))
             fail_msg("case %d: %.9g, expected %.9g, least %.9g", (int)k, value, expected, -2 * pi * least);
     }
     static const double betas[] = {-0.999, -0.9, -0.62, 0, 0.2, 0.62, 0.9, 0.999};

@@ -8,7 +8,8 @@ static void nan_is_close_to_nothing(void **state)
     (void)state;
     assert_true(is_close(1, 1, 0) && is_close(1.5, 1, 0.5) && is_close(-1e300, 1e300, INFINITY));
     assert_false(is_close(1 + 1e-9, 1, 1e-10) || is_close(INFINITY, 1, 1e300));
-    assert_false(is_close(NAN, 1, 1e9) || is_close(NAN, 1, INFINITY) || is_close(1, NAN, 1e9) || is_close(NAN, NAN, 1e9));
+    assert_false(is_close(NAN, 1, 1e9) || is_close(NAN, 1, INFINITY) || is_close(1, NAN, 1e9)
+                 || is_close(NAN, NAN, 1e9));
     assert_false(is_close(1, 1, NAN));
 }
 

@@ -68,7 +68,7 @@ static int ladder_count(const char *text)
     struct spec spec;
     assert_int_equal(spec_parse(text, &spec), STATUS_OK);
     assert_int_equal(ladder_add(&ladder, &spec), STATUS_OK);
-    assert_int_equal(ladder_add(&ladder, &spec), STATUS_OK);       /* nothing twice */
+    assert_int_equal(ladder_add(&ladder, &spec), STATUS_OK); /* nothing twice */
     int count = ladder.count;
     for (int a = 0; a < count; a++)
         for (int b = 0; b < a; b++)
@@ -87,13 +87,13 @@ static void test_ladders(void **state)
     } ladders[] = {
         {"reference", 1},
         {"bp_nearest", 2},
-        {"bp_linear", 7 * 2},                       /* beta 0 1 2 4 8 16 32, float and double */
+        {"bp_linear", 7 * 2}, /* beta 0 1 2 4 8 16 32, float and double */
         {"bp_linear:beta=3", 2},
         {"bp_linear:precision=double", 7},
         {"bp_linear:beta=3,precision=double", 1},
-        {"bp_sinc", 4 * 2 * 2},                     /* taps 4 8 16 32, window none and kaiser */
+        {"bp_sinc", 4 * 2 * 2}, /* taps 4 8 16 32, window none and kaiser */
         {"bp_sinc:window=kaiser", 4 * 2},
-        {"bp_zeropad", 7 * 2},                      /* factor 1 2 4 8 16 32 64 */
+        {"bp_zeropad", 7 * 2}, /* factor 1 2 4 8 16 32 64 */
     };
     for (size_t k = 0; k < sizeof ladders / sizeof *ladders; k++)
         assert_int_equal(ladder_count(ladders[k].spec), ladders[k].count);
@@ -126,21 +126,36 @@ static void test_tables_of_made_up_rows(void **state)
     char options[7][24];
     assert_int_equal(record_open(folder, &provenance, &record), STATUS_OK);
     assert_int_equal(record_scene(record, "made/up", 1), STATUS_OK);
-    struct measurement row = {
-        .scene = "made/up", .algorithm = "bp_zeropad", .precision = "float", .threads = 2, .engine = "x",
-        .status = "ok", .reason = "", .skipped = "", .stages = "", .plan_s = 1, .runs = 3, .control_s = 8, .flops_published = NAN,
-        .pairs = 1e6, .bytes = 1, .error_gain = NAN, .phase_rms_rad = NAN, .width_m = NAN, .pslr_db = NAN,
-        .islr_db = NAN};
+    struct measurement row = {.scene = "made/up",
+                              .algorithm = "bp_zeropad",
+                              .precision = "float",
+                              .threads = 2,
+                              .engine = "x",
+                              .status = "ok",
+                              .reason = "",
+                              .skipped = "",
+                              .stages = "",
+                              .plan_s = 1,
+                              .runs = 3,
+                              .control_s = 8,
+                              .flops_published = NAN,
+                              .pairs = 1e6,
+                              .bytes = 1,
+                              .error_gain = NAN,
+                              .phase_rms_rad = NAN,
+                              .width_m = NAN,
+                              .pslr_db = NAN,
+                              .islr_db = NAN};
     for (int k = 0; k < 7; k++) {
         int rate = 1 << k;
         snprintf(options[k], sizeof options[k], "factor=%d", rate);
         row.options = options[k];
         row.run_s = row.run_min_s = 0.01 * rate;
-        row.flops = 1e9 - 1e6 * rate;               /* by operations the finest is cheapest */
+        row.flops = 1e9 - 1e6 * rate; /* by operations the finest is cheapest */
         row.error = 0.3 / rate;
         assert_int_equal(record_add(record, &row), STATUS_OK);
     }
-    row.run_s = row.flops = 1e-9;                   /* would beat everything */
+    row.run_s = row.flops = 1e-9; /* would beat everything */
     row.error = 1e-9;
     row.options = "";
     row.algorithm = "failed";
@@ -155,7 +170,7 @@ static void test_tables_of_made_up_rows(void **state)
     assert_int_equal(sweep_tables(folder, NULL, 0), STATUS_OK);
     struct csv csv;
     assert_int_equal(csv_read(path_of("slopes.csv"), CSV_TAIL_KEEP, &csv), STATUS_OK);
-    assert_int_equal(csv.row_count, 2);             /* all of it, and its finest half */
+    assert_int_equal(csv.row_count, 2); /* all of it, and its finest half */
     int slope = row_find(&csv, (const char *const[]){"setting", "part"}, (const char *const[]){"factor", "finest"});
     assert_close(cell(&csv, slope, "slope"), -1, 1e-8);
     assert_close(cell(&csv, slope, "residual_log10"), 0, 1e-8);
@@ -232,7 +247,7 @@ static void test_speckle_sweep_is_resumed_and_shows_the_laws(void **state)
     for (size_t k = 0; k < sizeof plots / sizeof *plots; k++) {
         char pattern[64];
         snprintf(pattern, sizeof pattern, "out/*small*-%s.[ps][nv]g", plots[k]);
-        assert_int_equal(files_count(pattern), k < 3 ? 2 : 0);      /* PNG and SVG; speckle has no lobes */
+        assert_int_equal(files_count(pattern), k < 3 ? 2 : 0); /* PNG and SVG; speckle has no lobes */
     }
 
     /* Done: nothing is measured again. */

@@ -14,24 +14,45 @@
 #include "support.h"
 
 #define PLOTS SASBENCH_ROOT "/plots"
-#define ROW_HEAD "scene,algorithm,options,precision,threads,engine,status,reason,skipped,plan_s,run_s,run_min_s,runs,control_s," \
+#define ROW_HEAD                                                                                                       \
+    "scene,algorithm,options,precision,threads,engine,status,reason,skipped,plan_s,run_s,run_min_s,runs,control_s,"    \
     "stages,flops_published,flops,pairs,bytes,error,error_gain,phase_rms_rad,width_m,pslr_db,islr_db\n"
-#define SLOPES_HEAD "scene,algorithm,options,precision,setting,part,first,last,rate_first,rate_last,points,slope," \
+#define SLOPES_HEAD                                                                                                    \
+    "scene,algorithm,options,precision,setting,part,first,last,rate_first,rate_last,points,slope,"                     \
     "error_first,error_last,residual_log10\n"
 #define RULES_HEAD "scene,fc_hz,fs_hz,bandwidth_hz,bp22_eq20_rate,zp15_rate,edge_phase_rad,linear_floor\n"
 
 /* Every command touches the canary in the working folder, which is the test's own. */
 static const char canary[] = "PWNED";
-static const char *const payloads[] = {
-    "`touch PWNED`", "$(touch PWNED)", "system('touch PWNED')", "'.system('touch PWNED').'", "\".system('touch PWNED').\"",
-    "\\\".system('touch PWNED').\\\"", "''.system('touch PWNED').''", "'; system('touch PWNED') #", "!touch PWNED", "|touch PWNED;#", "<touch PWNED;#",
-    "'; touch PWNED; '", "@PWNED", "\\047.system('touch PWNED').\\047", "{/Symbol a}^{b}_c &{x} @{y}", "%s%n%d\\n", "-f", "$rows", "=touch PWNED"};
+static const char *const payloads[] = {"`touch PWNED`",
+                                       "$(touch PWNED)",
+                                       "system('touch PWNED')",
+                                       "'.system('touch PWNED').'",
+                                       "\".system('touch PWNED').\"",
+                                       "\\\".system('touch PWNED').\\\"",
+                                       "''.system('touch PWNED').''",
+                                       "'; system('touch PWNED') #",
+                                       "!touch PWNED",
+                                       "|touch PWNED;#",
+                                       "<touch PWNED;#",
+                                       "'; touch PWNED; '",
+                                       "@PWNED",
+                                       "\\047.system('touch PWNED').\\047",
+                                       "{/Symbol a}^{b}_c &{x} @{y}",
+                                       "%s%n%d\\n",
+                                       "-f",
+                                       "$rows",
+                                       "=touch PWNED"};
 enum { PAYLOADS = sizeof payloads / sizeof *payloads };
 /* With control characters: refused where they are read. */
-static const char *const broken[] = {
-    "x\n!touch PWNED\n#", "x\nEND_OF_ROWS\nsystem('touch PWNED')\n#", "3\nEND_OF_SLOPES\nsystem('touch PWNED')\n#",
-    "x\nEND_OF_LABELS\nsystem('touch PWNED')\n#", "x\rsystem('touch PWNED')", "x\tsystem('touch PWNED')", "x\\\nsystem('touch PWNED')",
-    "x\x1b[31m"};
+static const char *const broken[] = {"x\n!touch PWNED\n#",
+                                     "x\nEND_OF_ROWS\nsystem('touch PWNED')\n#",
+                                     "3\nEND_OF_SLOPES\nsystem('touch PWNED')\n#",
+                                     "x\nEND_OF_LABELS\nsystem('touch PWNED')\n#",
+                                     "x\rsystem('touch PWNED')",
+                                     "x\tsystem('touch PWNED')",
+                                     "x\\\nsystem('touch PWNED')",
+                                     "x\x1b[31m"};
 enum { BROKEN = sizeof broken / sizeof *broken };
 
 static int work_folder(void **state)
@@ -82,20 +103,26 @@ static void results_fill(const char *directory, const char *scene, const char *t
     if (!strchr(text, '\n'))
         fprintf(file, "# machine: %s\n# commit: %s\n# threads: %s\n# scene %s: %s\n", text, text, text, text, text);
     fputs(ROW_HEAD, file);
-    fields_write(file, (const char *[]){scene, "reference", "", "float"}, 4, "1,inv,ok,,,0.1,1,0.1,3,0.5,focus=1,1,2e6,3,4,1e-06,0.1,0.1,0.04,-13,-10\n");
+    fields_write(file, (const char *[]){scene, "reference", "", "float"}, 4,
+                 "1,inv,ok,,,0.1,1,0.1,3,0.5,focus=1,1,2e6,3,4,1e-06,0.1,0.1,0.04,-13,-10\n");
     for (int k = 2; k < 5; k++) {
         char options[2048];
         snprintf(options, sizeof options, "beta=%d,x=%s", k, text);
-        fields_write(file, (const char *[]){scene, "bp_linear", options, "float"}, 4, "1,inv,ok,,,0.1,0.2,0.1,3,0.5,focus=1,1,2e6,3,4,0.01,0.1,0.1,0.04,-12,-9\n");
-        fields_write(file, (const char *[]){scene, text, options, text}, 4, "1,inv,ok,,,0.1,0.2,0.1,3,0.5,focus=1,1,2e6,3,4,0.01,0.1,0.1,0.04,-12,-9\n");
+        fields_write(file, (const char *[]){scene, "bp_linear", options, "float"}, 4,
+                     "1,inv,ok,,,0.1,0.2,0.1,3,0.5,focus=1,1,2e6,3,4,0.01,0.1,0.1,0.04,-12,-9\n");
+        fields_write(file, (const char *[]){scene, text, options, text}, 4,
+                     "1,inv,ok,,,0.1,0.2,0.1,3,0.5,focus=1,1,2e6,3,4,0.01,0.1,0.1,0.04,-12,-9\n");
     }
-    fields_write(file, (const char *[]){scene, "rma_lbf", text, "double"}, 4, "1,inv,failed,because,,,,,,,,,,,,,,,,,\n");
+    fields_write(file, (const char *[]){scene, "rma_lbf", text, "double"}, 4,
+                 "1,inv,failed,because,,,,,,,,,,,,,,,,,\n");
     assert_int_equal(fclose(file), 0);
 
     file = file_begin(directory, "slopes.csv");
     fputs(SLOPES_HEAD, file);
-    fields_write(file, (const char *[]){scene, "bp_linear", text, "float", "beta", "finest", "2", "4", number, number, number, number,
-                                        number, number, number}, 14, "0.1\n");
+    fields_write(file,
+                 (const char *[]){scene, "bp_linear", text, "float", "beta", "finest", "2", "4", number, number, number,
+                                  number, number, number, number},
+                 14, "0.1\n");
     assert_int_equal(fclose(file), 0);
 
     file = file_begin(directory, "rules.csv");
@@ -177,7 +204,8 @@ static void control_characters_are_refused(void **state)
     for (int k = 0; k < BROKEN; k++)
         for (int place = 0; place < 3; place++) {
             assert_int_equal(mkdir("results", 0777), 0);
-            results_fill("results", place == 0 ? broken[k] : "a", place == 1 ? broken[k] : "b", place == 2 ? broken[k] : "1");
+            results_fill("results", place == 0 ? broken[k] : "a", place == 1 ? broken[k] : "b",
+                         place == 2 ? broken[k] : "1");
             assert_int_equal(report_write("results"), STATUS_INVALID);
             assert_non_null(strstr(status_message(), ".csv:"));
             for (int n = 0; folder_plots[n]; n += 3)
@@ -197,7 +225,9 @@ static void paths_are_no_pipes(void **state)
         assert_int_equal(mkdir(names[k], 0777), 0);
         FILE *file = file_begin(names[k], "bench.csv");
         fputs("scene,engine,algorithm,precision,threads,pairs_per_s,fraction_of_peak,ratio_to_control\n"
-              "bp22/full,general,\"`touch PWNED`\",float,1,1e9,0.1,100\nbp22/full,invariant,bp_nearest,float,1,2e9,0.2,200\n", file);
+              "bp22/full,general,\"`touch "
+              "PWNED`\",float,1,1e9,0.1,100\nbp22/full,invariant,bp_nearest,float,1,2e9,0.2,200\n",
+              file);
         assert_int_equal(fclose(file), 0);
         snprintf(csv, sizeof csv, "%s/bench.csv", names[k]);
         snprintf(picture, sizeof picture, "%s/bench.svg", names[k]);

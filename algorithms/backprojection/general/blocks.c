@@ -10,7 +10,7 @@
 
 #include <math.h>
 
-enum { EXACT = 64 };                /* pixels that are evaluated one by one before a block is tried again */
+enum { EXACT = 64 }; /* pixels that are evaluated one by one before a block is tried again */
 
 /* Distance between two intervals. */
 static double gap(double low_a, double high_a, double low_b, double high_b)
@@ -64,11 +64,11 @@ struct ping_box ping_box_make(const struct acquisition *a, int ping, int patch_c
         include(&box, rx[m]);
     double furthest = 0, mach = length(v.x, v.y, v.z) / c;
     for (int k = 0; k < patch_count; k++)
-        for (int i = 0; i < patches[k].r_count; i += patches[k].r_count > 1 ? patches[k].r_count - 1 : 1) {
+        for (int i = 0; i<patches[k].r_count; i += patches[k].r_count> 1 ? patches[k].r_count - 1 : 1) {
             struct pixel_line row = grid_line(&patches[k], true, i);
             furthest = fmax(furthest, ping_box_extent(&box, &row, 0, row.count));
         }
-    double longest = 2 * furthest / (c * (1 - mach));   /* s: no delay is longer */
+    double longest = 2 * furthest / (c * (1 - mach)); /* s: no delay is longer */
     for (int m = 0; m < a->receivers; m++)
         include(&box, (struct vector){rx[m].x + v.x * longest, rx[m].y + v.y * longest, rx[m].z + v.z * longest});
     box.reach = pow(256 * phase_limit * c / (2 * pi * a->fc) * pow((1 - mach) / (1 + mach), 4), 1.0 / 6);
@@ -98,7 +98,8 @@ int blocks_make(const struct ping_box *box, const struct pixel_line *line, struc
 {
     int count = 0;
     while (count < BP_BLOCKS && left->begin < left->end) {
-        int rest = left->end - left->begin, most = box->reach > 0 ? block_longest(box, line, left->begin, left->end) : 0;
+        int rest = left->end - left->begin,
+            most = box->reach > 0 ? block_longest(box, line, left->begin, left->end) : 0;
         bool exact = most < BP_BLOCK_LEAST;
         int parts = exact ? 1 : (rest + most - 1) / most;
         int pixels = !exact ? (rest + parts - 1) / parts : box->reach > 0 && rest > EXACT ? EXACT : rest;

@@ -7,17 +7,17 @@
 
 /* A box that holds a ping's transmitter, and its receivers from emission until the last echo of the image. */
 struct ping_box {
-    struct vector low, high;        /* m */
-    double reach;                   /* m^(1/6): blocks may be reach rho^(5/6) to either side, rho their distance; 0: none */
-    double longest;                 /* m: nor may they be longer: at most 2^18 turns to either side of their middle */
+    struct vector low, high; /* m */
+    double reach;            /* m^(1/6): blocks may be reach rho^(5/6) to either side, rho their distance; 0: none */
+    double longest;          /* m: nor may they be longer: at most 2^18 turns to either side of their middle */
 };
 
 /* Pixels [begin, end) of a line. */
 struct bp_block {
     int begin, end;
-    bool exact;                     /* too near the array: each delay is evaluated */
+    bool exact; /* too near the array: each delay is evaluated */
 };
-enum { BP_BLOCKS = 16, BP_BLOCK_LEAST = 16 };   /* blocks made at a time; pixels below which a block does not pay */
+enum { BP_BLOCKS = 16, BP_BLOCK_LEAST = 16 }; /* blocks made at a time; pixels below which a block does not pay */
 
 /* The box of a ping for the pixels of some patches, with blocks whose phase errs by at most phase_limit (rad, >= 0). */
 struct ping_box ping_box_make(const struct acquisition *acquisition, int ping, int patch_count,

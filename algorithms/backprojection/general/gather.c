@@ -10,21 +10,21 @@
 #if WINDOWS
 #include <immintrin.h>
 #if VECTOR_BYTES == 64
-#define PICK(values, index) (vector_real)_mm512_permutevar_ps((__m512)(values), (__m512i)(index))
-#define REPEAT(from) (vector_real)_mm512_broadcast_f32x4(_mm_loadu_ps(from))
-#define SECONDS 1, 1, 1, 1, 5, 5, 5, 5, 9, 9, 9, 9, 13, 13, 13, 13
-#define JOIN(a, b) __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7)
-#define QUADS(v) __builtin_shufflevector(JOIN(v(0), v(1)), JOIN(v(2), v(3)), \
-                                         0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
+#define PICK(values, index) (vector_real) _mm512_permutevar_ps((__m512)(values), (__m512i)(index))
+#define REPEAT(from)        (vector_real) _mm512_broadcast_f32x4(_mm_loadu_ps(from))
+#define SECONDS             1, 1, 1, 1, 5, 5, 5, 5, 9, 9, 9, 9, 13, 13, 13, 13
+#define JOIN(a, b)          __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7)
+#define QUADS(v)                                                                                                       \
+    __builtin_shufflevector(JOIN(v(0), v(1)), JOIN(v(2), v(3)), 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
 #else
-#define PICK(values, index) (vector_real)_mm256_permutevar_ps((__m256)(values), (__m256i)(index))
-#define REPEAT(from) (vector_real)_mm256_broadcast_ps((const __m128 *)(from))
-#define SECONDS 1, 1, 1, 1, 5, 5, 5, 5
-#define QUADS(v) __builtin_shufflevector(v(0), v(1), 0, 1, 2, 3, 4, 5, 6, 7)
+#define PICK(values, index) (vector_real) _mm256_permutevar_ps((__m256)(values), (__m256i)(index))
+#define REPEAT(from)        (vector_real) _mm256_broadcast_ps((const __m128 *)(from))
+#define SECONDS             1, 1, 1, 1, 5, 5, 5, 5
+#define QUADS(v)            __builtin_shufflevector(v(0), v(1), 0, 1, 2, 3, 4, 5, 6, 7)
 #endif
 #endif
 
-typedef double two_floats __attribute__((may_alias, aligned(sizeof(real))));     /* moved at once */
+typedef double two_floats __attribute__((may_alias, aligned(sizeof(real)))); /* moved at once */
 typedef float bits __attribute__((may_alias));
 typedef float quad __attribute__((vector_size(16), aligned(sizeof(float)), may_alias));
 
@@ -66,8 +66,8 @@ INLINE vector_real pick(bool line, vector_real windows, vector_int place, const 
 
 /* The same out of windows that are loaded whole: from the predecessor of a middle pixel's sample on, where the others read
    that sample or a neighbour of it. The last value is only a line's next one; else it may lie one past the row's end. */
-INLINE void take_windows(bool line, enum loading loading, const real *row, size_t row_length, const struct run *run, int i,
-                         vector_real *x, vector_real *y)
+INLINE void take_windows(bool line, enum loading loading, const real *row, size_t row_length, const struct run *run,
+                         int i, vector_real *x, vector_real *y)
 {
     const int *index = run->sample + i;
     vector_int place = *(const vector_int *)index;
@@ -75,7 +75,7 @@ INLINE void take_windows(bool line, enum loading loading, const real *row, size_
     if (loading == TOGETHER) {
         const int *middle = index + LANES / 2 - 1;
         const real *from = row + *middle - 1;
-#define MIDDLE(n) (*(const bits *)middle)       /* an int would come from its register, by two instructions for one */
+#define MIDDLE(n) (*(const bits *)middle) /* an int would come from its register, by two instructions for one */
         place = place + 1 - (vector_int)(vector_bits)ALL(MIDDLE);
         re = REPEAT(from);
         im = REPEAT(from + row_length);
@@ -143,7 +143,7 @@ INLINE void add_taken(bool line, enum loading loading, int group, const real *ro
         return;
     vector_real x = {0}, y = {0};
     for (int g = 0; g < group; g++) {
-        for (int k = count; k < i + LANES; k++) {       /* the last vector's other pixels read what may be read */
+        for (int k = count; k < i + LANES; k++) { /* the last vector's other pixels read what may be read */
             runs[g].sample[k] = runs[g].sample[count - 1];
             runs[g].rest[k] = runs[g].turns[k] = 0;
         }
@@ -177,8 +177,8 @@ INLINE void add_all(bool line, enum loading loading, int group, const real *row,
 
 /* Many weights, from a grid of phases or from cubics in the fraction; the record's parts lie apart. `taps` is a constant
    where this is inlined, so that the loops over it unroll. */
-INLINE void add_taps(const struct bp_table *table, int taps, const real *row_re, const real *row_im,
-                     int count, const struct run *run, real *re, real *im)
+INLINE void add_taps(const struct bp_table *table, int taps, const real *row_re, const real *row_im, int count,
+                     const struct run *run, real *re, real *im)
 {
     const real *weights = table->weights;
     real wr[RUN], wi[RUN];
@@ -218,7 +218,7 @@ void BP_TAKE(const struct bp_table *table, enum loading loading, int group, cons
     if (!line && table->reading != BP_NEAREST) {
         for (int g = 0; g < group; g++, row += 2 * length) {
             const real *from = row + runs[g].base;
-            switch (table->taps) {  /* the shipped kernels unroll, any other length works as well */
+            switch (table->taps) { /* the shipped kernels unroll, any other length works as well */
             case 8: add_taps(table, 8, from, from + length, count, &runs[g], re, im); break;
             case 16: add_taps(table, 16, from, from + length, count, &runs[g], re, im); break;
             case 20: add_taps(table, 20, from, from + length, count, &runs[g], re, im); break;

@@ -12,20 +12,20 @@
 #include "backprojection/pairs.h"
 
 enum {
-    BATCH_BYTES = 8 << 20,          /* rows of one batch: they stay in the shared cache while all lines read them */
-    BATCH_LEAST = 8                 /* rows of one batch at least, so that threads share the compression */
+    BATCH_BYTES = 8 << 20, /* rows of one batch: they stay in the shared cache while all lines read them */
+    BATCH_LEAST = 8        /* rows of one batch at least, so that threads share the compression */
 };
 
 struct general {
     bp_sum_function *sum;
-    struct vector *heading;         /* [pings] */
-    struct ping_box *boxes;         /* [pings] */
-    int batch;                      /* rows */
-    void *rows;                     /* [batch][2 shape.length] real: re, then im; one value more may be read */
-    void *interleaved;              /* complex [threads][shape.length] */
+    struct vector *heading; /* [pings] */
+    struct ping_box *boxes; /* [pings] */
+    int batch;              /* rows */
+    void *rows;             /* [batch][2 shape.length] real: re, then im; one value more may be read */
+    void *interleaved;      /* complex [threads][shape.length] */
     int patch_count;
-    bool *along_x;                  /* [patch_count] the lines' direction */
-    void **sums;                    /* [patch_count]: re then im, real [lines][pixels of a line] each */
+    bool *along_x; /* [patch_count] the lines' direction */
+    void **sums;   /* [patch_count]: re then im, real [lines][pixels of a line] each */
 };
 
 static bp_sum_function *const sum_functions[][2] = {
@@ -102,13 +102,15 @@ static enum status general_plan(struct bp *bp)
     general->patch_count = problem->patch_count;
     general->along_x = calloc((size_t)problem->patch_count, sizeof *general->along_x);
     general->sums = calloc((size_t)problem->patch_count, sizeof *general->sums);
-    if (!general->rows || !general->interleaved || !general->heading || !general->boxes || !general->along_x || !general->sums)
+    if (!general->rows || !general->interleaved || !general->heading || !general->boxes || !general->along_x
+        || !general->sums)
         return status_set(STATUS_FAILED, "no memory for %d records of %d values", general->batch, bp->shape.length);
     /* The rest of the limit is for the sums in float (bp_sum.c). */
     const double quintics = problem->precision == PRECISION_FLOAT ? 0.85 : 1;
     for (int p = 0; p < a->pings; p++) {
         general->heading[p] = acquisition_heading(a, p);
-        general->boxes[p] = ping_box_make(a, p, problem->patch_count, problem->patches, quintics * bp->medium.phase_limit);
+        general->boxes[p] =
+            ping_box_make(a, p, problem->patch_count, problem->patches, quintics * bp->medium.phase_limit);
     }
     for (int k = 0; k < problem->patch_count; k++) {
         const struct grid *grid = &problem->patches[k];
@@ -159,8 +161,10 @@ static void sum_line(const struct bp *bp, int k, int number, size_t first, int c
     char *re = (char *)general->sums[k] + (size_t)number * (size_t)line.count * size, *im = re + pixels * size;
     for (size_t index = first; index < end;) {
         int p = (int)(index / (size_t)a->receivers), m = (int)(index % (size_t)a->receivers);
-        struct bp_ping ping = {a->tx[p], a->velocity[p], a->t0[p], a->receivers - m, a->rx + index,
-                               (const char *)general->rows + (index - first) * row_bytes, bp->shape.length};
+        struct bp_ping ping = {a->tx[p],        a->velocity[p],
+                               a->t0[p],        a->receivers - m,
+                               a->rx + index,   (const char *)general->rows + (index - first) * row_bytes,
+                               bp->shape.length};
         if (end - index < (size_t)ping.receivers)
             ping.receivers = (int)(end - index);
         struct pair_span aperture[2], record[2];
@@ -233,7 +237,8 @@ static void general_execute(struct bp *bp, const struct echoes *echoes, struct i
     size_t pairs = (size_t)problem->acquisition->pings * (size_t)problem->acquisition->receivers;
     size_t size = real_size(problem->precision);
     for (int k = 0; k < problem->patch_count; k++)
-        memset(general->sums[k], 0, 2 * (size_t)problem->patches[k].x_count * (size_t)problem->patches[k].r_count * size);
+        memset(general->sums[k], 0,
+               2 * (size_t)problem->patches[k].x_count * (size_t)problem->patches[k].r_count * size);
     for (size_t first = 0; first < pairs; first += (size_t)general->batch) {
         int count = pairs - first < (size_t)general->batch ? (int)(pairs - first) : general->batch;
 #pragma omp parallel for schedule(static)

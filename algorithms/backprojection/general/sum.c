@@ -15,27 +15,28 @@
 #if WINDOWS
 #include <immintrin.h>
 #if VECTOR_BYTES == 64
-#define ROUND(values) (vector_real)_mm512_roundscale_ps((__m512)(values), _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)
-#define FLOOR(values) (vector_real)_mm512_roundscale_ps((__m512)(values), _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC)
-#define NEAREST(values) \
-    (vector_int)_mm512_cvt_roundps_epi32((__m512)(values), _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)
-#define WHOLE(values) (vector_int)_mm512_cvtps_epi32((__m512)(values))
+#define ROUND(values)                                                                                                  \
+    (vector_real) _mm512_roundscale_ps((__m512)(values), _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)
+#define FLOOR(values) (vector_real) _mm512_roundscale_ps((__m512)(values), _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC)
+#define NEAREST(values)                                                                                                \
+    (vector_int) _mm512_cvt_roundps_epi32((__m512)(values), _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)
+#define WHOLE(values) (vector_int) _mm512_cvtps_epi32((__m512)(values))
 #else
-#define ROUND(values) (vector_real)_mm256_round_ps((__m256)(values), _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)
-#define FLOOR(values) (vector_real)_mm256_round_ps((__m256)(values), _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC)
+#define ROUND(values)   (vector_real) _mm256_round_ps((__m256)(values), _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)
+#define FLOOR(values)   (vector_real) _mm256_round_ps((__m256)(values), _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC)
 #define NEAREST(values) WHOLE(ROUND(values))
-#define WHOLE(values) (vector_int)_mm256_cvtps_epi32((__m256)(values))
+#define WHOLE(values)   (vector_int) _mm256_cvtps_epi32((__m256)(values))
 #endif
 #endif
 
 enum {
-    NODES = 6,                      /* of a quintic */
-    DELAYS = NODES * BP_BLOCKS,     /* that are evaluated together, to each receiver of a group */
-    BITS = 19,                      /* of a point's fraction */
-    SPAN = 4000,                    /* whole points that fit beside them in 32 bits, with a sign */
-    FLAT_LEAST = 64                 /* pixels of a run below which single precision does not pay */
+    NODES = 6,                  /* of a quintic */
+    DELAYS = NODES * BP_BLOCKS, /* that are evaluated together, to each receiver of a group */
+    BITS = 19,                  /* of a point's fraction */
+    SPAN = 4000,                /* whole points that fit beside them in 32 bits, with a sign */
+    FLAT_LEAST = 64             /* pixels of a run below which single precision does not pay */
 };
-#define RATIO_LEAST 0x1p-40         /* turns to a point below which single precision could not hold the inverse of a bend */
+#define RATIO_LEAST 0x1p-40 /* turns to a point below which single precision could not hold the inverse of a bend */
 
 typedef unsigned long long vector_long __attribute__((vector_size(VECTOR_BYTES)));
 typedef unsigned vector_unsigned __attribute__((vector_size(LANES * sizeof(int)), aligned(sizeof(int)), may_alias));
@@ -72,7 +73,8 @@ struct motion {
 static struct motion motion_make(const struct bp_medium *medium, const struct bp_ping *ping)
 {
     const struct vector v = ping->velocity;
-    const double c = medium->sound_speed, speed = sqrt(v.x * v.x + v.y * v.y + v.z * v.z), e = (c - speed) * (c + speed);
+    const double c = medium->sound_speed, speed = sqrt(v.x * v.x + v.y * v.y + v.z * v.z),
+                 e = (c - speed) * (c + speed);
     return (struct motion){v, e, 1 / e, speed <= BP_SLOW * c};
 }
 
@@ -85,11 +87,13 @@ INLINE double leg_back(bool slow, const struct motion *motion, double leg, doubl
 }
 
 /* The delays of all places to one receiver; `slow` is a constant where this is inlined. */
-INLINE void legs_back(bool slow, const struct motion *motion, const struct places *places, struct vector rx, double *tau)
+INLINE void legs_back(bool slow, const struct motion *motion, const struct places *places, struct vector rx,
+                      double *tau)
 {
 #pragma omp simd
     for (int i = 0; i < places->count; i++)
-        tau[i] = leg_back(slow, motion, places->leg[i], rx.x + places->bx[i], rx.y + places->by[i], rx.z + places->bz[i]);
+        tau[i] =
+            leg_back(slow, motion, places->leg[i], rx.x + places->bx[i], rx.y + places->by[i], rx.z + places->bz[i]);
 }
 
 /* The same to a group of receivers. */
@@ -139,7 +143,7 @@ static void sum_exact(const struct bp_medium *medium, const struct bp_table *tab
 #pragma omp simd
             for (int i = 0; i < count; i++) {
                 double q = (tau[i] - scale->t0) * scale->fs * table->upsample;
-                q = q > 0 ? q : 0;      /* the record's ends, but for rounding; nothing else becomes an index */
+                q = q > 0 ? q : 0; /* the record's ends, but for rounding; nothing else becomes an index */
                 q = q < last ? q : last;
                 double point = floor(q * one + scale->shift * one), turns = medium->fc * tau[i];
                 double sample = floor((point + 0.5) / one);
@@ -148,8 +152,8 @@ static void sum_exact(const struct bp_medium *medium, const struct bp_table *tab
                 run.rest[i] = (real)(cubics ? q * one - point : run.phase[i] / one);
                 run.turns[i] = (real)(turns - floor(turns + 0.5));
             }
-            BP_TAKE(table, APART, 1, (const real *)ping->rows + 2 * (size_t)m * (size_t)ping->row_length, ping->row_length,
-                     count, &run, re + first, im + first);
+            BP_TAKE(table, APART, 1, (const real *)ping->rows + 2 * (size_t)m * (size_t)ping->row_length,
+                    ping->row_length, count, &run, re + first, im + first);
         }
     }
 }
@@ -161,9 +165,10 @@ static const double node[NODES] = {-0.96592582628906829, -0.70710678118654752, -
 /* The quintics of a group of receivers through their delays at a block's Chebyshev points, [node][receiver]: points of the
    grid against pixels from the block's middle, c [power][receiver]; even and odd part are quadratics in the square, by
    divided differences. Without the scale's shift. *slope, *bend: bounds on their first and second derivatives. */
-INLINE void quintics(double (*tau)[GROUP], const struct scale *scale, double half, double (*c)[GROUP], double *slope, double *bend)
+INLINE void quintics(double (*tau)[GROUP], const struct scale *scale, double half, double (*c)[GROUP], double *slope,
+                     double *bend)
 {
-    const double ya = node[3] * node[3], yb = 0.5, step = 0.43301270189221932;     /* yb - ya, half of yc - ya */
+    const double ya = node[3] * node[3], yb = 0.5, step = 0.43301270189221932; /* yb - ya, half of yc - ya */
     const double one = 1 / half;
     double first[GROUP], second[GROUP];
 #pragma omp simd
@@ -201,7 +206,7 @@ INLINE void quintics(double (*tau)[GROUP], const struct scale *scale, double hal
 INLINE bool prefetch(const real *row, int row_length, int group, double (*tau)[GROUP], const struct scale *scale,
                      int upsample, double last)
 {
-    enum { NEAR = 64 / sizeof(real), MOST = 16 };       /* values of a cache line, cache lines */
+    enum { NEAR = 64 / sizeof(real), MOST = 16 }; /* values of a cache line, cache lines */
     double low[GROUP], high[GROUP];
 #pragma omp simd
     for (int g = 0; g < GROUP; g++) {
@@ -230,8 +235,8 @@ INLINE bool prefetch(const real *row, int row_length, int group, double (*tau)[G
    are cut off, which is floor: rounding, and with it the rounding mode, decides on the last of them only. Fills whole
    vectors, up to LANES - 1 pixels more than `count`. `reading` is a constant where this is inlined. */
 #define LANE(n) n
-#define LOW(v) (vector_int)__builtin_shufflevector((vector_bits)v[0], (vector_bits)v[PARTS - 1], EVEN)
-#define HIGH(v) (vector_int)__builtin_shufflevector((vector_bits)v[0], (vector_bits)v[PARTS - 1], ODD)
+#define LOW(v)  (vector_int) __builtin_shufflevector((vector_bits)v[0], (vector_bits)v[PARTS - 1], EVEN)
+#define HIGH(v) (vector_int) __builtin_shufflevector((vector_bits)v[0], (vector_bits)v[PARTS - 1], ODD)
 INLINE void points(double (*quintic)[GROUP], int g, const struct scale *scale, double first, int count,
                    enum bp_reading reading, int phases, struct run *run)
 {
@@ -260,7 +265,7 @@ INLINE void points(double (*quintic)[GROUP], int g, const struct scale *scale, d
         }
         vector_int sample = LOW(point), rest = sample & ((1 << BITS) - 1);
         if (nearest) {
-            sample = HIGH(point) - 0x41380000;      /* the high word of 0x1.8p20 */
+            sample = HIGH(point) - 0x41380000; /* the high word of 0x1.8p20 */
         } else if (cubics) {
             sample = LOW(whole);
             *(vector_int *)(run->phase + i) = sample & (BP_INTERVALS - 1);
@@ -342,16 +347,19 @@ INLINE void points_flat(const struct flat *flat, int g, const struct scale *scal
 #endif
 
 /* A group of receivers over one block; tau: its delays, [node][receiver]. */
-INLINE void sum_block(const struct bp_table *table, int group, const real *row, int row_length, const struct scale *scale,
-                      double phase_limit, const struct bp_block *block, double (*tau)[GROUP], real *re, real *im)
+INLINE void sum_block(const struct bp_table *table, int group, const real *row, int row_length,
+                      const struct scale *scale, double phase_limit, const struct bp_block *block, double (*tau)[GROUP],
+                      real *re, real *im)
 {
     struct run runs[GROUP];
     _Alignas(64) double c[NODES][GROUP];
     const double half = 0.5 * (block->end - 1 - block->begin), middle = block->begin + half;
     double slope, bend;
     quintics(tau, scale, half, c, &slope, &bend);
-    const double slack = 0.01;      /* for rounding */
-    const enum loading loading = !WINDOWS || slope > 0.5 - slack ? APART : slope > 2.0 / LANES - slack ? FOURS : TOGETHER;
+    const double slack = 0.01; /* for rounding */
+    const enum loading loading = !WINDOWS || slope > 0.5 - slack ? APART
+                                 : slope > 2.0 / LANES - slack   ? FOURS
+                                                                 : TOGETHER;
     int longest = slope * RUN > SPAN ? (int)fmax(1, SPAN / slope) : RUN;
 #if WINDOWS
     /* A bend of n turns errs by at most 1.1e-6 n rad: 0.15 of the limit. */
@@ -377,14 +385,14 @@ INLINE void sum_block(const struct bp_table *table, int group, const real *row, 
                     points_flat(&lines, g, scale, count, false, 1, &runs[g]);
         } else
 #endif
-        for (int g = 0; g < group; g++) {
-            switch (table->reading) {
-            case BP_NEAREST: points(c, g, scale, first - middle, count, BP_NEAREST, 1, &runs[g]); break;
-            case BP_LINE: points(c, g, scale, first - middle, count, BP_LINE, table->phases, &runs[g]); break;
-            case BP_PHASES: points(c, g, scale, first - middle, count, BP_PHASES, table->phases, &runs[g]); break;
-            case BP_CUBICS: points(c, g, scale, first - middle, count, BP_CUBICS, 1, &runs[g]); break;
+            for (int g = 0; g < group; g++) {
+                switch (table->reading) {
+                case BP_NEAREST: points(c, g, scale, first - middle, count, BP_NEAREST, 1, &runs[g]); break;
+                case BP_LINE: points(c, g, scale, first - middle, count, BP_LINE, table->phases, &runs[g]); break;
+                case BP_PHASES: points(c, g, scale, first - middle, count, BP_PHASES, table->phases, &runs[g]); break;
+                case BP_CUBICS: points(c, g, scale, first - middle, count, BP_CUBICS, 1, &runs[g]); break;
+                }
             }
-        }
         BP_TAKE(table, loading, group, row, row_length, count, runs, re + first, im + first);
     }
 }
@@ -392,12 +400,16 @@ INLINE void sum_block(const struct bp_table *table, int group, const real *row, 
 void BP_SUM(const struct bp_medium *medium, const struct bp_table *table, const struct bp_ping *ping,
             const struct pixel_line *line, int block_count, const struct bp_block *blocks, void *re, void *im)
 {
-    struct places places;           /* not cleared: it is large */
+    struct places places; /* not cleared: it is large */
     _Alignas(64) double tau[DELAYS][GROUP];
     const struct motion motion = motion_make(medium, ping);
     const bool cubics = table->reading == BP_CUBICS;
     const double fine = table->upsample * (cubics ? BP_INTERVALS : 1), turns = medium->fc * ping->t0;
-    const struct scale scale = {ping->t0, medium->fs, fine, cubics ? 0 : 0.5 / table->phases, medium->fc / (medium->fs * fine),
+    const struct scale scale = {ping->t0,
+                                medium->fs,
+                                fine,
+                                cubics ? 0 : 0.5 / table->phases,
+                                medium->fc / (medium->fs * fine),
                                 turns - floor(turns)};
     places.count = NODES * block_count;
     for (int b = 0; b < block_count; b++) {
@@ -412,7 +424,7 @@ void BP_SUM(const struct bp_medium *medium, const struct bp_table *table, const 
         const int group = ping->receivers - m < GROUP ? ping->receivers - m : GROUP;
         const real *row = (const real *)ping->rows + 2 * (size_t)m * (size_t)ping->row_length;
         double x[GROUP], y[GROUP], z[GROUP];
-        for (int g = 0; g < GROUP; g++) {   /* those that there are not repeat the last one */
+        for (int g = 0; g < GROUP; g++) { /* those that there are not repeat the last one */
             const struct vector rx = ping->rx[m + (g < group ? g : group - 1)];
             x[g] = rx.x;
             y[g] = rx.y;
@@ -424,11 +436,13 @@ void BP_SUM(const struct bp_medium *medium, const struct bp_table *table, const 
             group_back(false, &motion, &places, x, y, z, tau);
         bool readable[BP_BLOCKS];
         for (int b = 0; b < block_count; b++)
-            readable[b] = !blocks[b].exact && prefetch(row + table->guard, ping->row_length, group, tau + b * NODES, &scale,
-                                                       table->upsample, (medium->samples - 1.0) * table->upsample);
+            readable[b] = !blocks[b].exact
+                          && prefetch(row + table->guard, ping->row_length, group, tau + b * NODES, &scale,
+                                      table->upsample, (medium->samples - 1.0) * table->upsample);
         for (int b = 0; b < block_count; b++)
             if (readable[b]) {
-                sum_block(table, group, row, ping->row_length, &scale, medium->phase_limit, &blocks[b], tau + b * NODES, re, im);
+                sum_block(table, group, row, ping->row_length, &scale, medium->phase_limit, &blocks[b], tau + b * NODES,
+                          re, im);
             } else if (!blocks[b].exact) {
                 struct bp_ping some = *ping;
                 some.receivers = group;

@@ -11,10 +11,10 @@
 
 /* How a value between samples is read. */
 enum bp_reading {
-    BP_NEAREST,                     /* the nearest value: one tap */
-    BP_LINE,                        /* two weights, 1 - f and f of the fraction f rounded to a phase: no table is read */
-    BP_PHASES,                      /* weights [phases][taps] of the fraction rounded to a phase */
-    BP_CUBICS                       /* weights that are cubics in the fraction's position inside each of BP_INTERVALS
+    BP_NEAREST, /* the nearest value: one tap */
+    BP_LINE,    /* two weights, 1 - f and f of the fraction f rounded to a phase: no table is read */
+    BP_PHASES,  /* weights [phases][taps] of the fraction rounded to a phase */
+    BP_CUBICS   /* weights that are cubics in the fraction's position inside each of BP_INTERVALS
                                        intervals, [BP_INTERVALS][4][taps], lowest power first */
 };
 enum { BP_INTERVAL_BITS = 8, BP_INTERVALS = 1 << BP_INTERVAL_BITS };
@@ -23,13 +23,13 @@ enum { BP_INTERVAL_BITS = 8, BP_INTERVALS = 1 << BP_INTERVAL_BITS };
 struct bp_table {
     enum bp_reading reading;
     int upsample, phases, taps, first, guard;
-    const void *weights;            /* of the plan's precision; NULL if BP_NEAREST */
+    const void *weights; /* of the plan's precision; NULL if BP_NEAREST */
 };
 
 struct bp_medium {
     double sound_speed, fc, fs;
     int samples;
-    double phase_limit;             /* rad: that the general engine's sums may err by; 0: every delay is evaluated */
+    double phase_limit; /* rad: that the general engine's sums may err by; 0: every delay is evaluated */
 };
 
 /* Receivers of one ping, with their records. */
@@ -37,19 +37,19 @@ struct bp_ping {
     struct vector tx, velocity;
     double t0;
     int receivers;
-    const struct vector *rx;        /* [receivers] at emission */
-    const void *rows;               /* [receivers][2 row_length] real: re, then im; one value behind the last may be read */
+    const struct vector *rx; /* [receivers] at emission */
+    const void *rows;        /* [receivers][2 row_length] real: re, then im; one value behind the last may be read */
     int row_length;
 };
 
 /* Add the receivers' contributions to the pixels of some blocks of a line, where all delays lie inside the record:
    re[i], im[i] += value times exp(+j 2 pi fc tau) for pixel i. */
 typedef void bp_sum_function(const struct bp_medium *medium, const struct bp_table *table, const struct bp_ping *ping,
-                             const struct pixel_line *line, int block_count, const struct bp_block *blocks,
-                             void *re, void *im);
+                             const struct pixel_line *line, int block_count, const struct bp_block *blocks, void *re,
+                             void *im);
 
 bp_sum_function bp_sum_float_baseline, bp_sum_double_baseline;
-bp_sum_function bp_sum_float_v3, bp_sum_double_v3;  /* x86-64-v3: AVX2, FMA */
-bp_sum_function bp_sum_float_v4, bp_sum_double_v4;  /* x86-64-v4: AVX-512 */
+bp_sum_function bp_sum_float_v3, bp_sum_double_v3; /* x86-64-v3: AVX2, FMA */
+bp_sum_function bp_sum_float_v4, bp_sum_double_v4; /* x86-64-v4: AVX-512 */
 
 #endif

@@ -13,13 +13,13 @@
 #include "backprojection/pairs.h"
 
 enum {
-    SLAB_BYTES = 64 << 20,          /* receivers are taken together up to this: the image is read and written for each slab */
-    READ_BYTES = 4 << 20,           /* and as long as what one row of the image reads of them stays in the shared cache */
-    SLAB_MOST = 128 << 20,          /* one receiver's upsampled records: beyond it their phases are taken in passes */
-    TILE = 16,                      /* pings compressed together: one cache line of each fine sample */
-    BLOCK = 16,                     /* rows of the slab that are filled together */
-    ROWS = 4,                       /* image rows of one task */
-    GROUP = 1024                    /* entries of the tables that are made at once */
+    SLAB_BYTES = 64 << 20, /* receivers are taken together up to this: the image is read and written for each slab */
+    READ_BYTES = 4 << 20,  /* and as long as what one row of the image reads of them stays in the shared cache */
+    SLAB_MOST = 128 << 20, /* one receiver's upsampled records: beyond it their phases are taken in passes */
+    TILE = 16,             /* pings compressed together: one cache line of each fine sample */
+    BLOCK = 16,            /* rows of the slab that are filled together */
+    ROWS = 4,              /* image rows of one task */
+    GROUP = 1024           /* entries of the tables that are made at once */
 };
 
 struct invariant {
@@ -36,8 +36,8 @@ struct invariant {
     struct bp_row_scratch *scratch; /* [threads], all in `tables` */
     void *tables;
     int patch_count;
-    int *strides;                   /* [patch_count] */
-    void **sums;                    /* [patch_count]: re then im, real [r_count][ratio][stride] */
+    int *strides; /* [patch_count] */
+    void **sums;  /* [patch_count]: re then im, real [r_count][ratio][stride] */
 };
 
 static bp_row_function *const row_functions[][2] = {
@@ -66,20 +66,27 @@ static enum status raster_make(const struct bp *bp, const struct straight_track 
     const struct acquisition *a = bp->problem.acquisition;
     double spacing = fabs(track->spacing), steps = spacing / grid->x_step;
     double ratio = floor(steps + 0.5);
-    if (a->pings == 1)                  /* every column is a phase of its own */
+    if (a->pings == 1) /* every column is a phase of its own */
         ratio = grid->x_count;
     else if (!(ratio >= 1 && ratio <= INT_MAX)
-             || !(fabs(spacing - ratio * grid->x_step) * (a->pings + grid->x_count / ratio) < a->sound_speed * tolerance(a)))
+             || !(fabs(spacing - ratio * grid->x_step) * (a->pings + grid->x_count / ratio)
+                  < a->sound_speed * tolerance(a)))
         return status_set(STATUS_UNSUPPORTED, "the ping spacing %g m is %.9g azimuth steps, must be a whole number",
                           spacing, steps);
     if (!(grid->x_count + ratio + a->pings < INT_MAX / 2))
         return status_set(STATUS_UNSUPPORTED, "%d columns, of which %.0f are a ping spacing, are too many to index",
                           grid->x_count, ratio);
-    *raster = (struct bp_raster){
-        .x_first = track->spacing < 0 ? a->tx[a->pings - 1].x : a->tx[0].x,
-        .spacing = a->pings == 1 ? grid->x_step * grid->x_count : spacing, .pings = a->pings, .speed = track->speed,
-        .t0 = a->t0[0], .ratio = (int)ratio, .grid_first = grid->x_first, .grid_step = grid->x_step,
-        .columns = grid->x_count, .blocks = (grid->x_count + (int)ratio - 1) / (int)ratio, .limit = a->aperture_limit};
+    *raster = (struct bp_raster){.x_first = track->spacing < 0 ? a->tx[a->pings - 1].x : a->tx[0].x,
+                                 .spacing = a->pings == 1 ? grid->x_step * grid->x_count : spacing,
+                                 .pings = a->pings,
+                                 .speed = track->speed,
+                                 .t0 = a->t0[0],
+                                 .ratio = (int)ratio,
+                                 .grid_first = grid->x_first,
+                                 .grid_step = grid->x_step,
+                                 .columns = grid->x_count,
+                                 .blocks = (grid->x_count + (int)ratio - 1) / (int)ratio,
+                                 .limit = a->aperture_limit};
     return STATUS_OK;
 }
 
@@ -111,8 +118,10 @@ static enum status invariant_applicable(const struct bp *bp)
     for (int p = 0; p < a->pings; p++) {
         double off = ping_beside(a, &track, p);
         if (!(off < a->sound_speed * tolerance(a)))
-            return status_set(STATUS_UNSUPPORTED, "ping %d, its start of record or its velocity is %.3g m off a uniform "
-                              "straight track, must be below %.3g m", p + 1, off, a->sound_speed * tolerance(a));
+            return status_set(STATUS_UNSUPPORTED,
+                              "ping %d, its start of record or its velocity is %.3g m off a uniform "
+                              "straight track, must be below %.3g m",
+                              p + 1, off, a->sound_speed * tolerance(a));
     }
     for (int k = 0; k < bp->problem.patch_count; k++) {
         enum status status = raster_make(bp, &track, &bp->problem.patches[k], &raster);
@@ -207,19 +216,21 @@ static void shape_slab(struct bp *bp, struct invariant *in, double read, int lea
 {
     int upsample = bp->table.upsample, samples = bp->shape.samples;
     size_t row_bytes = (size_t)ping_stride * 2 * real_size(bp->problem.precision);
-    size_t rows = upsample == 1 ? (size_t)bp->shape.length : (size_t)samples;      /* of one phase */
+    size_t rows = upsample == 1 ? (size_t)bp->shape.length : (size_t)samples; /* of one phase */
     int width = (int)fmin(upsample, fmax(1, floor((double)SLAB_MOST / (double)(rows * row_bytes))));
     in->passes = (upsample + width - 1) / width;
     in->slab_rows = rows * (size_t)width;
-    in->slab = (struct bp_slab){.receiver_stride = in->slab_rows * (size_t)ping_stride, .ping_stride = ping_stride,
-                                .lead = lead, .width = width};
+    in->slab = (struct bp_slab){.receiver_stride = in->slab_rows * (size_t)ping_stride,
+                                .ping_stride = ping_stride,
+                                .lead = lead,
+                                .width = width};
     double fitting = fmin((double)SLAB_BYTES / (double)(in->slab_rows * row_bytes),
                           (double)READ_BYTES / (read * width * (double)row_bytes));
     in->receivers = (int)fmin(bp->problem.acquisition->receivers, fmax(1, floor(fitting)));
 }
 
 struct arena {
-    char *base;                     /* NULL while the size is being found */
+    char *base; /* NULL while the size is being found */
     size_t used;
 };
 
@@ -231,19 +242,25 @@ static void *take(struct arena *arena, size_t count, size_t size)
 }
 
 /* One thread's scratch, from the arena. */
-static struct bp_row_scratch scratch_take(struct arena *arena, size_t phases, size_t shifts, size_t entries, size_t taps,
-                                          size_t real_bytes)
+static struct bp_row_scratch scratch_take(struct arena *arena, size_t phases, size_t shifts, size_t entries,
+                                          size_t taps, size_t real_bytes)
 {
     const size_t few = taps < 3 ? taps : 1, many = taps < 3 ? 0 : taps + BP_SPREAD;
-    return (struct bp_row_scratch){
-        .groups = take(arena, phases + 1, sizeof(struct bp_row_group)),
-        .leg = take(arena, shifts, sizeof(double)), .ahead = take(arena, shifts, sizeof(double)),
-        .shift = take(arena, shifts, sizeof(int)), .gate = take(arena, shifts, real_bytes), .capacity = (int)entries,
-        .q = take(arena, entries, sizeof(double)), .kept = take(arena, entries, sizeof(int)),
-        .row = take(arena, entries, sizeof(int)), .offset = take(arena, entries, sizeof(int)),
-        .step = take(arena, entries, sizeof(int)), .rows = take(arena, entries, sizeof(int)),
-        .wr = take(arena, entries * few, real_bytes), .wi = take(arena, entries * few, real_bytes),
-        .weights = take(arena, entries * many, real_bytes)};
+    return (struct bp_row_scratch){.groups = take(arena, phases + 1, sizeof(struct bp_row_group)),
+                                   .leg = take(arena, shifts, sizeof(double)),
+                                   .ahead = take(arena, shifts, sizeof(double)),
+                                   .shift = take(arena, shifts, sizeof(int)),
+                                   .gate = take(arena, shifts, real_bytes),
+                                   .capacity = (int)entries,
+                                   .q = take(arena, entries, sizeof(double)),
+                                   .kept = take(arena, entries, sizeof(int)),
+                                   .row = take(arena, entries, sizeof(int)),
+                                   .offset = take(arena, entries, sizeof(int)),
+                                   .step = take(arena, entries, sizeof(int)),
+                                   .rows = take(arena, entries, sizeof(int)),
+                                   .wr = take(arena, entries * few, real_bytes),
+                                   .wi = take(arena, entries * few, real_bytes),
+                                   .weights = take(arena, entries * many, real_bytes)};
 }
 
 static enum status invariant_plan(struct bp *bp)
@@ -294,7 +311,8 @@ static enum status invariant_plan(struct bp *bp)
        last. Room is made for the widest vectors, so that a plan needs the same memory on every machine. */
     int lead = BP_LANES_MOST * (int)sizeof(float) / (int)size;
     shape_slab(bp, in, samples, lead, round_up(a->pings + 2 * lead, 8));
-    size_t values = (size_t)in->receivers * in->slab.receiver_stride, tile = (size_t)TILE * (size_t)bp->shape.length * 2 * size;
+    size_t values = (size_t)in->receivers * in->slab.receiver_stride,
+           tile = (size_t)TILE * (size_t)bp->shape.length * 2 * size;
     size_t entries = BP_TOGETHER * (size_t)BP_ENTRIES(a->pings + blocks), taps = (size_t)bp->table.taps;
     entries = entries > GROUP ? entries : GROUP;
     struct arena arena = {NULL, 0};
@@ -321,27 +339,27 @@ static enum status invariant_plan(struct bp *bp)
 
 /* Scatter a tile of compressed pings, complex [count][length], into the slab: pings contiguous. In blocks of rows, so that
    each cache line of the slab is filled while it is near. */
-#define SPREAD(real) \
-    do { \
-        const real *from = (const real *)tile; \
-        real *re = (real *)in->slab_re + base, *im = (real *)in->slab_im + base; \
-        for (size_t i = 0; i < in->slab_rows; i += BLOCK) { \
-            size_t at[BLOCK], rows = in->slab_rows - i < BLOCK ? in->slab_rows - i : BLOCK; \
-            for (size_t k = 0; k < rows; k++) { \
-                at[k] = source; \
-                if (++within == width) {    /* on to the next sample of the slab's phases */ \
-                    within = 0; \
-                    source += upsample - width; \
-                } \
-                source++; \
-            } \
-            for (size_t p = 0; p < (size_t)count; p++) \
-                for (size_t k = 0; k < rows; k++) { \
-                    size_t value = 2 * (p * length + (at[k] < length ? at[k] : length - 1)); \
-                    re[(i + k) * stride + p] = from[value]; \
-                    im[(i + k) * stride + p] = from[value + 1]; \
-                } \
-        } \
+#define SPREAD(real)                                                                                                   \
+    do {                                                                                                               \
+        const real *from = (const real *)tile;                                                                         \
+        real *re = (real *)in->slab_re + base, *im = (real *)in->slab_im + base;                                       \
+        for (size_t i = 0; i < in->slab_rows; i += BLOCK) {                                                            \
+            size_t at[BLOCK], rows = in->slab_rows - i < BLOCK ? in->slab_rows - i : BLOCK;                            \
+            for (size_t k = 0; k < rows; k++) {                                                                        \
+                at[k] = source;                                                                                        \
+                if (++within == width) { /* on to the next sample of the slab's phases */                              \
+                    within = 0;                                                                                        \
+                    source += upsample - width;                                                                        \
+                }                                                                                                      \
+                source++;                                                                                              \
+            }                                                                                                          \
+            for (size_t p = 0; p < (size_t)count; p++)                                                                 \
+                for (size_t k = 0; k < rows; k++) {                                                                    \
+                    size_t value = 2 * (p * length + (at[k] < length ? at[k] : length - 1));                           \
+                    re[(i + k) * stride + p] = from[value];                                                            \
+                    im[(i + k) * stride + p] = from[value + 1];                                                        \
+                }                                                                                                      \
+        }                                                                                                              \
     } while (0)
 
 static void spread(const struct bp *bp, const void *tile, int receiver, int ping, int count)
@@ -431,7 +449,7 @@ static void invariant_execute(struct bp *bp, const struct echoes *echoes, struct
     size_t size = real_size(bp->problem.precision), slab = (size_t)in->receivers * in->slab.receiver_stride * size;
     for (int k = 0; k < in->patch_count; k++)
         memset(in->sums[k], 0, 2 * row_values(in, k) * (size_t)bp->problem.patches[k].r_count * size);
-    memset(in->slab_re, 0, slab);       /* the lead and the end of each row stay zero */
+    memset(in->slab_re, 0, slab); /* the lead and the end of each row stay zero */
     memset(in->slab_im, 0, slab);
     stages_end(stages, "clear");
     for (int first = 0; first < receivers; first += in->receivers) {

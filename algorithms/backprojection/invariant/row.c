@@ -63,7 +63,7 @@ static void places(const struct bp_medium *medium, const struct bp_raster *raste
    tau = leg + (v b + s)/(c^2 - v^2) = leg + (b^2 + r^2)/(s - v b), s = sqrt(c^2 b^2 + (c^2 - v^2) r^2). */
 struct delay_terms {
     double v, c2, r2, er2, one_e;
-    bool slow;                      /* the first form will do */
+    bool slow; /* the first form will do */
 };
 
 static struct delay_terms delay_terms_make(const struct bp_medium *medium, const struct bp_raster *raster, double r)
@@ -74,9 +74,10 @@ static struct delay_terms delay_terms_make(const struct bp_medium *medium, const
 
 /* Sample coordinate and weight exp(j 2 pi fc tau) of n entries, n whole vectors; weight 0 where the gate is. Two loops, so
    that several of each one's chains are under way at once. `slow` is a constant where this is inlined. */
-INLINE void delays(bool slow, const struct bp_medium *medium, const struct bp_raster *raster, const struct delay_terms *terms,
-                   double offset, int n, const double *restrict leg, const double *restrict ahead,
-                   const real *restrict gate, double *restrict q, real *restrict wr, real *restrict wi)
+INLINE void delays(bool slow, const struct bp_medium *medium, const struct bp_raster *raster,
+                   const struct delay_terms *terms, double offset, int n, const double *restrict leg,
+                   const double *restrict ahead, const real *restrict gate, double *restrict q, real *restrict wr,
+                   real *restrict wi)
 {
     const double v = terms->v, c2 = terms->c2, r2 = terms->r2, er2 = terms->er2, one_e = terms->one_e;
     const double fc = medium->fc, fs = medium->fs, t0 = raster->t0;
@@ -100,7 +101,7 @@ INLINE void delays(bool slow, const struct bp_medium *medium, const struct bp_ra
 /* The sample at or before q and the nearest of `steps` steps from there on to the next. */
 INLINE void nearest_step(double q, int steps, int *sample, int *step)
 {
-    int whole = (int)q, near = (int)((q - whole) * steps + 0.5), next = near == steps;  /* q >= 0: the cast is floor */
+    int whole = (int)q, near = (int)((q - whole) * steps + 0.5), next = near == steps; /* q >= 0: the cast is floor */
     *sample = whole + next;
     *step = next ? 0 : near;
 }
@@ -214,25 +215,25 @@ struct chunk {
     const struct bp_slab *slab;
     const struct bp_row_scratch *scratch;
     int begin, end;
-    bool sparse;                    /* shifts are left out: scratch->kept holds those that are there */
-    int from, to;                   /* shifts [from, to) are summed */
-    const real *sr, *si;            /* the receiver's records, their ping 0 */
-    real *re, *im;                  /* sums [phase][stride] */
+    bool sparse;         /* shifts are left out: scratch->kept holds those that are there */
+    int from, to;        /* shifts [from, to) are summed */
+    const real *sr, *si; /* the receiver's records, their ping 0 */
+    real *re, *im;       /* sums [phase][stride] */
     size_t stride;
 };
 
 /* A group's entries for some shifts, and the sums of a block's first column. */
 struct part {
-    int begin, end;                 /* shifts, counted from the group's first one */
+    int begin, end; /* shifts, counted from the group's first one */
     const int *offset, *rows;
     const real *wr, *wi, *weights;
-    real *re, *im;                  /* of the group's first phase */
+    real *re, *im; /* of the group's first phase */
     size_t stride;
 };
 
 /* A vector of samples, loaded once for all its products: loads are the limit. */
-#define LOAD(name, pointer) \
-    vector_real name = *(const vector_real *)(pointer); \
+#define LOAD(name, pointer)                                                                                            \
+    vector_real name = *(const vector_real *)(pointer);                                                                \
     HOLD(name)
 
 /* One phase, one or two samples with complex weights, `width` vectors of columns. Real and imaginary weights have
@@ -304,22 +305,23 @@ INLINE void sum_two(int width, int taps, int stride, const struct part *part, co
 
 /* Some phases, many samples with real weights, whose sum is rotated. rows[i] >= taps samples serve all phases of the
    group; a phase's weights are 0 for those that are not its own. Registers hold the block's sums of one phase, not of more. */
-INLINE void sum_taps(int phases, int width, int taps, int stride, const struct part *part, const real *sr, const real *si)
+INLINE void sum_taps(int phases, int width, int taps, int stride, const struct part *part, const real *sr,
+                     const real *si)
 {
     const int spread = taps + BP_SPREAD;
     vector_real sum_re[BP_BLOCK_VECTORS] = {{0}}, sum_im[BP_BLOCK_VECTORS] = {{0}};
     for (int i = part->begin; i < part->end; i++) {
         const real *x = sr + part->offset[i], *y = si + part->offset[i], *w = part->weights + i * phases * spread;
-        vector_real vr[BP_TOGETHER] = {{0}}, vi[BP_TOGETHER] = {{0}};       /* [phases][width] */
-#define TAP(t) \
-        for (int k = 0; k < width; k++) { \
-            LOAD(v, x + (t) * stride + k * LANES); \
-            LOAD(u, y + (t) * stride + k * LANES); \
-            for (int p = 0; p < phases; p++) { \
-                vr[p * width + k] += v * w[p * spread + (t)]; \
-                vi[p * width + k] += u * w[p * spread + (t)]; \
-            } \
-        }
+        vector_real vr[BP_TOGETHER] = {{0}}, vi[BP_TOGETHER] = {{0}}; /* [phases][width] */
+#define TAP(t)                                                                                                         \
+    for (int k = 0; k < width; k++) {                                                                                  \
+        LOAD(v, x + (t)*stride + k * LANES);                                                                           \
+        LOAD(u, y + (t)*stride + k * LANES);                                                                           \
+        for (int p = 0; p < phases; p++) {                                                                             \
+            vr[p * width + k] += v * w[p * spread + (t)];                                                              \
+            vi[p * width + k] += u * w[p * spread + (t)];                                                              \
+        }                                                                                                              \
+    }
         for (int t = 0; t < taps; t++)
             TAP(t)
         for (int t = taps; t < part->rows[i]; t++)
@@ -378,11 +380,14 @@ INLINE void sum_block(int phases, int width, int taps, const struct chunk *share
         const struct bp_row_group *group = &groups[g];
         const size_t first = (size_t)(group->first - origin), complex_taps = taps < 3 ? (size_t)taps : 1;
         const size_t at = (size_t)group->phase * chunk->stride + (size_t)j;
-        struct part part = {
-            .offset = scratch->offset + first, .rows = scratch->rows + first,
-            .wr = (const real *)scratch->wr + first * complex_taps, .wi = (const real *)scratch->wi + first * complex_taps,
-            .weights = (const real *)scratch->weights + first * (size_t)(taps + BP_SPREAD),
-            .re = chunk->re + at, .im = chunk->im + at, .stride = chunk->stride};
+        struct part part = {.offset = scratch->offset + first,
+                            .rows = scratch->rows + first,
+                            .wr = (const real *)scratch->wr + first * complex_taps,
+                            .wi = (const real *)scratch->wi + first * complex_taps,
+                            .weights = (const real *)scratch->weights + first * (size_t)(taps + BP_SPREAD),
+                            .re = chunk->re + at,
+                            .im = chunk->im + at,
+                            .stride = chunk->stride};
         if (chunk->sparse) {
             part.begin = find(scratch->kept + first, group->to, chunk->from);
             part.end = find(scratch->kept + first, group->to, chunk->to);
@@ -401,23 +406,34 @@ INLINE void sum_block(int phases, int width, int taps, const struct chunk *share
 
 /* The shipped kernels unroll, any other length works as well. Functions of their own: the compiler runs out of registers
    where it inlines several. */
-#define BLOCK(name, taps, phases, width) \
-    static __attribute__((noinline)) void name##_##phases##_##width(const struct chunk *chunk, int j) \
-    { \
-        sum_block(phases, width, taps, chunk, j); \
+#define BLOCK(name, taps, phases, width)                                                                               \
+    static __attribute__((noinline)) void name##_##phases##_##width(const struct chunk *chunk, int j)                  \
+    {                                                                                                                  \
+        sum_block(phases, width, taps, chunk, j);                                                                      \
     }
-#define BLOCKS_FEW(name, taps) \
-    BLOCK(name, taps, 1, 1) BLOCK(name, taps, 1, 2) BLOCK(name, taps, 1, 3) \
-    BLOCK(name, taps, 2, 1) BLOCK(name, taps, 2, 2)
-#define BLOCKS_MANY(name, taps) \
-    BLOCK(name, taps, 1, 1) BLOCK(name, taps, 1, 2) BLOCK(name, taps, 1, 3) \
-    BLOCK(name, taps, 2, 1) BLOCK(name, taps, 2, 2) BLOCK(name, taps, 2, 3) \
-    BLOCK(name, taps, 3, 1) BLOCK(name, taps, 3, 2) \
-    BLOCK(name, taps, 4, 1) BLOCK(name, taps, 5, 1) BLOCK(name, taps, 6, 1)
-#define TABLE_FEW(name) {{name##_1_1, name##_1_2, name##_1_3}, {name##_2_1, name##_2_2}}
-#define TABLE_MANY(name) \
-    {{name##_1_1, name##_1_2, name##_1_3}, {name##_2_1, name##_2_2, name##_2_3}, {name##_3_1, name##_3_2}, \
-     {name##_4_1}, {name##_5_1}, {name##_6_1}}
+#define BLOCKS_FEW(name, taps)                                                                                         \
+    BLOCK(name, taps, 1, 1)                                                                                            \
+    BLOCK(name, taps, 1, 2) BLOCK(name, taps, 1, 3) BLOCK(name, taps, 2, 1) BLOCK(name, taps, 2, 2)
+#define BLOCKS_MANY(name, taps)                                                                                        \
+    BLOCK(name, taps, 1, 1)                                                                                            \
+    BLOCK(name, taps, 1, 2) BLOCK(name, taps, 1, 3) BLOCK(name, taps, 2, 1) BLOCK(name, taps, 2, 2)                    \
+        BLOCK(name, taps, 2, 3) BLOCK(name, taps, 3, 1) BLOCK(name, taps, 3, 2) BLOCK(name, taps, 4, 1)                \
+            BLOCK(name, taps, 5, 1) BLOCK(name, taps, 6, 1)
+#define TABLE_FEW(name)                                                                                                \
+    {                                                                                                                  \
+        {name##_1_1, name##_1_2, name##_1_3},                                                                          \
+        {                                                                                                              \
+            name##_2_1, name##_2_2                                                                                     \
+        }                                                                                                              \
+    }
+#define TABLE_MANY(name)                                                                                               \
+    {                                                                                                                  \
+        {name##_1_1, name##_1_2, name##_1_3}, {name##_2_1, name##_2_2, name##_2_3}, {name##_3_1, name##_3_2},          \
+            {name##_4_1}, {name##_5_1},                                                                                \
+        {                                                                                                              \
+            name##_6_1                                                                                                 \
+        }                                                                                                              \
+    }
 BLOCKS_FEW(nearest, 1)
 BLOCKS_FEW(line, 2)
 BLOCKS_MANY(eight, 8)
@@ -426,8 +442,8 @@ BLOCKS_MANY(any, chunk->table->taps)
 typedef void block_function(const struct chunk *chunk, int j);
 
 static const struct kernel {
-    int taps;                       /* 0: any number */
-    block_function *block[BP_TOGETHER][BP_BLOCK_VECTORS];   /* [phases - 1][vectors - 1], as many as registers hold */
+    int taps;                                             /* 0: any number */
+    block_function *block[BP_TOGETHER][BP_BLOCK_VECTORS]; /* [phases - 1][vectors - 1], as many as registers hold */
 } kernels[] = {
     {1, TABLE_FEW(nearest)},
     {2, TABLE_FEW(line)},
@@ -463,7 +479,7 @@ static void sum_columns(const struct kernel *kernel, struct chunk *chunk)
         int left = (columns - j + LANES - 1) / LANES, parts = (left + widest - 1) / widest;
         width = (left + parts - 1) / parts;
 #define FIRST(v) (1 - j - ((v) + 1) * LANES)
-#define END(v) (pings - j - (v) * LANES)
+#define END(v)   (pings - j - (v)*LANES)
         if (width * LANES <= chunk->slab->lead) {
             sum_shifts(block[width - 1], chunk, least, most, FIRST(width - 1), END(0), j);
             continue;
@@ -481,7 +497,8 @@ static void sum_columns(const struct kernel *kernel, struct chunk *chunk)
 }
 
 /* One entry, with one or two complex weights, onto all columns that have a ping. */
-INLINE void sum_entry(const struct chunk *chunk, int taps, int phase, int shift, int offset, const real *wr, const real *wi)
+INLINE void sum_entry(const struct chunk *chunk, int taps, int phase, int shift, int offset, const real *wr,
+                      const real *wi)
 {
     const int stride = chunk->slab->ping_stride, pings = chunk->raster->pings, columns = chunk->raster->blocks;
     const int begin = shift < 0 ? -shift / LANES * LANES : 0, end = pings - shift < columns ? pings - shift : columns;
@@ -490,7 +507,8 @@ INLINE void sum_entry(const struct chunk *chunk, int taps, int phase, int shift,
     for (int j = begin; j < end; j += LANES) {
         vector_real a = *(vector_real *)(re + j), b = *(vector_real *)(im + j);
         for (int t = 0; t < taps; t++) {
-            vector_real x = *(const vector_real *)(sr + t * stride + j), y = *(const vector_real *)(si + t * stride + j);
+            vector_real x = *(const vector_real *)(sr + t * stride + j),
+                        y = *(const vector_real *)(si + t * stride + j);
             a = a + x * wr[t] - y * wi[t];
             b = b + x * wi[t] + y * wr[t];
         }
@@ -518,7 +536,7 @@ INLINE void join_few(const struct chunk *chunk, int taps, int n, const int *shif
     }
     if (groups[chunk->begin].phases == 1)
         return;
-    for (int e = 0; e < n; e += LANES) {        /* most pairs read the same sample, and so do their neighbours */
+    for (int e = 0; e < n; e += LANES) { /* most pairs read the same sample, and so do their neighbours */
         int differ = 0;
         for (int k = 0; k < LANES; k += 2)
             differ |= offset[e + k] ^ offset[e + k + 1];
@@ -561,7 +579,7 @@ INLINE void join_many(const struct chunk *chunk, int taps, const struct bp_row_g
             weigh(chunk->table, taps, step[e + p], (real)u[e + p], w + row[e + p] - row[least]);
         }
         rows[i] = taps + row[most] - row[least];
-        offset[i] = offset[least];          /* i <= e: what is overwritten has been read */
+        offset[i] = offset[least]; /* i <= e: what is overwritten has been read */
     }
 }
 
@@ -576,10 +594,12 @@ static int clamp(double value, int least, int most)
 /* As pairs.c defines it, for a ping that is u ahead of the pixel. */
 static bool inside_limit(const struct bp_raster *raster, double u, double r)
 {
-    const double distance = sqrt(u * u + r * r), grid_last = raster->grid_first + (raster->columns - 1) * raster->grid_step;
+    const double distance = sqrt(u * u + r * r),
+                 grid_last = raster->grid_first + (raster->columns - 1) * raster->grid_step;
     const double track_last = raster->x_first + (raster->pings - 1) * raster->spacing;
     return fabs(u) <= raster->limit * distance
-        || distance <= apex_slack(fmax(fabs(raster->grid_first), fabs(grid_last)), fmax(fabs(raster->x_first), fabs(track_last)));
+           || distance <= apex_slack(fmax(fabs(raster->grid_first), fabs(grid_last)),
+                                     fmax(fabs(raster->x_first), fabs(track_last)));
 }
 
 /* Shifts [begin, end) of one phase inside the aperture: |u| <= limit sqrt(u^2 + r^2), that is, |u| <= edge, u = x + s
@@ -591,7 +611,7 @@ static void shift_bounds(const struct bp_raster *raster, double edge, double x, 
     int low = clamp(ceil(first), *begin, *end), high = clamp(floor(last) + 1, *begin, *end);
     if (fabs(first - floor(first + 0.5)) < 1e-6 || fabs(last - floor(last + 0.5)) < 1e-6) {
         /* so near a shift that rounding decides: as it is defined */
-#define INSIDE(s) inside_limit(raster, x + (s) * raster->spacing, r)
+#define INSIDE(s) inside_limit(raster, x + (s)*raster->spacing, r)
         while (low < high && !INSIDE(low))
             low++;
         while (low > *begin && INSIDE(low - 1))
@@ -608,8 +628,8 @@ static void shift_bounds(const struct bp_raster *raster, double edge, double x, 
 
 /* Are all delays of a row inside the record, by the least and the longest there could be? `furthest` and `offset`: largest
    distances along the track between ping and pixel and between transmitter and receiver. */
-static bool inside_record(const struct bp_medium *medium, const struct bp_raster *raster, const struct delay_terms *terms,
-                          double r, double offset, double furthest)
+static bool inside_record(const struct bp_medium *medium, const struct bp_raster *raster,
+                          const struct delay_terms *terms, double r, double offset, double furthest)
 {
     const double v = fabs(terms->v), c = medium->sound_speed, leg = sqrt(furthest * furthest + r * r) / c;
     const double b = furthest + offset + v * leg;
@@ -628,7 +648,7 @@ static double make_groups(const struct bp_medium *medium, const struct bp_raster
     double furthest = 0;
     int total = 0;
     for (int g = 0; g < group_count; g++) {
-        const int size = phases / group_count, larger = phases % group_count;      /* the first ones have one phase more */
+        const int size = phases / group_count, larger = phases % group_count; /* the first ones have one phase more */
         const int first = g * size + (g < larger ? g : larger), count = size + (g < larger);
         struct bp_row_group *group = &scratch->groups[g];
         struct shifts inside[BP_TOGETHER];
@@ -655,12 +675,12 @@ static double make_groups(const struct bp_medium *medium, const struct bp_raster
         total += whole_vectors(group->to * count);
     }
     scratch->groups[group_count].first = total;
-    return furthest + raster->spacing;      /* a group has entries outside the aperture of some of its phases */
+    return furthest + raster->spacing; /* a group has entries outside the aperture of some of its phases */
 }
 
 void BP_ROW(const struct bp_medium *medium, const struct bp_table *table, const struct bp_raster *raster,
-            const struct bp_slab *slab, double r, const double *offsets, int count, const struct bp_row_scratch *scratch,
-            void *re, void *im, int stride)
+            const struct bp_slab *slab, double r, const double *offsets, int count,
+            const struct bp_row_scratch *scratch, void *re, void *im, int stride)
 {
     const int phases = raster->ratio < raster->columns ? raster->ratio : raster->columns;
     const int group_count = (phases + raster->together - 1) / raster->together;
@@ -676,9 +696,16 @@ void BP_ROW(const struct bp_medium *medium, const struct bp_table *table, const 
     const bool whole = inside_record(medium, raster, &terms, r, offset, furthest);
     for (int m = 0; m < count; m++) {
         const size_t receiver = (size_t)m * slab->receiver_stride + (size_t)slab->lead;
-        struct chunk chunk = {.raster = raster, .table = table, .slab = slab, .scratch = scratch,
-                              .sparse = slab->width < table->upsample, .sr = (const real *)slab->re + receiver,
-                              .si = (const real *)slab->im + receiver, .re = re, .im = im, .stride = (size_t)stride};
+        struct chunk chunk = {.raster = raster,
+                              .table = table,
+                              .slab = slab,
+                              .scratch = scratch,
+                              .sparse = slab->width < table->upsample,
+                              .sr = (const real *)slab->re + receiver,
+                              .si = (const real *)slab->im + receiver,
+                              .re = re,
+                              .im = im,
+                              .stride = (size_t)stride};
         for (; chunk.begin < group_count; chunk.begin = chunk.end) {
             const int first = groups[chunk.begin].first, together = groups[chunk.begin].phases;
             do
