@@ -3,7 +3,7 @@
 #define SASBENCH_BACKPROJECTION_ENGINE_H
 
 #include "backprojection/bp.h"
-#include "backprojection/general/sum.h"
+#include "backprojection/reading.h"
 #include "common/isa.h"
 #include "backprojection/traces.h"
 

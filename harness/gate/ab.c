@@ -12,7 +12,7 @@
 #include "scene/scene.h"
 #include "measure/session.h"
 #include "show/table.h"
-#include "command/task.h"
+#include "data/paths.h"
 #include "measure/timing.h"
 
 /* 8 rounds decide between identical programs on a quiet machine. */

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "data/echo_data.h"
-#include "command/task.h"
+#include "data/paths.h"
 
 static const char *const scene_list[] = {"gate/points", "gate/field", "gate/blocks"};
 enum { SCENES = sizeof scene_list / sizeof *scene_list };
@@ -177,14 +177,5 @@ enum status baseline_write(const char *path)
     specs_free(specs, count);
     for (int k = 0; k < SCENES; k++)
         scene_free(&scenes[k]);
-    return status;
-}
-
-enum status command_baseline(const struct task *task)
-{
-    const char *path = task->output ? task->output : BASELINE_PATH;
-    enum status status = baseline_write(path);
-    if (status == STATUS_OK)
-        printf("%s is written; review it with git diff.\n", path);
     return status;
 }

@@ -1,4 +1,4 @@
-/* The command `measure`: the other end of `compare --ab` (ab.c), which starts it and tells it what to run. Not for the
+/* The other end of `compare --ab` (ab.c), which starts it and tells it what to run. Not for the
    terminal. It says "sasbench measure 1", then answers each line of standard input by one of standard output:
 
        plan SPEC SCENE     planned UNIT HASH       UNIT from 0; HASH of the scene's content
@@ -16,7 +16,8 @@
 #include "measure/session.h"
 #include "scene/simulate.h"
 #include "data/echo_data.h"
-#include "command/task.h"
+#include "data/paths.h"
+#include "gate/worker.h"
 
 enum { UNITS_MOST = 256 };
 
@@ -153,12 +154,11 @@ static void answer_run(struct measure *measure, const char *arguments)
     printf("\n");
 }
 
-enum status command_measure(const struct task *task)
+enum status worker_serve(void)
 {
     char *line = NULL;
     size_t size = 0;
     struct measure *measure = calloc(1, sizeof *measure);
-    (void)task;
     if (!measure)
         return status_set(STATUS_FAILED, "no memory for %d units", UNITS_MOST);
     omp_set_num_threads(1);

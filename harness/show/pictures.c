@@ -8,7 +8,7 @@
 
 #include "measure/metrics.h"
 #include "data/shown_text.h"
-#include "command/task.h"
+#include "data/paths.h"
 
 /* A label of NULL: the slices. */
 static void path_make(const char *directory, const char *scene, const char *label, char *path, size_t size)

@@ -12,7 +12,7 @@
 #include "measure/results.h"
 #include "show/report_tables.h"
 #include "show/table.h"
-#include "command/task.h"
+#include "data/paths.h"
 #include "data/text_file.h"
 
 /* --- The folder ------------------------------------------------------------------------------------------------ */
@@ -333,13 +333,5 @@ enum status report_write(const char *directory)
     }
     folder_free(&folder);
     folder_leave(lock);
-    return status;
-}
-
-enum status command_report(const struct task *task)
-{
-    enum status status = report_write(task->names[0]);
-    if (status == STATUS_OK)
-        printf("%s/report.html and report.md\n", task->names[0]);
     return status;
 }

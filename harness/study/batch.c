@@ -13,7 +13,7 @@
 #include "show/pictures.h"
 #include "measure/session.h"
 #include "show/table.h"
-#include "command/task.h"
+#include "data/paths.h"
 #include "measure/timing.h"
 
 /* One scene while its algorithms run. */

@@ -10,14 +10,16 @@
 
 #include "common/isa.h"
 #include "common/peak.h"
+#include "study/bench.h"
 #include "study/bench_rma.h"
 #include "data/echo_data.h"
 #include "data/folder.h"
 #include "show/plot.h"
 #include "measure/results.h"
 #include "scene/simulate.h"
-#include "command/task.h"
+#include "data/paths.h"
 #include "data/text_file.h"
+#include "measure/spec.h"
 #include "measure/timing.h"
 
 /* FLOPs of one pair are those of the method's own sums, without delays and phases: what the inner loop cannot avoid. */
@@ -227,9 +229,8 @@ static enum status bench_bp(const char *directory)
 /* Each measures into files of its own in the folder. */
 static enum status (*const parts[])(const char *directory) = {bench_bp, bench_rma};
 
-enum status command_bench(const struct task *task)
+enum status bench_run(const char *directory)
 {
-    const char *directory = task->output ? task->output : "results/bench";
     int lock = -1;
     enum status status = directory_make(directory);
     if (status == STATUS_OK)

@@ -12,8 +12,9 @@
 #include "data/echo_data.h"
 #include "scene/scene.h"
 #include "scene/simulate.h"
-#include "command/task.h"
+#include "data/paths.h"
 #include "data/text_file.h"
+#include "measure/spec.h"
 #include "measure/timing.h"
 
 enum {

@@ -1,4 +1,4 @@
-/* The command `phase`: how far each formula of the two-dimensional spectrum is from the exact one (LBF21 Figs 2 to
+/* How far each formula of the two-dimensional spectrum is from the exact one (LBF21 Figs 2 to
    9), so that one sees before imaging whether LBF or PCA is good enough for a set-up. */
 #include "study/phase.h"
 
@@ -12,7 +12,7 @@
 #include "data/folder.h"
 #include "data/published.h"
 #include "show/plot.h"
-#include "command/task.h"
+#include "data/paths.h"
 #include "data/text_file.h"
 
 static const struct {
@@ -183,8 +183,7 @@ static enum status study_draw(const struct study *study, int receiver, const cha
     return plot_phase(path, PLOT_DIRECTORY, title, RANGES, panels, FORMULAS - 1, lines[0]);
 }
 
-/* `taken`: the caller holds the folder. */
-static enum status scene_study(const char *name, const char *directory, bool taken)
+enum status phase_scene_study(const char *name, const char *directory, bool taken)
 {
     struct scene scene;
     struct study study;
@@ -278,7 +277,7 @@ static void point_print(const double *values)
         printf("%.17g%c", point_phase(values, j), j < FORMULAS - 1 ? ',' : '\n');
 }
 
-static enum status points_print(const char *path)
+enum status phase_points_print(const char *path)
 {
     struct csv csv;
     int index[COLUMNS];
@@ -317,19 +316,6 @@ enum status phase_study(const char *directory, bool taken)
     static const char *const setups[] = {"lbf21/_phase_short", "lbf21/_phase_long"};
     enum status status = STATUS_OK;
     for (size_t k = 0; status == STATUS_OK && k < sizeof setups / sizeof *setups; k++)
-        status = scene_study(setups[k], directory, taken);
+        status = phase_scene_study(setups[k], directory, taken);
     return status;
-}
-
-enum status command_phase(const struct task *task)
-{
-    if (task->at && (task->name_count || task->output))
-        return status_set(STATUS_INVALID,
-                          "phase: --at %s prints to standard output; neither a scene nor -o is "
-                          "accepted",
-                          task->at);
-    if (task->at)
-        return points_print(task->at);
-    const char *directory = task->output ? task->output : "results/phase";
-    return task->name_count ? scene_study(task->names[0], directory, false) : phase_study(directory, false);
 }

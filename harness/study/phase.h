@@ -13,5 +13,11 @@ const char *phase_formula(int k);
    the paper prints. The caller has made the folder; `taken`: and holds it (folder.h). Errors: STATUS_INVALID for files
    that cannot be read or written. */
 enum status phase_study(const char *directory, bool taken);
+/* The same for the array of one scene, by name or path; the folder is made. */
+enum status phase_scene_study(const char *scene, const char *directory, bool taken);
+
+/* Every formula at the points of a CSV file (columns d, r, F, f, fc, v, c), as CSV on standard output. Errors:
+   STATUS_INVALID naming file, line, column, value and what is accepted. */
+enum status phase_points_print(const char *path);
 
 #endif

@@ -11,7 +11,7 @@
 #include "scene/scene.h"
 #include "data/shown_text.h"
 #include "show/table.h"
-#include "command/task.h"
+#include "data/paths.h"
 #include "data/text_file.h"
 
 static const double floor_tolerance = 0.05;

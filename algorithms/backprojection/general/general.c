@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "backprojection/engine.h"
+#include "backprojection/general/sum.h"
 #include "backprojection/pairs.h"
 
 enum {

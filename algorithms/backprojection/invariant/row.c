@@ -416,9 +416,10 @@ INLINE void sum_block(int phases, int width, int taps, const struct chunk *share
     BLOCK(name, taps, 1, 2) BLOCK(name, taps, 1, 3) BLOCK(name, taps, 2, 1) BLOCK(name, taps, 2, 2)
 #define BLOCKS_MANY(name, taps)                                                                                        \
     BLOCK(name, taps, 1, 1)                                                                                            \
-    BLOCK(name, taps, 1, 2) BLOCK(name, taps, 1, 3) BLOCK(name, taps, 2, 1) BLOCK(name, taps, 2, 2)                    \
-        BLOCK(name, taps, 2, 3) BLOCK(name, taps, 3, 1) BLOCK(name, taps, 3, 2) BLOCK(name, taps, 4, 1)                \
-            BLOCK(name, taps, 5, 1) BLOCK(name, taps, 6, 1)
+    BLOCK(name, taps, 1, 2)                                                                                            \
+    BLOCK(name, taps, 1, 3)                                                                                            \
+    BLOCK(name, taps, 2, 1) BLOCK(name, taps, 2, 2) BLOCK(name, taps, 2, 3) BLOCK(name, taps, 3, 1)                    \
+        BLOCK(name, taps, 3, 2) BLOCK(name, taps, 4, 1) BLOCK(name, taps, 5, 1) BLOCK(name, taps, 6, 1)
 #define TABLE_FEW(name)                                                                                                \
     {                                                                                                                  \
         {name##_1_1, name##_1_2, name##_1_3},                                                                          \

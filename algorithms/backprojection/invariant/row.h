@@ -3,7 +3,11 @@
 #ifndef SASBENCH_BACKPROJECTION_INVARIANT_ROW_H
 #define SASBENCH_BACKPROJECTION_INVARIANT_ROW_H
 
-#include "backprojection/general/sum.h"
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "backprojection/pairs.h"
+#include "backprojection/reading.h"
 
 /* A block of columns is 1 to BP_BLOCK_VECTORS vectors of 16 bytes (baseline), 32 (v3) or 64 (v4); a row of sums has room
    for BP_LANES_MOST values beyond its last column. */

@@ -1,0 +1,14 @@
+/* The command `baseline`: quality and work of the gate's scenes, measured anew. */
+#include <stdio.h>
+
+#include "gate/baseline.h"
+#include "command/task.h"
+
+enum status command_baseline(const struct task *task)
+{
+    const char *path = task->output ? task->output : BASELINE_PATH;
+    enum status status = baseline_write(path);
+    if (status == STATUS_OK)
+        printf("%s is written; review it with git diff.\n", path);
+    return status;
+}

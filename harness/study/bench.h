@@ -1,0 +1,11 @@
+/* Speed of the engines and of range migration at the papers' sizes, as ratios within one run. */
+#ifndef SASBENCH_STUDY_BENCH_H
+#define SASBENCH_STUDY_BENCH_H
+
+#include "status.h"
+
+/* Measure everything into CSV files and a picture in the folder, which is made. Errors: STATUS_INVALID for a folder that
+   cannot be written or belongs to another program, STATUS_FAILED for memory or a measurement that fails. */
+enum status bench_run(const char *directory);
+
+#endif
