@@ -12,12 +12,15 @@
 #include <unistd.h>
 
 #include "data/folder.h"
+#include "data/shown_text.h"
 #include "data/text_file.h"
 
+/* clang-format off: braces of an initializer */
 #define METRIC(struct_name, name, unit, title, better, class, of_float, of_double, relative)                           \
     {                                                                                                                  \
 #name, unit, title, better, class, {of_float, of_double }, relative, offsetof(struct struct_name, name)        \
     }
+/* clang-format on */
 #define M_METRIC(...) METRIC(measurement, __VA_ARGS__)
 #define T_METRIC(...) METRIC(target_row, __VA_ARGS__)
 
@@ -56,6 +59,7 @@ struct column {
     size_t offset;
 };
 
+/* clang-format off: braces of an initializer */
 #define M_TEXT(name)                                                                                                   \
     {                                                                                                                  \
 #name, COLUMN_TEXT, offsetof(struct measurement, name)                                                         \
@@ -80,6 +84,7 @@ struct column {
     {                                                                                                                  \
 #name, COLUMN_REAL, offsetof(struct target_row, name)                                                          \
     }
+/* clang-format on */
 
 /* Both tables begin with the columns that tell one measurement from another. */
 #define KEY_COLUMNS 4
@@ -452,9 +457,11 @@ static enum status files_keep(const struct record *record, const char *why)
             snprintf(told + strlen(told), sizeof told - strlen(told), "%s%s", *told ? " and " : "", names[k]);
         free(kept);
     }
-    if (!status)
-        fprintf(stderr, "sasbench: %s: %s; the old rows are kept in %s\n", record->paths[SHEET_MEASUREMENTS], why,
-                told);
+    if (!status) {
+        fprintf(stderr, "sasbench: %s: ", record->paths[SHEET_MEASUREMENTS]);
+        shown_write(stderr, why); /* it quotes the file */
+        fprintf(stderr, "; the old rows are kept in %s\n", told);
+    }
     return status;
 }
 

@@ -205,10 +205,12 @@ static void redraw(struct visit *visit, int index, const struct measurement *row
     struct image image = {0};
     if (strcmp(row->status, "ok") != 0)
         return;
-    if (session_image(&visit->session, &visit->specs[index], &image, NULL) == STATUS_OK)
+    if (session_image(&visit->session, &visit->specs[index], &image, NULL) == STATUS_OK) {
         draw(visit, index, &image);
-    else
+    } else {
         fprintf(stderr, "sasbench: %s with %s is not drawn: %s\n", row->scene, row->algorithm, status_message());
+        visit->pictures.undrawn++;
+    }
     image_free(&image);
 }
 
