@@ -9,9 +9,6 @@ static const double pi = 3.14159265358979323846;
 /* The beam of echoes that do not say theirs: where the transmitter's power is half of that abeam, in lambda/D. */
 static const double LOBE = 0.443;
 
-/* rad: an image's error is that of its phases. LBF21's own Table IV asks the phase-centre approximation for 0.132. */
-static const double FORMULA_LIMIT = 0.135;
-
 struct rma_view rma_view_of(const struct problem *problem, const struct rma_method *method,
                             const struct straight_track *track)
 {
@@ -176,7 +173,7 @@ static struct rma_condition formula(const struct rma_view *view)
     return (struct rma_condition){
         view->method->law,
         exact ? 0 : worst_row(view, formula_at),
-        FORMULA_LIMIT,
+        view->method->law_limit,
         false,
         "the formula's phase error over the beam (rad, rms)",
         "rma_numeric, which has no such error; rows farther away or nearer, a narrower beam or a "

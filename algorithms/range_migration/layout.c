@@ -103,15 +103,17 @@ double rma_reach(const struct rma *rma, double r)
     return fmin(r * rma->sine / sqrt(1 - rma->sine * rma->sine), track);
 }
 
-/* The bins that hold the compressed pulse; all of them where the echoes come compressed already. */
+/* The bins that hold the compressed pulse; of echoes that come compressed already, twice the band. */
 static enum status lay_band(struct rma *rma)
 {
     const struct acquisition *a = rma->problem.acquisition;
-    double band = a->bandwidth / a->fs, fade = ceil(FADE_PERIODS / fmin(1 - band, band)); /* infinite at fs = B */
+    /* No longer than an eighth of the record for a narrow band's sake; infinite at fs = B. */
+    double band = fmax(a->bandwidth / a->fs, 8 * FADE_PERIODS / a->samples);
+    double fade = ceil(FADE_PERIODS / fmin(1 - a->bandwidth / a->fs, band));
     rma->fade = fade < a->samples ? (int)fade : a->samples;
     /* What was compressed elsewhere may have flanks beyond its bandwidth; twice the band holds them. Far beyond it there is
        nothing, and the phases' polynomials would have to span it. */
-    rma->half_band = fmin(a->fs / 2, a->bandwidth);
+    rma->half_band = fmin(a->fs / 2, fmax(a->bandwidth, 32 * a->fs / a->samples)); /* a record's own ends are in it */
     if (a->compressed)
         return STATUS_OK;
     int length = rma->record_length = fft_length_fast((long long)a->samples + a->pulse_length - 1);
@@ -359,7 +361,7 @@ static enum status swath_range(const struct rma *rma, struct rma_swath *swath)
 {
     double first, last, c = rma->setting.sound_speed, end = rma->samples - 1, margin = 2 * rma->fade;
     delays_span(rma, swath->nearest, swath->farthest, &first, &last);
-    double pulse = PULSE_PERIODS * rma->fs / rma->problem.acquisition->bandwidth;
+    double pulse = fmin(PULSE_PERIODS * rma->fs / rma->problem.acquisition->bandwidth, rma->samples);
     double before = fmax(0, -first), after = fmax(0, last - end);
     if (!(before + after <= 2.0 * rma->samples))
         return status_set(STATUS_UNSUPPORTED, "%s: rows from %g to %g m lie too far outside the record's %g to %g m",

@@ -15,11 +15,10 @@
 #include "data/shown_text.h"
 #include "data/text_file.h"
 
-/* clang-format off: braces of an initializer */
-#define METRIC(struct_name, name, unit, title, better, class, of_float, of_double, relative)                           \
-    {                                                                                                                  \
-#name, unit, title, better, class, {of_float, of_double }, relative, offsetof(struct struct_name, name)        \
-    }
+/* The braces are an initializer's. */
+/* clang-format off */
+#define METRIC(struct_name, name, unit, title, better, class, of_float, of_double, relative) \
+    {#name, unit, title, better, class, {of_float, of_double}, relative, offsetof(struct struct_name, name)}
 /* clang-format on */
 #define M_METRIC(...) METRIC(measurement, __VA_ARGS__)
 #define T_METRIC(...) METRIC(target_row, __VA_ARGS__)
@@ -59,31 +58,14 @@ struct column {
     size_t offset;
 };
 
-/* clang-format off: braces of an initializer */
-#define M_TEXT(name)                                                                                                   \
-    {                                                                                                                  \
-#name, COLUMN_TEXT, offsetof(struct measurement, name)                                                         \
-    }
-#define M_INTEGER(name)                                                                                                \
-    {                                                                                                                  \
-#name, COLUMN_INTEGER, offsetof(struct measurement, name)                                                      \
-    }
-#define M_REAL(name)                                                                                                   \
-    {                                                                                                                  \
-#name, COLUMN_REAL, offsetof(struct measurement, name)                                                         \
-    }
-#define T_TEXT(name)                                                                                                   \
-    {                                                                                                                  \
-#name, COLUMN_TEXT, offsetof(struct target_row, name)                                                          \
-    }
-#define T_INTEGER(name)                                                                                                \
-    {                                                                                                                  \
-#name, COLUMN_INTEGER, offsetof(struct target_row, name)                                                       \
-    }
-#define T_REAL(name)                                                                                                   \
-    {                                                                                                                  \
-#name, COLUMN_REAL, offsetof(struct target_row, name)                                                          \
-    }
+/* The braces are an initializer's. */
+/* clang-format off */
+#define M_TEXT(name) {#name, COLUMN_TEXT, offsetof(struct measurement, name)}
+#define M_INTEGER(name) {#name, COLUMN_INTEGER, offsetof(struct measurement, name)}
+#define M_REAL(name) {#name, COLUMN_REAL, offsetof(struct measurement, name)}
+#define T_TEXT(name) {#name, COLUMN_TEXT, offsetof(struct target_row, name)}
+#define T_INTEGER(name) {#name, COLUMN_INTEGER, offsetof(struct target_row, name)}
+#define T_REAL(name) {#name, COLUMN_REAL, offsetof(struct target_row, name)}
 /* clang-format on */
 
 /* Both tables begin with the columns that tell one measurement from another. */
