@@ -411,30 +411,20 @@ INLINE void sum_block(int phases, int width, int taps, const struct chunk *share
     {                                                                                                                  \
         sum_block(phases, width, taps, chunk, j);                                                                      \
     }
-#define BLOCKS_FEW(name, taps)                                                                                         \
-    BLOCK(name, taps, 1, 1)                                                                                            \
-    BLOCK(name, taps, 1, 2) BLOCK(name, taps, 1, 3) BLOCK(name, taps, 2, 1) BLOCK(name, taps, 2, 2)
-#define BLOCKS_MANY(name, taps)                                                                                        \
-    BLOCK(name, taps, 1, 1)                                                                                            \
-    BLOCK(name, taps, 1, 2)                                                                                            \
-    BLOCK(name, taps, 1, 3)                                                                                            \
-    BLOCK(name, taps, 2, 1) BLOCK(name, taps, 2, 2) BLOCK(name, taps, 2, 3) BLOCK(name, taps, 3, 1)                    \
-        BLOCK(name, taps, 3, 2) BLOCK(name, taps, 4, 1) BLOCK(name, taps, 5, 1) BLOCK(name, taps, 6, 1)
-#define TABLE_FEW(name)                                                                                                \
-    {                                                                                                                  \
-        {name##_1_1, name##_1_2, name##_1_3},                                                                          \
-        {                                                                                                              \
-            name##_2_1, name##_2_2                                                                                     \
-        }                                                                                                              \
-    }
-#define TABLE_MANY(name)                                                                                               \
-    {                                                                                                                  \
-        {name##_1_1, name##_1_2, name##_1_3}, {name##_2_1, name##_2_2, name##_2_3}, {name##_3_1, name##_3_2},          \
-            {name##_4_1}, {name##_5_1},                                                                                \
-        {                                                                                                              \
-            name##_6_1                                                                                                 \
-        }                                                                                                              \
-    }
+/* clang-format off */
+#define BLOCKS_FEW(name, taps) \
+    BLOCK(name, taps, 1, 1) BLOCK(name, taps, 1, 2) BLOCK(name, taps, 1, 3) \
+    BLOCK(name, taps, 2, 1) BLOCK(name, taps, 2, 2)
+#define BLOCKS_MANY(name, taps) \
+    BLOCK(name, taps, 1, 1) BLOCK(name, taps, 1, 2) BLOCK(name, taps, 1, 3) \
+    BLOCK(name, taps, 2, 1) BLOCK(name, taps, 2, 2) BLOCK(name, taps, 2, 3) \
+    BLOCK(name, taps, 3, 1) BLOCK(name, taps, 3, 2) \
+    BLOCK(name, taps, 4, 1) BLOCK(name, taps, 5, 1) BLOCK(name, taps, 6, 1)
+#define TABLE_FEW(name) {{name##_1_1, name##_1_2, name##_1_3}, {name##_2_1, name##_2_2}}
+#define TABLE_MANY(name) \
+    {{name##_1_1, name##_1_2, name##_1_3}, {name##_2_1, name##_2_2, name##_2_3}, {name##_3_1, name##_3_2}, \
+     {name##_4_1}, {name##_5_1}, {name##_6_1}}
+/* clang-format on */
 BLOCKS_FEW(nearest, 1)
 BLOCKS_FEW(line, 2)
 BLOCKS_MANY(eight, 8)
