@@ -1,5 +1,85 @@
-/* The inner sums of the translation-invariant engine: one image row from tables, built for each precision and
-   instruction set; chosen at run time by bp_invariant.c. */
+/* The inner sums of the translation-invariant engine: one image row from tables. row.c is built for each precision and
+   instruction set; invariant.c chooses one at run time.
+
+   WHY DELAYS REPEAT. The ping spacing is `ratio` azimuth steps. A pixel `ratio` columns further on sees the next ping
+   as this pixel sees this ping. Write column n as n = rho + ratio j. Here rho = n mod ratio is its residue, j = n div
+   ratio. (The code calls the residue of a column its `phase`, and `blocks` the number of columns of a residue.) Ping
+   p lies
+
+       u = (x_first - grid_first - rho grid_step) + s spacing,   s = p - j
+
+   ahead of column n. So row, receiver, residue and the shift s alone decide on delay, sample and phase factor of a
+   pair. They are tabulated once and serve all columns of the residue:
+
+       image[rho + ratio j] += w(s) record[sample(s)][ping j + s]   for all j with 0 <= j + s < pings
+
+   For one shift this is a constant times contiguous pings: no gather and no trigonometry.
+
+   PINGS BY COLUMNS. One residue with 8 columns, 5 pings, and the block of columns j = 2 to 5 in brackets. The numbers
+   are the pings p = j + s that each shift brings to the columns. All pairs form a parallelogram. An aperture limit
+   leaves out shifts at its upper and lower ends.
+
+                j = 0  1 [2  3  4  5] 6  7
+       s = -7                           0
+       s = -6                        0  1
+       s = -5           [.  .  .  0] 1  2      only the first pings meet the block
+       s = -4           [.  .  0  1] 2  3
+       s = -3           [.  0  1  2] 3  4
+       s = -2           [0  1  2  3] 4         each column of the block has a ping
+       s = -1         0 [1  2  3  4]
+       s =  0      0  1 [2  3  4  .]           only the last pings meet the block
+       s =  1      1  2 [3  4  .  .]
+       s =  2      2  3 [4  .  .  .]
+       s =  3      3  4
+       s =  4      4
+
+   The dots are zeros of the slab. A block no wider than the lead of the slab is summed for all its shifts at once and
+   reads these zeros. Of a wider block, the first and the last region are summed for those vectors of columns only that
+   have a ping (sum_columns).
+
+   THE SLAB holds compressed records of some receivers, re and im apart: [receiver][range sample][lead, pings, zeros].
+   Pings of one range sample are contiguous, which is what the sum over columns reads. Vectors may begin before ping 0
+   and end behind the last one.
+
+   THE LOOPS, from outside to inside:
+
+       receivers as many as fit the slab                  invariant_execute
+         pass over the fine samples                       the same; several only for large upsampled records
+           patch; image row, by one thread each           sum_rows
+             receiver of the slab                         BP_ROW from here on
+               groups of neighbouring residues, as many as `capacity` holds: a chunk
+                 tables of the chunk                      delays, keep or confine, tabulate, join_few or join_many
+                 block of columns                         sum_columns
+                   shifts that bring pings to the same vectors of the block: one region
+                     group of residues                    sum_block
+                       shift, tap, vector of columns      sum_one, sum_two, sum_taps
+
+   Tables and sums take turns, so that both stay in the cache. Up to two taps, and single residues of more taps, keep
+   the sums of a block in registers over all shifts of a region.
+
+   THE TABLES. An entry is one shift of one residue. A group's entries are ordered by shift and then residue, and are
+   padded to whole vectors. Made once for a row and the receivers of the slab (make_groups): seconds on the way out
+   (`leg`), metres along the track (`ahead`), the shift, and a gate of 1 or 0 for the aperture of this residue. Made
+   once for a receiver: the place in the slab (`row`, `offset`) and the weights.
+     - One or two taps: complex weights, phase factor times tap. In groups of two residues, an entry of the second that
+       reads another sample than the first is summed by itself (sum_entry, listed in `rows`), and its weight becomes 0.
+     - More taps: phase factors (`wr`, `wi`) and real tap weights stand apart. A group reads the `rows` samples that any
+       of its residues needs. The weights of a residue are 0 for samples that are not its own.
+
+   WHAT THE LOOPS RELY ON. They check nothing. Nor are there assertions: this code sees to it.
+
+       whole ratio, even pings   raster_make, ping_beside: to 1e-7 of a cycle and of a sample, else unsupported
+       zeros around the pings    invariant_plan: a lead of 64 bytes, the widest vector, and as much behind the pings;
+                                 invariant_execute clears the slab, and spread writes pings only
+       samples in the record     BP_ROW: inside_record proves it for the whole row, else confine or keep checks entries;
+                                 taps beyond the record's ends read the guard rows of the slab, which are zeros
+       whole vectors             places, keep: entries of the padding hold valid values and are not summed;
+                                 invariant_plan: a row of sums has room for BP_LANES_MOST values behind its columns
+       BP_SPREAD                 phases_together: groups are so small that, by steepness(), the samples of one shift lie
+                                 at most BP_SPREAD apart; join_many would write beyond its table else
+       capacity                  invariant_plan: the largest group, BP_TOGETHER residues with all shifts, always fits
+       int indices               raster_make, invariant_plan: larger tables and slabs are unsupported
+       same bits                 sum_rows: one thread sums a row, in an order that does not depend on the threads */
 #ifndef SASBENCH_BACKPROJECTION_INVARIANT_ROW_H
 #define SASBENCH_BACKPROJECTION_INVARIANT_ROW_H
 
@@ -69,7 +149,8 @@ struct bp_row_scratch {
 #define BP_ENTRIES(shifts) (((shifts) + BP_LANES_MOST - 1) / BP_LANES_MOST * BP_LANES_MOST)
 
 /* Add `count` receivers, `offsets[g]` metres ahead of the transmitter, to one image row at range r: sums hold
-   [ratio][stride] values re, then im, of column rho + ratio j at [rho][j]; stride >= blocks + BP_LANES_MOST, the most of one vector. */
+   [ratio][stride] values re, then im, of column rho + ratio j at [rho][j]; stride >= blocks + BP_LANES_MOST, the most
+   of one vector. */
 typedef void bp_row_function(const struct bp_medium *medium, const struct bp_table *table,
                              const struct bp_raster *raster, const struct bp_slab *slab, double r,
                              const double *offsets, int count, const struct bp_row_scratch *scratch, void *re, void *im,
