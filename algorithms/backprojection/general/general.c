@@ -106,7 +106,7 @@ static enum status general_plan(struct bp *bp)
     if (!general->rows || !general->interleaved || !general->heading || !general->boxes || !general->along_x
         || !general->sums)
         return status_set(STATUS_FAILED, "no memory for %d records of %d values", general->batch, bp->shape.length);
-    /* The rest of the limit is for the sums in float (bp_sum.c). */
+    /* The rest of the limit is for the sums in float (error budget: sum.h). */
     const double quintics = problem->precision == PRECISION_FLOAT ? 0.85 : 1;
     for (int p = 0; p < a->pings; p++) {
         general->heading[p] = acquisition_heading(a, p);

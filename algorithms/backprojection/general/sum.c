@@ -362,7 +362,7 @@ INLINE void sum_block(const struct bp_table *table, int group, const real *row, 
                                                                  : TOGETHER;
     int longest = slope * RUN > SPAN ? (int)fmax(1, SPAN / slope) : RUN;
 #if WINDOWS
-    /* A bend of n turns errs by at most 1.1e-6 n rad: 0.15 of the limit. */
+    /* A bend of n turns errs by at most 1.1e-6 n rad: 0.15 of the limit (error budget: sum.h). */
     const double turns = fmin(16, phase_limit * 0x1p17), half_run = sqrt(2 * turns / (bend * scale->ratio));
     const int flat_longest = 2 * half_run < RUN ? (int)(2 * half_run) / LANES * LANES : RUN;
     const bool flat = loading == TOGETHER && flat_longest >= FLAT_LEAST && scale->ratio > RATIO_LEAST
