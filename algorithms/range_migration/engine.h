@@ -1,7 +1,42 @@
-/* A range migration's plan. rma_layout.c lays it out (track, blocks, swaths and their transforms), rma_phase.c knows
-   the corrections' phases, rma_transform.c transforms along range and azimuth (for each precision), rma_convert.c and
-   rma_focus.c work on one azimuth wavenumber (for each precision and instruction set), rma.c puts them in order.
-   Pointers without a type hold values of the plan's precision. */
+/* A range migration's plan. layout.c lays it out (track, blocks, swaths and their transforms), phase.c knows the
+   corrections' phases, transform.c transforms along range and azimuth (for each precision), convert.c and focus.c
+   work on one azimuth wavenumber (for each precision and instruction set), rma.c puts them in order. Pointers without
+   a type hold values of the plan's precision.
+
+   THE STAGES, with the shape of the array before and after each (rma.h has the equations). All values are complex,
+   the last dimension is contiguous. M receivers; P = period, the pings and zeros after them; Q = M P wavenumbers;
+   `row` bins hold the band of a swath and fill whole vectors; N = needed, the blocks that a swath's rows are made of.
+
+   compress      [pings][M][samples] -> [pings][M][row] for each swath, in swath->data
+                 each record through the matched filter, by transforms of record_length (unless the echoes come
+                 compressed); its stretch for the swath, ends tapered, through an FFT of `length`; the band is kept
+   spread        [pings][M][row] -> [P][M][row], in place
+                 an FFT over the pings for each receiver and bin; from here on re and im take turns by vectors
+
+   From here to focus, a thread works on RMA_TILE wavenumbers in turn, in the order of rma_wavenumber. Wavenumber q
+   reads [M][row]: entry q - Q/2 modulo P of the P above, or Q/2 - q where the track runs towards -x. M of them share
+   an entry.
+
+   bulk          [M][row] -> [M][RMA_SPAN], for RMA_SPAN bins at a time
+                 each receiver's correction at the range of the reference block, whose own sum is then complete
+   differential  [M][RMA_SPAN] -> [N][row], or [N][M][row] with sum=after; takes turns with bulk until all bins are done
+                 the rest of the correction for each other block, summed over the receivers
+   reconstruct   [N][row] -> [length] samples in range -> [RMA_GUARD + stolt_length + RMA_GUARD] bins
+                 an IFFT of `length` for each block; each sample is its block's, or blends the nearest four; samples
+                 count from `centre`; zeros up to stolt_length; an FFT, its bins in rising frequency
+   stolt         [stolt_length] bins of F -> bins of K, RMA_SPAN at a time, for each patch
+   focus         bins of K -> [length of the patch] -> [r_count] rows of the patch
+                 phase at the first row, and weight; bins beyond the transform fold onto it; an IFFT. Rows of all
+                 patches of RMA_TILE wavenumbers, [rows][RMA_TILE], go to `focused`, [rows][columns]. `columns` of the
+                 swath is Q rounded up to RMA_TILE
+
+   inverse       [r_count][columns] -> [r_count][x_count], the pixels of each patch
+                 an IFFT over the wavenumbers of a row, onto the grid's columns: one transform, or a convolution with a
+                 chirp; times sqrt(r)
+
+   Shortcuts: a single receiver at the transmitter needs no bulk and no differential. With stolt=direct, focus sums each
+   bin of the band at each row, without stolt and IFFT. If then one block is needed and sum=before, there is nothing to
+   reconstruct either. */
 #ifndef SASBENCH_RANGE_MIGRATION_ENGINE_H
 #define SASBENCH_RANGE_MIGRATION_ENGINE_H
 
@@ -154,7 +189,7 @@ struct rma {
     void *focused;                  /* complex [rows][columns] of the swath at work, wavenumbers in their turns */
 };
 
-/* ---- rma_layout.c ---- */
+/* ---- layout.c ---- */
 
 /* How far ahead or behind a target at range r the transmitter can be, m: by angle, or by the track's own extent and some
    Fresnel zones beyond it. */
@@ -175,7 +210,7 @@ static inline int rma_wavenumber(const struct rma *rma, const struct rma_swath *
     return turn / rma->receivers + turn % rma->receivers * swath->period;
 }
 
-/* ---- rma_phase.c ---- */
+/* ---- phase.c ---- */
 
 double rma_frequency(const struct rma *rma, const struct rma_swath *swath, int bin); /* F, Hz */
 /* Correction of receiver m at range r, in cycles: -(phi + r K)/2 pi. */
@@ -187,7 +222,7 @@ void rma_nodes(struct rma *rma); /* fills nodes and powers */
 /* Range of a block's centre, m. */
 double rma_block_range(const struct rma *rma, int block);
 
-/* ---- rma_transform.c ---- */
+/* ---- transform.c ---- */
 struct rma_transform {
     enum status (*plan)(struct rma *rma); /* memory, tables and FFT plans */
     void (*destroy)(struct rma *rma);     /* accepts what `plan` left unfinished */
@@ -197,7 +232,7 @@ struct rma_transform {
 };
 extern const struct rma_transform rma_transform_float, rma_transform_double;
 
-/* ---- rma_focus.c ---- */
+/* ---- focus.c ---- */
 enum rma_stage { RMA_BULK, RMA_DIFFERENTIAL, RMA_RECONSTRUCT, RMA_STOLT, RMA_FOCUS, RMA_STAGES };
 /* The wavenumbers whose turn it is from `turn` to turn + RMA_TILE - 1, all rows, into `focused`; seconds of each stage
    are added. */
