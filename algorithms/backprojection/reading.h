@@ -26,7 +26,7 @@ struct bp_table {
 struct bp_medium {
     double sound_speed, fc, fs;
     int samples;
-    double phase_limit; /* rad: that the general engine's sums may err by; 0: every delay is evaluated */
+    double phase_limit; /* rad: L of the error budget (general/sum.h); 0: every delay is evaluated */
 };
 
 #endif

@@ -1,4 +1,4 @@
-/* Range compression and exact upsampling of single records (records.h). Cost: an FFT of L and one of L upsample. */
+/* Range compression and exact upsampling of single records (traces.h). Cost: an FFT of L and one of L upsample. */
 #include "backprojection/traces.h"
 
 #include <limits.h>

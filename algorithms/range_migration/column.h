@@ -1,4 +1,4 @@
-/* What rma_convert.c and rma_focus.c share: one thread at one azimuth wavenumber (for each precision and instruction
+/* What convert.c and focus.c share: one thread at one azimuth wavenumber (for each precision and instruction
    set; BP_ISA names it). */
 #ifndef SASBENCH_RANGE_MIGRATION_COLUMN_H
 #define SASBENCH_RANGE_MIGRATION_COLUMN_H

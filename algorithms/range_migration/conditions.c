@@ -1,4 +1,4 @@
-/* The conditions of range migration (rma_conditions.h). Limits are measured: over several hundred scenes whose images were
+/* The conditions of range migration (conditions.h). Limits are measured: over several hundred scenes whose images were
    compared with exact ones, all else accepted has errors below 0.12. */
 #include "range_migration/conditions.h"
 

@@ -1,4 +1,4 @@
-/* Bootstrap of interval.h. */
+/* The bootstrap interval of a ratio of times (bootstrap.h). */
 #include "gate/bootstrap.h"
 
 #include <math.h>

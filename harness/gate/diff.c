@@ -1,4 +1,4 @@
-/* Two results, row by row (compare.h): rows are matched by their sorted keys, values judged by the metric table. */
+/* Two results, row by row (diff.h): rows are matched by their sorted keys, values judged by the metric table. */
 #include "gate/diff.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* What got worse between two states of the program: findings, from results (compare.c) or from both programs run side by
-   side (ab.c), and how they are shown (compare_show.c). */
+/* What got worse between two states of the program: findings, from results (diff.c) or from both programs run side by
+   side (ab.c), and how they are shown (diff_show.c). */
 #ifndef SASBENCH_GATE_DIFF_H
 #define SASBENCH_GATE_DIFF_H
 

@@ -1,4 +1,4 @@
-/* How findings are shown (compare.h): as text, as Markdown, as JSON. */
+/* How findings are shown (diff.h): as text, as Markdown, as JSON. */
 #include "gate/diff.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* Scene files: what the keys say about each other, and the acquisition, targets and image made from them. The keys
-   themselves are in scene_keys.c and scenes/README.md. */
+   themselves are in keys.c and scenes/README.md. */
 #include "scene/scene.h"
 
 #include <fts.h>

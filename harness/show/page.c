@@ -1,4 +1,4 @@
-/* Headings, tables and pictures as HTML or Markdown (report_page.h). */
+/* Headings, tables and pictures as HTML or Markdown (page.h). */
 #include "show/page.h"
 
 #include <errno.h>

@@ -1,4 +1,4 @@
-/* Scenes measured with algorithms (comparison.h). */
+/* Scenes measured with algorithms (batch.h). */
 #include "study/batch.h"
 
 #include <math.h>

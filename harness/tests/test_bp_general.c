@@ -284,7 +284,7 @@ static void fast_near_exact(void **state)
 
 /* The functions for a machine without AVX and without fused multiply-adds, and those with AVX2 on a machine that has more,
    show the same images, on either path and in the invariant engine; in float but for what the general engine's fast path may
-   err by (bp_sum.c). */
+   err by (general/sum.c). */
 static void instruction_sets_agree(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 /* The regression gate: the shipped baseline holds on every instruction set, injected faults are caught by name, and results
-   are compared as compare.h says. */
+   are compared as diff.h says. */
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-/* Blocks of pixels and the error of their quintics (bp_blocks.h).
+/* Blocks of pixels and the error of their quintics (general/blocks.h).
 
    Along a line, the two-way path L = c tau of a resting sonar is a sum of two distances sqrt(d^2 + s^2), whose sixth
    derivatives stay below 45/rho^5 each, rho the least distance (Gegenbauer: 6!/16). The receivers' motion, B = V/c,

@@ -1,6 +1,6 @@
 /* Back projection for any track: records are compressed in batches that stay in the cache; each line of pixels, along
    azimuth or range, is summed by one thread, pairs in order, so that the bits do not depend on the number of threads.
-   Delays are exact at six points of a block of pixels and quintics between them (bp_blocks.c); with exact=true, and near the
+   Delays are exact at six points of a block of pixels and quintics between them (general/blocks.c); with exact=true, and near the
    array, every delay is evaluated. */
 #include <limits.h>
 #include <math.h>

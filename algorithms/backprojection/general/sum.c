@@ -1,5 +1,5 @@
 /* The inner loops of the general engine: delays of a line of pixels, exactly or from a block's quintic, as runs of pixels for
-   bp_take.c. Delay and phase are double, reduced to a fraction of a turn before they become `real`; where lines bend
+   general/gather.c. Delay and phase are double, reduced to a fraction of a turn before they become `real`; where lines bend
    little, only their straight part is. Short loops over arrays in the first-level cache, so that many pixels are in flight
    at once. This file is compiled once for each precision and instruction set (BP_ISA names it). */
 #include "backprojection/general/sum.h"

@@ -48,33 +48,7 @@
 #define SASBENCH_BACKPROJECTION_GENERAL_SUM_H
 
 #include "backprojection/general/blocks.h"
-
-/* Of the speed of sound, the receivers' below which the delay's root (q + s)/e loses less than a bit where it cancels
-   (delay.h): the division of the other form is spared. */
-#define BP_SLOW 0.125
-
-/* How a value between samples is read. */
-enum bp_reading {
-    BP_NEAREST, /* the nearest value: one tap */
-    BP_LINE,    /* two weights, 1 - f and f of the fraction f rounded to a phase: no table is read */
-    BP_PHASES,  /* weights [phases][taps] of the fraction rounded to a phase */
-    BP_CUBICS   /* weights that are cubics in the fraction's position inside each of BP_INTERVALS
-                                       intervals, [BP_INTERVALS][4][taps], lowest power first */
-};
-enum { BP_INTERVAL_BITS = 8, BP_INTERVALS = 1 << BP_INTERVAL_BITS };
-
-/* struct interpolator with its weights tabulated. */
-struct bp_table {
-    enum bp_reading reading;
-    int upsample, phases, taps, first, guard;
-    const void *weights; /* of the plan's precision; NULL if BP_NEAREST */
-};
-
-struct bp_medium {
-    double sound_speed, fc, fs;
-    int samples;
-    double phase_limit; /* rad: L of the error budget above; 0: every delay is evaluated */
-};
+#include "backprojection/reading.h"
 
 /* Receivers of one ping, with their records. */
 struct bp_ping {

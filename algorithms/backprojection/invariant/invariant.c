@@ -1,5 +1,5 @@
 /* Back projection on a uniform straight track whose ping spacing is a whole number of azimuth steps: the geometry repeats
-   itself from ping to ping, so that tables of one row serve all its columns (bp_row.c). Records are laid out with pings
+   itself from ping to ping, so that tables of one row serve all its columns (invariant/row.c). Records are laid out with pings
    contiguous, some receivers at a time; each image row is summed by one thread in a fixed order. Cost: 8 FLOPs a pair
    (nearest), tables of ratio x shifts entries for each row and receiver. */
 #include <limits.h>

@@ -1,4 +1,4 @@
-/* One image row of the translation-invariant engine (bp_row.h). For a row r, a receiver and a column phase rho, delay,
+/* One image row of the translation-invariant engine (invariant/row.h). For a row r, a receiver and a column phase rho, delay,
    sample and phase depend only on the shift s = ping - column: they are tabulated once, and
        image[rho + ratio j] += w(s) record[sample(s)][j + s]
    runs over contiguous pings: no gather, no trigonometry, 4 multiply-adds a pair. Exact: the same pairs, samples and
