@@ -1,5 +1,5 @@
 # How near the engines come to the machine's limits, on all threads: rate, fraction of the multiply-add peak, ratio to the
-# control loop.
+# scalar reference loop.
 #
 # By hand:    gnuplot -c plots/bench.gp results/bench/bench.csv
 # Variables:  csv      what `bench` wrote
@@ -24,7 +24,7 @@ plot csv using (label(strcol("algorithm"), strcol("precision"), strcol("scene"))
     with table if (column("threads") == threads_max)
 unset table
 
-array title[3] = ["rate (1e9 pairs/s)", "fraction of the multiply-add peak", "times the control loop's rate"]
+array title[3] = ["rate (1e9 pairs/s)", "fraction of the multiply-add peak", "times the scalar reference loop's rate"]
 array engine[2] = ["invariant", "general"]
 array colour[2] = ["#0072b2", "#d55e00"]
 set output output

@@ -45,6 +45,6 @@ do for [picture = 1:pictures] {
         keyentry with points pointtype 6 linewidth 1 pointsize 1.2 linecolor rgb "#000000" \
             title "open, thin: in double", \
         keyentry with lines linewidth 1.5 dashtype 3 linecolor rgb "#000000" \
-            title (cost == 2 ? "time of the control loop" : "")
+            title (cost == 2 ? "time of the scalar reference loop" : "")
     unset output
 }

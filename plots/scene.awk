@@ -9,7 +9,7 @@
 #                                  the point over run_s, over flops: sparsely, so that no two overlap)
 #   series[], family[], member[], precise[]   title; the algorithm's number (1 to 10); which of its series; 1 for double
 #   rated[]                        the numbers of the series whose rows have a rate
-#   $control                       the control loop's time: two lines of run_s error, from the largest error to the least
+#   $control                       the scalar reference loop's time: two lines of run_s error, from the largest error to the least
 #   reference_pslr, reference_islr NaN where unknown
 #   has_points, has_lobes, has_rates   1 where there is something to draw: any row, lobes beside the reference's, an
 #                                  upsampling rate above 1

@@ -12,6 +12,7 @@
 #include "data/number.h"
 #include "data/shown_text.h"
 #include "command/task.h"
+#include "measure/results.h"
 #include "data/temporary.h"
 
 struct command {
@@ -43,7 +44,7 @@ static const struct command commands[] = {
     {"report", "DIR", "a results folder as one page: DIR/report.html, and DIR/report.md", "", 1, 1, command_report},
     {"phase", "([SCENE] [-o DIR] | --at FILE.csv)", "phase errors of the two-dimensional spectra (LBF21 Figs 2-9)",
      "oA", 0, 1, command_phase},
-    {"bench", "[-o DIR]", "speed of the engines against the processor's peak and the control loop", "ot", 0, 0,
+    {"bench", "[-o DIR]", "speed of the engines against the processor's peak and the scalar reference loop", "ot", 0, 0,
      command_bench},
 };
 
@@ -75,7 +76,8 @@ static void help(void)
            "echoes\n\nUsage: sasbench COMMAND [OPTIONS]\n\n");
     for (size_t k = 0; k < sizeof commands / sizeof *commands; k++)
         printf("  %s %s\n        %s\n", commands[k].name, commands[k].arguments, commands[k].summary);
-    printf("  test\n        verify this build (of the ./sasbench script)\n\nOptions:\n");
+    printf("  test\n        verify this build (of the ./sasbench script)\n  --version\n        version, commit, "
+           "compiler, libraries, instruction set\n\nOptions:\n");
     for (size_t k = 0; k < sizeof option_texts / sizeof *option_texts; k++)
         printf("  %s\n", option_texts[k]);
     printf("\nExit status: 0 done, 1 a run failed or got worse, 2 bad usage or bad input.\n");
@@ -192,7 +194,7 @@ static enum status command_find(const char *name, const struct command **found)
         size_t used = strlen(names);
         snprintf(names + used, sizeof names - used, "%s, ", commands[k].name);
     }
-    return status_set(STATUS_INVALID, "'%s' is not a command; accepted: %stest, --help", name, names);
+    return status_set(STATUS_INVALID, "'%s' is not a command; accepted: %stest, --help, --version", name, names);
 }
 
 /* One line, whatever the arguments that it quotes hold. */
@@ -214,6 +216,15 @@ static void streams_open(void)
         close(descriptor);
 }
 
+/* What a report of a fault has to name. */
+static void version(void)
+{
+    struct provenance provenance;
+    provenance_fill(&provenance, omp_get_max_threads());
+    printf("sasbench %s, commit %s\ncompiler: %s (%s)\nlibraries: %s\ninstruction set: %s\n", SASBENCH_VERSION,
+           provenance.commit, provenance.compiler, provenance.flags, provenance.libraries, provenance.isa);
+}
+
 int main(int argc, char **argv)
 {
     const char *name = argc < 2 ? "" : argv[1];
@@ -223,10 +234,13 @@ int main(int argc, char **argv)
     streams_open();
     signal(SIGXFSZ, SIG_IGN); /* a file beyond the limit is an error where it is written */
     temporary_guard();
-    enum status status = helped ? STATUS_OK : command_find(name, &command);
-    if (status == STATUS_OK && !helped)
+    const bool versioned = strcmp(name, "--version") == 0;
+    enum status status = helped || versioned ? STATUS_OK : command_find(name, &command);
+    if (status == STATUS_OK && command)
         status = parse(command, argc - 1, argv + 1, &task, &helped);
-    if (status == STATUS_OK && helped)
+    if (status == STATUS_OK && versioned)
+        version();
+    else if (status == STATUS_OK && helped)
         help();
     else if (status == STATUS_OK)
         status = command->run(&task);

@@ -8,7 +8,7 @@ struct timing {
     double plan_s;           /* s, planning, once */
     double run_s, run_min_s; /* s, median and minimum of the timed runs */
     int runs;                /* timed runs; 1 when a run is so long that the first counts */
-    double control_s;        /* s, the control loop's time for all pairs of the problem, measured beside */
+    double control_s;        /* s, the scalar reference loop's time for all pairs of the problem, measured beside */
     struct stages stages;    /* of the median run */
     struct work work;
 };

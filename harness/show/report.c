@@ -173,8 +173,8 @@ static void measurement_show(struct page *page, const struct measurement *row)
 static void measurements_show(struct page *page, const struct folder *folder)
 {
     page_heading(page, 2, "measurements", "Measurements");
-    page_paragraph(page, "Run time: median seconds from raw echoes to complex image; speed-up: against a plain "
-                         "control loop timed beside. Errors: relative L2 against the exact image. Width, PSLR and "
+    page_paragraph(page, "Run time: median seconds from raw echoes to complex image; speed-up: against the scalar "
+                         "reference loop timed beside. Errors: relative L2 against the exact image. Width, PSLR and "
                          "ISLR: medians over the targets, azimuth, main lobe from first minimum to first minimum.");
     for (int s = 0; s < folder->scene_count; s++) {
         page_heading(page, 3, NULL, folder->scenes[s]);

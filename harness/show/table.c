@@ -75,7 +75,7 @@ void table_header(FILE *stream)
 {
     *last_scene = '\0';
     fputs("time      median seconds from raw echoes to complex image\n"
-          "speed-up  against a plain control loop timed beside, which takes out the machine's momentary speed\n"
+          "speed-up  against the scalar reference loop timed beside, which takes out the machine's momentary speed\n"
           "rate      10^9 pixel-pulse pairs (Gp/s) or, where none are summed, operations (GF/s) a second\n"
           "error     against the exact image, relative L2; +gain: after one best complex gain; phase: rms over the\n"
           "          strong pixels\n"

@@ -612,6 +612,11 @@ static void help_list_and_info_tell_everything(void **state)
             assert_holds(text, commands[n]);
         free(text);
     }
+    static const char *const facts[] = {"sasbench 0.", "commit ", "compiler: ", "libraries: fftw", "instruction set: "};
+    char *version = program_output((const char *const[ARGUMENTS_MAX]){"--version"});
+    for (size_t n = 0; n < COUNT_OF(facts); n++)
+        assert_holds(version, facts[n]);
+    free(version);
     char *list = program_output((const char *const[ARGUMENTS_MAX]){"list"});
     for (int k = 0; algorithms[k]; k++) {
         assert_holds(list, algorithms[k]->name);

@@ -330,7 +330,7 @@ static void all_pings_and_receivers_are_bounded(void **state)
     assert_says(status_message(), "key 'track.pri' is 1e+12");
 }
 
-/* --- The control loop ------------------------------------------------------------------------------------------- */
+/* --- The scalar reference loop ------------------------------------------------------------------------------------------- */
 
 /* A pair costs what it costs, however many others lie outside the record. */
 static void control_counts_what_it_sums(void **state)
