@@ -82,9 +82,9 @@ enum status REAL_NAME(records_plan)(const struct acquisition *acquisition, int u
         }
         fftw_free(work);
         if (!records->forward || !records->inverse) {
+            double bytes = (double)threads * (double)records->scratch_length * sizeof(complex_real);
             REAL_NAME(records_destroy)(records);
-            return status_set(STATUS_FAILED, "no memory for range compression (%.0f MB)",
-                              (double)threads * (double)records->scratch_length * sizeof(complex_real) / 1e6);
+            return status_set(STATUS_FAILED, "no memory for range compression (%.0f MB)", bytes / 1e6);
         }
         records->shape.flops = fft_flops(length) + fft_flops((double)fine) + 6.0 * length;
         records->shape.bytes += (double)(records->scratch_length + (size_t)length) * sizeof(complex_real);

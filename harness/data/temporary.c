@@ -35,7 +35,8 @@ static void name_drop(const char *path)
         char *name = names[k];
         if (name && strcmp(name, path) == 0) {
             names[k] = NULL;
-            free(name);
+            free(name); /* which `path` may be */
+            return;
         }
     }
 }
