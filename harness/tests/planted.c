@@ -1,4 +1,4 @@
-#include "planted.h"
+#include "tests/planted.h"
 
 #include <omp.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #define SASBENCH_TEST_PLANTED_H
 
 #include "papers/claims.h"
-#include "support.h"
+#include "tests/support.h"
 
 /* Begin the test's folder anew, and read it back when all rows are there. */
 extern struct record *rows;

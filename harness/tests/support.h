@@ -2,7 +2,7 @@
 #ifndef SASBENCH_TEST_SUPPORT_H
 #define SASBENCH_TEST_SUPPORT_H
 
-#include "assertions.h"
+#include "tests/assertions.h"
 
 #include "data/echo_data.h"
 #include "scene/scene.h"

@@ -1,7 +1,7 @@
 /* The tests' own tools: a planted NaN passes none of them. */
 #include <complex.h>
 
-#include "support.h"
+#include "tests/support.h"
 
 static void nan_is_close_to_nothing(void **state)
 {

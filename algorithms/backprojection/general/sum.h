@@ -43,7 +43,7 @@
                    19 bits of fraction (BITS). Nearest samples have 32 bits; the points of      `point`
                    cubics are 1/256 sample.
 
-   harness/tests/test_bp_general.c measures all of it: phase_below_limit the phases, near_ties the positions. */
+   harness/tests/algorithms/test_bp_general.c measures all of it: phase_below_limit the phases, near_ties the positions. */
 #ifndef SASBENCH_BACKPROJECTION_GENERAL_SUM_H
 #define SASBENCH_BACKPROJECTION_GENERAL_SUM_H
 

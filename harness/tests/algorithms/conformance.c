@@ -1,0 +1,532 @@
+#include "tests/algorithms/conformance.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "backprojection/pairs.h"
+#include "gate/baseline.h"
+#include "data/csv.h"
+#include "measure/metrics.h"
+#include "scene/simulate.h"
+#include "tests/allocations.h"
+
+/* ---- scenes ---- */
+struct setting {
+    const char *name;
+    int pings, receivers;
+    double first_offset, speed, fs, r, r_first; /* target and first image row, m */
+    bool raw, empty;
+    double bound; /* of the relative error: nearest neighbour's; at fs = B every short kernel loses much of the band */
+    enum trait promise; /* which makes the scene: an algorithm with this trait may not refuse it */
+};
+
+static const struct setting settings[] = {
+    {"ordinary", 8, 6, 0.04, 2.5, 30e3, 30, 29.75, false, false, 0.15, 0},
+    {"raw", 8, 6, 0.04, 2.5, 30e3, 30, 29.75, true, false, 0.15, 0},
+    {"empty", 8, 6, 0.04, 2.5, 30e3, 30, 29.75, true, true, 0, 0},
+    {"one ping", 1, 6, 0.04, 2.5, 30e3, 30, 29.75, true, false, 0.15, 0},
+    {"one receiver", 24, 1, 0.04, 2.5, 30e3, 30, 29.75, true, false, 0.15, 0},
+    {"one pair", 1, 1, 0, 2.5, 30e3, 30, 29.75, false, false, 0.15, 0},
+    {"negative offsets", 8, 6, -0.24, 2.5, 30e3, 30, 29.75, true, false, 0.15, 0},
+    {"v/c = 0.05", 8, 6, 0.04, 75, 30e3, 30, 29.75, true, false, 0.15, 0},
+    {"stop and hop", 8, 6, 0.04, 0, 30e3, 30, 29.75, true, false, 0.15, 0},
+    {"pixels on the track", 8, 6, 0.04, 2.5, 30e3, 0.5, 0, false, false, 0.3, 0},
+    {"fs = B", 8, 6, 0.04, 2.5, 15e3, 30, 29.75, false, false, 0.7, 0},
+    {"curved track in space", 8, 6, 0.04, 2.5, 30e3, 30, 29.75, false, false, 0.15, TRAIT_ANY_TRACK},
+    {"aperture limit", 8, 6, 0.04, 2.5, 30e3, 30, 29.75, false, false, 0.15, TRAIT_APERTURE_LIMIT},
+};
+enum { SETTINGS = sizeof settings / sizeof *settings, RAW = 1 };
+
+/* A track that bends across and in depth by many wavelengths, on which the array turns as well; velocity and time of the
+   first sample change from ping to ping. */
+static void bend(struct acquisition *a)
+{
+    for (int p = 0; p < a->pings; p++) {
+        const double y = 0.3 * sin(0.9 * p), z = 2 + 0.4 * cos(1.1 * p);
+        a->t0[p] += p % 3 / a->fs;
+        a->tx[p] = (struct vector){a->tx[p].x, y, z};
+        a->velocity[p] = (struct vector){2.5, 1.5 + 0.1 * p, 6 - 0.2 * p};
+        for (int m = 0; m < a->receivers; m++) {
+            struct vector *rx = &a->rx[p * a->receivers + m];
+            rx->y = y + 0.03 * m;
+            rx->z = z - 0.1 * m;
+        }
+    }
+}
+
+static void make_scene(const struct setting *setting, struct scene *scene, struct grid *grid)
+{
+    double spacing = 0.02 * (setting->receivers > 1 ? setting->receivers : 2), duration = 2e-3;
+    int samples = setting->fs > 20e3 ? 1024 : 512;
+    double first = floor(fmax(0, 2 * setting->r / 1500 * setting->fs - samples / 4));
+    bool straight_down = setting->r < 1 || setting->promise == TRAIT_ANY_TRACK; /* element beams would see nothing */
+    *scene = (struct scene){.pulse_kind = setting->raw ? PULSE_LFM : PULSE_FLAT,
+                            .pulse_duration = duration,
+                            .beam = {straight_down ? BEAM_RECT : BEAM_TXRX, TRUNCATION_NONE, 0, false},
+                            .patch_count = 1,
+                            .patches = grid};
+    struct acquisition *a = &scene->acquisition;
+    *a = (struct acquisition){.sound_speed = 1500,
+                              .fc = 150e3,
+                              .fs = setting->fs,
+                              .bandwidth = 15e3,
+                              .samples = samples,
+                              .receivers = setting->receivers,
+                              .pings = setting->pings,
+                              .tx_length = 0.08,
+                              .rx_length = 0.04,
+                              .aperture_limit = INFINITY,
+                              .compressed = !setting->raw,
+                              .pulse_length = setting->raw ? pulse_length_lfm(duration, setting->fs) : 0};
+    assert_int_equal(acquisition_allocate(a), STATUS_OK);
+    for (int p = 0; p < a->pings; p++) {
+        a->t0[p] = first / a->fs;
+        a->tx[p].x = (p - (a->pings - 1) / 2.0) * spacing;
+        a->velocity[p].x = setting->speed;
+        for (int m = 0; m < a->receivers; m++)
+            a->rx[p * a->receivers + m].x = a->tx[p].x + setting->first_offset + 0.04 * m;
+    }
+    if (setting->promise == TRAIT_ANY_TRACK)
+        bend(a);
+    if (setting->promise == TRAIT_APERTURE_LIMIT)
+        a->aperture_limit = 0.008; /* 0.24 m of an aperture of 0.84 m to either side */
+    if (setting->raw)
+        pulse_lfm(a->bandwidth, duration, a->fs, a->pulse_length, a->pulse);
+    *grid = (struct grid){-0.24, 0.02, 25, setting->r_first, 0.025, 21};
+    scene->target_count = scene->point_count = !setting->empty;
+    scene->targets = calloc(1, sizeof *scene->targets);
+    scene->targets[0] = (struct target){0.011, setting->r, 1};
+    assert_int_equal(acquisition_check(a, setting->name), STATUS_OK);
+}
+
+static void free_scene(struct scene *scene)
+{
+    free(scene->targets);
+    acquisition_free(&scene->acquisition);
+}
+
+static struct problem problem_of(const struct scene *scene, enum precision precision)
+{
+    return (struct problem){&scene->acquisition, 1, scene->patches, precision};
+}
+
+/* ---- the algorithm ---- */
+static const struct algorithm *current; /* what the tests run through */
+
+#define REFUSE(setting, format, ...) fail_msg("%s, %s: " format, current->name, setting, __VA_ARGS__)
+
+static void at_most(const char *setting, const char *what, double value, double bound)
+{
+    if (!(value <= bound))
+        REFUSE(setting, "%s is %.3g, must be at most %.3g", what, value, bound);
+}
+
+/* Its defaults. */
+static void make_spec(enum precision precision, struct spec *spec)
+{
+    char text[80];
+    snprintf(text, sizeof text, "%s:precision=%s", current->name, precision_name(precision));
+    if (spec_parse(text, spec) != STATUS_OK)
+        fail_msg("%s: %s", current->name, status_message());
+}
+
+/* A plan by the current algorithm's defaults; false when it refuses the scene. */
+static bool make_plan(const struct setting *setting, const struct problem *problem, void **plan)
+{
+    struct spec spec;
+    int unset;
+    make_spec(problem->precision, &spec);
+    *plan = &unset;
+    enum status status = current->plan(problem, spec.options, plan);
+    spec_free(&spec);
+    if (status == STATUS_OK)
+        return true;
+    if (status != STATUS_UNSUPPORTED || strlen(status_message()) <= 10)
+        REFUSE(setting->name, "plan returns status %d, \"%s\", must be 0, or %d with a reason", status,
+               status_message(), STATUS_UNSUPPORTED);
+    if (*plan)
+        REFUSE(setting->name, "%s", "plan refuses and leaves *plan set, must be NULL");
+    if (setting->promise & current->traits)
+        REFUSE(setting->name, "refused, \"%s\", in spite of its trait", status_message());
+    return false;
+}
+
+/* Work that a plan may claim. */
+static void check_work(const char *setting, const struct problem *problem, const void *plan)
+{
+    struct work work = current->work(plan);
+    double pairs = pairs_count(problem);
+    if (work.pairs != 0 && work.pairs != pairs)
+        REFUSE(setting, "work.pairs is %.9g, must be 0 or what pairs_count counts, %.9g", work.pairs, pairs);
+    if (!(work.flops > 0) || !isfinite(work.flops) || !(work.flops >= 8 * work.pairs))
+        REFUSE(setting, "work.flops is %.3g, must be above 0 and at least 8 a pair, %.3g", work.flops, 8 * work.pairs);
+    if (!*work.engine)
+        REFUSE(setting, "%s", "work.engine is empty, must name the way that was chosen");
+}
+
+static void run_plan(const char *setting, void *plan, const struct echoes *echoes, struct image *image)
+{
+    struct stages stages;
+    stages_begin(&stages);
+    enum status status = current->execute(plan, echoes, image, &stages);
+    if (status != STATUS_OK)
+        REFUSE(setting, "execute returns status %d, \"%s\"", status, status_message());
+    if (stages.count == 0)
+        REFUSE(setting, "%s", "execute names no stage, must call stages_end");
+}
+
+static void allocate_image(const struct problem *problem, struct image *image)
+{
+    assert_int_equal(image_allocate(1, problem->patches, problem->precision, image), STATUS_OK);
+    size_t pixels = (size_t)problem->patches->x_count * (size_t)problem->patches->r_count;
+    memset(image->pixels[0], 0x5a, pixels * precision_size(problem->precision)); /* every pixel must be written */
+}
+
+/* The image by the current algorithm's defaults; false when it refuses the scene. Echoes are in double. */
+static bool form(const struct setting *setting, struct problem problem, enum precision precision, int threads,
+                 const struct echoes *echoes, struct image *image)
+{
+    struct echoes converted;
+    void *plan;
+    problem.precision = precision;
+    omp_set_num_threads(threads);
+    if (!make_plan(setting, &problem, &plan))
+        return false;
+    check_work(setting->name, &problem, plan);
+    assert_int_equal(echoes_convert(echoes, precision, &converted), STATUS_OK);
+    allocate_image(&problem, image);
+    run_plan(setting->name, plan, &converted, image);
+    current->destroy(plan);
+    echoes_free(&converted);
+    return true;
+}
+
+static bool same_bits(const struct image *a, const struct image *b)
+{
+    size_t pixels = (size_t)a->patches[0].x_count * (size_t)a->patches[0].r_count;
+    return memcmp(a->pixels[0], b->pixels[0], pixels * precision_size(a->precision)) == 0;
+}
+
+/* ---- checks ---- */
+
+static void check_images(const struct setting *setting, const struct scene *scene, const struct image *exact,
+                         const struct image *image, const struct image *single)
+{
+    if (!setting->empty) {
+        double error = support_difference(image, exact), rounding = support_difference(single, image);
+        print_message("%s, %s: error %.2e, float against double %.1e\n", current->name, setting->name, error, rounding);
+        assert_true(support_peak(exact) > 0.5); /* there is something to compare */
+        at_most(setting->name, "the error against reference", error,
+                current->traits & TRAIT_EXACT ? 1e-8 : setting->bound);
+        at_most(setting->name, "the difference of float from double", rounding, 2e-6);
+        return;
+    }
+    at_most(setting->name, "the peak of the image of zeros", worse_of(support_peak(image), support_peak(single)), 0);
+    struct target target = {0, setting->r, 1};
+    struct slice_metrics m = metrics_slice(image, &scene->acquisition, &target, AXIS_AZIMUTH);
+    assert_true(isnan(m.pslr_db[DEFINITION_NULL]) && isnan(m.width_m) && *m.reason);
+}
+
+/* On every setting: near the exact image, float near double, the same bits for 1 and 2 threads, work as it is. */
+static void all_settings(void **state)
+{
+    (void)state;
+    int accepted = 0;
+    for (int k = 0; k < SETTINGS; k++) {
+        const struct setting *setting = &settings[k];
+        struct scene scene;
+        struct grid grid;
+        struct echoes echoes;
+        struct image exact, images[2], again;
+        make_scene(setting, &scene, &grid);
+        assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
+        struct problem problem = problem_of(&scene, PRECISION_DOUBLE);
+        assert_int_equal(support_image("reference:precision=double", problem, &echoes, &exact), STATUS_OK);
+        if (form(setting, problem, PRECISION_DOUBLE, 2, &echoes, &images[PRECISION_DOUBLE])) {
+            accepted++;
+            if (!form(setting, problem, PRECISION_FLOAT, 2, &echoes, &images[PRECISION_FLOAT]))
+                REFUSE(setting->name, "refused in float, \"%s\", not in double", status_message());
+            for (int precision = 0; precision < 2; precision++) {
+                assert_true(form(setting, problem, (enum precision)precision, 1, &echoes, &again));
+                if (!same_bits(&again, &images[precision]))
+                    REFUSE(setting->name, "other bits on 1 thread than on 2, in %s",
+                           precision_name((enum precision)precision));
+                image_free(&again);
+            }
+            check_images(setting, &scene, &exact, &images[PRECISION_DOUBLE], &images[PRECISION_FLOAT]);
+            image_free(&images[0]);
+            image_free(&images[1]);
+        }
+        image_free(&exact);
+        echoes_free(&echoes);
+        free_scene(&scene);
+    }
+    if (accepted == 0)
+        fail_msg("%s: refuses every scene", current->name);
+}
+
+/* Image(2j a - 0.5 b) = 2j Image(a) - 0.5 Image(b). */
+static void linearity(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct grid grid;
+    struct echoes echoes[3];
+    struct image image[3];
+    make_scene(&settings[RAW], &scene, &grid);
+    for (int k = 0; k < 3; k++) {
+        scene.targets[0] = (struct target){0.1 * k - 0.08, 29.9 + 0.07 * k, 1};
+        assert_int_equal(scene_simulate(&scene, &echoes[k]), STATUS_OK);
+    }
+    size_t count =
+        (size_t)scene.acquisition.samples * (size_t)scene.acquisition.receivers * (size_t)scene.acquisition.pings;
+    double complex *s[3];
+    for (int k = 0; k < 3; k++)
+        s[k] = (double complex *)echoes[k].samples;
+    for (size_t n = 0; n < count; n++)
+        s[2][n] = 2 * I * s[0][n] - 0.5 * s[1][n];
+    struct problem problem = problem_of(&scene, PRECISION_DOUBLE);
+    for (int k = 0; k < 3; k++)
+        if (!form(&settings[RAW], problem, PRECISION_DOUBLE, 2, &echoes[k], &image[k]))
+            fail_msg("%s: refuses an ordinary scene, \"%s\"", current->name, status_message());
+    double worst = 0;
+    for (int i = 0; i < grid.r_count; i++)
+        for (int j = 0; j < grid.x_count; j++)
+            worst = worse_of(worst, cabs(2 * I * image_pixel(&image[0], 0, i, j) - 0.5 * image_pixel(&image[1], 0, i, j)
+                                         - image_pixel(&image[2], 0, i, j)));
+    at_most("sum of two echoes", "the difference from the sum of two images over the peak",
+            worst / support_peak(&image[2]), 1e-12);
+    for (int k = 0; k < 3; k++) {
+        image_free(&image[k]);
+        echoes_free(&echoes[k]);
+    }
+    free_scene(&scene);
+}
+
+/* Echoes two pings later show the same image two ping spacings further on. */
+static void translation(void **state)
+{
+    (void)state;
+    enum { SHIFT = 2 };
+    struct scene scene;
+    struct grid grid, moved;
+    struct echoes echoes;
+    struct image image, after;
+    make_scene(&settings[RAW], &scene, &grid);
+    const struct acquisition *a = &scene.acquisition;
+    assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
+    size_t ping = (size_t)a->samples * (size_t)a->receivers;
+    double complex *s = (double complex *)echoes.samples;
+    memset(s + (size_t)(a->pings - SHIFT) * ping, 0, SHIFT * ping * sizeof *s);
+    struct problem problem = problem_of(&scene, PRECISION_DOUBLE);
+    assert_true(form(&settings[RAW], problem, PRECISION_DOUBLE, 2, &echoes, &image));
+    memmove(s + SHIFT * ping, s, (size_t)(a->pings - SHIFT) * ping * sizeof *s);
+    memset(s, 0, SHIFT * ping * sizeof *s);
+    moved = grid;
+    moved.x_first += SHIFT * (a->tx[1].x - a->tx[0].x);
+    problem.patches = &moved;
+    assert_true(form(&settings[RAW], problem, PRECISION_DOUBLE, 2, &echoes, &after));
+    at_most("echoes two pings later", "the difference of the shifted image", support_difference(&after, &image), 1e-9);
+    image_free(&image);
+    image_free(&after);
+    echoes_free(&echoes);
+    free_scene(&scene);
+}
+
+/* What a plan holds, in one precision: as many bytes as work.bytes says (with one thread), nothing taken or planned by
+   execute, nothing left by destroy. */
+static void check_memory(const struct scene *scene, const struct echoes *echoes, enum precision precision)
+{
+    const char *setting = precision == PRECISION_DOUBLE ? "raw, double" : "raw, float";
+    struct problem problem = problem_of(scene, precision);
+    struct echoes converted;
+    struct image first, second;
+    void *plan;
+    assert_int_equal(echoes_convert(echoes, precision, &converted), STATUS_OK);
+    allocate_image(&problem, &first);
+    allocate_image(&problem, &second);
+    omp_set_num_threads(1);
+    allocations_begin(-1);
+    assert_true(make_plan(&settings[RAW], &problem, &plan));
+    struct allocations planned = allocations_now();
+    double bytes = current->work(plan).bytes;
+    run_plan(setting, plan, &converted, &first);
+    run_plan(setting, plan, &converted, &second);
+    struct allocations executed = allocations_now();
+    current->destroy(plan);
+    current->destroy(NULL);
+    struct allocations left = allocations_end();
+    if (!(fabs(bytes / planned.bytes - 1) <= 0.01))
+        REFUSE(setting, "work.bytes is %.0f, must be what the plan holds on one thread, %.0f, to 1 %%", bytes,
+               planned.bytes);
+    if (executed.taken != planned.taken || executed.freed != planned.freed)
+        REFUSE(setting, "execute allocates %d and frees %d blocks, must be none", executed.taken - planned.taken,
+               executed.freed - planned.freed);
+    if (executed.plans != planned.plans)
+        REFUSE(setting, "execute makes %d FFT plans, must be none", executed.plans - planned.plans);
+    if (left.blocks != 0 || left.plans != left.plans_destroyed)
+        REFUSE(setting, "destroy leaves %d blocks of %.0f bytes and %d FFT plans, must be none", left.blocks,
+               left.bytes, left.plans - left.plans_destroyed);
+    if (!same_bits(&first, &second))
+        REFUSE(setting, "%s", "other bits by the second execute of a plan");
+    image_free(&first);
+    image_free(&second);
+    echoes_free(&converted);
+}
+
+/* Whichever allocation fails: plan says so and leaves nothing, or does without. */
+static void check_refused_memory(const struct scene *scene, enum precision precision)
+{
+    enum { MOST = 2000 };
+    struct problem problem = problem_of(scene, precision);
+    struct spec spec;
+    make_spec(precision, &spec);
+    omp_set_num_threads(1);
+    bool refused = true;
+    for (int call = 0; refused && call < MOST; call++) {
+        void *plan = NULL;
+        allocations_begin(call);
+        enum status status = current->plan(&problem, spec.options, &plan);
+        if (status == STATUS_OK)
+            current->destroy(plan);
+        struct allocations left = allocations_end();
+        refused = left.refused > 0;
+        if (status != STATUS_OK && (!refused || status != STATUS_FAILED || plan || strlen(status_message()) <= 10))
+            REFUSE("raw",
+                   "without the memory of allocation %d plan returns status %d, \"%s\", must be %d with a reason", call,
+                   status, status_message(), STATUS_FAILED);
+        if (left.blocks != 0 || left.plans != left.plans_destroyed)
+            REFUSE("raw", "without the memory of allocation %d plan leaves %d blocks and %d FFT plans, must be none",
+                   call, left.blocks, left.plans - left.plans_destroyed);
+    }
+    spec_free(&spec);
+}
+
+static void memory(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct grid grid;
+    struct echoes echoes;
+    make_scene(&settings[RAW], &scene, &grid);
+    assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
+    for (int precision = 0; precision < 2; precision++) {
+        check_memory(&scene, &echoes, (enum precision)precision);
+        check_refused_memory(&scene, (enum precision)precision);
+    }
+    echoes_free(&echoes);
+    free_scene(&scene);
+}
+
+/* The same bits for any number of threads, also fewer than planned for, however often a plan is executed and however
+   loops are scheduled. */
+static void schedules(void **state)
+{
+    (void)state;
+    static const int threads[] = {1, 2, 3, 5};
+    static const omp_sched_t kinds[] = {omp_sched_static, omp_sched_dynamic, omp_sched_guided};
+    enum { COUNTS = sizeof threads / sizeof *threads, REPEATS = 12 };
+    struct scene scene;
+    struct grid grid;
+    struct echoes echoes;
+    make_scene(&settings[RAW], &scene, &grid);
+    assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
+    for (int precision = 0; precision < 2; precision++) {
+        struct problem problem = problem_of(&scene, (enum precision)precision);
+        struct echoes converted;
+        struct image first, again;
+        assert_int_equal(echoes_convert(&echoes, problem.precision, &converted), STATUS_OK);
+        for (int k = 0; k < COUNTS; k++) {
+            void *plan;
+            omp_set_num_threads(threads[k]);
+            assert_true(make_plan(&settings[RAW], &problem, &plan));
+            for (int n = 0; n < REPEATS; n++) {
+                allocate_image(&problem, &again);
+                omp_set_num_threads(n < REPEATS - 1 || k == 0 ? threads[k] : threads[k - 1]);
+                omp_set_schedule(kinds[n % 3], 1);
+                run_plan(settings[RAW].name, plan, &converted, &again);
+                if (k + n == 0)
+                    first = again;
+                else if (!same_bits(&first, &again))
+                    REFUSE(settings[RAW].name, "other bits by execute number %d on %d threads than on one, in %s",
+                           n + 1, omp_get_max_threads(), precision_name(problem.precision));
+                if (k + n > 0)
+                    image_free(&again);
+            }
+            current->destroy(plan);
+        }
+        image_free(&first);
+        echoes_free(&converted);
+    }
+    omp_set_schedule(omp_sched_static, 0);
+    echoes_free(&echoes);
+    free_scene(&scene);
+}
+
+/* Parameters are declared by PARAM and PARAM_NAMED, and say of themselves what is true. */
+static void check_param(const struct param *p)
+{
+    size_t size = p->type == PARAM_REAL ? sizeof(double) : sizeof(int);
+    if (p->size != size || p->offset % size != 0 || p->offset + size > current->options_size)
+        REFUSE(p->name, "a field of %zu bytes at %zu of %zu cannot hold its type; declare it by PARAM or PARAM_NAMED",
+               p->size, p->offset, current->options_size);
+    if (!(p->initial >= p->min && p->initial <= p->max))
+        REFUSE(p->name, "the default is %g, must lie from %g to %g", p->initial, p->min, p->max);
+    if (!p->summary || !*p->summary || (p->type == PARAM_CHOICE) != (p->choices != NULL))
+        REFUSE(p->name, "%s", "needs a summary, and choices when it is one");
+    char sweep[128], *rest = sweep;
+    snprintf(sweep, sizeof sweep, "%s", p->sweep ? p->sweep : "");
+    for (char *value; (value = strtok_r(rest, " ", &rest));) {
+        char text[256];
+        struct spec spec;
+        snprintf(text, sizeof text, "%s:%s=%s", current->name, p->name, value);
+        if (spec_parse(text, &spec) != STATUS_OK)
+            REFUSE(p->name, "its sweep holds %s: %s", value, status_message());
+        spec_free(&spec);
+    }
+}
+
+static void description(void **state)
+{
+    (void)state;
+    if (algorithm_find(current->name) != current)
+        fail_msg("%s: this name does not find it", current->name);
+    if (strlen(current->summary) <= 5 || strlen(current->reference) <= 3)
+        fail_msg("%s: summary and reference are \"%s\" and \"%s\", must say something", current->name, current->summary,
+                 current->reference);
+    for (const struct param *p = current->params; p && p->name; p++)
+        check_param(p);
+}
+
+/* Its quality and work are on record, so that the gate can tell when they get worse. */
+static void baseline_rows(void **state)
+{
+    (void)state;
+    struct csv csv;
+    int rows = 0;
+    if (csv_read(BASELINE_PATH, CSV_TAIL_KEEP, &csv) != STATUS_OK)
+        fail_msg("%s", status_message());
+    for (int row = 0; row < csv.row_count; row++)
+        rows += strcmp(csv_cell(&csv, row, csv_column(&csv, "algorithm")), current->name) == 0;
+    csv_free(&csv);
+    if (rows == 0)
+        fail_msg("%s: results/baseline.csv has no row of it; `./sasbench baseline` adds them: review and commit them "
+                 "with the "
+                 "algorithm",
+                 current->name);
+}
+
+int conformance_run(const struct algorithm *algorithm)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(description), cmocka_unit_test(baseline_rows), cmocka_unit_test(all_settings),
+        cmocka_unit_test(linearity),   cmocka_unit_test(translation),   cmocka_unit_test(memory),
+        cmocka_unit_test(schedules),
+    };
+    current = algorithm;
+    print_message("--- %s\n", current->name);
+    return cmocka_run_group_tests_name(current->name, tests, NULL, NULL);
+}

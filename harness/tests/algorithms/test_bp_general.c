@@ -1,0 +1,362 @@
+/* The general engine's fast path, quintics in place of delays, against the exact path: the phase of random geometries, images
+   of odd scenes, threads and instruction sets. */
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "backprojection/general/blocks.h"
+#include "common/delay.h"
+#include "data/random.h"
+#include "tests/support.h"
+
+static const double pi = 3.14159265358979323846;
+
+static double uniform(struct random *random, double low, double high)
+{
+    return low + (high - low) * random_uniform(random);
+}
+
+static struct vector vector_random(struct random *random, double size)
+{
+    struct vector v = {uniform(random, -size, size), 0, 0};
+    v.y = uniform(random, -size, size);
+    v.z = uniform(random, -size, size);
+    return v;
+}
+
+/* ---- the phase itself ---- */
+
+/* One ping and one receiver near a line of pixels, at any scale from centimetres to kilometres; records of ones that hold
+   every delay, so that each pixel of a nearest-sample image is the pair's phase factor. */
+static void random_pair(uint64_t seed, struct acquisition *a, struct grid *grid, struct echoes *echoes)
+{
+    static const double machs[] = {0, 1e-3, 0.05, 0.3};
+    struct random random = random_seed(seed, 1);
+    double size = pow(10, uniform(&random, -1, 3)), c = 1500, speed = c * machs[seed % 4];
+    int count = (int)uniform(&random, 17, 1200);
+    *a = (struct acquisition){
+        .sound_speed = c, .receivers = 1, .pings = 1, .samples = 3000, .compressed = true, .aperture_limit = INFINITY};
+    assert_int_equal(acquisition_allocate(a), STATUS_OK);
+    a->tx[0] = vector_random(&random, size);
+    a->tx[0].z *= 0.1;
+    struct vector offset = vector_random(&random, 0.3 * size), heading = vector_random(&random, 1);
+    double length = sqrt(heading.x * heading.x + heading.y * heading.y + heading.z * heading.z);
+    a->rx[0] = (struct vector){a->tx[0].x + offset.x, a->tx[0].y + offset.y, a->tx[0].z + offset.z};
+    a->velocity[0] =
+        (struct vector){speed * heading.x / length, speed * heading.y / length, speed * heading.z / length};
+    double step = 2 * size * random_uniform(&random) / count;
+    *grid = (struct grid){uniform(&random, -size, size), step, seed % 2 ? count : 1,
+                          uniform(&random, -size, size), step, seed % 2 ? 1 : count};
+    double longest = 2 * 8 * size / (c - speed); /* every distance is below 8 size */
+    a->fs = a->bandwidth = (a->samples - 2) / longest;
+    a->fc = pow(10, uniform(&random, 1, 5.5)) / longest; /* at most 3e5 cycles: rounding stays below 1e-9 rad */
+    assert_int_equal(echoes_allocate(a, PRECISION_DOUBLE, echoes), STATUS_OK);
+    for (int n = 0; n < a->samples; n++)
+        ((double complex *)echoes->samples)[n] = 1;
+}
+
+/* The share of the line's pixels that take their delay from a quintic. */
+static double share_of_quintics(const struct acquisition *a, const struct grid *grid, double limit)
+{
+    struct ping_box box = ping_box_make(a, 0, 1, grid, limit);
+    struct pixel_line line = grid_line(grid, grid->x_count > 1, 0);
+    struct pair_span left = {0, line.count};
+    struct bp_block blocks[BP_BLOCKS];
+    double pixels = 0;
+    for (int count, next = 0; (count = blocks_make(&box, &line, &left, blocks)) > 0;)
+        for (int b = 0; b < count; b++) {
+            assert_int_equal(blocks[b].begin, next); /* no gap, no overlap */
+            next = blocks[b].end;
+            pixels += blocks[b].exact ? 0 : blocks[b].end - blocks[b].begin;
+        }
+    assert_int_equal(left.begin, line.count);
+    return pixels / line.count;
+}
+
+/* The phase errs by less than the limit, for any geometry and limit, and comes near it: the bound is no idle one. In single
+   precision the short polynomials' 1.8e-6 and the rounding of a turn and of the value are on top. */
+static void phase_below_limit(void **state)
+{
+    (void)state;
+    static const double limits[] = {1e-2, 1e-4, 1e-6};
+    for (size_t k = 0; k < sizeof limits / sizeof *limits; k++) {
+        double worst[2] = {0, 0}, share = 0;
+        int cases = 600;
+        for (int seed = 0; seed < cases; seed++) {
+            struct acquisition a;
+            struct grid grid;
+            struct echoes echoes;
+            struct image images[2];
+            random_pair((uint64_t)seed, &a, &grid, &echoes);
+            struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+            for (int n = 0; n < 2; n++) {
+                char spec[96];
+                snprintf(spec, sizeof spec, "bp_nearest:precision=%s,phase_limit=%g", precision_name((enum precision)n),
+                         limits[k]);
+                assert_int_equal(support_image(spec, problem, &echoes, &images[n]), STATUS_OK);
+            }
+            share += share_of_quintics(&a, &grid, limits[k]) / cases;
+            for (int i = 0; i < grid.r_count; i++)
+                for (int j = 0; j < grid.x_count; j++) {
+                    struct vector p = {grid.x_first + j * grid.x_step, grid.r_first + i * grid.r_step, 0};
+                    double cycles = a.fc * delay_exact(a.tx[0], a.rx[0], a.velocity[0], p, a.sound_speed);
+                    double complex exact = cexp(I * 2 * pi * (cycles - rint(cycles)));
+                    for (int n = 0; n < 2; n++)
+                        worst[n] = worse_of(worst[n], cabs(image_pixel(&images[n], 0, i, j) - exact));
+                }
+            image_free(&images[0]);
+            image_free(&images[1]);
+            echoes_free(&echoes);
+            acquisition_free(&a);
+        }
+        print_message(
+            "limit %g rad: largest phase error %.1e rad (float), %.1e (double), %.0f %% of the delays from quintics\n",
+            limits[k], worst[PRECISION_FLOAT], worst[PRECISION_DOUBLE], 100 * share);
+        assert_true(worst[PRECISION_DOUBLE] <= limits[k] + 1e-9 && worst[PRECISION_FLOAT] <= limits[k] + 2.5e-6);
+        assert_true(worst[PRECISION_DOUBLE] > 0.05 * limits[k] && share > 0.5);
+    }
+}
+
+/* ---- images ---- */
+
+static const struct image_case {
+    const char *name;
+    int pings, receivers, columns, rows;
+    double x_first, x_step, r_first, r_step; /* of the grid */
+    double first_offset, wobble, speed, limit;
+    int first_sample, samples;
+} image_cases[] = {
+    {"odd sizes, long rows", 7, 3, 331, 9, -2.013, 0.02, 19.87, 0.31, 0.04, 0, 2.5, INFINITY, 700, 400},
+    {"one receiver, long columns", 13, 1, 9, 305, -1.2, 0.31, 17.03, 0.0251, 0, 0, 2.5, INFINITY, 600, 600},
+    {"negative offsets", 5, 4, 61, 53, -0.4537, 0.02, 20.1, 0.025, -0.31, 0, -2.5, INFINITY, 700, 300},
+    {"off the raster, aperture limit", 9, 3, 301, 11, -3.3337, 0.021, 20.1, 0.25, 0.04, 0, 2.5, 0.061, 700, 400},
+    {"track in space, aperture limit", 11, 3, 57, 211, -1.7, 0.07, 12.3, 0.031, 0.04, 0.6, 2.5, 0.2, 300, 800},
+    {"records end inside the lines", 9, 2, 151, 201, -4.5, 0.06, 18.1, 0.026, 0.04, 0.2, 2.5, INFINITY, 753, 110},
+    {"pixels near and on the track", 6, 3, 91, 87, -1.1, 0.02, -0.4, 0.05, 0.04, 0.05, 2.5, INFINITY, 0, 400},
+    {"far away, 120 samples from pixel to pixel", 3, 2, 5, 101, -6.1, 3, 1803.7, 3, 0.04, 0, 2.5, INFINITY, 72100,
+     12200},
+    {"v/c = 0.05, stands oblique", 7, 3, 121, 33, -1.3, 0.03, 15.2, 0.09, -0.04, 0.3, 75, INFINITY, 500, 600},
+};
+
+static void make_image_case(const struct image_case *c, struct acquisition *a, struct grid *grid, struct echoes *echoes)
+{
+    struct random random = random_seed(11, (uint64_t)c->columns);
+    *a = (struct acquisition){.sound_speed = 1500,
+                              .fc = 150e3,
+                              .fs = 30e3,
+                              .bandwidth = 15e3,
+                              .samples = c->samples,
+                              .receivers = c->receivers,
+                              .pings = c->pings,
+                              .compressed = true,
+                              .aperture_limit = c->limit};
+    assert_int_equal(acquisition_allocate(a), STATUS_OK);
+    for (int p = 0; p < a->pings; p++) {
+        struct vector sway = vector_random(&random, c->wobble);
+        a->t0[p] = (c->first_sample + (c->wobble > 0 ? p % 3 : 0)) / a->fs;
+        a->tx[p] = (struct vector){(p - a->pings / 2) * 0.173 + sway.x, sway.y, sway.z};
+        a->velocity[p] = (struct vector){c->speed, c->wobble * c->speed / 3, 0};
+        for (int m = 0; m < a->receivers; m++)
+            a->rx[p * a->receivers + m] =
+                (struct vector){a->tx[p].x + c->first_offset + 0.04 * m, a->tx[p].y + 0.01 * c->wobble * m, a->tx[p].z};
+    }
+    *grid = (struct grid){c->x_first, c->x_step, c->columns, c->r_first, c->r_step, c->rows};
+    assert_int_equal(echoes_allocate(a, PRECISION_DOUBLE, echoes), STATUS_OK);
+    for (int n = 0; n < a->samples * a->receivers * a->pings; n++)
+        ((double complex *)echoes->samples)[n] = random_normal(&random);
+}
+
+static const struct {
+    const char *spec;
+    int fine; /* points of the grid that q is rounded to; 0: it is not */
+} methods[] = {
+    {"bp_nearest:", 1},          {"bp_linear:beta=0,", 1}, {"bp_linear:beta=8,", 9},
+    {"bp_sinc:taps=2,", 0},      {"bp_sinc:taps=8,", 0},   {"bp_sinc:taps=16,window=kaiser,", 0},
+    {"bp_zeropad:factor=8,", 8},
+};
+enum { METHODS = sizeof methods / sizeof *methods };
+
+/* By how many samples the engine's positions may err: its points are multiples of 2^-19, and in single precision where lines
+   bend little. */
+static double position_error(const struct acquisition *a, enum precision precision, double limit)
+{
+    return limit * a->fs / (2 * pi * a->fc) + (precision == PRECISION_DOUBLE ? 0x1p-19 : 0x1p-17);
+}
+
+/* How many of a pixel's delays lie so near the middle between two points of the grid that an approximate one may choose
+   the other. */
+static int near_ties(const struct acquisition *a, struct vector p, int fine, double error)
+{
+    double reach = fine * error;
+    int ties = 0;
+    for (int ping = 0; ping < a->pings; ping++)
+        for (int m = 0; m < a->receivers; m++) {
+            double tau = delay_exact(a->tx[ping], a->rx[ping * a->receivers + m], a->velocity[ping], p, a->sound_speed);
+            double point = (tau - a->t0[ping]) * a->fs * fine;
+            ties += fabs(point - floor(point) - 0.5) <= reach;
+        }
+    return ties;
+}
+
+struct comparison {
+    double difference; /* relative L2 over the pixels without near ties */
+    double worst;      /* of the others: largest |difference| over the number of its near ties */
+    int ties, pixels;  /* near ties, pixels that have some */
+};
+
+static struct comparison compare(const struct image *fast, const struct image *exact, const struct acquisition *a,
+                                 int fine, double limit)
+{
+    const struct grid *grid = exact->patches;
+    struct comparison c = {0};
+    double difference = 0, norm = 0, error = position_error(a, fast->precision, limit);
+    for (int i = 0; i < grid->r_count; i++)
+        for (int j = 0; j < grid->x_count; j++) {
+            struct vector p = {grid->x_first + j * grid->x_step, grid->r_first + i * grid->r_step, 0};
+            int ties = fine ? near_ties(a, p, fine, error) : 0;
+            double complex value = image_pixel(exact, 0, i, j), delta = image_pixel(fast, 0, i, j) - value;
+            norm += creal(value * conj(value));
+            if (ties == 0)
+                difference += creal(delta * conj(delta));
+            else
+                c.worst = worse_of(c.worst, cabs(delta) / ties);
+            c.ties += ties;
+            c.pixels += ties > 0;
+        }
+    c.difference = sqrt(difference / norm);
+    return c;
+}
+
+/* Every method, both precisions: the fast image lies within the phase limit of the exact one. Noise is the hardest echo: a
+   sample that a tie lets go to its neighbour changes by more than itself, so the pixels that have near ties stand
+   apart; they are as rare as the limit makes them and differ by no more than the values that may be exchanged. */
+static void fast_near_exact(void **state)
+{
+    (void)state;
+    const double limit = 1e-4;
+    for (size_t k = 0; k < sizeof image_cases / sizeof *image_cases; k++) {
+        struct acquisition a;
+        struct grid grid;
+        struct echoes echoes;
+        make_image_case(&image_cases[k], &a, &grid, &echoes);
+        struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+        double pairs = (double)a.pings * a.receivers * grid.x_count * grid.r_count, largest[2] = {0, 0}, peak = 0;
+        int ties = 0, pixels = 0;
+        for (int n = 0; n < a.samples * a.receivers * a.pings; n++)
+            peak = worse_of(peak, cabs(((double complex *)echoes.samples)[n]));
+        for (int m = 0; m < METHODS; m++) {
+            struct image exact, fast, again;
+            char spec[96];
+            snprintf(spec, sizeof spec, "%sprecision=double,exact=true", methods[m].spec);
+            assert_int_equal(support_image(spec, problem, &echoes, &exact), STATUS_OK);
+            for (int p = 0; p < 2; p++) {
+                snprintf(spec, sizeof spec, "%sprecision=%s,engine=general,phase_limit=%g", methods[m].spec,
+                         p ? "double" : "float", limit);
+                omp_set_num_threads(2);
+                assert_int_equal(support_image(spec, problem, &echoes, &fast), STATUS_OK);
+                omp_set_num_threads(1);
+                assert_int_equal(support_image(spec, problem, &echoes, &again), STATUS_OK);
+                assert_memory_equal(fast.pixels[0], again.pixels[0],
+                                    (size_t)grid.x_count * (size_t)grid.r_count * precision_size(fast.precision));
+                struct comparison c = compare(&fast, &exact, &a, methods[m].fine, limit);
+                double expected = 2 * methods[m].fine * position_error(&a, fast.precision, limit) * pairs;
+                if (!(c.difference <= limit + (p ? 0 : 2e-6)) || !(c.worst <= 4 * peak)
+                    || !(c.ties <= 2 * expected + 20))
+                    fail_msg("%s, %s: differs by %g; by %g where %d pairs are near a tie", image_cases[k].name, spec,
+                             c.difference, c.worst, c.ties);
+                largest[p] = worse_of(largest[p], c.difference);
+                ties += c.ties;
+                pixels += c.pixels;
+                image_free(&again);
+                image_free(&fast);
+            }
+            image_free(&exact);
+        }
+        print_message("%s: within %.1e (float), %.1e (double); %d pairs near a tie in %d pixels, of %.0f pairs\n",
+                      image_cases[k].name, largest[0], largest[1], ties, pixels, 2 * METHODS * pairs);
+        assert_true(largest[1] > 0); /* it is another path */
+        echoes_free(&echoes);
+        acquisition_free(&a);
+    }
+}
+
+/* The functions for a machine without AVX and without fused multiply-adds, and those with AVX2 on a machine that has more,
+   show the same images, on either path and in the invariant engine; in float but for what the general engine's fast path may
+   err by (general/sum.c). */
+static void instruction_sets_agree(void **state)
+{
+    (void)state;
+    static const char *const paths[] = {"exact=true", "engine=general", "engine=invariant"};
+    double worst[2] = {0, 0}, worst_fast = 0;
+    for (int k = 0; k < 2; k++)
+        for (int m = 0; m < METHODS; m++)
+            for (int n = 0; n < 3; n++)
+                for (int p = 0; p < 2; p++) {
+                    struct acquisition a;
+                    struct grid grid;
+                    struct echoes echoes;
+                    struct image best, other;
+                    char spec[96];
+                    make_image_case(&image_cases[k], &a, &grid, &echoes);
+                    if (n == 2)
+                        grid.x_step = 0.173 / 7; /* on the pings' raster */
+                    struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+                    snprintf(spec, sizeof spec, "%sprecision=%s,%s", methods[m].spec, p ? "double" : "float", paths[n]);
+                    assert_int_equal(support_image(spec, problem, &echoes, &best), STATUS_OK);
+                    for (int lower = 0; lower < 2; lower++) {
+                        setenv("SASBENCH_ISA", lower ? "v3" : "baseline", 1);
+                        assert_int_equal(support_image(spec, problem, &echoes, &other), STATUS_OK);
+                        unsetenv("SASBENCH_ISA");
+                        double *most = n == 1 && p == 0 ? &worst_fast : &worst[p];
+                        *most = worse_of(*most, support_difference(&other, &best));
+                        image_free(&other);
+                    }
+                    image_free(&best);
+                    echoes_free(&echoes);
+                    acquisition_free(&a);
+                }
+    print_message("lesser instruction sets: within %.1e (float), %.1e (float, general), %.1e (double) of the best\n",
+                  worst[0], worst_fast, worst[1]);
+    assert_true(worst[0] < 1e-6 && worst_fast < 0.15 * 1e-4 + 2e-6 && worst[1] < 1e-10);
+}
+
+/* Carriers so low that no scene may have them, down to where turns underflow: still no index but those of the record. */
+static void no_carrier_leaves_the_record(void **state)
+{
+    (void)state;
+    static const double carriers[] = {1, 1e-10, 1e-20, 1e-36, 1e-44, 1e-300};
+    for (int n = 0; n < 6 * 2 * METHODS; n++) {
+        struct acquisition a;
+        struct grid grid;
+        struct echoes echoes;
+        struct image exact, fast;
+        char spec[96];
+        make_image_case(&image_cases[0], &a, &grid, &echoes);
+        a.fc = carriers[n / 2 % 6];
+        struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+        snprintf(spec, sizeof spec, "%sprecision=double,exact=true", methods[n / 12].spec);
+        assert_int_equal(support_image(spec, problem, &echoes, &exact), STATUS_OK);
+        snprintf(spec, sizeof spec, "%sprecision=%s,engine=general", methods[n / 12].spec, n % 2 ? "double" : "float");
+        assert_int_equal(support_image(spec, problem, &echoes, &fast), STATUS_OK);
+        double difference = support_difference(&fast, &exact);
+        if (!(difference < 0.05)) /* positions are held to a quarter of a step only, for the phase asks for less */
+            fail_msg("%s at %g Hz: differs by %g", spec, a.fc, difference);
+        image_free(&fast);
+        image_free(&exact);
+        echoes_free(&echoes);
+        acquisition_free(&a);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(phase_below_limit),
+        cmocka_unit_test(fast_near_exact),
+        cmocka_unit_test(instruction_sets_agree),
+        cmocka_unit_test(no_carrier_leaves_the_record),
+    };
+    return cmocka_run_group_tests_name("bp_general", tests, NULL, NULL);
+}

@@ -1,0 +1,179 @@
+/* Which pairs an image sums, where rounding would decide: pixels on the cone of the aperture limit, on the transmitter, on the
+   track; who counts them and when. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+#include "backprojection/pairs.h"
+#include "data/random.h"
+#include "tests/support.h"
+
+static void make(struct acquisition *a, int pings, int receivers, int samples, double spacing, double speed)
+{
+    *a = (struct acquisition){.sound_speed = 1500,
+                              .fc = 150e3,
+                              .fs = 30e3,
+                              .bandwidth = 15e3,
+                              .samples = samples,
+                              .receivers = receivers,
+                              .pings = pings,
+                              .compressed = true,
+                              .aperture_limit = INFINITY};
+    assert_int_equal(acquisition_allocate(a), STATUS_OK);
+    for (int p = 0; p < pings; p++) {
+        a->tx[p].x = (p - pings / 2) * spacing;
+        a->velocity[p].x = speed;
+        for (int m = 0; m < receivers; m++)
+            a->rx[p * receivers + m].x = a->tx[p].x + 0.0625 * (m + 1);
+    }
+}
+
+/* Grids and pings in binary fractions, so that whole triangles lie exactly on the cone: every pixel is in a span exactly where the
+   definition says so. */
+static void spans_hold_the_cone(void **state)
+{
+    (void)state;
+    static const double limits[] = {0.5, 0.6, 0.8, 0.28, 0.1, 5.0 / 13, 0.75};
+    int exact = 0;
+    for (uint64_t seed = 0; seed < 1000; seed++) {
+        struct random random = random_seed(seed, 5);
+        struct acquisition a;
+        make(&a, 5, 1, 2000, 0.5, 2);
+        a.aperture_limit = limits[seed % 7];
+        struct grid grid = {
+            -4 + 0.125 * (int)(8 * random_uniform(&random)),  0.125, 1 + (int)(60 * random_uniform(&random)),
+            -2 + 0.125 * (int)(32 * random_uniform(&random)), 0.125, 1 + (int)(30 * random_uniform(&random))};
+        for (int n = 0; n < 2 * 5; n++) {
+            const bool along_x = n % 2;
+            const struct vector h = acquisition_heading(&a, n / 2), tx = a.tx[n / 2];
+            for (int k = 0; k < grid_line_count(&grid, along_x); k++) {
+                const struct pixel_line line = grid_line(&grid, along_x, k);
+                struct pair_span spans[2];
+                const int count = pair_spans(&a, n / 2, h, &line, spans);
+                for (int i = 0; i < line.count; i++) {
+                    struct vector p = line_pixel(&line, i);
+                    double along = fabs(p.x - tx.x), edge = a.aperture_limit * sqrt(along * along + p.y * p.y);
+                    bool inside = false;
+                    for (int s = 0; s < count; s++)
+                        inside |= i >= spans[s].begin && i < spans[s].end;
+                    exact += along == edge;
+                    if (inside != (along <= edge))
+                        fail_msg("seed %d, limit %g: pixel (%g, %g) from (%g, 0): %d", (int)seed, a.aperture_limit, p.x,
+                                 p.y, tx.x, inside);
+                }
+            }
+        }
+        acquisition_free(&a);
+    }
+    assert_true(exact > 1000); /* the case does occur */
+}
+
+/* Oblique cones in space, which may hold a line's middle or its ends, touch it or miss it. */
+static void spans_hold_oblique_cones(void **state)
+{
+    (void)state;
+    int parts[3] = {0};
+    for (uint64_t seed = 0; seed < 4000; seed++) {
+        struct random random = random_seed(seed, 6);
+        struct acquisition a;
+        make(&a, 1, 1, 2000, 0.5, 2);
+        a.tx[0] =
+            (struct vector){random_uniform(&random), random_uniform(&random), seed % 3 ? random_uniform(&random) : 0};
+        a.aperture_limit = seed % 5 ? random_uniform(&random) : 0.01;
+        double u = 6.28 * random_uniform(&random), w = seed % 2 ? 1.5 * random_uniform(&random) : 0;
+        struct vector h = {cos(u) * cos(w), sin(u) * cos(w), sin(w)};
+        struct grid grid = {-1,
+                            seed % 4 ? 0.01 : 1e-6,
+                            seed % 2 ? 300 : 1,
+                            2 * random_uniform(&random) - 1,
+                            seed % 4 ? 0.01 : 1e-6,
+                            seed % 2 ? 1 : 300};
+        const struct pixel_line line = grid_line(&grid, seed % 2, 0);
+        struct pair_span spans[2];
+        const int count = pair_spans(&a, 0, h, &line, spans);
+        parts[count]++;
+        for (int i = 0; i < line.count; i++) {
+            struct vector p = line_pixel(&line, i);
+            double x = p.x - a.tx[0].x, y = p.y - a.tx[0].y, z = p.z - a.tx[0].z;
+            double over = fabs(x * h.x + y * h.y + z * h.z) - a.aperture_limit * sqrt(x * x + y * y + z * z);
+            bool inside = false;
+            for (int s = 0; s < count; s++)
+                inside |= i >= spans[s].begin && i < spans[s].end;
+            if (fabs(over) > 1e-14 && inside != (over < 0))
+                fail_msg("seed %d: pixel %d is %g outside: %d", (int)seed, i, over, inside);
+        }
+        acquisition_free(&a);
+    }
+    assert_true(parts[0] > 100 && parts[1] > 100 && parts[2] > 100);
+}
+
+/* Pixels on the transmitters, in coordinates that double holds exactly or does not: both engines sum the same pairs. */
+static void engines_agree_on_the_track(void **state)
+{
+    (void)state;
+    static const double steps[] = {0.0625, 0.02, 0.03}, limits[] = {0.5, 0.05, 1e-9, 0.9999},
+                        firsts[] = {0, -0.25, -0.2, 1e-17};
+    for (int n = 0; n < 3 * 4 * 4; n++) {
+        struct acquisition a;
+        struct echoes echoes;
+        struct image exact, invariant;
+        struct random random = random_seed(3, (uint64_t)n);
+        const double step = steps[n % 3];
+        make(&a, 9, 2, 400, 2 * step, 2.5);
+        a.aperture_limit = limits[n / 3 % 4];
+        assert_int_equal(echoes_allocate(&a, PRECISION_DOUBLE, &echoes), STATUS_OK);
+        for (int k = 0; k < a.samples * a.receivers * a.pings; k++)
+            ((double complex *)echoes.samples)[k] = random_normal(&random);
+        struct grid grid = {-16 * step, step, 33, firsts[n / 12], 0.05, 9};
+        struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+        assert_int_equal(support_image("bp_sinc:window=kaiser,exact=true,precision=double", problem, &echoes, &exact),
+                         STATUS_OK);
+        assert_int_equal(
+            support_image("bp_sinc:window=kaiser,engine=invariant,precision=double", problem, &echoes, &invariant),
+            STATUS_OK);
+        double difference = support_difference(&invariant, &exact);
+        if (!(difference < 1e-10))
+            fail_msg("step %g, limit %g, rows from %g: differ by %g", step, a.aperture_limit, grid.r_first, difference);
+        image_free(&exact);
+        image_free(&invariant);
+        echoes_free(&echoes);
+        acquisition_free(&a);
+    }
+}
+
+/* Counting costs more than this plan: it is done when the work is asked for. */
+static void plans_do_not_count(void **state)
+{
+    (void)state;
+    struct acquisition a;
+    struct spec spec;
+    void *plan;
+    make(&a, 300, 4, 2000, 0.5, 2);
+    struct grid grid = {-20, 0.02, 2000, 5, 0.02, 2000};
+    struct problem problem = {&a, 1, &grid, PRECISION_FLOAT};
+    assert_int_equal(spec_parse("bp_nearest:engine=general", &spec), STATUS_OK);
+    double begin = (double)clock();
+    assert_int_equal(spec.algorithm->plan(&problem, spec.options, &plan), STATUS_OK);
+    double planned = (double)clock();
+    struct work work = spec.algorithm->work(plan);
+    double counted = (double)clock();
+    print_message("planned in %.3f s, counted in %.3f s of the processor\n", (planned - begin) / CLOCKS_PER_SEC,
+                  (counted - planned) / CLOCKS_PER_SEC);
+    assert_true(work.pairs == pairs_count(&problem) && work.pairs > 0);
+    assert_true(counted - planned > 4 * (planned - begin));
+    spec.algorithm->destroy(plan);
+    spec_free(&spec);
+    acquisition_free(&a);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(spans_hold_the_cone),
+        cmocka_unit_test(spans_hold_oblique_cones),
+        cmocka_unit_test(engines_agree_on_the_track),
+        cmocka_unit_test(plans_do_not_count),
+    };
+    return cmocka_run_group_tests_name("pairs", tests, NULL, NULL);
+}

@@ -1,0 +1,655 @@
+/* Range migration against numbers of an independent implementation, against exact images over whole swaths, and
+   against itself by other ways of computing. */
+#include <complex.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <fftw3.h>
+
+#include "common/delay.h"
+#include "measure/metrics.h"
+#include "scene/simulate.h"
+#include "tests/algorithms/rma_numbers.h"
+#include "tests/support.h"
+
+static const double pi = 3.14159265358979323846, speed = 3, pri = 0.44;
+
+/* A straight track at 3 m/s with 150 kHz and 20 kHz bandwidth, compressed records, receivers from the transmitter
+   on. */
+static void make_scene(int pings, int receivers, int samples, double fs, double t0, double x_first, double spacing,
+                       double pitch, struct scene *scene)
+{
+    *scene = (struct scene){.pulse_kind = PULSE_FLAT, .beam = {BEAM_TXRX, TRUNCATION_DOPPLER, 0.5, true}};
+    struct acquisition *a = &scene->acquisition;
+    *a = (struct acquisition){.sound_speed = 1500,
+                              .fc = 150e3,
+                              .fs = fs,
+                              .bandwidth = 20e3,
+                              .samples = samples,
+                              .receivers = receivers,
+                              .pings = pings,
+                              .tx_length = 0.08,
+                              .rx_length = pitch,
+                              .aperture_limit = INFINITY,
+                              .compressed = true};
+    assert_int_equal(acquisition_allocate(a), STATUS_OK);
+    for (int p = 0; p < pings; p++) {
+        a->t0[p] = t0;
+        a->velocity[p].x = speed;
+        a->tx[p].x = x_first + p * spacing;
+        for (int m = 0; m < receivers; m++)
+            a->rx[p * receivers + m].x = a->tx[p].x + m * pitch;
+    }
+    assert_int_equal(acquisition_check(a, "test"), STATUS_OK);
+}
+
+static void free_scene(struct scene *scene)
+{
+    free(scene->targets);
+    acquisition_free(&scene->acquisition);
+}
+
+/* ---- the five scenes of the independent implementation ---- */
+
+/* A chirp centred on the delay, sampled in time, compressed in frequency on the band alone. */
+static void compress_lfm(const struct rma_numbers *n, struct scene *scene, struct echoes *echoes)
+{
+    const struct acquisition *a = &scene->acquisition;
+    const double duration = 5e-3, rate = a->bandwidth / duration;
+    const int count = a->samples;
+    double complex *replica = fftw_malloc((size_t)count * sizeof *replica), *s = (double complex *)echoes->samples;
+    for (int k = 0; k < count; k++) {
+        double t = (k < (count + 1) / 2 ? k : k - count) / a->fs;
+        replica[k] = fabs(t) <= duration / 2 ? cexp(I * pi * rate * t * t) : 0;
+    }
+    fftw_plan transform = fftw_plan_dft_1d(count, replica, replica, FFTW_FORWARD, FFTW_ESTIMATE);
+    fftw_execute(transform);
+    fftw_destroy_plan(transform);
+    double energy = 0;
+    for (int k = 0; k < count; k++)
+        if (k <= n->bins / 2 || k >= count - n->bins / 2)
+            energy += creal(replica[k]) * creal(replica[k]) + cimag(replica[k]) * cimag(replica[k]);
+    for (int p = 0; p < a->pings * a->receivers; p++) {
+        double complex *record = s + (size_t)p * (size_t)count;
+        fftw_plan forward = fftw_plan_dft_1d(count, record, record, FFTW_FORWARD, FFTW_ESTIMATE);
+        fftw_plan inverse = fftw_plan_dft_1d(count, record, record, FFTW_BACKWARD, FFTW_ESTIMATE);
+        memset(record, 0, (size_t)count * sizeof *record);
+        for (int t = 0; t < scene->target_count; t++) {
+            struct vector at = {scene->targets[t].x, scene->targets[t].r, 0};
+            double tau = delay_exact(a->tx[p / a->receivers], a->rx[p], a->velocity[0], at, a->sound_speed);
+            double weight = beam_weight(scene, p / a->receivers, p % a->receivers, at, tau, a->fc);
+            for (int k = 0; k < count; k++) {
+                double u = a->t0[0] + k / a->fs - tau;
+                if (fabs(u) <= duration / 2)
+                    record[k] += weight * scene->targets[t].amplitude * cexp(I * pi * (rate * u * u - 2 * a->fc * tau));
+            }
+        }
+        fftw_execute(forward);
+        for (int k = 0; k < count; k++)
+            record[k] *= k <= n->bins / 2 || k >= count - n->bins / 2 ? conj(replica[k]) / energy : 0;
+        fftw_execute(inverse);
+        fftw_destroy_plan(forward);
+        fftw_destroy_plan(inverse);
+    }
+    fftw_free(replica);
+}
+
+static void make_numbers(const struct rma_numbers *n, struct scene *scene, struct echoes *echoes)
+{
+    make_scene(n->pings, n->receivers, n->samples, n->samples * n->df, n->t0, speed * n->t_first, speed * pri,
+               n->rx_length, scene);
+    scene->acquisition.tx_length = n->tx_length;
+    scene->beam.limit = n->limit;
+    scene->beam.per_frequency = n->per_frequency;
+    scene->target_count = n->targets;
+    scene->targets = calloc((size_t)n->targets, sizeof *scene->targets);
+    for (int t = 0; t < n->targets; t++)
+        scene->targets[t] = (struct target){n->target[t].x, n->target[t].r, n->target[t].re + I * n->target[t].im};
+    if (n->lfm) {
+        assert_int_equal(echoes_allocate(&scene->acquisition, PRECISION_DOUBLE, echoes), STATUS_OK);
+        compress_lfm(n, scene, echoes);
+    } else {
+        assert_int_equal(scene_simulate(scene, echoes), STATUS_OK);
+    }
+}
+
+/* One SPEC's image of a problem; the test fails where that fails. */
+static void form(const char *spec, struct problem problem, const struct echoes *echoes, struct image *image)
+{
+    if (support_image(spec, problem, echoes, image) != STATUS_OK)
+        fail_msg("%s: %s", spec, status_message());
+}
+
+/* Complex relative L2 of one patch. */
+static double patch_error(const struct image *image, const struct image *exact, int patch)
+{
+    const struct grid *g = &exact->patches[patch];
+    double difference = 0, norm = 0;
+    for (int i = 0; i < g->r_count; i++)
+        for (int j = 0; j < g->x_count; j++) {
+            double complex value = image_pixel(exact, patch, i, j);
+            difference += pow(cabs(image_pixel(image, patch, i, j) - value), 2);
+            norm += pow(cabs(value), 2);
+        }
+    return sqrt(difference / norm);
+}
+
+/* The azimuth slice through the first target of a scene of numbers, 401 points to either side: a patch of its own. */
+enum { HALF = 400, COUNT = 2 * HALF + 1, IMAGE = 0, SLICE = 1 };
+
+static struct slice_metrics slice_of(const struct image *image, double step)
+{
+    double power[COUNT];
+    for (int j = 0; j < COUNT; j++)
+        power[j] = pow(cabs(image_pixel(image, SLICE, 0, j)), 2);
+    return metrics_of_power(power, COUNT, -HALF * step, step, 0);
+}
+
+/* Errors against back projection, azimuth offset and PSLR are those of the independent range migrations. */
+static void independent_numbers(void **state)
+{
+    (void)state;
+    for (size_t k = 0; k < sizeof rma_numbers / sizeof *rma_numbers; k++) {
+        const struct rma_numbers *n = &rma_numbers[k];
+        struct scene scene;
+        struct echoes echoes;
+        struct image exact, image;
+        struct grid patches[2] = {
+            [IMAGE] = {n->x_first, n->x_step, 24, n->r_first, n->r_step, 16},
+            [SLICE] = {n->target[0].x - HALF * n->slice_step, n->slice_step, COUNT, n->target[0].r, 1, 1}};
+        make_numbers(n, &scene, &echoes);
+        struct problem problem = {&scene.acquisition, 1, patches, PRECISION_DOUBLE}, both = problem;
+        both.patch_count = 2;
+        form("reference:precision=double", problem, &echoes, &exact);
+        double worst = 0, peak = support_peak(&exact);
+        for (int j = 0; j < 24; j++)
+            for (int i = 0; i < 16; i++) {
+                double complex value = n->bp[2 * (j * 16 + i)] + I * n->bp[2 * (j * 16 + i) + 1];
+                worst = worse_of(worst, cabs(image_pixel(&exact, 0, i, j) - value) / peak);
+            }
+        print_message("%s: back projection within %.1e of the peak\n", n->name, worst);
+        assert_true(worst < 1e-4);
+        for (int m = 0; m < 5; m++) {
+            char spec[120];
+            snprintf(spec, sizeof spec, "%sblocks=1,stolt=direct,precision=double", n->method[m].spec);
+            form(spec, both, &echoes, &image);
+            double error = patch_error(&image, &exact, IMAGE);
+            struct slice_metrics slice = slice_of(&image, n->slice_step);
+            double offset = slice.position_error_m + n->target[0].x - n->method[m].x_peak;
+            double pslr = slice.pslr_db[DEFINITION_NULL] - n->method[m].pslr_db;
+            print_message("    %-66s error %.5f (%.5f), azimuth %+.4f mm, PSLR %+.4f dB\n", spec, error,
+                          n->method[m].l2, 1e3 * offset, pslr);
+            assert_true(fabs(error / n->method[m].l2 - 1) < 0.2);
+            assert_true(fabs(offset) < 5e-5);
+            assert_true(fabs(pslr) < 0.03);
+            image_free(&image);
+        }
+        image_free(&exact);
+        echoes_free(&echoes);
+        free_scene(&scene);
+    }
+}
+
+/* ---- the whole chain ---- */
+
+enum { TARGETS = 6 };
+
+/* Targets at x = 0 and the ranges given. */
+static void add_targets(struct scene *scene, int count, const double *r)
+{
+    scene->target_count = count;
+    scene->targets = calloc((size_t)count, sizeof *scene->targets);
+    for (int t = 0; t < count; t++)
+        scene->targets[t] = (struct target){0.01 * t - 0.02, r[t], cexp(I * t)};
+}
+
+/* A swath of 20 m, targets off the blocks' centres. */
+static const double swath_targets[TARGETS] = {91.3, 94.1, 97.9, 101.2, 104.7, 108.6};
+static const struct grid swath = {-0.14, 0.02, 15, 90, 0.04, 501};
+
+static void make_swath(struct scene *scene, struct echoes *echoes)
+{
+    make_scene(14, 66, 1280, 24e3, 80 / 750.0, -6.5 * speed * pri, speed * pri, 0.04, scene);
+    add_targets(scene, TARGETS, swath_targets);
+    assert_int_equal(scene_simulate(scene, echoes), STATUS_OK);
+}
+
+static double swath_error(const char *spec, struct problem problem, const struct echoes *echoes,
+                          const struct image *exact)
+{
+    struct image image;
+    form(spec, problem, echoes, &image);
+    double error = support_difference(&image, exact);
+    print_message("    %-70s %.2e\n", spec, error);
+    image_free(&image);
+    return error;
+}
+
+/* Blocks of 5 m that blend and eight taps: within 1 % of the exact image, and far better by the cubic blend. */
+static void short_swath(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct echoes echoes;
+    struct image exact;
+    make_swath(&scene, &echoes);
+    struct problem problem = {&scene.acquisition, 1, &swath, PRECISION_DOUBLE};
+    form("reference:precision=double", problem, &echoes, &exact);
+    assert_true(swath_error("rma_lbf:blocks=5,spacing=uniform", problem, &echoes, &exact) <= 0.01);
+    assert_true(swath_error("rma_numeric:blocks=5,spacing=uniform", problem, &echoes, &exact) <= 0.01);
+    assert_true(swath_error("rma_lbf:blocks=4,spacing=uniform", problem, &echoes, &exact) <= 0.01);
+    assert_true(swath_error("rma_lbf:blocks=5", problem, &echoes, &exact) <= 0.002);
+    /* What makes it so good: without any of it the error is several times larger. */
+    assert_true(swath_error("rma_lbf:blocks=4,spacing=uniform,blend=off", problem, &echoes, &exact) > 0.02);
+    assert_true(swath_error("rma_lbf:blocks=1", problem, &echoes, &exact) > 0.05);
+    assert_true(swath_error("rma_pca:blocks=4", problem, &echoes, &exact) > 0.01);
+    image_free(&exact);
+    echoes_free(&echoes);
+    free_scene(&scene);
+}
+
+/* The same image whether receivers are summed before or after the range IFFT, and by libm instead of recurrences. */
+static void other_ways(void **state)
+{
+    (void)state;
+    static const struct grid part = {-0.14, 0.02, 8, 36, 0.5, 17};
+    static const double targets[] = {36.4, 38.1, 42.9};
+    static const struct {
+        const char *spec, *other;
+        double bound;
+    } pairs[] = {
+        {"rma_lbf:blocks=4,precision=double", "rma_lbf:blocks=4,sum=after,precision=double", 1e-14},
+        {"rma_lbf:blocks=4", "rma_lbf:blocks=4,sum=after", 1e-6},
+        {"rma_pca:blocks=1,precision=double", "rma_pca:blocks=1,sum=after,precision=double", 1e-14},
+        {"rma_lbf:blocks=1,stolt=16,precision=double", "rma_lbf:blocks=1,stolt=direct,precision=double", 1e-5},
+    };
+    struct scene scene;
+    struct echoes echoes;
+    make_scene(8, 40, 1066, 40e3, 0.044, -2.8, 0.8, 0.04, &scene);
+    add_targets(&scene, 3, targets);
+    assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
+    struct problem problem = {&scene.acquisition, 1, &part, PRECISION_DOUBLE};
+    for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++) {
+        struct image image;
+        form(pairs[k].spec, problem, &echoes, &image);
+        assert_true(swath_error(pairs[k].other, problem, &echoes, &image) <= pairs[k].bound);
+        image_free(&image);
+    }
+    echoes_free(&echoes);
+    free_scene(&scene);
+}
+
+/* The same pixels on columns that one transform gives, fewer or more than wavenumbers, and on columns that take a
+   chirp (11 divides their number). */
+static void columns(void **state)
+{
+    (void)state;
+    static const double targets[] = {36.4};
+    static const int parts[] = {1, 5, 10, 11}; /* of 0.1 m: columns */
+    struct grid grids[4];
+    struct scene scene;
+    struct echoes echoes;
+    struct image image;
+    make_scene(8, 40, 600, 24e3, 0.044, -2.8, 0.8, 0.04, &scene);
+    add_targets(&scene, 1, targets);
+    assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
+    for (int k = 0; k < 4; k++)
+        grids[k] = (struct grid){-0.1, 0.1 / parts[k], 2 * parts[k] + 1, 36.3, 0.1, 3};
+    form("rma_lbf:precision=double", (struct problem){&scene.acquisition, 4, grids, PRECISION_DOUBLE}, &echoes, &image);
+    for (int k = 1; k < 4; k++)
+        for (int n = 0; n < 9; n++) {
+            double complex value = image_pixel(&image, k, n / 3, n % 3 * parts[k]);
+            assert_true(cabs(value - image_pixel(&image, 0, n / 3, n % 3)) < 1e-9 * support_peak(&image));
+        }
+    image_free(&image);
+    echoes_free(&echoes);
+    free_scene(&scene);
+}
+
+static void recurrences(void **state)
+{
+    (void)state;
+    static const char *const methods[] = {"lbf", "pca", "wu", "numeric"};
+    static const struct grid grid = {-0.1, 0.05, 5, 34.5, 0.25, 5};
+    struct scene scene;
+    struct echoes echoes;
+    const double r[] = {35.1};
+    make_scene(3, 37, 300, 24e3, 30 / 750.0, -0.74, 0.74, 0.04, &scene); /* two whole groups and a part of one */
+    add_targets(&scene, 1, r);
+    assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
+    struct problem problem = {&scene.acquisition, 1, &grid, PRECISION_DOUBLE};
+    for (int k = 0; k < 4; k++) {
+        char spec[100], other[120];
+        struct image image;
+        snprintf(spec, sizeof spec, "rma_%s:blocks=2,precision=double", methods[k]);
+        snprintf(other, sizeof other, "%s,phases=libm", spec);
+        form(other, problem, &echoes, &image);
+        assert_true(swath_error(spec, problem, &echoes, &image) < 1e-5);
+        image_free(&image);
+    }
+    echoes_free(&echoes);
+    free_scene(&scene);
+}
+
+/* 40 to 300 m in 40 blocks equally spaced in 1/r: 2 % from 80 to 280 m; and in as many as Eq. (13) asks for at pi/4,
+   where the phases inside a block differ so much that the blend's own error shows. More blocks converge. The array is as
+   long as LBF21's, its elements are twice as long to save time. */
+static void long_swath(void **state)
+{
+    (void)state;
+    static const double targets[] = {83, 131, 197, 277};
+    struct scene scene;
+    struct echoes echoes;
+    struct image exact, image;
+    struct grid patches[6] = {{0, 1, 1, 40, 1, 1}, {0, 1, 1, 300, 1, 1}};
+    make_scene(16, 33, 12800, 24e3, 0.032, -7.5 * speed * pri, speed * pri, 0.08, &scene); /* 24 to 424 m */
+    scene.acquisition.tx_length = 0.16;
+    add_targets(&scene, 4, targets);
+    assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
+    for (int t = 0; t < 4; t++)
+        patches[2 + t] = (struct grid){scene.targets[t].x - 0.16, 0.02, 17, targets[t] - 0.15, 0.03, 11};
+    struct problem problem = {&scene.acquisition, 6, patches, PRECISION_DOUBLE};
+    form("reference:precision=double", problem, &echoes, &exact);
+    static const struct {
+        const char *spec;
+        double bound;
+    } runs[] = {{"rma_lbf", 0.03}, {"rma_lbf:blocks=40", 0.02}, {"rma_lbf:blocks=160", 0.002}};
+    for (size_t k = 0; k < sizeof runs / sizeof *runs; k++) {
+        form(runs[k].spec, problem, &echoes, &image);
+        for (int t = 0; t < 4; t++) {
+            double error = patch_error(&image, &exact, 2 + t);
+            print_message("    %s at %g m: %.4f\n", runs[k].spec, targets[t], error);
+            assert_true(error <= runs[k].bound);
+        }
+        image_free(&image);
+    }
+    image_free(&exact);
+    echoes_free(&echoes);
+    free_scene(&scene);
+}
+
+static struct work work_of(const char *text, struct problem problem)
+{
+    struct spec spec;
+    void *plan;
+    assert_int_equal(spec_parse(text, &spec), STATUS_OK);
+    problem.precision = spec.precision;
+    if (spec.algorithm->plan(&problem, spec.options, &plan) != STATUS_OK)
+        fail_msg("%s: %s", text, status_message());
+    struct work work = spec.algorithm->work(plan);
+    spec.algorithm->destroy(plan);
+    spec_free(&spec);
+    return work;
+}
+
+/* Eq. (13) at pi/4: 16 blocks in 1/r against some 118 of equal width, from 40 to 300 m. */
+static void block_counts(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct grid patches[2] = {{0, 1, 1, 40, 1, 1}, {0, 1, 1, 300, 1, 1}};
+    make_scene(2, 66, 12800, 24e3, 0.032, 0, speed * pri, 0.04, &scene);
+    struct problem problem = {&scene.acquisition, 2, patches, PRECISION_DOUBLE};
+    struct work inverse = work_of("rma_lbf:blend=off", problem);
+    struct work uniform = work_of("rma_lbf:blend=off,spacing=uniform", problem);
+    print_message("%s, %s; skipped: %s\n", inverse.engine, uniform.engine, inverse.skipped);
+    assert_string_equal(inverse.engine, "2 of 16 blocks");
+    int needed, count;
+    assert_int_equal(sscanf(uniform.engine, "%d of %d", &needed, &count), 2);
+    assert_in_range(count, 112, 124);
+    assert_non_null(strstr(inverse.skipped, "14 blocks without rows"));
+    assert_true(inverse.published[1].flops > 5 * inverse.published[0].flops);
+    free_scene(&scene);
+}
+
+/* ---- odd geometries ---- */
+
+/* Error against the exact image of a small scene with one target. */
+static double small_error(const char *spec, struct scene *scene, double half_x)
+{
+    struct echoes echoes;
+    struct image exact;
+    const double r[] = {40.2};
+    struct grid grid = {-half_x, 0.02, (int)(half_x / 0.01) + 1, 39.9, 0.05, 13};
+    add_targets(scene, 1, r);
+    assert_int_equal(scene_simulate(scene, &echoes), STATUS_OK);
+    struct problem problem = {&scene->acquisition, 1, &grid, PRECISION_DOUBLE};
+    form("reference:precision=double", problem, &echoes, &exact);
+    double error = swath_error(spec, problem, &echoes, &exact);
+    image_free(&exact);
+    echoes_free(&echoes);
+    return error;
+}
+
+/* v PRI != M d/2: the ghosts at k lambda r/(2 v PRI) are the exact image's own. */
+static void ghosts(void **state)
+{
+    (void)state;
+    struct scene scene;
+    make_scene(16, 20, 400, 24e3, 0.048, -3.75, 0.5, 0.04, &scene);
+    assert_true(small_error("rma_lbf:precision=double", &scene, 0.6) < 0.012);
+    struct echoes echoes;
+    struct image image;
+    double away = 0.01 * 40.2 / (2 * 0.5);
+    struct grid grid = {scene.targets[0].x, away, 2, 40.2, 1, 1};
+    struct problem problem = {&scene.acquisition, 1, &grid, PRECISION_DOUBLE};
+    assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
+    form("rma_lbf:precision=double", problem, &echoes, &image);
+    double ghost = cabs(image_pixel(&image, 0, 0, 1)) / cabs(image_pixel(&image, 0, 0, 0));
+    print_message("    ghost %.1f dB at %.2f m\n", 20 * log10(ghost), away);
+    assert_true(ghost > 0.05);
+    image_free(&image);
+    echoes_free(&echoes);
+    free_scene(&scene);
+}
+
+/* A receiver at the transmitter leaves nothing to convert; the record says so. */
+static void one_receiver(void **state)
+{
+    (void)state;
+    struct scene scene;
+    make_scene(300, 1, 400, 24e3, 0.048, -3.7, 0.025, 0.04, &scene);
+    assert_true(small_error("rma_lbf:precision=double", &scene, 0.2) < 0.01);
+    struct grid grid = {0, 0.02, 3, 40, 0.5, 9};
+    struct problem problem = {&scene.acquisition, 1, &grid, PRECISION_FLOAT};
+    assert_non_null(strstr(work_of("rma_lbf", problem).skipped, "conversion"));
+    free_scene(&scene);
+}
+
+/* Unevenly spaced receivers, pings in falling order, a platform that stops or sails backwards. */
+static void odd_tracks(void **state)
+{
+    (void)state;
+    for (int odd = 0; odd < 4; odd++) {
+        struct scene scene;
+        make_scene(20, 20, 400, 24e3, 0.048, odd == 1 ? 3.8 : -3.8, odd == 1 ? -0.4 : 0.4, 0.04, &scene);
+        struct acquisition *a = &scene.acquisition;
+        for (int p = 0; p < a->pings; p++) {
+            a->velocity[p].x = odd == 2 ? 0 : odd == 3 ? -3 : 3;
+            for (int m = 0; odd == 0 && m < a->receivers; m++)
+                a->rx[p * a->receivers + m].x += m % 2 ? 0.003 : 0;
+        }
+        assert_true(small_error("rma_lbf:precision=double", &scene, 0.2) < 0.01);
+        free_scene(&scene);
+    }
+}
+
+/* What cannot be imaged is refused with its reason. */
+static void refusals(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *reason;
+        struct grid grid;
+        int pings;
+        double limit, bend;
+    } cases[] = {
+        {"straight", {0, 0.02, 3, 40, 0.1, 3}, 8, INFINITY, 0.1},
+        {"single ping", {0, 0.02, 3, 40, 0.1, 3}, 1, INFINITY, 0},
+        {"aperture limit", {0, 0.02, 3, 40, 0.1, 3}, 8, 0.05, 0},
+        {"r > 0", {0, 0.02, 3, 0, 0.1, 3}, 8, INFINITY, 0},
+        {"squint", {0, 5, 9, 40, 0.1, 3}, 8, INFINITY, 0},
+        {"outside the record", {0, 0.02, 3, 90, 0.1, 3}, 8, INFINITY, 0},
+        {"spa_amplitude", {0, 0.02, 3, 0.5, 0.1, 3}, 8, INFINITY, 0},
+        {"work", {0, 1e-6, 3, 40, 1e-6, 3}, 8, INFINITY, 0},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct scene scene;
+        struct spec spec;
+        void *plan;
+        make_scene(cases[k].pings, 20, 400, 24e3, k == 6 ? 0 : 0.048, 0, 0.4, 0.04, &scene);
+        scene.acquisition.aperture_limit = cases[k].limit;
+        scene.acquisition.tx[cases[k].pings - 1].y = cases[k].bend;
+        struct problem problem = {&scene.acquisition, 1, &cases[k].grid, PRECISION_FLOAT};
+        assert_int_equal(spec_parse("rma_lbf", &spec), STATUS_OK);
+        assert_int_equal(spec.algorithm->plan(&problem, spec.options, &plan), STATUS_UNSUPPORTED);
+        print_message("    %s\n", status_message());
+        assert_non_null(strstr(status_message(), cases[k].reason));
+        assert_null(plan);
+        spec_free(&spec);
+        free_scene(&scene);
+    }
+}
+
+/* Why a method refuses a scene at range r; the empty text where it does not. */
+static const char *refusal(const char *text, struct scene *scene, double r)
+{
+    struct grid grid = {-0.16, 0.01, 33, r, 0.025, 1};
+    struct problem problem = {&scene->acquisition, 1, &grid, PRECISION_DOUBLE};
+    struct spec spec;
+    void *plan;
+    assert_int_equal(spec_parse(text, &spec), STATUS_OK);
+    enum status status = spec.algorithm->plan(&problem, spec.options, &plan);
+    spec.algorithm->destroy(plan);
+    spec_free(&spec);
+    return status == STATUS_OK ? "" : status_message();
+}
+
+/* Each condition refuses by name what would be a wrong image, and its neighbour that is sound is not refused. */
+static void conditions(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *spec, *name;
+        double fc, bandwidth, spacing, first_offset, speed,
+            r; /* receivers 0.04 m apart, 150 m before the record's end */
+    } cases[] = {
+        {"rma_numeric", "", 150e3, 15e3, 0.4, 0, 2.5, 100},
+        {"rma_numeric", "above_dc", 10e3, 30e3, 0.4, 0, 2.5, 100}, /* was a crash */
+        {"rma_numeric", "above_dc", 7.5e3, 15e3, 0.4, 0, 2.5, 100},
+        {"rma_numeric", "doppler", 150e3, 15e3, 2, 0, 2.5, 100}, /* pings too far apart: error .58 */
+        {"rma_numeric", "", 150e3, 15e3, 0.16, 0, 75, 100},
+        {"rma_numeric", "doppler", 150e3, 15e3, 0.4, 0, 150, 100},  /* the whole band aside: .59 */
+        {"rma_numeric", "doppler", 150e3, 15e3, 0.4, 30, 2.5, 100}, /* receivers far ahead: 1.0 */
+        {"rma_numeric", "spa_amplitude", 150e3, 15e3, 0.4, 0, 2.5, 0.5},
+        {"rma_numeric", "stationary", 2e3, 1e3, 0.4, 0, 2.5, 0.4},
+        {"rma_numeric", "subsonic", 150e3, 15e3, 0.4, 0, -1400, 100},
+        {"rma_lbf", "", 150e3, 15e3, 0.16, 0, 15, 100},
+        {"rma_lbf", "lbf_law", 150e3, 15e3, 0.16, 0, 75, 100},
+        {"rma_pca", "", 150e3, 15e3, 0.4, 0, 2.5, 100},
+        {"rma_pca", "pca_law", 150e3, 15e3, 0.16, 0, 75, 100}, /* abeam alone does not show it */
+        {"rma_wu", "wu_law", 150e3, 15e3, 0.16, 0, 75, 100},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct scene scene;
+        make_scene(30, 20, 4096, 40e3, 0, -15 * cases[k].spacing, cases[k].spacing, 0.04, &scene);
+        struct acquisition *a = &scene.acquisition;
+        a->fc = cases[k].fc;
+        a->bandwidth = cases[k].bandwidth;
+        for (int p = 0; p < a->pings; p++) {
+            a->velocity[p].x = cases[k].speed;
+            for (int m = 0; m < a->receivers; m++)
+                a->rx[p * a->receivers + m].x += cases[k].first_offset;
+        }
+        const char *reason = refusal(cases[k].spec, &scene, cases[k].r);
+        char name[60];
+        snprintf(name, sizeof name, "condition %s:", cases[k].name);
+        if (cases[k].name[0] ? !strstr(reason, name) : reason[0] != 0)
+            fail_msg("case %d, %s: '%s'", (int)k, name, reason);
+        free_scene(&scene);
+    }
+}
+
+/* A track that is short against what the elements would see: the angles that no ping has need neither record nor work.
+   10 MHz at 50 m with 2 mm elements, and 7.7 cm of record. */
+static void short_track(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct echoes echoes;
+    struct image exact;
+    make_scene(101, 8, 1024, 10e6, 666161 / 10e6, -0.2, 0.004, 0.001, &scene);
+    struct acquisition *a = &scene.acquisition;
+    a->fc = 10e6;
+    a->bandwidth = 5e6;
+    a->tx_length = 0.002;
+    for (int p = 0; p < a->pings; p++)
+        a->velocity[p].x = 2.5;
+    scene.beam = (struct beam){BEAM_RECT, TRUNCATION_NONE, 0, false};
+    const double r[] = {50};
+    const struct grid grid = {-0.004, 0.00025, 33, 50, 1, 1};
+    add_targets(&scene, 1, r);
+    scene.targets[0].x = 0;
+    assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
+    struct problem problem = {a, 1, &grid, PRECISION_DOUBLE};
+    form("reference:precision=double", problem, &echoes, &exact);
+    assert_true(swath_error("rma_numeric:precision=double", problem, &echoes, &exact) < 0.05);
+    image_free(&exact);
+    echoes_free(&echoes);
+    free_scene(&scene);
+}
+
+/* Sampled 65 times as fast as the band asks for, receivers 17 m astern, in a record of 1 ms: the row lies before the
+   record, where its converted echo has to have room, and what is far outside the band takes no part. */
+static void sampled_much_too_fast(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct echoes echoes;
+    struct image exact;
+    const double fs = 979137, first = 131087;
+    make_scene(4, 40, 1024, fs, first / fs, -1.2, 0.8, 0.04, &scene);
+    struct acquisition *a = &scene.acquisition;
+    a->bandwidth = 15e3;
+    a->tx_length = 0.08;
+    for (int p = 0; p < a->pings; p++) {
+        a->velocity[p].x = 2.5;
+        for (int m = 0; m < a->receivers; m++)
+            a->rx[p * a->receivers + m].x = a->tx[p].x - 17.333 + 0.04 * m;
+    }
+    scene.beam = (struct beam){BEAM_RECT, TRUNCATION_TX, 0.443, false};
+    const double r[] = {100.137};
+    const struct grid grid = {-0.16, 0.01, 33, 100.137, 1, 1};
+    add_targets(&scene, 1, r);
+    scene.targets[0].x = 0;
+    assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
+    struct problem problem = {a, 1, &grid, PRECISION_DOUBLE};
+    form("reference:precision=double", problem, &echoes, &exact);
+    assert_close(swath_error("rma_numeric:precision=double", problem, &echoes, &exact), 0, 0.02);
+    image_free(&exact);
+    echoes_free(&echoes);
+    free_scene(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(independent_numbers),
+        cmocka_unit_test(short_swath),
+        cmocka_unit_test(other_ways),
+        cmocka_unit_test(recurrences),
+        cmocka_unit_test(long_swath),
+        cmocka_unit_test(block_counts),
+        cmocka_unit_test(ghosts),
+        cmocka_unit_test(one_receiver),
+        cmocka_unit_test(odd_tracks),
+        cmocka_unit_test(refusals),
+        cmocka_unit_test(columns),
+        cmocka_unit_test(conditions),
+        cmocka_unit_test(short_track),
+        cmocka_unit_test(sampled_much_too_fast),
+    };
+    return cmocka_run_group_tests_name("rma", tests, NULL, NULL);
+}

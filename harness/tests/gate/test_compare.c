@@ -1,0 +1,578 @@
+/* The regression gate: the shipped baseline holds on every instruction set, injected faults are caught by name, and results
+   are compared as diff.h says. */
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "backprojection/bp.h"
+#include "common/delay.h"
+#include "gate/baseline.h"
+#include "gate/diff.h"
+#include "tests/support.h"
+
+static int folder_remove_known(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"old.csv",
+                                        "new.csv",
+                                        "out.md",
+                                        "out.json",
+                                        "old/measurements.csv",
+                                        "old/targets.csv",
+                                        "new/measurements.csv",
+                                        "new/targets.csv",
+                                        "old",
+                                        "new"};
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++)
+        remove(path_of(names[k]));
+    return rmdir(folder); /* fails when a file was left behind */
+}
+
+static char *text_read(const char *name)
+{
+    static char text[1 << 17];
+    FILE *file = fopen(path_of(name), "r");
+    assert_non_null(file);
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    fclose(file);
+    return text;
+}
+
+static const struct finding *find(const struct compare *compare, const char *metric)
+{
+    for (int k = 0; k < compare->finding_count; k++)
+        if (strcmp(compare->findings[k].metric, metric) == 0)
+            return &compare->findings[k];
+    return NULL;
+}
+
+/* --- The baseline --------------------------------------------------------------------------------------------- */
+
+static void check_baseline(const char *isa)
+{
+    struct compare compare;
+    setenv("SASBENCH_ISA", isa, 1);
+    assert_int_equal(baseline_write(path_of("new.csv")), STATUS_OK);
+    unsetenv("SASBENCH_ISA");
+    assert_int_equal(compare_results(BASELINE_PATH, path_of("new.csv"), &compare), STATUS_OK);
+    if (compare_judge(&compare) != STATUS_OK || compare.finding_count < 500) {
+        compare_print(&compare, stdout);
+        fail_msg("%s code differs from results/baseline.csv (./sasbench baseline writes a new one, to be reviewed)",
+                 isa);
+    }
+    compare_free(&compare);
+}
+
+static void baseline_holds(void **state)
+{
+    (void)state;
+    check_baseline("v4"); /* the best that there is */
+}
+
+static void baseline_holds_without_vector_extensions(void **state)
+{
+    (void)state;
+    check_baseline("baseline");
+}
+
+/* --- Injected faults ------------------------------------------------------------------------------------------ */
+
+enum fault {
+    FAULT_NONE,
+    FAULT_WEIGHTS,
+    FAULT_HALF_SAMPLE,
+    FAULT_SIGN,
+    FAULT_RECEIVER,
+    FAULT_FLOAT_DELAY,
+    FAULT_FLOAT_PHASE,
+    FAULT_STOP_AND_HOP,
+    FAULT_BLOCK,
+    FAULTS
+};
+static const char *const fault_names[FAULTS] = {"none",
+                                                "a swapped interpolation weight",
+                                                "a half-sample shift",
+                                                "a phase sign",
+                                                "a dropped receiver",
+                                                "the delay in float",
+                                                "the phase in float",
+                                                "stop-and-hop",
+                                                "a lost sub-block"};
+static enum fault injected;
+
+/* bp_sinc:taps=16,window=kaiser written plainly once more, with one fault at a time. Double, compressed echoes. */
+enum { TAPS = 16, FRACTIONS = 1024 };
+
+static void read_weights(double fraction, double w[TAPS])
+{
+    static double table[FRACTIONS + 1][TAPS];
+    if (table[0][TAPS / 2 - 1] == 0)
+        for (int k = 0; k <= FRACTIONS; k++)
+            sinc_weights(TAPS, 5, (double)k / FRACTIONS, table[k]);
+    int at = (int)(fraction * FRACTIONS);
+    double u = fraction * FRACTIONS - at;
+    for (int k = 0; k < TAPS; k++)
+        w[k] = (1 - u) * table[at][k] + u * table[at + 1][k];
+    if (injected == FAULT_WEIGHTS) {
+        double left = w[TAPS / 2 - 1];
+        w[TAPS / 2 - 1] = w[TAPS / 2];
+        w[TAPS / 2] = left;
+    }
+}
+
+static enum status plain_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages)
+{
+    const struct acquisition *a = echoes->acquisition;
+    const struct grid *grid = &image->patches[0];
+    double complex *pixels = image->pixels[0];
+    (void)plan, (void)stages;
+    memset(pixels, 0, (size_t)grid->r_count * (size_t)grid->x_count * sizeof *pixels);
+    for (int pair = 0; pair < a->pings * a->receivers; pair++) {
+        int ping = pair / a->receivers, receiver = pair % a->receivers;
+        const double complex *s = (const double complex *)echoes->samples + (size_t)pair * (size_t)a->samples;
+        struct vector velocity = injected == FAULT_STOP_AND_HOP ? (struct vector){0, 0, 0} : a->velocity[ping];
+        for (int k = 0; k < grid->r_count * grid->x_count; k++) {
+            struct vector p = {grid->x_first + k % grid->x_count * grid->x_step,
+                               grid->r_first + k / grid->x_count * grid->r_step, 0};
+            double tau = delay_exact(a->tx[ping], a->rx[pair], velocity, p, a->sound_speed), w[TAPS];
+            if (injected == FAULT_FLOAT_DELAY)
+                tau = (float)tau;
+            double q = (tau - a->t0[ping]) * a->fs + (injected == FAULT_HALF_SAMPLE ? 0.5 : 0), cycles = a->fc * tau;
+            if (!(q >= 0 && q <= a->samples - 1) || (injected == FAULT_RECEIVER && receiver == a->receivers - 1))
+                continue;
+            double complex value = 0;
+            int at = (int)q + 1 - TAPS / 2;
+            read_weights(q - floor(q), w);
+            for (int t = 0; t < TAPS; t++)
+                value += at + t >= 0 && at + t < a->samples ? w[t] * s[at + t] : 0;
+            double phase = 2 * 3.14159265358979323846 * (cycles - floor(cycles));
+            if (injected == FAULT_FLOAT_PHASE)
+                phase = fmodf((float)(2 * 3.14159265358979323846 * cycles), 6.28318530717958648F);
+            pixels[k] += value * cexp((injected == FAULT_SIGN ? -I : I) * phase);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Range migration in sixteen blocks, one of which never arrives. */
+static enum status lossy_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages)
+{
+    enum status status = algorithm_find("rma_lbf")->execute(plan, echoes, image, stages);
+    size_t rows = (size_t)image->patches[0].r_count, columns = (size_t)image->patches[0].x_count;
+    if (injected == FAULT_BLOCK)
+        memset((float complex *)image->pixels[0] + rows / 2 * columns, 0, rows / 16 * columns * sizeof(float complex));
+    return status;
+}
+
+/* Does the gate pass the row? Otherwise *metric tells by which metric it is worse first. */
+static bool gate_passes(const struct session *session, const char *spec_text, bool plain, const char **metric)
+{
+    struct spec spec;
+    struct measurement healthy, row;
+    struct compare compare;
+    char reason[512];
+    assert_int_equal(spec_parse(spec_text, &spec), STATUS_OK);
+    assert_int_equal(baseline_row(session, &spec, reason, sizeof reason, &healthy), STATUS_OK);
+    struct algorithm faulty = *spec.algorithm;
+    faulty.execute = plain ? plain_execute : lossy_execute;
+    spec.algorithm = &faulty;
+    assert_int_equal(baseline_row(session, &spec, reason, sizeof reason, &row), STATUS_OK);
+    assert_int_equal(measurements_write(path_of("old.csv"), "healthy", NULL, 0, &healthy, 1), STATUS_OK);
+    assert_int_equal(measurements_write(path_of("new.csv"), "faulty", NULL, 0, &row, 1), STATUS_OK);
+    assert_int_equal(compare_results(path_of("old.csv"), path_of("new.csv"), &compare), STATUS_OK);
+    bool passes = compare_judge(&compare) == STATUS_OK;
+    *metric = "";
+    for (int k = compare.finding_count - 1; k >= 0; k--)
+        if (compare.findings[k].verdict == VERDICT_WORSE)
+            for (const struct metric *m = metrics; m->name; m++)
+                if (strcmp(m->name, compare.findings[k].metric) == 0)
+                    *metric = m->name;
+    compare_free(&compare);
+    spec_free(&spec);
+    return passes;
+}
+
+static void faults_are_caught_by_name(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct session session;
+    support_scene("gate/blocks", &scene);
+    assert_int_equal(session_open(&scene, &session), STATUS_OK);
+    for (injected = FAULT_NONE; injected < FAULTS; injected++) {
+        bool block = injected == FAULT_BLOCK;
+        const char *metric;
+        bool passes = gate_passes(
+            &session, block ? "rma_lbf:blocks=16" : "bp_sinc:taps=16,window=kaiser,precision=double", !block, &metric);
+        if (passes != (injected == FAULT_NONE) || strcmp(metric, passes ? "" : "error") != 0)
+            fail_msg("%s: %s, metric '%s'", fault_names[injected], passes ? "passed" : "caught", metric);
+    }
+    session_close(&session);
+    scene_free(&scene);
+}
+
+/* --- Results -------------------------------------------------------------------------------------------------- */
+
+#define HEAD "# sasbench measurements 1\n# scene s: 0123\n" ROW_HEAD
+#define ROW_HEAD                                                                                                       \
+    "scene,algorithm,options,precision,threads,engine,status,reason,skipped,plan_s,run_s,run_min_s,runs,control_s,"    \
+    "stages,flops_published,flops,pairs,bytes,error,error_gain,phase_rms_rad,width_m,pslr_db,islr_db\n"
+#define TARGET_HEAD                                                                                                    \
+    "# sasbench targets 1\n"                                                                                           \
+    "scene,algorithm,options,precision,target,axis,definition,extent_m,position_error_m,phase_error_rad,width_m,"      \
+    "pslr_db,islr_db\n"
+#define ROW "s,a,beta=8,float,2,general,ok,,,0.1,1,0.9,5,2,focus=1,1e6,1e6,1000,4096,0.1,0.05,0.01,0.04,-13.3,-10.4\n"
+
+static void compare_texts(const char *old, const char *new, struct compare *compare)
+{
+    support_write("old.csv", old);
+    support_write("new.csv", new);
+    enum status status = compare_results(path_of("old.csv"), path_of("new.csv"), compare);
+    if (status != STATUS_OK)
+        fail_msg("%s", status_message());
+}
+
+static void values_are_judged_by_the_metric_table(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *before, *after; /* what is put in place of it in the row */
+        const char *metric;         /* of the finding that is not the same; NULL: all are */
+        enum verdict verdict;
+    } cases[] = {
+        {",0.1,0.05,", ",0.10009,0.05,", NULL, VERDICT_SAME},
+        {",0.1,0.05,", ",0.1002,0.05,", "error", VERDICT_WORSE},
+        {",0.1,0.05,", ",0.0998,0.05,", "error", VERDICT_BETTER},
+        {",0.1,0.05,", ",,0.05,", "error", VERDICT_GONE},
+        {"1000,4096", "1001,4096", "pairs", VERDICT_WORSE}, /* neither way is better: any change is to be seen */
+        {"1000,4096", "999,4096", "pairs", VERDICT_WORSE},
+        {"1000,4096", "1000,4095", "bytes", VERDICT_BETTER},
+        {"1e6,1e6,", "1e6,1000001,", "flops", VERDICT_WORSE},
+        {"1e6,1e6,", "1000001,1e6,", "flops_published", VERDICT_WORSE},
+        {"-13.3", "-13.297", "pslr_db", VERDICT_WORSE},
+        {"-13.3", "-13.299", NULL, VERDICT_SAME},
+        {"-10.4", "-10.41", "islr_db", VERDICT_BETTER},
+        {"-10.4", "-10.5", "islr_db", VERDICT_CHANGED}, /* a fault may flatter */
+        {"-10.4", "10.4", "islr_db", VERDICT_WORSE},
+        {"1000,4096", "1000,4000", "bytes", VERDICT_CHANGED},
+        {"0.04,", "0.0401,", "width_m", VERDICT_WORSE},
+        {",ok,,", ",failed,no memory,", "status", VERDICT_WORSE},
+        {",ok,,", ",unsupported,,", "status", VERDICT_WORSE},
+        {"s,a,", "s,b,", "row", VERDICT_GONE},
+        {"beta=8", "beta=9", "row", VERDICT_GONE},
+        {",1,0.9,", ",1.6,1.5,", NULL, VERDICT_SAME}, /* two runs cannot tell less than a factor */
+        {",1,0.9,", ",2.2,1.9,", "run_s", VERDICT_WORSE},
+        {",1,0.9,", ",2.2,1.0,", NULL, VERDICT_SAME},       /* the least time says otherwise */
+        {",1,0.9,5,2,", ",3,2.7,5,6,", NULL, VERDICT_SAME}, /* a slower machine: the control took as much longer */
+        {",1,0.9,5,2,", ",0.4,0.3,5,2,", "run_s", VERDICT_BETTER},
+        {"float,2,", "float,1,", NULL, VERDICT_SAME},
+        {",0.1,1,0.9,5,2,", ",,,,,,", NULL, VERDICT_SAME}, /* a baseline has no times */
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        char old[2048], new[2048];
+        struct compare compare;
+        snprintf(old, sizeof old, HEAD ROW);
+        const char *at = strstr(ROW, cases[k].before);
+        assert_non_null(at);
+        snprintf(new, sizeof new, HEAD "%.*s%s%s", (int)(at - ROW), ROW, cases[k].after, at + strlen(cases[k].before));
+        compare_texts(old, new, &compare);
+        const struct finding *changed = NULL;
+        for (int n = compare.finding_count - 1; n >= 0; n--)
+            if (compare.findings[n].verdict != VERDICT_SAME)
+                changed = &compare.findings[n];
+        bool fails = cases[k].metric
+                     && (cases[k].verdict == VERDICT_WORSE || cases[k].verdict == VERDICT_GONE
+                         || cases[k].verdict == VERDICT_CHANGED);
+        if ((changed != NULL) != (cases[k].metric != NULL) || (compare_judge(&compare) != STATUS_OK) != fails
+            || (changed && (strcmp(changed->metric, cases[k].metric) != 0 || changed->verdict != cases[k].verdict)))
+            fail_msg("%s -> %s: %s %s", cases[k].before, cases[k].after, changed ? changed->metric : "",
+                     changed ? verdict_names[changed->verdict] : "nothing");
+        compare_free(&compare);
+    }
+}
+
+/* Small betterments in five rows; then a row that is no longer refused. Only a baseline asks for a new one. */
+static void many_betterments_are_a_change(void **state)
+{
+    (void)state;
+    static const char row[] = "s,a,beta=%d,float,2,,ok,,,,,,,,,,,,,%s,,,,,\n";
+    for (int rows = 4; rows <= 5; rows++) {
+        char old[4096] = HEAD, new[4096] = HEAD;
+        struct compare compare;
+        for (int k = 0; k < rows; k++) {
+            snprintf(old + strlen(old), sizeof old - strlen(old), row, k, "0.1");
+            snprintf(new + strlen(new), sizeof new - strlen(new), row, k, "0.0998");
+        }
+        compare_texts(old, new, &compare);
+        assert_int_equal(compare.counts[CLASS_QUALITY][rows == 5 ? VERDICT_CHANGED : VERDICT_BETTER], rows);
+        assert_int_equal(compare_judge(&compare), rows == 5 ? STATUS_FAILED : STATUS_OK);
+        if (rows == 5)
+            assert_non_null(strstr(status_message(), "0 worse, 0 gone, 5 changed for the better: where that is meant, "
+                                                     "./sasbench baseline writes a new baseline"));
+        compare_free(&compare);
+    }
+    for (int measured = 0; measured < 2; measured++) {
+        struct compare compare;
+        char old[4096];
+        snprintf(old, sizeof old, "%s%s", HEAD, "s,a,,float,2,,unsupported,why,,,,,,,,,,,,,,,,,\n");
+        if (measured)
+            memcpy(strstr(old, "# scene s: 0123"), "# program: 0123", 15);
+        compare_texts(old, HEAD "s,a,,float,2,,ok,,,,,,,,,,,,,1,,,,,\n", &compare);
+        assert_int_equal(find(&compare, "status")->verdict, VERDICT_CHANGED);
+        assert_int_equal(compare_judge(&compare), measured ? STATUS_OK : STATUS_FAILED);
+        compare_free(&compare);
+    }
+}
+
+/* Names that continue another with signs below and above ':' and ' ', and names with colons of their own. */
+static void scenes_are_told_apart_whatever_they_are_called(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"far", "far2", "far!", "far far", "far:", "far: 1", "farz", "fa", "far/3", "-"};
+    enum { NAMES = sizeof names / sizeof *names };
+    for (int changed = 0; changed < NAMES; changed++) {
+        char texts[2][8192];
+        struct compare compare;
+        const char *columns = strstr(HEAD, "scene,");
+        for (int side = 0; side < 2; side++) {
+            char *text = texts[side];
+            size_t size = sizeof texts[side];
+            snprintf(text, size, "# sasbench measurements 1\n");
+            for (int k = 0; k < NAMES; k++)
+                snprintf(text + strlen(text), size - strlen(text), "# scene %s: %016x\n", names[k],
+                         16 * k + (side == 1 && k == changed));
+            snprintf(text + strlen(text), size - strlen(text), "%s", columns);
+            for (int k = 0; k < NAMES; k++)
+                snprintf(text + strlen(text), size - strlen(text), "%s,a,,float,2,,ok,,,,,,,,,,,,,1,,,,,\n", names[k]);
+        }
+        compare_texts(texts[0], texts[1], &compare);
+        const struct finding *gone = find(&compare, "row");
+        if (!gone || gone->verdict != VERDICT_GONE || strcmp(gone->scene, names[changed]) != 0
+            || compare.counts[CLASS_QUALITY][VERDICT_GONE] != 1 || compare.counts[CLASS_QUALITY][VERDICT_NEW] != 1)
+            fail_msg("a change of scene '%s' is not seen, or another's is", names[changed]);
+        compare_free(&compare);
+    }
+}
+
+static void rounding_of_float_is_no_change_but_of_double(void **state)
+{
+    (void)state;
+    struct compare compare;
+    static const char *const row = HEAD "s,a,,%s,2,,ok,,,,,,,,,,,,,%s,,,,,\n";
+    for (int is_double = 0; is_double < 2; is_double++) {
+        char old[1024], new[1024];
+        snprintf(old, sizeof old, row, is_double ? "double" : "float", "4e-10");
+        snprintf(new, sizeof new, row, is_double ? "double" : "float", "3e-8");
+        compare_texts(old, new, &compare);
+        assert_int_equal(find(&compare, "error")->verdict, is_double ? VERDICT_WORSE : VERDICT_SAME);
+        compare_free(&compare);
+    }
+}
+
+static void rows_of_another_scene_content_are_not_compared(void **state)
+{
+    (void)state;
+    struct compare compare;
+    char new[2048];
+    snprintf(new, sizeof new, "%s", HEAD ROW);
+    memcpy(strstr(new, "0123"), "0124", 4);
+    compare_texts(HEAD ROW, new, &compare);
+    assert_int_equal(compare.counts[CLASS_QUALITY][VERDICT_GONE], 1);
+    assert_int_equal(compare.counts[CLASS_QUALITY][VERDICT_NEW], 1);
+    assert_int_equal(compare.finding_count, 2);
+    assert_non_null(strstr(compare.notes[2], "scene s has another content"));
+    compare_free(&compare);
+}
+
+/* Folders: measurements and targets; a target is named, and not told again when its measurement is. */
+static void folders_are_compared_with_their_targets(void **state)
+{
+    (void)state;
+    struct compare compare;
+    mkdir(path_of("old"), 0777);
+    mkdir(path_of("new"), 0777);
+    support_write("old/measurements.csv", HEAD ROW "s,b,,float,2,,ok,,,,,,,,,,,,,1,,,,,\n");
+    support_write("new/measurements.csv", HEAD ROW "s,b,,float,2,,failed,why,,,,,,,,,,,,,,,,,\n");
+    support_write("old/targets.csv", TARGET_HEAD "s,a,beta=8,float,0,azimuth,null,3,-1e-3,0,0.04,-13,-10\n"
+                                                 "s,b,,float,0,azimuth,null,3,0,0,0.04,-13,-10\n");
+    support_write("new/targets.csv", TARGET_HEAD "s,a,beta=8,float,0,azimuth,null,3,2e-3,0,0.04,-13,-10\n");
+    assert_int_equal(compare_results(path_of("old"), path_of("new"), &compare), STATUS_OK);
+    const struct finding *position = find(&compare, "position_error_m"), *status = find(&compare, "status");
+    assert_int_equal(position->verdict, VERDICT_WORSE);
+    assert_string_equal(position->detail, "target 1, azimuth, null");
+    assert_int_equal(status->verdict, VERDICT_WORSE);
+    assert_string_equal(status->after_text, "failed: why");
+    assert_int_equal(compare.counts[CLASS_QUALITY][VERDICT_WORSE], 2);
+    assert_int_equal(compare.counts[CLASS_QUALITY][VERDICT_GONE], 0);
+    assert_null(find(&compare, "row"));
+    compare_free(&compare);
+    /* A file is compared with the folder's file of its kind. */
+    assert_int_equal(compare_results(path_of("old/targets.csv"), path_of("new"), &compare), STATUS_OK);
+    assert_non_null(find(&compare, "position_error_m"));
+    assert_int_equal(compare.counts[CLASS_QUALITY][VERDICT_GONE], 1);
+    compare_free(&compare);
+    remove(path_of("new/targets.csv"));
+    assert_int_equal(compare_results(path_of("old"), path_of("new"), &compare), STATUS_INVALID);
+    assert_non_null(strstr(status_message(), "new/targets.csv"));
+    compare_free(&compare);
+}
+
+static void malformed_and_mixed_files_are_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *says[3];
+    } cases[] = {
+        {"", {"new.csv:1", "# sasbench measurements 1"}},
+        {"scene,algorithm\n", {"new.csv:1", "the first line is ''", "is needed"}},
+        {"# sasbench measurements 2\nscene\n", {"new.csv:1", "sasbench measurements 2", "is needed"}},
+        {"# sasbench measurements 1\nscene,algorithm,settings\n", {"new.csv", "'settings' as column 3", "'options'"}},
+        {HEAD "s,a,\n", {"new.csv:4", "3 fields", "25"}},
+        {HEAD ROW "\"s,a", {"new.csv:5", "never ends"}},
+        {HEAD "s,a,,float,2,,ok,,,x,,,,,,,,,,,,,,,\n", {"new.csv:4", "plan_s is 'x'", "a number"}},
+        {HEAD "s,a,,float,2,,ok,,,,,,,,,,,,,nan,,,,,\n", {"new.csv:4", "error is 'nan'", "finite"}},
+        {HEAD "s,a,,float,2,,ok,,,,,,,,,,inf,,,,,,,,\n", {"new.csv:4", "flops is 'inf'", "finite"}},
+        {HEAD "s,a,,float,2,,fine,,,,,,,,,,,,,,,,,,\n", {"new.csv:4", "status is 'fine'", "unsupported"}},
+        {HEAD "s,a,,float,2.5,,ok,,,,,,,,,,,,,,,,,,\n", {"new.csv:4", "threads is '2.5'", "whole"}},
+        {HEAD ROW ROW, {"new.csv:5", "line 4", "once"}},
+        {TARGET_HEAD, {"old.csv holds measurements", "new.csv holds targets", "same kind"}},
+    };
+    support_write("old.csv", HEAD ROW);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct compare compare;
+        support_write("new.csv", cases[k].text);
+        assert_int_equal(compare_results(path_of("old.csv"), path_of("new.csv"), &compare), STATUS_INVALID);
+        for (int s = 0; s < 3 && cases[k].says[s]; s++)
+            if (!strstr(status_message(), cases[k].says[s]))
+                fail_msg("case %zu: '%s' does not say '%s'", k, status_message(), cases[k].says[s]);
+        compare_free(&compare);
+    }
+}
+
+static void many_rows(void **state)
+{
+    (void)state;
+    enum { ROWS = 10000 };
+    for (int side = 0; side < 2; side++) {
+        FILE *file = fopen(path_of(side ? "new.csv" : "old.csv"), "w");
+        assert_non_null(file);
+        fputs(HEAD, file);
+        for (int k = 0; k < ROWS; k++) {
+            int n = side ? ROWS - 1 - k : k;
+            fprintf(file,
+                    "s%d,a,beta=%d,float,2,general,ok,,,0.1,1,0.9,5,2,focus=1,1e6,1e6,1000,4096,%s,0.05,0.01,0.04,"
+                    "-13.3,-10.4\n",
+                    n % 50, n, side && n == 5000 ? "0.2" : "0.1");
+        }
+        assert_int_equal(fclose(file), 0);
+    }
+    struct compare compare;
+    assert_int_equal(compare_results(path_of("old.csv"), path_of("new.csv"), &compare), STATUS_OK);
+    assert_int_equal(compare.finding_count, ROWS * 11);
+    assert_int_equal(compare.counts[CLASS_QUALITY][VERDICT_WORSE], 1);
+    assert_int_equal(compare_judge(&compare), STATUS_FAILED);
+    compare_free(&compare);
+}
+
+static void shown_as_text_markdown_and_json(void **state)
+{
+    (void)state;
+    struct compare compare;
+    char text[4096] = "";
+    compare_texts(HEAD ROW,
+                  HEAD "s,a,beta=8,float,2,general,ok,,,0.1,1,0.9,5,2,focus=1,1e6,1e6,1000,4096,0.15,0.05,0.01,0.04,"
+                       "-13.2,-10.4\n\"t|\"\"x\",a,,double,,,ok,,,,,,,,,,,,,1,,,,,\n",
+                  &compare);
+    FILE *stream = fmemopen(text, sizeof text - 1, "w");
+    compare_print(&compare, stream);
+    fclose(stream);
+    assert_non_null(strstr(text, "worse    error                       0.1          0.15       +50 %  s a:beta=8\n"));
+    assert_non_null(strstr(text, "worse    pslr_db                   -13.3         -13.2     +0.1 dB  s a:beta=8\n"));
+    assert_non_null(strstr(text, "new      row"));
+    assert_non_null(strstr(text, "something got worse\n"));
+    assert_int_equal(compare_markdown(&compare, path_of("out.md")), STATUS_OK);
+    assert_non_null(strstr(text_read("out.md"), "| worse | error | 0.1 | 0.15 | +50 % | s | a:beta=8 |\n"));
+    assert_non_null(strstr(text_read("out.md"), "| t\\|\"x | a:precision=double |\n"));
+    assert_int_equal(compare_json(&compare, path_of("out.json")), STATUS_OK);
+    assert_non_null(strstr(text_read("out.json"), "{\"name\": \"s a:beta=8 error\", \"unit\": \"1\", \"value\": 0.15, "
+                                                  "\"range\": \"0.0001\"}"));
+    assert_null(strstr(text_read("out.json"), "pairs"));
+    compare_free(&compare);
+}
+
+/* What a file from elsewhere holds must neither command the terminal nor act in a comment. */
+static void names_are_shown_without_effect(void **state)
+{
+    (void)state;
+    static const char *const live[] = {"@some", "<img", "![x]",     "](http", "http://", "www.x",
+                                       "#12",   "\x1b", "\xc2\x9b", "`id",    "||"};
+    struct compare compare;
+    char text[1 << 14] = "";
+    compare_texts("# sasbench measurements 1\n# commit: @some/one ![x](http://x/y.png) <img src=x>\n"
+                  "# machine: www.x.org #12 `id` ||\n" ROW_HEAD,
+                  HEAD "\"@someone <img> ![x](http://x) www.x.org #12 a||b \\| \xff `id`\",a,,float,2,,failed,@some,"
+                       ",,,,,,,,,,,,,,,,\n",
+                  &compare);
+    assert_int_equal(compare_markdown(&compare, path_of("out.md")), STATUS_OK);
+    const char *markdown = text_read("out.md");
+    for (size_t k = 0; k < sizeof live / sizeof *live; k++)
+        for (const char *at = markdown; (at = strstr(at, live[k])); at++)
+            if (at[-1] != '\\')
+                fail_msg("'%s' is in the comment: %s", live[k], markdown);
+    assert_non_null(strstr(
+        markdown, "@&#8203;someone &lt;img&gt; !\\[x\\](http&#58;//x) www&#46;x.org #&#8203;12 a\\|\\|b \\\\\\| ? "));
+    FILE *stream = fmemopen(text, sizeof text - 1, "w");
+    struct finding odd = {.verdict = VERDICT_GONE,
+                          .scene = "a\x1b[31mb\xc2\x9b"
+                                   "c\xff",
+                          .spec = "\t",
+                          .detail = "\x7f",
+                          .metric = "row",
+                          .unit = "",
+                          .before = NAN,
+                          .after = NAN,
+                          .change = NAN,
+                          .slack = NAN,
+                          .before_text = "\x1b]0;x",
+                          .after_text = ""};
+    assert_int_equal(compare_add(&compare, &odd), STATUS_OK);
+    assert_int_equal(compare_note(&compare, "\x1b[2J"), STATUS_OK);
+    compare_print(&compare, stream);
+    fclose(stream);
+    assert_non_null(strstr(text, "a?[31mb??c? ? ?\n"));
+    for (const char *at = text; *at; at++)
+        assert_true(*at == '\n' || ((unsigned char)*at >= ' ' && *at != 0x7f));
+    assert_non_null(strstr(text, "?[2J\n"));
+    odd.lower_is_better = true;
+    odd.after = 1;
+    assert_int_equal(compare_add(&compare, &odd), STATUS_OK);
+    assert_int_equal(compare_json(&compare, path_of("out.json")), STATUS_OK);
+    assert_non_null(strstr(text_read("out.json"), "a\\ufffd[31mb\\ufffd\\ufffdc\\ufffd"));
+    compare_free(&compare);
+}
+
+int main(void)
+{
+    omp_set_num_threads(1); /* the same bits, and quick beside other tests */
+#define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, folder_make, folder_remove_known)
+    const struct CMUnitTest tests[] = {
+        IN_FOLDER(baseline_holds),
+        IN_FOLDER(baseline_holds_without_vector_extensions),
+        IN_FOLDER(faults_are_caught_by_name),
+        IN_FOLDER(values_are_judged_by_the_metric_table),
+        IN_FOLDER(many_betterments_are_a_change),
+        IN_FOLDER(scenes_are_told_apart_whatever_they_are_called),
+        IN_FOLDER(rounding_of_float_is_no_change_but_of_double),
+        IN_FOLDER(rows_of_another_scene_content_are_not_compared),
+        IN_FOLDER(folders_are_compared_with_their_targets),
+        IN_FOLDER(malformed_and_mixed_files_are_refused),
+        IN_FOLDER(many_rows),
+        IN_FOLDER(shown_as_text_markdown_and_json),
+        IN_FOLDER(names_are_shown_without_effect),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,606 @@
+/* Metrics: slices of exact images against independent numbers, closed forms, and what must stay undefined. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/delay.h"
+#include "data/echo_data.h"
+#include "measure/metrics.h"
+#include "tests/assertions.h"
+
+/* --- Exact images of one target, straight from the formulas -------------------------------------------------- */
+
+/* A straight scene with a flat spectrum: the echo of a pair is w exp(-j 2 pi fc tau) sinc(B (t - tau)). */
+struct exact_scene {
+    double bandwidth, speed, pri;
+    int receivers;
+    double rx_length, pitch; /* the first receiver lies one pitch ahead of the transmitter */
+    double tx_length;
+    int pings;
+    double x_first, target_r, target_x;
+    bool element_beams, cut_at_midpoint;
+    double cut; /* of |sin theta| lambda/D_tx */
+    /* The numbers to be met, computed by an independent program: azimuth slice +-3 m. */
+    double x_step, pslr_db, islr_null_db, islr_3db_db, width_m, peak;
+};
+
+static const double fc = 150e3, c = 1500;
+
+static const struct exact_scene scene_a = {15e3,
+                                           2.5,
+                                           0.32,
+                                           40,
+                                           0.04,
+                                           0.04,
+                                           0.08,
+                                           25,
+                                           -9.5863,
+                                           90,
+                                           0,
+                                           false,
+                                           false,
+                                           0.443,
+                                           0.02,
+                                           -13.306375854280315,
+                                           -10.41435956461415,
+                                           -4.355839965091554,
+                                           0.0383694168274542,
+                                           520};
+static const struct exact_scene scene_b = {20e3,
+                                           2.5,
+                                           0.2,
+                                           25,
+                                           0.04,
+                                           0.04,
+                                           0.08,
+                                           29,
+                                           -0.9863,
+                                           74,
+                                           6,
+                                           true,
+                                           false,
+                                           0.443,
+                                           0.02,
+                                           -16.263073439530086,
+                                           -13.989989549264855,
+                                           -5.105523566410879,
+                                           0.04118278745544757,
+                                           368.064119483484};
+static const struct exact_scene scene_c = {20e3,
+                                           3,
+                                           0.44,
+                                           66,
+                                           0.04,
+                                           0.04,
+                                           0.08,
+                                           31,
+                                           -3.7863,
+                                           260,
+                                           16,
+                                           false,
+                                           true,
+                                           0.443,
+                                           0.02,
+                                           -13.371362664810466,
+                                           -10.68692946729094,
+                                           -4.454299346451544,
+                                           0.039951849404120665,
+                                           1442};
+static const struct exact_scene scene_d = {20e3,
+                                           3,
+                                           0.44,
+                                           132,
+                                           0.02,
+                                           0.02,
+                                           0.04,
+                                           15,
+                                           -6.7263,
+                                           50,
+                                           2.5,
+                                           false,
+                                           false,
+                                           0.443,
+                                           0.01,
+                                           -13.2787200518272,
+                                           -10.571800017815299,
+                                           -4.40437231411396,
+                                           0.01872631694402438,
+                                           1188};
+
+/* The pairs that see the target, with their delay and weight. */
+struct exact_pair {
+    struct vector tx, rx, velocity;
+    double tau, weight;
+};
+
+static double sinc(double z)
+{
+    return z == 0 ? 1 : sin(M_PI * z) / (M_PI * z);
+}
+
+static struct exact_pair *exact_pairs(const struct exact_scene *s, int *count)
+{
+    struct exact_pair *pairs = malloc(sizeof *pairs * (size_t)s->pings * (size_t)s->receivers);
+    assert_non_null(pairs);
+    struct vector p = {s->target_x, s->target_r, 0};
+    double lambda = c / fc;
+    *count = 0;
+    for (int ping = 0; ping < s->pings; ping++) {
+        for (int m = 0; m < s->receivers; m++) {
+            double x_t = s->x_first + ping * s->speed * s->pri;
+            struct exact_pair pair = {{x_t, 0, 0}, {x_t + (m + 1) * s->pitch, 0, 0}, {s->speed, 0, 0}, 0, 1};
+            pair.tau = delay_exact(pair.tx, pair.rx, pair.velocity, p, c);
+            double u = x_t - p.x, u_rx = pair.rx.x + s->speed * pair.tau - p.x, mid = 0.5 * (u + u_rx);
+            double sin_t = u / hypot(u, p.y), sin_r = u_rx / hypot(u_rx, p.y);
+            double sin_cut = s->cut_at_midpoint ? mid / hypot(mid, p.y) : sin_t;
+            if (fabs(sin_cut) > s->cut * lambda / s->tx_length)
+                continue;
+            if (s->element_beams)
+                pair.weight = sinc(s->tx_length * sin_t / lambda) * sinc(s->rx_length * sin_r / lambda);
+            pairs[(*count)++] = pair;
+        }
+    }
+    return pairs;
+}
+
+static double complex exact_value(const struct exact_scene *s, const struct exact_pair *pairs, int count, double x,
+                                  double r)
+{
+    struct vector p = {x, r, 0};
+    double complex sum = 0;
+    for (int k = 0; k < count; k++) {
+        double tau = delay_exact(pairs[k].tx, pairs[k].rx, pairs[k].velocity, p, c), lag = tau - pairs[k].tau;
+        double phase = 2 * M_PI * fc * lag, value = pairs[k].weight * sinc(s->bandwidth * lag);
+        sum += value * (cos(phase) + I * sin(phase));
+    }
+    return sum;
+}
+
+static void pixel_set(struct image *image, int patch, int i, int j, double complex value)
+{
+    size_t at = (size_t)i * (size_t)image->patches[patch].x_count + (size_t)j;
+    if (image->precision == PRECISION_DOUBLE)
+        ((double complex *)image->pixels[patch])[at] = value;
+    else
+        ((float complex *)image->pixels[patch])[at] = (float complex)value;
+}
+
+static void image_make(const struct grid *patches, int count, enum precision precision, struct image *image)
+{
+    assert_int_equal(image_allocate(count, patches, precision, image), STATUS_OK);
+}
+
+static void exact_image(const struct exact_scene *s, const struct grid *grid, enum precision precision,
+                        struct image *image)
+{
+    int count;
+    struct exact_pair *pairs = exact_pairs(s, &count);
+    image_make(grid, 1, precision, image);
+    for (int i = 0; i < grid->r_count; i++)
+        for (int j = 0; j < grid->x_count; j++)
+            pixel_set(image, 0, i, j,
+                      exact_value(s, pairs, count, grid->x_first + j * grid->x_step, grid->r_first + i * grid->r_step));
+    free(pairs);
+}
+
+static struct acquisition acquisition_of(const struct exact_scene *s)
+{
+    return (struct acquisition){.sound_speed = c, .fc = fc, .bandwidth = s->bandwidth, .tx_length = s->tx_length};
+}
+
+static void check_slice(const struct exact_scene *s, const struct slice_metrics *m)
+{
+    assert_string_equal(m->reason, "");
+    assert_close(m->pslr_db[DEFINITION_NULL], s->pslr_db, 0.02);
+    assert_close(m->islr_db[DEFINITION_NULL], s->islr_null_db, 0.02);
+    assert_close(m->islr_db[DEFINITION_3DB], s->islr_3db_db, 0.02);
+    assert_close(m->width_m / s->width_m, 1, 0.005);
+    assert_close(m->position_error_m, 0, 1e-5);
+    assert_true(isnan(m->pslr_db[DEFINITION_3DB]));
+}
+
+/* A single row through the target: azimuth needs no more. */
+static void test_azimuth_on_raster(void **state)
+{
+    (void)state;
+    const struct exact_scene *scenes[] = {&scene_a, &scene_b, &scene_c, &scene_d};
+    for (int k = 0; k < 4; k++) {
+        const struct exact_scene *s = scenes[k];
+        int side = (int)lround(3 / s->x_step);
+        struct grid grid = {s->target_x - side * s->x_step, s->x_step, 2 * side + 1, s->target_r, 0.025, 1};
+        struct acquisition acquisition = acquisition_of(s);
+        struct target target = {s->target_x, s->target_r, 1};
+        struct image image;
+        exact_image(s, &grid, k % 2 ? PRECISION_FLOAT : PRECISION_DOUBLE, &image);
+        struct slice_metrics m = metrics_slice(&image, &acquisition, &target, AXIS_AZIMUTH);
+        check_slice(s, &m);
+        assert_close(m.extent_m, 3, 1e-6);
+        double complex peak = metrics_value(&image, &acquisition, s->target_x, s->target_r);
+        assert_close(creal(peak), s->peak, 1e-4 * s->peak);
+        assert_close(cimag(peak), 0, 1e-4 * s->peak);
+        image_free(&image);
+    }
+}
+
+/* The target between rows and columns: the same numbers must come out, and values between the pixels must be true. */
+static void test_off_raster(void **state)
+{
+    (void)state;
+    const struct exact_scene *s = &scene_a;
+    struct grid grid = {-3 + 0.37 * 0.02, 0.02, 300, 90 - 0.5 + 0.41 * 0.025, 0.025, 40};
+    struct acquisition acquisition = acquisition_of(s);
+    struct target target = {s->target_x, s->target_r, 1};
+    struct image image;
+    exact_image(s, &grid, PRECISION_DOUBLE, &image);
+    struct slice_metrics m = metrics_slice(&image, &acquisition, &target, AXIS_AZIMUTH);
+    check_slice(s, &m);
+    assert_true(m.extent_m < 3 && m.extent_m > 2.97);
+    int count;
+    struct exact_pair *pairs = exact_pairs(s, &count);
+    for (int k = 0; k < 20; k++) {
+        double x = 0.2 * sin(1.0 + 7 * k), r = 90 + 0.02 * sin(2.0 + 5 * k);
+        double complex value = metrics_value(&image, &acquisition, x, r), wanted = exact_value(s, pairs, count, x, r);
+        assert_true(cabs(value - wanted) < 1.5e-3 * s->peak); /* the patch ends 20 rows away */
+    }
+    free(pairs);
+    /* A flat spectrum over B makes a sinc of c t/2 in range: zeros every c/(2B), -13.26 dB, narrowed by nothing. */
+    m = metrics_slice(&image, &acquisition, &target, AXIS_RANGE);
+    assert_string_equal(m.reason, "");
+    assert_close(m.width_m, 0.88589 * c / (2 * s->bandwidth), 0.0004);
+    assert_close(m.pslr_db[DEFINITION_NULL], -13.26, 0.1);
+    assert_close(m.position_error_m, 0, 1e-4);
+    assert_true(isnan(m.pslr_db[DEFINITION_PIXEL]));
+    image_free(&image);
+}
+
+/* Plane waves that fill 85 % of the band in azimuth and in range, on the carrier: below -80 dB. */
+static void test_interpolation(void **state)
+{
+    (void)state;
+    struct grid grid = {-1, 0.02, 101, 50, 0.025, 101};
+    struct acquisition acquisition = acquisition_of(&scene_a);
+    double kx[] = {0, 0.425 / 0.02, -0.425 / 0.02, 0.3 / 0.02};
+    double kr[] = {0, 0.425 / 0.025, 0.2 / 0.025, -0.425 / 0.025};
+    struct image image;
+    image_make(&grid, 1, PRECISION_DOUBLE, &image);
+    for (int w = 0; w < 4; w++) {
+        for (int pass = 0; pass < 2; pass++) {
+            for (int i = 0; pass == 0 && i < grid.r_count; i++)
+                for (int j = 0; j < grid.x_count; j++) {
+                    double x = -1 + j * 0.02, r = 50 + i * 0.025;
+                    pixel_set(&image, 0, i, j, cexp(2 * M_PI * I * (kx[w] * x + (kr[w] + 2 * fc / c) * r)));
+                }
+            for (int k = 0; pass == 1 && k < 50; k++) {
+                double x = 0.3 * sin(11.0 * k), r = 51.25 + 0.4 * sin(17.0 * k);
+                double complex wanted = cexp(2 * M_PI * I * (kx[w] * x + (kr[w] + 2 * fc / c) * r));
+                assert_true(cabs(metrics_value(&image, &acquisition, x, r) - wanted) < 1e-4);
+            }
+        }
+    }
+    assert_true(isnan(creal(metrics_value(&image, &acquisition, 1.0001, 51))));
+    assert_true(isnan(creal(metrics_value(&image, &acquisition, 0, 49.99))));
+    image_free(&image);
+}
+
+/* BP22's array with a target at 180 m: the papers' tables read the slice at the pixels, which flatters the PSLR. */
+static void test_pixel_definition(void **state)
+{
+    (void)state;
+    struct exact_scene s = scene_a;
+    s.x_first = -15 * 0.8;
+    s.pings = 31;
+    s.target_r = 180;
+    s.cut_at_midpoint = true;
+    s.cut = 0.405;
+    int pairs_count, side = 250 * 16, count = 2 * side + 1;
+    struct exact_pair *pairs = exact_pairs(&s, &pairs_count);
+    double *power = malloc(sizeof *power * (size_t)count);
+    assert_non_null(power);
+    for (int k = 0; k < count; k++) {
+        double complex value = exact_value(&s, pairs, pairs_count, (k - side) * 0.02 / 16, 180);
+        power[k] = creal(value * conj(value));
+    }
+    struct slice_metrics m = metrics_of_power(power, count, -side * 0.02 / 16, 0.02 / 16, 0.02);
+    assert_close(m.pslr_db[DEFINITION_PIXEL], -14.84, 0.02);
+    assert_close(m.islr_db[DEFINITION_PIXEL], -10.35, 0.02);
+    assert_close(m.pslr_db[DEFINITION_NULL], -13.34, 0.04); /* known for an unstated ping phase */
+    assert_close(m.islr_db[DEFINITION_NULL], -10.45, 0.04);
+    m = metrics_of_power(power, count, -side * 0.02 / 16, 0.02 / 16, 0);
+    assert_true(isnan(m.pslr_db[DEFINITION_PIXEL]));
+    assert_string_equal(m.reason, "");
+    free(power);
+    free(pairs);
+}
+
+/* --- Closed forms -------------------------------------------------------------------------------------------- */
+
+enum { SAMPLES = 6001, MIDDLE = 3000 };
+static double power[SAMPLES]; /* step 1 mm, the target in the middle */
+
+static void lobe_add(double at_m, double height, double null_m)
+{
+    for (int k = 0; k < SAMPLES; k++)
+        power[k] += height * pow(sinc(((k - MIDDLE) * 1e-3 - at_m) / null_m), 2);
+}
+
+static struct slice_metrics measure(void)
+{
+    return metrics_of_power(power, SAMPLES, -MIDDLE * 1e-3, 1e-3, 0);
+}
+
+static void check_undefined(struct slice_metrics m, const char *reason)
+{
+    assert_non_null(strstr(m.reason, reason));
+    assert_true(isnan(m.pslr_db[DEFINITION_NULL]) && isnan(m.islr_db[DEFINITION_NULL]));
+    assert_true(isnan(m.islr_db[DEFINITION_3DB]) && isnan(m.pslr_db[DEFINITION_PIXEL]));
+}
+
+static void test_sinc(void **state)
+{
+    (void)state;
+    memset(power, 0, sizeof power);
+    lobe_add(0.01234, 7, 0.05);
+    struct slice_metrics m = measure();
+    assert_string_equal(m.reason, "");
+    assert_close(m.pslr_db[DEFINITION_NULL], -13.2615, 0.005);
+    assert_close(m.width_m, 0.885893 * 0.05, 2e-5);
+    assert_close(m.position_error_m, 0.01234, 1e-6);
+    assert_close(m.extent_m, 3, 1e-9);
+    /* 0.902823 of the energy lies between the zeros; of the rest 2/(2 pi^2 60) lies beyond 60 zeros to each side. */
+    double beyond = 1 / (M_PI * M_PI * 60);
+    assert_close(m.islr_db[DEFINITION_NULL], 10 * log10((1 - 0.902823 - beyond) / 0.902823), 0.01);
+}
+
+static void test_several_peaks(void **state)
+{
+    (void)state;
+    memset(power, 0, sizeof power);
+    lobe_add(0, 1, 0.05);
+    lobe_add(1.2, 0.25, 0.05);
+    struct slice_metrics m = measure(); /* a weaker neighbour is the largest sidelobe */
+    assert_close(m.pslr_db[DEFINITION_NULL], 10 * log10(0.25), 0.01);
+    lobe_add(1.2, 0.75 + 1e-8, 0.05);
+    m = measure(); /* an equal one must not turn on rounding */
+    assert_close(m.pslr_db[DEFINITION_NULL], 0, 0.01);
+    lobe_add(1.2, 1, 0.05);
+    check_undefined(measure(), "the strongest peak lies +1.2 m");
+    memset(power, 0, sizeof power);
+    lobe_add(-0.4, 1, 0.05);
+    check_undefined(measure(), "the strongest peak lies -0.4 m");
+}
+
+static void test_lobes_cut(void **state)
+{
+    (void)state;
+    memset(power, 0, sizeof power);
+    lobe_add(0, 1, 4); /* falls to half, but not to a minimum */
+    struct slice_metrics m = measure();
+    check_undefined(m, "no first minimum");
+    assert_close(m.width_m, 0.885893 * 4, 1e-3);
+    memset(power, 0, sizeof power);
+    lobe_add(0, 1, 20);
+    check_undefined(measure(), "does not fall to half");
+    memset(power, 0, sizeof power);
+    lobe_add(0, 1, 2.5); /* a minimum, but the sidelobe behind it is cut */
+    m = measure();
+    assert_true(isnan(m.pslr_db[DEFINITION_NULL]));
+    assert_non_null(strstr(m.reason, "sidelobe is cut"));
+    for (int k = 0; k < SAMPLES; k++)
+        power[k] = k + 1;
+    check_undefined(measure(), "at its end");
+}
+
+static void test_nothing_to_measure(void **state)
+{
+    (void)state;
+    memset(power, 0, sizeof power);
+    check_undefined(measure(), "zero");
+    lobe_add(0, 1, 0.05);
+    power[17] = NAN;
+    check_undefined(measure(), "not finite");
+    power[17] = INFINITY;
+    check_undefined(measure(), "not finite");
+    check_undefined(metrics_of_power(power + MIDDLE - 1, 2, -1e-3, 1e-3, 0), "shorter than 3 samples");
+    for (int k = 0; k < SAMPLES; k++)
+        power[k] = 1;
+    check_undefined(measure(), "");
+}
+
+static void test_undefined_slices(void **state)
+{
+    (void)state;
+    struct acquisition acquisition = acquisition_of(&scene_a);
+    struct target target = {0, 90, 1};
+    struct image image;
+
+    struct grid fine = {-1, 0.02, 101, 89.9, 0.025, 9};
+    image_make(&fine, 1, PRECISION_DOUBLE, &image);
+    check_undefined(metrics_slice(&image, &acquisition, &target, AXIS_AZIMUTH), "zero");
+    check_undefined(metrics_slice(&image, &acquisition, &(struct target){5, 90, 1}, AXIS_AZIMUTH), "no patch");
+    check_undefined(metrics_slice(&image, &acquisition, &(struct target){-1, 90, 1}, AXIS_AZIMUTH), "shorter than 3");
+    pixel_set(&image, 0, 4, 50, NAN);
+    check_undefined(metrics_slice(&image, &acquisition, &target, AXIS_AZIMUTH), "not finite");
+    image_free(&image);
+
+    struct grid one_row = {-1, 0.02, 101, 90, 0.025, 1};
+    image_make(&one_row, 1, PRECISION_DOUBLE, &image);
+    check_undefined(metrics_slice(&image, &acquisition, &target, AXIS_RANGE), "shorter than 3");
+    image_free(&image);
+
+    struct grid coarse_range = {-1, 0.02, 101, 89.4, 0.06, 21}; /* c/(2B) = 0.05 m */
+    image_make(&coarse_range, 1, PRECISION_DOUBLE, &image);
+    check_undefined(metrics_slice(&image, &acquisition, &target, AXIS_RANGE), "range step");
+    check_undefined(metrics_slice(&image, &acquisition, &(struct target){0, 90.02, 1}, AXIS_AZIMUTH), "range step");
+    image_free(&image);
+
+    struct grid coarse_azimuth = {-3, 0.05, 121, 90, 0.025, 1}; /* the spectrum reaches 22 cycles/m */
+    exact_image(&scene_a, &coarse_azimuth, PRECISION_DOUBLE, &image);
+    check_undefined(metrics_slice(&image, &acquisition, &target, AXIS_AZIMUTH), "azimuth step");
+    image_free(&image);
+}
+
+/* Of two patches that hold a target, the one that reaches further around it counts. */
+static void test_best_patch(void **state)
+{
+    (void)state;
+    struct acquisition acquisition = acquisition_of(&scene_a);
+    struct target target = {0, 90, 1};
+    struct grid patches[] = {{-0.1, 0.02, 11, 89.975, 0.025, 3}, {-1, 0.02, 101, 89.75, 0.025, 21}};
+    struct image image;
+    image_make(patches, 2, PRECISION_DOUBLE, &image);
+    for (int j = 0; j < 101; j++)
+        pixel_set(&image, 1, 10, j, sinc((j - 50) * 0.02 / 0.05));
+    struct slice_metrics m = metrics_slice(&image, &acquisition, &target, AXIS_AZIMUTH);
+    assert_close(m.extent_m, 1, 1e-9);
+    assert_close(m.width_m, 0.885893 * 0.05, 1e-4);
+    image_free(&image);
+}
+
+static void test_slice_samples(void **state)
+{
+    (void)state;
+    struct acquisition acquisition = acquisition_of(&scene_a);
+    struct target target = {0, 90, 1};
+    struct grid grid = {-1, 0.02, 101, 90, 0.025, 1};
+    struct image image;
+    double *position_m, *power_db;
+    int count;
+    image_make(&grid, 1, PRECISION_DOUBLE, &image);
+    metrics_slice_samples(&image, &acquisition, &target, AXIS_AZIMUTH, &position_m, &power_db, &count);
+    assert_int_equal(count, 0);
+    assert_null(position_m);
+    for (int j = 0; j < 101; j++)
+        pixel_set(&image, 0, 0, j, 3 * sinc((j - 50) * 0.02 / 0.05));
+    metrics_slice_samples(&image, &acquisition, &target, AXIS_AZIMUTH, &position_m, &power_db, &count);
+    assert_true(count > 1000 && count % 2 == 1);
+    assert_close(position_m[0], -1, 1e-9);
+    assert_close(position_m[count / 2], 0, 1e-12);
+    assert_close(power_db[count / 2], 0, 1e-9);
+    for (int k = 0; k < count; k++)
+        if (fabs(position_m[k] - 0.02) < 1e-9)
+            assert_close(power_db[k], 20 * log10(sinc(0.4)), 1e-6);
+    free(position_m);
+    free(power_db);
+    image_free(&image);
+}
+
+/* --- Errors against the reference ---------------------------------------------------------------------------- */
+
+static double complex pattern(int i, int j)
+{
+    return (1 + 0.5 * sin(3 * i + j)) * cexp(I * (0.7 * i - 1.3 * j));
+}
+
+static void test_error_of_a_gain(void **state)
+{
+    (void)state;
+    struct grid grid = {0, 0.02, 5, 10, 0.025, 4};
+    struct image image, reference;
+    image_make(&grid, 1, PRECISION_DOUBLE, &image);
+    image_make(&grid, 1, PRECISION_DOUBLE, &reference);
+    double complex gain = 0.9 * cexp(0.2 * I);
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < 5; j++) {
+            pixel_set(&reference, 0, i, j, pattern(i, j));
+            pixel_set(&image, 0, i, j, gain * pattern(i, j));
+        }
+    struct error_metrics e = metrics_error(&image, &reference);
+    assert_close(e.error, cabs(gain - 1), 1e-12);
+    assert_close(e.peak_ratio, cabs(gain - 1), 1e-12);
+    assert_close(e.phase_rms_rad, 0.2, 1e-12);
+    assert_true(e.error_gain < 1e-14);
+    image_free(&image);
+    image_free(&reference);
+}
+
+/* Three strong pixels and one below a tenth of the maximum. */
+static void test_error_by_hand(void **state)
+{
+    (void)state;
+    struct grid grid = {0, 0.02, 4, 10, 0.025, 1};
+    struct image image, reference;
+    image_make(&grid, 1, PRECISION_DOUBLE, &image);
+    image_make(&grid, 1, PRECISION_DOUBLE, &reference);
+    double complex wanted[] = {2, I, 1, 0.19}, value[] = {2 * cexp(0.1 * I), I, 1, -0.19};
+    double error = 0, cross_re = 0, cross_im = 0, energy = 6 + 0.19 * 0.19;
+    for (int j = 0; j < 4; j++) {
+        pixel_set(&reference, 0, 0, j, wanted[j]);
+        pixel_set(&image, 0, 0, j, value[j]);
+        error += pow(cabs(value[j] - wanted[j]), 2);
+        cross_re += creal(wanted[j] * conj(value[j]));
+        cross_im += cimag(wanted[j] * conj(value[j]));
+    }
+    struct error_metrics e = metrics_error(&image, &reference);
+    assert_close(e.error, sqrt(error / energy), 1e-12);
+    assert_close(e.error_gain, sqrt(1 - (cross_re * cross_re + cross_im * cross_im) / (energy * energy)), 1e-9);
+    assert_close(e.phase_rms_rad, sqrt(4 * 0.01 / 6), 1e-12);
+    assert_close(e.peak_ratio, 0.38 / 2, 1e-12);
+    /* A zero image is all wrong, and its phase is not "0". */
+    memset(image.pixels[0], 0, 4 * sizeof(double complex));
+    e = metrics_error(&image, &reference);
+    assert_close(e.error, 1, 1e-12);
+    assert_close(e.error_gain, 1, 1e-12);
+    assert_true(isnan(e.phase_rms_rad));
+    pixel_set(&image, 0, 0, 2, NAN);
+    e = metrics_error(&image, &reference);
+    assert_true(isnan(e.error) && isnan(e.error_gain) && isnan(e.phase_rms_rad) && isnan(e.peak_ratio));
+    e = metrics_error(&reference, &image);
+    assert_true(isnan(e.error) && isnan(e.peak_ratio));
+    memset(image.pixels[0], 0, 4 * sizeof(double complex));
+    e = metrics_error(&reference, &image);
+    assert_true(isnan(e.error) && isnan(e.error_gain) && isnan(e.phase_rms_rad) && isnan(e.peak_ratio));
+    image_free(&image);
+    image_free(&reference);
+}
+
+/* The reference on parts of the image, found by their places; a float image against a double reference. */
+static void test_error_of_parts(void **state)
+{
+    (void)state;
+    struct grid whole[] = {{50, 0.02, 3, 10, 0.025, 3}, {-1, 0.02, 101, 100, 0.025, 41}};
+    struct grid parts[] = {{-1 + 7 * 0.02, 0.02, 10, 100 + 3 * 0.025, 0.025, 5},
+                           {-1 + 91 * 0.02, 0.02, 10, 100 + 36 * 0.025, 0.025, 5}};
+    const int first[][2] = {{3, 7}, {36, 91}};
+    struct image image, reference;
+    image_make(whole, 2, PRECISION_FLOAT, &image);
+    image_make(parts, 2, PRECISION_DOUBLE, &reference);
+    for (int i = 0; i < 41; i++)
+        for (int j = 0; j < 101; j++)
+            pixel_set(&image, 1, i, j, pattern(i, j));
+    for (int k = 0; k < 2; k++)
+        for (int i = 0; i < 5; i++)
+            for (int j = 0; j < 10; j++)
+                pixel_set(&reference, k, i, j, pattern(first[k][0] + i, first[k][1] + j));
+    assert_true(metrics_error(&image, &reference).error < 1e-7);
+    pixel_set(&image, 1, 0, 0, NAN); /* outside the parts: not looked at */
+    assert_true(metrics_error(&image, &reference).error < 1e-7);
+    parts[1].x_first += 1e-4 * 0.02; /* off the raster */
+    assert_true(isnan(metrics_error(&image, &reference).error));
+    parts[1].x_first += 0.02 - 1e-4 * 0.02; /* sticks out by a column */
+    assert_true(isnan(metrics_error(&image, &reference).error));
+    parts[1] = (struct grid){-1, 0.021, 10, 100, 0.025, 5};
+    assert_true(isnan(metrics_error(&image, &reference).error));
+    image_free(&image);
+    image_free(&reference);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_azimuth_on_raster),
+        cmocka_unit_test(test_off_raster),
+        cmocka_unit_test(test_interpolation),
+        cmocka_unit_test(test_pixel_definition),
+        cmocka_unit_test(test_sinc),
+        cmocka_unit_test(test_several_peaks),
+        cmocka_unit_test(test_lobes_cut),
+        cmocka_unit_test(test_nothing_to_measure),
+        cmocka_unit_test(test_undefined_slices),
+        cmocka_unit_test(test_best_patch),
+        cmocka_unit_test(test_slice_samples),
+        cmocka_unit_test(test_error_of_a_gain),
+        cmocka_unit_test(test_error_by_hand),
+        cmocka_unit_test(test_error_of_parts),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

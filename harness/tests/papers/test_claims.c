@@ -1,0 +1,243 @@
+/* The claims of the papers: results/claims.csv is read strictly, and verdicts follow the numbers. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "command/task.h"
+#include "tests/planted.h"
+
+/* --- The file -------------------------------------------------------------------------------------------------- */
+
+static void all_claims_are_read(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *paper;
+        int count;
+    } papers[] = {{"BP22", 33}, {"ZP15", 12}, {"LBF21", 60}};
+    struct claims claims;
+    int row = 0;
+    assert_int_equal(claims_read(CLAIMS_FILE, &claims), STATUS_OK);
+    for (size_t p = 0; p < sizeof papers / sizeof *papers; p++)
+        for (int k = 0; k < papers[p].count; k++, row++) {
+            assert_true(row < claims.count);
+            assert_string_equal(claims.claims[row].paper, papers[p].paper);
+        }
+    assert_int_equal(row, claims.count);
+    assert_true(claims.need_count > 17);
+    claims_free(&claims);
+}
+
+#define X "x = 1"
+static const struct {
+    const char *judge, *arguments, *says[4];
+} mistakes[] = {
+    /* names and arithmetic */
+    {"undecided", "1 = 2", {"line 2", "column arguments, character 1", "'1 = 2'", "a name"}},
+    {"undecided", "max = 2", {"'max = 2'", "no function's"}},
+    {"undecided", "error = 2", {"'error = 2'", "no function's"}},
+    {"undecided", "pi = 3", {"'pi = 3'", "a name of its own"}},
+    {"undecided", X "; x = 2", {"character 8", "'x = 2'", "a name of its own"}},
+    {"undecided", X "; x = 2", {"line 2", "a name of its own"}},
+    {"undecided", "x 1", {"character 3", "'='"}},
+    {"undecided", "x =", {"character 4", "a number, a name, a function"}},
+    {"undecided", "x = 1 2", {"character 7", "an operator, ';' or the end"}},
+    {"undecided", "x = 1 +", {"a number, a name, a function"}},
+    {"undecided", "x = (1", {"')' is needed"}},
+    {"undecided", "x = 1e999", {"'1e999'", "a number"}},
+    {"undecided", "x = 1.2.3", {"'1.2.3'", "a number"}},
+    {"undecided", "x = 1; y = z", {"character 12", "'z'", "x, pi"}},
+    {"undecided", "x = ((((((((((((((((((((1))))))))))))))))))))", {"nested more than 20"}},
+    {"undecided", X ";", {"a name of its own"}},
+    /* functions */
+    {"undecided", "x = eror(bp22/speckle, bp_nearest)", {"'eror'", "min", "published", "metric of measurements.csv"}},
+    {"undecided", "x = target_error(bp22/speckle, bp_nearest)", {"'target_error'", "targets.csv"}},
+    {"undecided", "x = max()", {"a number, a name, a function"}},
+    {"undecided", "x = max(1 2)", {"an operator, ',' or ')'"}},
+    {"undecided", "x = upsampling_rate(1, 2)", {"2 numbers", "upsampling_rate takes 3"}},
+    {"undecided", "x = error(bp22/speckle)", {"error(scene, SPEC) is needed"}},
+    {"undecided", "x = error(bp22/speckle, bp_nearest, pixel)", {"error(scene, SPEC) is needed"}},
+    {"undecided", "x = error(bp22/spekle, bp_nearest)", {"character 11", "no scene 'bp22/spekle'", "below scenes/"}},
+    {"undecided", "x = error(bp22/speckle, bp_neerest)", {"character 25", "'bp_neerest'", "bp_nearest"}},
+    {"undecided", "x = error(bp22/speckle, bp_sinc:taps=many)", {"character 25", "taps"}},
+    {"undecided", "x = error(bp22/speckle, 'bp_sinc:taps=8", {"never ends", "second quote"}},
+    {"undecided", "x = target_islr_db(bp22/many, bp_nearest, pixl, 1)", {"'pixl'", "null, 3db, pixel"}},
+    {"undecided", "x = target_islr_db(bp22/many, bp_nearest, pixel, 0..3)", {"'0..3'", "from 1 to 64"}},
+    {"undecided", "x = target_islr_db(bp22/many, bp_nearest, pixel, 3..1)", {"'3..1'", "FIRST..LAST"}},
+    {"undecided", "x = target_islr_db(bp22/many, bp_nearest, pixel, 1..nan)", {"'1..nan'", "FIRST..LAST"}},
+    {"undecided", "x = target_islr_db(bp22/many, bp_nearest, pixel, 1.5)", {"whole numbers"}},
+    {"undecided",
+     "x = target_islr_db(bp22/many, bp_nearest, pixel, 1..3) - target_islr_db(bp22/many, bp_nearest, "
+     "pixel, 1..2)",
+     {"lists of 3 and 2", "one length"}},
+    {"undecided",
+     "x = list(target_islr_db(bp22/many, bp_nearest, pixel, 1..40), target_islr_db(bp22/many, "
+     "bp_nearest, pixel, 1..40))",
+     {"more than 64 numbers"}},
+    {"undecided", "x = stage(bp22/full, bp_nearest, )", {"name of a stage"}},
+    {"undecided", "x = time(bp22_t3, sinc, fast engines)", {"'bp22_t3'", "accepted: 'bp22_t4', 'lbf21_t5'"}},
+    {"undecided", "x = time(bp22_t4, sync, fast engines)", {"'sync'", "'nearest'", "'linear, beta 8'", "'sinc'"}},
+    {"undecided",
+     "x = time(bp22_t4, sinc, slow engines)",
+     {"'slow engines'", "'fast engines'", "'plain engines, extrapolated'"}},
+    {"undecided", "x = published(bp22_t4, '', nearest, time)", {"published.csv has no such number"}},
+    {"undecided", "x = published(lbf21_t5, '', PCA, time_s)", {"published.csv has no such number"}},
+    {"undecided", "x = phase(longer, first, pca, 50..300, 1)", {"'longer'", "short, long"}},
+    {"undecided", "x = phase(long, second, pca, 50..300, 1)", {"'second'", "first, last"}},
+    {"undecided", "x = phase(long, first, exact, 50..300, 1)", {"'exact'", "lbf_fc, lbf_F, lbf7_fc, pca"}},
+    {"undecided", "x = phase(long, first, pca, 300..50, 1)", {"'300..50'", "FIRST..LAST"}},
+    {"undecided", "x = phase(long, first, pca, 50..300, 2)", {"'2'", "from 0 to 1"}},
+    {"undecided", "x = scene(bp22/full, length_m)", {"'length_m'", "bin_m, wavelength_m, tx_length_m, recording_s"}},
+    /* judges */
+    {"over(x, 1)", X, {"column judge, character 1", "no such judge", "above, below", "undecided"}},
+    {"above x, 1", X, {"above(value, limit) is needed"}},
+    {"above(x)", X, {"above(value, limit) is needed"}},
+    {"above(x, 1, 2)", X, {"character 11", "above(value, limit) is needed"}},
+    {"above(x, target_islr_db(bp22/many, bp_nearest, pixel, 1..3))", X, {"3 numbers; one is needed"}},
+    {"within(x, 1)", X, {"within(value, target, tolerance) is needed"}},
+    {"rounds_to(x, 1)", X, {"rounds_to(value, printed number, its last digit) is needed"}},
+    {"rising(x)", X, {"one value", "rising(two and more values) is needed"}},
+    {"above(y, 1)", X, {"column judge, character 7", "'y, 1)'", "x, pi"}},
+    {"above(x, 1) or below(x, 1)", X, {"character 13", "'and', 'else' or the end"}},
+    {"above(x, 1) else", X, {"no such judge"}},
+    {"above(x, 1) and", X, {"no such judge"}},
+    {"undecided()", X, {"no such judge"}},
+};
+
+/* Every kind of mistake has its message, which names the place and what is accepted. */
+static void bad_rows_are_refused(void **state)
+{
+    (void)state;
+    for (size_t k = 0; k < sizeof mistakes / sizeof *mistakes; k++) {
+        struct claims claims;
+        if (planted_claim(mistakes[k].judge, mistakes[k].arguments, &claims) != STATUS_INVALID)
+            fail_msg("accepted: %s | %s", mistakes[k].judge, mistakes[k].arguments);
+        assert_non_null(strstr(status_message(), "bad.csv: line "));
+        for (int n = 0; n < 4 && mistakes[k].says[n]; n++)
+            if (!strstr(status_message(), mistakes[k].says[n]))
+                fail_msg("%s | %s: '%s' is not in: %s", mistakes[k].judge, mistakes[k].arguments, mistakes[k].says[n],
+                         status_message());
+        assert_null(claims.claims);
+    }
+}
+
+/* Measurements are needed wherever a row asks for them, each once. */
+static void needs_are_collected(void **state)
+{
+    (void)state;
+    struct claims claims;
+    assert_int_equal(planted_claim("above(max(error(bp22/speckle, bp_nearest), error(bp22/speckle, bp_linear:beta=8), "
+                                   "error(zp15/speckle, bp_nearest)), x)",
+                                   "x = flops(bp22/speckle, bp_nearest)", &claims),
+                     STATUS_OK);
+    assert_int_equal(claims.need_count, 3);
+    assert_string_equal(claims.needs[1].spec, "bp_linear:beta=8");
+    assert_string_equal(claims.needs[2].scene, "zp15/speckle");
+    claims_free(&claims);
+}
+
+/* Cells and columns. */
+static void bad_files_are_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *says[3];
+    } cases[] = {
+        {"id,paper,section,claim,judge,arguments\n", {"bad.csv", "column 5 must be 'criterion'"}},
+        {"id,paper,section,claim,criterion,judge,arguments\nx,BP22,4.1,c,c,undecided\n", {"bad.csv:2", "6 fields"}},
+        {"id,paper,section,claim,criterion,judge,arguments\nx,BP22,,c,c,undecided,x = 1\n",
+         {"line 2", "column section is empty"}},
+        {"id,paper,section,claim,criterion,judge,arguments\nx,BP22,4.1,c,c,,x = 1\n", {"column judge is empty"}},
+        {"id,paper,section,claim,criterion,judge,arguments\nx,BP22,4.1,c,c,undecided,\n",
+         {"column arguments is empty"}},
+        {"id,paper,section,claim,criterion,judge,arguments\nx,BP22,4.1,c,c,undecided,x = 1\n"
+         "x,BP22,4.1,c,c,undecided,x = 1\n",
+         {"line 3", "column id is 'x', as in line 2", "an id of its own"}},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct claims claims;
+        support_write("bad.csv", cases[k].text);
+        assert_int_equal(claims_read(path_of("bad.csv"), &claims), STATUS_INVALID);
+        for (int n = 0; n < 3 && cases[k].says[n]; n++)
+            if (!strstr(status_message(), cases[k].says[n]))
+                fail_msg("'%s' is not in: %s", cases[k].says[n], status_message());
+    }
+    struct claims claims;
+    assert_int_equal(claims_read(path_of("none.csv"), &claims), STATUS_INVALID);
+}
+
+/* What would be written over the list of claims is not begun. */
+static void the_list_is_not_written_over(void **state)
+{
+    (void)state;
+    assert_int_equal(command_reproduce(&(struct task){.output = SASBENCH_ROOT "/results"}), STATUS_INVALID);
+    assert_non_null(strstr(status_message(), "claims.csv is the list of claims; another folder is accepted"));
+    assert_int_not_equal(access(SASBENCH_ROOT "/results/measurements.csv", F_OK), 0);
+}
+
+/* --- Verdicts follow the numbers ------------------------------------------------------------------------------ */
+
+/* "beta = 8 is within 0.07 dB ISLR of sinc" */
+static void verdict_follows_the_threshold(void **state)
+{
+    (void)state;
+    static const struct {
+        double on_bins_db, between_db;
+        enum claim_verdict verdict;
+    } cases[] = {
+        {0.05, 0.05, CLAIM_HOLDS},   {0.075, -0.075, CLAIM_HOLDS}, /* the last digit's rounding */
+        {0.05, 0.30, CLAIM_ASSUMED}, {0.09, 0.05, CLAIM_FAILS},    {NAN, 0.05, CLAIM_UNDECIDED},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct measured measured;
+        planted_begin();
+        for (int n = 0; n < 2; n++) {
+            const char *spec = n ? SINC_8 : LINEAR_8;
+            planted_islr("bp22/table3", spec, 0, 6, -10 + (n ? 0 : cases[k].on_bins_db));
+            planted_add("bp22/table3", spec, 1, "");
+            planted_islr("bp22/many", spec, 0, 24, -10 + (n ? 0 : cases[k].on_bins_db));
+            planted_islr("bp22/many", spec, 24, 24, -10 + (n ? 0 : cases[k].between_db));
+            planted_add("bp22/many", spec, 1, "");
+        }
+        planted_end(&measured);
+        expect(&measured, "bp22-4.1-11", cases[k].verdict);
+        planted_clear(&measured);
+    }
+}
+
+/* What failed or is unsupported decides nothing. */
+static void failures_decide_nothing(void **state)
+{
+    (void)state;
+    static const char *const statuses[] = {"failed", "unsupported"};
+    for (int k = 0; k < 2; k++) {
+        struct measured measured;
+        struct spec spec;
+        assert_int_equal(spec_parse(NEAREST, &spec), STATUS_OK);
+        struct measurement row = planted_row("bp22/speckle", &spec);
+        row.status = statuses[k];
+        row.reason = "out of paper";
+        planted_begin();
+        assert_int_equal(record_add(rows, &row), STATUS_OK);
+        planted_end(&measured);
+        expect(&measured, "bp22-5-1", CLAIM_UNDECIDED);
+        assert_non_null(strstr(judgement_of(&measured, "bp22-5-1").evidence, "out of paper"));
+        planted_clear(&measured);
+        spec_free(&spec);
+    }
+}
+
+#define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, folder_make, folder_remove)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        IN_FOLDER(all_claims_are_read),          IN_FOLDER(bad_rows_are_refused),
+        IN_FOLDER(needs_are_collected),          IN_FOLDER(bad_files_are_refused),
+        IN_FOLDER(the_list_is_not_written_over), IN_FOLDER(verdict_follows_the_threshold),
+        IN_FOLDER(failures_decide_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

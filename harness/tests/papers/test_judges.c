@@ -1,0 +1,223 @@
+/* The language of results/claims.csv: its arithmetic, and each judge on planted numbers. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "measure/session.h"
+#include "tests/planted.h"
+
+/* Two lone numbers and a list that arguments can ask for: errors A and B in speckle, ISLR of three targets. */
+static void numbers_plant(double a, double b, const double islr_db[3], struct measured *measured)
+{
+    static const char *const specs[] = {NEAREST, LINEAR_8};
+    planted_begin();
+    for (int k = 0; k < 2; k++) {
+        struct spec spec;
+        assert_int_equal(spec_parse(specs[k], &spec), STATUS_OK);
+        struct measurement row = planted_row("bp22/speckle", &spec);
+        row.error = k ? b : a;
+        assert_int_equal(record_add(rows, &row), STATUS_OK);
+        spec_free(&spec);
+    }
+    for (int k = 0; k < 3; k++)
+        planted_islr("bp22/many", NEAREST, k, 1, islr_db[k]);
+    planted_add("bp22/many", NEAREST, 1, "");
+    planted_end(measured);
+}
+
+#define LANGUAGE_A "a = error(bp22/speckle, bp_nearest); b = error(bp22/speckle, bp_linear:beta=8)"
+#define LANGUAGE_V "v = target_islr_db(bp22/many, bp_nearest, pixel, 1..3)"
+
+static struct judgement judge(const char *cell, const char *arguments, struct measured *measured)
+{
+    struct claims claims;
+    if (planted_claim(cell, arguments, &claims) != STATUS_OK)
+        fail_msg("%s", status_message());
+    struct judgement judgement = claim_judge(&claims, claims.claims, measured);
+    claims_free(&claims);
+    return judgement;
+}
+
+static void arithmetic_is_right(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *expression;
+        double value;
+    } cases[] = {
+        {"1 + 2 * 3 - 4 / 8", 6.5},
+        {"(1 + 2) * -3", -9},
+        {"2 - 3 - 4", -5},
+        {"8 / 4 / 2", 1},
+        {"1e-3 * 2", 2e-3},
+        {"a", 3},
+        {"a / b - 1", 0.5},
+        {"pi", 3.14159265358979},
+        {"min(v)", -12},
+        {"max(v)", -3},
+        {"median(v)", -10},
+        {"magnitude(v)", 12},
+        {"magnitude(1, -2)", 2},
+        {"min(list(1, 2), v, 3)", -12},
+        {"max(abs(v + 10))", 7},
+        {"log2(8)", 3},
+        {"min(2 * v + v)", -36},
+        {"upsampling_rate(0.025, 0.041, 0.01)", 2},
+        {"published(bp22_t4, '', sinc, time_s)", 31276},
+        {"max(published(lbf21_t4, PT9..PT10, PCA, offset_m))", 0.003},
+        {"max(published(bp22_t3, T1..T6, nearest, islr_db) - published(bp22_t3, T1..T6, sinc, islr_db))", 0.59},
+        {"scene(bp22/table3, bin_m)", 0.025},
+        {"scene(bp22/table3, wavelength_m)", 0.01},
+    };
+    struct measured measured;
+    numbers_plant(3, 2, (double[]){-10, -3, -12}, &measured);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        char cell[300];
+        snprintf(cell, sizeof cell, "within(%s, %.15g, 1e-12)", cases[k].expression, cases[k].value);
+        struct judgement judgement = judge(cell, LANGUAGE_A "; " LANGUAGE_V, &measured);
+        if (judgement.verdict != CLAIM_HOLDS)
+            fail_msg("%s: %s", cell, judgement.evidence);
+    }
+    planted_clear(&measured);
+}
+
+/* Each judge both ways, at its edge, and on what is not a number. */
+static void judges_compare(void **state)
+{
+    (void)state;
+    const enum claim_verdict yes = CLAIM_HOLDS, no = CLAIM_FAILS;
+    const struct {
+        const char *judge;
+        double a, b;
+        enum claim_verdict verdict;
+    } cases[] = {
+        {"above(a, b)", 2, 1, yes},
+        {"above(a, b)", 1, 1, no},
+        {"below(a, b)", 1, 2, yes},
+        {"below(a, b)", 1, 1, no},
+        {"at_least(a, b)", 1, 1, yes},
+        {"at_least(a, b)", 0.5, 1, no},
+        {"at_most(a, b)", 1, 1, yes},
+        {"at_most(a, b)", 2, 1, no},
+        {"within(a, b, 0.5)", 1.5, 1, yes},
+        {"within(a, b, 0.5)", 0.5, 1, yes},
+        {"within(a, b, 0.5)", 1.75, 1, no},
+        {"within(a, b, 0.5)", 0.25, 1, no},
+        {"rounds_to(a, b, 0.5)", 0.75, 1, yes},
+        {"rounds_to(a, b, 0.5)", 1.25, 1, no},
+        {"rounds_to(a, b, 0.5)", 0.625, 1, no},
+        {"spread(list(a, b), 1)", 1, 2, yes},
+        {"spread(list(a, b), 1)", 2.5, 1, no},
+        {"rising(a, b)", 1, 2, yes},
+        {"rising(a, b)", 1, 1, no},
+        {"falling(a, b)", 2, 1, yes},
+        {"falling(a, b)", 1, 1, no},
+        {"undecided", 1, 1, CLAIM_UNDECIDED},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
+        for (int hole = 0; hole < 2; hole++) {
+            struct measured measured;
+            numbers_plant(hole ? NAN : cases[k].a, cases[k].b, (double[]){1, 2, 3}, &measured);
+            struct judgement judgement = judge(cases[k].judge, LANGUAGE_A, &measured);
+            if (judgement.verdict != (hole ? CLAIM_UNDECIDED : cases[k].verdict))
+                fail_msg("%s of %g and %g: %s; %s", cases[k].judge, hole ? NAN : cases[k].a, cases[k].b,
+                         claim_verdict_names[judgement.verdict], judgement.evidence);
+            if (hole)
+                assert_non_null(strstr(judgement.evidence, "error is undefined"));
+            planted_clear(&measured);
+        }
+}
+
+/* Of a list, every element has to agree. */
+static void judges_compare_lists(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *judge;
+        double v[3];
+        enum claim_verdict verdict;
+    } cases[] = {
+        {"above(v, 0)", {1, 2, 3}, CLAIM_HOLDS},
+        {"above(v, 0)", {1, 0, 3}, CLAIM_FAILS},
+        {"below(v, 4)", {1, 2, 3}, CLAIM_HOLDS},
+        {"below(v, 4)", {1, 4, 3}, CLAIM_FAILS},
+        {"at_least(v, 1)", {1, 2, 3}, CLAIM_HOLDS},
+        {"at_least(v, 1)", {1, 2, 0.5}, CLAIM_FAILS},
+        {"at_most(v, 3)", {1, 2, 3}, CLAIM_HOLDS},
+        {"at_most(v, 3)", {3.5, 2, 3}, CLAIM_FAILS},
+        {"within(v, 2, 1)", {1, 2, 3}, CLAIM_HOLDS},
+        {"within(v, 2, 1)", {1, 2, 3.5}, CLAIM_FAILS},
+        {"rounds_to(v, 2, 1)", {1.5, 2, 2.4}, CLAIM_HOLDS},
+        {"rounds_to(v, 2, 1)", {1.4, 2, 2.4}, CLAIM_FAILS},
+        {"spread(v, 2)", {1, 2, 3}, CLAIM_HOLDS},
+        {"spread(v, 2)", {1, 2, -1.5}, CLAIM_FAILS},
+        {"rising(v)", {1, 2, 3}, CLAIM_HOLDS},
+        {"rising(v)", {2, 1, 3}, CLAIM_FAILS},
+        {"falling(v)", {3, 2, 1}, CLAIM_HOLDS},
+        {"falling(v)", {3, 2, 2}, CLAIM_FAILS},
+        {"above(v, 0)", {1, NAN, 3}, CLAIM_UNDECIDED},
+        {"spread(v, 2)", {NAN, 2, 3}, CLAIM_UNDECIDED},
+        {"rising(v)", {1, 2, NAN}, CLAIM_UNDECIDED},
+        {"falling(v)", {3, NAN, 1}, CLAIM_UNDECIDED},
+        {"above(v / 0, 0)", {1, 2, 3}, CLAIM_UNDECIDED},
+        {"below(0 / v, 1)", {1, 0, 3}, CLAIM_UNDECIDED},
+        {"below(max(0 / v), 1)", {1, 0, 3}, CLAIM_UNDECIDED},
+        {"above(min(0 / v), -1)", {0, 1, 3}, CLAIM_UNDECIDED},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct measured measured;
+        numbers_plant(1, 1, cases[k].v, &measured);
+        struct judgement judgement = judge(cases[k].judge, LANGUAGE_V, &measured);
+        if (judgement.verdict != cases[k].verdict)
+            fail_msg("%s, case %zu: %s; %s", cases[k].judge, k, claim_verdict_names[judgement.verdict],
+                     judgement.evidence);
+        planted_clear(&measured);
+    }
+}
+
+/* `and` needs both, `else` is for the assumption, a cell that begins with it has no other way. */
+static void judges_are_joined(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *judge;
+        enum claim_verdict verdict;
+    } cases[] = {
+        {"above(a, 0) and above(b, 0)", CLAIM_HOLDS},
+        {"above(a, 0) and above(b, 9)", CLAIM_FAILS},
+        {"above(a, 9) and above(b, 0)", CLAIM_FAILS},
+        {"above(a, 9) else above(b, 0)", CLAIM_ASSUMED},
+        {"above(a, 0) else above(b, 0)", CLAIM_HOLDS},
+        {"above(a, 9) else above(b, 9)", CLAIM_FAILS},
+        {"above(a, 9) else above(a, 8) else above(b, 0)", CLAIM_ASSUMED},
+        {"above(a, 9) else above(a, 0) and above(b, 9)", CLAIM_FAILS},
+        {"else above(a, 0)", CLAIM_ASSUMED},
+        {"else above(a, 9)", CLAIM_FAILS},
+    };
+    struct measured measured;
+    numbers_plant(3, 2, (double[]){1, 2, 3}, &measured);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct judgement judgement = judge(cases[k].judge, LANGUAGE_A, &measured);
+        if (judgement.verdict != cases[k].verdict)
+            fail_msg("%s: %s", cases[k].judge, claim_verdict_names[judgement.verdict]);
+    }
+    assert_string_equal(
+        judge("above(a, 9) else within(b, a, 0.5) else above(v, 0)", LANGUAGE_A "; " LANGUAGE_V, &measured).evidence,
+        "a = 3, b = 2, v = 1 to 3 (median 2); criterion: a criterion; 3 above 9: no; 2 from 3 by at "
+        "most 0.5: no; 1 to 3 above 0: yes");
+    assert_string_equal(judge("undecided", LANGUAGE_A, &measured).evidence, "a = 3, b = 2; a criterion");
+    planted_clear(&measured);
+}
+
+#define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, folder_make, folder_remove)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        IN_FOLDER(arithmetic_is_right),
+        IN_FOLDER(judges_compare),
+        IN_FOLDER(judges_compare_lists),
+        IN_FOLDER(judges_are_joined),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,401 @@
+/* The papers' tables and claims: all printed numbers are there, nothing is said without a measurement, verdicts
+   change with a fault in an algorithm, and finished measurements are kept. */
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "command/task.h"
+#include "measure/session.h"
+#include "tests/planted.h"
+
+/* --- Tables and claims as such -------------------------------------------------------------------------------- */
+
+static void all_printed_numbers_are_there(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *table;
+        int rows, numbers; /* ZP15's figures and some of LBF21's come without numbers */
+    } wanted[] = {
+        {"bp22_t1", 4, 4},     {"bp22_t3", 48, 48},  {"bp22_t4", 4, 4},    {"bp22_eq20", 1, 1},  {"zp15_f3", 6, 0},
+        {"zp15_f4", 9, 0},     {"lbf21_t2", 16, 16}, {"lbf21_t3", 36, 36}, {"lbf21_t4", 36, 36}, {"lbf21_t5", 5, 3},
+        {"lbf21_flops", 4, 4}, {"lbf21_f2", 1, 1},   {"lbf21_f3", 1, 1},   {"lbf21_f4", 1, 0},   {"lbf21_f5", 1, 1},
+        {"lbf21_f6", 2, 2},    {"lbf21_f7", 1, 1},   {"lbf21_f8", 1, 1},   {"lbf21_f9", 1, 1},   {"claims", 4, 4},
+    };
+    struct measured measured;
+    assert_int_equal(measured_read(folder, &measured), STATUS_OK);
+    const struct csv *csv = &measured.published;
+    int total = 0;
+    for (size_t k = 0; k < sizeof wanted / sizeof *wanted; k++) {
+        int count = 0, numbers = 0;
+        assert_non_null(paper_tables[k].id);
+        assert_string_equal(paper_tables[k].id, wanted[k].table);
+        for (int row = 0; row < csv->row_count; row++)
+            if (strcmp(csv_cell(csv, row, PUBLISHED_TABLE), wanted[k].table) == 0) {
+                double number;
+                assert_true(csv_number(csv_cell(csv, row, PUBLISHED_PAPER), &number));
+                assert_true(*csv_cell(csv, row, PUBLISHED_SOURCE) != '\0');
+                numbers += isfinite(number);
+                count++;
+            }
+        if (count != wanted[k].rows || numbers != wanted[k].numbers)
+            fail_msg("%s: %d rows, %d numbers", wanted[k].table, count, numbers);
+        total += count;
+    }
+    assert_null(paper_tables[sizeof wanted / sizeof *wanted].id);
+    assert_int_equal(total, csv->row_count);
+    measured_free(&measured);
+}
+
+/* The FLOPs that the papers give as formulas. */
+static void printed_formulas_are_right(void **state)
+{
+    (void)state;
+    const double a = 2880, r = 4800, first = 10 * a * r * log2(r) + 6 * a * r + 6 * a * a * r; /* BP22 Eq. (11) */
+    const double n = 3200, s = 4096, m = 48, taps = 8, log_s = log2(s), log_n = log2(n);
+    const struct {
+        const char *table, *method;
+        double flops;
+    } wanted[] = {
+        {"bp22_t1", "nearest", first},
+        {"bp22_t1", "linear, beta 2", first + 6 * 2 * a * (r - 1)},
+        {"bp22_t1", "linear, beta 8", first + 6 * 8 * a * (r - 1)},
+        {"bp22_t1", "sinc", first + 2 * (2 * 8 - 1) * a * a * r},
+        {"lbf21_flops", "LBF", n * s * (3 * (m + 1) * log_s + 2 * (m + 1) + 1.5 * (m + 1) * log_n + 2 * taps - 1)},
+        {"lbf21_flops", "PCA", n * s * (3 * (m + 1) * log_s + m + 2 + 1.5 * (m + 1) * log_n + 2 * (2 * taps - 1))},
+        {"lbf21_flops", "Wu", n * s * (3 * (2 * m + 1) * log_s + 3 * log_n + 2 * (m + 1) + 2 * taps - 1)},
+        {"lbf21_flops", "BP", n * s * (1.5 * log_s + 1 + 1.5 * taps * log2(taps * s))},
+    };
+    struct measured measured;
+    assert_int_equal(measured_read(folder, &measured), STATUS_OK);
+    for (size_t k = 0; k < sizeof wanted / sizeof *wanted; k++) {
+        double printed = published_value(&measured, wanted[k].table, "", wanted[k].method, "flops");
+        if (!(fabs(printed / wanted[k].flops - 1) < 1e-4))
+            fail_msg("%s, %s: %g instead of %g", wanted[k].table, wanted[k].method, printed, wanted[k].flops);
+    }
+    measured_free(&measured);
+}
+
+static void rate_of_eq20(void **state)
+{
+    (void)state;
+    assert_int_equal(upsampling_rate(0.025, 0.04, 0.01), 3); /* BP22 Table 2: 2 b/3 = .01667 is not below .016 */
+    assert_int_equal(upsampling_rate(0.025, 0.041, 0.01), 2);
+    assert_int_equal(upsampling_rate(0.0001, 0.04, 0.01), 0);
+}
+
+/* Every number comes from a measurement: without any, nothing is decided and no value is there. */
+static void nothing_is_said_without_measurements(void **state)
+{
+    (void)state;
+    struct measured measured;
+    struct reproduced *lines;
+    struct claims claims;
+    int count;
+    assert_int_equal(measured_read(folder, &measured), STATUS_OK);
+    assert_int_equal(claims_read(CLAIMS_FILE, &claims), STATUS_OK);
+    for (int k = 0; k < claims.count; k++) {
+        struct judgement found = claim_judge(&claims, &claims.claims[k], &measured);
+        if (found.verdict != CLAIM_UNDECIDED || !*found.evidence)
+            fail_msg("%s: %s, %s", claims.claims[k].id, claim_verdict_names[found.verdict], found.evidence);
+    }
+    assert_int_equal(tables_evaluate(&measured, &lines, &count), STATUS_OK);
+    assert_true(count > 2 * measured.published.row_count);
+    for (int k = 0; k < count; k++)
+        if (strcmp(lines[k].definition, "rho_a = D_tx/2") != 0 && (isfinite(lines[k].ours) || !*lines[k].missing))
+            fail_msg("%s %s %s: %g without a measurement", lines[k].table, lines[k].target, lines[k].method,
+                     lines[k].ours);
+    claims_free(&claims);
+    free(lines);
+    measured_free(&measured);
+}
+
+/* Each printed number has its line, and each line its measurement among the needs of its table. */
+static void every_line_can_be_measured(void **state)
+{
+    (void)state;
+    struct measured measured;
+    struct reproduced *lines;
+    struct claims claims;
+    struct need needs[256];
+    int count, need_count = table_needs("claims", needs, 0, 256);
+    assert_int_equal(claims_read(CLAIMS_FILE, &claims), STATUS_OK);
+    for (int k = 0; k < claims.need_count; k++)
+        need_count = need_add(needs, need_count, 256, claims.needs[k]);
+    assert_true(need_count < 256);
+    planted_begin();
+    for (int k = 0; k < need_count; k++) {
+        static const char *const definitions[] = {"null", "3db", "pixel"};
+        struct spec spec;
+        struct scene scene;
+        support_scene(needs[k].scene, &scene);
+        assert_int_equal(spec_parse(needs[k].spec, &spec), STATUS_OK);
+        for (int target = 0; target < scene.point_count; target++)
+            for (int d = 0; d < 3; d++) {
+                struct target_row row = {needs[k].scene,
+                                         spec.algorithm->name,
+                                         spec.text,
+                                         precision_name(spec.precision),
+                                         target,
+                                         "azimuth",
+                                         definitions[d],
+                                         3,
+                                         0,
+                                         0,
+                                         0.04,
+                                         -15,
+                                         -10};
+                assert_int_equal(record_targets(rows, &row, 1), STATUS_OK);
+            }
+        struct measurement row = planted_row(needs[k].scene, &spec);
+        row.stages = "compress=1;bulk=1;differential=1;reconstruct=1;focus=1";
+        row.run_s = row.flops = row.flops_published = row.error = row.phase_rms_rad = row.width_m = 10;
+        row.pslr_db = row.islr_db = -10;
+        assert_int_equal(record_add(rows, &row), STATUS_OK);
+        spec_free(&spec);
+        scene_free(&scene);
+    }
+    planted_end(&measured);
+    assert_int_equal(tables_evaluate(&measured, &lines, &count), STATUS_OK);
+    int printed = 0;
+    for (int row = 0; row < measured.published.row_count; row++) /* what is said in words has no table */
+        printed += strcmp(csv_cell(&measured.published, row, PUBLISHED_TABLE), "claims") != 0;
+    for (int k = 0, of_row = 0; k < count; k++) {
+        bool phase = strcmp(lines[k].quantity, "phase_error_rad") == 0; /* comes from the phase study */
+        if (!phase && !isfinite(lines[k].ours))
+            fail_msg("%s %s %s: %s", lines[k].table, lines[k].target, lines[k].method, lines[k].missing);
+        of_row += k == 0 || lines[k].target != lines[k - 1].target || lines[k].method != lines[k - 1].method
+                  || lines[k].quantity != lines[k - 1].quantity;
+        if (k == count - 1)
+            assert_true(of_row >= printed);
+    }
+    for (int k = 0; k < claims.count; k++) {
+        struct judgement found = claim_judge(&claims, &claims.claims[k], &measured);
+        if (strstr(found.evidence, "was not measured") || strstr(found.evidence, "is undefined"))
+            fail_msg("%s: %s", claims.claims[k].id, found.evidence);
+        assert_true(strlen(found.evidence) < sizeof found.evidence - 1); /* nothing was cut off */
+    }
+    claims_free(&claims);
+    free(lines);
+    measured_free(&measured);
+}
+
+/* Times of a part are scaled stage by stage, and judged by the paper's ratio. */
+static void times_are_scaled(void **state)
+{
+    (void)state;
+    for (int faster = 0; faster < 2; faster++) {
+        struct measured measured;
+        planted_begin();
+        planted_add("bp22/full_rows", LINEAR_8 "," PLAIN_BP, 1.25, "compress=0.25;focus=1");
+        planted_add("bp22/full_rows", SINC_8 "," PLAIN_BP, 0.25 + (faster ? 4.3 : 4.1),
+                    faster ? "compress=0.25;focus=4.3" : "compress=0.25;focus=4.1");
+        planted_add("lbf21/real_size_part", LBF_16 "," PLAIN_RMA, 10,
+                    "compress=1;bulk=2;differential=3;reconstruct=2;stolt=2");
+        static const char *const scenes[] = {"bp22/full", "bp22/full_limited"};
+        for (int k = 0; k < 2; k++) {
+            planted_add(scenes[k], LINEAR_8, 1, "");
+            planted_add(scenes[k], SINC_8, 3, "");
+        }
+        planted_end(&measured);
+        assert_close(table_seconds(&measured, "bp22_t4", "linear, beta 8", PLAIN_TIMES), 50 * 1 + 0.25, 1e-9);
+        assert_close(table_seconds(&measured, "lbf21_t5", "LBF, 16 blocks", PLAIN_TIMES), 36 * 7 + 6 * 3, 1e-9);
+        assert_close(table_seconds(&measured, "bp22_t4", "sinc", FAST_TIMES), 3, 1e-9);
+        expect(&measured, "bp22-4.2-5", faster ? CLAIM_HOLDS : CLAIM_FAILS);
+        planted_clear(&measured);
+    }
+}
+
+/* --- Faults --------------------------------------------------------------------------------------------------- */
+
+/* A small scene that stands in for those of the claims. */
+static const char scatterers[] =
+    "description = \"stand-in\"; sonar = { fc = 150e3; bandwidth = 15e3; fs = 30e3; };\n"
+    "pulse = { kind = \"flat\"; };\n"
+    "array = { tx_length = 0.08; rx_length = 0.04; receivers = 8; first_offset = 0.06; pitch = 0.06; };\n"
+    "track = { speed = 2.5; pri = 0.096; pings = 24; x_first = -2.8; };\n"
+    "record = { first_sample = 520; samples = 512; };\n"
+    "beam = { kind = \"txrx\"; truncation = \"tx\"; limit = 0.443; };\n"
+    "targets = { fields = ( { x = [-0.3, 0.3]; r = [14.5, 19.5]; count = 60; seed = 4; } ); };\n"
+    "image = { x = { first = -0.4019; step = 0.04; count = 21; };\n"
+    "          r = { first = 14.5113; step = 0.0971; count = 50; }; };\n";
+
+static enum fault { FAULT_NONE, FAULT_NO_INTERPOLATION, FAULT_PHASE, FAULT_RANGE_MIGRATION } injected;
+
+/* A phase that grows along azimuth. */
+static void phase_spoil(struct image *image)
+{
+    float complex *pixels = image->pixels[0];
+    for (int k = 0; k < image->patches[0].r_count * image->patches[0].x_count; k++)
+        pixels[k] *= (float complex)cexp(0.05 * I * (k % image->patches[0].x_count));
+}
+
+/* Measure SPEC on a session whose scene has a name that claims ask for, with the fault if it concerns SPEC. */
+static void measure(const struct session *session, const char *spec_text)
+{
+    struct spec spec, used;
+    struct image image;
+    struct target_row *targets;
+    int count;
+    char reason[512] = "";
+    assert_int_equal(spec_parse(spec_text, &spec), STATUS_OK);
+    bool replaced = injected == FAULT_NO_INTERPOLATION && strcmp(spec.algorithm->name, "bp_linear") == 0;
+    assert_int_equal(spec_parse(replaced ? NEAREST : spec_text, &used), STATUS_OK);
+    assert_int_equal(session_image(session, &used, &image, NULL), STATUS_OK);
+    if ((injected == FAULT_PHASE && strcmp(spec.algorithm->name, "bp_zeropad") == 0)
+        || (injected == FAULT_RANGE_MIGRATION && strcmp(spec.algorithm->name, "rma_lbf") == 0))
+        phase_spoil(&image);
+    struct measurement row = planted_row(session->scene->name, &spec);
+    assert_int_equal(session_quality(session, &image, &row, reason, sizeof reason, &targets, &count), STATUS_OK);
+    assert_int_equal(record_add(rows, &row), STATUS_OK);
+    free(targets);
+    image_free(&image);
+    spec_free(&used);
+    spec_free(&spec);
+}
+
+static void faults_change_verdicts(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *scene, *specs[3];
+    } wanted[] = {
+        {"bp22/speckle", {NEAREST, LINEAR_2, LINEAR_8}},
+        {"bp22/many", {NEAREST, LINEAR_2, LINEAR_8}},
+        {"zp15/speckle", {ZEROPAD_8, "bp_zeropad:factor=16", "bp_zeropad:factor=32"}},
+        {"lbf21/table3_near", {LBF_16, PCA_16}},
+        {"lbf21/table3_far", {LBF_16, PCA_16}},
+        {"lbf21/table4_near", {LBF_16, PCA_16}},
+        {"lbf21/table4_far", {LBF_16, PCA_16}},
+    };
+    static const struct {
+        const char *claim;
+        enum fault fault;
+    } flips[] = {
+        {"bp22-5-2", FAULT_NO_INTERPOLATION},        /* two interpolations lower the error */
+        {"zp15-abstract-3", FAULT_PHASE},            /* zero padding is interpolation */
+        {"lbf21-abstract-5", FAULT_RANGE_MIGRATION}, /* LBF images better than PCA */
+    };
+    char path[300];
+    snprintf(path, sizeof path, "%s/scatterers.cfg", folder);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(scatterers, file);
+    assert_int_equal(fclose(file), 0);
+    struct scene scene;
+    struct session session;
+    assert_int_equal(scene_load(path, ".", &scene), STATUS_OK);
+    assert_int_equal(session_open(&scene, &session), STATUS_OK);
+    char *name = scene.name;
+    for (injected = FAULT_NONE; injected <= FAULT_RANGE_MIGRATION; injected++) {
+        struct measured measured;
+        planted_begin();
+        for (size_t k = 0; k < sizeof wanted / sizeof *wanted; k++)
+            for (int n = 0; n < 3 && wanted[k].specs[n]; n++) {
+                scene.name = (char *)wanted[k].scene;
+                measure(&session, wanted[k].specs[n]);
+            }
+        planted_end(&measured);
+        for (size_t k = 0; k < sizeof flips / sizeof *flips; k++)
+            expect(&measured, flips[k].claim, flips[k].fault == injected ? CLAIM_FAILS : CLAIM_HOLDS);
+        planted_clear(&measured);
+    }
+    session_close(&session);
+    scene.name = name;
+    scene_free(&scene);
+}
+
+/* --- The command ---------------------------------------------------------------------------------------------- */
+
+static char *text_read(const char *name)
+{
+    static char text[1 << 20];
+    char path[300];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    fclose(file);
+    return text;
+}
+
+/* A results file's text without the second at which its head was written. */
+static char *undated(char *text)
+{
+    char *date = strstr(text, "\n# date: ");
+    assert_non_null(date);
+    for (date++; *date != '\n'; date++)
+        *date = '-';
+    return text;
+}
+
+static void unknown_table_is_refused(void **state)
+{
+    (void)state;
+    char results[300];
+    snprintf(results, sizeof results, "%s/results", folder);
+    const char *const names[] = {"bp22_eq20", "bp22_t2"};
+    assert_int_equal(command_reproduce(&(struct task){.names = names, .name_count = 2, .output = results}),
+                     STATUS_INVALID);
+    assert_non_null(strstr(status_message(), "'bp22_t2'"));
+    for (int k = 0; paper_tables[k].id; k++)
+        assert_non_null(strstr(status_message(), paper_tables[k].id));
+    assert_int_not_equal(access(results, F_OK), 0);
+}
+
+/* A finished measurement is not made again, and what is said comes from it. */
+static void finished_measurements_are_kept(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct spec spec;
+    support_scene("bp22/table3", &scene);
+    assert_int_equal(spec_parse(SINC_8, &spec), STATUS_OK);
+    planted_begin();
+    assert_int_equal(record_scene(rows, scene.name, scene.hash), STATUS_OK);
+    struct measurement row = planted_row(scene.name, &spec);
+    row.width_m = 0.0625; /* Eq. (20): 2 bins in three are below .039 m, so beta = 1 */
+    assert_int_equal(record_add(rows, &row), STATUS_OK);
+    record_close(rows);
+    char *before = strdup(undated(text_read("measurements.csv")));
+    const char *const names[] = {"bp22_eq20", "lbf21_f2"};
+    assert_int_equal(command_reproduce(&(struct task){.names = names, .name_count = 2, .output = folder}), STATUS_OK);
+    assert_string_equal(undated(text_read("measurements.csv")), before);
+    const char *text = text_read("reproduced.csv");
+    assert_non_null(strstr(text, "table,item,quantity,definition,unit,paper,ours,difference,assumption\n"));
+    assert_non_null(strstr(text, "\nbp22_eq20,linear,upsampling_rate,rho_a = D_tx/2,1,2,3,1,"));
+    assert_non_null(strstr(text, "\nbp22_eq20,linear,upsampling_rate,rho_a = measured -3 dB width,1,2,1,-1,"));
+    assert_non_null(strstr(text, "\nlbf21_f2,\"1st receiver, 50 to 300 m, LBF\",phase_error_rad,"
+                                 "\"Eq. (5), theta by fc\",rad,0.02,0.014"));
+    text = text_read("claims.csv");
+    assert_non_null(strstr(text, "id,paper,section,claim,verdict,evidence\n"));
+    assert_non_null(strstr(text, "\nlbf21-3C-1,LBF21,\"III-C, Fig. 2\",\"LBF, first receiver: at most 0.02 "
+                                 "rad\",holds,"));
+    assert_non_null(strstr(text, "\nbp22-4.1-11,BP22,4.1,beta = 8 is within 0.07 dB ISLR of sinc,cannot be "
+                                 "decided,"));
+    free(before);
+    spec_free(&spec);
+    scene_free(&scene);
+}
+
+#define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, folder_make, folder_remove)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        IN_FOLDER(all_printed_numbers_are_there),
+        IN_FOLDER(printed_formulas_are_right),
+        cmocka_unit_test(rate_of_eq20),
+        IN_FOLDER(nothing_is_said_without_measurements),
+        IN_FOLDER(every_line_can_be_measured),
+        IN_FOLDER(times_are_scaled),
+        IN_FOLDER(faults_change_verdicts),
+        IN_FOLDER(unknown_table_is_refused),
+        IN_FOLDER(finished_measurements_are_kept),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,284 @@
+/* Pictures: the real scripts draw, and a script of our own reads back what they are given. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "data/echo_data.h"
+#include "show/plot.h"
+#include "tests/assertions.h"
+
+/* SASBENCH_ROOT, the repository, comes from the build. */
+static const char *const real_plots = SASBENCH_ROOT "/plots";
+
+static char folder[4000]; /* temporary: pictures, and our own scripts */
+
+static void path_in(char path[4096], const char *name)
+{
+    snprintf(path, 4096, "%s/%s", folder, name);
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    const char *temporary = getenv("TMPDIR");
+    snprintf(folder, sizeof folder, "%s/it's a sasbench-test-XXXXXX", temporary && *temporary ? temporary : "/tmp");
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    char command[4096];
+    snprintf(command, sizeof command, "rm -r \"%.4000s\"", folder);
+    return system(command);
+}
+
+static void text_to_file(const char *name, const char *text)
+{
+    char path[4096];
+    path_in(path, name);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+static void file_to_text(const char *name, char *text, size_t size)
+{
+    char path[4096];
+    path_in(path, name);
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    text[fread(text, 1, size - 1, file)] = '\0';
+    fclose(file);
+}
+
+static void assert_png(const char *name)
+{
+    char start[10] = "";
+    file_to_text(name, start, 9);
+    assert_memory_equal(start, "\x89PNG\r\n\x1a\n", 8);
+}
+
+static void assert_drawn(enum status status)
+{
+    if (status != STATUS_OK)
+        fail_msg("%s", status_message());
+}
+
+/* Nothing temporary is left behind. */
+static void assert_nothing_left(void)
+{
+    char command[4096];
+    snprintf(command, sizeof command, "ls -A \"%.4000s\" | grep -q '^[.]'", folder);
+    assert_int_not_equal(system(command), 0);
+}
+
+static void image_is_drawn(void **state)
+{
+    (void)state;
+    struct grid patches[] = {{-1, 0.01, 200, 40, 0.02, 50}, {5, 0.01, 1, 50, 0.02, 1}, {5, 0.01, 4, 50, 0.02, 1}};
+    struct image image;
+    assert_int_equal(image_allocate(3, patches, PRECISION_FLOAT, &image), STATUS_OK);
+    char path[4096];
+    path_in(path, "it's.png");
+    assert_drawn(plot_image(path, real_plots, &image, "all zero, 'quoted' \"twice\"\n\\n $x"));
+    assert_png("it's.png");
+    ((float complex *)image.pixels[0])[77] = 3;
+    ((float complex *)image.pixels[1])[0] = NAN;
+    assert_drawn(plot_image(path, real_plots, &image, "with NAN"));
+    assert_png("it's.png");
+    image_free(&image);
+    assert_nothing_left();
+}
+
+/* What the script is given: variables, panels, blocks by their maximum, positions of block centres. */
+static void image_data_are_right(void **state)
+{
+    (void)state;
+    text_to_file("image.gp", "set print output\n"
+                             "print title\n"
+                             "print |panels|\n"
+                             "stats panels[1] binary matrix using 1 name 'x' nooutput\n"
+                             "stats panels[1] binary matrix using 2 name 'r' nooutput\n"
+                             "stats panels[1] binary matrix using 3 name 'v' nooutput\n"
+                             "print sprintf('%d %.3f %.3f %.3f %.3f', v_records, x_min, x_max, r_min, r_max)\n"
+                             "stats panels[1] binary matrix using ($3 > -50) name 'n' nooutput\n"
+                             "stats panels[1] binary matrix using ($3 > -50 ? $1 : 0) name 'x' nooutput\n"
+                             "stats panels[1] binary matrix using ($3 > -50 ? $2 : 0) name 'r' nooutput\n"
+                             "print sprintf('%d %.3f %.3f %.2f', n_sum, x_max, r_max, v_max)\n"
+                             "print '</svg>'\n");
+    /* 2700 columns make blocks of 3; the brightest pixel of all is in a patch that is not shown. */
+    struct grid patches[9];
+    for (int p = 0; p < 9; p++)
+        patches[p] = (struct grid){0, 1, 2700, 10, 0.5, 3};
+    struct image image;
+    assert_int_equal(image_allocate(9, patches, PRECISION_DOUBLE, &image), STATUS_OK);
+    ((double complex *)image.pixels[0])[2 * 2700 + 301] = 3 + 4 * I;
+    ((double complex *)image.pixels[0])[5] = INFINITY;
+    ((double complex *)image.pixels[8])[0] = 50;
+    char path[4096], text[400];
+    path_in(path, "variables.svg");
+    assert_drawn(plot_image(path, folder, &image, "it's\ta_title"));
+    file_to_text("variables.svg", text, sizeof text);
+    assert_string_equal(text, "it's a_title (1 pixel not finite) (first 8 of 9 patches)\n8\n"
+                              "2700 1.000 2698.000 10.000 11.000\n"
+                              "1 301.000 11.000 -20.00\n</svg>\n");
+    image_free(&image);
+    assert_nothing_left();
+}
+
+static void slices_are_drawn(void **state)
+{
+    (void)state;
+    double position[101], power[101];
+    for (int k = 0; k < 101; k++) {
+        position[k] = 0.01 * (k - 50);
+        power[k] = k == 3 ? -INFINITY : k == 4 ? NAN : -0.02 * (k - 50) * (k - 50);
+    }
+    struct slice_line lines[4];
+    for (int l = 0; l < 4; l++)
+        lines[l] = (struct slice_line){l % 2 ? "bp_'sinc'" : "reference", position, power, 101};
+    lines[1].count = 0;
+    const char *titles[] = {"target 0", "target_1"};
+    char path[4096];
+    path_in(path, "slices.png");
+    assert_drawn(plot_slices(path, real_plots, "two targets", 2, titles, 2, lines));
+    assert_png("slices.png");
+    for (int l = 0; l < 4; l++)
+        lines[l].count = 0;
+    assert_drawn(plot_slices(path, real_plots, "nothing", 2, titles, 2, lines));
+    assert_png("slices.png");
+    assert_nothing_left();
+}
+
+/* An empty line must not shift the ones behind it. */
+static void slice_data_are_right(void **state)
+{
+    (void)state;
+    text_to_file("slices.gp", "set print output\n"
+                              "print title, |panels|, |lines|, panels[2], lines[2]\n"
+                              "do for [b = 0:3] {\n"
+                              "    stats data index b using ($2 == $2 ? $1 : NaN) name 'x' nooutput\n"
+                              "    print sprintf('%d', exists('x_records') ? x_records : 0)\n"
+                              "    stats data index b using ($2 == $2 ? $2 : NaN) name 'p' nooutput\n"
+                              "    print exists('p_max') && b != 1 ? sprintf('%.2f %.2f', x_max, p_max) : '-'\n"
+                              "}\n"
+                              "print '</svg>'\n");
+    double position[] = {-0.5, 0, 0.25}, power[4][3] = {{-9, -1, -9}, {0}, {-9, -2, -9}, {-9, -3, -9}};
+    struct slice_line lines[4];
+    for (int l = 0; l < 4; l++)
+        lines[l] = (struct slice_line){l % 2 ? "b" : "a", position, power[l], l == 1 ? 0 : 3};
+    const char *titles[] = {"t0", "t1"};
+    char path[4096], text[400];
+    path_in(path, "variables.svg");
+    assert_drawn(plot_slices(path, folder, "title", 2, titles, 2, lines));
+    file_to_text("variables.svg", text, sizeof text);
+    assert_string_equal(text, "title 2 2 t1 b\n3\n0.25 -1.00\n0\n-\n3\n0.25 -2.00\n3\n0.25 -3.00\n</svg>\n");
+    assert_nothing_left();
+}
+
+static void failures_are_told(void **state)
+{
+    (void)state;
+    struct grid patch = {0, 1, 4, 10, 1, 4};
+    struct image image;
+    assert_int_equal(image_allocate(1, &patch, PRECISION_FLOAT, &image), STATUS_OK);
+    char path[4096];
+
+    path_in(path, "no/such/folder.png");
+    assert_int_equal(plot_image(path, real_plots, &image, "a"), STATUS_FAILED);
+    assert_non_null(strstr(status_message(), "no/such/folder.png"));
+
+    /* A failing script leaves the old picture alone. */
+    text_to_file("image.gp", "set print output; print 'half'; nonsense here\n");
+    text_to_file("old.png", "old");
+    path_in(path, "old.png");
+    assert_int_equal(plot_image(path, folder, &image, "a"), STATUS_FAILED);
+    assert_non_null(strstr(status_message(), "old.png"));
+    assert_non_null(strstr(status_message(), "nonsense"));
+    char text[10];
+    file_to_text("old.png", text, sizeof text);
+    assert_string_equal(text, "old");
+
+    char *paths = strdup(getenv("PATH"));
+    setenv("PATH", folder, 1);
+    enum status status = plot_image(path, real_plots, &image, "a");
+    setenv("PATH", paths, 1);
+    free(paths);
+    assert_int_equal(status, STATUS_FAILED);
+    assert_non_null(strstr(status_message(), "gnuplot-nox"));
+
+    image_free(&image);
+    assert_nothing_left();
+}
+
+/* gnuplot does not notice a full disk: what it leaves has no end. */
+static void cut_pictures_are_told(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *script;
+        bool whole;
+    } cuts[] = {
+        {"a.png", "set output output\n", false},
+        {"a.png", "set print output; print \"\\211PNG, half of it and more than 32 bytes of that\"\n", false},
+        {"a.png", "set print output; print '<svg>all of it, but another kind</svg>'\n", false},
+        {"a.svg", "set print output; print '<svg>half of it, and more than 32 bytes of that</sv'\n", false},
+        {"a.svg", "set print output; print '<svg>all of it to its end</svg>'; print ''; print ''\n", true},
+    };
+    struct grid patch = {0, 1, 4, 10, 1, 4};
+    struct image image;
+    assert_int_equal(image_allocate(1, &patch, PRECISION_FLOAT, &image), STATUS_OK);
+    for (size_t k = 0; k < sizeof cuts / sizeof *cuts; k++) {
+        char path[4096], text[64];
+        text_to_file("image.gp", cuts[k].script);
+        text_to_file(cuts[k].name, "old");
+        path_in(path, cuts[k].name);
+        assert_int_equal(plot_image(path, folder, &image, "a"), cuts[k].whole ? STATUS_OK : STATUS_FAILED);
+        file_to_text(cuts[k].name, text, sizeof text);
+        assert_string_equal(text, cuts[k].whole ? "<svg>all of it to its end</svg>\n\n\n" : "old");
+        if (!cuts[k].whole) {
+            assert_non_null(strstr(status_message(), cuts[k].name));
+            assert_non_null(strstr(status_message(), "without its end"));
+        }
+    }
+    image_free(&image);
+    assert_nothing_left();
+}
+
+/* The last test: nothing is drawn after it. */
+static void hanging_gnuplot_is_stopped(void **state)
+{
+    (void)state;
+    struct grid patch = {0, 1, 4, 10, 1, 4};
+    struct image image;
+    char path[4096];
+    assert_int_equal(image_allocate(1, &patch, PRECISION_FLOAT, &image), STATUS_OK);
+    text_to_file("image.gp", "pause 1000\n");
+    path_in(path, "a.png");
+    plot_seconds_most = 0.2;
+    assert_int_equal(plot_image(path, folder, &image, "a"), STATUS_FAILED);
+    assert_non_null(strstr(status_message(), "did not end within 0.2 s"));
+    plot_seconds_most = 60;
+    assert_int_equal(plot_image(path, real_plots, &image, "a"), STATUS_FAILED);
+    assert_non_null(strstr(status_message(), "did not end on a picture before"));
+    image_free(&image);
+    assert_nothing_left();
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(image_is_drawn),
+        cmocka_unit_test(image_data_are_right),
+        cmocka_unit_test(slices_are_drawn),
+        cmocka_unit_test(slice_data_are_right),
+        cmocka_unit_test(failures_are_told),
+        cmocka_unit_test(cut_pictures_are_told),
+        cmocka_unit_test(hanging_gnuplot_is_stopped),
+    };
+    return cmocka_run_group_tests_name("plot", tests, set_up, tear_down);
+}

@@ -1,0 +1,389 @@
+/* The report page: a small parser reads it as a browser would have to, and everything in the folder must be on it. */
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "show/plot.h"
+#include "measure/results.h"
+#include "show/report.h"
+#include "tests/support.h"
+
+static struct measurement row_of(const char *scene, const char *algorithm, const char *options, double run_s,
+                                 double error)
+{
+    return (struct measurement){.scene = scene,
+                                .algorithm = algorithm,
+                                .options = options,
+                                .precision = "float",
+                                .threads = 2,
+                                .engine = "invariant",
+                                .status = "ok",
+                                .reason = "",
+                                .skipped = "",
+                                .plan_s = 0.01,
+                                .run_s = run_s,
+                                .run_min_s = run_s,
+                                .runs = 3,
+                                .control_s = 1,
+                                .stages = "",
+                                .flops_published = NAN,
+                                .flops = 1e9 * run_s,
+                                .pairs = 1e6,
+                                .bytes = 1e6,
+                                .error = error,
+                                .error_gain = error,
+                                .phase_rms_rad = error,
+                                .width_m = 0.04,
+                                .pslr_db = -13.3 - error,
+                                .islr_db = -10.4 - error};
+}
+
+static void record_rows(const struct measurement *rows, int count)
+{
+    struct provenance provenance = {
+        .machine = "a machine & its <cores>", .commit = "abc", .program = "def", .date = "2026-01-01", .threads = 2};
+    struct record *record;
+    assert_int_equal(record_open(folder, &provenance, &record), STATUS_OK);
+    for (int k = 0; k < count; k++) {
+        assert_int_equal(record_scene(record, rows[k].scene, 1), STATUS_OK);
+        assert_int_equal(record_add(record, &rows[k]), STATUS_OK);
+    }
+    record_close(record);
+}
+
+/* --- The parser ----------------------------------------------------------------------------------------------- */
+
+enum { DEPTH_MAX = 64, IDS_MAX = 4000 };
+
+struct parser {
+    const char *at;
+    char open[DEPTH_MAX][32]; /* names of the elements that are open */
+    int depth;
+    int tables, rows, drawings, images;
+    char ids[IDS_MAX][48]; /* of elements */
+    int id_count;
+};
+
+static void parse_failed(const struct parser *parser, const char *fault)
+{
+    fail_msg("%s, at: %.80s", fault, parser->at);
+}
+
+static void parse_name(struct parser *parser, char name[32])
+{
+    size_t length = strspn(parser->at, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789:-");
+    if (length == 0 || length > 31)
+        parse_failed(parser, "no name of an element or attribute");
+    snprintf(name, 32, "%.*s", (int)length, parser->at);
+    parser->at += length;
+}
+
+/* One `NAME="VALUE"`: nothing may come from outside, no script may run, no two elements may have one name. */
+static void parse_attribute(struct parser *parser)
+{
+    char name[32];
+    parse_name(parser, name);
+    char quote = parser->at[0] == '=' ? parser->at[1] : '\0';
+    if (quote != '"' && quote != '\'')
+        parse_failed(parser, "an attribute without quotes");
+    const char *value = parser->at + 2, *end = strchr(value, quote);
+    if (!end || memchr(value, '<', (size_t)(end - value)))
+        parse_failed(parser, "a value that is not closed");
+    bool link = strcmp(name, "href") == 0 || strcmp(name, "xlink:href") == 0;
+    if ((link && *value != '#') || (strcmp(name, "src") == 0 && strncmp(value, "data:image/png;base64,", 22) != 0)
+        || strncmp(name, "on", 2) == 0)
+        parse_failed(parser, "something from outside");
+    if (strcmp(name, "id") == 0) {
+        assert_true(parser->id_count < IDS_MAX);
+        char *id = parser->ids[parser->id_count];
+        snprintf(id, sizeof parser->ids[0], "%.*s", (int)(end - value), value);
+        for (int k = 0; k < parser->id_count; k++)
+            if (strcmp(parser->ids[k], id) == 0)
+                parse_failed(parser, "a second element of this name");
+        parser->id_count++;
+    }
+    parser->at = end + 1;
+}
+
+static void parse_element(struct parser *parser)
+{
+    char name[32];
+    if (strncmp(parser->at, "<!--", 4) == 0) {
+        const char *end = strstr(parser->at, "-->");
+        if (!end)
+            parse_failed(parser, "a comment without an end");
+        parser->at = end + 3;
+        return;
+    }
+    if (parser->at[1] == '/') {
+        parser->at += 2;
+        parse_name(parser, name);
+        if (parser->depth == 0 || strcmp(parser->open[parser->depth - 1], name) != 0 || *parser->at != '>')
+            parse_failed(parser, "an end of another element");
+        parser->depth--;
+        parser->at++;
+        return;
+    }
+    parser->at++;
+    parse_name(parser, name);
+    parser->tables += strcmp(name, "table") == 0;
+    parser->rows += strcmp(name, "tr") == 0;
+    parser->drawings += strcmp(name, "svg") == 0;
+    parser->images += strcmp(name, "img") == 0;
+    if (strcmp(name, "script") == 0)
+        parse_failed(parser, "a script");
+    for (;;) {
+        parser->at += strspn(parser->at, " \n\t\r");
+        if (*parser->at == '>' || strncmp(parser->at, "/>", 2) == 0)
+            break;
+        parse_attribute(parser);
+    }
+    if (*parser->at == '/') {
+        parser->at += 2;
+        return;
+    }
+    parser->at++;
+    assert_true(parser->depth < DEPTH_MAX);
+    snprintf(parser->open[parser->depth++], sizeof parser->open[0], "%s", name);
+    if (strcmp(name, "style") == 0)
+        parser->at += strcspn(parser->at, "<");
+}
+
+/* The whole page; fails the test where it is not well-formed. */
+static struct parser *page_parse(const char *html)
+{
+    static const char doctype[] = "<!DOCTYPE html>\n";
+    struct parser *parser = calloc(1, sizeof *parser);
+    assert_non_null(parser);
+    assert_memory_equal(html, doctype, strlen(doctype));
+    for (parser->at = html + strlen(doctype); *parser->at;) {
+        if (*parser->at == '<') {
+            parse_element(parser);
+        } else if (*parser->at == '&') {
+            size_t length = strspn(parser->at + 1, "#abcdefghijklmnopqrstuvwxyz0123456789");
+            if (length == 0 || parser->at[length + 1] != ';')
+                parse_failed(parser, "a bare &");
+            parser->at += length;
+        } else {
+            if (parser->depth == 0 && !isspace((unsigned char)*parser->at))
+                parse_failed(parser, "text outside of the page");
+            parser->at++;
+        }
+    }
+    assert_int_equal(parser->depth, 0);
+    return parser;
+}
+
+static void assert_holds(const char *text, const char *part)
+{
+    if (!strstr(text, part))
+        fail_msg("'%s' is not there", part);
+}
+
+/* --- Pages ---------------------------------------------------------------------------------------------------- */
+
+static const char *const odd_scene = "b<i>it's \"b\" & c";
+
+/* Three scenes, one with signs that HTML gives a meaning, with all that `run`, `sweep` and `reproduce` leave. */
+static void folder_fill(void)
+{
+    struct measurement rows[] = {
+        row_of("a", "reference", "", 0.9, 1e-6),
+        row_of("a", "bp_nearest", "", 0.01, 0.2),
+        row_of("a", "bp_linear", "beta=2", 0.02, 0.1),
+        row_of("a", "bp_linear", "beta=8", 0.03, 0.09),
+        row_of(odd_scene, "reference", "", 0.9, 1e-6),
+        row_of(odd_scene, "bp_zeropad", "factor=4", 0.2, 0.01),
+        row_of(odd_scene, "rma_pca", "blocks=2", 0, 0),
+        row_of(odd_scene, "rma_wu", "blocks=2", 0, 0),
+        row_of("no/rate", "rma_pca", "blocks=2", 0.1, 0.1),
+    };
+    rows[6].status = "unsupported";
+    rows[6].reason = "a track of <3 pings | none";
+    rows[7].status = "failed";
+    rows[7].reason = "no & memory";
+    for (int k = 6; k < 8; k++)
+        rows[k].run_s = rows[k].error = NAN;
+    record_rows(rows, sizeof rows / sizeof *rows);
+    support_write("cheapest.csv", "# sasbench cheapest 1\nscene,cost,error_below,algorithm,options,precision,run_s,"
+                                  "speed_up,flops,error,error_gain,pslr_db,islr_db\n"
+                                  "a,run_s,1e-1,bp_linear,beta=8,float,0.03,33,3e7,0.09,0.09,-13.39,\n");
+    support_write("slopes.csv", "scene,algorithm,options,precision,setting,part,first,last,rate_first,rate_last,points,"
+                                "slope,error_first,error_last,residual_log10\n"
+                                "a,bp_zeropad,,float,factor,finest,8,64,8,64,4,-1.0321,0.1,0.01,0.00123\n");
+    support_write("rules.csv", "scene,fc_hz,fs_hz,bandwidth_hz,bp22_eq20_rate,zp15_rate,edge_phase_rad,linear_floor\n"
+                               "a,150000,30000,15000,3.125,10,0.785,0.0685\n");
+    support_write("claims.csv", "id,paper,section,claim,verdict,evidence\n"
+                                "x-1,BP22,4.1,\"linear, at <beta> = 2\",holds,1 < 2\n"
+                                "x-2,BP22,4.2,second,does not hold,two & three\n"
+                                "x-3,ZP15,3,third,holds under stated assumption,e\n"
+                                "x-4,ZP15,4,fourth,cannot be decided,e\n");
+    support_write("reproduced.csv", "table,item,quantity,definition,unit,paper,ours,difference,assumption\n"
+                                    "bp22_t3,T1,pslr_db,null,dB,-14.62,-13.46,1.159,the layout is lost\n"
+                                    "bp22_t3,T1,islr_db,null,dB,-8.08,,,the layout is lost\n"
+                                    "unheard_of,T1,islr_db,null,dB,-8.08,,,\n");
+    static const char *const pictures[][2] = {{"a", "slices"}, {"a", "bp_linear:beta=8"}, {"a", "not a row"}};
+    for (size_t k = 0; k < sizeof pictures / sizeof *pictures; k++) {
+        char path[400], name[64];
+        snprintf(name, sizeof name, "%s.png", pictures[k][1]);
+        picture_path("", pictures[k][0], name, path, sizeof path);
+        support_write(path + 1, "not looked into");
+    }
+    support_write("phase-x.png", "abc");
+}
+
+static void test_everything_is_on_the_page(void **state)
+{
+    (void)state;
+    folder_fill();
+    assert_int_equal(report_write(folder), STATUS_OK);
+    char *html = support_read("report.html"), *markdown = support_read("report.md");
+    assert_non_null(html);
+    assert_non_null(markdown);
+    struct parser *page = page_parse(html);
+    /* Machine, three scenes, cheapest, slopes, rules, two papers, two reproduced tables. */
+    assert_int_equal(page->tables, 11);
+    assert_int_equal(page->rows, 11 + 9 + 9 + 1 + 1 + 1 + 4 + 3);
+    /* All four of two scenes; the third has neither an upsampling rate nor an exact image to compare lobes with. */
+    assert_int_equal(page->drawings, 4 + 4 + 2);
+    /* Slices, one image, one figure of `phase`: the picture without a row is not of these results. */
+    assert_int_equal(page->images, 3);
+    static const char *const parts[] = {
+        "a machine &amp; its &lt;cores&gt;",
+        "bp_linear:<wbr/>beta=8",
+        "unsupported: a track of &lt;3 pings | none",
+        "failed: no &amp; memory",
+        "b&lt;i&gt;it&#39;s &quot;b&quot; &amp; c",
+        "-1.032",
+        "0.00123",
+        "3.125",
+        "class=\"good\">holds<",
+        "class=\"bad\">does not hold<",
+        "class=\"soft\">holds under stated assumption<",
+        "class=\"open\">cannot be decided<",
+        "<p>1 holds, 1 holds under stated assumption, 1 does not hold, 1 cannot be decided</p>",
+        "BP22 Table 3: PSLR and ISLR of six targets",
+        "unheard_of",
+        "src=\"data:image/png;base64,bm90IGxvb2tlZCBpbnRv\"",
+        "src=\"data:image/png;base64,YWJj\"",
+        "@media print"};
+    for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
+        assert_holds(html, parts[k]);
+    static const char *const lines[] = {"|machine|a machine &amp; its &lt;cores&gt;|", "|bp_linear:beta=8|30 ms|33.3x|",
+                                        "|rma_pca:blocks=2|unsupported: a track of &lt;3 pings \\| none|",
+                                        "|x-2|4.2|second|does not hold|two &amp; three|",
+                                        "|bp_zeropad||float|finest|factor|8|64|4|-1.032|0.1|0.01|0.00123|"};
+    for (size_t k = 0; k < sizeof lines / sizeof *lines; k++)
+        assert_holds(markdown, lines[k]);
+    assert_non_null(strstr(html, "the layout is lost"));
+    assert_null(strstr(strstr(html, "the layout is lost") + 1, "the layout is lost"));
+    assert_false(support_exists("report.html.part") || support_exists("report.md.part"));
+    assert_null(strstr(html, "could not be drawn"));
+    /* Every link within the page leads somewhere. */
+    for (const char *link = html; (link = strstr(link, "href=\"#"));) {
+        char id[48];
+        bool found = false;
+        link += strlen("href=\"#");
+        snprintf(id, sizeof id, "%.*s", (int)strcspn(link, "\""), link);
+        for (int k = 0; k < page->id_count; k++)
+            found |= strcmp(page->ids[k], id) == 0;
+        if (!found)
+            fail_msg("a link to #%s, which is not there", id);
+    }
+    free(page);
+    free(html);
+    free(markdown);
+}
+
+static void test_failures_alone_make_a_page(void **state)
+{
+    (void)state;
+    struct measurement row = row_of("a", "bp_nearest", "", NAN, NAN);
+    row.status = "failed";
+    row.reason = "out of luck";
+    record_rows(&row, 1);
+    assert_int_equal(report_write(folder), STATUS_OK);
+    char *html = support_read("report.html");
+    assert_non_null(html);
+    struct parser *page = page_parse(html);
+    assert_int_equal(page->drawings, 0);
+    assert_int_equal(page->tables, 2);
+    assert_holds(html, "failed: out of luck");
+    assert_null(strstr(html, "could not be drawn"));
+    free(page);
+    free(html);
+}
+
+static void test_faults_leave_the_old_pages(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *file, *text, *part;
+    } faults[] = {
+        {"measurements.csv", NULL, "measurements.csv"},
+        {"measurements.csv", "scene,algorithm\n\"a", "measurements.csv"},
+        {"claims.csv", "id,paper\nx,BP22,more\n", "claims.csv:2: 3 fields"},
+        {"claims.csv", "id,paper,section,claim,evidence\n", "'verdict'"},
+        {"slopes.csv", "algorithm\n", "'scene'"},
+    };
+    struct measurement row = row_of("a", "bp_nearest", "", 0.1, 0.1);
+    for (size_t k = 0; k < sizeof faults / sizeof *faults; k++) {
+        record_rows(&row, 1);
+        support_write("report.html", "old");
+        if (faults[k].text)
+            support_write(faults[k].file, faults[k].text);
+        else
+            remove(path_of(faults[k].file));
+        assert_int_equal(report_write(folder), STATUS_INVALID);
+        assert_holds(status_message(), faults[k].part);
+        char *html = support_read("report.html");
+        assert_non_null(html);
+        assert_string_equal(html, "old");
+        free(html);
+        assert_false(support_exists("report.html.part") || support_exists("report.md"));
+        remove(path_of(faults[k].file));
+    }
+    assert_int_equal(report_write("/nowhere/at/all"), STATUS_INVALID);
+}
+
+static void test_pages_stay_small(void **state)
+{
+    (void)state;
+    struct measurement row = row_of("a", "bp_nearest", "", 0.1, 0.1);
+    record_rows(&row, 1);
+    FILE *claims = fopen(path_of("claims.csv"), "w"), *picture = fopen(path_of("a-slices.png"), "w");
+    assert_true(claims && picture);
+    fputs("id,paper,section,claim,verdict,evidence\n", claims);
+    for (int k = 0; k < 3000; k++)
+        fprintf(claims, "x-%d,BP22,4.1,some words that are claimed,holds,some words of evidence\n", k);
+    assert_int_equal(fclose(claims), 0);
+    assert_int_equal(ftruncate(fileno(picture), REPORT_HTML_BYTES), 0);
+    assert_int_equal(fclose(picture), 0);
+    assert_int_equal(report_write(folder), STATUS_OK);
+    char *html = support_read("report.html"), *markdown = support_read("report.md");
+    assert_non_null(html);
+    assert_non_null(markdown);
+    struct parser *page = page_parse(html);
+    assert_true(strlen(html) < REPORT_HTML_BYTES && strlen(markdown) < 65536);
+    assert_int_equal(page->images, 0);
+    assert_holds(html, "x-2999");
+    assert_holds(html, "1 pictures are left out");
+    assert_holds(markdown, "more rows are left out here");
+    free(page);
+    free(html);
+    free(markdown);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_everything_is_on_the_page, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(test_failures_alone_make_a_page, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(test_faults_leave_the_old_pages, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(test_pages_stay_small, folder_make, folder_remove),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
