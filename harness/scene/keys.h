@@ -1,28 +1,13 @@
-/* The keys of a scene file: reading them, and the one form of their error messages. Used by scene.c only. */
+/* The keys of a scene file: reading them, and the one form of their error messages. Used within scene/ only. */
 #ifndef SASBENCH_SCENE_KEYS_H
 #define SASBENCH_SCENE_KEYS_H
 
 #include <libconfig.h>
 
 #include "scene/scene.h"
+#include "scene/text.h"
 
 #define SCATTERERS_MAX 10000000 /* of all fields */
-
-/* Lines of the text from `first_line` on, which are those of the file `path` from `line` on. */
-struct text_piece {
-    char *path;
-    int line, first_line;
-};
-
-/* A scene file with all that it includes in place, and where each line is from. Freed with scene_text_free. */
-struct scene_text {
-    char *text;
-    size_t length, room; /* bytes filled, allocated */
-    int line;            /* the last one */
-    int piece_count;
-    struct text_piece *pieces;   /* [piece_count], in the order of the text */
-    const char *scene_directory; /* of the shipped scenes */
-};
 
 /* Groups are kept as libconfig settings until they are read in turn; NULL when the file leaves them out. */
 struct reading {
@@ -63,6 +48,12 @@ enum status group_read(struct reading *reading, config_setting_t *setting, const
 /* The same for the file itself and all groups that it has once. */
 enum status groups_read(struct reading *reading, config_setting_t *root);
 
+/* A setting of a group, or of the nearest scene that the group's `base` holds; NULL if there is none. */
+config_setting_t *key_member(const config_setting_t *group, const char *name);
+
+/* What the keys say about each other. Errors: STATUS_INVALID. */
+enum status keys_check(const struct reading *reading);
+
 /* The one error of a key: "FILE:LINE: key 'sonar.fs' is -3, must be ..."; `format` says what is accepted. `name` NULL
    means the group itself; `group_name` is used where the group is missing. Returns STATUS_INVALID. */
 enum status refuse(const struct reading *reading, const config_setting_t *group, const char *group_name,
@@ -72,10 +63,5 @@ enum status refuse(const struct reading *reading, const config_setting_t *group,
 void place_format(const struct reading *reading, unsigned line, char *text, size_t size);
 
 extern const char *const truncation_names[]; /* by enum truncation_kind */
-
-/* Put the scene file at `path` and all that it includes (where includes are found: scenes/README.md) together, and
-   refuse what libconfig would take wrongly. Errors: STATUS_INVALID; nothing to free then. */
-enum status scene_text_read(const char *path, const char *scene_directory, struct scene_text *text);
-void scene_text_free(struct scene_text *text);
 
 #endif

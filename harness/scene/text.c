@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "scene/keys.h"
+#include "scene/text.h"
 
 #define INCLUDE_DEPTH 10                /* also ends files that include themselves */
 #define TEXT_MAX      ((size_t)1 << 26) /* bytes with all includes: few files can name each other very often */

@@ -1,0 +1,111 @@
+/* The acquisition and the targets of a scene, made from its keys; the image is made in patches.c. */
+#include "scene/contents.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "data/random.h"
+#include "scene/simulate.h"
+
+enum status scene_out_of_memory(const struct reading *reading)
+{
+    return status_set(STATUS_FAILED, "%s: out of memory for the scene", reading->path);
+}
+
+static enum status acquisition_fill(struct reading *reading)
+{
+    struct scene *scene = &reading->scene;
+    struct acquisition *a = &scene->acquisition;
+    a->compressed = scene->pulse_kind == PULSE_FLAT;
+    a->pulse_length = a->compressed ? 0 : pulse_length_lfm(scene->pulse_duration, a->fs);
+    enum status status = acquisition_allocate(a);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    if (!a->compressed) {
+        pulse_lfm(a->bandwidth, scene->pulse_duration, a->fs, a->pulse_length, a->pulse);
+    }
+    for (int p = 0; p < a->pings; p++) {
+        a->t0[p] = reading->first_sample / a->fs;
+        a->tx[p].x = reading->x_first_m + p * reading->speed_m_s * reading->pri_s;
+        a->velocity[p].x = reading->speed_m_s;
+        for (int m = 0; m < a->receivers; m++) {
+            a->rx[(size_t)p * (size_t)a->receivers + (size_t)m].x =
+                a->tx[p].x + reading->first_offset_m + m * reading->pitch_m;
+        }
+    }
+    a->echo_sine = beam_sine(scene);
+    a->echo_tapers = scene->beam.kind == BEAM_TXRX;
+    return acquisition_check(a, reading->path);
+}
+
+/* Uniform positions and complex normal amplitudes with E|a|^2 = 1. The order of the draws (x, r, amplitude) is part
+   of the scene format (scenes/README.md). */
+static void field_draw(const struct scatter_field *field, struct target *targets)
+{
+    struct random random = random_seed(field->seed, 0);
+    for (int i = 0; i < field->count; i++) {
+        targets[i].x = field->x_m[0] + (field->x_m[1] - field->x_m[0]) * random_uniform(&random);
+        targets[i].r = field->r_m[0] + (field->r_m[1] - field->r_m[0]) * random_uniform(&random);
+        targets[i].amplitude = random_normal(&random);
+    }
+}
+
+static enum status targets_fill(struct reading *reading)
+{
+    struct scene *scene = &reading->scene;
+    int points = reading->points ? config_setting_length(reading->points) : 0;
+    int field_count = reading->fields ? config_setting_length(reading->fields) : 0;
+    struct scatter_field *fields = calloc((size_t)field_count + 1, sizeof *fields);
+    if (!fields) {
+        return scene_out_of_memory(reading);
+    }
+    enum status status = STATUS_OK;
+    long long total = points;
+    for (int f = 0; f < field_count && status == STATUS_OK; f++) {
+        config_setting_t *setting = config_setting_get_elem(reading->fields, (unsigned)f);
+        status = group_read(reading, setting, "targets.fields", &fields[f]);
+        total += fields[f].count;
+        if (status == STATUS_OK && total > SCATTERERS_MAX) {
+            status = refuse(reading, setting, "targets.fields", "count", "such that all targets are at most %d",
+                            SCATTERERS_MAX);
+        }
+    }
+    if (status == STATUS_OK) {
+        scene->targets = calloc((size_t)total + 1, sizeof *scene->targets);
+        status = scene->targets ? STATUS_OK : scene_out_of_memory(reading);
+    }
+    for (; scene->point_count < points && status == STATUS_OK; scene->point_count++) {
+        status = group_read(reading, config_setting_get_elem(reading->points, (unsigned)scene->point_count),
+                            "targets.points", &scene->targets[scene->point_count]);
+    }
+    scene->target_count = scene->point_count;
+    for (int f = 0; f < field_count && status == STATUS_OK; f++) {
+        field_draw(&fields[f], scene->targets + scene->target_count);
+        scene->target_count += fields[f].count;
+    }
+    free(fields);
+    return status;
+}
+
+enum status scene_fill(struct reading *reading, config_setting_t *root)
+{
+    enum status status = groups_read(reading, root);
+    if (status == STATUS_OK) {
+        status = keys_check(reading);
+    }
+    if (status == STATUS_OK) {
+        status = acquisition_fill(reading);
+    }
+    if (status == STATUS_OK) {
+        status = targets_fill(reading);
+    }
+    if (status == STATUS_OK) {
+        status = image_fill(reading);
+    }
+    if (status == STATUS_OK) {
+        reading->scene.description = strdup(reading->description);
+        status = reading->scene.description ? STATUS_OK : scene_out_of_memory(reading);
+    }
+    return status;
+}

@@ -1,0 +1,16 @@
+/* From the keys of a scene file to the scene. Used within scene/ only. */
+#ifndef SASBENCH_SCENE_CONTENTS_H
+#define SASBENCH_SCENE_CONTENTS_H
+
+#include "scene/keys.h"
+
+/* Read all groups from the root of the file, check them, and fill reading->scene. On failure the scene holds what was made so
+   far and is freed with scene_free. Errors: STATUS_INVALID naming the key; STATUS_FAILED without memory. */
+enum status scene_fill(struct reading *reading, config_setting_t *root);
+
+/* The scene's patches and those of its exact image; acquisition and targets come before. Errors: as scene_fill. */
+enum status image_fill(struct reading *reading);
+
+enum status scene_out_of_memory(const struct reading *reading);
+
+#endif

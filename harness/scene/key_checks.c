@@ -1,0 +1,130 @@
+/* What the keys of a scene file say about each other; the bounds of each by itself are in keys.c. */
+#include <math.h>
+
+#include "scene/keys.h"
+
+#define BYTES_MAX   0x1p40 /* of double samples */
+#define RECORDS_MAX 0x1p26 /* pings times receivers */
+
+static enum status check_beam(const struct reading *reading)
+{
+    const struct acquisition *a = &reading->scene.acquisition;
+    const struct beam *beam = &reading->scene.beam;
+    bool truncated = beam->truncation != TRUNCATION_NONE, tapered = beam->kind == BEAM_TXRX;
+    if (truncated && !(beam->limit > 0)) {
+        return refuse(reading, reading->beam, "beam", "limit", "a number > 0 with beam.truncation \"%s\"",
+                      truncation_names[beam->truncation]);
+    }
+    if (!truncated && beam->limit > 0) {
+        return refuse(reading, reading->beam, "beam", "limit", "left out with beam.truncation \"none\"");
+    }
+    if ((truncated || tapered) && !(a->tx_length > 0)) {
+        return refuse(reading, reading->array, "array", "tx_length",
+                      "a number > 0 m with beam.kind \"txrx\" or a beam.truncation");
+    }
+    if (tapered && !(a->rx_length > 0)) {
+        return refuse(reading, reading->array, "array", "rx_length", "a number > 0 m with beam.kind \"txrx\"");
+    }
+    return STATUS_OK;
+}
+
+static enum status check_pulse(const struct reading *reading)
+{
+    const struct scene *scene = &reading->scene;
+    const struct acquisition *a = &scene->acquisition;
+    if (scene->pulse_kind == PULSE_FLAT) {
+        return scene->pulse_duration > 0
+                   ? refuse(reading, reading->pulse, "pulse", "duration", "left out with pulse.kind \"flat\"")
+                   : STATUS_OK;
+    }
+    if (!(scene->pulse_duration * a->fs <= a->samples) || !(scene->pulse_duration > 0)) {
+        return refuse(reading, reading->pulse, "pulse", "duration",
+                      "> 0 s and no longer than the record of %.10g s (record.samples/sonar.fs)", a->samples / a->fs);
+    }
+    return STATUS_OK;
+}
+
+static enum status check_sizes(const struct reading *reading)
+{
+    const struct acquisition *a = &reading->scene.acquisition;
+    double records = (double)a->pings * a->receivers, bytes = records * a->samples * sizeof(double complex);
+    if (!(records <= RECORDS_MAX)) {
+        return refuse(reading, reading->track, "track", "pings", "at most %.10g with %d receivers (2^26 records)",
+                      floor(RECORDS_MAX / a->receivers), a->receivers);
+    }
+    if (!(bytes <= BYTES_MAX)) {
+        return refuse(reading, reading->record, "record", "samples",
+                      "at most %.10g with %.10g records (2^40 bytes of samples)",
+                      floor(BYTES_MAX / sizeof(double complex) / records), records);
+    }
+    return STATUS_OK;
+}
+
+/* Pings and receivers must stay where coordinates may be. */
+static enum status check_places(const struct reading *reading)
+{
+    const struct acquisition *a = &reading->scene.acquisition;
+    double last_offset = reading->first_offset_m + (a->receivers - 1) * reading->pitch_m;
+    double sailed = (a->pings - 1) * (reading->speed_m_s * reading->pri_s), last = reading->x_first_m + sailed;
+    if (!(fabs(last) <= COORDINATE_MAX_M)) {
+        return refuse(reading, reading->track, "track", "pri",
+                      "such that the last of %d pings at %g m/s, at %g m, stays "
+                      "within +-%g m",
+                      a->pings, reading->speed_m_s, last, COORDINATE_MAX_M);
+    }
+    if (!(fabs(last_offset) <= COORDINATE_MAX_M)) {
+        return refuse(reading, reading->array, "array", "pitch",
+                      "such that the last of %d receivers, %g m ahead of the "
+                      "transmitter, stays within +-%g m",
+                      a->receivers, last_offset, COORDINATE_MAX_M);
+    }
+    return STATUS_OK;
+}
+
+static enum status check_image_kind(const struct reading *reading)
+{
+    const char *one = "one of `x` with `r`, `around_targets`, `patches`";
+    bool whole = reading->x && reading->r;
+    if ((reading->x || reading->r) + (reading->around_targets != NULL) + (reading->patches != NULL) != 1) {
+        return refuse(reading, reading->image, "image", NULL, "a group with exactly %s", one);
+    }
+    if (!whole && (reading->x || reading->r)) {
+        return refuse(reading, reading->image, "image", reading->x ? "r" : "x", "given together with `%s`",
+                      reading->x ? "x" : "r");
+    }
+    if (!whole && reading->reference) {
+        return refuse(reading, reading->image, "image", "reference", "left out without `x` and `r`");
+    }
+    if (reading->patches && config_setting_length(reading->patches) == 0) {
+        return refuse(reading, reading->image, "image", "patches", "a list of at least one patch");
+    }
+    bool needs_points = reading->around_targets || reading->reference;
+    if (needs_points && !(reading->points && config_setting_length(reading->points) > 0)) {
+        return refuse(reading, reading->targets, "targets", "points",
+                      "a list of at least one target, with image.around_targets or image.reference");
+    }
+    return STATUS_OK;
+}
+
+enum status keys_check(const struct reading *reading)
+{
+    const struct acquisition *a = &reading->scene.acquisition;
+    if (!(a->fs >= a->bandwidth)) {
+        return refuse(reading, reading->sonar, "sonar", "fs", "at least sonar.bandwidth (%.10g Hz)", a->bandwidth);
+    }
+    if (!(fabs(reading->speed_m_s) < a->sound_speed)) {
+        return refuse(reading, reading->track, "track", "speed", "below sonar.sound_speed (%.10g m/s) in magnitude",
+                      a->sound_speed);
+    }
+    if (a->receivers > 1 && reading->pitch_m == 0) {
+        return refuse(reading, reading->array, "array", "pitch", "a number other than 0 m with %d receivers",
+                      a->receivers);
+    }
+    enum status (*const checks[])(const struct reading *) = {check_beam, check_pulse, check_sizes, check_places,
+                                                             check_image_kind};
+    enum status status = STATUS_OK;
+    for (size_t i = 0; i < sizeof checks / sizeof *checks && status == STATUS_OK; i++) {
+        status = checks[i](reading);
+    }
+    return status;
+}
