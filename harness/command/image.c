@@ -8,7 +8,7 @@
 #include "scene/simulate.h"
 #include "command/task.h"
 
-/* Which file is asked for is told by its extension. */
+/* The extension says which file is asked for. */
 static enum status check_output(const char *command, const char *output)
 {
     const char *extension = output ? strrchr(output, '.') : NULL;

@@ -36,7 +36,7 @@ enum status command_run(const struct task *task)
     struct scene *scenes = NULL;
     struct spec *all = NULL;
     int scene_count = 0, all_count = 0;
-    struct comparison comparison = {0};
+    struct batch batch = {0};
     enum status status = check_twice(task);
     if (status == STATUS_OK && task->spec_count == 0)
         status = load_specs(&all, &all_count);
@@ -44,16 +44,15 @@ enum status command_run(const struct task *task)
     if (status == STATUS_OK)
         status = scenes_load("run", task->name_count, task->names, &scenes, &scene_count);
     if (status == STATUS_OK)
-        status = comparison_open(task->output ? task->output : "results/latest", scene_count * spec_count, true,
-                                 &comparison);
+        status = batch_open(task->output ? task->output : "results/latest", scene_count * spec_count, true, &batch);
     for (int k = 0; k < scene_count && status == STATUS_OK; k++)
-        status = comparison_scene(&comparison, &scenes[k], spec_count, task->spec_count ? task->specs : all);
+        status = batch_scene(&batch, &scenes[k], spec_count, task->spec_count ? task->specs : all);
     if (status == STATUS_OK)
         printf(
             "\nThe harness itself takes %.1f ns a run (an algorithm that does nothing). Results: %s/measurements.csv, "
             "targets.csv and pictures.\n",
-            1e9 * timing_floor(), comparison.directory);
-    status = comparison_close(&comparison, status);
+            1e9 * timing_floor(), batch.directory);
+    status = batch_close(&batch, status);
     scenes_free(scenes, scene_count);
     for (int k = 0; k < all_count; k++)
         spec_free(&all[k]);

@@ -1,9 +1,9 @@
-/* The command `sweep`: every algorithm over its ladder of settings, error against run time. */
+/* The command `sweep`: every algorithm over its settings, error against run time. */
 #include <stdio.h>
 
 #include "study/batch.h"
 #include "show/plot.h"
-#include "study/sweep_ladder.h"
+#include "study/sweep_settings.h"
 #include "study/sweep_tables.h"
 #include "command/task.h"
 
@@ -11,25 +11,25 @@
 static const char *const default_scenes[] = {"sweep/point", "sweep/speckle", "sweep/near", "sweep/far"};
 
 /* The exact image's own cost comes first: what the others save, and what their PSLR and ISLR are compared with. */
-static enum status ladders_load(const struct task *task, struct ladder *ladder)
+static enum status settings_load(const struct task *task, struct sweep_settings *settings)
 {
     struct spec spec;
     enum status status = spec_parse("reference", &spec);
     if (status == STATUS_OK)
-        status = ladder_add(ladder, &spec);
+        status = settings_add(settings, &spec);
     spec_free(&spec);
     for (int k = 0; k < task->spec_count && status == STATUS_OK; k++)
-        status = ladder_add(ladder, &task->specs[k]);
+        status = settings_add(settings, &task->specs[k]);
     for (int k = 0; task->spec_count == 0 && algorithms[k] && status == STATUS_OK; k++) {
         status = spec_parse(algorithms[k]->name, &spec);
         if (status == STATUS_OK)
-            status = ladder_add(ladder, &spec);
+            status = settings_add(settings, &spec);
         spec_free(&spec);
     }
     return status;
 }
 
-/* A plot that cannot be drawn is told and counted, but does not fail what was measured. Returns how many. */
+/* A plot that cannot be drawn is reported and counted, but does not fail what was measured. Returns how many. */
 static int draw(const char *directory, const struct scene *scene)
 {
     static const char *const formats[] = {"png", "svg"};
@@ -53,26 +53,26 @@ enum status command_sweep(const struct task *task)
     const char *directory = task->output ? task->output : "results/sweep";
     int default_count = sizeof default_scenes / sizeof *default_scenes, scene_count = 0;
     struct scene *scenes = NULL;
-    struct ladder ladder = {0};
-    struct comparison comparison = {0};
-    enum status status = ladders_load(task, &ladder);
+    struct sweep_settings settings = {0};
+    struct batch batch = {0};
+    enum status status = settings_load(task, &settings);
     if (status == STATUS_OK)
         status = scenes_load("sweep", task->name_count ? task->name_count : default_count,
                              task->name_count ? task->names : default_scenes, &scenes, &scene_count);
     if (status == STATUS_OK)
-        status = comparison_open(directory, scene_count * ladder.count, false, &comparison);
+        status = batch_open(directory, scene_count * settings.count, false, &batch);
     for (int k = 0; k < scene_count && status == STATUS_OK; k++)
-        status = comparison_scene(&comparison, &scenes[k], ladder.count, ladder.specs);
+        status = batch_scene(&batch, &scenes[k], settings.count, settings.specs);
     if (status == STATUS_OK)
         status = sweep_tables(directory, scenes, scene_count);
     for (int k = 0; k < scene_count && status == STATUS_OK; k++)
-        comparison.undrawn += draw(directory, &scenes[k]);
+        batch.undrawn += draw(directory, &scenes[k]);
     if (status == STATUS_OK)
         printf("\nResults: %s/measurements.csv, targets.csv, fronts.csv, cheapest.csv, slopes.csv, rules.csv and "
                "plots.\n",
                directory);
-    status = comparison_close(&comparison, status);
+    status = batch_close(&batch, status);
     scenes_free(scenes, scene_count);
-    ladder_free(&ladder);
+    settings_free(&settings);
     return status;
 }

@@ -7,8 +7,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "gate/bootstrap.h"
-#include "gate/partner.h"
+#include "gate/ab_interval.h"
+#include "gate/ab_process.h"
 #include "scene/scene.h"
 #include "measure/session.h"
 #include "show/table.h"
@@ -52,18 +52,18 @@ struct unit {
 
 struct contest {
     const char *paths[2];
-    struct partner partners[2];
-    struct compare *compare;
+    struct ab_process processes[2];
+    struct diff *diff;
     int unit_count;
     struct unit *units;
 };
 
 /* --- Rounds --------------------------------------------------------------------------------------------------- */
 
-static enum status answer_wrong(const struct partner *partner, const char *question, const char *answer,
+static enum status answer_wrong(const struct ab_process *process, const char *question, const char *answer,
                                 const char *needed)
 {
-    return status_set(STATUS_INVALID, "%s %s answers '%.100s' to '%.100s'; %s is needed", partner->role, partner->path,
+    return status_set(STATUS_INVALID, "%s %s answers '%.100s' to '%.100s'; %s is needed", process->role, process->path,
                       answer, question, needed);
 }
 
@@ -75,13 +75,13 @@ static enum status unit_plan(struct contest *contest, struct unit *unit, bool fi
     unsigned long long hashes[2] = {0, 0};
     bool can[2];
     for (int k = 0; k < 2; k++) {
-        struct partner *partner = &contest->partners[k];
-        enum status status = partner_ask(partner, unit->question, answers[k], sizeof answers[k]);
+        struct ab_process *process = &contest->processes[k];
+        enum status status = ab_process_ask(process, unit->question, answers[k], sizeof answers[k]);
         if (status != STATUS_OK)
             return status;
         can[k] = sscanf(answers[k], "planned %d %llx", &unit->plans[k], &hashes[k]) == 2;
         if (!can[k] && (!first || strncmp(answers[k], refused, strlen(refused)) != 0))
-            return answer_wrong(partner, unit->question, answers[k], "'planned UNIT HASH'");
+            return answer_wrong(process, unit->question, answers[k], "'planned JOB HASH'");
     }
     if (can[0] && can[1] && hashes[0] != hashes[1])
         return status_set(STATUS_INVALID,
@@ -92,21 +92,21 @@ static enum status unit_plan(struct contest *contest, struct unit *unit, bool fi
         return STATUS_OK;
     unit->skipped = true;
     if (!can[0] && !can[1])
-        return compare_note(contest->compare, "%s with %s is left out: %s", unit->scene, unit->spec,
-                            answers[1] + strlen(refused));
-    return compare_add(contest->compare, &(struct finding){.verdict = can[0] ? VERDICT_GONE : VERDICT_NEW,
-                                                           .class = CLASS_TIME,
-                                                           .scene = unit->scene,
-                                                           .spec = unit->spec,
-                                                           .detail = "",
-                                                           .metric = "time",
-                                                           .unit = "s",
-                                                           .before = NAN,
-                                                           .after = NAN,
-                                                           .change = NAN,
-                                                           .slack = NAN,
-                                                           .before_text = can[0] ? "planned" : "refused",
-                                                           .after_text = can[1] ? "planned" : "refused"});
+        return diff_note(contest->diff, "%s with %s is left out: %s", unit->scene, unit->spec,
+                         answers[1] + strlen(refused));
+    return diff_add(contest->diff, &(struct finding){.verdict = can[0] ? VERDICT_GONE : VERDICT_NEW,
+                                                     .class = CLASS_TIME,
+                                                     .scene = unit->scene,
+                                                     .spec = unit->spec,
+                                                     .detail = "",
+                                                     .metric = "time",
+                                                     .unit = "s",
+                                                     .before = NAN,
+                                                     .after = NAN,
+                                                     .change = NAN,
+                                                     .slack = NAN,
+                                                     .before_text = can[0] ? "planned" : "refused",
+                                                     .after_text = can[1] ? "planned" : "refused"});
 }
 
 static int part_index(struct unit *unit, const char *name, size_t length)
@@ -148,11 +148,11 @@ static bool times_read(struct unit *unit, const char *answer, double *seconds)
 static enum status unit_run(struct contest *contest, struct unit *unit, int side, int count, double *seconds)
 {
     char question[60], answer[2000];
-    struct partner *partner = &contest->partners[side];
+    struct ab_process *process = &contest->processes[side];
     snprintf(question, sizeof question, "run %d %d", unit->plans[side], count);
-    enum status status = partner_ask(partner, question, answer, sizeof answer);
+    enum status status = ab_process_ask(process, question, answer, sizeof answer);
     if (status == STATUS_OK && !times_read(unit, answer, seconds))
-        status = answer_wrong(partner, question, answer, "'took SECONDS STAGE=SECONDS;...'");
+        status = answer_wrong(process, question, answer, "'took SECONDS STAGE=SECONDS;...'");
     return status;
 }
 
@@ -187,7 +187,7 @@ static enum status contest_round(struct contest *contest, int round, const struc
     static const char *const roles[2] = {"OLD", "NEW"};
     enum status status = STATUS_OK;
     for (int k = 0; k < 2 && status == STATUS_OK; k++)
-        status = partner_start(roles[k], contest->paths[k], round, effort->patience_s, &contest->partners[k]);
+        status = ab_process_start(roles[k], contest->paths[k], round, effort->patience_s, &contest->processes[k]);
     for (int k = 0; k < contest->unit_count && status == STATUS_OK; k++)
         if (!contest->units[k].skipped && !contest->units[k].decided)
             status = unit_plan(contest, &contest->units[k], round == 0);
@@ -202,7 +202,7 @@ static enum status contest_round(struct contest *contest, int round, const struc
     if (isatty(STDERR_FILENO))
         fprintf(stderr, "\r\033[K");
     for (int k = 0; k < 2; k++)
-        partner_stop(&contest->partners[k]);
+        ab_process_stop(&contest->processes[k]);
     return status;
 }
 
@@ -229,12 +229,12 @@ static bool part_counts(const struct unit *unit, int part)
     return share >= STAGE_LEAST;
 }
 
-static enum status part_interval(const struct unit *unit, int part, double miss, struct interval *interval)
+static enum status part_interval(const struct unit *unit, int part, double miss, struct ab_interval *interval)
 {
     double ratios[ROUNDS_MOST * BLOCKS];
     for (int k = 0; k < unit->rounds * BLOCKS; k++)
         ratios[k] = unit->samples[k].seconds[1][part] / unit->samples[k].seconds[0][part];
-    return interval_find(ratios, unit->rounds, BLOCKS, miss, interval);
+    return ab_interval_find(ratios, unit->rounds, BLOCKS, miss, interval);
 }
 
 /* Bonferroni: over all that is compared and all times that it is looked at; half on either side. */
@@ -259,11 +259,11 @@ static enum status contest_look(struct contest *contest, const struct ab_effort 
         if (unit->skipped || unit->decided)
             continue;
         for (int part = 0; part < unit->part_count && status == STATUS_OK; part++) {
-            struct interval interval;
+            struct ab_interval interval;
             if (!part_counts(unit, part))
                 continue;
             status = part_interval(unit, part, miss, &interval);
-            enum verdict verdict = status == STATUS_OK ? interval_judge(&interval) : VERDICT_NOISY;
+            enum verdict verdict = status == STATUS_OK ? ab_interval_judge(&interval) : VERDICT_NOISY;
             worse = worse || verdict == VERDICT_WORSE;
             clear =
                 clear && verdict != VERDICT_NOISY && (verdict != VERDICT_WARNING || interval.high < 1 + EFFECT_FAIL);
@@ -281,29 +281,28 @@ static enum status findings_add(struct contest *contest, const struct ab_effort 
     for (int k = 0; k < contest->unit_count; k++) {
         const struct unit *unit = &contest->units[k];
         for (int part = 0; part < unit->part_count && status == STATUS_OK; part++) {
-            struct interval interval;
+            struct ab_interval interval;
             if (!part_counts(unit, part))
                 continue;
-            const char *detail = compare_text(contest->compare, "%s", unit->parts[part]);
+            const char *detail = diff_text(contest->diff, "%s", unit->parts[part]);
             status = detail ? part_interval(unit, part, miss, &interval) : STATUS_FAILED;
             if (status != STATUS_OK)
                 break;
             double before = part_seconds(unit, 0, part), after = part_seconds(unit, 1, part);
-            status =
-                compare_add(contest->compare, &(struct finding){.verdict = interval_judge(&interval),
-                                                                .class = CLASS_TIME,
-                                                                .scene = unit->scene,
-                                                                .spec = unit->spec,
-                                                                .detail = detail,
-                                                                .metric = "time",
-                                                                .unit = "s",
-                                                                .before = before,
-                                                                .after = after,
-                                                                .change = interval.middle - 1,
-                                                                .change_low = interval.low - 1,
-                                                                .change_high = interval.high - 1,
-                                                                .slack = after * (interval.high - interval.low) / 2,
-                                                                .lower_is_better = true});
+            status = diff_add(contest->diff, &(struct finding){.verdict = ab_interval_judge(&interval),
+                                                               .class = CLASS_TIME,
+                                                               .scene = unit->scene,
+                                                               .spec = unit->spec,
+                                                               .detail = detail,
+                                                               .metric = "time",
+                                                               .unit = "s",
+                                                               .before = before,
+                                                               .after = after,
+                                                               .change = interval.middle - 1,
+                                                               .change_low = interval.low - 1,
+                                                               .change_high = interval.high - 1,
+                                                               .slack = after * (interval.high - interval.low) / 2,
+                                                               .lower_is_better = true});
         }
     }
     return status;
@@ -313,13 +312,13 @@ static enum status findings_add(struct contest *contest, const struct ab_effort 
 
 static enum status unit_make(struct contest *contest, const char *scene, const char *spec, struct unit *unit)
 {
-    const char *path = compare_text(contest->compare, "%s/%s.cfg", SCENE_DIRECTORY, scene);
+    const char *path = diff_text(contest->diff, "%s/%s.cfg", SCENE_DIRECTORY, scene);
     if (!path)
         return STATUS_FAILED;
     if (access(path, R_OK) != 0)
         path = scene; /* both programs are to read one and the same file */
     *unit = (struct unit){.scene = scene, .spec = spec};
-    unit->question = compare_text(contest->compare, "plan %s %s", spec, path);
+    unit->question = diff_text(contest->diff, "plan %s %s", spec, path);
     return unit->question ? STATUS_OK : STATUS_FAILED;
 }
 
@@ -349,12 +348,12 @@ static enum status scene_units(struct contest *contest, const char *scene, const
 }
 
 /* A SPEC as it is written. */
-static const char *spec_text(struct compare *compare, const struct spec *spec)
+static const char *spec_text(struct diff *diff, const struct spec *spec)
 {
     char text[512];
     struct measurement row = measurement_empty("", spec->algorithm->name, spec->text, spec->precision);
     measurement_spec(&row, text, sizeof text);
-    return compare_text(compare, "%s", text);
+    return diff_text(diff, "%s", text);
 }
 
 static enum status units_make(struct contest *contest, const char *const *scenes, int scene_count,
@@ -363,7 +362,7 @@ static enum status units_make(struct contest *contest, const char *const *scenes
     const char **texts = calloc((size_t)spec_count + 1, sizeof *texts);
     enum status status = texts ? STATUS_OK : status_set(STATUS_FAILED, "no memory for %d algorithms", spec_count);
     for (int k = 0; k < spec_count && status == STATUS_OK; k++)
-        if (!(texts[k] = spec_text(contest->compare, &specs[k])))
+        if (!(texts[k] = spec_text(contest->diff, &specs[k])))
             status = STATUS_FAILED;
     for (int k = 0; k < (scene_count > 0 ? scene_count : USUAL) && status == STATUS_OK; k++) {
         int usual_count = 0;
@@ -391,24 +390,23 @@ static enum status contest_run(struct contest *contest, const struct ab_effort *
     }
     if (status == STATUS_OK)
         status = findings_add(contest, effort);
-    if (status == STATUS_OK && contest->compare->finding_count == 0)
+    if (status == STATUS_OK && contest->diff->finding_count == 0)
         status = status_set(STATUS_INVALID, "neither program can do what is asked: %s",
-                            contest->compare->note_count > 0 ? contest->compare->notes[0] : "nothing is");
+                            contest->diff->note_count > 0 ? contest->diff->notes[0] : "nothing is");
     if (status == STATUS_OK)
-        status = compare_note(contest->compare,
-                              "%d rounds in %.0f s, one thread; all intervals together hold with %g %%; "
-                              "a slowdown beyond %g %% warns, beyond %g %% fails",
-                              round, seconds_now() - begin, 100 * (1 - ERROR_PROBABILITY), 100 * EFFECT_WARN,
-                              100 * EFFECT_FAIL);
+        status = diff_note(contest->diff,
+                           "%d rounds in %.0f s, one thread; all intervals together hold with %g %%; "
+                           "a slowdown beyond %g %% warns, beyond %g %% fails",
+                           round, seconds_now() - begin, 100 * (1 - ERROR_PROBABILITY), 100 * EFFECT_WARN,
+                           100 * EFFECT_FAIL);
     return status;
 }
 
-enum status ab_compare(const char *old, const char *new, const char *const *scenes, int scene_count,
-                       const struct spec *specs, int spec_count, const struct ab_effort *effort,
-                       struct compare *compare)
+enum status ab_run(const char *old, const char *new, const char *const *scenes, int scene_count,
+                   const struct spec *specs, int spec_count, const struct ab_effort *effort, struct diff *diff)
 {
-    *compare = (struct compare){0};
-    struct contest contest = {.paths = {old, new}, .compare = compare};
+    *diff = (struct diff){0};
+    struct contest contest = {.paths = {old, new}, .diff = diff};
     enum status status = units_make(&contest, scenes, scene_count, specs, spec_count);
     if (status == STATUS_OK)
         status = contest_run(&contest, effort);

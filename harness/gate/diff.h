@@ -20,7 +20,7 @@ extern const char *const verdict_names[VERDICTS];
 extern const char *const class_names[]; /* by enum metric_class */
 enum { CLASSES = CLASS_TIME + 1 };
 
-/* One judgement. Texts are borrowed or belong to the struct compare. */
+/* One judgement. Texts are borrowed or belong to the struct diff. */
 struct finding {
     enum verdict verdict;
     enum metric_class class;
@@ -34,7 +34,7 @@ struct finding {
     bool lower_is_better;
 };
 
-struct compare {
+struct diff {
     int finding_count, finding_room;
     struct finding *findings;
     int counts[CLASSES][VERDICTS];
@@ -54,25 +54,25 @@ enum { CHANGED_SLACKS = 10, CHANGED_ROWS = 5 };
 /* Judge two results folders or CSV files (a folder and a file: the folder's file of that kind). A row is matched by scene
    (and its content), algorithm, options and precision, and in targets.csv by target, axis and definition. Errors:
    STATUS_INVALID as results_read, for different kinds of files, and for a row given twice; STATUS_FAILED without memory.
-   *compare is to be freed in any case. */
-enum status compare_results(const char *old, const char *new, struct compare *compare);
+   *diff is to be freed in any case. */
+enum status diff_results(const char *old, const char *new, struct diff *diff);
 
 /* For those who find: add a finding (copied, and counted), a remark, and a text that lives as long as the struct (NULL
    without memory, with the status message set). Errors: STATUS_FAILED without memory. */
-enum status compare_add(struct compare *compare, const struct finding *finding);
-enum status compare_note(struct compare *compare, const char *format, ...) __attribute__((format(printf, 2, 3)));
-const char *compare_text(struct compare *compare, const char *format, ...) __attribute__((format(printf, 2, 3)));
+enum status diff_add(struct diff *diff, const struct finding *finding);
+enum status diff_note(struct diff *diff, const char *format, ...) __attribute__((format(printf, 2, 3)));
+const char *diff_text(struct diff *diff, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* STATUS_FAILED, with a message that says how many, when anything got worse or is gone, or changed from a baseline. */
-enum status compare_judge(const struct compare *compare);
-void compare_free(struct compare *compare);
+enum status diff_judge(const struct diff *diff);
+void diff_free(struct diff *diff);
 
 /* Readable text: remarks, all findings but the same ones, counts. */
-void compare_print(const struct compare *compare, FILE *stream);
+void diff_print(const struct diff *diff, FILE *stream);
 /* The same for a comment of a CI, as Markdown; at most 100 findings, the worst first. Errors: of text_file. */
-enum status compare_markdown(const struct compare *compare, const char *path);
+enum status diff_markdown(const struct diff *diff, const char *path);
 /* What trackers of benchmarks read (github-action-benchmark's customSmallerIsBetter): [{"name", "unit", "value", "range"}]
    of every defined value of NEW that is better when it is smaller; range is the slack. Errors: of text_file. */
-enum status compare_json(const struct compare *compare, const char *path);
+enum status diff_json(const struct diff *diff, const char *path);
 
 #endif

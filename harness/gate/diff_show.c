@@ -46,61 +46,61 @@ static int order_findings(const void *a, const void *b)
 }
 
 /* All findings but the same ones, the worst first, in an array that the caller frees; NULL without memory. */
-static const struct finding **changed(const struct compare *compare, int *count)
+static const struct finding **changed(const struct diff *diff, int *count)
 {
-    const struct finding **list = calloc((size_t)compare->finding_count + 1, sizeof *list);
+    const struct finding **list = calloc((size_t)diff->finding_count + 1, sizeof *list);
     *count = 0;
-    for (int k = 0; list && k < compare->finding_count; k++)
-        if (compare->findings[k].verdict != VERDICT_SAME)
-            list[(*count)++] = &compare->findings[k];
+    for (int k = 0; list && k < diff->finding_count; k++)
+        if (diff->findings[k].verdict != VERDICT_SAME)
+            list[(*count)++] = &diff->findings[k];
     if (list)
         qsort(list, (size_t)*count, sizeof *list, order_findings);
     return list;
 }
 
-static bool verdict_occurs(const struct compare *compare, int verdict)
+static bool verdict_occurs(const struct diff *diff, int verdict)
 {
     for (int class = 0; class < CLASSES; class ++)
-        if (compare->counts[class][verdict] > 0)
+        if (diff->counts[class][verdict] > 0)
             return true;
     return false;
 }
 
-static bool class_occurs(const struct compare *compare, int class)
+static bool class_occurs(const struct diff *diff, int class)
 {
     for (int verdict = 0; verdict < VERDICTS; verdict++)
-        if (compare->counts[class][verdict] > 0)
+        if (diff->counts[class][verdict] > 0)
             return true;
     return false;
 }
 
 /* "quality: 3 worse, 120 same", one text a class. */
-static void print_counts(const struct compare *compare, FILE *stream, const char *before, const char *after)
+static void print_counts(const struct diff *diff, FILE *stream, const char *before, const char *after)
 {
     for (int class = 0; class < CLASSES; class ++) {
         const char *between = "";
-        if (!class_occurs(compare, class))
+        if (!class_occurs(diff, class))
             continue;
         fprintf(stream, "%s%s: ", before, class_names[class]);
         for (int verdict = 0; verdict < VERDICTS; verdict++)
-            if (compare->counts[class][verdict] > 0) {
-                fprintf(stream, "%s%d %s", between, compare->counts[class][verdict], verdict_names[verdict]);
+            if (diff->counts[class][verdict] > 0) {
+                fprintf(stream, "%s%d %s", between, diff->counts[class][verdict], verdict_names[verdict]);
                 between = ", ";
             }
         fputs(after, stream);
     }
 }
 
-static const char *headline(const struct compare *compare)
+static const char *headline(const struct diff *diff)
 {
-    if (verdict_occurs(compare, VERDICT_WORSE) || verdict_occurs(compare, VERDICT_GONE))
+    if (verdict_occurs(diff, VERDICT_WORSE) || verdict_occurs(diff, VERDICT_GONE))
         return "something got worse";
-    if (verdict_occurs(compare, VERDICT_CHANGED))
-        return compare->to_baseline ? "changed for the better: where that is meant, a new baseline is needed"
-                                    : "nothing got worse; what changed for the better is to be reviewed";
-    if (verdict_occurs(compare, VERDICT_WARNING))
+    if (verdict_occurs(diff, VERDICT_CHANGED))
+        return diff->to_baseline ? "changed for the better: where that is meant, a new baseline is needed"
+                                 : "nothing got worse; what changed for the better is to be reviewed";
+    if (verdict_occurs(diff, VERDICT_WARNING))
         return "nothing failed, with a warning";
-    return verdict_occurs(compare, VERDICT_NOISY) ? "nothing failed, not all could be told" : "nothing got worse";
+    return verdict_occurs(diff, VERDICT_NOISY) ? "nothing failed, not all could be judged" : "nothing got worse";
 }
 
 static int widest(int width, const char *text)
@@ -115,12 +115,12 @@ static void line_write(FILE *stream, const char *text)
     fputc('\n', stream);
 }
 
-void compare_print(const struct compare *compare, FILE *stream)
+void diff_print(const struct diff *diff, FILE *stream)
 {
     int count;
-    const struct finding **list = changed(compare, &count);
-    for (int k = 0; k < compare->note_count; k++)
-        line_write(stream, compare->notes[k]);
+    const struct finding **list = changed(diff, &count);
+    for (int k = 0; k < diff->note_count; k++)
+        line_write(stream, diff->notes[k]);
     int verdict_width = 8, change_width = 11;
     for (int k = 0; list && k < count; k++) {
         verdict_width = widest(verdict_width, verdict_names[list[k]->verdict]);
@@ -140,8 +140,8 @@ void compare_print(const struct compare *compare, FILE *stream)
         fputc('\n', stream);
     }
     fputc('\n', stream);
-    print_counts(compare, stream, "", "\n");
-    fprintf(stream, "%s\n", headline(compare));
+    print_counts(diff, stream, "", "\n");
+    fprintf(stream, "%s\n", headline(diff));
     free(list);
 }
 
@@ -152,17 +152,17 @@ static void markdown_cell(FILE *stream, const char *text)
     fputc(' ', stream);
 }
 
-enum status compare_markdown(const struct compare *compare, const char *path)
+enum status diff_markdown(const struct diff *diff, const char *path)
 {
     int count;
     struct text_file file;
-    const struct finding **list = changed(compare, &count);
+    const struct finding **list = changed(diff, &count);
     if (!list)
-        return status_set(STATUS_FAILED, "no memory for %d findings", compare->finding_count);
+        return status_set(STATUS_FAILED, "no memory for %d findings", diff->finding_count);
     enum status status = text_file_open(path, &file);
     if (status == STATUS_OK) {
-        fprintf(file.stream, "## sasbench: %s\n\n", headline(compare));
-        print_counts(compare, file.stream, "- ", "\n");
+        fprintf(file.stream, "## sasbench: %s\n\n", headline(diff));
+        print_counts(diff, file.stream, "- ", "\n");
         if (count > 0)
             fputs("\n| verdict | metric | OLD | NEW | change | scene | algorithm |\n|---|---|--:|--:|--:|---|---|\n",
                   file.stream);
@@ -180,9 +180,9 @@ enum status compare_markdown(const struct compare *compare, const char *path)
         if (count > MARKDOWN_MOST)
             fprintf(file.stream, "\n%d more are not shown.\n", count - MARKDOWN_MOST);
         fputc('\n', file.stream);
-        for (int k = 0; k < compare->note_count; k++) {
+        for (int k = 0; k < diff->note_count; k++) {
             fputs("- ", file.stream);
-            shown_markdown(file.stream, compare->notes[k]);
+            shown_markdown(file.stream, diff->notes[k]);
             fputc('\n', file.stream);
         }
         status = text_file_close(&file, status);
@@ -205,15 +205,15 @@ static void json_text(FILE *stream, const char *text)
     }
 }
 
-enum status compare_json(const struct compare *compare, const char *path)
+enum status diff_json(const struct diff *diff, const char *path)
 {
     struct text_file file;
     const char *between = "[";
     enum status status = text_file_open(path, &file);
     if (status != STATUS_OK)
         return status;
-    for (int k = 0; k < compare->finding_count; k++) {
-        const struct finding *f = &compare->findings[k];
+    for (int k = 0; k < diff->finding_count; k++) {
+        const struct finding *f = &diff->findings[k];
         if (!f->lower_is_better || !isfinite(f->after))
             continue;
         fprintf(file.stream, "%s\n  {\"name\": \"", between);

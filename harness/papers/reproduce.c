@@ -38,7 +38,7 @@ static enum status tables_select(const char *const *ids, int count, bool selecte
 }
 
 /* All needs of one scene; those of `needs` that are done lose their scene. */
-static enum status scene_measure(struct comparison *comparison, struct need *needs, int count)
+static enum status scene_measure(struct batch *batch, struct need *needs, int count)
 {
     struct scene scene;
     struct spec specs[NEEDS_MAX];
@@ -54,7 +54,7 @@ static enum status scene_measure(struct comparison *comparison, struct need *nee
             needs[k].scene = NULL;
         }
     if (status == STATUS_OK)
-        status = comparison_scene(comparison, &scene, spec_count, specs);
+        status = batch_scene(batch, &scene, spec_count, specs);
     for (int k = 0; k < spec_count; k++)
         spec_free(&specs[k]);
     scene_free(&scene);
@@ -274,7 +274,7 @@ enum status papers_reproduce(const char *const *ids, int count, const char *dire
     bool selected[TABLES_MAX] = {false};
     struct need needs[NEEDS_MAX];
     struct claims claims = {0};
-    struct comparison comparison = {0};
+    struct batch batch = {0};
     enum status status = tables_select(ids, count, selected);
     if (status == STATUS_OK)
         status = directory_check(directory);
@@ -283,14 +283,14 @@ enum status papers_reproduce(const char *const *ids, int count, const char *dire
     if (status != STATUS_OK)
         return status;
     int need_count = needs_collect(selected, &claims, needs);
-    status = comparison_open(directory, need_count, false, &comparison);
+    status = batch_open(directory, need_count, false, &batch);
     for (int k = 0; k < need_count && status == STATUS_OK; k++)
         if (needs[k].scene)
-            status = scene_measure(&comparison, needs + k, need_count - k);
+            status = scene_measure(&batch, needs + k, need_count - k);
     if (status == STATUS_OK)
         status = phase_study(directory, true);
     if (status == STATUS_OK)
         status = report(directory, &claims, selected);
     claims_free(&claims);
-    return comparison_close(&comparison, status);
+    return batch_close(&batch, status);
 }

@@ -1,4 +1,4 @@
-/* A scene: what is sailed, sounded and seen, read from a libconfig file (every key: scenes/README.md). */
+/* A scene: platform, sonar and targets, read from a libconfig file (every key: scenes/README.md). */
 #ifndef SASBENCH_SCENE_SCENE_H
 #define SASBENCH_SCENE_SCENE_H
 

@@ -1,4 +1,4 @@
-/* The pictures of one scene's comparison: each image in decibels, and the azimuth slices of all overlaid. */
+/* The pictures of one scene in a batch: each image in decibels, and the azimuth slices of all overlaid. */
 #include "show/pictures.h"
 
 #include <stdio.h>
@@ -25,7 +25,7 @@ bool picture_exists(const char *directory, const char *scene, const char *label)
     return access(path, F_OK) == 0;
 }
 
-/* A picture that cannot be drawn is told, but does not fail what was measured. */
+/* A picture that cannot be drawn is reported, but does not fail what was measured. */
 static void tell(struct pictures *pictures, enum status status)
 {
     if (status == STATUS_OK)

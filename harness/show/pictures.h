@@ -1,4 +1,4 @@
-/* The pictures of one scene's comparison, drawn beside its CSVs. What cannot be drawn is told on standard error and
+/* The pictures of one scene in a batch, drawn beside its CSVs. What cannot be drawn is reported on standard error and
    counted, but does not fail what was measured. A picture that is there is that of the row that is there: old ones are
    removed before theirs are drawn. */
 #ifndef SASBENCH_SHOW_PICTURES_H

@@ -33,7 +33,7 @@ static void visit_close(struct visit *visit)
 }
 
 /* On failure the visit is closed. */
-static enum status visit_open(const struct comparison *comparison, const struct scene *scene, int spec_count,
+static enum status visit_open(const struct batch *batch, const struct scene *scene, int spec_count,
                               const struct spec *specs, struct visit *visit)
 {
     *visit = (struct visit){.specs = specs, .spec_count = spec_count};
@@ -43,8 +43,8 @@ static enum status visit_open(const struct comparison *comparison, const struct 
     visit->works = calloc((size_t)spec_count, sizeof *visit->works);
     if (!visit->works)
         status = status_set(STATUS_FAILED, "%s: no memory for %d algorithms", scene->name, spec_count);
-    if (status == STATUS_OK && comparison->details)
-        status = pictures_begin(comparison->directory, scene, spec_count, &visit->pictures);
+    if (status == STATUS_OK && batch->details)
+        status = pictures_begin(batch->directory, scene, spec_count, &visit->pictures);
     if (status != STATUS_OK)
         visit_close(visit);
     return status;
@@ -74,22 +74,21 @@ static void format_stages(const struct stages *stages, char *text, size_t size)
 }
 
 /* A scene whose echoes cannot be made has a failed row for every algorithm that is missing, and the next one goes on. */
-static enum status fail_scene(struct comparison *comparison, const struct scene *scene, int spec_count,
-                              const struct spec *specs)
+static enum status fail_scene(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs)
 {
     char reason[512];
     enum status status = STATUS_OK;
     snprintf(reason, sizeof reason, "%s", status_message());
-    comparison->failed = true;
-    for (int k = 0; k < spec_count && status == STATUS_OK; k++, comparison->done++) {
+    batch->failed = true;
+    for (int k = 0; k < spec_count && status == STATUS_OK; k++, batch->done++) {
         struct measurement row =
             measurement_empty(scene->name, specs[k].algorithm->name, specs[k].text, specs[k].precision);
-        const struct measurement *earlier = comparison_find(comparison, scene, &specs[k]);
-        row.threads = comparison->threads;
+        const struct measurement *earlier = batch_find(batch, scene, &specs[k]);
+        row.threads = batch->threads;
         row.status = "failed";
         row.reason = reason;
         if (!earlier)
-            status = record_add(comparison->record, &row);
+            status = record_add(batch->record, &row);
         if (status == STATUS_OK)
             table_row(stdout, earlier ? earlier : &row);
     }
@@ -99,7 +98,7 @@ static enum status fail_scene(struct comparison *comparison, const struct scene 
 
 /* Measure one algorithm on one scene, record and draw it. Only a fault of the record itself is an error: what fails or
    is unsupported becomes a row. */
-static enum status measure(struct comparison *comparison, struct visit *visit, int index)
+static enum status measure(struct batch *batch, struct visit *visit, int index)
 {
     const struct session *session = &visit->session;
     const struct spec *spec = &visit->specs[index];
@@ -110,7 +109,7 @@ static enum status measure(struct comparison *comparison, struct visit *visit, i
     struct image image = {0};
     char stages[512] = "", skipped[400] = "", reason[512] = "";
     struct measurement row = measurement_empty(scene->name, spec->algorithm->name, spec->text, spec->precision);
-    row.threads = comparison->threads;
+    row.threads = batch->threads;
     row.stages = stages;
     row.skipped = skipped;
     row.reason = reason;
@@ -148,19 +147,19 @@ static enum status measure(struct comparison *comparison, struct visit *visit, i
         int target_count;
         status = session_quality(session, &image, &row, reason, sizeof reason, &targets, &target_count);
         if (status == STATUS_OK)
-            status = record_targets(comparison->record, targets, target_count);
+            status = record_targets(batch->record, targets, target_count);
         free(targets);
         if (status == STATUS_OK)
             draw(visit, index, &image);
     } else {
         row.status = status == STATUS_UNSUPPORTED ? "unsupported" : "failed";
-        comparison->failed |= status != STATUS_UNSUPPORTED;
+        batch->failed |= status != STATUS_UNSUPPORTED;
         snprintf(reason, sizeof reason, "%s", status_message());
         status = STATUS_OK;
     }
     image_free(&image);
     if (status == STATUS_OK)
-        status = record_add(comparison->record, &row);
+        status = record_add(batch->record, &row);
     if (status == STATUS_OK)
         table_row(stdout, &row);
     return status;
@@ -179,10 +178,10 @@ static void print_works(const struct visit *visit)
         }
 }
 
-static void progress(const struct comparison *comparison, const char *scene, const char *what)
+static void progress(const struct batch *batch, const char *scene, const char *what)
 {
     if (isatty(STDERR_FILENO))
-        fprintf(stderr, "\r\033[K[%d/%d] %s %s\r", comparison->done + 1, comparison->rows, scene, what);
+        fprintf(stderr, "\r\033[K[%d/%d] %s %s\r", batch->done + 1, batch->rows, scene, what);
 }
 
 static void progress_clear(void)
@@ -191,15 +190,13 @@ static void progress_clear(void)
         fprintf(stderr, "\r\033[K");
 }
 
-const struct measurement *comparison_find(const struct comparison *comparison, const struct scene *scene,
-                                          const struct spec *spec)
+const struct measurement *batch_find(const struct batch *batch, const struct scene *scene, const struct spec *spec)
 {
-    return record_find(comparison->record, scene->name, spec->algorithm->name, spec->text,
-                       precision_name(spec->precision));
+    return record_find(batch->record, scene->name, spec->algorithm->name, spec->text, precision_name(spec->precision));
 }
 
 /* A row that an earlier run finished is not timed again; its image is, for the overlaid slices. What cannot be drawn now is
-   told and stops nothing. */
+   reported and stops nothing. */
 static void redraw(struct visit *visit, int index, const struct measurement *row)
 {
     struct image image = {0};
@@ -215,47 +212,46 @@ static void redraw(struct visit *visit, int index, const struct measurement *row
 }
 
 /* Whether an image or the slices of finished rows are still to be drawn. */
-static bool pictures_missing(const struct comparison *comparison, const struct scene *scene, int spec_count,
+static bool pictures_missing(const struct batch *batch, const struct scene *scene, int spec_count,
                              const struct spec *specs)
 {
     int images = 0, missing = 0;
     char label[320];
-    for (int k = 0; k < spec_count && comparison->details; k++) {
-        const struct measurement *row = comparison_find(comparison, scene, &specs[k]);
+    for (int k = 0; k < spec_count && batch->details; k++) {
+        const struct measurement *row = batch_find(batch, scene, &specs[k]);
         if (!row || strcmp(row->status, "ok") != 0)
             continue;
         spec_label(&specs[k], label, sizeof label);
-        missing += !picture_exists(comparison->directory, scene->name, label);
+        missing += !picture_exists(batch->directory, scene->name, label);
         images++;
     }
     return missing > 0
-           || (images > 0 && scene->point_count > 0 && !picture_exists(comparison->directory, scene->name, NULL));
+           || (images > 0 && scene->point_count > 0 && !picture_exists(batch->directory, scene->name, NULL));
 }
 
-enum status comparison_scene(struct comparison *comparison, const struct scene *scene, int spec_count,
-                             const struct spec *specs)
+enum status batch_scene(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs)
 {
     struct visit visit;
     int missing = 0;
-    enum status status = record_scene(comparison->record, scene->name, scene->hash);
+    enum status status = record_scene(batch->record, scene->name, scene->hash);
     for (int k = 0; k < spec_count; k++)
-        missing += !comparison_find(comparison, scene, &specs[k]);
-    const bool visited = missing > 0 || pictures_missing(comparison, scene, spec_count, specs);
+        missing += !batch_find(batch, scene, &specs[k]);
+    const bool visited = missing > 0 || pictures_missing(batch, scene, spec_count, specs);
     if (status == STATUS_OK && visited) {
-        progress(comparison, scene->name, "echoes and exact image");
-        if (visit_open(comparison, scene, spec_count, specs, &visit) != STATUS_OK) {
+        progress(batch, scene->name, "echoes and exact image");
+        if (visit_open(batch, scene, spec_count, specs, &visit) != STATUS_OK) {
             progress_clear();
-            return fail_scene(comparison, scene, spec_count, specs);
+            return fail_scene(batch, scene, spec_count, specs);
         }
     }
     if (status != STATUS_OK)
         return status;
-    for (int k = 0; k < spec_count && status == STATUS_OK; k++, comparison->done++) {
-        const struct measurement *row = comparison_find(comparison, scene, &specs[k]);
-        progress(comparison, scene->name, specs[k].algorithm->name);
+    for (int k = 0; k < spec_count && status == STATUS_OK; k++, batch->done++) {
+        const struct measurement *row = batch_find(batch, scene, &specs[k]);
+        progress(batch, scene->name, specs[k].algorithm->name);
         if (!row)
-            status = measure(comparison, &visit, k);
-        else if (visited && comparison->details)
+            status = measure(batch, &visit, k);
+        else if (visited && batch->details)
             redraw(&visit, k, row);
         progress_clear();
         if (row && status == STATUS_OK)
@@ -263,41 +259,39 @@ enum status comparison_scene(struct comparison *comparison, const struct scene *
         fflush(stdout);
     }
     if (visited) {
-        if (status == STATUS_OK && comparison->details)
+        if (status == STATUS_OK && batch->details)
             pictures_slices(&visit.pictures);
-        if (status == STATUS_OK && comparison->details && missing > 0)
+        if (status == STATUS_OK && batch->details && missing > 0)
             print_works(&visit);
-        comparison->undrawn += visit.pictures.undrawn;
+        batch->undrawn += visit.pictures.undrawn;
         visit_close(&visit);
     }
     return status;
 }
 
-enum status comparison_open(const char *directory, int rows, bool details, struct comparison *comparison)
+enum status batch_open(const char *directory, int rows, bool details, struct batch *batch)
 {
     struct provenance provenance;
-    *comparison =
-        (struct comparison){.directory = directory, .threads = omp_get_max_threads(), .details = details, .rows = rows};
-    provenance_fill(&provenance, comparison->threads);
-    enum status status = record_open(directory, &provenance, &comparison->record);
+    *batch = (struct batch){.directory = directory, .threads = omp_get_max_threads(), .details = details, .rows = rows};
+    provenance_fill(&provenance, batch->threads);
+    enum status status = record_open(directory, &provenance, &batch->record);
     if (status == STATUS_OK)
         table_header(stdout);
     return status;
 }
 
-enum status comparison_close(struct comparison *comparison, enum status status)
+enum status batch_close(struct batch *batch, enum status status)
 {
-    if (!comparison->record)
+    if (!batch->record)
         return status;
-    record_close(comparison->record);
-    comparison->record = NULL;
-    if (status == STATUS_OK && comparison->failed)
+    record_close(batch->record);
+    batch->record = NULL;
+    if (status == STATUS_OK && batch->failed)
         status = status_set(STATUS_FAILED, "at least one algorithm failed; the table and %s/measurements.csv say why",
-                            comparison->directory);
-    if (status == STATUS_OK && comparison->undrawn > 0)
-        status =
-            status_set(STATUS_FAILED, "%d %s could not be drawn, as is said above; %s/measurements.csv is whole",
-                       comparison->undrawn, comparison->undrawn == 1 ? "picture" : "pictures", comparison->directory);
+                            batch->directory);
+    if (status == STATUS_OK && batch->undrawn > 0)
+        status = status_set(STATUS_FAILED, "%d %s could not be drawn, as is said above; %s/measurements.csv is whole",
+                            batch->undrawn, batch->undrawn == 1 ? "picture" : "pictures", batch->directory);
     return status;
 }
 

@@ -75,7 +75,7 @@ static double memory_peak(void)
     return getrusage(RUSAGE_SELF, &usage) == 0 ? 1024.0 * (double)usage.ru_maxrss : NAN;
 }
 
-/* One round of a line; the peak is measured before and after, as the control is. `alone`: the line on one thread. */
+/* One round of a line; the peak is measured before and after, as the scalar reference loop is. `alone`: the line on one thread. */
 static enum status measure(const struct bench *bench, const struct bench_case *one, const struct method *method,
                            const struct problem *problem, const struct echoes *echoes,
                            const struct echoes *control_echoes, const struct line *alone, int round, struct line *line)

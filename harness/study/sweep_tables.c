@@ -16,9 +16,9 @@
 
 static const double floor_tolerance = 0.05;
 
-/* --- Fronts ---------------------------------------------------------------------------------------------------- */
+/* --- Pareto fronts ---------------------------------------------------------------------------------------------------- */
 
-int front_find(int count, const double *cost, const double *error, int *front)
+int pareto_front_find(int count, const double *cost, const double *error, int *front)
 {
     int size = 0;
     for (int i = 0; i < count; i++) {
@@ -36,7 +36,7 @@ int front_find(int count, const double *cost, const double *error, int *front)
     return size;
 }
 
-/* --- Ladders --------------------------------------------------------------------------------------------------- */
+/* --- Series --------------------------------------------------------------------------------------------------- */
 
 struct line_fit line_fit(int count, const double *rate, const double *error)
 {
@@ -74,34 +74,34 @@ int floor_find(int count, const double *error)
 
 /* --- Rows ------------------------------------------------------------------------------------------------------ */
 
-/* A measured setting as a rung of its ladder: the first option that is a number, and the rest, which stays. */
-struct rung {
+/* A measured setting as a point of its series: the first option that is a number, and the rest, which stays. */
+struct sweep_point {
     const struct measurement *row;
     char setting[32], rest[256]; /* empty setting: no option is a number */
     double value;
-    bool taken; /* belongs to a ladder that is done */
+    bool taken; /* belongs to a series that is done */
 };
 
-static struct rung rung_read(const struct measurement *row)
+static struct sweep_point point_read(const struct measurement *row)
 {
-    struct rung rung = {.row = row, .value = NAN};
+    struct sweep_point point = {.row = row, .value = NAN};
     char options[256], *rest = options;
     snprintf(options, sizeof options, "%s", row->options);
     for (char *option; (option = strsep(&rest, ","));) {
         const char *value = strchr(option, '=');
         double number;
-        size_t used = strlen(rung.rest);
-        if (!*rung.setting && value && csv_number(value + 1, &number) && isfinite(number)) {
-            snprintf(rung.setting, sizeof rung.setting, "%.*s", (int)(value - option), option);
-            rung.value = number;
+        size_t used = strlen(point.rest);
+        if (!*point.setting && value && csv_number(value + 1, &number) && isfinite(number)) {
+            snprintf(point.setting, sizeof point.setting, "%.*s", (int)(value - option), option);
+            point.value = number;
         } else {
-            snprintf(rung.rest + used, sizeof rung.rest - used, "%s%s", used ? "," : "", option);
+            snprintf(point.rest + used, sizeof point.rest - used, "%s%s", used ? "," : "", option);
         }
     }
-    return rung;
+    return point;
 }
 
-static bool same_ladder(const struct rung *a, const struct rung *b)
+static bool same_series(const struct sweep_point *a, const struct sweep_point *b)
 {
     return strcmp(a->row->scene, b->row->scene) == 0 && strcmp(a->row->algorithm, b->row->algorithm) == 0
            && strcmp(a->row->precision, b->row->precision) == 0 && strcmp(a->setting, b->setting) == 0
@@ -109,14 +109,14 @@ static bool same_ladder(const struct rung *a, const struct rung *b)
 }
 
 /* Samples for each one recorded: beta points are inserted between two. Other settings count by themselves. */
-static double rung_rate(const struct rung *rung)
+static double point_rate(const struct sweep_point *point)
 {
-    return strcmp(rung->setting, "beta") == 0 ? rung->value + 1 : rung->value;
+    return strcmp(point->setting, "beta") == 0 ? point->value + 1 : point->value;
 }
 
-static int compare_rungs(const void *a, const void *b)
+static int point_order(const void *a, const void *b)
 {
-    double x = ((const struct rung *)a)->value, y = ((const struct rung *)b)->value;
+    double x = ((const struct sweep_point *)a)->value, y = ((const struct sweep_point *)b)->value;
     return (x > y) - (x < y);
 }
 
@@ -124,10 +124,10 @@ static int compare_rungs(const void *a, const void *b)
 struct group {
     const char *scene;
     const struct measurement **rows; /* [count] borrowed */
-    struct rung *rungs;              /* [count] */
-    double *error, *cost;            /* [count] room for a front's or a ladder's values */
+    struct sweep_point *points;      /* [count] */
+    double *error, *cost;            /* [count] room for a front's or a series' values */
     int *front;                      /* [count] room for a front */
-    struct rung *ladder;             /* [count] room for a ladder */
+    struct sweep_point *series;      /* [count] room for a series */
     int count;
 };
 
@@ -137,8 +137,8 @@ static void group_free(struct group *group)
     free(group->error);
     free(group->cost);
     free(group->front);
-    free(group->rungs);
-    free(group->ladder);
+    free(group->points);
+    free(group->series);
 }
 
 static enum status group_fill(const struct results *results, const char *scene, struct group *group)
@@ -149,9 +149,9 @@ static enum status group_fill(const struct results *results, const char *scene, 
                             .error = calloc(most, sizeof *group->error),
                             .cost = calloc(most, sizeof *group->cost),
                             .front = calloc(most, sizeof *group->front),
-                            .rungs = calloc(most, sizeof *group->rungs),
-                            .ladder = calloc(most, sizeof *group->ladder)};
-    if (!group->rows || !group->error || !group->cost || !group->front || !group->rungs || !group->ladder)
+                            .points = calloc(most, sizeof *group->points),
+                            .series = calloc(most, sizeof *group->series)};
+    if (!group->rows || !group->error || !group->cost || !group->front || !group->points || !group->series)
         return status_set(STATUS_FAILED, "%s: no memory for %zu rows", scene, most);
     double most_pairs = 0;
     for (int k = 0; k < results->csv.row_count; k++)
@@ -163,7 +163,7 @@ static enum status group_fill(const struct results *results, const char *scene, 
         if (strcmp(row->scene, scene) == 0 && strcmp(row->status, "ok") == 0 && row->run_s > 0 && row->error > 0
             && !partial) {
             group->rows[group->count] = row;
-            group->rungs[group->count++] = rung_read(row);
+            group->points[group->count++] = point_read(row);
         }
     }
     return STATUS_OK;
@@ -204,7 +204,7 @@ static void fronts_write(struct group *group, FILE *file)
 {
     for (size_t c = 0; c < sizeof costs / sizeof *costs; c++) {
         group_values(group, &costs[c]);
-        int size = front_find(group->count, group->cost, group->error, group->front);
+        int size = pareto_front_find(group->count, group->cost, group->error, group->front);
         for (int k = 0; k < size; k++) {
             const struct measurement *row = group->rows[group->front[k]];
             fields_write(
@@ -253,63 +253,64 @@ static void cheapest_write(struct group *group, FILE *file)
     }
 }
 
-/* The straight line through a part of a ladder. rates, errors: [count] of that part. */
-static void slope_write(const struct rung *rungs, const double *rates, const double *errors, int count,
+/* The straight line through a part of a series. rates, errors: [count] of that part. */
+static void slope_write(const struct sweep_point *points, const double *rates, const double *errors, int count,
                         const char *part, FILE *file)
 {
-    const struct measurement *row = rungs->row;
+    const struct measurement *row = points->row;
     struct line_fit fit = line_fit(count, rates, errors);
     char name[512], range[80];
     if (isnan(fit.slope))
         return;
     fields_write(
         file,
-        (const char *const[]){row->scene, row->algorithm, rungs->rest, row->precision, rungs->setting, part, NULL},
-        (double[]){rungs[0].value, rungs[count - 1].value, rates[0], rates[count - 1], fit.points, fit.slope, fit.first,
-                   fit.last, fit.residual_log10},
+        (const char *const[]){row->scene, row->algorithm, points->rest, row->precision, points->setting, part, NULL},
+        (double[]){points[0].value, points[count - 1].value, rates[0], rates[count - 1], fit.points, fit.slope,
+                   fit.first, fit.last, fit.residual_log10},
         9);
-    snprintf(name, sizeof name, "%s%s%s%s", row->algorithm, *rungs->rest ? ":" : "", rungs->rest,
+    snprintf(name, sizeof name, "%s%s%s%s", row->algorithm, *points->rest ? ":" : "", points->rest,
              strcmp(row->precision, "double") == 0 ? " double" : "");
     shown_make(name);
-    snprintf(range, sizeof range, "%s %g to %g", rungs->setting, rungs[0].value, rungs[count - 1].value);
+    snprintf(range, sizeof range, "%s %g to %g", points->setting, points[0].value, points[count - 1].value);
     shown_make(range);
     printf("  %-36s %-8s %-18s %6d  %6.3f  %7.1e  %7.1e  %8.4f\n", name, part, range, fit.points, fit.slope, fit.first,
            fit.last, fit.residual_log10);
 }
 
-/* The ladder's parts: where the error falls and the floor; without a floor the finest half, for the order that the
+/* The series' parts: where the error falls and the floor; without a floor the finest half, for the order that the
    method tends to. */
-static void ladder_write(const struct rung *rungs, int count, const double *rates, const double *errors, FILE *file)
+static void series_write(const struct sweep_point *points, int count, const double *rates, const double *errors,
+                         FILE *file)
 {
     int floor = floor_find(count, errors), finest = count / 2;
-    slope_write(rungs, rates, errors, floor, "falling", file);
+    slope_write(points, rates, errors, floor, "falling", file);
     if (floor == count && count - finest >= 3)
-        slope_write(rungs + finest, rates + finest, errors + finest, count - finest, "finest", file);
+        slope_write(points + finest, rates + finest, errors + finest, count - finest, "finest", file);
     if (floor < count)
-        slope_write(rungs + floor, rates + floor, errors + floor, count - floor, "floor", file);
+        slope_write(points + floor, rates + floor, errors + floor, count - floor, "floor", file);
 }
 
 static void slopes_write(struct group *group, FILE *file)
 {
     printf("\n%s: slopes of log error against log rate (beta + 1, or the setting itself)\n"
            "  %-36s %-8s %-18s %6s  %6s  %7s  %7s  %8s\n",
-           group->scene, "ladder", "part", "setting", "points", "slope", "first", "last", "residual");
+           group->scene, "series", "part", "setting", "points", "slope", "first", "last", "residual");
     for (int k = 0; k < group->count; k++) {
-        const struct rung *start = &group->rungs[k];
+        const struct sweep_point *start = &group->points[k];
         int size = 0;
         if (start->taken || !*start->setting)
             continue;
         for (int j = k; j < group->count; j++)
-            if (same_ladder(start, &group->rungs[j])) {
-                group->ladder[size++] = group->rungs[j];
-                group->rungs[j].taken = true;
+            if (same_series(start, &group->points[j])) {
+                group->series[size++] = group->points[j];
+                group->points[j].taken = true;
             }
-        qsort(group->ladder, (size_t)size, sizeof *group->ladder, compare_rungs);
+        qsort(group->series, (size_t)size, sizeof *group->series, point_order);
         for (int j = 0; j < size; j++) {
-            group->cost[j] = rung_rate(&group->ladder[j]);
-            group->error[j] = group->ladder[j].row->error;
+            group->cost[j] = point_rate(&group->series[j]);
+            group->error[j] = group->series[j].row->error;
         }
-        ladder_write(group->ladder, size, group->cost, group->error, file);
+        series_write(group->series, size, group->cost, group->error, file);
     }
 }
 
@@ -342,11 +343,11 @@ static void rules_write(struct group *group, const struct scene *given, const st
     scene_free(&scene);
 }
 
-enum { FRONTS, CHEAPEST, SLOPES, RULES, SHEETS };
+enum { FRONTS, CHEAPEST, SLOPES, RULES, TABLES };
 
 static const struct {
     const char *file, *format, *header;
-} sheets[SHEETS] = {
+} tables[TABLES] = {
     [FRONTS] = {"fronts.csv", "sasbench fronts 1", "scene,cost,algorithm,options,precision,value,error"},
     [CHEAPEST] = {"cheapest.csv", "sasbench cheapest 1",
                   "scene,cost,error_below,algorithm,options,precision,run_s,speed_up,flops,error,error_gain,pslr_db,"
@@ -382,20 +383,20 @@ static bool scene_seen(const struct results *results, int row)
     return false;
 }
 
-static enum status sheet_open(const char *directory, int sheet, const struct csv *csv, struct text_file *file)
+static enum status table_open(const char *directory, int table, const struct csv *csv, struct text_file *file)
 {
     static const char *const keys[] = {"machine", "commit", "date", "threads"};
     char path[4096];
-    snprintf(path, sizeof path, "%s/%s", directory, sheets[sheet].file);
+    snprintf(path, sizeof path, "%s/%s", directory, tables[table].file);
     enum status status = text_file_open(path, file);
     if (status != STATUS_OK)
         return status;
-    fprintf(file->stream, "# %s\n", sheets[sheet].format);
+    fprintf(file->stream, "# %s\n", tables[table].format);
     for (size_t k = 0; k < sizeof keys / sizeof *keys; k++) {
         const char *value = csv_comment(csv, keys[k]);
         fprintf(file->stream, "# %s: %s\n", keys[k], value ? value : "unknown");
     }
-    fprintf(file->stream, "%s\n", sheets[sheet].header);
+    fprintf(file->stream, "%s\n", tables[table].header);
     return STATUS_OK;
 }
 
@@ -410,13 +411,13 @@ static const struct scene *scene_find(const struct scene *scenes, int count, con
 enum status sweep_tables(const char *directory, const struct scene *scenes, int scene_count)
 {
     struct results results;
-    struct text_file files[SHEETS];
+    struct text_file files[TABLES];
     int opened = 0;
     char path[4096];
     snprintf(path, sizeof path, "%s/measurements.csv", directory);
     enum status status = results_read(path, &results);
-    while (opened < SHEETS && status == STATUS_OK) {
-        status = sheet_open(directory, opened, &results.csv, &files[opened]);
+    while (opened < TABLES && status == STATUS_OK) {
+        status = table_open(directory, opened, &results.csv, &files[opened]);
         opened += status == STATUS_OK;
     }
     for (int row = 0; row < results.csv.row_count && status == STATUS_OK; row++)

@@ -1,15 +1,15 @@
-/* What the rows of a sweep say: the fronts, the cheapest setting for each decade of error, how the error falls along
-   each ladder, and the papers' rules for the upsampling rate. */
+/* What the rows of a sweep say: the Pareto fronts, the cheapest setting for each decade of error, how the error falls along
+   each series of settings that differ in one parameter, and the papers' rules for the upsampling rate. */
 #ifndef SASBENCH_STUDY_SWEEP_TABLES_H
 #define SASBENCH_STUDY_SWEEP_TABLES_H
 
 #include "measure/results.h"
 #include "scene/scene.h"
 
-/* The points that no other point beats: none has both less or equal cost and less or equal error. Of equal points the
+/* The Pareto front: the points of which no other has both less or equal cost and less or equal error. Of equal points the
    first stays. Their indices go to front [count], cost ascending; returns how many. Values that are not > 0 are no
    points. */
-int front_find(int count, const double *cost, const double *error, int *front);
+int pareto_front_find(int count, const double *cost, const double *error, int *front);
 
 /* A straight line through log10 error against log10 rate, by least squares. */
 struct line_fit {

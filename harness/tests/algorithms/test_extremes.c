@@ -228,15 +228,15 @@ static struct results results_of(const char *name, const struct parts *parts, en
     static const char *const specs[] = {"reference", "bp_nearest", "rma_lbf"};
     struct spec parsed[3];
     struct scene scene = scene_of(name, parts);
-    struct comparison comparison;
+    struct batch batch;
     struct results results;
     char out[400];
     for (int k = 0; k < 3; k++)
         assert_int_equal(spec_parse(specs[k], &parsed[k]), STATUS_OK);
     snprintf(out, sizeof out, "%s", path_of("out"));
-    assert_int_equal(comparison_open(out, 3, false, &comparison), STATUS_OK);
-    enum status status = comparison_scene(&comparison, &scene, 3, parsed);
-    assert_int_equal(comparison_close(&comparison, status), wanted);
+    assert_int_equal(batch_open(out, 3, false, &batch), STATUS_OK);
+    enum status status = batch_scene(&batch, &scene, 3, parsed);
+    assert_int_equal(batch_close(&batch, status), wanted);
     assert_int_equal(results_read(path_of("out/measurements.csv"), &results), STATUS_OK);
     assert_int_equal(results.csv.row_count, 3);
     for (int k = 0; k < 3; k++)

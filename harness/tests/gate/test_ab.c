@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "gate/ab.h"
-#include "gate/bootstrap.h"
+#include "gate/ab_interval.h"
 #include "data/random.h"
 #include "tests/support.h"
 
@@ -22,11 +22,11 @@ enum { ROUNDS = 16, BLOCKS = 3, TRIALS = 200 };
 
 /* Ratios of times around `ratio`; the noises are standard deviations of a round and of a block. Every tenth block is
    disturbed by up to 50 %, to either side. */
-static struct interval draw_interval(struct random *random, double ratio, double noise_round, double noise_block,
-                                     double miss)
+static struct ab_interval draw_interval(struct random *random, double ratio, double noise_round, double noise_block,
+                                        double miss)
 {
     double ratios[ROUNDS * BLOCKS];
-    struct interval interval;
+    struct ab_interval interval;
     for (int k = 0, round = 0; round < ROUNDS; round++) {
         double shift = noise_round * M_SQRT2 * creal(random_normal(random));
         for (int block = 0; block < BLOCKS; block++, k++) {
@@ -34,7 +34,7 @@ static struct interval draw_interval(struct random *random, double ratio, double
             ratios[k] = ratio * exp(shift + hit + noise_block * M_SQRT2 * creal(random_normal(random)));
         }
     }
-    assert_int_equal(interval_find(ratios, ROUNDS, BLOCKS, miss, &interval), STATUS_OK);
+    assert_int_equal(ab_interval_find(ratios, ROUNDS, BLOCKS, miss, &interval), STATUS_OK);
     assert_true(interval.low <= interval.middle && interval.middle <= interval.high);
     return interval;
 }
@@ -55,9 +55,9 @@ static void verdicts_of_made_up_times(void **state)
         struct random random = random_seed(7, n);
         int counts[VERDICTS] = {0};
         for (int trial = 0; trial < TRIALS; trial++) {
-            struct interval interval =
+            struct ab_interval interval =
                 draw_interval(&random, cases[n].ratio, cases[n].noise_round, cases[n].noise_block, 1e-4);
-            counts[interval_judge(&interval)]++;
+            counts[ab_interval_judge(&interval)]++;
         }
         enum verdict verdict = cases[n].verdict;
         /* A slowdown of 10 % may also be but warned of, never denied. */
@@ -76,7 +76,7 @@ static void intervals_hold_as_often_as_they_say(void **state)
     struct random random = random_seed(8, 0);
     int outside = 0;
     for (int trial = 0; trial < TRIALS; trial++) {
-        struct interval interval = draw_interval(&random, 1.07, 0.02, 0.02, 0.025);
+        struct ab_interval interval = draw_interval(&random, 1.07, 0.02, 0.02, 0.025);
         outside += interval.low > 1.07 || interval.high < 1.07;
     }
     assert_in_range(outside, TRIALS / 100, TRIALS / 8); /* 5 %, and what few rounds add */
@@ -86,7 +86,7 @@ static void verdicts_at_the_stated_effects(void **state)
 {
     (void)state;
     static const struct {
-        struct interval interval;
+        struct ab_interval interval;
         enum verdict verdict;
     } cases[] = {
         {{1.051, 1.06, 1.07}, VERDICT_WORSE},
@@ -100,7 +100,7 @@ static void verdicts_at_the_stated_effects(void **state)
         {{0.2, 1, 4}, VERDICT_NOISY},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
-        assert_int_equal(interval_judge(&cases[k].interval), cases[k].verdict);
+        assert_int_equal(ab_interval_judge(&cases[k].interval), cases[k].verdict);
 }
 
 /* --- Programs ------------------------------------------------------------------------------------------------- */
@@ -132,7 +132,7 @@ static void script_write(const char *name, const char *text)
 #define TOOK(text)         "echo 'took " text "'"
 #define GOOD               PROGRAM(PLANNED, TOOK("0.010 clear=0.0001;compress=0.0039;focus=0.006"))
 
-static enum status compare_scripts(const char *old, const char *new, struct compare *compare)
+static enum status compare_scripts(const char *old, const char *new, struct diff *diff)
 {
     static const char *const scenes[] = {"gate/points"};
     struct spec spec;
@@ -142,7 +142,7 @@ static enum status compare_scripts(const char *old, const char *new, struct comp
     char paths[2][400];
     snprintf(paths[0], sizeof paths[0], "%s", path_of("old"));
     snprintf(paths[1], sizeof paths[1], "%s", path_of("new"));
-    enum status status = ab_compare(paths[0], paths[1], scenes, 1, &spec, 1, &quick, compare);
+    enum status status = ab_run(paths[0], paths[1], scenes, 1, &spec, 1, &quick, diff);
     spec_free(&spec);
     assert_int_equal(waitpid(-1, NULL, WNOHANG), -1); /* no child is left */
     assert_int_equal(errno, ECHILD);
@@ -170,21 +170,21 @@ static void slower_stages_are_told(void **state)
          VERDICT_BETTER, STATUS_OK},
     };
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
-        struct compare compare;
-        if (compare_scripts(GOOD, cases[n].new, &compare) != STATUS_OK)
+        struct diff diff;
+        if (compare_scripts(GOOD, cases[n].new, &diff) != STATUS_OK)
             fail_msg("case %zu: %s", n, status_message());
         const enum verdict verdicts[] = {cases[n].total, cases[n].compress, cases[n].focus};
         static const char *const parts[] = {"total", "compress", "focus"};
-        assert_int_equal(compare.finding_count, 3); /* clear is too small to be judged alone */
+        assert_int_equal(diff.finding_count, 3); /* clear is too small to be judged alone */
         for (int k = 0; k < 3; k++) {
-            const struct finding *f = &compare.findings[k];
+            const struct finding *f = &diff.findings[k];
             assert_string_equal(f->detail, parts[k]);
             if (f->verdict != verdicts[k])
                 fail_msg("case %zu: %s is %s", n, parts[k], verdict_names[f->verdict]);
         }
-        assert_true(fabs(compare.findings[0].before - 0.010) < 1e-9);
-        assert_int_equal(compare_judge(&compare), cases[n].status);
-        compare_free(&compare);
+        assert_true(fabs(diff.findings[0].before - 0.010) < 1e-9);
+        assert_int_equal(diff_judge(&diff), cases[n].status);
+        diff_free(&diff);
     }
 }
 
@@ -192,18 +192,18 @@ static void what_one_program_refuses_is_gone_or_new(void **state)
 {
     (void)state;
     static const char refusing[] = PROGRAM("echo refused no such thing", "echo failed");
-    struct compare compare;
-    assert_int_equal(compare_scripts(GOOD, refusing, &compare), STATUS_OK);
-    assert_int_equal(compare.counts[CLASS_TIME][VERDICT_GONE], 1);
-    assert_int_equal(compare_judge(&compare), STATUS_FAILED);
-    compare_free(&compare);
-    assert_int_equal(compare_scripts(refusing, GOOD, &compare), STATUS_OK);
-    assert_int_equal(compare.counts[CLASS_TIME][VERDICT_NEW], 1);
-    assert_int_equal(compare_judge(&compare), STATUS_OK);
-    compare_free(&compare);
-    assert_int_equal(compare_scripts(refusing, refusing, &compare), STATUS_INVALID);
+    struct diff diff;
+    assert_int_equal(compare_scripts(GOOD, refusing, &diff), STATUS_OK);
+    assert_int_equal(diff.counts[CLASS_TIME][VERDICT_GONE], 1);
+    assert_int_equal(diff_judge(&diff), STATUS_FAILED);
+    diff_free(&diff);
+    assert_int_equal(compare_scripts(refusing, GOOD, &diff), STATUS_OK);
+    assert_int_equal(diff.counts[CLASS_TIME][VERDICT_NEW], 1);
+    assert_int_equal(diff_judge(&diff), STATUS_OK);
+    diff_free(&diff);
+    assert_int_equal(compare_scripts(refusing, refusing, &diff), STATUS_INVALID);
     assert_non_null(strstr(status_message(), "no such thing"));
-    compare_free(&compare);
+    diff_free(&diff);
 }
 
 static void faulty_programs_are_told(void **state)
@@ -221,7 +221,7 @@ static void faulty_programs_are_told(void **state)
         {HELLO "exit 0\n", {"ended with status 0", "'plan bp_linear:beta=8"}},
         {HELLO "exec 0<&- 1>&-; sleep 100\n", {"closed its output", "'plan "}},
         {HELLO "sleep 100\n", {"says nothing", "after 'plan "}},
-        {PROGRAM("echo what", "exit"), {"answers 'what' to 'plan", "'planned UNIT HASH' is needed"}},
+        {PROGRAM("echo what", "exit"), {"answers 'what' to 'plan", "'planned JOB HASH' is needed"}},
         {PROGRAM("echo planned 0 a2", "exit"), {"gate/points", "read it differently"}},
         {PROGRAM(PLANNED, "exit 1"), {"ended with status 1 after 'run 0 1'"}},
         {PROGRAM(PLANNED, "sleep 100"), {"says nothing", "after 'run 0 1'"}},
@@ -235,17 +235,17 @@ static void faulty_programs_are_told(void **state)
     };
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++)
         for (int side = 0; side < (strstr(cases[n].says[0], "nothing") ? 1 : 2); side++) {
-            struct compare compare;
+            struct diff diff;
             quick.patience_s = strstr(cases[n].says[0], "nothing") ? 1 : 30;
             const char *good = GOOD, *bad = cases[n].program;
-            enum status status = compare_scripts(side ? good : bad, side ? bad : good, &compare);
+            enum status status = compare_scripts(side ? good : bad, side ? bad : good, &diff);
             bool said = strstr(status_message(), cases[n].says[0])
                         && (strstr(cases[n].says[0], "gate") || strstr(status_message(), side ? "NEW " : "OLD "));
             for (int k = 1; k < 3 && cases[n].says[k]; k++)
                 said = said && strstr(status_message(), cases[n].says[k]);
             if (status != STATUS_INVALID || !said)
                 fail_msg("case %zu, side %d: status %d, '%s'", n, side, status, status_message());
-            compare_free(&compare);
+            diff_free(&diff);
         }
 }
 
@@ -253,31 +253,31 @@ static void what_is_no_program_is_told(void **state)
 {
     (void)state;
     static const char *const scenes[] = {"gate/points"}, *const no_scenes[] = {"gate/nothing"};
-    struct compare compare;
+    struct diff diff;
     script_write("old", GOOD);
     chmod(path_of("old"), 0644);
     const char *const paths[] = {folder, path_of("old"), path_of("none")};
     for (int k = 0; k < 3; k++) {
-        assert_int_equal(ab_compare(paths[k], "/bin/sh", scenes, 1, NULL, 0, &quick, &compare), STATUS_INVALID);
+        assert_int_equal(ab_run(paths[k], "/bin/sh", scenes, 1, NULL, 0, &quick, &diff), STATUS_INVALID);
         assert_non_null(strstr(status_message(), "no program that can be run"));
         assert_non_null(strstr(status_message(), paths[k]));
-        compare_free(&compare);
+        diff_free(&diff);
     }
-    assert_int_equal(ab_compare(paths[1], paths[1], no_scenes, 1, NULL, 0, &quick, &compare), STATUS_INVALID);
+    assert_int_equal(ab_run(paths[1], paths[1], no_scenes, 1, NULL, 0, &quick, &diff), STATUS_INVALID);
     assert_non_null(strstr(status_message(), "gate/nothing"));
-    compare_free(&compare);
+    diff_free(&diff);
 }
 
 /* What a hanging program had started is ended with it. */
 static void nothing_is_left_behind(void **state)
 {
     (void)state;
-    struct compare compare;
+    struct diff diff;
     char text[500];
     quick.patience_s = 1;
     snprintf(text, sizeof text, "sleep 300 &\necho $! > %s\nwait\n", path_of("pid"));
-    assert_int_equal(compare_scripts(GOOD, text, &compare), STATUS_INVALID);
-    compare_free(&compare);
+    assert_int_equal(compare_scripts(GOOD, text, &diff), STATUS_INVALID);
+    diff_free(&diff);
     int process = 0;
     FILE *file = fopen(path_of("pid"), "r");
     assert_non_null(file);
@@ -295,21 +295,21 @@ static void the_real_program_answers(void **state)
     static const char *const scenes[] = {"gate/points"};
     const struct ab_effort effort = {2, 1, 2, 20, 60};
     const char *program = getenv("SASBENCH_PROGRAM");
-    struct compare compare;
+    struct diff diff;
     struct spec specs[2];
     assert_non_null(program);
     assert_int_equal(spec_parse("bp_linear:beta=2,precision=double", &specs[0]), STATUS_OK);
     assert_int_equal(spec_parse("rma_pca", &specs[1]), STATUS_OK);
-    if (ab_compare(program, program, scenes, 1, specs, 2, &effort, &compare) != STATUS_OK)
+    if (ab_run(program, program, scenes, 1, specs, 2, &effort, &diff) != STATUS_OK)
         fail_msg("%s", status_message());
-    assert_true(compare.finding_count >= 4);
-    assert_string_equal(compare.findings[0].detail, "total");
-    assert_non_null(strstr(compare.findings[0].spec, "bp_linear:beta=2"));
-    for (int k = 0; k < compare.finding_count; k++) {
-        const struct finding *f = &compare.findings[k];
+    assert_true(diff.finding_count >= 4);
+    assert_string_equal(diff.findings[0].detail, "total");
+    assert_non_null(strstr(diff.findings[0].spec, "bp_linear:beta=2"));
+    for (int k = 0; k < diff.finding_count; k++) {
+        const struct finding *f = &diff.findings[k];
         assert_true(f->before > 0 && f->after > 0 && f->change_low <= f->change && f->change <= f->change_high);
     }
-    compare_free(&compare);
+    diff_free(&diff);
     spec_free(&specs[0]);
     spec_free(&specs[1]);
 }

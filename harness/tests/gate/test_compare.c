@@ -42,11 +42,11 @@ static char *text_read(const char *name)
     return text;
 }
 
-static const struct finding *find(const struct compare *compare, const char *metric)
+static const struct finding *find(const struct diff *diff, const char *metric)
 {
-    for (int k = 0; k < compare->finding_count; k++)
-        if (strcmp(compare->findings[k].metric, metric) == 0)
-            return &compare->findings[k];
+    for (int k = 0; k < diff->finding_count; k++)
+        if (strcmp(diff->findings[k].metric, metric) == 0)
+            return &diff->findings[k];
     return NULL;
 }
 
@@ -54,17 +54,17 @@ static const struct finding *find(const struct compare *compare, const char *met
 
 static void check_baseline(const char *isa)
 {
-    struct compare compare;
+    struct diff diff;
     setenv("SASBENCH_ISA", isa, 1);
     assert_int_equal(baseline_write(path_of("new.csv")), STATUS_OK);
     unsetenv("SASBENCH_ISA");
-    assert_int_equal(compare_results(BASELINE_PATH, path_of("new.csv"), &compare), STATUS_OK);
-    if (compare_judge(&compare) != STATUS_OK || compare.finding_count < 500) {
-        compare_print(&compare, stdout);
+    assert_int_equal(diff_results(BASELINE_PATH, path_of("new.csv"), &diff), STATUS_OK);
+    if (diff_judge(&diff) != STATUS_OK || diff.finding_count < 500) {
+        diff_print(&diff, stdout);
         fail_msg("%s code differs from results/baseline.csv (./sasbench baseline writes a new one, to be reviewed)",
                  isa);
     }
-    compare_free(&compare);
+    diff_free(&diff);
 }
 
 static void baseline_holds(void **state)
@@ -173,7 +173,7 @@ static bool gate_passes(const struct session *session, const char *spec_text, bo
 {
     struct spec spec;
     struct measurement healthy, row;
-    struct compare compare;
+    struct diff diff;
     char reason[512];
     assert_int_equal(spec_parse(spec_text, &spec), STATUS_OK);
     assert_int_equal(baseline_row(session, &spec, reason, sizeof reason, &healthy), STATUS_OK);
@@ -183,15 +183,15 @@ static bool gate_passes(const struct session *session, const char *spec_text, bo
     assert_int_equal(baseline_row(session, &spec, reason, sizeof reason, &row), STATUS_OK);
     assert_int_equal(measurements_write(path_of("old.csv"), "healthy", NULL, 0, &healthy, 1), STATUS_OK);
     assert_int_equal(measurements_write(path_of("new.csv"), "faulty", NULL, 0, &row, 1), STATUS_OK);
-    assert_int_equal(compare_results(path_of("old.csv"), path_of("new.csv"), &compare), STATUS_OK);
-    bool passes = compare_judge(&compare) == STATUS_OK;
+    assert_int_equal(diff_results(path_of("old.csv"), path_of("new.csv"), &diff), STATUS_OK);
+    bool passes = diff_judge(&diff) == STATUS_OK;
     *metric = "";
-    for (int k = compare.finding_count - 1; k >= 0; k--)
-        if (compare.findings[k].verdict == VERDICT_WORSE)
+    for (int k = diff.finding_count - 1; k >= 0; k--)
+        if (diff.findings[k].verdict == VERDICT_WORSE)
             for (const struct metric *m = metrics; m->name; m++)
-                if (strcmp(m->name, compare.findings[k].metric) == 0)
+                if (strcmp(m->name, diff.findings[k].metric) == 0)
                     *metric = m->name;
-    compare_free(&compare);
+    diff_free(&diff);
     spec_free(&spec);
     return passes;
 }
@@ -227,11 +227,11 @@ static void faults_are_caught_by_name(void **state)
     "pslr_db,islr_db\n"
 #define ROW "s,a,beta=8,float,2,general,ok,,,0.1,1,0.9,5,2,focus=1,1e6,1e6,1000,4096,0.1,0.05,0.01,0.04,-13.3,-10.4\n"
 
-static void compare_texts(const char *old, const char *new, struct compare *compare)
+static void compare_texts(const char *old, const char *new, struct diff *diff)
 {
     support_write("old.csv", old);
     support_write("new.csv", new);
-    enum status status = compare_results(path_of("old.csv"), path_of("new.csv"), compare);
+    enum status status = diff_results(path_of("old.csv"), path_of("new.csv"), diff);
     if (status != STATUS_OK)
         fail_msg("%s", status_message());
 }
@@ -274,24 +274,24 @@ static void values_are_judged_by_the_metric_table(void **state)
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         char old[2048], new[2048];
-        struct compare compare;
+        struct diff diff;
         snprintf(old, sizeof old, HEAD ROW);
         const char *at = strstr(ROW, cases[k].before);
         assert_non_null(at);
         snprintf(new, sizeof new, HEAD "%.*s%s%s", (int)(at - ROW), ROW, cases[k].after, at + strlen(cases[k].before));
-        compare_texts(old, new, &compare);
+        compare_texts(old, new, &diff);
         const struct finding *changed = NULL;
-        for (int n = compare.finding_count - 1; n >= 0; n--)
-            if (compare.findings[n].verdict != VERDICT_SAME)
-                changed = &compare.findings[n];
+        for (int n = diff.finding_count - 1; n >= 0; n--)
+            if (diff.findings[n].verdict != VERDICT_SAME)
+                changed = &diff.findings[n];
         bool fails = cases[k].metric
                      && (cases[k].verdict == VERDICT_WORSE || cases[k].verdict == VERDICT_GONE
                          || cases[k].verdict == VERDICT_CHANGED);
-        if ((changed != NULL) != (cases[k].metric != NULL) || (compare_judge(&compare) != STATUS_OK) != fails
+        if ((changed != NULL) != (cases[k].metric != NULL) || (diff_judge(&diff) != STATUS_OK) != fails
             || (changed && (strcmp(changed->metric, cases[k].metric) != 0 || changed->verdict != cases[k].verdict)))
             fail_msg("%s -> %s: %s %s", cases[k].before, cases[k].after, changed ? changed->metric : "",
                      changed ? verdict_names[changed->verdict] : "nothing");
-        compare_free(&compare);
+        diff_free(&diff);
     }
 }
 
@@ -302,29 +302,29 @@ static void many_betterments_are_a_change(void **state)
     static const char row[] = "s,a,beta=%d,float,2,,ok,,,,,,,,,,,,,%s,,,,,\n";
     for (int rows = 4; rows <= 5; rows++) {
         char old[4096] = HEAD, new[4096] = HEAD;
-        struct compare compare;
+        struct diff diff;
         for (int k = 0; k < rows; k++) {
             snprintf(old + strlen(old), sizeof old - strlen(old), row, k, "0.1");
             snprintf(new + strlen(new), sizeof new - strlen(new), row, k, "0.0998");
         }
-        compare_texts(old, new, &compare);
-        assert_int_equal(compare.counts[CLASS_QUALITY][rows == 5 ? VERDICT_CHANGED : VERDICT_BETTER], rows);
-        assert_int_equal(compare_judge(&compare), rows == 5 ? STATUS_FAILED : STATUS_OK);
+        compare_texts(old, new, &diff);
+        assert_int_equal(diff.counts[CLASS_QUALITY][rows == 5 ? VERDICT_CHANGED : VERDICT_BETTER], rows);
+        assert_int_equal(diff_judge(&diff), rows == 5 ? STATUS_FAILED : STATUS_OK);
         if (rows == 5)
             assert_non_null(strstr(status_message(), "0 worse, 0 gone, 5 changed for the better: where that is meant, "
                                                      "./sasbench baseline writes a new baseline"));
-        compare_free(&compare);
+        diff_free(&diff);
     }
     for (int measured = 0; measured < 2; measured++) {
-        struct compare compare;
+        struct diff diff;
         char old[4096];
         snprintf(old, sizeof old, "%s%s", HEAD, "s,a,,float,2,,unsupported,why,,,,,,,,,,,,,,,,,\n");
         if (measured)
             memcpy(strstr(old, "# scene s: 0123"), "# program: 0123", 15);
-        compare_texts(old, HEAD "s,a,,float,2,,ok,,,,,,,,,,,,,1,,,,,\n", &compare);
-        assert_int_equal(find(&compare, "status")->verdict, VERDICT_CHANGED);
-        assert_int_equal(compare_judge(&compare), measured ? STATUS_OK : STATUS_FAILED);
-        compare_free(&compare);
+        compare_texts(old, HEAD "s,a,,float,2,,ok,,,,,,,,,,,,,1,,,,,\n", &diff);
+        assert_int_equal(find(&diff, "status")->verdict, VERDICT_CHANGED);
+        assert_int_equal(diff_judge(&diff), measured ? STATUS_OK : STATUS_FAILED);
+        diff_free(&diff);
     }
 }
 
@@ -336,7 +336,7 @@ static void scenes_are_told_apart_whatever_they_are_called(void **state)
     enum { NAMES = sizeof names / sizeof *names };
     for (int changed = 0; changed < NAMES; changed++) {
         char texts[2][8192];
-        struct compare compare;
+        struct diff diff;
         const char *columns = strstr(HEAD, "scene,");
         for (int side = 0; side < 2; side++) {
             char *text = texts[side];
@@ -349,50 +349,50 @@ static void scenes_are_told_apart_whatever_they_are_called(void **state)
             for (int k = 0; k < NAMES; k++)
                 snprintf(text + strlen(text), size - strlen(text), "%s,a,,float,2,,ok,,,,,,,,,,,,,1,,,,,\n", names[k]);
         }
-        compare_texts(texts[0], texts[1], &compare);
-        const struct finding *gone = find(&compare, "row");
+        compare_texts(texts[0], texts[1], &diff);
+        const struct finding *gone = find(&diff, "row");
         if (!gone || gone->verdict != VERDICT_GONE || strcmp(gone->scene, names[changed]) != 0
-            || compare.counts[CLASS_QUALITY][VERDICT_GONE] != 1 || compare.counts[CLASS_QUALITY][VERDICT_NEW] != 1)
+            || diff.counts[CLASS_QUALITY][VERDICT_GONE] != 1 || diff.counts[CLASS_QUALITY][VERDICT_NEW] != 1)
             fail_msg("a change of scene '%s' is not seen, or another's is", names[changed]);
-        compare_free(&compare);
+        diff_free(&diff);
     }
 }
 
 static void rounding_of_float_is_no_change_but_of_double(void **state)
 {
     (void)state;
-    struct compare compare;
+    struct diff diff;
     static const char *const row = HEAD "s,a,,%s,2,,ok,,,,,,,,,,,,,%s,,,,,\n";
     for (int is_double = 0; is_double < 2; is_double++) {
         char old[1024], new[1024];
         snprintf(old, sizeof old, row, is_double ? "double" : "float", "4e-10");
         snprintf(new, sizeof new, row, is_double ? "double" : "float", "3e-8");
-        compare_texts(old, new, &compare);
-        assert_int_equal(find(&compare, "error")->verdict, is_double ? VERDICT_WORSE : VERDICT_SAME);
-        compare_free(&compare);
+        compare_texts(old, new, &diff);
+        assert_int_equal(find(&diff, "error")->verdict, is_double ? VERDICT_WORSE : VERDICT_SAME);
+        diff_free(&diff);
     }
 }
 
 static void rows_of_another_scene_content_are_not_compared(void **state)
 {
     (void)state;
-    struct compare compare;
+    struct diff diff;
     char new[2048];
     snprintf(new, sizeof new, "%s", HEAD ROW);
     memcpy(strstr(new, "0123"), "0124", 4);
-    compare_texts(HEAD ROW, new, &compare);
-    assert_int_equal(compare.counts[CLASS_QUALITY][VERDICT_GONE], 1);
-    assert_int_equal(compare.counts[CLASS_QUALITY][VERDICT_NEW], 1);
-    assert_int_equal(compare.finding_count, 2);
-    assert_non_null(strstr(compare.notes[2], "scene s has another content"));
-    compare_free(&compare);
+    compare_texts(HEAD ROW, new, &diff);
+    assert_int_equal(diff.counts[CLASS_QUALITY][VERDICT_GONE], 1);
+    assert_int_equal(diff.counts[CLASS_QUALITY][VERDICT_NEW], 1);
+    assert_int_equal(diff.finding_count, 2);
+    assert_non_null(strstr(diff.notes[2], "scene s has another content"));
+    diff_free(&diff);
 }
 
 /* Folders: measurements and targets; a target is named, and not told again when its measurement is. */
 static void folders_are_compared_with_their_targets(void **state)
 {
     (void)state;
-    struct compare compare;
+    struct diff diff;
     mkdir(path_of("old"), 0777);
     mkdir(path_of("new"), 0777);
     support_write("old/measurements.csv", HEAD ROW "s,b,,float,2,,ok,,,,,,,,,,,,,1,,,,,\n");
@@ -400,25 +400,25 @@ static void folders_are_compared_with_their_targets(void **state)
     support_write("old/targets.csv", TARGET_HEAD "s,a,beta=8,float,0,azimuth,null,3,-1e-3,0,0.04,-13,-10\n"
                                                  "s,b,,float,0,azimuth,null,3,0,0,0.04,-13,-10\n");
     support_write("new/targets.csv", TARGET_HEAD "s,a,beta=8,float,0,azimuth,null,3,2e-3,0,0.04,-13,-10\n");
-    assert_int_equal(compare_results(path_of("old"), path_of("new"), &compare), STATUS_OK);
-    const struct finding *position = find(&compare, "position_error_m"), *status = find(&compare, "status");
+    assert_int_equal(diff_results(path_of("old"), path_of("new"), &diff), STATUS_OK);
+    const struct finding *position = find(&diff, "position_error_m"), *status = find(&diff, "status");
     assert_int_equal(position->verdict, VERDICT_WORSE);
     assert_string_equal(position->detail, "target 1, azimuth, null");
     assert_int_equal(status->verdict, VERDICT_WORSE);
     assert_string_equal(status->after_text, "failed: why");
-    assert_int_equal(compare.counts[CLASS_QUALITY][VERDICT_WORSE], 2);
-    assert_int_equal(compare.counts[CLASS_QUALITY][VERDICT_GONE], 0);
-    assert_null(find(&compare, "row"));
-    compare_free(&compare);
+    assert_int_equal(diff.counts[CLASS_QUALITY][VERDICT_WORSE], 2);
+    assert_int_equal(diff.counts[CLASS_QUALITY][VERDICT_GONE], 0);
+    assert_null(find(&diff, "row"));
+    diff_free(&diff);
     /* A file is compared with the folder's file of its kind. */
-    assert_int_equal(compare_results(path_of("old/targets.csv"), path_of("new"), &compare), STATUS_OK);
-    assert_non_null(find(&compare, "position_error_m"));
-    assert_int_equal(compare.counts[CLASS_QUALITY][VERDICT_GONE], 1);
-    compare_free(&compare);
+    assert_int_equal(diff_results(path_of("old/targets.csv"), path_of("new"), &diff), STATUS_OK);
+    assert_non_null(find(&diff, "position_error_m"));
+    assert_int_equal(diff.counts[CLASS_QUALITY][VERDICT_GONE], 1);
+    diff_free(&diff);
     remove(path_of("new/targets.csv"));
-    assert_int_equal(compare_results(path_of("old"), path_of("new"), &compare), STATUS_INVALID);
+    assert_int_equal(diff_results(path_of("old"), path_of("new"), &diff), STATUS_INVALID);
     assert_non_null(strstr(status_message(), "new/targets.csv"));
-    compare_free(&compare);
+    diff_free(&diff);
 }
 
 static void malformed_and_mixed_files_are_refused(void **state)
@@ -443,13 +443,13 @@ static void malformed_and_mixed_files_are_refused(void **state)
     };
     support_write("old.csv", HEAD ROW);
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        struct compare compare;
+        struct diff diff;
         support_write("new.csv", cases[k].text);
-        assert_int_equal(compare_results(path_of("old.csv"), path_of("new.csv"), &compare), STATUS_INVALID);
+        assert_int_equal(diff_results(path_of("old.csv"), path_of("new.csv"), &diff), STATUS_INVALID);
         for (int s = 0; s < 3 && cases[k].says[s]; s++)
             if (!strstr(status_message(), cases[k].says[s]))
                 fail_msg("case %zu: '%s' does not say '%s'", k, status_message(), cases[k].says[s]);
-        compare_free(&compare);
+        diff_free(&diff);
     }
 }
 
@@ -470,38 +470,38 @@ static void many_rows(void **state)
         }
         assert_int_equal(fclose(file), 0);
     }
-    struct compare compare;
-    assert_int_equal(compare_results(path_of("old.csv"), path_of("new.csv"), &compare), STATUS_OK);
-    assert_int_equal(compare.finding_count, ROWS * 11);
-    assert_int_equal(compare.counts[CLASS_QUALITY][VERDICT_WORSE], 1);
-    assert_int_equal(compare_judge(&compare), STATUS_FAILED);
-    compare_free(&compare);
+    struct diff diff;
+    assert_int_equal(diff_results(path_of("old.csv"), path_of("new.csv"), &diff), STATUS_OK);
+    assert_int_equal(diff.finding_count, ROWS * 11);
+    assert_int_equal(diff.counts[CLASS_QUALITY][VERDICT_WORSE], 1);
+    assert_int_equal(diff_judge(&diff), STATUS_FAILED);
+    diff_free(&diff);
 }
 
 static void shown_as_text_markdown_and_json(void **state)
 {
     (void)state;
-    struct compare compare;
+    struct diff diff;
     char text[4096] = "";
     compare_texts(HEAD ROW,
                   HEAD "s,a,beta=8,float,2,general,ok,,,0.1,1,0.9,5,2,focus=1,1e6,1e6,1000,4096,0.15,0.05,0.01,0.04,"
                        "-13.2,-10.4\n\"t|\"\"x\",a,,double,,,ok,,,,,,,,,,,,,1,,,,,\n",
-                  &compare);
+                  &diff);
     FILE *stream = fmemopen(text, sizeof text - 1, "w");
-    compare_print(&compare, stream);
+    diff_print(&diff, stream);
     fclose(stream);
     assert_non_null(strstr(text, "worse    error                       0.1          0.15       +50 %  s a:beta=8\n"));
     assert_non_null(strstr(text, "worse    pslr_db                   -13.3         -13.2     +0.1 dB  s a:beta=8\n"));
     assert_non_null(strstr(text, "new      row"));
     assert_non_null(strstr(text, "something got worse\n"));
-    assert_int_equal(compare_markdown(&compare, path_of("out.md")), STATUS_OK);
+    assert_int_equal(diff_markdown(&diff, path_of("out.md")), STATUS_OK);
     assert_non_null(strstr(text_read("out.md"), "| worse | error | 0.1 | 0.15 | +50 % | s | a:beta=8 |\n"));
     assert_non_null(strstr(text_read("out.md"), "| t\\|\"x | a:precision=double |\n"));
-    assert_int_equal(compare_json(&compare, path_of("out.json")), STATUS_OK);
+    assert_int_equal(diff_json(&diff, path_of("out.json")), STATUS_OK);
     assert_non_null(strstr(text_read("out.json"), "{\"name\": \"s a:beta=8 error\", \"unit\": \"1\", \"value\": 0.15, "
                                                   "\"range\": \"0.0001\"}"));
     assert_null(strstr(text_read("out.json"), "pairs"));
-    compare_free(&compare);
+    diff_free(&diff);
 }
 
 /* What a file from elsewhere holds must neither command the terminal nor act in a comment. */
@@ -510,14 +510,14 @@ static void names_are_shown_without_effect(void **state)
     (void)state;
     static const char *const live[] = {"@some", "<img", "![x]",     "](http", "http://", "www.x",
                                        "#12",   "\x1b", "\xc2\x9b", "`id",    "||"};
-    struct compare compare;
+    struct diff diff;
     char text[1 << 14] = "";
     compare_texts("# sasbench measurements 1\n# commit: @some/one ![x](http://x/y.png) <img src=x>\n"
                   "# machine: www.x.org #12 `id` ||\n" ROW_HEAD,
                   HEAD "\"@someone <img> ![x](http://x) www.x.org #12 a||b \\| \xff `id`\",a,,float,2,,failed,@some,"
                        ",,,,,,,,,,,,,,,,\n",
-                  &compare);
-    assert_int_equal(compare_markdown(&compare, path_of("out.md")), STATUS_OK);
+                  &diff);
+    assert_int_equal(diff_markdown(&diff, path_of("out.md")), STATUS_OK);
     const char *markdown = text_read("out.md");
     for (size_t k = 0; k < sizeof live / sizeof *live; k++)
         for (const char *at = markdown; (at = strstr(at, live[k])); at++)
@@ -539,9 +539,9 @@ static void names_are_shown_without_effect(void **state)
                           .slack = NAN,
                           .before_text = "\x1b]0;x",
                           .after_text = ""};
-    assert_int_equal(compare_add(&compare, &odd), STATUS_OK);
-    assert_int_equal(compare_note(&compare, "\x1b[2J"), STATUS_OK);
-    compare_print(&compare, stream);
+    assert_int_equal(diff_add(&diff, &odd), STATUS_OK);
+    assert_int_equal(diff_note(&diff, "\x1b[2J"), STATUS_OK);
+    diff_print(&diff, stream);
     fclose(stream);
     assert_non_null(strstr(text, "a?[31mb??c? ? ?\n"));
     for (const char *at = text; *at; at++)
@@ -549,10 +549,10 @@ static void names_are_shown_without_effect(void **state)
     assert_non_null(strstr(text, "?[2J\n"));
     odd.lower_is_better = true;
     odd.after = 1;
-    assert_int_equal(compare_add(&compare, &odd), STATUS_OK);
-    assert_int_equal(compare_json(&compare, path_of("out.json")), STATUS_OK);
+    assert_int_equal(diff_add(&diff, &odd), STATUS_OK);
+    assert_int_equal(diff_json(&diff, path_of("out.json")), STATUS_OK);
     assert_non_null(strstr(text_read("out.json"), "a\\ufffd[31mb\\ufffd\\ufffdc\\ufffd"));
-    compare_free(&compare);
+    diff_free(&diff);
 }
 
 int main(void)

@@ -1,4 +1,4 @@
-/* `sweep`: ladders, fronts and lines on made-up numbers; the whole command on a small speckle scene, cut short and
+/* `sweep`: settings, Pareto fronts and lines on made-up numbers; the whole command on a small speckle scene, cut short and
    resumed; and the two laws that a sweep has to show there: linear upsampling's floor and zero padding's order 1/K. */
 #include <glob.h>
 #include <math.h>
@@ -10,7 +10,7 @@
 
 #include "data/csv.h"
 #include "measure/results.h"
-#include "study/sweep_ladder.h"
+#include "study/sweep_settings.h"
 #include "study/sweep_tables.h"
 #include "command/task.h"
 #include "tests/support.h"
@@ -23,11 +23,11 @@ static void test_front(void **state)
     /* The third is beaten by the first, the fourth equals the second, the fifth is no point, the last is cheapest. */
     const double cost[] = {2, 4, 3, 4, NAN, 5, 0, 1}, error[] = {.1, .01, .1, .01, .001, .02, 1e-9, .5};
     int front[8];
-    assert_int_equal(front_find(8, cost, error, front), 3);
+    assert_int_equal(pareto_front_find(8, cost, error, front), 3);
     assert_int_equal(front[0], 7);
     assert_int_equal(front[1], 0);
     assert_int_equal(front[2], 1);
-    assert_int_equal(front_find(0, NULL, NULL, front), 0);
+    assert_int_equal(pareto_front_find(0, NULL, NULL, front), 0);
 }
 
 static void test_line(void **state)
@@ -62,29 +62,29 @@ static void test_floor(void **state)
     assert_int_equal(floor_find(1, (double[]){.1}), 1);
 }
 
-static int ladder_count(const char *text)
+static int settings_count(const char *text)
 {
-    struct ladder ladder = {0};
+    struct sweep_settings settings = {0};
     struct spec spec;
     assert_int_equal(spec_parse(text, &spec), STATUS_OK);
-    assert_int_equal(ladder_add(&ladder, &spec), STATUS_OK);
-    assert_int_equal(ladder_add(&ladder, &spec), STATUS_OK); /* nothing twice */
-    int count = ladder.count;
+    assert_int_equal(settings_add(&settings, &spec), STATUS_OK);
+    assert_int_equal(settings_add(&settings, &spec), STATUS_OK); /* nothing twice */
+    int count = settings.count;
     for (int a = 0; a < count; a++)
         for (int b = 0; b < a; b++)
-            assert_false(spec_equal(&ladder.specs[a], &ladder.specs[b]));
-    ladder_free(&ladder);
+            assert_false(spec_equal(&settings.specs[a], &settings.specs[b]));
+    settings_free(&settings);
     spec_free(&spec);
     return count;
 }
 
-static void test_ladders(void **state)
+static void test_settings(void **state)
 {
     (void)state;
     static const struct {
         const char *spec;
         int count;
-    } ladders[] = {
+    } lists[] = {
         {"reference", 1},
         {"bp_nearest", 2},
         {"bp_linear", 7 * 2}, /* beta 0 1 2 4 8 16 32, float and double */
@@ -95,8 +95,8 @@ static void test_ladders(void **state)
         {"bp_sinc:window=kaiser", 4 * 2},
         {"bp_zeropad", 7 * 2}, /* factor 1 2 4 8 16 32 64 */
     };
-    for (size_t k = 0; k < sizeof ladders / sizeof *ladders; k++)
-        assert_int_equal(ladder_count(ladders[k].spec), ladders[k].count);
+    for (size_t k = 0; k < sizeof lists / sizeof *lists; k++)
+        assert_int_equal(settings_count(lists[k].spec), lists[k].count);
 }
 
 /* The first row with these values in the first two columns named; -1 if there is none. */
@@ -314,7 +314,7 @@ int main(void)
         cmocka_unit_test(test_front),
         cmocka_unit_test(test_line),
         cmocka_unit_test(test_floor),
-        cmocka_unit_test(test_ladders),
+        cmocka_unit_test(test_settings),
         cmocka_unit_test_setup_teardown(test_tables_of_made_up_rows, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(test_speckle_sweep_is_resumed_and_shows_the_laws, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(test_bad_scene_makes_nothing, folder_make, folder_remove),

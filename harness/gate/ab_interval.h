@@ -1,11 +1,11 @@
 /* What paired times say of two programs: an interval of their ratio, and what may be concluded from it. */
-#ifndef SASBENCH_GATE_BOOTSTRAP_H
-#define SASBENCH_GATE_BOOTSTRAP_H
+#ifndef SASBENCH_GATE_AB_INTERVAL_H
+#define SASBENCH_GATE_AB_INTERVAL_H
 
 #include "gate/diff.h"
 
 /* NEW's time by OLD's. */
-struct interval {
+struct ab_interval {
     double low, middle, high;
 };
 
@@ -21,10 +21,10 @@ struct interval {
    Student's t (of rounds - 1 degrees of freedom, so that few rounds say less) widens it to `miss`. Always the same for
    the same ratios.
    Errors: STATUS_FAILED without memory. */
-enum status interval_find(const double *ratios, int rounds, int blocks, double miss, struct interval *interval);
+enum status ab_interval_find(const double *ratios, int rounds, int blocks, double miss, struct ab_interval *interval);
 
 /* worse: all of it beyond EFFECT_FAIL. warning: beyond EFFECT_WARN. better: as far on the other side. same: a slowdown of
    EFFECT_FAIL is excluded. Else too noisy to tell. */
-enum verdict interval_judge(const struct interval *interval);
+enum verdict ab_interval_judge(const struct ab_interval *interval);
 
 #endif

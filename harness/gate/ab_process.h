@@ -1,15 +1,15 @@
 /* A program that runs beside this one and answers its questions line by line: one side of `compare --ab`. */
-#ifndef SASBENCH_GATE_PARTNER_H
-#define SASBENCH_GATE_PARTNER_H
+#ifndef SASBENCH_GATE_AB_PROCESS_H
+#define SASBENCH_GATE_AB_PROCESS_H
 
 #include <stddef.h>
 #include <sys/types.h>
 
 #include "status.h"
 
-struct partner {
+struct ab_process {
     const char *role, *path; /* of messages: "OLD"; the program. Borrowed */
-    pid_t process;           /* 0: none */
+    pid_t pid;               /* 0: none */
     int socket;              /* to its standard input and output; its standard error is dropped */
     double patience_s;       /* it answers within this or has failed */
     size_t held;
@@ -19,10 +19,11 @@ struct partner {
 /* Start `path measure` on the `turn`-th of the processors that we may use, round and round, and hear its greeting.
    Errors: STATUS_INVALID naming role, path and what is wrong (cannot be run, says something else, ends, stays silent);
    nothing is then left to stop. */
-enum status partner_start(const char *role, const char *path, int turn, double patience_s, struct partner *partner);
-/* Send a line (without its end), receive one. Errors: as above; the partner is still to be stopped. */
-enum status partner_ask(struct partner *partner, const char *question, char *answer, size_t size);
+enum status ab_process_start(const char *role, const char *path, int turn, double patience_s,
+                             struct ab_process *process);
+/* Send a line (without its end), receive one. Errors: as above; the process is still to be stopped. */
+enum status ab_process_ask(struct ab_process *process, const char *question, char *answer, size_t size);
 /* End it and all that it started; does nothing to a zeroed struct. */
-void partner_stop(struct partner *partner);
+void ab_process_stop(struct ab_process *process);
 
 #endif

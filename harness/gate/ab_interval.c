@@ -1,5 +1,5 @@
-/* The bootstrap interval of a ratio of times (bootstrap.h). */
-#include "gate/bootstrap.h"
+/* The bootstrap interval of a ratio of times (ab_interval.h). */
+#include "gate/ab_interval.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -58,7 +58,7 @@ static double reach(double miss, int degrees)
            / 1.959964;
 }
 
-enum status interval_find(const double *ratios, int rounds, int blocks, double miss, struct interval *interval)
+enum status ab_interval_find(const double *ratios, int rounds, int blocks, double miss, struct ab_interval *interval)
 {
     int count = rounds * blocks;
     struct value *values = calloc((size_t)count, sizeof *values);
@@ -93,7 +93,7 @@ enum status interval_find(const double *ratios, int rounds, int blocks, double m
     return status;
 }
 
-enum verdict interval_judge(const struct interval *interval)
+enum verdict ab_interval_judge(const struct ab_interval *interval)
 {
     if (interval->low > 1 + EFFECT_FAIL)
         return VERDICT_WORSE;

@@ -1,6 +1,6 @@
-/* The other program of partner.h: a process group of its own behind one socket. */
+/* The other program of ab_process.h: a process group of its own behind one socket. */
 #define _GNU_SOURCE /* sched_setaffinity */
-#include "gate/partner.h"
+#include "gate/ab_process.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -56,62 +56,63 @@ static void pause_ms(long ms)
 }
 
 /* Why it said nothing more: its process has ended, or is about to, or has but closed its output. */
-static enum status silence(struct partner *partner, const char *question)
+static enum status silence(struct ab_process *process, const char *question)
 {
     int state = 0;
     pid_t ended = 0;
     for (int k = 0; k < 100 && ended == 0; k++) {
-        ended = waitpid(partner->process, &state, WNOHANG);
+        ended = waitpid(process->pid, &state, WNOHANG);
         if (ended == 0)
             pause_ms(10);
     }
     char how[80] = "closed its output";
     if (ended > 0) {
-        kill(-partner->process, SIGKILL); /* what it may have left behind */
-        partner->process = 0;
+        kill(-process->pid, SIGKILL); /* what it may have left behind */
+        process->pid = 0;
         if (WIFSIGNALED(state))
             snprintf(how, sizeof how, "was ended by signal %d (%s)", WTERMSIG(state), strsignal(WTERMSIG(state)));
         else
             snprintf(how, sizeof how, "ended with status %d", WEXITSTATUS(state));
     }
     return status_set(STATUS_INVALID, "%s %s %s %s '%s'; a sasbench that has the command measure is needed",
-                      partner->role, partner->path, how, *question ? "after" : "instead of",
+                      process->role, process->path, how, *question ? "after" : "instead of",
                       *question ? question : greeting);
 }
 
-static enum status line_read(struct partner *partner, const char *question, char *line, size_t size)
+static enum status line_read(struct ab_process *process, const char *question, char *line, size_t size)
 {
-    double end = seconds_now() + partner->patience_s;
-    for (char *stop; !(stop = memchr(partner->buffer, '\n', partner->held));) {
-        struct pollfd wait = {.fd = partner->socket, .events = POLLIN};
+    double end = seconds_now() + process->patience_s;
+    for (char *stop; !(stop = memchr(process->buffer, '\n', process->held));) {
+        struct pollfd wait = {.fd = process->socket, .events = POLLIN};
         double left = fmax(end - seconds_now(), 0);
         int ready = poll(&wait, 1, (int)(1000 * fmin(left, 1e6)));
         if (ready < 0 && errno == EINTR)
             continue;
         if (ready <= 0)
-            return status_set(STATUS_INVALID, "%s %s says nothing for %g s %s '%s'", partner->role, partner->path,
-                              partner->patience_s, *question ? "after" : "instead of", *question ? question : greeting);
-        size_t room = sizeof partner->buffer - partner->held;
-        ssize_t got = recv(partner->socket, partner->buffer + partner->held, room, 0);
+            return status_set(STATUS_INVALID, "%s %s says nothing for %g s %s '%s'", process->role, process->path,
+                              process->patience_s, *question ? "after" : "instead of", *question ? question : greeting);
+        size_t room = sizeof process->buffer - process->held;
+        ssize_t got = recv(process->socket, process->buffer + process->held, room, 0);
         if (got <= 0)
-            return silence(partner, question);
-        partner->held += (size_t)got;
-        if (partner->held == sizeof partner->buffer && !memchr(partner->buffer, '\n', partner->held))
-            return status_set(STATUS_INVALID, "%s %s: a line is longer than %zu characters", partner->role,
-                              partner->path, sizeof partner->buffer);
+            return silence(process, question);
+        process->held += (size_t)got;
+        if (process->held == sizeof process->buffer && !memchr(process->buffer, '\n', process->held))
+            return status_set(STATUS_INVALID, "%s %s: a line is longer than %zu characters", process->role,
+                              process->path, sizeof process->buffer);
     }
-    size_t length = (size_t)((char *)memchr(partner->buffer, '\n', partner->held) - partner->buffer);
-    snprintf(line, size, "%.*s", (int)length, partner->buffer);
-    partner->held -= length + 1;
-    memmove(partner->buffer, partner->buffer + length + 1, partner->held);
+    size_t length = (size_t)((char *)memchr(process->buffer, '\n', process->held) - process->buffer);
+    snprintf(line, size, "%.*s", (int)length, process->buffer);
+    process->held -= length + 1;
+    memmove(process->buffer, process->buffer + length + 1, process->held);
     return STATUS_OK;
 }
 
-enum status partner_start(const char *role, const char *path, int turn, double patience_s, struct partner *partner)
+enum status ab_process_start(const char *role, const char *path, int turn, double patience_s,
+                             struct ab_process *process)
 {
     int sockets[2];
     struct stat about;
-    *partner = (struct partner){0};
+    *process = (struct ab_process){0};
     if (stat(path, &about) != 0 || !S_ISREG(about.st_mode) || access(path, X_OK) != 0)
         return status_set(STATUS_INVALID,
                           "%s %s is no program that can be run; a sasbench is needed, such as "
@@ -119,48 +120,48 @@ enum status partner_start(const char *role, const char *path, int turn, double p
                           role, path);
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets) != 0)
         return status_set(STATUS_FAILED, "%s %s: no socket: %s", role, path, strerror(errno));
-    pid_t process = fork();
-    if (process == 0)
+    pid_t pid = fork();
+    if (pid == 0)
         child_run(path, turn, sockets[1]);
     close(sockets[1]);
-    if (process < 0) {
+    if (pid < 0) {
         close(sockets[0]);
         return status_set(STATUS_FAILED, "%s %s: no process: %s", role, path, strerror(errno));
     }
-    setpgid(process, process); /* here, too: whoever comes first */
-    *partner = (struct partner){role, path, process, sockets[0], patience_s, 0, ""};
+    setpgid(pid, pid); /* here, too: whoever comes first */
+    *process = (struct ab_process){role, path, pid, sockets[0], patience_s, 0, ""};
     char line[200];
-    enum status status = line_read(partner, "", line, sizeof line);
+    enum status status = line_read(process, "", line, sizeof line);
     if (status == STATUS_OK && strcmp(line, greeting) != 0)
         status = status_set(STATUS_INVALID, "%s %s says '%.60s' instead of '%s': another version, or no sasbench", role,
                             path, line, greeting);
     if (status != STATUS_OK)
-        partner_stop(partner);
+        ab_process_stop(process);
     return status;
 }
 
-enum status partner_ask(struct partner *partner, const char *question, char *answer, size_t size)
+enum status ab_process_ask(struct ab_process *process, const char *question, char *answer, size_t size)
 {
     char line[8192];
     int length = snprintf(line, sizeof line, "%s\n", question);
     if (length >= (int)sizeof line || strchr(question, '\n'))
         return status_set(STATUS_INVALID, "'%.60s...' is too long for a question of one line", question);
     for (int sent = 0; sent < length;) {
-        ssize_t some = send(partner->socket, line + sent, (size_t)(length - sent), MSG_NOSIGNAL);
+        ssize_t some = send(process->socket, line + sent, (size_t)(length - sent), MSG_NOSIGNAL);
         if (some <= 0)
-            return silence(partner, question);
+            return silence(process, question);
         sent += (int)some;
     }
-    return line_read(partner, question, answer, size);
+    return line_read(process, question, answer, size);
 }
 
-void partner_stop(struct partner *partner)
+void ab_process_stop(struct ab_process *process)
 {
-    if (partner->process > 0) {
-        kill(-partner->process, SIGKILL);
-        waitpid(partner->process, NULL, 0);
+    if (process->pid > 0) {
+        kill(-process->pid, SIGKILL);
+        waitpid(process->pid, NULL, 0);
     }
-    if (partner->path)
-        close(partner->socket);
-    *partner = (struct partner){0};
+    if (process->path)
+        close(process->socket);
+    *process = (struct ab_process){0};
 }
