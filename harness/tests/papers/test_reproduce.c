@@ -114,6 +114,56 @@ static void nothing_is_said_without_measurements(void **state)
     measured_free(&measured);
 }
 
+/* A measurement of everything that a table may want of this need, and all its targets. */
+static void need_plant(const struct need *need)
+{
+    static const char *const definitions[] = {"null", "3db", "pixel"};
+    struct spec spec;
+    struct scene scene;
+    support_scene(need->scene, &scene);
+    assert_int_equal(spec_parse(need->spec, &spec), STATUS_OK);
+    for (int target = 0; target < scene.point_count; target++)
+        for (int d = 0; d < 3; d++) {
+            struct target_row row = {need->scene,
+                                     spec.algorithm->name,
+                                     spec.text,
+                                     precision_name(spec.precision),
+                                     target,
+                                     "azimuth",
+                                     definitions[d],
+                                     3,
+                                     0,
+                                     0,
+                                     0.04,
+                                     -15,
+                                     -10};
+            assert_int_equal(record_targets(rows, &row, 1), STATUS_OK);
+        }
+    struct measurement row = planted_row(need->scene, &spec);
+    row.stages = "compress=1;bulk=1;differential=1;reconstruct=1;focus=1";
+    row.run_s = row.flops = row.flops_published = row.error = row.phase_rms_rad = row.width_m = 10;
+    row.pslr_db = row.islr_db = -10;
+    assert_int_equal(record_add(rows, &row), STATUS_OK);
+    spec_free(&spec);
+    scene_free(&scene);
+}
+
+static void assert_all_measured(const struct measured *measured, const struct reproduced *lines, int count)
+{
+    int printed = 0;
+    for (int row = 0; row < measured->published.row_count; row++) /* what is said in words has no table */
+        printed += strcmp(csv_cell(&measured->published, row, PUBLISHED_TABLE), "claims") != 0;
+    for (int k = 0, of_row = 0; k < count; k++) {
+        bool phase = strcmp(lines[k].quantity, "phase_error_rad") == 0; /* comes from the phase study */
+        if (!phase && !isfinite(lines[k].ours))
+            fail_msg("%s %s %s: %s", lines[k].table, lines[k].target, lines[k].method, lines[k].missing);
+        of_row += k == 0 || lines[k].target != lines[k - 1].target || lines[k].method != lines[k - 1].method
+                  || lines[k].quantity != lines[k - 1].quantity;
+        if (k == count - 1)
+            assert_true(of_row >= printed);
+    }
+}
+
 /* Each printed number has its line, and each line its measurement among the needs of its table. */
 static void every_line_can_be_measured(void **state)
 {
@@ -128,51 +178,11 @@ static void every_line_can_be_measured(void **state)
         need_count = need_add(needs, need_count, 256, claims.needs[k]);
     assert_true(need_count < 256);
     planted_begin();
-    for (int k = 0; k < need_count; k++) {
-        static const char *const definitions[] = {"null", "3db", "pixel"};
-        struct spec spec;
-        struct scene scene;
-        support_scene(needs[k].scene, &scene);
-        assert_int_equal(spec_parse(needs[k].spec, &spec), STATUS_OK);
-        for (int target = 0; target < scene.point_count; target++)
-            for (int d = 0; d < 3; d++) {
-                struct target_row row = {needs[k].scene,
-                                         spec.algorithm->name,
-                                         spec.text,
-                                         precision_name(spec.precision),
-                                         target,
-                                         "azimuth",
-                                         definitions[d],
-                                         3,
-                                         0,
-                                         0,
-                                         0.04,
-                                         -15,
-                                         -10};
-                assert_int_equal(record_targets(rows, &row, 1), STATUS_OK);
-            }
-        struct measurement row = planted_row(needs[k].scene, &spec);
-        row.stages = "compress=1;bulk=1;differential=1;reconstruct=1;focus=1";
-        row.run_s = row.flops = row.flops_published = row.error = row.phase_rms_rad = row.width_m = 10;
-        row.pslr_db = row.islr_db = -10;
-        assert_int_equal(record_add(rows, &row), STATUS_OK);
-        spec_free(&spec);
-        scene_free(&scene);
-    }
+    for (int k = 0; k < need_count; k++)
+        need_plant(&needs[k]);
     planted_end(&measured);
     assert_int_equal(tables_evaluate(&measured, &lines, &count), STATUS_OK);
-    int printed = 0;
-    for (int row = 0; row < measured.published.row_count; row++) /* what is said in words has no table */
-        printed += strcmp(csv_cell(&measured.published, row, PUBLISHED_TABLE), "claims") != 0;
-    for (int k = 0, of_row = 0; k < count; k++) {
-        bool phase = strcmp(lines[k].quantity, "phase_error_rad") == 0; /* comes from the phase study */
-        if (!phase && !isfinite(lines[k].ours))
-            fail_msg("%s %s %s: %s", lines[k].table, lines[k].target, lines[k].method, lines[k].missing);
-        of_row += k == 0 || lines[k].target != lines[k - 1].target || lines[k].method != lines[k - 1].method
-                  || lines[k].quantity != lines[k - 1].quantity;
-        if (k == count - 1)
-            assert_true(of_row >= printed);
-    }
+    assert_all_measured(&measured, lines, count);
     for (int k = 0; k < claims.count; k++) {
         struct judgement found = claim_judge(&claims, &claims.claims[k], &measured);
         if (strstr(found.evidence, "was not measured") || strstr(found.evidence, "is undefined"))

@@ -1,0 +1,192 @@
+/* Command lines that are refused: each with exit status 2 and one line that names what is wrong and what is accepted;
+   nothing is written. */
+#include "tests/command/program.h"
+
+/* --- Bad command lines ----------------------------------------------------------------------------------------- */
+
+#define SPEC(text)                                                                                                     \
+    {                                                                                                                  \
+        "image", "--scene", "study/quick", "-o", "x.mat", "--algorithm", text                                          \
+    }
+#define GRID(text)                                                                                                     \
+    {                                                                                                                  \
+        "image", "--echoes", "good.mat", "-o", "x.mat", "-a", "bp_nearest", "--grid", text                             \
+    }
+#define THREADS(text)                                                                                                  \
+    {                                                                                                                  \
+        "simulate", "study/quick", "-o", "x.mat", "--threads", text                                                    \
+    }
+#define FORM_OF_GRID "must be xmin:xstep:xcount,rmin:rstep:rcount"
+
+static const struct refusal usages[] = {
+    {{NULL}, {"is not a command", "accepted: list, info, simulate, image, run"}},
+    {{""}, {"'' is not a command", "accepted: list"}},
+    {{"focus"}, {"'focus' is not a command", "accepted: list"}},
+    {{"two\nlines"}, {"'two?lines' is not a command"}},
+    {{"--threads"}, {"'--threads' is not a command"}},
+    {{"list", "all"}, {"list: 'all' is one argument too many"}},
+    {{"list", "-o", "x"}, {"list: option '-o' is not one of this command", "accepted: none"}},
+    {{"info"}, {"info: an argument is missing", "NAME"}},
+    {{"info", "no_such_algorithm"}, {"'no_such_algorithm'", "accepted: reference, bp_nearest"}},
+    {{"info", "bp_sinc", "bp_linear"}, {"info: 'bp_linear' is one argument too many"}},
+    {{"compare", "a.csv"}, {"compare: an argument is missing", "OLD NEW"}},
+    {{"compare", "a.csv", "b.csv", "c.csv"}, {"'c.csv' is too much without --ab"}},
+    {{"compare", "a.csv", "b.csv", "-a", "bp_sinc"}, {"'--algorithm' is too much without --ab"}},
+    {{"compare", "--ab", "a", "b"}, {"OLD a is no program that can be run"}},
+    {{"compare", "--ab", "/bin/true", "/bin/true"}, {"OLD /bin/true ended with status 0", "sasbench measure 1"}},
+    {{"compare", "--ab", "a", "b", "no/scene"}, {"no/scene"}},
+    {{"simulate", "-o", "x.mat"}, {"simulate: an argument is missing", "SCENE"}},
+    {{"simulate", "study/quick"}, {"simulate: -o FILE.mat is missing"}},
+    {{"simulate", "study/quick", "-o"}, {"simulate: option '-o' needs a value", "accepted: --output"}},
+    {{"simulate", "study/quick", "--output"}, {"simulate: option '--output' needs a value"}},
+    {{"simulate", "study/quick", "-o", "x.mat", "-o", "y.mat"}, {"simulate: option '-o' is given twice"}},
+    {{"simulate", "study/quick", "-t", "1", "-t", "2", "-o", "x.mat"}, {"option '-t' is given twice"}},
+    {{"simulate", "study/quick", "study/near", "-o", "x.mat"}, {"'study/near' is one argument too many"}},
+    {{"simulate", "study/quick", "-o", "x.mat", "--grid", "0:1:1,20:1:1"},
+     {"simulate: option '-g' is not one of this command", "accepted: --output, --threads"}},
+    {{"simulate", "study/quick", "-o", "x.mat", "--colour"}, {"option '--colour'", "accepted: --output"}},
+    {{"simulate", "study/quick", "-o", "x.mat", "-z"}, {"option '-z'", "accepted: --output"}},
+    {{"image", "-a", "bp_nearest", "-o", "x.mat"}, {"image: exactly one of --scene SCENE and --echoes FILE.mat"}},
+    {{"image", "--scene", "study/quick", "--echoes", "good.mat", "-a", "bp_nearest", "-o", "x.mat"},
+     {"image: exactly one of --scene SCENE and --echoes FILE.mat"}},
+    {{"image", "--echoes", "good.mat", "-a", "bp_nearest", "-o", "x.mat"}, {"--echoes good.mat needs --grid"}},
+    {{"image", "--scene", "study/quick", "-o", "x.mat"}, {"0 --algorithm SPEC given, exactly one is needed"}},
+    {{"image", "--scene", "study/quick", "-o", "x.mat", "-a", "bp_nearest", "-a", "bp_sinc"},
+     {"2 --algorithm SPEC given, exactly one is needed"}},
+    {{"image", "--scene", "study/quick", "-a", "bp_nearest"}, {"image: -o FILE.mat is missing"}},
+    {{"image", "study/quick", "-a", "bp_nearest", "-o", "x.mat"}, {"'study/quick' is one argument too many"}},
+    {{"run", "--scene", "study/quick", "-o", "r"}, {"run: option '-s'", "accepted: --output, --algorithm"}},
+    {{"run", "study/quick", "study/quick", "-o", "r"}, {"scene study/quick is given twice"}},
+    {{"run", "study/quick", "-a", "bp_linear", "-a", "bp_linear:beta=8", "-o", "r"},
+     {"--algorithm bp_linear is given twice with the same settings"}},
+    {{"run", "study/quick", "-a"}, {"run: option '-a' needs a value"}},
+
+    {THREADS("0"), {"--threads is '0'", "a whole number from 1 to 1024"}},
+    {THREADS("-1"), {"--threads is '-1'", "from 1 to 1024"}},
+    {THREADS("1025"), {"--threads is '1025'", "from 1 to 1024"}},
+    {THREADS("two"), {"--threads is 'two'", "from 1 to 1024"}},
+    {THREADS("1e9"), {"--threads is '1e9'", "from 1 to 1024"}},
+    {THREADS("1.5"), {"--threads is '1.5'", "from 1 to 1024"}},
+    {THREADS(""), {"--threads is ''", "from 1 to 1024"}},
+    {THREADS("99999999999999999999"), {"--threads is '99999999999999999999'", "from 1 to 1024"}},
+
+    {SPEC(""), {"unknown algorithm ''", "accepted: reference, bp_nearest"}},
+    {SPEC("BP_SINC"), {"unknown algorithm 'BP_SINC'", "accepted: reference"}},
+    {SPEC("bp_sinc taps=8"), {"unknown algorithm 'bp_sinc taps=8'", "accepted: reference"}},
+    {SPEC("bp_sinc:"), {"'bp_sinc:'", "'' is not a setting", "key=value"}},
+    {SPEC("bp_sinc:taps"), {"'taps' is not a setting", "key=value"}},
+    {SPEC("bp_sinc:taps=8,"), {"'' is not a setting", "key=value"}},
+    {SPEC("bp_sinc:taps="), {"taps is ''", "a whole number from 2 to"}},
+    {SPEC("bp_sinc:taps=0"), {"taps is '0'", "a whole number from 2 to"}},
+    {SPEC("bp_sinc:taps=8.5"), {"taps is '8.5'", "a whole number"}},
+    {SPEC("bp_sinc:taps=nan"), {"taps is 'nan'", "a whole number"}},
+    {SPEC("bp_sinc:taps=99999999999999999999"), {"taps is '99999999999999999999'", "a whole number"}},
+    {SPEC("bp_sinc:taps=7"), {"bp_sinc: taps is 7, must be even"}},
+    {SPEC("bp_sinc:taps=8,taps=8"), {"taps is given twice", "each key once"}},
+    {SPEC("bp_sinc:beta=8"), {"unknown key 'beta'", "accepted: taps, window,"}},
+    {SPEC("bp_sinc:window=hann"), {"window is 'hann'", "accepted: none, kaiser"}},
+    {SPEC("bp_nearest:precision=half"), {"precision is 'half'", "accepted: float, double"}},
+    {SPEC("bp_linear:beta=-1"), {"beta is '-1'", "a whole number from 0 to"}},
+    {SPEC("bp_zeropad:factor=0"), {"factor is '0'", "a whole number from 1 to"}},
+
+    {GRID(""), {"grid ''", FORM_OF_GRID}},
+    {GRID("0:0.1:5"), {"grid '0:0.1:5'", FORM_OF_GRID}},
+    {GRID("0:0.1:5,20:0.1"), {"grid '0:0.1:5,20:0.1'", FORM_OF_GRID}},
+    {GRID("0:0.1:5,20:0.1:5,"), {"grid '0:0.1:5,20:0.1:5,'", FORM_OF_GRID}},
+    {GRID("0:0.1:5 20:0.1:5"), {"grid '0:0.1:5 20:0.1:5'", FORM_OF_GRID}},
+    {GRID("0:0.1:5,20:0.1:five"), {"grid '0:0.1:5,20:0.1:five'", FORM_OF_GRID}},
+    {GRID("0,5:0.1:5,20:0.1:5"), {"grid '0,5:0.1:5,20:0.1:5'", FORM_OF_GRID}},
+    {GRID("0:0.1:0,20:0.1:5"), {"grid '0:0.1:0,20:0.1:5'", "counts from 1"}},
+    {GRID("0:0.1:-5,20:0.1:5"), {"grid '0:0.1:-5,20:0.1:5'", "counts from 1"}},
+    {GRID("0:0.1:2.5,20:0.1:5"), {"grid '0:0.1:2.5,20:0.1:5'", "counts from 1"}},
+    {GRID("0:0.1:99999999999,20:0.1:5"), {"99999999999", "counts from 1 to 2147483647"}},
+    {GRID("0:0:5,20:0.1:5"), {"step along x is 0 m", "must be > 0"}},
+    {GRID("0:0.1:5,20:-0.1:5"), {"step along r is -0.1 m", "must be > 0"}},
+    {GRID("0:nan:5,20:0.1:5"), {"grid '0:nan:5,20:0.1:5'", "plain decimal"}},
+    {GRID("0:inf:5,20:0.1:5"), {"grid '0:inf:5,20:0.1:5'", "plain decimal"}},
+    {GRID("nan:0.1:5,20:0.1:5"), {"grid 'nan:0.1:5,20:0.1:5'", "plain decimal"}},
+    {GRID("1e13:0.1:5,20:0.1:5"), {"along x spans 1e+13", "within +-1e+12 m"}},
+    {GRID("0:0.1:5,20:1e-17:5"), {"step along r is 1e-17 m", "must be >"}},
+    {GRID("0:1e-3:2000000000,20:1e-3:2000000000"), {"2000000000 x 2000000000 pixels", "must be at most"}},
+    {GRID("0:0.1:5,200:0.1:5"), {"0:0.1:5,200:0.1:5: no pixel meets any record", "0.024 to 0.0325 s"}},
+};
+
+static void bad_usage_is_refused(void **state)
+{
+    (void)state;
+    assert_all_refused(usages, COUNT_OF(usages));
+}
+
+/* --- Bad places ------------------------------------------------------------------------------------------------ */
+
+#define RUN_INTO(place)                                                                                                \
+    {                                                                                                                  \
+        "run", "study/quick", "-a", "bp_nearest", "-o", place                                                          \
+    }
+
+static const struct refusal places[] = {
+    {{"simulate", "study/quick", "-o", "nowhere/x.mat"}, {"nowhere/x.mat: cannot be written"}},
+    {{"simulate", "study/quick", "-o", "plain.txt/x.mat"}, {"plain.txt/x.mat: cannot be written"}},
+    {{"simulate", "study/quick", "-o", "foreign"}, {"foreign: cannot be written", "not a regular file"}},
+    {{"simulate", "study/quick", "-o", "/dev/full"}, {"/dev/full: cannot be written"}},
+    {{"simulate", "study/quick", "-o", ""}, {"simulate: -o is ''", "a path"}},
+    {{"baseline", "-o", ""}, {"baseline: -o is ''"}},
+    {{"compare", "a.csv", "b.csv", "--markdown", ""}, {"compare: --markdown is ''", "a path"}},
+    {{"compare", "a.csv", "b.csv", "--json", ""}, {"compare: --json is ''", "a path"}},
+    {{"compare", "a.csv", ""}, {"compare: an argument is ''"}},
+    {{"report", ""}, {"report: an argument is ''"}},
+    {{"phase", "--at", ""}, {"phase: --at is ''"}},
+    {{"simulate", "study/quick", "-o", long_name}, {"cannot be written", "too long"}},
+    {{"image", "--scene", "study/quick", "-a", "bp_nearest", "-o", "nowhere/x.mat"},
+     {"nowhere/x.mat: cannot be written"}},
+    {{"image", "--scene", "study/quick", "-a", "bp_nearest", "-o", "plain.txt/x.mat"},
+     {"plain.txt/x.mat: cannot be written"}},
+    {{"image", "--scene", "study/quick", "-a", "bp_nearest", "-o", "foreign"}, {"foreign: cannot be written"}},
+    {{"image", "--scene", "study/quick", "-a", "bp_nearest", "-o", "/dev/full"}, {"/dev/full: cannot be written"}},
+    {RUN_INTO("plain.txt"), {"plain.txt: cannot be made", "name a folder that can be written"}},
+    {RUN_INTO("plain.txt/results"), {"plain.txt/results: cannot be made", "name a folder"}},
+    {RUN_INTO(""), {"run: -o is ''", "a path"}},
+    {RUN_INTO("/dev/full"), {"/dev/full: cannot be made", "name a folder"}},
+    {RUN_INTO(long_name), {"xxxxxx"}},
+    {RUN_INTO("foreign"), {"foreign/measurements.csv:1: not a file of ours", "name another folder"}},
+    {RUN_INTO("crowded"), {"crowded/targets.csv", "a regular file"}},
+
+    {{"simulate", "nowhere/scene", "-o", "x.mat"}, {"nowhere/scene.cfg", "the name of a shipped scene"}},
+    {{"simulate", "study", "-o", "x.mat"}, {"study.cfg", "the name of a shipped scene"}},
+    {{"simulate", "", "-o", "x.mat"}, {"simulate: an argument is ''", "a name"}},
+    {{"simulate", "missing.cfg", "-o", "x.mat"}, {"missing.cfg: scene is not readable", "the path of a .cfg file"}},
+    {{"simulate", "folder.cfg", "-o", "x.mat"}, {"folder.cfg", "not a regular file", "the path of a .cfg file"}},
+    {{"simulate", "empty.cfg", "-o", "x.mat"}, {"empty.cfg: key 'sonar' is missing", "must be a group"}},
+    {{"simulate", "binary.cfg", "-o", "x.mat"}, {"binary.cfg:", "must be", "text"}},
+    {{"run", "study/quick", "missing.cfg", "-o", "r"}, {"missing.cfg: scene is not readable"}},
+    {{"image", "--scene", "missing.cfg", "-a", "bp_nearest", "-o", "x.mat"}, {"missing.cfg: scene is not readable"}},
+
+    {ECHOES("missing.mat"), {"missing.mat: cannot be read"}},
+    {ECHOES(""), {"image: -e is ''", "a path"}},
+    {ECHOES("foreign"), {"foreign: is not a regular file", "a MATLAB file is needed"}},
+    {ECHOES("/dev/zero"), {"/dev/zero: is not a regular file"}},
+    {ECHOES("empty.mat"), {"empty.mat: is not a MATLAB file of version 5 or 7.3"}},
+    {ECHOES("plain.txt"), {"plain.txt: is not a MATLAB file of version 5 or 7.3"}},
+    {ECHOES("binary.cfg"), {"binary.cfg: is not a MATLAB file of version 5 or 7.3"}},
+    {ECHOES("head.mat"), {"head.mat: variable `format` is missing", "\"sas-echoes 1\""}},
+    {ECHOES("begun.mat"), {"begun.mat: is not a MATLAB file of version 5 or 7.3"}},
+    {ECHOES("half.mat"), {"half.mat: is cut short"}},
+    {ECHOES("short.mat"), {"short.mat: is cut short"}},
+    {ECHOES("long.mat"), {"long.mat: is cut short or damaged"}},
+    {ECHOES("damaged.mat"), {"damaged.mat:", "damaged"}},
+};
+
+static void bad_places_are_refused(void **state)
+{
+    (void)state;
+    assert_all_refused(places, COUNT_OF(places));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bad_usage_is_refused),
+        cmocka_unit_test(bad_places_are_refused),
+    };
+    return cmocka_run_group_tests(tests, inputs_make, folder_remove);
+}
