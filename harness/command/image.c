@@ -4,6 +4,7 @@
 #include <strings.h>
 
 #include "data/echo_data.h"
+#include "measure/imaging.h"
 #include "scene/matfile.h"
 #include "scene/simulate.h"
 #include "command/task.h"
@@ -60,49 +61,35 @@ static enum status source_open(const struct task *task, struct source *source)
     return scene_load(task->scene, SCENE_DIRECTORY, &source->scene);
 }
 
-static enum status execute(const struct spec *spec, void *plan, const struct problem *problem,
-                           const struct echoes *from, struct image *image)
+static enum status execute(const struct spec *spec, struct imaging *imaging, const struct echoes *from,
+                           struct image *image)
 {
     struct echoes echoes;
     struct stages stages;
     enum status status = echoes_convert(from, spec->precision, &echoes);
     if (status != STATUS_OK)
         return status;
-    status = image_allocate(problem->patch_count, problem->patches, spec->precision, image);
-    if (status == STATUS_OK) {
-        stages_begin(&stages);
-        status = spec->algorithm->execute(plan, &echoes, image, &stages);
-        if (status == STATUS_OK && !image_is_finite(image))
-            status =
-                status_set(STATUS_FAILED, "%s made values that are not finite of finite echoes", spec->algorithm->name);
-        if (status == STATUS_OK)
-            status = image_scale(image, echoes.exponent);
-        if (status != STATUS_OK)
-            image_free(image);
-    }
+    stages_begin(&stages);
+    status = imaging_execute(imaging, &echoes, &stages);
+    if (status == STATUS_OK)
+        status = imaging_finish(imaging, &echoes, image);
     echoes_free(&echoes);
     return status;
 }
 
 /* The plan comes first: what cannot be imaged need not be simulated. */
 static enum status form_image(const struct spec *spec, const struct problem *problem, struct source *source,
-                              const char *place, struct image *image)
+                              struct image *image)
 {
-    void *plan = NULL;
-    enum status status = spec->algorithm->plan(problem, spec->options, &plan);
+    struct imaging imaging;
+    enum status status = imaging_open(spec, problem, &imaging);
     if (status != STATUS_OK)
         return status;
     if (!source->echoes.samples)
         status = scene_simulate(&source->scene, &source->echoes);
     if (status == STATUS_OK)
-        status = execute(spec, plan, problem, &source->echoes, image);
-    if (status == STATUS_OK && !image_is_finite(image)) {
-        image_free(image);
-        status =
-            status_set(STATUS_INVALID, "%s: the image of %s is beyond the range of double; %s must be smaller", place,
-                       spec->algorithm->name, source->scene.name ? "targets.points.amplitude" : "variable `samples`");
-    }
-    spec->algorithm->destroy(plan);
+        status = execute(spec, &imaging, &source->echoes, image);
+    imaging_close(&imaging);
     return status;
 }
 
@@ -139,7 +126,7 @@ enum status command_image(const struct task *task)
             status = grid_meets_records(problem.acquisition, 1, &grid, task->grid);
         }
         if (status == STATUS_OK)
-            status = form_image(spec, &problem, &source, task->scene ? task->scene : task->echoes, &image);
+            status = form_image(spec, &problem, &source, &image);
         if (status == STATUS_OK) {
             status = image_file_write(task->output, &image, spec->algorithm->name, spec->text,
                                       task->scene ? source.scene.name : task->echoes);

@@ -10,7 +10,7 @@
 #include "gate/ab_interval.h"
 #include "gate/ab_process.h"
 #include "scene/scene.h"
-#include "measure/session.h"
+#include "measure/outcome.h"
 #include "show/table.h"
 #include "data/paths.h"
 #include "measure/timing.h"

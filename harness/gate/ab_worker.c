@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "measure/imaging.h"
 #include "measure/session.h"
 #include "scene/simulate.h"
 #include "data/echo_data.h"
@@ -31,8 +32,7 @@ struct worker_scene {
 struct job {
     struct worker_scene *scene;
     struct spec spec;
-    void *plan;
-    struct image image;
+    struct imaging imaging;
 };
 
 struct worker {
@@ -43,9 +43,7 @@ struct worker {
 
 static void job_free(struct job *job)
 {
-    if (job->spec.algorithm)
-        job->spec.algorithm->destroy(job->plan);
-    image_free(&job->image);
+    imaging_close(&job->imaging);
     spec_free(&job->spec);
 }
 
@@ -105,9 +103,7 @@ static enum status job_plan(struct worker *worker, const char *spec, const char 
         status = echoes_convert(&job->scene->echoes[PRECISION_DOUBLE], precision, &job->scene->echoes[precision]);
     if (status == STATUS_OK) {
         struct problem problem = session_problem(&job->scene->scene, job->spec.algorithm, precision);
-        status = job->spec.algorithm->plan(&problem, job->spec.options, &job->plan);
-        if (status == STATUS_OK)
-            status = image_allocate(problem.patch_count, problem.patches, precision, &job->image);
+        status = imaging_open(&job->spec, &problem, &job->imaging);
     }
     if (status != STATUS_OK)
         job_free(job);
@@ -143,7 +139,7 @@ static void answer_run(struct worker *worker, const char *arguments)
     stages_begin(&stages);
     double begin = stages.mark;
     for (int k = 0; k < count && status == STATUS_OK; k++)
-        status = job->spec.algorithm->execute(job->plan, echoes, &job->image, &stages);
+        status = imaging_execute(&job->imaging, echoes, &stages);
     if (status != STATUS_OK) {
         printf("failed %s\n", status_message());
         return;

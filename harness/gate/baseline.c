@@ -55,34 +55,17 @@ static void round_values(struct measurement *row, enum precision precision)
     }
 }
 
-enum status baseline_row(const struct session *session, const struct spec *spec, char *reason, size_t reason_size,
-                         struct measurement *row)
+void baseline_row(const struct session *session, const struct spec *spec, char *reason, size_t reason_size,
+                  struct measurement *row)
 {
-    struct image image;
-    struct work work;
-    struct target_row *targets = NULL;
-    int count;
-    *row = measurement_empty(session->scene->name, spec->algorithm->name, spec->text, spec->precision);
+    struct outcome outcome;
+    outcome_measure(session, spec, false, &outcome);
+    snprintf(reason, reason_size, "%s", outcome.reason);
+    *row = outcome.row;
     row->reason = reason;
-    *reason = '\0';
-    enum status status = session_image(session, spec, &image, &work);
-    if (status == STATUS_OK && !image_is_finite(&image))
-        status = status_set(STATUS_FAILED, "the image holds values that are not finite");
-    if (status == STATUS_OK) {
-        row->flops_published = work.published[0].source ? work.published[0].flops : NAN;
-        row->flops = work.flops;
-        row->pairs = work.pairs;
-        row->bytes = work.bytes;
-        status = session_quality(session, &image, row, reason, reason_size, &targets, &count);
-        free(targets);
-        round_values(row, spec->precision);
-    } else {
-        row->status = status == STATUS_UNSUPPORTED ? "unsupported" : "failed";
-        snprintf(reason, reason_size, "%s", status_message());
-        status = STATUS_OK;
-    }
-    image_free(&image);
-    return status;
+    row->engine = row->skipped = row->stages = "";
+    round_values(row, spec->precision);
+    outcome_free(&outcome);
 }
 
 static void specs_free(struct spec *specs, int count)
@@ -141,9 +124,9 @@ static enum status measure_scene(const char *name, const struct spec *specs, int
         status = session_open(scene, &session);
     if (status != STATUS_OK)
         return status;
-    for (int k = 0; k < count && status == STATUS_OK; k++) {
+    for (int k = 0; k < count; k++) {
         int n = *row_count;
-        status = baseline_row(&session, &specs[k], reasons[n].text, sizeof reasons[n].text, &rows[n]);
+        baseline_row(&session, &specs[k], reasons[n].text, sizeof reasons[n].text, &rows[n]);
         *row_count += !adds_nothing(&rows[n], rows + first, n - first);
     }
     session_close(&session);

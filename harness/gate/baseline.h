@@ -2,16 +2,15 @@
 #ifndef SASBENCH_GATE_BASELINE_H
 #define SASBENCH_GATE_BASELINE_H
 
-#include "measure/session.h"
+#include "measure/outcome.h"
 
 /* One row of quality and work, formed once and not timed, with numbers rounded to a tenth of what counts as a change.
-   What fails or is unsupported becomes a row. Texts point to the session, the spec and `reason`. Errors: STATUS_FAILED
-   without memory. */
-enum status baseline_row(const struct session *session, const struct spec *spec, char *reason, size_t reason_size,
-                         struct measurement *row);
+   What fails or is unsupported becomes a row. Texts point to the session, the spec and `reason`. */
+void baseline_row(const struct session *session, const struct spec *spec, char *reason, size_t reason_size,
+                  struct measurement *row);
 
 /* Measure all scenes of the gate with all algorithms and some of their settings, and write the file. Errors: as
-   scene_load, baseline_row and measurements_write; nothing is then written. */
+   scene_load, session_open and measurements_write; nothing is then written. */
 enum status baseline_write(const char *path);
 
 /* Where the reviewed one lies. */

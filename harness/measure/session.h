@@ -1,4 +1,4 @@
-/* One scene ready for imaging: its echoes, its exact image, and what another image of it is worth beside that. */
+/* One scene ready for imaging: its echoes and its exact image. */
 #ifndef SASBENCH_MEASURE_SESSION_H
 #define SASBENCH_MEASURE_SESSION_H
 
@@ -23,19 +23,7 @@ void session_close(struct session *session);
    compared. Points into the scene. */
 struct problem session_problem(const struct scene *scene, const struct algorithm *algorithm, enum precision precision);
 
-/* Plan and execute once, into *image, allocated here and freed with image_free; *work (may be NULL) is the plan's.
-   Errors: what plan or execute return, and STATUS_FAILED without memory; *image is then empty. */
-enum status session_image(const struct session *session, const struct spec *spec, struct image *image,
-                          struct work *work);
-
-/* A row before anything is measured: numbers undefined, status ok. Texts are borrowed. */
-struct measurement measurement_empty(const char *scene, const char *algorithm, const char *options,
-                                     enum precision precision);
-
-/* Errors of a finite image and the medians over the targets into *row, its targets' rows into *targets, malloc'ed
-   [*count], which the caller frees. `reason` receives why something is undefined, for each field that is; else it is left
-   alone. Errors: STATUS_FAILED without memory. */
-enum status session_quality(const struct session *session, const struct image *image, struct measurement *row,
-                            char *reason, size_t reason_size, struct target_row **targets, int *count);
+/* The finished image of a SPEC, formed once and freed with image_free. Errors: as imaging_form. */
+enum status session_image(const struct session *session, const struct spec *spec, struct image *image);
 
 #endif

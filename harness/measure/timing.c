@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "backprojection/pairs.h"
+#include "measure/imaging.h"
 #include "measure/scalar_loop.h"
 
 enum { RUNS_LEAST = 5, RUNS_MOST = 1000 };
@@ -23,28 +24,27 @@ double median(double *values, int count)
     return count % 2 ? values[count / 2] : (values[count / 2 - 1] + values[count / 2]) / 2;
 }
 
-static enum status run_once(const struct algorithm *algorithm, void *plan, const struct echoes *echoes,
-                            struct image *image, struct stages *stages, double *seconds)
+static enum status run_once(struct imaging *imaging, const struct echoes *echoes, struct stages *stages,
+                            double *seconds)
 {
     stages_begin(stages);
     double start = stages->mark;
-    enum status status = algorithm->execute(plan, echoes, image, stages);
+    enum status status = imaging_execute(imaging, echoes, stages);
     *seconds = seconds_now() - start;
     return status;
 }
 
 /* Times of the repeated runs; stages of the run nearest the median. */
-static enum status repeat(const struct algorithm *algorithm, void *plan, const struct echoes *echoes,
-                          struct image *image, struct timing *timing)
+static enum status repeat(struct imaging *imaging, const struct echoes *echoes, struct timing *timing)
 {
     static double seconds[RUNS_MOST], sorted[RUNS_MOST];
     static struct stages stages[RUNS_MOST];
-    enum status status = run_once(algorithm, plan, echoes, image, &stages[0], &seconds[0]); /* warms up */
+    enum status status = run_once(imaging, echoes, &stages[0], &seconds[0]); /* warms up */
     int runs = seconds[0] >= seconds_single;
     double begin = seconds_now(), elapsed = 0;
     while (status == STATUS_OK && seconds[0] < seconds_single && runs < RUNS_MOST
            && (runs < RUNS_LEAST || elapsed < seconds_least) && (runs == 0 || elapsed < seconds_most)) {
-        status = run_once(algorithm, plan, echoes, image, &stages[runs], &seconds[runs]);
+        status = run_once(imaging, echoes, &stages[runs], &seconds[runs]);
         runs++;
         elapsed = seconds_now() - begin;
     }
@@ -63,23 +63,24 @@ static enum status repeat(const struct algorithm *algorithm, void *plan, const s
     return STATUS_OK;
 }
 
-enum status timing_measure(const struct algorithm *algorithm, const struct problem *problem, const void *options,
-                           const struct echoes *echoes, const struct echoes *control_echoes, struct image *image,
-                           struct timing *timing)
+enum status timing_measure(const struct spec *spec, const struct problem *problem, const struct echoes *echoes,
+                           const struct echoes *control_echoes, struct image *image, struct timing *timing)
 {
     double control[4];
-    void *plan;
+    struct imaging imaging;
     *timing = (struct timing){0};
-    double begin = seconds_now();
-    enum status status = algorithm->plan(problem, options, &plan);
-    timing->plan_s = seconds_now() - begin;
+    *image = (struct image){0};
+    enum status status = imaging_open(spec, problem, &imaging);
     if (status != STATUS_OK)
         return status;
-    timing->work = algorithm->work(plan);
+    timing->plan_s = imaging.plan_s;
+    timing->work = imaging.algorithm->work(imaging.plan);
     control[0] = control_seconds_per_pair(problem, control_echoes);
     control[1] = control_seconds_per_pair(problem, control_echoes);
-    status = repeat(algorithm, plan, echoes, image, timing);
-    algorithm->destroy(plan);
+    status = repeat(&imaging, echoes, timing);
+    if (status == STATUS_OK)
+        status = imaging_finish(&imaging, echoes, image);
+    imaging_close(&imaging);
     control[2] = control_seconds_per_pair(problem, control_echoes);
     control[3] = control_seconds_per_pair(problem, control_echoes);
     double pairs = timing->work.pairs > 0 ? timing->work.pairs : pairs_count(problem);
@@ -97,7 +98,8 @@ static enum status nothing_execute(void *plan, const struct echoes *echoes, stru
 double timing_floor(void)
 {
     const struct algorithm nothing = {.name = "nothing", .execute = nothing_execute};
+    struct imaging imaging = {.algorithm = &nothing};
     struct timing timing;
-    repeat(&nothing, NULL, NULL, NULL, &timing);
+    repeat(&imaging, NULL, &timing);
     return timing.run_s;
 }

@@ -2,7 +2,7 @@
 #ifndef SASBENCH_MEASURE_TIMING_H
 #define SASBENCH_MEASURE_TIMING_H
 
-#include "algorithm.h"
+#include "measure/spec.h"
 
 struct timing {
     double plan_s;           /* s, planning, once */
@@ -15,11 +15,10 @@ struct timing {
 
 /* Plan, run once to warm up, then repeat until five runs and half a second are timed; long runs are repeated less (no
    new run begins after 3 s; a first run of 10 s or more is the only one). The control is timed before and after.
-   `control_echoes`: the same echoes in float. *image (allocated by the caller) holds the result.
-   Errors: what plan or execute return. */
-enum status timing_measure(const struct algorithm *algorithm, const struct problem *problem, const void *options,
-                           const struct echoes *echoes, const struct echoes *control_echoes, struct image *image,
-                           struct timing *timing);
+   `control_echoes`: the same echoes in float. *image is the finished one (imaging_finish), freed by the caller.
+   Errors: as imaging_open, imaging_execute, imaging_finish; *image is then empty. */
+enum status timing_measure(const struct spec *spec, const struct problem *problem, const struct echoes *echoes,
+                           const struct echoes *control_echoes, struct image *image, struct timing *timing);
 
 /* Seconds that the harness itself adds to a run: the median time of an algorithm that does nothing. */
 double timing_floor(void);

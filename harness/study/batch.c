@@ -8,13 +8,11 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "backprojection/pairs.h"
 #include "data/echo_data.h"
 #include "show/pictures.h"
-#include "measure/session.h"
+#include "measure/outcome.h"
 #include "show/table.h"
 #include "data/paths.h"
-#include "measure/timing.h"
 
 /* One scene while its algorithms run. */
 struct visit {
@@ -64,15 +62,6 @@ static void draw(struct visit *visit, int index, const struct image *image)
     pictures_add(&visit->pictures, index, label, image);
 }
 
-static void format_stages(const struct stages *stages, char *text, size_t size)
-{
-    size_t used = 0;
-    *text = 0;
-    for (int k = 0; k < stages->count && used < size; k++)
-        used += (size_t)snprintf(text + used, size - used, "%s%s=%.4g", k ? ";" : "", stages->stage[k].name,
-                                 stages->stage[k].seconds);
-}
-
 /* A scene whose echoes cannot be made has a failed row for every algorithm that is missing, and the next one goes on. */
 static enum status fail_scene(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs)
 {
@@ -100,68 +89,22 @@ static enum status fail_scene(struct batch *batch, const struct scene *scene, in
    is unsupported becomes a row. */
 static enum status measure(struct batch *batch, struct visit *visit, int index)
 {
-    const struct session *session = &visit->session;
-    const struct spec *spec = &visit->specs[index];
-    const struct scene *scene = session->scene;
-    struct problem problem = session_problem(scene, spec->algorithm, spec->precision);
-    struct problem whole = {&scene->acquisition, scene->patch_count, scene->patches, spec->precision};
-    struct timing timing = {0};
-    struct image image = {0};
-    char stages[512] = "", skipped[400] = "", reason[512] = "";
-    struct measurement row = measurement_empty(scene->name, spec->algorithm->name, spec->text, spec->precision);
-    row.threads = batch->threads;
-    row.stages = stages;
-    row.skipped = skipped;
-    row.reason = reason;
-    enum status status = image_allocate(problem.patch_count, problem.patches, spec->precision, &image);
-    if (status == STATUS_OK)
-        status = timing_measure(spec->algorithm, &problem, spec->options, &session->echoes[spec->precision],
-                                &session->echoes[PRECISION_FLOAT], &image, &timing);
-    if (status == STATUS_OK)
-        status = image_scale(&image, session->echoes[spec->precision].exponent);
-    if (status == STATUS_OK) {
-        row.plan_s = timing.plan_s;
-        row.run_s = timing.run_s;
-        row.run_min_s = timing.run_min_s;
-        row.runs = timing.runs;
-        row.control_s = timing.control_s;
-        row.flops = timing.work.flops;
-        row.flops_published = timing.work.published[0].source ? timing.work.published[0].flops : NAN;
-        row.pairs = timing.work.pairs;
-        row.bytes = timing.work.bytes;
-        row.engine = timing.work.engine;
-        visit->works[index] = timing.work;
-        format_stages(&timing.stages, stages, sizeof stages);
-        double left_out = 1 - problem_pixels(&problem) / problem_pixels(&whole);
-        if (left_out > 0)
-            snprintf(skipped, sizeof skipped, "%.3g %% of the pixels: only the patches around the targets are compared",
-                     100 * left_out);
-        if (*timing.work.skipped)
-            snprintf(skipped + strlen(skipped), sizeof skipped - strlen(skipped), "%s%s", *skipped ? "; " : "",
-                     timing.work.skipped);
-        if (!image_is_finite(&image))
-            status = status_set(STATUS_FAILED, "the image holds values that are not finite");
-    }
-    if (status == STATUS_OK) {
-        struct target_row *targets;
-        int target_count;
-        status = session_quality(session, &image, &row, reason, sizeof reason, &targets, &target_count);
+    struct outcome outcome;
+    enum status status = STATUS_OK;
+    outcome_measure(&visit->session, &visit->specs[index], true, &outcome);
+    outcome.row.threads = batch->threads;
+    visit->works[index] = outcome.work;
+    if (strcmp(outcome.row.status, "ok") == 0) {
+        status = record_targets(batch->record, outcome.targets, outcome.target_count);
         if (status == STATUS_OK)
-            status = record_targets(batch->record, targets, target_count);
-        free(targets);
-        if (status == STATUS_OK)
-            draw(visit, index, &image);
-    } else {
-        row.status = status == STATUS_UNSUPPORTED ? "unsupported" : "failed";
-        batch->failed |= status != STATUS_UNSUPPORTED;
-        snprintf(reason, sizeof reason, "%s", status_message());
-        status = STATUS_OK;
+            draw(visit, index, &outcome.image);
     }
-    image_free(&image);
+    batch->failed |= strcmp(outcome.row.status, "failed") == 0;
     if (status == STATUS_OK)
-        status = record_add(batch->record, &row);
+        status = record_add(batch->record, &outcome.row);
     if (status == STATUS_OK)
-        table_row(stdout, &row);
+        table_row(stdout, &outcome.row);
+    outcome_free(&outcome);
     return status;
 }
 
@@ -202,7 +145,7 @@ static void redraw(struct visit *visit, int index, const struct measurement *row
     struct image image = {0};
     if (strcmp(row->status, "ok") != 0)
         return;
-    if (session_image(&visit->session, &visit->specs[index], &image, NULL) == STATUS_OK) {
+    if (session_image(&visit->session, &visit->specs[index], &image) == STATUS_OK) {
         draw(visit, index, &image);
     } else {
         fprintf(stderr, "sasbench: %s with %s is not drawn: %s\n", row->scene, row->algorithm, status_message());

@@ -91,9 +91,7 @@ static enum status measure(const struct bench *bench, const struct bench_case *o
         return status;
     omp_set_num_threads(line->threads);
     double peak = 0.5 * peak_flops(problem->precision, line->threads);
-    status = image_allocate(problem->patch_count, problem->patches, problem->precision, &image);
-    if (status == STATUS_OK)
-        status = timing_measure(spec.algorithm, problem, spec.options, echoes, control_echoes, &image, &timing);
+    status = timing_measure(&spec, problem, echoes, control_echoes, &image, &timing);
     peak += 0.5 * peak_flops(problem->precision, line->threads);
     image_free(&image);
     spec_free(&spec);

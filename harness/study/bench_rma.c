@@ -15,6 +15,7 @@
 #include "data/paths.h"
 #include "data/text_file.h"
 #include "measure/spec.h"
+#include "measure/imaging.h"
 #include "measure/timing.h"
 
 enum {
@@ -45,20 +46,19 @@ static enum status image_seconds(const char *text, const struct problem *problem
                                  bool repeated, struct timing *timing)
 {
     struct spec spec;
-    struct image image;
-    void *plan;
+    struct image image = {0};
+    struct imaging imaging;
     enum status status = spec_parse(text, &spec);
     if (status != STATUS_OK)
         return status;
-    status = image_allocate(problem->patch_count, problem->patches, problem->precision, &image);
-    if (status == STATUS_OK && repeated) {
-        status = timing_measure(spec.algorithm, problem, spec.options, echoes, echoes, &image, timing);
-    } else if (status == STATUS_OK) {
-        status = spec.algorithm->plan(problem, spec.options, &plan);
+    if (repeated) {
+        status = timing_measure(&spec, problem, echoes, echoes, &image, timing);
+    } else {
+        status = imaging_open(&spec, problem, &imaging);
         if (status == STATUS_OK) {
             stages_begin(&timing->stages);
-            status = spec.algorithm->execute(plan, echoes, &image, &timing->stages);
-            spec.algorithm->destroy(plan);
+            status = imaging_execute(&imaging, echoes, &timing->stages);
+            imaging_close(&imaging);
         }
     }
     image_free(&image);

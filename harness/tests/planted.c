@@ -6,7 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "measure/session.h"
+#include "measure/outcome.h"
 
 struct record *rows;
 

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "measure/imaging.h"
 #include "scene/simulate.h"
 
 #define CHECK(status)                                                                                                  \
@@ -28,21 +29,11 @@ enum status support_image(const char *text, struct problem problem, const struct
 {
     struct spec spec;
     struct echoes converted;
-    struct stages stages;
-    void *plan;
     CHECK(spec_parse(text, &spec));
+    CHECK(echoes_convert(echoes, spec.precision, &converted));
     problem.precision = spec.precision;
-    enum status status = spec.algorithm->plan(&problem, spec.options, &plan);
-    if (status == STATUS_OK) {
-        CHECK(echoes_convert(echoes, spec.precision, &converted));
-        CHECK(image_allocate(problem.patch_count, problem.patches, spec.precision, image));
-        stages_begin(&stages);
-        status = spec.algorithm->execute(plan, &converted, image, &stages);
-        assert_int_equal(status, STATUS_OK);
-        CHECK(image_scale(image, converted.exponent));
-        spec.algorithm->destroy(plan);
-        echoes_free(&converted);
-    }
+    enum status status = imaging_form(&spec, &problem, &converted, image, NULL);
+    echoes_free(&converted);
     spec_free(&spec);
     return status;
 }

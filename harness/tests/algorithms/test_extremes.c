@@ -12,7 +12,7 @@
 #include "measure/scalar_loop.h"
 #include "measure/metrics.h"
 #include "data/number.h"
-#include "measure/session.h"
+#include "measure/outcome.h"
 #include "scene/simulate.h"
 
 #define SCENES SASBENCH_ROOT "/scenes"
@@ -203,19 +203,14 @@ static void coordinates_far_from_zero_are_on_the_raster(void **state)
     struct scene scene = scene_of("far.cfg", &parts);
     struct session session;
     struct spec spec;
-    struct image image;
-    struct target_row *targets;
-    int count;
-    char reason[512] = "";
+    struct outcome outcome;
     assert_int_equal(session_open(&scene, &session), STATUS_OK);
     assert_int_equal(spec_parse("bp_nearest", &spec), STATUS_OK);
-    assert_int_equal(session_image(&session, &spec, &image, NULL), STATUS_OK);
-    struct measurement row = measurement_empty(scene.name, "bp_nearest", "", PRECISION_FLOAT);
-    assert_int_equal(session_quality(&session, &image, &row, reason, sizeof reason, &targets, &count), STATUS_OK);
-    assert_true(row.error > 0 && row.error < 0.5 && row.phase_rms_rad < 0.5);
-    assert_says(reason, "target 1: the main lobe does not fall to half its peak"); /* 3 mm of image */
-    free(targets);
-    image_free(&image);
+    outcome_measure(&session, &spec, false, &outcome);
+    assert_string_equal(outcome.row.status, "ok");
+    assert_true(outcome.row.error > 0 && outcome.row.error < 0.5 && outcome.row.phase_rms_rad < 0.5);
+    assert_says(outcome.reason, "target 1: the main lobe does not fall to half its peak"); /* 3 mm of image */
+    outcome_free(&outcome);
     spec_free(&spec);
     session_close(&session);
     scene_free(&scene);

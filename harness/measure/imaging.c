@@ -1,0 +1,72 @@
+/* Plan, execute, check, destroy (imaging.h). */
+#include "measure/imaging.h"
+
+#include "data/echo_data.h"
+
+enum status imaging_open(const struct spec *spec, const struct problem *problem, struct imaging *imaging)
+{
+    *imaging = (struct imaging){.algorithm = spec->algorithm};
+    enum status status = image_allocate(problem->patch_count, problem->patches, problem->precision, &imaging->image);
+    if (status == STATUS_OK) {
+        double begin = seconds_now();
+        status = spec->algorithm->plan(problem, spec->options, &imaging->plan);
+        imaging->plan_s = seconds_now() - begin;
+    }
+    if (status != STATUS_OK) {
+        image_free(&imaging->image);
+        *imaging = (struct imaging){0};
+    }
+    return status;
+}
+
+enum status imaging_execute(struct imaging *imaging, const struct echoes *echoes, struct stages *stages)
+{
+    return imaging->algorithm->execute(imaging->plan, echoes, &imaging->image, stages);
+}
+
+enum status imaging_finish(struct imaging *imaging, const struct echoes *echoes, struct image *image)
+{
+    const char *name = imaging->algorithm->name;
+    enum status status = STATUS_OK;
+    *image = imaging->image;
+    imaging->image = (struct image){0};
+    if (!image_is_finite(image))
+        status = status_set(STATUS_FAILED, "%s made values that are not finite of finite echoes", name);
+    if (status == STATUS_OK)
+        status = image_scale(image, echoes->exponent);
+    if (status == STATUS_OK && !image_is_finite(image))
+        status = status_set(STATUS_INVALID,
+                            "the image of %s is beyond the range of double; the echoes (targets.points.amplitude of a "
+                            "scene, variable `samples` of a file) must be smaller",
+                            name);
+    if (status != STATUS_OK)
+        image_free(image);
+    return status;
+}
+
+void imaging_close(struct imaging *imaging)
+{
+    if (imaging->algorithm)
+        imaging->algorithm->destroy(imaging->plan);
+    image_free(&imaging->image);
+    *imaging = (struct imaging){0};
+}
+
+enum status imaging_form(const struct spec *spec, const struct problem *problem, const struct echoes *echoes,
+                         struct image *image, struct work *work)
+{
+    struct imaging imaging;
+    struct stages stages;
+    *image = (struct image){0};
+    enum status status = imaging_open(spec, problem, &imaging);
+    if (status != STATUS_OK)
+        return status;
+    if (work)
+        *work = imaging.algorithm->work(imaging.plan);
+    stages_begin(&stages);
+    status = imaging_execute(&imaging, echoes, &stages);
+    if (status == STATUS_OK)
+        status = imaging_finish(&imaging, echoes, image);
+    imaging_close(&imaging);
+    return status;
+}

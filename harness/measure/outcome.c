@@ -1,0 +1,212 @@
+/* One algorithm on one scene: the row of measurements.csv, filled here alone (outcome.h). */
+#include "measure/outcome.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "backprojection/pairs.h"
+#include "data/echo_data.h"
+#include "measure/imaging.h"
+#include "measure/metrics.h"
+#include "measure/timing.h"
+
+enum { AXES = 2, DEFINITIONS = 3 };
+static const char *const axis_names[AXES] = {[AXIS_AZIMUTH] = "azimuth", [AXIS_RANGE] = "range"};
+static const char *const definition_names[DEFINITIONS] = {
+    [DEFINITION_NULL] = "null", [DEFINITION_3DB] = "3db", [DEFINITION_PIXEL] = "pixel"};
+
+struct measurement measurement_empty(const char *scene, const char *algorithm, const char *options,
+                                     enum precision precision)
+{
+    return (struct measurement){.scene = scene,
+                                .algorithm = algorithm,
+                                .options = options,
+                                .precision = precision_name(precision),
+                                .threads = -1,
+                                .engine = "",
+                                .status = "ok",
+                                .reason = "",
+                                .skipped = "",
+                                .plan_s = NAN,
+                                .run_s = NAN,
+                                .run_min_s = NAN,
+                                .runs = -1,
+                                .control_s = NAN,
+                                .stages = "",
+                                .flops_published = NAN,
+                                .flops = NAN,
+                                .pairs = NAN,
+                                .bytes = NAN,
+                                .error = NAN,
+                                .error_gain = NAN,
+                                .phase_rms_rad = NAN,
+                                .width_m = NAN,
+                                .pslr_db = NAN,
+                                .islr_db = NAN};
+}
+
+/* The rows of one target, and its azimuth slice by the primary definition. Returns how many rows. */
+static int target_rows(const struct session *session, const struct image *image, int index,
+                       const struct measurement *row, struct target_row *rows, struct slice_metrics *azimuth)
+{
+    const struct acquisition *a = &session->scene->acquisition;
+    const struct target *target = &session->scene->targets[index];
+    double complex here = metrics_value(image, a, target->x, target->r);
+    double complex exact = metrics_value(&session->reference, a, target->x, target->r);
+    double phase_error = here != 0 && exact != 0 ? carg(here * conj(exact)) : NAN; /* zero has no phase */
+    int count = 0;
+    for (int axis = 0; axis < AXES; axis++) {
+        struct slice_metrics m = metrics_slice(image, a, target, (enum axis)axis);
+        if (axis == AXIS_AZIMUTH)
+            *azimuth = m;
+        for (int d = 0; d < DEFINITIONS; d++)
+            if (d != DEFINITION_PIXEL || axis == AXIS_AZIMUTH)
+                rows[count++] = (struct target_row){
+                    row->scene,       row->algorithm,      row->options, row->precision,     index,
+                    axis_names[axis], definition_names[d], m.extent_m,   m.position_error_m, phase_error,
+                    m.width_m,        m.pslr_db[d],        m.islr_db[d]};
+    }
+    return count;
+}
+
+/* One more reason, behind those that are there. */
+static void __attribute__((format(printf, 3, 4))) reason_add(char *reason, size_t size, const char *format, ...)
+{
+    size_t used = strlen(reason);
+    va_list arguments;
+    va_start(arguments, format);
+    if (used > 0 && used < size - 1)
+        used += (size_t)snprintf(reason + used, size - used, "; ");
+    if (used < size)
+        vsnprintf(reason + used, size - used, format, arguments);
+    va_end(arguments);
+}
+
+/* Errors of the image and the medians over the targets into the row, and the rows of the targets. */
+static enum status quality_fill(const struct session *session, struct outcome *outcome)
+{
+    struct measurement *row = &outcome->row;
+    char *reason = outcome->reason;
+    const size_t reason_size = sizeof outcome->reason;
+    int points = session->scene->point_count, defined = 0, unmeasured = 0;
+    double *values = calloc(3 * (size_t)points + 1, sizeof *values);
+    outcome->targets = calloc((size_t)points * AXES * DEFINITIONS + 1, sizeof *outcome->targets);
+    if (!outcome->targets || !values) {
+        free(values);
+        return status_set(STATUS_FAILED, "%s: no memory for %d targets", session->scene->name, points);
+    }
+    struct error_metrics error = metrics_error(&outcome->image, &session->reference);
+    row->error = error.error;
+    row->error_gain = error.error_gain;
+    row->phase_rms_rad = error.phase_rms_rad;
+    if (*session->no_reference)
+        reason_add(reason, reason_size, "no errors, for there is no exact image: %s", session->no_reference);
+    else if (*error.reason)
+        reason_add(reason, reason_size, "%s", error.reason);
+    if (points == 0)
+        reason_add(reason, reason_size, "no point targets to measure lobes of");
+    double *width = values, *pslr = values + points, *islr = values + 2 * points;
+    for (int t = 0; t < points; t++) {
+        struct slice_metrics azimuth;
+        outcome->target_count +=
+            target_rows(session, &outcome->image, t, row, outcome->targets + outcome->target_count, &azimuth);
+        if (*azimuth.reason && unmeasured++ == 0)
+            reason_add(reason, reason_size, "target %d: %s", t + 1, azimuth.reason);
+        if (isfinite(azimuth.pslr_db[DEFINITION_NULL])) {
+            width[defined] = azimuth.width_m;
+            pslr[defined] = azimuth.pslr_db[DEFINITION_NULL];
+            islr[defined] = azimuth.islr_db[DEFINITION_NULL];
+            defined++;
+        }
+    }
+    if (unmeasured > 1)
+        reason_add(reason, reason_size, "%d more targets likewise", unmeasured - 1);
+    row->width_m = median(width, defined);
+    row->pslr_db = median(pslr, defined);
+    row->islr_db = median(islr, defined);
+    free(values);
+    return STATUS_OK;
+}
+
+static void stages_format(const struct stages *stages, char *text, size_t size)
+{
+    size_t used = 0;
+    for (int k = 0; k < stages->count && used < size; k++)
+        used += (size_t)snprintf(text + used, size - used, "%s%s=%.4g", k ? ";" : "", stages->stage[k].name,
+                                 stages->stage[k].seconds);
+}
+
+static void work_fill(const struct session *session, const struct problem *problem, struct outcome *outcome)
+{
+    const struct work *work = &outcome->work;
+    const struct scene *scene = session->scene;
+    struct problem whole = {&scene->acquisition, scene->patch_count, scene->patches, problem->precision};
+    struct measurement *row = &outcome->row;
+    row->flops = work->flops;
+    row->flops_published = work->published[0].source ? work->published[0].flops : NAN;
+    row->pairs = work->pairs;
+    row->bytes = work->bytes;
+    row->engine = work->engine;
+    double left_out = 1 - problem_pixels(problem) / problem_pixels(&whole);
+    if (left_out > 0)
+        reason_add(outcome->skipped, sizeof outcome->skipped,
+                   "%.3g %% of the pixels: only the patches around the targets are compared", 100 * left_out);
+    if (*work->skipped)
+        reason_add(outcome->skipped, sizeof outcome->skipped, "%s", work->skipped);
+}
+
+static enum status image_time(const struct session *session, const struct spec *spec, const struct problem *problem,
+                              struct outcome *outcome)
+{
+    struct timing timing;
+    struct measurement *row = &outcome->row;
+    enum status status = timing_measure(spec, problem, &session->echoes[spec->precision],
+                                        &session->echoes[PRECISION_FLOAT], &outcome->image, &timing);
+    if (status == STATUS_OK) {
+        outcome->work = timing.work;
+        row->plan_s = timing.plan_s;
+        row->run_s = timing.run_s;
+        row->run_min_s = timing.run_min_s;
+        row->runs = timing.runs;
+        row->control_s = timing.control_s;
+        stages_format(&timing.stages, outcome->stages, sizeof outcome->stages);
+    }
+    return status;
+}
+
+static void outcome_fail(struct outcome *outcome, enum status status)
+{
+    outcome->row.status = status == STATUS_UNSUPPORTED ? "unsupported" : "failed";
+    snprintf(outcome->reason, sizeof outcome->reason, "%s", status_message());
+}
+
+void outcome_measure(const struct session *session, const struct spec *spec, bool timed, struct outcome *outcome)
+{
+    *outcome = (struct outcome){
+        .row = measurement_empty(session->scene->name, spec->algorithm->name, spec->text, spec->precision)};
+    outcome->row.reason = outcome->reason;
+    outcome->row.skipped = outcome->skipped;
+    outcome->row.stages = outcome->stages;
+    struct problem problem = session_problem(session->scene, spec->algorithm, spec->precision);
+    const struct echoes *echoes = &session->echoes[spec->precision];
+    enum status status = timed ? image_time(session, spec, &problem, outcome)
+                               : imaging_form(spec, &problem, echoes, &outcome->image, &outcome->work);
+    if (status == STATUS_OK) {
+        work_fill(session, &problem, outcome);
+        status = quality_fill(session, outcome);
+    }
+    if (status != STATUS_OK) {
+        image_free(&outcome->image);
+        outcome_fail(outcome, status);
+    }
+}
+
+void outcome_free(struct outcome *outcome)
+{
+    image_free(&outcome->image);
+    free(outcome->targets);
+    *outcome = (struct outcome){0};
+}

@@ -1,0 +1,27 @@
+/* One algorithm on one scene: image, work, quality and, when wanted, times, as a row of measurements.csv. */
+#ifndef SASBENCH_MEASURE_OUTCOME_H
+#define SASBENCH_MEASURE_OUTCOME_H
+
+#include "measure/session.h"
+
+/* Made by outcome_measure, released by outcome_free. Texts of the rows point into it, the session and the SPEC: it is not
+   copied. */
+struct outcome {
+    struct measurement row;
+    struct image image; /* finished; empty unless the row's status is ok */
+    struct work work;   /* of the plan */
+    int target_count;   /* rows, several for each point target */
+    struct target_row *targets;
+    char reason[512], skipped[400], stages[512];
+};
+
+/* Measure a SPEC on a session's scene. What fails or is unsupported becomes a row with the reason, so that there is no
+   error. `timed`: measured as timing.h says; otherwise formed once, and the row has no times. */
+void outcome_measure(const struct session *session, const struct spec *spec, bool timed, struct outcome *outcome);
+void outcome_free(struct outcome *outcome);
+
+/* A row before anything is measured: numbers undefined, status ok. Texts are borrowed. */
+struct measurement measurement_empty(const char *scene, const char *algorithm, const char *options,
+                                     enum precision precision);
+
+#endif
