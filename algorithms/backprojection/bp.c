@@ -8,12 +8,12 @@
 #include "common/fft_length.h"
 #include "backprojection/pairs.h"
 
-enum status bp_plan_records(struct bp *bp)
+enum status bp_plan_traces(struct bp *bp)
 {
     const struct acquisition *a = bp->problem.acquisition;
     bool is_double = bp->problem.precision == PRECISION_DOUBLE;
-    enum status status = (is_double ? records_plan_double : records_plan_float)(
-        a, bp->table.upsample, bp->table.guard, omp_get_max_threads(), &bp->shape, &bp->records);
+    enum status status = (is_double ? traces_plan_double : traces_plan_float)(
+        a, bp->table.upsample, bp->table.guard, omp_get_max_threads(), &bp->shape, &bp->traces);
     if (status == STATUS_OK)
         bp->work.bytes += bp->shape.bytes;
     return status;
@@ -23,30 +23,30 @@ void bp_fill_row(const struct bp *bp, int thread, const struct echoes *echoes, s
 {
     size_t offset = index * (size_t)bp->shape.samples;
     if (bp->problem.precision == PRECISION_DOUBLE)
-        records_fill_double(bp->records, thread, (const double complex *)echoes->samples + offset, row);
+        traces_fill_double(bp->traces, thread, (const double complex *)echoes->samples + offset, row);
     else
-        records_fill_float(bp->records, thread, (const float complex *)echoes->samples + offset, row);
+        traces_fill_float(bp->traces, thread, (const float complex *)echoes->samples + offset, row);
 }
 
 /* Tabulate the interpolator's weights in the plan's precision. */
 static enum status tabulate(struct bp *bp, const struct interpolator *in, const void *options)
 {
     bp->table = (struct bp_table){
-        .upsample = in->upsample, .phases = in->phases, .taps = in->taps, .first = in->first, .guard = in->taps};
+        .upsample = in->upsample, .steps = in->steps, .taps = in->taps, .first = in->first, .guard = in->taps};
     if (in->taps == 1)
         return STATUS_OK; /* BP_NEAREST */
-    bool line = in->taps == 2 && in->phases > 0;
-    size_t rows = in->phases > 0 ? (size_t)in->phases : 4 * (size_t)BP_INTERVALS, taps = (size_t)in->taps;
+    bool line = in->taps == 2 && in->steps > 0;
+    size_t rows = in->steps > 0 ? (size_t)in->steps : 4 * (size_t)BP_INTERVALS, taps = (size_t)in->taps;
     double *w = malloc(rows * taps * sizeof *w), *at = malloc(4 * taps * sizeof *at);
     bp->weights = malloc(rows * taps * real_size(bp->problem.precision));
     if (w && at && bp->weights) {
-        if (in->phases > 0)
-            for (int p = 0; p < in->phases; p++) {
-                double fraction = (double)p / in->phases, *at_p = w + (size_t)p * taps;
+        if (in->steps > 0)
+            for (int p = 0; p < in->steps; p++) {
+                double fraction = (double)p / in->steps, *at_p = w + (size_t)p * taps;
                 in->weights(options, fraction, at_p);
                 line = line && fabs(at_p[0] - (1 - fraction)) <= 1e-15 && fabs(at_p[1] - fraction) <= 1e-15;
             }
-        for (int k = 0; in->phases == 0 && k < BP_INTERVALS; k++) {
+        for (int k = 0; in->steps == 0 && k < BP_INTERVALS; k++) {
             /* The cubic through the four Chebyshev points of the interval, from Newton's divided differences. */
             double u[4], *c = w + (size_t)k * 4 * taps;
             for (int n = 0; n < 4; n++) {
@@ -74,7 +74,7 @@ static enum status tabulate(struct bp *bp, const struct interpolator *in, const 
     free(w);
     free(at);
     bp->table.weights = bp->weights;
-    bp->table.reading = line ? BP_LINE : in->phases > 0 ? BP_PHASES : BP_CUBICS;
+    bp->table.reading = line ? BP_LINE : in->steps > 0 ? BP_STEPS : BP_CUBICS;
     bp->work.bytes += (double)(rows * taps * real_size(bp->problem.precision));
     return complete ? STATUS_OK : status_set(STATUS_FAILED, "no memory for interpolation weights");
 }
@@ -107,7 +107,7 @@ static void count_work(struct bp *bp, const struct interpolator *in)
 const char *const bp_engine_names[] = {"auto", "general", "invariant", NULL};
 const char *const bp_exact_names[] = {"false", "true", NULL};
 
-/* Tables pay where they serve several columns of a phase: measured, from two ping spacings of image on. */
+/* Tables pay where they serve several columns of a residue: measured, from two ping spacings of image on. */
 static bool tables_pay(const struct bp *bp)
 {
     const struct acquisition *a = bp->problem.acquisition;
@@ -127,7 +127,7 @@ static enum status choose_engine(struct bp *bp, const struct bp_options *options
         || (options->engine == BP_ENGINE_AUTO && !options->exact && status == STATUS_OK && tables_pay(bp)))
         bp->engine = &bp_invariant;
     /* The approximation may not move a sample coordinate by more than a quarter of the finest step either. */
-    double finest = bp->medium.fs * bp->table.upsample * (bp->table.phases > 0 ? bp->table.phases : 1);
+    double finest = bp->medium.fs * bp->table.upsample * (bp->table.steps > 0 ? bp->table.steps : 1);
     if (!options->exact)
         bp->medium.phase_limit = fmin(options->phase_limit, 1.57 * bp->medium.fc / finest);
     return STATUS_OK;
@@ -138,9 +138,9 @@ static void engine_discard(struct bp *bp)
 {
     if (bp->engine)
         bp->engine->destroy(bp->state);
-    (bp->problem.precision == PRECISION_DOUBLE ? records_destroy_double : records_destroy_float)(bp->records);
+    (bp->problem.precision == PRECISION_DOUBLE ? traces_destroy_double : traces_destroy_float)(bp->traces);
     bp->state = NULL;
-    bp->records = NULL;
+    bp->traces = NULL;
 }
 
 /* The engine's plan; where tables would be too large and nobody asked for them, the general engine's. */

@@ -15,7 +15,7 @@
    the band-limited signal's own continuation). */
 struct interpolator {
     int upsample;    /* records are upsampled by zero padding (exactly) by this factor first; >= 1 */
-    int phases;      /* > 0: q is rounded to the nearest multiple of 1/phases first; 0: it is not */
+    int steps;       /* > 0: q is rounded to the nearest multiple of 1/steps first; 0: it is not */
     int taps, first; /* taps >= 1; first <= 0 */
     /* Fill w[taps] for a fraction in [0, 1). Called while planning only; NULL when taps == 1 (the weight is 1). */
     void (*weights)(const void *options, double fraction, double *w);

@@ -12,8 +12,8 @@ struct bp {
     struct bp_medium medium;
     struct bp_table table;
     void *weights; /* of table */
-    struct records *records;
-    struct records_shape shape;
+    struct traces *traces;
+    struct traces_shape shape;
     const struct bp_engine *engine;
     void *state; /* the engine's own */
     struct work work;
@@ -24,7 +24,7 @@ struct bp_engine {
     const char *name;
     /* Can it do the problem of bp->problem? When not, the reason is the status message (STATUS_UNSUPPORTED). */
     enum status (*applicable)(const struct bp *bp);
-    /* Make bp->state and bp->records; adds to bp->work.bytes. */
+    /* Make bp->state and bp->traces; adds to bp->work.bytes. */
     enum status (*plan)(struct bp *bp);
     void (*execute)(struct bp *bp, const struct echoes *echoes, struct image *image, struct stages *stages);
     void (*destroy)(void *state); /* destroy(NULL) does nothing */
@@ -38,8 +38,8 @@ static inline size_t real_size(enum precision precision)
     return precision == PRECISION_DOUBLE ? sizeof(double) : sizeof(float);
 }
 
-/* Records for up to omp_get_max_threads() threads; fills bp->records and bp->shape and counts their bytes. */
-enum status bp_plan_records(struct bp *bp);
+/* Records for up to omp_get_max_threads() threads; fills bp->traces and bp->shape and counts their bytes. */
+enum status bp_plan_traces(struct bp *bp);
 /* Compress record `index` into a row of bp->shape.length complex values. */
 void bp_fill_row(const struct bp *bp, int thread, const struct echoes *echoes, size_t index, void *row);
 

@@ -9,8 +9,8 @@
 /* How a value between samples is read. */
 enum bp_reading {
     BP_NEAREST, /* the nearest value: one tap */
-    BP_LINE,    /* two weights, 1 - f and f of the fraction f rounded to a phase: no table is read */
-    BP_PHASES,  /* weights [phases][taps] of the fraction rounded to a phase */
+    BP_LINE,    /* two weights, 1 - f and f of the fraction f rounded to a step: no table is read */
+    BP_STEPS,   /* weights [steps][taps] of the fraction rounded to a step */
     BP_CUBICS   /* weights that are cubics in the fraction's position inside each of BP_INTERVALS intervals,
                    [BP_INTERVALS][4][taps], lowest power first */
 };
@@ -19,7 +19,7 @@ enum { BP_INTERVAL_BITS = 8, BP_INTERVALS = 1 << BP_INTERVAL_BITS };
 /* struct interpolator with its weights tabulated. */
 struct bp_table {
     enum bp_reading reading;
-    int upsample, phases, taps, first, guard;
+    int upsample, steps, taps, first, guard;
     const void *weights; /* of the plan's precision; NULL if BP_NEAREST */
 };
 

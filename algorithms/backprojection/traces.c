@@ -10,8 +10,8 @@
 #include "common/memory.h"
 #include "common/real.h"
 
-struct records {
-    struct records_shape shape;
+struct traces {
+    struct traces_shape shape;
     int transform;               /* L: period of the transformed signal, >= samples + pulse - 1 */
     bool transforms;             /* false: compressed already and not upsampled */
     FFTW(plan) forward, inverse; /* of L, and of L upsample */
@@ -35,8 +35,8 @@ static void filter_fill(const struct acquisition *acquisition, int length, doubl
         filter[k] = (complex_real)(conj(work[k]) / (energy * length));
 }
 
-enum status REAL_NAME(records_plan)(const struct acquisition *acquisition, int upsample, int guard, int threads,
-                                    struct records_shape *shape, struct records **out)
+enum status REAL_NAME(traces_plan)(const struct acquisition *acquisition, int upsample, int guard, int threads,
+                                   struct traces_shape *shape, struct traces **out)
 {
     *out = NULL;
     int n = acquisition->samples;
@@ -47,50 +47,50 @@ enum status REAL_NAME(records_plan)(const struct acquisition *acquisition, int u
                           "records of %d samples upsampled by %d are too long to transform "
                           "(at most %d values)",
                           n, upsample, INT_MAX / 4);
-    struct records *records = calloc(1, sizeof *records);
-    if (!records)
+    struct traces *traces = calloc(1, sizeof *traces);
+    if (!traces)
         return status_set(STATUS_FAILED, "no memory for range compression");
-    records->shape = (struct records_shape){
-        .samples = n, .upsample = upsample, .guard = guard, .length = (int)row, .bytes = sizeof *records};
-    records->transform = length;
-    records->transforms = !acquisition->compressed || upsample > 1;
-    if (records->transforms) {
-        records->scratch_length = (size_t)(length + fine);
+    traces->shape = (struct traces_shape){
+        .samples = n, .upsample = upsample, .guard = guard, .length = (int)row, .bytes = sizeof *traces};
+    traces->transform = length;
+    traces->transforms = !acquisition->compressed || upsample > 1;
+    if (traces->transforms) {
+        traces->scratch_length = (size_t)(length + fine);
         /* Scratch, filter, the pulse's spectrum, and as much as FFTW's plans may hold. */
         enum status status =
-            memory_check(((threads + 1.0) * (double)records->scratch_length + length) * sizeof(complex_real)
+            memory_check(((threads + 1.0) * (double)traces->scratch_length + length) * sizeof(complex_real)
                              + (double)length * sizeof(double complex),
                          "range compression");
         if (status != STATUS_OK) {
-            free(records);
+            free(traces);
             return status;
         }
-        records->scratch = FFTW(malloc)((size_t)threads * records->scratch_length * sizeof *records->scratch);
-        records->filter = FFTW(malloc)((size_t)length * sizeof *records->filter);
+        traces->scratch = FFTW(malloc)((size_t)threads * traces->scratch_length * sizeof *traces->scratch);
+        traces->filter = FFTW(malloc)((size_t)length * sizeof *traces->filter);
         double complex *work = fftw_malloc((size_t)length * sizeof *work);
-        if (records->scratch && records->filter && work) {
+        if (traces->scratch && traces->filter && work) {
             if (acquisition->compressed)
                 for (int k = 0; k < length; k++)
-                    records->filter[k] = (real)1 / (real)length;
+                    traces->filter[k] = (real)1 / (real)length;
             else
-                filter_fill(acquisition, length, work, records->filter);
+                filter_fill(acquisition, length, work, traces->filter);
             /* ESTIMATE: the same algorithm, hence the same bits, at every planning; measuring costs more than a scene's
                compression. */
-            complex_real *a = records->scratch, *b = upsample > 1 ? a + length : a;
-            records->forward = FFTW(plan_dft_1d)(length, a, a, FFTW_FORWARD, FFTW_ESTIMATE | FFTW_UNALIGNED);
-            records->inverse = FFTW(plan_dft_1d)((int)fine, b, b, FFTW_BACKWARD, FFTW_ESTIMATE | FFTW_UNALIGNED);
+            complex_real *a = traces->scratch, *b = upsample > 1 ? a + length : a;
+            traces->forward = FFTW(plan_dft_1d)(length, a, a, FFTW_FORWARD, FFTW_ESTIMATE | FFTW_UNALIGNED);
+            traces->inverse = FFTW(plan_dft_1d)((int)fine, b, b, FFTW_BACKWARD, FFTW_ESTIMATE | FFTW_UNALIGNED);
         }
         fftw_free(work);
-        if (!records->forward || !records->inverse) {
-            double bytes = (double)threads * (double)records->scratch_length * sizeof(complex_real);
-            REAL_NAME(records_destroy)(records);
+        if (!traces->forward || !traces->inverse) {
+            double bytes = (double)threads * (double)traces->scratch_length * sizeof(complex_real);
+            REAL_NAME(traces_destroy)(traces);
             return status_set(STATUS_FAILED, "no memory for range compression (%.0f MB)", bytes / 1e6);
         }
-        records->shape.flops = fft_flops(length) + fft_flops((double)fine) + 6.0 * length;
-        records->shape.bytes += (double)(records->scratch_length + (size_t)length) * sizeof(complex_real);
+        traces->shape.flops = fft_flops(length) + fft_flops((double)fine) + 6.0 * length;
+        traces->shape.bytes += (double)(traces->scratch_length + (size_t)length) * sizeof(complex_real);
     }
-    *shape = records->shape;
-    *out = records;
+    *shape = traces->shape;
+    *out = traces;
     return STATUS_OK;
 }
 
@@ -108,20 +108,20 @@ static void spectrum_pad(const complex_real *from, int length, complex_real *to,
     }
 }
 
-void REAL_NAME(records_fill)(const struct records *records, int thread, const complex_real *record, complex_real *row)
+void REAL_NAME(traces_fill)(const struct traces *traces, int thread, const complex_real *record, complex_real *row)
 {
-    const struct records_shape *shape = &records->shape;
-    size_t n = (size_t)shape->samples, guard = (size_t)shape->guard, length = (size_t)records->transform;
+    const struct traces_shape *shape = &traces->shape;
+    size_t n = (size_t)shape->samples, guard = (size_t)shape->guard, length = (size_t)traces->transform;
     const complex_real *source = record;
     size_t fine = length * (size_t)shape->upsample;
-    if (records->transforms) {
-        complex_real *a = records->scratch + (size_t)thread * records->scratch_length;
+    if (traces->transforms) {
+        complex_real *a = traces->scratch + (size_t)thread * traces->scratch_length;
         complex_real *b = shape->upsample > 1 ? a + length : a;
         memcpy(a, record, n * sizeof *a);
         memset(a + n, 0, (length - n) * sizeof *a);
-        FFTW(execute_dft)(records->forward, a, a);
+        FFTW(execute_dft)(traces->forward, a, a);
         real *x = (real *)a;
-        const real *h = (const real *)records->filter;
+        const real *h = (const real *)traces->filter;
         for (size_t k = 0; k < 2 * length; k += 2) { /* written out: a complex product would check for NaN */
             real re = x[k] * h[k] - x[k + 1] * h[k + 1];
             x[k + 1] = x[k] * h[k + 1] + x[k + 1] * h[k];
@@ -129,7 +129,7 @@ void REAL_NAME(records_fill)(const struct records *records, int thread, const co
         }
         if (shape->upsample > 1)
             spectrum_pad(a, (int)length, b, fine);
-        FFTW(execute_dft)(records->inverse, b, b);
+        FFTW(execute_dft)(traces->inverse, b, b);
         source = b;
     }
     if (shape->upsample == 1) {
@@ -146,15 +146,15 @@ void REAL_NAME(records_fill)(const struct records *records, int thread, const co
     }
 }
 
-void REAL_NAME(records_destroy)(struct records *records)
+void REAL_NAME(traces_destroy)(struct traces *traces)
 {
-    if (!records)
+    if (!traces)
         return;
-    if (records->forward)
-        FFTW(destroy_plan)(records->forward);
-    if (records->inverse)
-        FFTW(destroy_plan)(records->inverse);
-    FFTW(free)(records->filter);
-    FFTW(free)(records->scratch);
-    free(records);
+    if (traces->forward)
+        FFTW(destroy_plan)(traces->forward);
+    if (traces->inverse)
+        FFTW(destroy_plan)(traces->inverse);
+    FFTW(free)(traces->filter);
+    FFTW(free)(traces->scratch);
+    free(traces);
 }

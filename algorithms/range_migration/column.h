@@ -4,7 +4,7 @@
 #define SASBENCH_RANGE_MIGRATION_COLUMN_H
 
 #include "range_migration/engine.h"
-#include "common/turn.h"
+#include "common/phasor.h"
 
 enum { LANES = RMA_ALIGNMENT / sizeof(real) }; /* real parts and imaginary parts of a row take turns */
 

@@ -28,14 +28,14 @@ static void rotors(const double *poly, const double *restrict y, int n, real *re
 #pragma omp simd
         for (int k = 0; k < n; k++) {
             real u = (real)y[k];
-            turn_eighth(q0 + u * (q1 + u * (q2 + u * (q3 + u * (q4 + u * q5)))), &re[k], &im[k]);
+            phasor_eighth(q0 + u * (q1 + u * (q2 + u * (q3 + u * (q4 + u * q5)))), &re[k], &im[k]);
         }
         return;
     }
 #pragma omp simd
     for (int k = 0; k < n; k++) {
         double f = p0 + y[k] * (p1 + y[k] * (p2 + y[k] * (p3 + y[k] * (p4 + y[k] * p5))));
-        turn(f - floor(f + 0.5), &re[k], &im[k]);
+        phasor(f - floor(f + 0.5), &re[k], &im[k]);
     }
 }
 

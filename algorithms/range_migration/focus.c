@@ -227,7 +227,7 @@ static void focus_interpolated(struct work_place *w, const struct rma_patch *pat
         stage_end(w, RMA_STOLT);
 #pragma omp simd
         for (int i = 0; i < n; i++) {
-            turn(cycles[i], &wr[i], &wi[i]);
+            phasor(cycles[i], &wr[i], &wi[i]);
             wr[i] *= weight[i];
             wi[i] *= weight[i];
         }
@@ -270,13 +270,13 @@ static void focus_direct(struct work_place *w, const struct rma_patch *patch, co
             origin_cycles[l] = 0.125 - (frequency - rma->setting.fc) * origin;
             weight[l] = exists ? frequency / b1 * sqrt(c / (2 * kappa)) / kappa / swath->length : 0;
             double step = k_cycles[l] * patch->grid.r_step;
-            turn(step - floor(step + 0.5), &sr[l], &si[l]);
+            phasor(step - floor(step + 0.5), &sr[l], &si[l]);
         }
         for (int i0 = 0; i0 < rows; i0 += RMA_STEPS) {
             int n = rows - i0 < RMA_STEPS ? rows - i0 : RMA_STEPS;
             for (int l = 0; l < LANES; l++) {
                 double f = k_cycles[l] * (patch->grid.r_first + i0 * patch->grid.r_step) + origin_cycles[l];
-                turn(f - floor(f + 0.5), &wr[l], &wi[l]);
+                phasor(f - floor(f + 0.5), &wr[l], &wi[l]);
                 zr[l] = z[2 * k + l] * (real)weight[l];
                 zi[l] = z[2 * k + LANES + l] * (real)weight[l];
             }

@@ -9,7 +9,7 @@
 struct ping_box {
     struct vector low, high; /* m */
     double reach;            /* m^(1/6): blocks may be reach rho^(5/6) to either side, rho their distance; 0: none */
-    double longest;          /* m: nor may they be longer: at most 2^18 turns to either side of their middle */
+    double longest;          /* m: nor may they be longer: at most 2^18 cycles to either side of their middle */
 };
 
 /* Pixels [begin, end) of a line. */

@@ -1,9 +1,9 @@
 /* Runs of pixels take values from records, nearest samples, between two on a line or by a kernel of many taps, which are
-   turned by their phase and added to the sums. Copies of samples are the limit: those of neighbouring pixels are loaded
+   fixed by their phase and added to the sums. Copies of samples are the limit: those of neighbouring pixels are loaded
    together where they lie near each other. This file is compiled once for each precision and instruction set (BP_ISA
    names it). */
 #include "backprojection/general/run.h"
-#include "common/turn.h"
+#include "common/phasor.h"
 
 /* Each one instruction. PICK: each four floats of a vector permuted by the low two bits of an index. REPEAT: four floats from
    memory as each four of a vector. SECONDS: the second of each four. QUADS: fours side by side. */
@@ -28,9 +28,9 @@ typedef double two_floats __attribute__((may_alias, aligned(sizeof(real)))); /* 
 typedef float bits __attribute__((may_alias));
 typedef float quad __attribute__((vector_size(16), aligned(sizeof(float)), may_alias));
 
-TURN(turn_vector, vector_real, TURN_SINE, TURN_COSINE)
+PHASOR(phasor_vector, vector_real, PHASOR_SINE, PHASOR_COSINE)
 #if WINDOWS
-TURN(turn_short, vector_real, TURN_SHORT_SINE, TURN_SHORT_COSINE)
+PHASOR(phasor_short, vector_real, PHASOR_SHORT_SINE, PHASOR_SHORT_COSINE)
 #endif
 
 /* LANES values: copies, which are faster than gather instructions. */
@@ -108,13 +108,13 @@ INLINE void take(bool line, enum loading loading, const real *row, size_t row_le
     vector_real c, s, x, y;
 #if WINDOWS
     if (loading != APART) {
-        turn_short(*at(run->turns + i), &c, &s);
+        phasor_short(*at(run->cycles + i), &c, &s);
         take_windows(line, loading, row, row_length, run, i, &x, &y);
     } else
 #endif
     {
         (void)loading;
-        turn_vector(*at(run->turns + i), &c, &s);
+        phasor_vector(*at(run->cycles + i), &c, &s);
         x = take_apart(line, row, run, i);
         y = take_apart(line, row + row_length, run, i);
     }
@@ -145,7 +145,7 @@ INLINE void add_taken(bool line, enum loading loading, int group, const real *ro
     for (int g = 0; g < group; g++) {
         for (int k = count; k < i + LANES; k++) { /* the last vector's other pixels read what may be read */
             runs[g].sample[k] = runs[g].sample[count - 1];
-            runs[g].rest[k] = runs[g].turns[k] = 0;
+            runs[g].rest[k] = runs[g].cycles[k] = 0;
         }
         take(line, loading, from[g], row_length, &runs[g], i, &x, &y);
     }
@@ -175,7 +175,7 @@ INLINE void add_all(bool line, enum loading loading, int group, const real *row,
         add_group(false, loading, group, row, row_length, count, runs, re, im);
 }
 
-/* Many weights, from a grid of phases or from cubics in the fraction; the record's parts lie apart. `taps` is a constant
+/* Many weights, from a table of steps or from cubics in the fraction; the record's parts lie apart. `taps` is a constant
    where this is inlined, so that the loops over it unroll. */
 INLINE void add_taps(const struct bp_table *table, int taps, const real *row_re, const real *row_im, int count,
                      const struct run *run, real *re, real *im)
@@ -184,19 +184,19 @@ INLINE void add_taps(const struct bp_table *table, int taps, const real *row_re,
     real wr[RUN], wi[RUN];
 #pragma omp simd
     for (int i = 0; i < count; i++)
-        turn(run->turns[i], &wr[i], &wi[i]);
+        phasor(run->cycles[i], &wr[i], &wi[i]);
     for (int i = 0; i < count; i++) {
         const real *x = row_re + run->sample[i], *y = row_im + run->sample[i];
         real vr = 0, vi = 0;
-        if (table->phases > 0) {
-            const real *w = weights + (size_t)run->phase[i] * (size_t)taps;
+        if (table->steps > 0) {
+            const real *w = weights + (size_t)run->step[i] * (size_t)taps;
 #pragma omp simd reduction(+ : vr, vi)
             for (int k = 0; k < taps; k++) {
                 vr += w[k] * x[k];
                 vi += w[k] * y[k];
             }
         } else {
-            const real *w = weights + 4 * (size_t)run->phase[i] * (size_t)taps, u = run->rest[i];
+            const real *w = weights + 4 * (size_t)run->step[i] * (size_t)taps, u = run->rest[i];
 #pragma omp simd reduction(+ : vr, vi)
             for (int k = 0; k < taps; k++) {
                 real weight = w[k] + u * (w[taps + k] + u * (w[2 * taps + k] + u * w[3 * taps + k]));

@@ -85,7 +85,7 @@ static enum status general_plan(struct bp *bp)
     struct general *general = bp->state = calloc(1, sizeof *general);
     if (!general)
         return status_set(STATUS_FAILED, "no memory for the plan");
-    enum status status = bp_plan_records(bp);
+    enum status status = bp_plan_traces(bp);
     if (status != STATUS_OK)
         return status;
     int fine = bp->table.upsample * (bp->table.reading == BP_CUBICS ? BP_INTERVALS : 1);

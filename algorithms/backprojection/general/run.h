@@ -11,8 +11,8 @@
        vectors     |0..7|8..15|...
 
    A run holds for each of its pixels i: the place in the record, base + sample[i]; the row of the table of weights,
-   phase[i], or the fraction, rest[i]; and the phase in cycles, turns[i]. The record's value at this place, times
-   exp(j 2 pi turns[i]), is added to the pixel.
+   step[i], or the fraction, rest[i]; and the phase in cycles, cycles[i]. The record's value at this place, times
+   exp(j 2 pi cycles[i]), is added to the pixel.
 
    ITS GATHER (one tap, or two on a line; more taps are loaded pixel by pixel). Loads are the limit. Neighbouring pixels
    mostly read the same samples. In float with AVX, one load of four samples, a window, serves a whole vector (TOGETHER)
@@ -56,7 +56,7 @@
    Where the index comes from, by the way of reading (enum bp_reading):
 
        BP_NEAREST             0x1.8p20   sample = high word - 0x41380000, which is the high word of 0x1.8p20
-       BP_LINE, BP_PHASES     0x1.8p33   sample = low word >> 19; phase = fraction x phases >> 19 (phases < 2^12)
+       BP_LINE, BP_STEPS     0x1.8p33   sample = low word >> 19; step = fraction x steps >> 19 (steps <= 2^12)
        BP_CUBICS              0x1.8p33   all 64 bits >> 19 leave 32 bits of whole part: interval = its lowest 8 bits
                                          (BP_INTERVAL_BITS), sample = the others; rest = fraction 2^-19
        phase in cycles        0x1.8p20   low word as a signed number, times 2^-32: -1/2 to 1/2, whole cycles drop out
@@ -98,11 +98,11 @@ enum loading {
 
 /* Where a run of pixels reads a record. */
 struct run {
-    int base;                               /* sample of the upsampled record from which the others are counted */
-    _Alignas(VECTOR_BYTES) int sample[RUN]; /* on from which the taps are counted */
-    _Alignas(VECTOR_BYTES) int phase[RUN];  /* row of the table of weights; where one is used */
-    _Alignas(VECTOR_BYTES) real rest[RUN];  /* position in the interval of a cubic, or a line's fraction */
-    _Alignas(VECTOR_BYTES) real turns[RUN]; /* phase, |turns| <= 1/2 */
+    int base;                                /* sample of the upsampled record from which the others are counted */
+    _Alignas(VECTOR_BYTES) int sample[RUN];  /* on from which the taps are counted */
+    _Alignas(VECTOR_BYTES) int step[RUN];    /* row of the table of weights; where one is used */
+    _Alignas(VECTOR_BYTES) real rest[RUN];   /* position in the interval of a cubic, or a line's fraction */
+    _Alignas(VECTOR_BYTES) real cycles[RUN]; /* phase, |cycles| <= 1/2 */
 };
 
 /* Add one run of each of `group` <= GROUP records, whose rows follow one another from `row` on (struct bp_ping), to

@@ -1,5 +1,5 @@
 /* The inner loops of the general engine: delays of a line of pixels, exactly or from a block's quintic, as runs of pixels for
-   general/gather.c. Delay and phase are double, reduced to a fraction of a turn before they become `real`; where lines bend
+   general/gather.c. Delay and phase are double, reduced to a fraction of a cycle before they become `real`; where lines bend
    little, only their straight part is. Short loops over arrays in the first-level cache, so that many pixels are in flight
    at once. This file is compiled once for each precision and instruction set (BP_ISA names it). */
 #include "backprojection/general/sum.h"
@@ -36,7 +36,7 @@ enum {
     SPAN = 4000,                /* whole points that fit beside them in 32 bits, with a sign */
     FLAT_LEAST = 64             /* pixels of a run below which single precision does not pay */
 };
-#define RATIO_LEAST 0x1p-40 /* turns to a point below which single precision could not hold the inverse of a bend */
+#define RATIO_LEAST 0x1p-40 /* cycles to a point below which single precision could not hold the inverse of a bend */
 
 typedef unsigned long long vector_long __attribute__((vector_size(VECTOR_BYTES)));
 typedef unsigned vector_unsigned __attribute__((vector_size(LANES * sizeof(int)), aligned(sizeof(int)), may_alias));
@@ -109,7 +109,7 @@ INLINE void group_back(bool slow, const struct motion *motion, const struct plac
 }
 
 /* From a delay to a point, point = (tau - t0) fs fine + shift, whose whole part is a sample or one of a cubic's
-   intervals, and from a point to turns, turns = point ratio + base. */
+   intervals, and from a point to cycles, cycles = point ratio + base. */
 struct scale {
     double t0, fs, fine, shift, ratio, base;
 };
@@ -123,7 +123,7 @@ static void sum_exact(const struct bp_medium *medium, const struct bp_table *tab
     double tau[RUN];
     const struct motion motion = motion_make(medium, ping);
     const bool cubics = table->reading == BP_CUBICS;
-    const double one = cubics ? BP_INTERVALS : table->phases, last = (medium->samples - 1.0) * table->upsample;
+    const double one = cubics ? BP_INTERVALS : table->steps, last = (medium->samples - 1.0) * table->upsample;
     run.base = 0;
     for (int first = begin; first < end; first += RUN) {
         const int count = end - first < RUN ? end - first : RUN;
@@ -145,12 +145,12 @@ static void sum_exact(const struct bp_medium *medium, const struct bp_table *tab
                 double q = (tau[i] - scale->t0) * scale->fs * table->upsample;
                 q = q > 0 ? q : 0; /* the record's ends, but for rounding; nothing else becomes an index */
                 q = q < last ? q : last;
-                double point = floor(q * one + scale->shift * one), turns = medium->fc * tau[i];
+                double point = floor(q * one + scale->shift * one), cycles = medium->fc * tau[i];
                 double sample = floor((point + 0.5) / one);
                 run.sample[i] = (int)sample;
-                run.phase[i] = (int)(point - sample * one);
-                run.rest[i] = (real)(cubics ? q * one - point : run.phase[i] / one);
-                run.turns[i] = (real)(turns - floor(turns + 0.5));
+                run.step[i] = (int)(point - sample * one);
+                run.rest[i] = (real)(cubics ? q * one - point : run.step[i] / one);
+                run.cycles[i] = (real)(cycles - floor(cycles + 0.5));
             }
             BP_TAKE(table, APART, 1, (const real *)ping->rows + 2 * (size_t)m * (size_t)ping->row_length,
                     ping->row_length, count, &run, re + first, im + first);
@@ -231,14 +231,14 @@ INLINE bool prefetch(const real *row, int row_length, int group, double (*tau)[G
 
 /* Points of a run of pixels from `first` pixels past the block's middle on. A double that is brought to a known exponent is
    a fixed-point number in its lower bits: whole points in its high word; whole points and 19 bits of their fraction, 32 bits
-   in all but for cubics, so that the run must stay within SPAN points of its first; 32 bits of a fraction of a turn. Bits
+   in all but for cubics, so that the run must stay within SPAN points of its first; 32 bits of a fraction of a cycle. Bits
    are cut off, which is floor: rounding, and with it the rounding mode, decides on the last of them only. Fills whole
    vectors, up to LANES - 1 pixels more than `count`. `reading` is a constant where this is inlined. */
 #define LANE(n) n
 #define LOW(v)  (vector_int) __builtin_shufflevector((vector_bits)v[0], (vector_bits)v[PARTS - 1], EVEN)
 #define HIGH(v) (vector_int) __builtin_shufflevector((vector_bits)v[0], (vector_bits)v[PARTS - 1], ODD)
 INLINE void points(double (*quintic)[GROUP], int g, const struct scale *scale, double first, int count,
-                   enum bp_reading reading, int phases, struct run *run)
+                   enum bp_reading reading, int steps, struct run *run)
 {
     const bool nearest = reading == BP_NEAREST, cubics = reading == BP_CUBICS;
     double c[NODES], begin = 0;
@@ -248,19 +248,19 @@ INLINE void points(double (*quintic)[GROUP], int g, const struct scale *scale, d
     }
     run->base = cubics ? 0 : (int)begin;
     const double shift = scale->shift - run->base + (nearest ? 0x1.8p20 : 0x1.8p33), ratio = scale->ratio;
-    const double turns = c[0] * ratio + scale->base, base = scale->base - floor(turns) + 0x1.8p20;
-    const real one_phase = 1 / (real)phases;
+    const double cycles = c[0] * ratio + scale->base, base = scale->base - floor(cycles) + 0x1.8p20;
+    const real one_step = 1 / (real)steps;
     vector_double u[2] = {PART(LANE, 0), PART(LANE, 2)};
     u[0] += first;
     u[1] += first;
     for (int i = 0; i < count; i += LANES) {
-        vector_double point[2], turned[2];
+        vector_double point[2], fixed[2];
         vector_long whole[2];
         for (int k = 0; k < (int)PARTS; k++) {
             vector_double p = c[0] + u[k] * (c[1] + u[k] * (c[2] + u[k] * (c[3] + u[k] * (c[4] + u[k] * c[5]))));
             point[k] = p + shift;
             whole[k] = (vector_long)point[k] >> BITS;
-            turned[k] = p * ratio + base;
+            fixed[k] = p * ratio + base;
             u[k] += LANES;
         }
         vector_int sample = LOW(point), rest = sample & ((1 << BITS) - 1);
@@ -268,27 +268,27 @@ INLINE void points(double (*quintic)[GROUP], int g, const struct scale *scale, d
             sample = HIGH(point) - 0x41380000; /* the high word of 0x1.8p20 */
         } else if (cubics) {
             sample = LOW(whole);
-            *(vector_int *)(run->phase + i) = sample & (BP_INTERVALS - 1);
+            *(vector_int *)(run->step + i) = sample & (BP_INTERVALS - 1);
             sample >>= BP_INTERVAL_BITS;
             *at(run->rest + i) = __builtin_convertvector(rest, vector_real) * (real)0x1p-19;
         } else {
-            vector_int phase = rest * phases >> BITS;
+            vector_int step = rest * steps >> BITS;
             sample >>= BITS;
             if (reading == BP_LINE)
-                *at(run->rest + i) = __builtin_convertvector(phase, vector_real) * one_phase;
+                *at(run->rest + i) = __builtin_convertvector(step, vector_real) * one_step;
             else
-                *(vector_int *)(run->phase + i) = phase;
+                *(vector_int *)(run->step + i) = step;
         }
         *(vector_int *)(run->sample + i) = sample;
-        *at(run->turns + i) = __builtin_convertvector(LOW(turned), vector_real) * (real)0x1p-32;
+        *at(run->cycles + i) = __builtin_convertvector(LOW(fixed), vector_real) * (real)0x1p-32;
     }
 }
 
 #if WINDOWS
-/* A group's quintics about a run's middle, [power][receiver]: points and turns along a line, and their bend away from it in
-   turns. */
+/* A group's quintics about a run's middle, [power][receiver]: points and cycles along a line, and their bend away from it in
+   cycles. */
 struct flat {
-    double point[2][GROUP], turns[2][GROUP];
+    double point[2][GROUP], cycles[2][GROUP];
     real bend[NODES - 2][GROUP];
 };
 
@@ -303,44 +303,44 @@ INLINE void flatten(double (*quintic)[GROUP], const struct scale *scale, double 
     for (int g = 0; g < GROUP; g++) {
         for (int k = 0; k < 2; k++) {
             flat->point[k][g] = c[k][g];
-            flat->turns[k][g] = c[k][g] * scale->ratio + (k == 0 ? scale->base : 0);
+            flat->cycles[k][g] = c[k][g] * scale->ratio + (k == 0 ? scale->base : 0);
         }
         for (int k = 2; k < NODES; k++)
             flat->bend[k - 2][g] = (real)(c[k][g] * scale->ratio);
     }
 }
 
-/* The same as points() for a run that bends little: the line's turns are a fixed-point number that is counted on, the bend is a
+/* The same as points() for a run that bends little: the line's cycles are a fixed-point number that is counted on, the bend is a
    float. Points are floats that are counted from the run's middle. */
-INLINE void points_flat(const struct flat *flat, int g, const struct scale *scale, int count, bool line, int phases,
+INLINE void points_flat(const struct flat *flat, int g, const struct scale *scale, int count, bool line, int steps,
                         struct run *run)
 {
-    const double begin = -0.5 * (count - 1), slope = flat->turns[1][g], step = LANES * slope;
-    const double base = flat->turns[0][g] - floor(flat->turns[0][g] + begin * slope) + 0x1.8p20;
-    vector_double turned[2] = {PART(LANE, 0), PART(LANE, 2)};
+    const double begin = -0.5 * (count - 1), slope = flat->cycles[1][g], step = LANES * slope;
+    const double base = flat->cycles[0][g] - floor(flat->cycles[0][g] + begin * slope) + 0x1.8p20;
+    vector_double fixed[2] = {PART(LANE, 0), PART(LANE, 2)};
     for (int k = 0; k < (int)PARTS; k++)
-        turned[k] = (turned[k] + begin) * slope + base;
-    vector_unsigned turns = (vector_unsigned)LOW(turned);
-    const unsigned turns_step = (unsigned)(long long)((step - floor(step)) * 0x1p32);
+        fixed[k] = (fixed[k] + begin) * slope + base;
+    vector_unsigned cycles = (vector_unsigned)LOW(fixed);
+    const unsigned cycles_step = (unsigned)(long long)((step - floor(step)) * 0x1p32);
     const double middle = floor(flat->point[0][g]);
     const real first = (real)(flat->point[0][g] - middle + (line ? scale->shift : 0)), second = (real)flat->point[1][g];
     const real c2 = flat->bend[0][g], c3 = flat->bend[1][g], c4 = flat->bend[2][g], c5 = flat->bend[3][g];
-    const real point_turn = (real)(1 / scale->ratio), one_phase = 1 / (real)phases;
+    const real points_a_cycle = (real)(1 / scale->ratio), one_step = 1 / (real)steps;
     vector_real u = ALL(LANE);
     u += (real)begin;
     run->base = (int)middle;
     for (int i = 0; i < count; i += LANES) {
         vector_real bend = u * u * (c2 + u * (c3 + u * (c4 + u * c5)));
-        vector_real turn = __builtin_convertvector((vector_int)turns, vector_real) * (real)0x1p-32 + bend;
-        vector_real point = first + u * second + bend * point_turn;
+        vector_real cycle = __builtin_convertvector((vector_int)cycles, vector_real) * (real)0x1p-32 + bend;
+        vector_real point = first + u * second + bend * points_a_cycle;
         if (line) {
             vector_real whole = FLOOR(point);
             *(vector_int *)(run->sample + i) = WHOLE(whole);
-            *at(run->rest + i) = FLOOR((point - whole) * (real)phases) * one_phase;
+            *at(run->rest + i) = FLOOR((point - whole) * (real)steps) * one_step;
         } else
             *(vector_int *)(run->sample + i) = NEAREST(point);
-        *at(run->turns + i) = turn - ROUND(turn);
-        turns += turns_step;
+        *at(run->cycles + i) = cycle - ROUND(cycle);
+        cycles += cycles_step;
         u += LANES;
     }
 }
@@ -362,8 +362,8 @@ INLINE void sum_block(const struct bp_table *table, int group, const real *row, 
                                                                  : TOGETHER;
     int longest = slope * RUN > SPAN ? (int)fmax(1, SPAN / slope) : RUN;
 #if WINDOWS
-    /* A bend of n turns errs by at most 1.1e-6 n rad: 0.15 of the limit (error budget: sum.h). */
-    const double turns = fmin(16, phase_limit * 0x1p17), half_run = sqrt(2 * turns / (bend * scale->ratio));
+    /* A bend of n cycles errs by at most 1.1e-6 n rad: 0.15 of the limit (error budget: sum.h). */
+    const double cycles = fmin(16, phase_limit * 0x1p17), half_run = sqrt(2 * cycles / (bend * scale->ratio));
     const int flat_longest = 2 * half_run < RUN ? (int)(2 * half_run) / LANES * LANES : RUN;
     const bool flat = loading == TOGETHER && flat_longest >= FLAT_LEAST && scale->ratio > RATIO_LEAST
                       && (table->reading == BP_NEAREST || table->reading == BP_LINE);
@@ -380,7 +380,7 @@ INLINE void sum_block(const struct bp_table *table, int group, const real *row, 
             flatten(c, scale, first - middle + 0.5 * (count - 1), &lines);
             for (int g = 0; g < group; g++)
                 if (table->reading == BP_LINE)
-                    points_flat(&lines, g, scale, count, true, table->phases, &runs[g]);
+                    points_flat(&lines, g, scale, count, true, table->steps, &runs[g]);
                 else
                     points_flat(&lines, g, scale, count, false, 1, &runs[g]);
         } else
@@ -388,8 +388,8 @@ INLINE void sum_block(const struct bp_table *table, int group, const real *row, 
             for (int g = 0; g < group; g++) {
                 switch (table->reading) {
                 case BP_NEAREST: points(c, g, scale, first - middle, count, BP_NEAREST, 1, &runs[g]); break;
-                case BP_LINE: points(c, g, scale, first - middle, count, BP_LINE, table->phases, &runs[g]); break;
-                case BP_PHASES: points(c, g, scale, first - middle, count, BP_PHASES, table->phases, &runs[g]); break;
+                case BP_LINE: points(c, g, scale, first - middle, count, BP_LINE, table->steps, &runs[g]); break;
+                case BP_STEPS: points(c, g, scale, first - middle, count, BP_STEPS, table->steps, &runs[g]); break;
                 case BP_CUBICS: points(c, g, scale, first - middle, count, BP_CUBICS, 1, &runs[g]); break;
                 }
             }
@@ -404,13 +404,13 @@ void BP_SUM(const struct bp_medium *medium, const struct bp_table *table, const 
     _Alignas(64) double tau[DELAYS][GROUP];
     const struct motion motion = motion_make(medium, ping);
     const bool cubics = table->reading == BP_CUBICS;
-    const double fine = table->upsample * (cubics ? BP_INTERVALS : 1), turns = medium->fc * ping->t0;
+    const double fine = table->upsample * (cubics ? BP_INTERVALS : 1), cycles = medium->fc * ping->t0;
     const struct scale scale = {ping->t0,
                                 medium->fs,
                                 fine,
-                                cubics ? 0 : 0.5 / table->phases,
+                                cubics ? 0 : 0.5 / table->steps,
                                 medium->fc / (medium->fs * fine),
-                                turns - floor(turns)};
+                                cycles - floor(cycles)};
     places.count = NODES * block_count;
     for (int b = 0; b < block_count; b++) {
         const double half = 0.5 * (blocks[b].end - 1 - blocks[b].begin), middle = blocks[b].begin + half;

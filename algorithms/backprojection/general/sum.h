@@ -14,7 +14,7 @@
    1.00 L (double) of the path bounds the error by this share. blocks.c has the derivation.     `quintics`
 
    0.15 L (float)  Bends in float. Cycles of a run that bends little are a straight line,       sum.c, sum_block:
-                   counted on in fixed point, plus a bend in float. A bend of n cycles errs by  `turns`, from which
+                   counted on in fixed point, plus a bend in float. A bend of n cycles errs by  `cycles`, from which
                    about three roundings (coefficient, polynomial, product): 3 n 2^-24 cycles,  half_run follows
                    or 1.1e-6 n rad. n <= 2^17 L makes that 0.144 L. A bend is at most half
                    its second derivative times the square of half a run's length, which gives
@@ -23,13 +23,13 @@
                    No share counts this; the test below measures that all errors together
                    stay below L + 2.5e-6.
 
-   2.5e-6 rad      Phase factors in float, besides L. Short polynomials of sine and cosine err  common/turn.h,
-   (float)         by 1.8e-6 (measured over all phases). Phases are floats below 1/2 cycle:     TURN_SHORT_SINE;
+   2.5e-6 rad      Phase factors in float, besides L. Short polynomials of sine and cosine err  common/phasor.h,
+   (float)         by 1.8e-6 (measured over all phases). Phases are floats below 1/2 cycle:     PHASOR_SHORT_SINE;
                    2^-26 cycles, 0.9e-7 rad. The line that is counted on: 32 steps of 2^-32     sum.c, points_flat
                    cycles, 0.5e-7 rad. The product with the sample: some 2e-7.
 
    1e-9 rad        Phases in double, besides L. They are fixed-point numbers with 32 bits of    sum.c, points:
-   (double)        a cycle, rounded: 2^-33 cycles, 0.7e-9 rad.                                  `turned`
+   (double)        a cycle, rounded: 2^-33 cycles, 0.7e-9 rad.                                  `fixed`
 
    Two errors of positions come on top of L/(2 pi fc) s. They do not change phases. They decide which of two samples, or
    of two steps of a table, a position takes that is as near to a tie between them:

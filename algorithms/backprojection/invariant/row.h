@@ -1,19 +1,19 @@
-/* The inner sums of the translation-invariant engine: one image row from tables. row.c is built for each precision and
-   instruction set; invariant.c chooses one at run time.
+/* The inner sums of the translation-invariant engine: one image row from tables. tables.c, sums.c and row.c are built
+   for each precision and instruction set; plan.c chooses one build at run time.
 
    WHY DELAYS REPEAT. The ping spacing is `ratio` azimuth steps. A pixel `ratio` columns further on sees the next ping
    as this pixel sees this ping. Write column n as n = rho + ratio j. Here rho = n mod ratio is its residue, j = n div
-   ratio. (The code calls the residue of a column its `phase`, and `blocks` the number of columns of a residue.) Ping
-   p lies
+   ratio; a residue has `residue_columns` columns at the most. Ping p lies
 
        u = (x_first - grid_first - rho grid_step) + s spacing,   s = p - j
 
    ahead of column n. So row, receiver, residue and the shift s alone decide on delay, sample and phase factor of a
    pair. They are tabulated once and serve all columns of the residue:
 
-       image[rho + ratio j] += w(s) record[sample(s)][ping j + s]   for all j with 0 <= j + s < pings
+       image[rho + ratio j] += w(s) trace[sample(s)][ping j + s]   for all j with 0 <= j + s < pings
 
-   For one shift this is a constant times contiguous pings: no gather and no trigonometry.
+   For one shift this is a constant times contiguous pings: no gather, no trigonometry, 4 multiply-adds a pair. It is exact:
+   the same pairs, samples and weights as the general engine with exact=true, in another order.
 
    PINGS BY COLUMNS. One residue with 8 columns, 5 pings, and the block of columns j = 2 to 5 in brackets. The numbers
    are the pings p = j + s that each shift brings to the columns. All pairs form a parallelogram. An aperture limit
@@ -37,28 +37,32 @@
    reads these zeros. Of a wider block, the first and the last region are summed for those vectors of columns only that
    have a ping (sum_columns).
 
-   THE SLAB holds compressed records of some receivers, re and im apart: [receiver][range sample][lead, pings, zeros].
+   THE SLAB holds compressed traces of some receivers, re and im apart: [receiver][range sample][lead, pings, zeros].
    Pings of one range sample are contiguous, which is what the sum over columns reads. Vectors may begin before ping 0
    and end behind the last one.
 
    THE LOOPS, from outside to inside:
 
-       receivers as many as fit the slab                  invariant_execute
-         pass over the fine samples                       the same; several only for large upsampled records
-           patch; image row, by one thread each           sum_rows
-             receiver of the slab                         BP_ROW from here on
-               groups of neighbouring residues, as many as `capacity` holds: a chunk
-                 tables of the chunk                      delays, keep or confine, tabulate, join_few or join_many
-                 block of columns                         sum_columns
-                   shifts that bring pings to the same vectors of the block: one region
-                     group of residues                    sum_block
-                       shift, tap, vector of columns      sum_one, sum_two, sum_taps
+       receivers, as many as fit the slab                       invariant.c  invariant_execute
+         pass over the fine samples                                          the same; several only for large upsampled
+                                                                             traces
+           patch; image row, by one thread each                              sum_rows
+             receiver of the slab                               row.c        BP_ROW
+               groups of neighbouring residues, as many as                   the same
+               `capacity` holds: a chunk
+                 tables of the chunk                            tables.c     TABLES_MAKE
+                 block of columns                               sums.c       SUMS_ADD
+                   shifts that bring pings to the same vectors               sum_columns
+                   of the block: one region
+                     group of residues                                       sum_block
+                       shift, tap, vector of columns                         sum_one, sum_two, sum_taps
 
-   Tables and sums take turns, so that both stay in the cache. Up to two taps, and single residues of more taps, keep
-   the sums of a block in registers over all shifts of a region.
+   Loads of the traces are the limit, half of which cross a cache line. Neighbouring residues mostly read the same samples:
+   they are summed together and share the loads. Tables and sums take turns, so that both stay in the cache. Up to two
+   taps, and single residues of more taps, keep the sums of a block in registers over all shifts of a region.
 
    THE TABLES. An entry is one shift of one residue. A group's entries are ordered by shift and then residue, and are
-   padded to whole vectors. Made once for a row and the receivers of the slab (make_groups): seconds on the way out
+   padded to whole vectors. Made once for a row and the receivers of the slab (TABLES_BEGIN): seconds on the way out
    (`leg`), metres along the track (`ahead`), the shift, and a gate of 1 or 0 for the aperture of this residue. Made
    once for a receiver: the place in the slab (`row`, `offset`) and the weights.
      - One or two taps: complex weights, phase factor times tap. In groups of two residues, an entry of the second that
@@ -66,19 +70,19 @@
      - More taps: phase factors (`wr`, `wi`) and real tap weights stand apart. A group reads the `rows` samples that any
        of its residues needs. The weights of a residue are 0 for samples that are not its own.
 
-   WHAT THE LOOPS RELY ON. They check nothing. Nor are there assertions: this code sees to it.
+   WHAT THE LOOPS RELY ON. They check nothing but BP_SPREAD; this code sees to it:
 
        whole ratio, even pings   raster_make, ping_beside: to 1e-7 of a cycle and of a sample, else unsupported
-       zeros around the pings    invariant_plan: a lead of 64 bytes, the widest vector, and as much behind the pings;
-                                 invariant_execute clears the slab, and spread writes pings only
-       samples in the record     BP_ROW: inside_record proves it for the whole row, else confine or keep checks entries;
+       zeros around the pings    plan_lengths: a lead of 64 bytes, the widest vector, and as much behind the pings;
+                                 invariant_execute clears the slab, and scatter writes pings only
+       samples in the record     inside_record proves it for the whole row, else confine or keep checks entries;
                                  taps beyond the record's ends read the guard rows of the slab, which are zeros
-       whole vectors             places, keep: entries of the padding hold valid values and are not summed;
-                                 invariant_plan: a row of sums has room for BP_LANES_MOST values behind its columns
-       BP_SPREAD                 phases_together: groups are so small that, by steepness(), the samples of one shift lie
-                                 at most BP_SPREAD apart; join_many would write beyond its table else
-       capacity                  invariant_plan: the largest group, BP_TOGETHER residues with all shifts, always fits
-       int indices               raster_make, invariant_plan: larger tables and slabs are unsupported
+       whole vectors             group_places, keep: entries of the padding hold valid values and are not summed;
+                                 plan_patch: a row of sums has room for BP_LANES_MOST values behind its columns
+       BP_SPREAD                 residues_together: groups are so small that, by steepness(), the samples of one shift lie
+                                 at most BP_SPREAD apart; join_many asserts it, as it would write beyond its table else
+       capacity                  plan_lengths: the largest group, BP_TOGETHER residues with all shifts, always fits
+       int indices               raster_make, plan_lengths: larger tables and slabs are unsupported
        same bits                 sum_rows: one thread sums a row, in an order that does not depend on the threads */
 #ifndef SASBENCH_BACKPROJECTION_INVARIANT_ROW_H
 #define SASBENCH_BACKPROJECTION_INVARIANT_ROW_H
@@ -93,18 +97,19 @@
    for BP_LANES_MOST values beyond its last column. */
 enum { BP_BLOCK_VECTORS = 3, BP_LANES_MOST = 16 };
 
-/* At most BP_TOGETHER column phases are summed together; their samples of one shift lie at most BP_SPREAD apart where a
-   value has more than two taps. */
+/* At most BP_TOGETHER residues are summed together; their samples of one shift lie at most BP_SPREAD apart where a value
+   has more than two taps. */
 enum { BP_TOGETHER = 6, BP_SPREAD = 4 };
 
-/* Compressed records of some receivers, pings contiguous: value (receiver g, row i, ping p) at
-   [g receiver_stride + i ping_stride + lead + p]. Row i is the record's sample i - guard; upsampled records keep `width`
-   of their `upsample` phases from `phase` on: row (f / upsample) width + f % upsample - phase for fine sample f. */
+/* Compressed traces of some receivers, pings contiguous: value (receiver g, row i, ping p) at
+   [g receiver_stride + i ping_stride + lead + p]. Row i is the trace's sample i - guard; upsampled traces keep step_count
+   of their `upsample` fine steps a sample, from step_first on: fine sample f is in row
+   (f / upsample) step_count + f % upsample - step_first. */
 struct bp_slab {
     const void *re, *im; /* real; 0 in the lead and as far behind the last ping */
     size_t receiver_stride;
     int ping_stride, lead;
-    int phase, width;
+    int step_first, step_count;
 };
 
 /* One patch seen from the track: ping p lies at x_first + p spacing, column n at n/ratio spacings from the grid's
@@ -115,27 +120,34 @@ struct bp_raster {
     double speed, t0;             /* m/s, s */
     int ratio;                    /* azimuth steps to a ping spacing */
     double grid_first, grid_step; /* m */
-    int columns, blocks;          /* of the grid; ceil(columns/ratio) */
+    int columns;                  /* of the grid */
+    int residue_columns;          /* of one residue at the most: ceil(columns/ratio) */
     double limit;                 /* aperture limit */
-    int together;                 /* phases summed together at most, 2 for up to two taps, 1 for upsampled records */
+    int together;                 /* residues summed together at most, 2 for up to two taps, 1 for upsampled traces */
 };
 
-/* Neighbouring column phases that are summed together, and the shifts [begin, end) inside the aperture of any of them. */
+static inline int raster_residues(const struct bp_raster *raster)
+{
+    return raster->ratio < raster->columns ? raster->ratio : raster->columns;
+}
+
+/* Neighbouring residues that are summed together, and the shifts [begin, end) inside the aperture of any of them. */
 struct bp_row_group {
-    int phase, phases; /* the first one, how many */
+    int residue, residues; /* the first one, how many */
     int begin, end;
-    int first;    /* its entries' place among the row's: by shift and then phase, padded to whole vectors */
+    int first;    /* its entries' place among the row's: by shift and then residue, padded to whole vectors */
     int from, to; /* of these, what is inside the present receiver's record: shifts counted from `begin` */
 };
 
-/* Scratch of one thread. Entries of a row: of all phases = min(ratio, columns), each BP_ENTRIES(pings + blocks) at the most;
-   of one receiver and as many groups as fit into `capacity` >= BP_TOGETHER BP_ENTRIES(pings + blocks). */
+/* Scratch of one thread. Entries of a row: of all residues = min(ratio, columns), each BP_ENTRIES(pings + residue_columns)
+   at the most; of one receiver and as many groups as fit into `capacity` >= BP_TOGETHER BP_ENTRIES(pings +
+   residue_columns). */
 struct bp_row_scratch {
-    struct bp_row_group *groups; /* [phases + 1], the last for its `first` */
+    struct bp_row_group *groups; /* [residues + 1], the last for its `first` */
     double *leg;                 /* [row's entries] s, from the transmitter */
     double *ahead; /* [row's entries] m, of the transmitter from the column when the echo leaves the pixel */
     int *shift;    /* [row's entries] p - n div ratio */
-    void *gate;    /* real [row's entries] 1 inside the phase's aperture, else 0 */
+    void *gate;    /* real [row's entries] 1 inside the aperture of the entry's residue, else 0 */
     int capacity;
     double *q;     /* [capacity] sample coordinate; then, with cubics, the position inside their interval */
     int *kept;     /* [capacity] `shift` of entries that are kept, where some are not */
@@ -148,13 +160,22 @@ struct bp_row_scratch {
 };
 #define BP_ENTRIES(shifts) (((shifts) + BP_LANES_MOST - 1) / BP_LANES_MOST * BP_LANES_MOST)
 
-/* Add `count` receivers, `offsets[g]` metres ahead of the transmitter, to one image row at range r: sums hold
-   [ratio][stride] values re, then im, of column rho + ratio j at [rho][j]; stride >= blocks + BP_LANES_MOST, the most
-   of one vector. */
-typedef void bp_row_function(const struct bp_medium *medium, const struct bp_table *table,
-                             const struct bp_raster *raster, const struct bp_slab *slab, double r,
-                             const double *offsets, int count, const struct bp_row_scratch *scratch, void *re, void *im,
-                             int stride);
+/* One image row of a patch, and the receivers of the slab that are added to it. */
+struct bp_row {
+    const struct bp_medium *medium;
+    const struct bp_table *table;
+    const struct bp_raster *raster;
+    const struct bp_slab *slab;
+    double r;                             /* m */
+    int receivers;                        /* of the slab */
+    const double *offsets;                /* [receivers] m ahead of the transmitter */
+    const struct bp_row_scratch *scratch; /* the calling thread's */
+    void *re, *im; /* real [min(ratio, columns)][stride] sums: column rho + ratio j at [rho][j] */
+    int stride;    /* >= residue_columns + BP_LANES_MOST, the most of one vector */
+};
+
+/* Add the receivers to the row. */
+typedef void bp_row_function(const struct bp_row *row);
 
 bp_row_function bp_row_float_baseline, bp_row_double_baseline;
 bp_row_function bp_row_float_v3, bp_row_double_v3; /* x86-64-v3: AVX2, FMA */

@@ -251,7 +251,7 @@ static void own_interpolator_claims_nothing(void **state)
     struct problem problem = {&a, 1, &grid, PRECISION_FLOAT};
     const struct bp_options options = {.phase_limit = 1e-4};
     for (int factor = 0; factor < 2; factor++) {
-        const struct interpolator own = {.upsample = 1, .phases = 1, .taps = 1, .factor = factor};
+        const struct interpolator own = {.upsample = 1, .steps = 1, .taps = 1, .factor = factor};
         void *plan;
         assert_int_equal(bp_plan(&problem, &own, &options, &plan), STATUS_OK);
         struct work work = bp_work(plan);

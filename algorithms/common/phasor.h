@@ -1,14 +1,14 @@
-/* cos and sin of 2 pi f for |f| <= 1/2 in the file's `real`, by Taylor polynomials of the quarter turn's remainder:
-   within 2 units in the last place of libm, and it vectorises. */
-#ifndef SASBENCH_COMMON_TURN_H
-#define SASBENCH_COMMON_TURN_H
+/* The phasor exp(j 2 pi f), as its cosine and sine, for a fraction of a cycle |f| <= 1/2 in the file's `real`: short
+   polynomials that vectorise. */
+#ifndef SASBENCH_COMMON_PHASOR_H
+#define SASBENCH_COMMON_PHASOR_H
 
 #include <math.h>
 
 #include "common/real.h"
 
-/* The same for an angle |x| <= pi/4 in radians. */
-static inline void turn_eighth(real x, real *c, real *s)
+/* The same for an angle |x| <= pi/4, an eighth of a cycle, in radians, by Taylor polynomials. */
+static inline void phasor_eighth(real x, real *c, real *s)
 {
     real y = x * x;
 #if REAL_DOUBLE
@@ -49,26 +49,27 @@ static inline void turn_eighth(real x, real *c, real *s)
 /* From the half angle's S = sqrt(2) sin(pi f) and C = sqrt(2) cos(pi f), by minimax polynomials: cos = 1 - S^2 and
    sin = S C, so that no quadrant has to be told from another, in short chains of products. For `real` and vectors of it. */
 #if REAL_DOUBLE
-#define TURN_SINE(z, z2)                                                                                               \
+#define PHASOR_SINE(z, z2)                                                                                             \
     ((4.4428829381583661 + z * -7.308249499995437) + z2 * (3.6064765714705578 + z * -0.84748802480989638)              \
      + z2 * z2                                                                                                         \
            * ((0.11617182685703353 + z * -0.010423362571554722)                                                        \
               + z2 * ((0.00065944661738638643 + z * -3.0974149455374744e-05) + z2 * 1.0866855346742344e-06)))
-#define TURN_COSINE(z, z2)                                                                                             \
+#define PHASOR_COSINE(z, z2)                                                                                           \
     ((1.4142135623730951 + z * -6.9788641996388758) + z2 * (5.7398857349463546 + z * -1.8883467170302786)              \
      + z2 * z2                                                                                                         \
            * ((0.33280776877138168 + z * -0.03649645205784869)                                                         \
               + z2 * ((0.0027288046656343086 + z * -0.00014787947669331688) + z2 * 5.8684089145498459e-06)))
 #else
-#define TURN_SINE(z, z2) ((4.44288283f + z * -7.30824118f) + z2 * (3.60628933f + z * -0.845765404f + z2 * 0.109208753f))
-#define TURN_COSINE(z, z2)                                                                                             \
+#define PHASOR_SINE(z, z2)                                                                                             \
+    ((4.44288283f + z * -7.30824118f) + z2 * (3.60628933f + z * -0.845765404f + z2 * 0.109208753f))
+#define PHASOR_COSINE(z, z2)                                                                                           \
     ((1.41421350f + z * -6.97885099f) + z2 * (5.73946117f + z * -1.88356299f + z2 * 0.310698194f))
 #endif
 /* For float, two thirds of the instructions: within 1.8e-6 (measured over all f), -115 dB. */
-#define TURN_SHORT_SINE(z, z2) (4.44285705f + z * (-7.30718432f + z * (3.59301926f + z * -0.780718886f)))
-#define TURN_SHORT_COSINE(z, z2)                                                                                       \
+#define PHASOR_SHORT_SINE(z, z2) (4.44285705f + z * (-7.30718432f + z * (3.59301926f + z * -0.780718886f)))
+#define PHASOR_SHORT_COSINE(z, z2)                                                                                     \
     (1.41422033f + z * (-6.97910828f + z * (5.74248479f + z * (-1.89762169f + z * 0.33330754f))))
-#define TURN(name, type, SINE, COSINE)                                                                                 \
+#define PHASOR(name, type, SINE, COSINE)                                                                               \
     static inline __attribute__((always_inline)) void name(type f, type *c, type *s)                                   \
     {                                                                                                                  \
         type z = f * f, z2 = z * z, sine = f * SINE(z, z2);                                                            \
@@ -77,6 +78,6 @@ static inline void turn_eighth(real x, real *c, real *s)
         (void)z2;                                                                                                      \
     }
 
-TURN(turn, real, TURN_SINE, TURN_COSINE)
+PHASOR(phasor, real, PHASOR_SINE, PHASOR_COSINE)
 
 #endif

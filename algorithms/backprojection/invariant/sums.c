@@ -1,0 +1,333 @@
+/* The sums of a chunk (row.h): one constant or a few times contiguous pings, vectors of columns at a time. This file is
+   compiled once for each precision and instruction set (BP_ISA names it). */
+#include <limits.h>
+
+#include "backprojection/invariant/chunk.h"
+
+/* A group's entries for some shifts, and the sums of a block's first column. */
+struct part {
+    int begin, end; /* shifts, counted from the group's first one */
+    const int *offset, *rows;
+    const real *wr, *wi, *weights;
+    real *re, *im; /* of the group's first residue */
+    size_t stride;
+};
+
+/* A vector of samples, loaded once for all its products: loads are the limit. */
+#define LOAD(name, pointer)                                                                                            \
+    vector_real name = *(const vector_real *)(pointer);                                                                \
+    HOLD(name)
+
+/* One residue, one or two samples with complex weights, `width` vectors of columns. Real and imaginary weights have
+   accumulators of their own, so that enough independent chains hide the latency of multiply-adds; all real parts come
+   before the imaginary ones, so that these chains and what they need fit 16 registers. */
+INLINE void sum_one(int width, int taps, int stride, const struct part *part, const real *sr, const real *si)
+{
+    vector_real a[BP_BLOCK_VECTORS] = {{0}}, b[BP_BLOCK_VECTORS] = {{0}};
+    vector_real c[BP_BLOCK_VECTORS] = {{0}}, d[BP_BLOCK_VECTORS] = {{0}};
+    const int *offset = part->offset, end = part->end;
+    const real *wr = part->wr, *wi = part->wi;
+    for (int i = part->begin; i < end; i++) {
+        const real *x = sr + offset[i], *y = si + offset[i];
+        for (int t = 0; t < taps; t++) {
+            real cosine = wr[i * taps + t], sine = wi[i * taps + t];
+            for (int k = 0; k < width; k++) {
+                LOAD(v, x + t * stride + k * LANES);
+                a[k] += v * cosine;
+                c[k] += v * sine;
+            }
+            for (int k = 0; k < width; k++) {
+                LOAD(v, y + t * stride + k * LANES);
+                b[k] += v * sine;
+                d[k] += v * cosine;
+            }
+        }
+    }
+    for (int k = 0; k < width; k++) {
+        *(vector_real *)(part->re + k * LANES) += a[k] - b[k];
+        *(vector_real *)(part->im + k * LANES) += c[k] + d[k];
+    }
+}
+
+/* The same of two residues that read the same samples. */
+INLINE void sum_two(int width, int taps, int stride, const struct part *part, const real *sr, const real *si)
+{
+    vector_real a[BP_BLOCK_VECTORS] = {{0}}, b[BP_BLOCK_VECTORS] = {{0}};
+    vector_real a2[BP_BLOCK_VECTORS] = {{0}}, b2[BP_BLOCK_VECTORS] = {{0}};
+    const int *offset = part->offset, end = part->end;
+    const real *wr = part->wr, *wi = part->wi;
+    for (int i = part->begin; i < end; i++) {
+        const real *x = sr + offset[2 * i], *y = si + offset[2 * i];
+        for (int t = 0; t < taps; t++) {
+            const real *r = wr + 2 * i * taps + t, *m = wi + 2 * i * taps + t;
+            real cosine = r[0], sine = m[0], cosine2 = r[taps], sine2 = m[taps];
+            for (int k = 0; k < width; k++) {
+                LOAD(v, x + t * stride + k * LANES);
+                a[k] += v * cosine;
+                b[k] += v * sine;
+                a2[k] += v * cosine2;
+                b2[k] += v * sine2;
+            }
+            for (int k = 0; k < width; k++) {
+                LOAD(v, y + t * stride + k * LANES);
+                a[k] -= v * sine;
+                b[k] += v * cosine;
+                a2[k] -= v * sine2;
+                b2[k] += v * cosine2;
+            }
+        }
+    }
+    for (int k = 0; k < width; k++) {
+        *(vector_real *)(part->re + k * LANES) += a[k];
+        *(vector_real *)(part->im + k * LANES) += b[k];
+        *(vector_real *)(part->re + part->stride + k * LANES) += a2[k];
+        *(vector_real *)(part->im + part->stride + k * LANES) += b2[k];
+    }
+}
+
+/* Some residues, many samples with real weights, whose sum is rotated. rows[i] >= taps samples serve all residues of the
+   group; a residue's weights are 0 for those that are not its own. Registers hold the block's sums of one residue, not of more. */
+INLINE void sum_taps(int residues, int width, int taps, int stride, const struct part *part, const real *sr,
+                     const real *si)
+{
+    const int spread = taps + BP_SPREAD;
+    vector_real sum_re[BP_BLOCK_VECTORS] = {{0}}, sum_im[BP_BLOCK_VECTORS] = {{0}};
+    for (int i = part->begin; i < part->end; i++) {
+        const real *x = sr + part->offset[i], *y = si + part->offset[i], *w = part->weights + i * residues * spread;
+        vector_real vr[BP_TOGETHER] = {{0}}, vi[BP_TOGETHER] = {{0}}; /* [residues][width] */
+#define TAP(t)                                                                                                         \
+    for (int k = 0; k < width; k++) {                                                                                  \
+        LOAD(v, x + (t)*stride + k * LANES);                                                                           \
+        LOAD(u, y + (t)*stride + k * LANES);                                                                           \
+        for (int p = 0; p < residues; p++) {                                                                           \
+            vr[p * width + k] += v * w[p * spread + (t)];                                                              \
+            vi[p * width + k] += u * w[p * spread + (t)];                                                              \
+        }                                                                                                              \
+    }
+        for (int t = 0; t < taps; t++)
+            TAP(t)
+        for (int t = taps; t < part->rows[i]; t++)
+            TAP(t)
+        for (int p = 0; p < residues; p++) {
+            real cosine = part->wr[i * residues + p], sine = part->wi[i * residues + p];
+            for (int k = 0; k < width; k++) {
+                const size_t at = (size_t)p * part->stride + (size_t)(k * LANES);
+                vector_real *re = residues == 1 ? &sum_re[k] : (vector_real *)(part->re + at);
+                vector_real *im = residues == 1 ? &sum_im[k] : (vector_real *)(part->im + at);
+                vector_real a = vr[p * width + k], b = vi[p * width + k];
+                *re = *re + a * cosine - b * sine;
+                *im = *im + a * sine + b * cosine;
+            }
+        }
+    }
+    for (int k = 0; residues == 1 && k < width; k++) {
+        *(vector_real *)(part->re + k * LANES) += sum_re[k];
+        *(vector_real *)(part->im + k * LANES) += sum_im[k];
+    }
+}
+
+/* `value` inside [least, most]. */
+INLINE int between(int value, int least, int most)
+{
+    return value < least ? least : value < most ? value : most;
+}
+
+/* The first of `count` rising shifts that is >= bound. */
+static int find(const int *shift, int count, int bound)
+{
+    int low = 0;
+    while (low < count) {
+        int middle = low + (count - low) / 2;
+        if (shift[middle] < bound)
+            low = middle + 1;
+        else
+            count = middle;
+    }
+    return low;
+}
+
+/* A block of `width` vectors of columns from j on. Works on copies: else all that a chunk and its scratch point to is read
+   anew after each store of a sum. */
+INLINE void sum_block(int residues, int width, int taps, const struct chunk *shared, int j)
+{
+    const struct chunk own_chunk = *shared, *chunk = &own_chunk;
+    const struct bp_row_scratch own_scratch = *chunk->scratch, *scratch = &own_scratch;
+    const struct bp_row_group *groups = scratch->groups;
+    const int origin = groups[chunk->begin].first;
+    const real *sr = chunk->sr + j, *si = chunk->si + j;
+    const int stride = chunk->slab->ping_stride;
+    OPAQUE(sr);
+    OPAQUE(si);
+    for (int g = chunk->begin; g < chunk->end; g++) {
+        const struct bp_row_group *group = &groups[g];
+        const size_t first = (size_t)(group->first - origin), complex_taps = taps < 3 ? (size_t)taps : 1;
+        const size_t at = (size_t)group->residue * chunk->stride + (size_t)j;
+        struct part part = {.offset = scratch->offset + first,
+                            .rows = scratch->rows + first,
+                            .wr = (const real *)scratch->wr + first * complex_taps,
+                            .wi = (const real *)scratch->wi + first * complex_taps,
+                            .weights = (const real *)scratch->weights + first * (size_t)(taps + BP_SPREAD),
+                            .re = chunk->re + at,
+                            .im = chunk->im + at,
+                            .stride = chunk->stride};
+        if (chunk->sparse) {
+            part.begin = find(scratch->kept + first, group->to, chunk->from);
+            part.end = find(scratch->kept + first, group->to, chunk->to);
+        } else {
+            part.begin = between(chunk->from - group->begin, group->from, group->to);
+            part.end = between(chunk->to - group->begin, group->from, group->to);
+        }
+        if (taps > 2)
+            sum_taps(residues, width, taps, stride, &part, sr, si);
+        else if (residues == 2)
+            sum_two(width, taps, stride, &part, sr, si);
+        else
+            sum_one(width, taps, stride, &part, sr, si);
+    }
+}
+
+/* The shipped kernels unroll, any other length works as well. Functions of their own: the compiler runs out of registers
+   where it inlines several. */
+#define BLOCK(name, taps, residues, width)                                                                             \
+    static __attribute__((noinline)) void name##_##residues##_##width(const struct chunk *chunk, int j)                \
+    {                                                                                                                  \
+        sum_block(residues, width, taps, chunk, j);                                                                    \
+    }
+/* clang-format off */
+#define BLOCKS_FEW(name, taps) \
+    BLOCK(name, taps, 1, 1) BLOCK(name, taps, 1, 2) BLOCK(name, taps, 1, 3) \
+    BLOCK(name, taps, 2, 1) BLOCK(name, taps, 2, 2)
+#define BLOCKS_MANY(name, taps) \
+    BLOCK(name, taps, 1, 1) BLOCK(name, taps, 1, 2) BLOCK(name, taps, 1, 3) \
+    BLOCK(name, taps, 2, 1) BLOCK(name, taps, 2, 2) BLOCK(name, taps, 2, 3) \
+    BLOCK(name, taps, 3, 1) BLOCK(name, taps, 3, 2) \
+    BLOCK(name, taps, 4, 1) BLOCK(name, taps, 5, 1) BLOCK(name, taps, 6, 1)
+#define TABLE_FEW(name) {{name##_1_1, name##_1_2, name##_1_3}, {name##_2_1, name##_2_2}}
+#define TABLE_MANY(name) \
+    {{name##_1_1, name##_1_2, name##_1_3}, {name##_2_1, name##_2_2, name##_2_3}, {name##_3_1, name##_3_2}, \
+     {name##_4_1}, {name##_5_1}, {name##_6_1}}
+/* clang-format on */
+BLOCKS_FEW(nearest, 1)
+BLOCKS_FEW(line, 2)
+BLOCKS_MANY(eight, 8)
+BLOCKS_MANY(any, chunk->table->taps)
+
+typedef void block_function(const struct chunk *chunk, int j);
+
+static const struct kernel {
+    int taps;                                             /* 0: any number */
+    block_function *block[BP_TOGETHER][BP_BLOCK_VECTORS]; /* [residues - 1][vectors - 1], as many as registers hold */
+} kernels[] = {
+    {1, TABLE_FEW(nearest)},
+    {2, TABLE_FEW(line)},
+    {8, TABLE_MANY(eight)},
+    {0, TABLE_MANY(any)},
+};
+
+/* The shifts [from, to) of those that the row has, for a block of columns from j on. */
+INLINE void sum_shifts(block_function *block, struct chunk *chunk, int least, int most, int from, int to, int j)
+{
+    chunk->from = from > least ? from : least;
+    chunk->to = to < most ? to : most;
+    if (chunk->from < chunk->to)
+        block(chunk, j);
+}
+
+/* All columns, in blocks as wide as each other. Vector v of one has pings for the shifts [FIRST(v), END(v)). Where the lead is as
+   wide as a block, a shift that has pings for some of its vectors is summed for all, for the others zeros; else for
+   those only that have some. */
+static void sum_columns(const struct kernel *kernel, struct chunk *chunk)
+{
+    const int columns = chunk->raster->residue_columns, pings = chunk->raster->pings;
+    const struct bp_row_group *groups = chunk->scratch->groups;
+    block_function *const *block = kernel->block[groups[chunk->begin].residues - 1];
+    int least = INT_MAX, most = INT_MIN, widest = BP_BLOCK_VECTORS;
+    while (!block[widest - 1])
+        widest--;
+    for (int g = chunk->begin; g < chunk->end; g++) {
+        least = groups[g].begin < least ? groups[g].begin : least;
+        most = groups[g].end > most ? groups[g].end : most;
+    }
+    for (int j = 0, width; j < columns; j += width * LANES) {
+        int left = (columns - j + LANES - 1) / LANES, parts = (left + widest - 1) / widest;
+        width = (left + parts - 1) / parts;
+#define FIRST(v) (1 - j - ((v) + 1) * LANES)
+#define END(v)   (pings - j - (v)*LANES)
+        if (width * LANES <= chunk->slab->lead) {
+            sum_shifts(block[width - 1], chunk, least, most, FIRST(width - 1), END(0), j);
+            continue;
+        }
+        for (int v = 0; v < width; v++)
+            for (int end = width; end > v; end--) {
+                int from = FIRST(v), to = END(end - 1);
+                if (end < width && from < END(end))
+                    from = END(end);
+                if (v > 0 && to > FIRST(v - 1))
+                    to = FIRST(v - 1);
+                sum_shifts(block[end - v - 1], chunk, least, most, from, to, j + v * LANES);
+            }
+    }
+}
+
+/* One entry, with one or two complex weights, onto all columns that have a ping. */
+INLINE void sum_entry(const struct chunk *chunk, int taps, int residue, int entry, const real *wr, const real *wi)
+{
+    const int shift = chunk->shift[entry], offset = chunk->scratch->offset[entry];
+    const int stride = chunk->slab->ping_stride, pings = chunk->raster->pings, columns = chunk->raster->residue_columns;
+    const int begin = shift < 0 ? -shift / LANES * LANES : 0, end = pings - shift < columns ? pings - shift : columns;
+    const real *sr = chunk->sr + offset, *si = chunk->si + offset;
+    real *re = chunk->re + (size_t)residue * chunk->stride, *im = chunk->im + (size_t)residue * chunk->stride;
+    for (int j = begin; j < end; j += LANES) {
+        vector_real a = *(vector_real *)(re + j), b = *(vector_real *)(im + j);
+        for (int t = 0; t < taps; t++) {
+            vector_real x = *(const vector_real *)(sr + t * stride + j),
+                        y = *(const vector_real *)(si + t * stride + j);
+            a = a + x * wr[t] - y * wi[t];
+            b = b + x * wi[t] + y * wr[t];
+        }
+        *(vector_real *)(re + j) = a;
+        *(vector_real *)(im + j) = b;
+    }
+}
+
+/* In pairs of residues, one or two taps: each second entry whose samples are not the first one's is summed by itself. */
+INLINE void sum_apart(const struct chunk *chunk, int taps)
+{
+    const struct bp_row_scratch *scratch = chunk->scratch;
+    const struct bp_row_group *groups = scratch->groups;
+    const int first = groups[chunk->begin].first, n = chunk->entries, *offset = scratch->offset;
+    int *apart = scratch->rows, count = 0;
+    for (int e = 0; e < n; e += LANES) { /* most pairs read the same sample, and so do their neighbours */
+        int differ = 0;
+        for (int k = 0; k < LANES; k += 2)
+            differ |= offset[e + k] ^ offset[e + k + 1];
+        for (int k = 1; differ && k < LANES; k += 2) {
+            apart[count] = e + k;
+            count += offset[e + k] != offset[e + k - 1];
+        }
+    }
+    for (int i = 0, g = chunk->begin; i < count; i++) {
+        int e = apart[i];
+        real *r = (real *)scratch->wr + e * taps, *m = (real *)scratch->wi + e * taps;
+        while (groups[g + 1].first - first <= e)
+            g++;
+        sum_entry(chunk, taps, groups[g].residue + 1, e, r, m);
+        for (int t = 0; t < taps; t++)
+            r[t] = m[t] = 0;
+    }
+}
+
+void SUMS_ADD(struct chunk *chunk)
+{
+    const int taps = chunk->table->taps;
+    const struct kernel *kernel = kernels;
+    while (kernel->taps != 0 && kernel->taps != taps)
+        kernel++;
+    if (taps <= 2 && chunk->scratch->groups[chunk->begin].residues == 2) {
+        if (taps == 1)
+            sum_apart(chunk, 1);
+        else
+            sum_apart(chunk, 2);
+    }
+    sum_columns(kernel, chunk);
+}

@@ -1,0 +1,377 @@
+/* The tables of the translation-invariant engine (row.h): which shifts of which residues an image row sums, where they read
+   the slab, and their weights; in whole vectors. This file is compiled once for each precision and instruction set
+   (BP_ISA names it). */
+#include <assert.h>
+#include <math.h>
+
+#include "backprojection/invariant/chunk.h"
+#include "common/phasor.h"
+
+/* `value`, a whole number, inside [least, most]: fmin and fmax are calls. */
+static int clamp(double value, int least, int most)
+{
+    return !(value > least) ? least : value < most ? (int)value : most;
+}
+
+/* As pairs.c defines it, for a ping that is u ahead of the pixel. */
+static bool inside_limit(const struct bp_raster *raster, double u, double r)
+{
+    const double distance = sqrt(u * u + r * r),
+                 grid_last = raster->grid_first + (raster->columns - 1) * raster->grid_step;
+    const double track_last = raster->x_first + (raster->pings - 1) * raster->spacing;
+    return fabs(u) <= raster->limit * distance
+           || distance <= apex_slack(fmax(fabs(raster->grid_first), fabs(grid_last)),
+                                     fmax(fabs(raster->x_first), fabs(track_last)));
+}
+
+/* Shifts [begin, end) of one residue inside the aperture: |u| <= limit sqrt(u^2 + r^2), that is, |u| <= edge, u = x + s
+   spacing. */
+static void shift_bounds(const struct bp_raster *raster, double edge, double x, double r, int *begin, int *end)
+{
+    const double one_spacing = 1 / raster->spacing;
+    const double first = (-edge - x) * one_spacing, last = (edge - x) * one_spacing;
+    int low = clamp(ceil(first), *begin, *end), high = clamp(floor(last) + 1, *begin, *end);
+    if (fabs(first - floor(first + 0.5)) < 1e-6 || fabs(last - floor(last + 0.5)) < 1e-6) {
+        /* so near a shift that rounding decides: as it is defined */
+#define INSIDE(s) inside_limit(raster, x + (s)*raster->spacing, r)
+        while (low < high && !INSIDE(low))
+            low++;
+        while (low > *begin && INSIDE(low - 1))
+            low--;
+        while (high > low && !INSIDE(high - 1))
+            high--;
+        while (high < *end && INSIDE(high))
+            high++;
+#undef INSIDE
+    }
+    *begin = low;
+    *end = high;
+}
+
+/* The shifts [begin, end) of one residue inside the aperture. */
+struct shifts {
+    int begin, end;
+};
+
+/* A group's entries, by shift and then residue, padded to whole vectors by the last. Those outside their residue's aperture
+   have gate 0, all others 1. */
+static void group_places(const struct bp_row *row, const struct bp_row_group *group, const struct shifts *inside)
+{
+    const struct bp_raster *raster = row->raster;
+    const struct bp_row_scratch *scratch = row->scratch;
+    double *restrict leg = scratch->leg + group->first, *restrict ahead = scratch->ahead + group->first;
+    int *restrict shift = scratch->shift + group->first;
+    real *restrict gate = (real *)scratch->gate + group->first;
+    const double one_c = 1 / row->medium->sound_speed, v = raster->speed, r2 = row->r * row->r;
+    const int residues = group->residues, n = (group->end - group->begin) * residues, whole = whole_vectors(n);
+    for (int k = 0; k < residues; k++) {
+        const double x = raster->x_first - (raster->grid_first + (group->residue + k) * raster->grid_step);
+        for (int s = group->begin, i = k; s < group->end; s++, i += residues) {
+            ahead[i] = x + s * raster->spacing;
+            shift[i] = s;
+            gate[i] = s >= inside[k].begin && s < inside[k].end;
+        }
+    }
+    for (int i = n; i < whole; i++) {
+        ahead[i] = ahead[n - 1];
+        shift[i] = shift[n - 1];
+        gate[i] = 0;
+    }
+#pragma omp simd
+    for (int i = 0; i < whole; i++) {
+        double u = ahead[i], seconds = sqrt(u * u + r2) * one_c;
+        leg[i] = seconds;
+        ahead[i] = u + v * seconds;
+    }
+}
+
+static struct delay_terms delay_terms_make(const struct bp_row *row)
+{
+    const double c = row->medium->sound_speed, v = row->raster->speed, r = row->r, e = (c - v) * (c + v);
+    return (struct delay_terms){v, c * c, r * r, e * r * r, 1 / e, fabs(v) <= BP_SLOW * c};
+}
+
+/* Are all delays of a row inside the record, by the least and the longest there could be? `furthest` and `offset`: largest
+   distances along the track between ping and pixel and between transmitter and receiver. */
+static bool inside_record(const struct bp_row *row, const struct delay_terms *terms, double offset, double furthest)
+{
+    const struct bp_medium *medium = row->medium;
+    const double r = row->r, t0 = row->raster->t0;
+    const double v = fabs(terms->v), c = medium->sound_speed, leg = sqrt(furthest * furthest + r * r) / c;
+    const double b = furthest + offset + v * leg;
+    const double least = fabs(r) / c + (sqrt(terms->er2) - v * b) * terms->one_e;
+    const double most = leg + (v * b + sqrt(terms->c2 * b * b + terms->er2)) * terms->one_e;
+    const double slack = 1e-9 / medium->fs, last = t0 + (medium->samples - 1) / medium->fs;
+    return least >= t0 + slack && most <= last - slack;
+}
+
+/* One group from `first` on, and the largest distance along the track between a ping and a pixel of it. */
+static double group_make(const struct bp_row *row, int first, int count, struct bp_row_group *group)
+{
+    const struct bp_raster *raster = row->raster;
+    const double limit = raster->limit;
+    const double edge = limit < 1 ? fabs(row->r) * limit / sqrt((1 - limit) * (1 + limit)) : INFINITY;
+    struct shifts inside[BP_TOGETHER];
+    double furthest = 0;
+    group->residue = first;
+    group->residues = count;
+    for (int k = 0; k < count; k++) {
+        const int p = first + k;
+        double x = raster->x_first - (raster->grid_first + p * raster->grid_step);
+        int begin = 1 - (raster->columns - p + raster->ratio - 1) / raster->ratio, end = raster->pings;
+        if (limit < 1)
+            shift_bounds(raster, edge, x, row->r, &begin, &end);
+        inside[k] = (struct shifts){begin, end};
+        if (begin == end)
+            continue;
+        bool empty = group->begin == group->end;
+        group->begin = empty || begin < group->begin ? begin : group->begin;
+        group->end = empty || end > group->end ? end : group->end;
+        furthest = fmax(furthest, fmax(fabs(x + begin * raster->spacing), fabs(x + (end - 1) * raster->spacing)));
+    }
+    group->to = group->end - group->begin;
+    if (group->to > 0)
+        group_places(row, group, inside);
+    return furthest;
+}
+
+struct row_tables TABLES_BEGIN(const struct bp_row *row) {
+    const struct bp_raster *raster = row->raster;
+    struct bp_row_group *groups = row->scratch->groups;
+    const int residues = raster_residues(raster);
+    const int group_count = (residues + raster->together - 1) / raster->together;
+    const int size = residues / group_count, larger = residues % group_count; /* the first ones have one residue more */
+    double furthest = 0, offset = 0;
+    int total = 0;
+    for (int g = 0; g < group_count; g++) {
+        groups[g] = (struct bp_row_group){.first = total};
+        furthest =
+            fmax(furthest, group_make(row, g * size + (g < larger ? g : larger), size + (g < larger), &groups[g]));
+        total += whole_vectors(groups[g].to * groups[g].residues);
+    }
+    groups[group_count].first = total;
+    furthest += raster->spacing; /* a group has entries outside the aperture of some of its residues */
+    for (int m = 0; m < row->receivers; m++)
+        offset = fmax(offset, fabs(row->offsets[m]));
+    const struct delay_terms terms = delay_terms_make(row);
+    return (struct row_tables){group_count, terms, inside_record(row, &terms, offset, furthest)};
+}
+
+/* Sample coordinate and weight exp(j 2 pi fc tau) of a chunk's entries; weight 0 where the gate is. Two loops, so that
+   several of each one's chains are under way at once. `slow` is a constant where this is inlined. */
+INLINE void
+delays(bool slow, const struct chunk *chunk, const struct delay_terms *terms, double offset)
+{
+    const struct bp_row_scratch *scratch = chunk->scratch;
+    const int n = chunk->entries, first = scratch->groups[chunk->begin].first;
+    const double *restrict leg = scratch->leg + first, *restrict ahead = scratch->ahead + first;
+    const real *restrict gate = (const real *)scratch->gate + first;
+    double *restrict q = scratch->q;
+    real *restrict wr = scratch->wr, *restrict wi = scratch->wi;
+    const double v = terms->v, c2 = terms->c2, r2 = terms->r2, er2 = terms->er2, one_e = terms->one_e;
+    const double fc = chunk->medium->fc, fs = chunk->medium->fs, t0 = chunk->raster->t0;
+#pragma omp simd
+    for (int i = 0; i < n; i++) {
+        double b = ahead[i] + offset, p = b * v, s = sqrt(c2 * (b * b) + er2);
+        double tau = leg[i] + (slow || p >= 0 ? (p + s) * one_e : (b * b + r2) / (s - p));
+        double cycles = fc * tau;
+        q[i] = (tau - t0) * fs;
+        wr[i] = (real)(cycles - floor(cycles + 0.5));
+    }
+#pragma omp simd
+    for (int i = 0; i < n; i++) {
+        real cosine, sine;
+        phasor(wr[i], &cosine, &sine);
+        wr[i] = cosine * gate[i];
+        wi[i] = sine * gate[i];
+    }
+}
+
+/* The sample at or before q and the nearest of `steps` steps from there on to the next. */
+INLINE void nearest_step(double q, int steps, int *sample, int *step)
+{
+    int whole = (int)q, near = (int)((q - whole) * steps + 0.5), next = near == steps; /* q >= 0: the cast is floor */
+    *sample = whole + next;
+    *step = next ? 0 : near;
+}
+
+/* Of a group's entries, from `first` of the chunk on, those outside the record weigh nothing, and read its nearest sample;
+   shifts before the first and after the last that has an entry inside are left out. */
+static void confine(const struct chunk *chunk, struct bp_row_group *group, int first)
+{
+    double *restrict q = chunk->scratch->q + first;
+    real *restrict wr = (real *)chunk->scratch->wr + first, *restrict wi = (real *)chunk->scratch->wi + first;
+    const double last = chunk->medium->samples - 1;
+    const int residues = group->residues, n = (group->end - group->begin) * residues, whole = whole_vectors(n);
+    int from = n, to = 0;
+    for (int i = 0; i < whole; i++) {
+        if (q[i] >= 0 && q[i] <= last) {
+            from = i < from ? i : from;
+            to = i + 1;
+            continue;
+        }
+        wr[i] = wi[i] = 0;
+        q[i] = q[i] < 0 ? 0 : last;
+    }
+    to = to < n ? to : n;
+    group->from = from < to ? from / residues : 0;
+    group->to = from < to ? (to + residues - 1) / residues : 0;
+}
+
+/* Of the entries of one residue, from `first` of the chunk on, keep those inside the record whose fine sample is in the
+   slab. */
+static void keep(const struct chunk *chunk, struct bp_row_group *group, int first)
+{
+    const struct bp_slab *slab = chunk->slab;
+    double *q = chunk->scratch->q + first;
+    real *wr = (real *)chunk->scratch->wr + first, *wi = (real *)chunk->scratch->wi + first;
+    int *kept = chunk->scratch->kept + first;
+    int count = 0, n = group->end - group->begin;
+    for (int i = 0; i < n; i++) {
+        if (!(q[i] >= 0 && q[i] <= chunk->medium->samples - 1))
+            continue;
+        int sample, step;
+        nearest_step(q[i], chunk->table->upsample, &sample, &step);
+        if (step < slab->step_first || step >= slab->step_first + slab->step_count)
+            continue;
+        q[count] = q[i];
+        wr[count] = wr[i];
+        wi[count] = wi[i];
+        kept[count++] = group->begin + i;
+    }
+    group->to = count;
+    for (int i = count; i < whole_vectors(n); i++) {
+        q[i] = 0;
+        kept[i] = group->begin;
+    }
+}
+
+/* Where a chunk's entries read the slab: the first tap's row, and its value for ping `shift`. What their weights are
+   made of: the fine step from the sample to the next one, or the interval, and with cubics the position inside it, in
+   place of q. */
+INLINE void tabulate(const struct chunk *chunk)
+{
+    const struct bp_table *table = chunk->table;
+    const struct bp_slab *slab = chunk->slab;
+    const struct bp_row_scratch *scratch = chunk->scratch;
+    const int n = chunk->entries, *restrict shift = chunk->shift;
+    double *restrict q = scratch->q;
+    int *restrict row = scratch->row, *restrict offset = scratch->offset, *restrict step = scratch->step;
+    const int first = table->upsample > 1 ? -slab->step_first : table->guard + table->first;
+    const int width = slab->step_count, stride = slab->ping_stride;
+    if (table->reading == BP_CUBICS) {
+#pragma omp simd
+        for (int i = 0; i < n; i++) {
+            int sample = (int)q[i];
+            double interval = (q[i] - sample) * BP_INTERVALS;
+            row[i] = sample + first;
+            offset[i] = row[i] * stride + shift[i];
+            step[i] = (int)interval;
+            q[i] = interval - step[i];
+        }
+        return;
+    }
+    if (table->taps == 1 && table->upsample == 1) {
+#pragma omp simd
+        for (int i = 0; i < n; i++) {
+            row[i] = (int)(q[i] + 0.5) + first;
+            offset[i] = row[i] * stride + shift[i];
+        }
+        return;
+    }
+    const int fine = table->upsample > 1, steps = fine ? table->upsample : table->steps;
+#pragma omp simd
+    for (int i = 0; i < n; i++) {
+        int sample, near;
+        nearest_step(q[i], steps, &sample, &near);
+        row[i] = sample * width + (fine ? near : 0) + first;
+        offset[i] = row[i] * stride + shift[i];
+        step[i] = near;
+    }
+}
+
+/* The weights of one entry's taps, from its step and, with cubics, its position u. */
+INLINE void weigh(const struct bp_table *table, int taps, int step, real u, real *restrict weights)
+{
+    const real *values = table->weights;
+    if (table->reading == BP_CUBICS) {
+        const real *w = values + step * 4 * taps;
+#pragma omp simd
+        for (int t = 0; t < taps; t++)
+            weights[t] = w[t] + u * (w[taps + t] + u * (w[2 * taps + t] + u * w[3 * taps + t]));
+    } else {
+        for (int t = 0; t < taps; t++)
+            weights[t] = values[step * taps + t];
+    }
+}
+
+/* Two taps: the weights times the taps' own. */
+INLINE void join_two(const struct chunk *chunk)
+{
+    const struct bp_row_scratch *scratch = chunk->scratch;
+    real *wr = scratch->wr, *wi = scratch->wi;
+    for (int e = chunk->entries - 1; e >= 0; e--) {
+        real weights[2], cosine = wr[e], sine = wi[e];
+        weigh(chunk->table, 2, scratch->step[e], (real)scratch->q[e], weights);
+        for (int t = 0; t < 2; t++) {
+            wr[2 * e + t] = cosine * weights[t];
+            wi[2 * e + t] = sine * weights[t];
+        }
+    }
+}
+
+/* Many taps: the samples that serve all residues of a group, and each one's weights for them. */
+INLINE void join_many(const struct chunk *chunk, int taps, const struct bp_row_group *group, int first)
+{
+    const struct bp_row_scratch *scratch = chunk->scratch;
+    const int residues = group->residues, n = group->end - group->begin, spread = taps + BP_SPREAD;
+    const int *row = scratch->row + first, *step = scratch->step + first;
+    const double *u = scratch->q + first;
+    int *offset = scratch->offset + first, *rows = scratch->rows + first;
+    real *weights = (real *)scratch->weights + (size_t)first * (size_t)spread;
+    for (int i = 0; i < n; i++) {
+        const int e = i * residues;
+        int least = e, most = e;
+        for (int p = 1; p < residues; p++) {
+            least = row[e + p] < row[least] ? e + p : least;
+            most = row[e + p] > row[most] ? e + p : most;
+        }
+        assert(row[most] - row[least] <= BP_SPREAD);
+        for (int p = 0; p < residues; p++) {
+            real *w = weights + (e + p) * spread;
+            for (int t = 0; t < spread; t++)
+                w[t] = 0;
+            weigh(chunk->table, taps, step[e + p], (real)u[e + p], w + row[e + p] - row[least]);
+        }
+        rows[i] = taps + row[most] - row[least];
+        offset[i] = offset[least]; /* i <= e: what is overwritten has been read */
+    }
+}
+
+void TABLES_MAKE(const struct row_tables *tables, double offset, struct chunk *chunk)
+{
+    const struct bp_row_scratch *scratch = chunk->scratch;
+    const struct bp_table *table = chunk->table;
+    struct bp_row_group *groups = scratch->groups;
+    const int first = groups[chunk->begin].first;
+    chunk->entries = groups[chunk->end].first - first;
+    if (tables->terms.slow)
+        delays(true, chunk, &tables->terms, offset);
+    else
+        delays(false, chunk, &tables->terms, offset);
+    for (int g = chunk->begin; g < chunk->end; g++)
+        if (chunk->sparse)
+            keep(chunk, &groups[g], groups[g].first - first);
+        else if (!tables->inside_record)
+            confine(chunk, &groups[g], groups[g].first - first);
+    chunk->shift = chunk->sparse ? scratch->kept : scratch->shift + first;
+    tabulate(chunk);
+    if (table->taps == 2)
+        join_two(chunk);
+    for (int g = chunk->begin; table->taps > 2 && g < chunk->end; g++) {
+        if (table->taps == 8)
+            join_many(chunk, 8, &groups[g], groups[g].first - first);
+        else
+            join_many(chunk, table->taps, &groups[g], groups[g].first - first);
+    }
+}
