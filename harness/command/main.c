@@ -12,7 +12,7 @@
 #include "data/number.h"
 #include "data/shown_text.h"
 #include "command/task.h"
-#include "measure/results.h"
+#include "measure/provenance.h"
 #include "data/temporary.h"
 
 struct command {

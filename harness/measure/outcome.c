@@ -18,36 +18,6 @@ static const char *const axis_names[AXES] = {[AXIS_AZIMUTH] = "azimuth", [AXIS_R
 static const char *const definition_names[DEFINITIONS] = {
     [DEFINITION_NULL] = "null", [DEFINITION_3DB] = "3db", [DEFINITION_PIXEL] = "pixel"};
 
-struct measurement measurement_empty(const char *scene, const char *algorithm, const char *options,
-                                     enum precision precision)
-{
-    return (struct measurement){.scene = scene,
-                                .algorithm = algorithm,
-                                .options = options,
-                                .precision = precision_name(precision),
-                                .threads = -1,
-                                .engine = "",
-                                .status = "ok",
-                                .reason = "",
-                                .skipped = "",
-                                .plan_s = NAN,
-                                .run_s = NAN,
-                                .run_min_s = NAN,
-                                .runs = -1,
-                                .control_s = NAN,
-                                .stages = "",
-                                .flops_published = NAN,
-                                .flops = NAN,
-                                .pairs = NAN,
-                                .bytes = NAN,
-                                .error = NAN,
-                                .error_gain = NAN,
-                                .phase_rms_rad = NAN,
-                                .width_m = NAN,
-                                .pslr_db = NAN,
-                                .islr_db = NAN};
-}
-
 /* The rows of one target, and its azimuth slice by the primary definition. Returns how many rows. */
 static int target_rows(const struct session *session, const struct image *image, int index,
                        const struct measurement *row, struct target_row *rows, struct slice_metrics *azimuth)

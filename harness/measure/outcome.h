@@ -20,8 +20,4 @@ struct outcome {
 void outcome_measure(const struct session *session, const struct spec *spec, bool timed, struct outcome *outcome);
 void outcome_free(struct outcome *outcome);
 
-/* A row before anything is measured: numbers undefined, status ok. Texts are borrowed. */
-struct measurement measurement_empty(const char *scene, const char *algorithm, const char *options,
-                                     enum precision precision);
-
 #endif

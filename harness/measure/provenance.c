@@ -1,5 +1,5 @@
 /* What makes measurements comparable: the machine, the compiler, the libraries and this very program. */
-#include "measure/results.h"
+#include "measure/provenance.h"
 
 #include <fftw3.h>
 #include <libconfig.h>

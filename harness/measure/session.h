@@ -2,7 +2,7 @@
 #ifndef SASBENCH_MEASURE_SESSION_H
 #define SASBENCH_MEASURE_SESSION_H
 
-#include "measure/results.h"
+#include "measure/measurement.h"
 #include "scene/scene.h"
 #include "measure/spec.h"
 

@@ -77,7 +77,7 @@ static enum status fail_scene(struct batch *batch, const struct scene *scene, in
         row.status = "failed";
         row.reason = reason;
         if (!earlier)
-            status = record_add(batch->record, &row);
+            status = results_folder_add(batch->results, &row);
         if (status == STATUS_OK)
             table_row(stdout, earlier ? earlier : &row);
     }
@@ -95,13 +95,13 @@ static enum status measure(struct batch *batch, struct visit *visit, int index)
     outcome.row.threads = batch->threads;
     visit->works[index] = outcome.work;
     if (strcmp(outcome.row.status, "ok") == 0) {
-        status = record_targets(batch->record, outcome.targets, outcome.target_count);
+        status = results_folder_targets(batch->results, outcome.targets, outcome.target_count);
         if (status == STATUS_OK)
             draw(visit, index, &outcome.image);
     }
     batch->failed |= strcmp(outcome.row.status, "failed") == 0;
     if (status == STATUS_OK)
-        status = record_add(batch->record, &outcome.row);
+        status = results_folder_add(batch->results, &outcome.row);
     if (status == STATUS_OK)
         table_row(stdout, &outcome.row);
     outcome_free(&outcome);
@@ -135,7 +135,8 @@ static void progress_clear(void)
 
 const struct measurement *batch_find(const struct batch *batch, const struct scene *scene, const struct spec *spec)
 {
-    return record_find(batch->record, scene->name, spec->algorithm->name, spec->text, precision_name(spec->precision));
+    return results_folder_find(batch->results, scene->name, spec->algorithm->name, spec->text,
+                               precision_name(spec->precision));
 }
 
 /* A row that an earlier run finished is not timed again; its image is, for the overlaid slices. What cannot be drawn now is
@@ -176,7 +177,7 @@ enum status batch_scene(struct batch *batch, const struct scene *scene, int spec
 {
     struct visit visit;
     int missing = 0;
-    enum status status = record_scene(batch->record, scene->name, scene->hash);
+    enum status status = results_folder_scene(batch->results, scene->name, scene->hash);
     for (int k = 0; k < spec_count; k++)
         missing += !batch_find(batch, scene, &specs[k]);
     const bool visited = missing > 0 || pictures_missing(batch, scene, spec_count, specs);
@@ -217,7 +218,7 @@ enum status batch_open(const char *directory, int rows, bool details, struct bat
     struct provenance provenance;
     *batch = (struct batch){.directory = directory, .threads = omp_get_max_threads(), .details = details, .rows = rows};
     provenance_fill(&provenance, batch->threads);
-    enum status status = record_open(directory, &provenance, &batch->record);
+    enum status status = results_folder_open(directory, &provenance, &batch->results);
     if (status == STATUS_OK)
         table_header(stdout);
     return status;
@@ -225,10 +226,10 @@ enum status batch_open(const char *directory, int rows, bool details, struct bat
 
 enum status batch_close(struct batch *batch, enum status status)
 {
-    if (!batch->record)
+    if (!batch->results)
         return status;
-    record_close(batch->record);
-    batch->record = NULL;
+    results_folder_close(batch->results);
+    batch->results = NULL;
     if (status == STATUS_OK && batch->failed)
         status = status_set(STATUS_FAILED, "at least one algorithm failed; the table and %s/measurements.csv say why",
                             batch->directory);

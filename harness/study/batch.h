@@ -2,13 +2,13 @@
 #ifndef SASBENCH_STUDY_BATCH_H
 #define SASBENCH_STUDY_BATCH_H
 
-#include "measure/results.h"
+#include "measure/results_folder.h"
 #include "scene/scene.h"
 #include "measure/spec.h"
 
 struct batch {
     const char *directory; /* borrowed */
-    struct record *record;
+    struct results_folder *results;
     int threads;
     bool details;   /* of every scene: draw images and slices, print FLOPs by formula */
     bool failed;    /* a measurement failed */
@@ -16,8 +16,8 @@ struct batch {
     int done, rows; /* measurements, for the progress line */
 };
 
-/* Open the folder (record_open: finished rows of an earlier run are kept) and print the table's head.
-   rows: how many measurements will be asked for. Errors: as record_open; *batch is then safe to close. */
+/* Open the folder (results_folder_open: finished rows of an earlier run are kept) and print the table's head.
+   rows: how many measurements will be asked for. Errors: as results_folder_open; *batch is then safe to close. */
 enum status batch_open(const char *directory, int rows, bool details, struct batch *batch);
 
 /* Measure one scene with every spec: echoes and exact image once, then a row in the CSVs and on the terminal for each spec

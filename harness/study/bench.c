@@ -15,7 +15,7 @@
 #include "data/echo_data.h"
 #include "data/folder.h"
 #include "show/plot.h"
-#include "measure/results.h"
+#include "measure/provenance.h"
 #include "scene/simulate.h"
 #include "data/paths.h"
 #include "data/text_file.h"

@@ -8,18 +8,18 @@
 
 #include "measure/outcome.h"
 
-struct record *rows;
+struct results_folder *rows;
 
 void planted_begin(void)
 {
     struct provenance provenance;
     provenance_fill(&provenance, omp_get_max_threads());
-    assert_int_equal(record_open(folder, &provenance, &rows), STATUS_OK);
+    assert_int_equal(results_folder_open(folder, &provenance, &rows), STATUS_OK);
 }
 
 void planted_end(struct measured *measured)
 {
-    record_close(rows);
+    results_folder_close(rows);
     assert_int_equal(measured_read(folder, measured), STATUS_OK);
 }
 
@@ -39,7 +39,7 @@ void planted_add(const char *scene, const char *spec_text, double run_s, const c
     row.run_s = run_s;
     row.stages = stages;
     row.flops_published = row.flops = 1;
-    assert_int_equal(record_add(rows, &row), STATUS_OK);
+    assert_int_equal(results_folder_add(rows, &row), STATUS_OK);
     spec_free(&spec);
 }
 
@@ -55,7 +55,7 @@ void planted_islr(const char *scene, const char *spec_text, int first, int count
                                     0,         0,
                                     0.04,      -15,
                                     islr_db};
-        assert_int_equal(record_targets(rows, &target, 1), STATUS_OK);
+        assert_int_equal(results_folder_targets(rows, &target, 1), STATUS_OK);
     }
     spec_free(&spec);
 }

@@ -2,11 +2,12 @@
 #ifndef SASBENCH_TEST_PLANTED_H
 #define SASBENCH_TEST_PLANTED_H
 
+#include "measure/results_folder.h"
 #include "papers/claims.h"
 #include "tests/support.h"
 
 /* Begin the test's folder anew, and read it back when all rows are there. */
-extern struct record *rows;
+extern struct results_folder *rows;
 void planted_begin(void);
 void planted_end(struct measured *measured);
 /* Forget its measurements. */

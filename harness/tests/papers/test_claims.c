@@ -220,7 +220,7 @@ static void failures_decide_nothing(void **state)
         row.status = statuses[k];
         row.reason = "out of paper";
         planted_begin();
-        assert_int_equal(record_add(rows, &row), STATUS_OK);
+        assert_int_equal(results_folder_add(rows, &row), STATUS_OK);
         planted_end(&measured);
         expect(&measured, "bp22-5-1", CLAIM_UNDECIDED);
         assert_non_null(strstr(judgement_of(&measured, "bp22-5-1").evidence, "out of paper"));

@@ -16,7 +16,7 @@ static void numbers_plant(double a, double b, const double islr_db[3], struct me
         assert_int_equal(spec_parse(specs[k], &spec), STATUS_OK);
         struct measurement row = planted_row("bp22/speckle", &spec);
         row.error = k ? b : a;
-        assert_int_equal(record_add(rows, &row), STATUS_OK);
+        assert_int_equal(results_folder_add(rows, &row), STATUS_OK);
         spec_free(&spec);
     }
     for (int k = 0; k < 3; k++)

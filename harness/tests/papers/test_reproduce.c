@@ -137,13 +137,13 @@ static void need_plant(const struct need *need)
                                      0.04,
                                      -15,
                                      -10};
-            assert_int_equal(record_targets(rows, &row, 1), STATUS_OK);
+            assert_int_equal(results_folder_targets(rows, &row, 1), STATUS_OK);
         }
     struct measurement row = planted_row(need->scene, &spec);
     row.stages = "compress=1;bulk=1;differential=1;reconstruct=1;focus=1";
     row.run_s = row.flops = row.flops_published = row.error = row.phase_rms_rad = row.width_m = 10;
     row.pslr_db = row.islr_db = -10;
-    assert_int_equal(record_add(rows, &row), STATUS_OK);
+    assert_int_equal(results_folder_add(rows, &row), STATUS_OK);
     spec_free(&spec);
     scene_free(&scene);
 }
@@ -277,7 +277,7 @@ static void measure(const struct session *session, const char *spec_text)
     row.width_m = outcome.row.width_m;
     row.pslr_db = outcome.row.pslr_db;
     row.islr_db = outcome.row.islr_db;
-    assert_int_equal(record_add(rows, &row), STATUS_OK);
+    assert_int_equal(results_folder_add(rows, &row), STATUS_OK);
     outcome_free(&outcome);
     spec_free(&used);
     spec_free(&spec);
@@ -381,11 +381,11 @@ static void finished_measurements_are_kept(void **state)
     support_scene("bp22/table3", &scene);
     assert_int_equal(spec_parse(SINC_8, &spec), STATUS_OK);
     planted_begin();
-    assert_int_equal(record_scene(rows, scene.name, scene.hash), STATUS_OK);
+    assert_int_equal(results_folder_scene(rows, scene.name, scene.hash), STATUS_OK);
     struct measurement row = planted_row(scene.name, &spec);
     row.width_m = 0.0625; /* Eq. (20): 2 bins in three are below .039 m, so beta = 1 */
-    assert_int_equal(record_add(rows, &row), STATUS_OK);
-    record_close(rows);
+    assert_int_equal(results_folder_add(rows, &row), STATUS_OK);
+    results_folder_close(rows);
     char *before = strdup(undated(text_read("measurements.csv")));
     const char *const names[] = {"bp22_eq20", "lbf21_f2"};
     assert_int_equal(command_reproduce(&(struct task){.names = names, .name_count = 2, .output = folder}), STATUS_OK);

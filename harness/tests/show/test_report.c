@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "show/plot.h"
-#include "measure/results.h"
+#include "measure/results_folder.h"
 #include "show/report.h"
 #include "tests/support.h"
 
@@ -45,13 +45,13 @@ static void record_rows(const struct measurement *rows, int count)
 {
     struct provenance provenance = {
         .machine = "a machine & its <cores>", .commit = "abc", .program = "def", .date = "2026-01-01", .threads = 2};
-    struct record *record;
-    assert_int_equal(record_open(folder, &provenance, &record), STATUS_OK);
+    struct results_folder *results;
+    assert_int_equal(results_folder_open(folder, &provenance, &results), STATUS_OK);
     for (int k = 0; k < count; k++) {
-        assert_int_equal(record_scene(record, rows[k].scene, 1), STATUS_OK);
-        assert_int_equal(record_add(record, &rows[k]), STATUS_OK);
+        assert_int_equal(results_folder_scene(results, rows[k].scene, 1), STATUS_OK);
+        assert_int_equal(results_folder_add(results, &rows[k]), STATUS_OK);
     }
-    record_close(record);
+    results_folder_close(results);
 }
 
 /* --- The parser ----------------------------------------------------------------------------------------------- */

@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "data/csv.h"
-#include "measure/results.h"
+#include "measure/results_folder.h"
 #include "study/sweep_settings.h"
 #include "study/sweep_tables.h"
 #include "command/task.h"
@@ -121,10 +121,10 @@ static double cell(const struct csv *csv, int row, const char *column)
 static void rows_make_up(void)
 {
     struct provenance provenance = {.machine = "m", .commit = "abc", .program = "def", .date = "now", .threads = 2};
-    struct record *record;
+    struct results_folder *results;
     char options[7][24];
-    assert_int_equal(record_open(folder, &provenance, &record), STATUS_OK);
-    assert_int_equal(record_scene(record, "made/up", 1), STATUS_OK);
+    assert_int_equal(results_folder_open(folder, &provenance, &results), STATUS_OK);
+    assert_int_equal(results_folder_scene(results, "made/up", 1), STATUS_OK);
     struct measurement row = {.scene = "made/up",
                               .algorithm = "bp_zeropad",
                               .precision = "float",
@@ -152,19 +152,19 @@ static void rows_make_up(void)
         row.run_s = row.run_min_s = 0.01 * rate;
         row.flops = 1e9 - 1e6 * rate; /* by operations the finest is cheapest */
         row.error = 0.3 / rate;
-        assert_int_equal(record_add(record, &row), STATUS_OK);
+        assert_int_equal(results_folder_add(results, &row), STATUS_OK);
     }
     row.run_s = row.flops = 1e-9; /* would beat everything */
     row.error = 1e-9;
     row.options = "";
     row.algorithm = "failed";
     row.status = "failed";
-    assert_int_equal(record_add(record, &row), STATUS_OK);
+    assert_int_equal(results_folder_add(results, &row), STATUS_OK);
     row.algorithm = "partial";
     row.status = "ok";
     row.pairs = 1e5;
-    assert_int_equal(record_add(record, &row), STATUS_OK);
-    record_close(record);
+    assert_int_equal(results_folder_add(results, &row), STATUS_OK);
+    results_folder_close(results);
 }
 
 /* What fails, is unsupported or images only a part never becomes a point; the tables say what was put in. */

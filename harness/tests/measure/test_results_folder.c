@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "data/csv.h"
-#include "measure/results.h"
+#include "measure/results_folder.h"
 #include "show/table.h"
 #include "tests/assertions.h"
 
@@ -247,26 +247,26 @@ static struct target_row target_of(const char *scene, const char *algorithm)
         scene, algorithm, "taps=8,window=none", "float", 3, "azimuth", "null", 3, 1e-5, NAN, 0.0384, -13.3, -10.4};
 }
 
-static struct record *open_ok(const char *commit, int threads)
+static struct results_folder *open_ok(const char *commit, int threads)
 {
     struct provenance provenance = provenance_of(commit, threads);
-    struct record *record = NULL;
-    assert_int_equal(record_open(folder, &provenance, &record), STATUS_OK);
-    assert_non_null(record);
-    return record;
+    struct results_folder *results = NULL;
+    assert_int_equal(results_folder_open(folder, &provenance, &results), STATUS_OK);
+    assert_non_null(results);
+    return results;
 }
 
-static void add_ok(struct record *record, const char *scene, const char *algorithm)
+static void add_ok(struct results_folder *results, const char *scene, const char *algorithm)
 {
     struct target_row target = target_of(scene, algorithm);
     struct measurement row = measurement_of(scene, algorithm);
-    assert_int_equal(record_targets(record, &target, 1), STATUS_OK);
-    assert_int_equal(record_add(record, &row), STATUS_OK);
+    assert_int_equal(results_folder_targets(results, &target, 1), STATUS_OK);
+    assert_int_equal(results_folder_add(results, &row), STATUS_OK);
 }
 
-static const struct measurement *find(const struct record *record, const char *scene, const char *algorithm)
+static const struct measurement *find(const struct results_folder *results, const char *scene, const char *algorithm)
 {
-    return record_find(record, scene, algorithm, "taps=8,window=none", "float");
+    return results_folder_find(results, scene, algorithm, "taps=8,window=none", "float");
 }
 
 static int rows_of(const char *path)
@@ -281,9 +281,9 @@ static int rows_of(const char *path)
 static void test_round_trip(void **state)
 {
     (void)state;
-    struct record *record = open_ok("c1", 2);
-    assert_int_equal(record_scene(record, "folder/a,\"b\"", 0xabcdef), STATUS_OK);
-    add_ok(record, "folder/a,\"b\"", "bp_sinc");
+    struct results_folder *results = open_ok("c1", 2);
+    assert_int_equal(results_folder_scene(results, "folder/a,\"b\"", 0xabcdef), STATUS_OK);
+    add_ok(results, "folder/a,\"b\"", "bp_sinc");
     const char *text = file_text(measurements_path);
     assert_int_equal(
         strncmp(text, "# sasbench measurements 1\n# machine: a machine\n# isa: v3\n# compiler: gcc?12\n", 72), 0);
@@ -298,11 +298,11 @@ static void test_round_trip(void **state)
     assert_int_equal(strncmp(text, "# sasbench targets 1\n", 21), 0);
     assert_non_null(strstr(text, "\n" TARGET_HEADER "\"folder/a,\"\"b\"\"\",bp_sinc,\"taps=8,window=none\",float,3,"
                                  "azimuth,null,3,1e-05,,0.0384,-13.3,-10.4\n"));
-    record_close(record);
+    results_folder_close(results);
 
-    record = open_ok("c1", 2);
-    assert_int_equal(record_scene(record, "folder/a,\"b\"", 0xabcdef), STATUS_OK);
-    const struct measurement *row = find(record, "folder/a,\"b\"", "bp_sinc");
+    results = open_ok("c1", 2);
+    assert_int_equal(results_folder_scene(results, "folder/a,\"b\"", 0xabcdef), STATUS_OK);
+    const struct measurement *row = find(results, "folder/a,\"b\"", "bp_sinc");
     assert_non_null(row);
     assert_string_equal(row->skipped, "half \"of\" it,?and more");
     assert_string_equal(row->reason, "");
@@ -310,11 +310,11 @@ static void test_round_trip(void **state)
     assert_close(row->run_s, 1.0 / 3, 1e-9);
     assert_close(row->islr_db, -10.4, 0);
     assert_true(isnan(row->flops_published) && isnan(row->error_gain));
-    assert_null(find(record, "folder/a,\"b\"", "bp_linear"));
-    assert_null(record_find(record, "folder/a,\"b\"", "bp_sinc", "taps=8,window=none", "double"));
-    assert_null(record_find(record, "folder/a,\"b\"", "bp_sinc", "taps=4,window=none", "float"));
-    add_ok(record, "folder/a,\"b\"", "bp_linear");
-    record_close(record);
+    assert_null(find(results, "folder/a,\"b\"", "bp_linear"));
+    assert_null(results_folder_find(results, "folder/a,\"b\"", "bp_sinc", "taps=8,window=none", "double"));
+    assert_null(results_folder_find(results, "folder/a,\"b\"", "bp_sinc", "taps=4,window=none", "float"));
+    add_ok(results, "folder/a,\"b\"", "bp_linear");
+    results_folder_close(results);
     assert_int_equal(rows_of(measurements_path), 2);
     assert_int_equal(rows_of(targets_path), 2);
 }
@@ -322,36 +322,36 @@ static void test_round_trip(void **state)
 static void test_undefined_fields(void **state)
 {
     (void)state;
-    struct record *record = open_ok("c1", 2);
+    struct results_folder *results = open_ok("c1", 2);
     struct measurement row = measurement_of("s", "rma_wu");
     row.status = "unsupported";
     row.reason = "the track is curved";
     row.runs = -1;
     row.run_s = row.plan_s = NAN;
     row.stages = NULL;
-    assert_int_equal(record_scene(record, "s", 1), STATUS_OK);
-    assert_int_equal(record_add(record, &row), STATUS_OK);
-    record_close(record);
+    assert_int_equal(results_folder_scene(results, "s", 1), STATUS_OK);
+    assert_int_equal(results_folder_add(results, &row), STATUS_OK);
+    results_folder_close(results);
     assert_non_null(strstr(file_text(measurements_path), "and more\",,,0.3,,2,,,1e+12"));
-    record = open_ok("c1", 2);
-    const struct measurement *found = find(record, "s", "rma_wu");
+    results = open_ok("c1", 2);
+    const struct measurement *found = find(results, "s", "rma_wu");
     assert_non_null(found);
     assert_string_equal(found->status, "unsupported");
     assert_string_equal(found->stages, "");
     assert_int_equal(found->runs, -1);
     assert_true(isnan(found->run_s));
-    record_close(record);
+    results_folder_close(results);
 }
 
 /* What `open` prints on standard error while it takes up the folder. */
-static const char *opening_tells(const struct provenance *provenance, struct record **record)
+static const char *opening_tells(const struct provenance *provenance, struct results_folder **results)
 {
     static char text[2048];
     FILE *caught = tmpfile();
     int before = dup(STDERR_FILENO);
     assert_non_null(caught);
     assert_true(before >= 0 && dup2(fileno(caught), STDERR_FILENO) >= 0);
-    enum status status = record_open(folder, provenance, record);
+    enum status status = results_folder_open(folder, provenance, results);
     assert_true(dup2(before, STDERR_FILENO) >= 0);
     close(before);
     assert_int_equal(status, STATUS_OK);
@@ -380,10 +380,10 @@ static void test_other_run(void **state)
     snprintf(kept_targets, sizeof kept_targets, "%s/targets.1.csv", folder);
     for (int change = 0; change < 7; change++) {
         struct provenance other = provenance_of(change == 0 ? "c2" : "c1", change == 1 ? 3 : 2);
-        struct record *record = open_ok("c1", 2);
-        assert_int_equal(record_scene(record, "s", 1), STATUS_OK);
-        add_ok(record, "s", "bp_sinc");
-        record_close(record);
+        struct results_folder *results = open_ok("c1", 2);
+        assert_int_equal(results_folder_scene(results, "s", 1), STATUS_OK);
+        add_ok(results, "s", "bp_sinc");
+        results_folder_close(results);
         if (change == 2)
             strcpy(other.program, "4567");
         if (change == 3)
@@ -394,12 +394,12 @@ static void test_other_run(void **state)
             strcpy(other.libraries, "others");
         if (change == 6)
             assert_int_equal(remove(targets_path), 0);
-        const char *text = opening_tells(&other, &record);
+        const char *text = opening_tells(&other, &results);
         assert_non_null(strstr(text, told[change]));
         assert_non_null(strstr(text, change == 6 ? "kept in measurements.1.csv\n"
                                                  : "kept in measurements.1.csv and targets.1.csv\n"));
-        assert_null(find(record, "s", "bp_sinc"));
-        record_close(record);
+        assert_null(find(results, "s", "bp_sinc"));
+        results_folder_close(results);
         assert_int_equal(rows_of(measurements_path), 0);
         assert_int_equal(rows_of(targets_path), 0);
         assert_null(strstr(file_text(measurements_path), "# scene"));
@@ -408,8 +408,8 @@ static void test_other_run(void **state)
         assert_int_equal(remove(kept_measurements), 0);
         assert_int_equal(remove(kept_targets), change == 6 ? -1 : 0);
         /* Files without rows give way without a word. */
-        assert_string_equal(opening_tells(&(struct provenance){.commit = "c3"}, &record), "");
-        record_close(record);
+        assert_string_equal(opening_tells(&(struct provenance){.commit = "c3"}, &results), "");
+        results_folder_close(results);
     }
 }
 
@@ -418,10 +418,10 @@ static void test_kept_twice(void **state)
 {
     (void)state;
     for (int k = 1; k <= 3; k++) {
-        struct record *record = open_ok(k == 1 ? "c1" : k == 2 ? "c2" : "c3", 2);
-        assert_int_equal(record_scene(record, "s", 1), STATUS_OK);
-        add_ok(record, "s", k == 1 ? "first" : k == 2 ? "second" : "third");
-        record_close(record);
+        struct results_folder *results = open_ok(k == 1 ? "c1" : k == 2 ? "c2" : "c3", 2);
+        assert_int_equal(results_folder_scene(results, "s", 1), STATUS_OK);
+        add_ok(results, "s", k == 1 ? "first" : k == 2 ? "second" : "third");
+        results_folder_close(results);
     }
     static const char *const names[] = {"measurements.1.csv", "measurements.2.csv", "measurements.csv"};
     static const char *const algorithms_kept[] = {"s,first", "s,second", "s,third"};
@@ -438,60 +438,60 @@ static void test_failed_again(void **state)
 {
     (void)state;
     struct measurement row = measurement_of("s", "bp_sinc");
-    struct record *record = open_ok("c1", 2);
+    struct results_folder *results = open_ok("c1", 2);
     row.status = "failed";
     row.reason = "no memory";
-    assert_int_equal(record_scene(record, "s", 1), STATUS_OK);
-    assert_int_equal(record_add(record, &row), STATUS_OK);
-    add_ok(record, "s", "bp_linear");
-    record_close(record);
+    assert_int_equal(results_folder_scene(results, "s", 1), STATUS_OK);
+    assert_int_equal(results_folder_add(results, &row), STATUS_OK);
+    add_ok(results, "s", "bp_linear");
+    results_folder_close(results);
     for (int attempt = 0; attempt < 2; attempt++) {
-        record = open_ok("c1", 2);
-        assert_int_equal(record_scene(record, "s", 1), STATUS_OK);
-        assert_null(find(record, "s", "bp_sinc"));
-        assert_non_null(find(record, "s", "bp_linear"));
+        results = open_ok("c1", 2);
+        assert_int_equal(results_folder_scene(results, "s", 1), STATUS_OK);
+        assert_null(find(results, "s", "bp_sinc"));
+        assert_non_null(find(results, "s", "bp_linear"));
         assert_int_equal(rows_of(measurements_path), 2);
         if (attempt == 0)
-            assert_int_equal(record_add(record, &row), STATUS_OK);
+            assert_int_equal(results_folder_add(results, &row), STATUS_OK);
         else
-            add_ok(record, "s", "bp_sinc");
-        record_close(record);
+            add_ok(results, "s", "bp_sinc");
+        results_folder_close(results);
         assert_int_equal(rows_of(measurements_path), 2);
         assert_int_equal(rows_of(targets_path), 1 + attempt);
     }
-    record = open_ok("c1", 2);
-    assert_non_null(find(record, "s", "bp_sinc"));
-    record_close(record);
+    results = open_ok("c1", 2);
+    assert_non_null(find(results, "s", "bp_sinc"));
+    results_folder_close(results);
     assert_null(strstr(file_text(measurements_path), "failed"));
 }
 
-/* A folder belongs to one record at a time, in this process or another. The lock goes with the process. */
+/* A folder belongs to one program at a time, in this process or another. The lock goes with the process. */
 static void test_folder_is_locked(void **state)
 {
     (void)state;
     struct provenance provenance = provenance_of("c1", 2);
-    struct record *first = open_ok("c1", 2), *second;
-    assert_int_equal(record_open(folder, &provenance, &second), STATUS_INVALID);
+    struct results_folder *first = open_ok("c1", 2), *second;
+    assert_int_equal(results_folder_open(folder, &provenance, &second), STATUS_INVALID);
     assert_null(second);
     assert_non_null(strstr(status_message(), folder));
     assert_non_null(strstr(status_message(), "another sasbench is at work"));
-    record_close(first);
+    results_folder_close(first);
     int told[2];
     char byte;
     assert_int_equal(pipe(told), 0);
     pid_t child = fork();
     assert_true(child >= 0);
     if (child == 0) {
-        bool good = record_open(folder, &provenance, &first) == STATUS_OK && write(told[1], "x", 1) == 1;
+        bool good = results_folder_open(folder, &provenance, &first) == STATUS_OK && write(told[1], "x", 1) == 1;
         if (good)
             pause();
         _exit(1);
     }
     assert_int_equal(read(told[0], &byte, 1), 1);
-    assert_int_equal(record_open(folder, &provenance, &second), STATUS_INVALID);
+    assert_int_equal(results_folder_open(folder, &provenance, &second), STATUS_INVALID);
     kill(child, SIGKILL);
     assert_int_equal(waitpid(child, NULL, 0), child);
-    record_close(open_ok("c1", 2));
+    results_folder_close(open_ok("c1", 2));
     close(told[0]);
     close(told[1]);
 }
@@ -509,7 +509,7 @@ static void test_swept(void **state)
         else
             file_write(paths[k], "w", "half");
     }
-    record_close(open_ok("c1", 2));
+    results_folder_close(open_ok("c1", 2));
     for (int k = 0; k < 4; k++)
         assert_int_equal(access(paths[k], F_OK), k == 3 ? 0 : -1);
     assert_int_equal(remove(paths[3]), 0);
@@ -518,59 +518,59 @@ static void test_swept(void **state)
 static void test_changed_scene(void **state)
 {
     (void)state;
-    struct record *record = open_ok("c1", 2);
-    assert_int_equal(record_scene(record, "s", 1), STATUS_OK);
-    add_ok(record, "s", "bp_sinc");
-    assert_int_equal(record_scene(record, "s: 2", 2), STATUS_OK);
-    add_ok(record, "s: 2", "bp_sinc");
-    record_close(record);
-    record = open_ok("c1", 2);
-    assert_int_equal(record_scene(record, "s: 2", 2), STATUS_OK);
-    assert_int_equal(record_scene(record, "s", 3), STATUS_OK);
-    assert_null(find(record, "s", "bp_sinc"));
+    struct results_folder *results = open_ok("c1", 2);
+    assert_int_equal(results_folder_scene(results, "s", 1), STATUS_OK);
+    add_ok(results, "s", "bp_sinc");
+    assert_int_equal(results_folder_scene(results, "s: 2", 2), STATUS_OK);
+    add_ok(results, "s: 2", "bp_sinc");
+    results_folder_close(results);
+    results = open_ok("c1", 2);
+    assert_int_equal(results_folder_scene(results, "s: 2", 2), STATUS_OK);
+    assert_int_equal(results_folder_scene(results, "s", 3), STATUS_OK);
+    assert_null(find(results, "s", "bp_sinc"));
     char kept[300]; /* with the row that went */
     snprintf(kept, sizeof kept, "%s/measurements.1.csv", folder);
     assert_int_equal(rows_of(kept), 2);
-    assert_non_null(find(record, "s: 2", "bp_sinc"));
+    assert_non_null(find(results, "s: 2", "bp_sinc"));
     assert_int_equal(rows_of(measurements_path), 1);
     assert_int_equal(rows_of(targets_path), 1);
     assert_null(strstr(file_text(measurements_path), "# scene s: 0000000000000001"));
     assert_non_null(strstr(file_text(measurements_path), "# scene s: 0000000000000003"));
-    add_ok(record, "s", "bp_sinc");
-    record_close(record);
-    record = open_ok("c1", 2);
-    assert_int_equal(record_scene(record, "s", 3), STATUS_OK);
-    assert_non_null(find(record, "s", "bp_sinc"));
-    record_close(record);
+    add_ok(results, "s", "bp_sinc");
+    results_folder_close(results);
+    results = open_ok("c1", 2);
+    assert_int_equal(results_folder_scene(results, "s", 3), STATUS_OK);
+    assert_non_null(find(results, "s", "bp_sinc"));
+    results_folder_close(results);
 }
 
 /* The measurements cut at every byte of their last row: whole rows are kept, and targets without one go. */
 static void test_cut_row(void **state)
 {
     (void)state;
-    struct record *record = open_ok("c1", 2);
-    assert_int_equal(record_scene(record, "s", 1), STATUS_OK);
-    add_ok(record, "s", "first");
+    struct results_folder *results = open_ok("c1", 2);
+    assert_int_equal(results_folder_scene(results, "s", 1), STATUS_OK);
+    add_ok(results, "s", "first");
     struct stat before, after;
     assert_int_equal(stat(measurements_path, &before), 0);
-    add_ok(record, "s", "second");
-    record_close(record);
+    add_ok(results, "s", "second");
+    results_folder_close(results);
     assert_int_equal(stat(measurements_path, &after), 0);
     for (off_t size = after.st_size - 1; size >= before.st_size; size--) {
         assert_int_equal(truncate(measurements_path, size), 0);
-        record = open_ok("c1", 2);
-        assert_int_equal(record_scene(record, "s", 1), STATUS_OK);
-        assert_non_null(find(record, "s", "first"));
-        assert_null(find(record, "s", "second"));
+        results = open_ok("c1", 2);
+        assert_int_equal(results_folder_scene(results, "s", 1), STATUS_OK);
+        assert_non_null(find(results, "s", "first"));
+        assert_null(find(results, "s", "second"));
         assert_int_equal(rows_of(targets_path), 1);
-        add_ok(record, "s", "second");
-        record_close(record);
+        add_ok(results, "s", "second");
+        results_folder_close(results);
         assert_int_equal(rows_of(measurements_path), 2);
         assert_int_equal(rows_of(targets_path), 2);
     }
     /* Targets whose measurement was never finished. */
     file_write(targets_path, "a", "s,third,\"taps=8,window=none\",float,0,azimuth,null,,,,,,\ns,third,\"ta");
-    record_close(open_ok("c1", 2));
+    results_folder_close(open_ok("c1", 2));
     assert_int_equal(rows_of(targets_path), 2);
     assert_null(strstr(file_text(targets_path), "third"));
 }
@@ -578,11 +578,11 @@ static void test_cut_row(void **state)
 static void check_refused(const char *place)
 {
     struct provenance provenance = provenance_of("c1", 2);
-    struct record *record = (struct record *)&provenance;
+    struct results_folder *results = (struct results_folder *)&provenance;
     static char before[65536];
     snprintf(before, sizeof before, "%s", file_text(measurements_path));
-    assert_int_equal(record_open(folder, &provenance, &record), STATUS_INVALID);
-    assert_null(record);
+    assert_int_equal(results_folder_open(folder, &provenance, &results), STATUS_INVALID);
+    assert_null(results);
     assert_non_null(strstr(status_message(), place));
     assert_string_equal(file_text(measurements_path), before);
 }
@@ -605,7 +605,7 @@ static void test_foreign_files(void **state)
     file_write(measurements_path, "w", "# sasbench measurements 1\n" PROVENANCE "scene,algorithm\n");
     check_refused("measurements.csv: the header line");
     remove(measurements_path);
-    record_close(open_ok("c1", 2));
+    results_folder_close(open_ok("c1", 2));
     file_write(targets_path, "w", "notes\n");
     check_refused("targets.csv:1: not a file of ours");
 }
@@ -614,29 +614,29 @@ static void test_unwritable(void **state)
 {
     (void)state;
     struct provenance provenance = provenance_of("c1", 2);
-    struct record *record;
+    struct results_folder *results;
     char below[320];
     file_write(measurements_path, "w", "a file\n");
     snprintf(below, sizeof below, "%s/folder", measurements_path);
-    assert_int_equal(record_open(below, &provenance, &record), STATUS_INVALID);
+    assert_int_equal(results_folder_open(below, &provenance, &results), STATUS_INVALID);
     assert_non_null(strstr(status_message(), below));
-    assert_int_equal(record_open(measurements_path, &provenance, &record), STATUS_INVALID);
-    assert_int_equal(record_open("/proc/sasbench", &provenance, &record), STATUS_INVALID);
-    assert_int_equal(record_open("/proc", &provenance, &record), STATUS_INVALID);
-    assert_null(record);
+    assert_int_equal(results_folder_open(measurements_path, &provenance, &results), STATUS_INVALID);
+    assert_int_equal(results_folder_open("/proc/sasbench", &provenance, &results), STATUS_INVALID);
+    assert_int_equal(results_folder_open("/proc", &provenance, &results), STATUS_INVALID);
+    assert_null(results);
 }
 
 static void test_folder_made(void **state)
 {
     (void)state;
     struct provenance provenance = provenance_of("c1", 2);
-    struct record *record;
+    struct results_folder *results;
     char outer[300], inner[320], path[360];
     snprintf(outer, sizeof outer, "%s/outer", folder);
     snprintf(inner, sizeof inner, "%s/inner", outer);
     snprintf(path, sizeof path, "%s//", inner);
-    assert_int_equal(record_open(path, &provenance, &record), STATUS_OK);
-    record_close(record);
+    assert_int_equal(results_folder_open(path, &provenance, &results), STATUS_OK);
+    results_folder_close(results);
     snprintf(path, sizeof path, "%s/measurements.csv", inner);
     assert_int_equal(remove(path), 0);
     snprintf(path, sizeof path, "%s/targets.csv", inner);
@@ -649,9 +649,9 @@ static void test_folder_made(void **state)
 static void test_full_disk(void **state)
 {
     (void)state;
-    struct record *record = open_ok("c1", 2);
-    assert_int_equal(record_scene(record, "s", 1), STATUS_OK);
-    add_ok(record, "s", "first");
+    struct results_folder *results = open_ok("c1", 2);
+    assert_int_equal(results_folder_scene(results, "s", 1), STATUS_OK);
+    add_ok(results, "s", "first");
     struct stat info;
     struct rlimit before, limit;
     assert_int_equal(stat(measurements_path, &info), 0);
@@ -661,21 +661,21 @@ static void test_full_disk(void **state)
     signal(SIGXFSZ, SIG_IGN);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
     struct measurement row = measurement_of("s", "second");
-    enum status status = record_add(record, &row);
+    enum status status = results_folder_add(results, &row);
     limit.rlim_cur = 100;
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
-    enum status scene_status = record_scene(record, "t", 2);
-    enum status add_status = record_add(record, &row);
+    enum status scene_status = results_folder_scene(results, "t", 2);
+    enum status add_status = results_folder_add(results, &row);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
     signal(SIGXFSZ, SIG_DFL);
     assert_int_equal(status, STATUS_FAILED);
     assert_int_not_equal(scene_status, STATUS_OK);
     assert_int_equal(add_status, STATUS_FAILED);
-    record_close(record);
-    record = open_ok("c1", 2);
-    assert_non_null(find(record, "s", "first"));
-    assert_null(find(record, "s", "second"));
-    record_close(record);
+    results_folder_close(results);
+    results = open_ok("c1", 2);
+    assert_non_null(find(results, "s", "first"));
+    assert_null(find(results, "s", "second"));
+    results_folder_close(results);
     assert_int_equal(rows_of(measurements_path), 1);
 }
 

@@ -1,0 +1,12 @@
+/* Where measurements are from. */
+#ifndef SASBENCH_MEASURE_PROVENANCE_H
+#define SASBENCH_MEASURE_PROVENANCE_H
+
+/* What makes rows comparable: written as `# key: value` lines ahead of the rows. */
+struct provenance {
+    char machine[128], isa[16], compiler[160], flags[256], libraries[160], commit[80], program[32], date[32];
+    int threads;
+};
+void provenance_fill(struct provenance *provenance, int threads);
+
+#endif

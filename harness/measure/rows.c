@@ -1,0 +1,155 @@
+/* Columns, header and rows of results on disk (rows.h). */
+#include "measure/rows.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The braces are an initializer's. */
+/* clang-format off */
+#define M_TEXT(name) {#name, COLUMN_TEXT, offsetof(struct measurement, name)}
+#define M_INTEGER(name) {#name, COLUMN_INTEGER, offsetof(struct measurement, name)}
+#define M_REAL(name) {#name, COLUMN_REAL, offsetof(struct measurement, name)}
+#define T_TEXT(name) {#name, COLUMN_TEXT, offsetof(struct target_row, name)}
+#define T_INTEGER(name) {#name, COLUMN_INTEGER, offsetof(struct target_row, name)}
+#define T_REAL(name) {#name, COLUMN_REAL, offsetof(struct target_row, name)}
+/* clang-format on */
+
+static const struct column measurement_columns[] = {
+    M_TEXT(scene),           M_TEXT(algorithm),     M_TEXT(options), M_TEXT(precision), M_INTEGER(threads),
+    M_TEXT(engine),          M_TEXT(status),        M_TEXT(reason),  M_TEXT(skipped),   M_REAL(plan_s),
+    M_REAL(run_s),           M_REAL(run_min_s),     M_INTEGER(runs), M_REAL(control_s), M_TEXT(stages),
+    M_REAL(flops_published), M_REAL(flops),         M_REAL(pairs),   M_REAL(bytes),     M_REAL(error),
+    M_REAL(error_gain),      M_REAL(phase_rms_rad), M_REAL(width_m), M_REAL(pslr_db),   M_REAL(islr_db),
+    {.name = NULL},
+};
+
+static const struct column target_columns[] = {
+    T_TEXT(scene),   T_TEXT(algorithm),  T_TEXT(options),  T_TEXT(precision),        T_INTEGER(target),
+    T_TEXT(axis),    T_TEXT(definition), T_REAL(extent_m), T_REAL(position_error_m), T_REAL(phase_error_rad),
+    T_REAL(width_m), T_REAL(pslr_db),    T_REAL(islr_db),  {.name = NULL},
+};
+
+const struct row_kind row_kinds[KINDS] = {
+    {"measurements.csv", "sasbench measurements 1", measurement_columns},
+    {"targets.csv", "sasbench targets 1", target_columns},
+};
+
+static const struct {
+    const char *key;
+    size_t offset;
+    bool compared; /* rows of different values are not mixed */
+} notes[] = {
+    {"machine", offsetof(struct provenance, machine), true},
+    {"isa", offsetof(struct provenance, isa), true},
+    {"compiler", offsetof(struct provenance, compiler), false}, /* the program's bytes tell */
+    {"flags", offsetof(struct provenance, flags), false},
+    {"libraries", offsetof(struct provenance, libraries), true},
+    {"commit", offsetof(struct provenance, commit), true},
+    {"program", offsetof(struct provenance, program), true},
+    {"date", offsetof(struct provenance, date), false},
+};
+
+/* --- Writing ------------------------------------------------------------------------------------------------- */
+
+void row_write(FILE *file, const struct column *columns, const void *row)
+{
+    for (const struct column *column = columns; column->name; column++) {
+        const void *field = (const char *)row + column->offset;
+        if (column != columns)
+            fputc(',', file);
+        if (column->type == COLUMN_TEXT)
+            csv_write_text(file, *(const char *const *)field);
+        else if (column->type == COLUMN_REAL)
+            csv_write_number(file, *(const double *)field);
+        else if (*(const int *)field >= 0)
+            fprintf(file, "%d", *(const int *)field);
+    }
+    fputc('\n', file);
+}
+
+/* A comment is one line, whatever a name holds. */
+static void comment_write(FILE *file, const char *key, const char *name, const char *value)
+{
+    const char *parts[] = {"# ", key, name, ": ", value};
+    for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
+        for (const char *at = parts[k]; *at; at++)
+            fputc((unsigned char)*at < ' ' ? '?' : *at, file);
+    fputc('\n', file);
+}
+
+void head_write(FILE *file, const struct row_kind *kind, const struct provenance *provenance, const char *note,
+                const struct scene_hash *scenes, int scene_count)
+{
+    fprintf(file, "# %s\n", kind->format);
+    for (size_t k = 0; provenance && k < sizeof notes / sizeof *notes; k++)
+        comment_write(file, notes[k].key, "", (const char *)provenance + notes[k].offset);
+    if (provenance)
+        fprintf(file, "# threads: %d\n", provenance->threads);
+    else
+        fprintf(file, "# %s\n", note);
+    for (int k = 0; k < scene_count; k++) {
+        char hash[17];
+        snprintf(hash, sizeof hash, "%016" PRIx64, scenes[k].hash);
+        comment_write(file, "scene ", scenes[k].scene, hash);
+    }
+    for (const struct column *column = kind->columns; column->name; column++)
+        fprintf(file, "%s%s", column == kind->columns ? "" : ",", column->name);
+    fputc('\n', file);
+}
+
+/* --- Reading ------------------------------------------------------------------------------------------------- */
+
+enum status header_check(const struct csv *csv, const struct row_kind *kind)
+{
+    int count = 0;
+    while (kind->columns[count].name)
+        count++;
+    for (int k = 0; k < count || k < csv->column_count; k++) {
+        const char *needed = k < count ? kind->columns[k].name : "no more";
+        const char *found = k < csv->column_count ? csv->columns[k] : "missing";
+        if (strcmp(needed, found) != 0)
+            return status_set(STATUS_INVALID,
+                              "%s: the header line names '%.60s' as column %d; '%s' is needed (another "
+                              "version?)",
+                              csv->path, found, k + 1, needed);
+    }
+    return STATUS_OK;
+}
+
+enum status cell_parse(const struct csv *csv, int row, int index, const struct column *column, void *out)
+{
+    const char *cell = csv_cell(csv, row, index);
+    void *field = (char *)out + column->offset;
+    double value = NAN;
+    bool integer = column->type == COLUMN_INTEGER;
+    if (column->type == COLUMN_TEXT) {
+        *(const char **)field = cell;
+        return STATUS_OK;
+    }
+    if (!csv_number(cell, &value) || (integer && *cell && !(value >= 0 && value <= 1e9 && value == floor(value))))
+        return status_set(STATUS_INVALID, "%s:%d: %s is '%s'; %s or nothing is needed", csv->path, csv->lines[row],
+                          column->name, cell, integer ? "a whole number" : "a number");
+    if (integer)
+        *(int *)field = *cell ? (int)value : -1;
+    else
+        *(double *)field = value;
+    return STATUS_OK;
+}
+
+void provenance_differs(const struct csv *csv, const struct provenance *provenance, char *text, size_t size)
+{
+    const char *threads = csv_comment(csv, "threads");
+    *text = '\0';
+    for (size_t k = 0; k < sizeof notes / sizeof *notes && !*text; k++) {
+        const char *then = csv_comment(csv, notes[k].key), *now = (const char *)provenance + notes[k].offset;
+        if (notes[k].compared && (!then || strcmp(then, now) != 0))
+            snprintf(text, size, "measured with %s '%.120s', now with '%.120s'", notes[k].key, then ? then : "unknown",
+                     now);
+    }
+    if (!*text && (!threads || strtol(threads, NULL, 10) != provenance->threads))
+        snprintf(text, size, "measured with threads '%.20s', now with '%d'", threads ? threads : "unknown",
+                 provenance->threads);
+}
