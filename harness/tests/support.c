@@ -38,6 +38,20 @@ enum status support_image(const char *text, struct problem problem, const struct
     return status;
 }
 
+void support_pixel_set(struct image *image, int patch, int i, int j, double complex value)
+{
+    size_t at = (size_t)i * (size_t)image->patches[patch].x_count + (size_t)j;
+    if (image->precision == PRECISION_DOUBLE)
+        ((double complex *)image->pixels[patch])[at] = value;
+    else
+        ((float complex *)image->pixels[patch])[at] = (float complex)value;
+}
+
+void support_image_make(const struct grid *patches, int count, enum precision precision, struct image *image)
+{
+    assert_int_equal(image_allocate(count, patches, precision, image), STATUS_OK);
+}
+
 double support_difference(const struct image *a, const struct image *b)
 {
     double difference = 0, norm = 0;

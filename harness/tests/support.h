@@ -14,6 +14,9 @@ void support_scene(const char *name, struct scene *scene);
 void support_echoes(const struct scene *scene, struct echoes *echoes);
 /* Image a problem by SPEC (the SPEC's precision replaces the problem's) from double echoes. *image is allocated here. */
 enum status support_image(const char *spec, struct problem problem, const struct echoes *echoes, struct image *image);
+/* A zeroed image; one of its pixels, whatever the precision. */
+void support_image_make(const struct grid *patches, int count, enum precision precision, struct image *image);
+void support_pixel_set(struct image *image, int patch, int i, int j, double complex value);
 /* |a - b|_2 / |b|_2 over all pixels of two images of the same patches; |a|_2 when b is all zero. */
 double support_difference(const struct image *a, const struct image *b);
 double support_peak(const struct image *image);
