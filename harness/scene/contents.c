@@ -26,8 +26,9 @@ static enum status acquisition_fill(struct reading *reading)
         pulse_lfm(a->bandwidth, scene->pulse_duration, a->fs, a->pulse_length, a->pulse);
     }
     for (int p = 0; p < a->pings; p++) {
-        a->t0[p] = reading->first_sample / a->fs;
-        a->tx[p].x = reading->x_first_m + p * reading->speed_m_s * reading->pri_s;
+        a->t0[p] = reading->first_sample / a->fs + reading->time_offset_s;
+        a->tx[p].x = reading->x_first_m + reading->x_offset_m
+                     + (reading->spacing_m != 0 ? p * reading->spacing_m : p * reading->speed_m_s * reading->pri_s);
         a->velocity[p].x = reading->speed_m_s;
         for (int m = 0; m < a->receivers; m++) {
             a->rx[(size_t)p * (size_t)a->receivers + (size_t)m].x =
@@ -78,9 +79,12 @@ static enum status targets_fill(struct reading *reading)
     for (; scene->point_count < points && status == STATUS_OK; scene->point_count++) {
         status = group_read(reading, config_setting_get_elem(reading->points, (unsigned)scene->point_count),
                             "targets.points", &scene->targets[scene->point_count]);
+        scene->targets[scene->point_count].x += reading->x_offset_m;
     }
     scene->target_count = scene->point_count;
     for (int f = 0; f < field_count && status == STATUS_OK; f++) {
+        fields[f].x_m[0] += reading->x_offset_m;
+        fields[f].x_m[1] += reading->x_offset_m;
         field_draw(&fields[f], scene->targets + scene->target_count);
         scene->target_count += fields[f].count;
     }

@@ -18,9 +18,12 @@ static enum status check_beam(const struct reading *reading)
     if (!truncated && beam->limit > 0) {
         return refuse(reading, reading->beam, "beam", "limit", "left out with beam.truncation \"none\"");
     }
-    if ((truncated || tapered) && !(a->tx_length > 0)) {
+    if (beam->truncation == TRUNCATION_SINE && !(beam->limit <= 1)) {
+        return refuse(reading, reading->beam, "beam", "limit", "a sine, > 0 and <= 1, with beam.truncation \"sine\"");
+    }
+    if (((truncated && beam->truncation != TRUNCATION_SINE) || tapered) && !(a->tx_length > 0)) {
         return refuse(reading, reading->array, "array", "tx_length",
-                      "a number > 0 m with beam.kind \"txrx\" or a beam.truncation");
+                      "a number > 0 m with beam.kind \"txrx\" or a beam.truncation other than \"sine\"");
     }
     if (tapered && !(a->rx_length > 0)) {
         return refuse(reading, reading->array, "array", "rx_length", "a number > 0 m with beam.kind \"txrx\"");
@@ -65,8 +68,18 @@ static enum status check_places(const struct reading *reading)
 {
     const struct acquisition *a = &reading->scene.acquisition;
     double last_offset = reading->first_offset_m + (a->receivers - 1) * reading->pitch_m;
-    double sailed = (a->pings - 1) * (reading->speed_m_s * reading->pri_s), last = reading->x_first_m + sailed;
-    if (!(fabs(last) <= COORDINATE_MAX_M)) {
+    double spacing = reading->spacing_m != 0 ? reading->spacing_m : reading->speed_m_s * reading->pri_s;
+    double last = reading->x_offset_m + reading->x_first_m + (a->pings - 1) * spacing;
+    if (key_member(reading->track, "spacing")) {
+        if (!(reading->spacing_m != 0)) {
+            return refuse(reading, reading->track, "track", "spacing", "a number other than 0 m");
+        }
+        if (!(fabs(last) <= COORDINATE_MAX_M)) {
+            return refuse(reading, reading->track, "track", "spacing",
+                          "such that the last of %d pings, at %g m, stays within +-%g m", a->pings, last,
+                          COORDINATE_MAX_M);
+        }
+    } else if (!(fabs(last) <= COORDINATE_MAX_M)) {
         return refuse(reading, reading->track, "track", "pri",
                       "such that the last of %d pings at %g m/s, at %g m, stays "
                       "within +-%g m",

@@ -9,9 +9,9 @@
 #define FNV_PRIME 1099511628211u
 #define SEED_MAX  1e15 /* seeds pass through a double, exactly up to 2^53 */
 
-static const char *const pulse_names[] = {"lfm", "lfm_time", "flat", NULL};    /* enum pulse_kind */
-static const char *const beam_names[] = {"rect", "txrx", NULL};                /* enum beam_kind */
-const char *const truncation_names[] = {"none", "tx", "mid", "doppler", NULL}; /* enum truncation_kind */
+static const char *const pulse_names[] = {"lfm", "lfm_time", "flat", NULL};            /* enum pulse_kind */
+static const char *const beam_names[] = {"rect", "txrx", NULL};                        /* enum beam_kind */
+const char *const truncation_names[] = {"none", "tx", "mid", "doppler", "sine", NULL}; /* enum truncation_kind */
 
 #define ANY             -DBL_MAX, DBL_MAX
 #define POSITIVE        ABOVE_0, DBL_MAX
@@ -23,6 +23,7 @@ static const struct key keys[] = {
     {"", "description", "", &TEXT, AT(reading, description), 0, 0, 0, NULL},
     {"", "full_size", "", &BOOLEAN, AT(reading, scene.full_size), false, 0, 0, NULL},
     {"", "aperture_limit", "", &REAL, AT(reading, scene.acquisition.aperture_limit), INFINITY, ABOVE_0, 1, NULL},
+    {"", "x_offset", "m", &LATER_REAL, AT(reading, x_offset_m), 0, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
     {"", "sonar", "", &GROUP, AT(reading, sonar), REQUIRED, 0, 0, NULL},
     {"", "pulse", "", &GROUP, AT(reading, pulse), REQUIRED, 0, 0, NULL},
     {"", "array", "", &GROUP, AT(reading, array), REQUIRED, 0, 0, NULL},
@@ -45,9 +46,11 @@ static const struct key keys[] = {
     {"array", "pitch", "m", &REAL, AT(reading, pitch_m), 0, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
     {"track", "speed", "m/s", &REAL, AT(reading, speed_m_s), REQUIRED, ANY, NULL},
     {"track", "pri", "s", &REAL, AT(reading, pri_s), REQUIRED, POSITIVE, NULL},
+    {"track", "spacing", "m", &LATER_REAL, AT(reading, spacing_m), 0, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
     {"track", "pings", "", &INTEGER, AT(reading, scene.acquisition.pings), REQUIRED, 1, INT_MAX, NULL},
     {"track", "x_first", "m", &REAL, AT(reading, x_first_m), 0, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
     {"record", "first_sample", "", &INTEGER, AT(reading, first_sample), REQUIRED, INT_MIN, INT_MAX, NULL},
+    {"record", "time_offset", "s", &LATER_REAL, AT(reading, time_offset_s), 0, ANY, NULL},
     {"record", "samples", "", &INTEGER, AT(reading, scene.acquisition.samples), REQUIRED, 2, INT_MAX, NULL},
     {"beam", "kind", "", &CHOICE, AT(reading, scene.beam.kind), BEAM_RECT, 0, 0, beam_names},
     {"beam", "truncation", "", &CHOICE, AT(reading, scene.beam.truncation), TRUNCATION_NONE, 0, 0, truncation_names},
@@ -140,7 +143,7 @@ enum status group_read(struct reading *reading, config_setting_t *setting, const
             key_accepted_append(accepted, sizeof accepted, key);
             return refuse(reading, setting, group, key->name, "%s", accepted);
         }
-        if (key->type->bytes > 0) {
+        if (key->type->bytes > 0 && (member || !key->type->later)) {
             hash_bytes(&reading->scene.hash, key->group, strlen(key->group) + 1);
             hash_bytes(&reading->scene.hash, key->name, strlen(key->name) + 1);
             hash_bytes(&reading->scene.hash, field, key->type->bytes);

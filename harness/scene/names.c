@@ -106,6 +106,9 @@ enum status scene_names(const char *scene_directory, char ***names, int *count)
     for (FTSENT *entry = fts_read(tree); entry && memory; entry = fts_read(tree)) {
         bool is_scene =
             (entry->fts_info == FTS_F || entry->fts_info == FTS_NSOK) && scene_has_extension(entry->fts_name);
+        if (entry->fts_info == FTS_D && entry->fts_level == 1 && strcmp(entry->fts_name, SCENES_EXTREME) == 0) {
+            fts_set(tree, entry, FTS_SKIP);
+        }
         if (!is_scene || strchr("_.", entry->fts_name[0])) {
             continue;
         }

@@ -83,7 +83,7 @@ static enum status grid_read(struct reading *reading, config_setting_t *x, confi
         status = group_read(reading, r, "axis", &across);
     }
     if (status == STATUS_OK) {
-        *grid = (struct grid){.x_first = along.first_m,
+        *grid = (struct grid){.x_first = along.first_m + reading->x_offset_m,
                               .x_step = along.step_m,
                               .x_count = along.count,
                               .r_first = across.first_m,

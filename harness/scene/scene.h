@@ -10,14 +10,15 @@
 
 enum pulse_kind { PULSE_LFM, PULSE_LFM_TIME, PULSE_FLAT };
 enum beam_kind { BEAM_RECT, BEAM_TXRX };
-enum truncation_kind { TRUNCATION_NONE, TRUNCATION_TX, TRUNCATION_MID, TRUNCATION_DOPPLER };
+enum truncation_kind { TRUNCATION_NONE, TRUNCATION_TX, TRUNCATION_MID, TRUNCATION_DOPPLER, TRUNCATION_SINE };
 
 /* Amplitude of the echo of one pair (element beams sinc(D sin(theta)/lambda) or rect, and their truncation).
    theta_t is measured at emission, theta_r at reception. A property of the echoes: it never limits imaging. */
 struct beam {
     enum beam_kind kind; /* rect: 1; txrx: sinc(D_tx sin theta_t F/c) sinc(D_rx sin theta_r F/c) */
     enum truncation_kind truncation;
-    double limit;       /* tx, mid: |D_tx F sin theta/c| <= it; doppler: |D_tx F (sin + sin)/2c| <= it */
+    double limit;       /* tx, mid: |D_tx F sin theta/c| <= it; doppler: |D_tx F (sin + sin)/2c| <= it;
+                           sine: |sin theta_t| <= it */
     bool per_frequency; /* F = fc + f_tau instead of F = fc (lambda = c/F) */
 };
 
@@ -59,8 +60,12 @@ void scene_free(struct scene *scene);
    STATUS_FAILED without memory. */
 enum status scenes_tell_apart(struct scene *a, struct scene *b);
 
+/* The folder below the scenes that `stability` alone goes through: some of its scenes must be refused. */
+#define SCENES_EXTREME "extreme"
+
 /* Names of all scenes below `scene_directory` (recursive, sorted, without extension; files whose name begins with '_'
-   are for @include and are left out). The caller frees each name and the array (scene_names_free). */
+   are for @include and are left out, and so is its folder SCENES_EXTREME). The caller frees each name and the array
+   (scene_names_free). */
 enum status scene_names(const char *scene_directory, char ***names, int *count);
 void scene_names_free(char **names, int count);
 

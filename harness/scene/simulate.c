@@ -69,6 +69,7 @@ static double angles_weight(const struct scene *scene, const struct angles *angl
     double tx = a->tx_length * elements * angles->tx, rx = a->rx_length * elements * angles->rx;
     double edge = beam->limit * (1 + 1e-12); /* an edge that is met exactly counts as inside */
     if ((beam->truncation == TRUNCATION_TX && fabs(tx) > edge)
+        || (beam->truncation == TRUNCATION_SINE && fabs(angles->tx) > edge)
         || (beam->truncation == TRUNCATION_MID && fabs(a->tx_length * elements * angles->mid) > edge)
         || (beam->truncation == TRUNCATION_DOPPLER
             && fabs(a->tx_length * elements * (angles->tx + angles->rx) / 2) > edge))
@@ -85,11 +86,12 @@ double beam_weight(const struct scene *scene, int ping, int receiver, struct vec
 double beam_sine(const struct scene *scene)
 {
     const struct acquisition *a = &scene->acquisition;
-    double lowest = scene->beam.per_frequency ? a->fc - a->bandwidth / 2 : a->fc, sine = INFINITY;
+    double lowest = scene->beam.per_frequency ? a->fc - a->bandwidth / 2 : a->fc;
+    double sine = scene->beam.truncation == TRUNCATION_SINE ? scene->beam.limit : INFINITY;
     if (!(lowest > 0))
         return sine;
     double wavelength = a->sound_speed / lowest;
-    if (scene->beam.truncation != TRUNCATION_NONE)
+    if (scene->beam.truncation != TRUNCATION_NONE && scene->beam.truncation != TRUNCATION_SINE)
         sine = scene->beam.limit * wavelength / a->tx_length;
     if (scene->beam.kind == BEAM_TXRX) {
         double inside = 0, outside = 1 / fmax(a->tx_length, a->rx_length); /* in 1/m: the first null */

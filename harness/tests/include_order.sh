@@ -10,9 +10,10 @@ find algorithms harness -name '*.[ch]' | sort | xargs awk '
         # beside the algorithms, which nobody includes.
         order = "algorithms algorithms/common algorithms/backprojection algorithms/backprojection/general " \
                 "algorithms/backprojection/invariant algorithms/range_migration harness/data harness/scene " \
-                "harness/measure harness/show harness/study harness/gate harness/papers harness/command harness/tests " \
+                "harness/measure harness/show harness/study harness/stability harness/gate harness/papers " \
+                "harness/command harness/tests " \
                 "harness/tests/algorithms harness/tests/scene harness/tests/measure harness/tests/show " \
-                "harness/tests/study harness/tests/gate harness/tests/papers harness/tests/command"
+                "harness/tests/study harness/tests/stability harness/tests/gate harness/tests/papers harness/tests/command"
         count = split(order, folder, " ")
         for (k = 1; k <= count; k++)
             rank[folder[k]] = k

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "backprojection/general/run.h"
+#include "common/delay.h"
 
 #define BP_SUM REAL_ISA_NAME(bp_sum)
 
@@ -73,9 +74,8 @@ struct motion {
 static struct motion motion_make(const struct bp_medium *medium, const struct bp_ping *ping)
 {
     const struct vector v = ping->velocity;
-    const double c = medium->sound_speed, speed = sqrt(v.x * v.x + v.y * v.y + v.z * v.z),
-                 e = (c - speed) * (c + speed);
-    return (struct motion){v, e, 1 / e, speed <= BP_SLOW * c};
+    const double c = medium->sound_speed, e = delay_margin(v, c);
+    return (struct motion){v, e, 1 / e, v.x * v.x + v.y * v.y + v.z * v.z <= BP_SLOW * c * (BP_SLOW * c)};
 }
 
 /* The delay (delay.h), in seconds, to the receiver that is (x, y, z) from the place when the echo leaves it, after `leg`. */

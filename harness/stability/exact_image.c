@@ -1,0 +1,294 @@
+/* Direct sums in extended precision (exact_image.h). Cost: pixels x records x (samples for band-limited readings). */
+#include "stability/exact_image.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "stability/exact_geometry.h"
+
+size_t exact_pixels(int patch_count, const struct grid *patches)
+{
+    size_t count = 0;
+    for (int k = 0; k < patch_count; k++)
+        count += (size_t)patches[k].x_count * (size_t)patches[k].r_count;
+    return count;
+}
+
+/* Pixel number `index` of all patches. */
+static struct exact_point pixel_number(const struct grid *patches, size_t index)
+{
+    const struct grid *patch = patches;
+    for (size_t count; index >= (count = (size_t)patch->x_count * (size_t)patch->r_count); patch++)
+        index -= count;
+    return exact_pixel_of(patch, (int)(index / (size_t)patch->x_count), (int)(index % (size_t)patch->x_count));
+}
+
+/* Add value times exp(+j 2 pi cycles). */
+static void add_turned(struct exact_sum *sum, long double re, long double im, long double cycles)
+{
+    const long double angle = 2.0L * exact_pi * (cycles - floorl(cycles + 0.5L));
+    const long double c = cosl(angle), s = sinl(angle);
+    sum->re += re * c - im * s;
+    sum->im += re * s + im * c;
+}
+
+/* --- Closed-form echoes ---------------------------------------------------------------------------------------- */
+
+const char *exact_ideal_excludes(const struct scene *scene)
+{
+    if (scene->pulse_kind != PULSE_FLAT)
+        return "raw echoes";
+    if (scene->noise_std > 0)
+        return "noise";
+    return scene->beam.per_frequency ? "a beam that depends on the frequency" : NULL;
+}
+
+/* The spectrum has bins -h .. h of fs/N; those that meet the band's edge weigh one half. */
+long double exact_echo(const struct acquisition *a, long double t)
+{
+    const long double n = a->samples, half = (long double)a->bandwidth * n / a->fs / 2.0L;
+    const long double h = floorl(half + 1e-6L), x = t * a->fs, turn = exact_pi * (x / n - floorl(x / n + 0.5L));
+    const bool edge = fabsl(half - h) < 1e-6L && h > 0.0L;
+    const long double bins = edge ? 2.0L * h : 2.0L * h + 1.0L, bottom = edge ? tanl(turn) : sinl(turn);
+    return fabsl(turn) * bins < 1e-9L ? 1.0L : sinl(bins * turn) / (bins * bottom);
+}
+
+/* One target as one record has it. */
+struct echo {
+    long double delay, re, im; /* amplitude; 0 beyond the beam or the record */
+};
+
+static void echoes_fill(const struct scene *scene, struct exact_pair pair, struct echo *echoes)
+{
+    const struct acquisition *a = &scene->acquisition;
+    for (int k = 0; k < scene->target_count; k++) {
+        const struct target *target = &scene->targets[k];
+        const struct exact_point p = {target->x, target->r, 0.0L};
+        const long double delay = exact_delay(&pair, p, a->sound_speed), after = delay - pair.t0;
+        const bool heard = after > 0.0L && after < a->samples / (long double)a->fs;
+        const long double beam = heard ? exact_beam(scene, &pair, p, delay) : 0.0L;
+        echoes[k] = (struct echo){delay, creal(target->amplitude) * beam, cimag(target->amplitude) * beam};
+    }
+}
+
+/* Is the pair summed: inside the record and the aperture limit? */
+static bool is_summed(const struct acquisition *a, const struct exact_pair *pair, int ping, struct exact_point p,
+                      long double delay)
+{
+    const long double last = pair->t0 + (a->samples - 1) / (long double)a->fs;
+    return delay >= pair->t0 && delay <= last
+           && (!(a->aperture_limit < 1) || exact_sine(pair, p, acquisition_heading(a, ping)) <= a->aperture_limit);
+}
+
+enum status exact_ideal(const struct scene *scene, struct exact_sum *sums)
+{
+    const struct acquisition *a = &scene->acquisition;
+    const size_t pixels = exact_pixels(scene->patch_count, scene->patches);
+    struct echo *echoes = calloc((size_t)scene->target_count + 1, sizeof *echoes);
+    if (!echoes)
+        return status_set(STATUS_FAILED, "no memory for %d exact echoes", scene->target_count);
+    for (size_t i = 0; i < pixels; i++)
+        sums[i] = (struct exact_sum){0};
+    for (int ping = 0; ping < a->pings; ping++)
+        for (int m = 0; m < a->receivers; m++) {
+            const struct exact_pair pair = exact_pair_of(a, ping, m);
+            bool heard = false;
+            echoes_fill(scene, pair, echoes);
+            for (int k = 0; k < scene->target_count; k++)
+                heard = heard || echoes[k].re != 0.0L || echoes[k].im != 0.0L;
+            if (!heard)
+                continue;
+#pragma omp parallel for schedule(dynamic, 4)
+            for (size_t i = 0; i < pixels; i++) {
+                const struct exact_point p = pixel_number(scene->patches, i);
+                const long double delay = exact_delay(&pair, p, a->sound_speed);
+                if (!is_summed(a, &pair, ping, p, delay))
+                    continue;
+                for (int k = 0; k < scene->target_count; k++) {
+                    const long double after = delay - echoes[k].delay, value = exact_echo(a, after);
+                    add_turned(&sums[i], value * echoes[k].re, value * echoes[k].im, a->fc * after);
+                    sums[i].size += fabsl(value) * hypotl(echoes[k].re, echoes[k].im);
+                }
+                sums[i].pairs++;
+            }
+        }
+    free(echoes);
+    return STATUS_OK;
+}
+
+/* --- A method's own reading of the samples ---------------------------------------------------------------------- */
+
+/* One record and what its reading needs. */
+struct trace {
+    const double complex *samples;
+    int count;
+    const long double *cosine, *sine; /* [count] of pi n/N */
+    const struct exact_reading *reading;
+    long double level; /* rms of the samples: what a transform's rounding is relative to */
+};
+
+struct value {
+    long double re, im, size;
+};
+
+static void add_tap(const struct trace *trace, long double n, long double weight, struct value *value)
+{
+    if (!(n >= 0.0L && n < trace->count) || weight == 0.0L)
+        return;
+    const double complex s = trace->samples[(int)n];
+    value->re += weight * creal(s);
+    value->im += weight * cimag(s);
+    value->size += fabsl(weight) * hypotl(creal(s), cimag(s));
+}
+
+/* The band-limited signal of period N through all samples; of an even N both ends share the bin at fs/2. With q = i +
+   f, sin(pi (q - n)) is (-1)^(i - n) sin(pi f). */
+static struct value read_band(const struct trace *trace, long double q)
+{
+    const int count = trace->count;
+    const long double i = floorl(q + 0.5L), f = q - i, n = count;
+    struct value value = {0};
+    if (fabsl(f) < 1e-17L) {
+        add_tap(trace, i, 1.0L, &value);
+    } else {
+        const long double turn = exact_pi * (q / n - floorl(q / n)), c = cosl(turn), s = sinl(turn);
+        const long double wave = sinl(exact_pi * f) / n, first = fmodl(i, 2.0L) == 0.0L ? wave : -wave;
+        for (int k = 0; k < count; k++) {
+            const long double below = s * trace->cosine[k] - c * trace->sine[k];
+            const long double above = count % 2 ? 1.0L : c * trace->cosine[k] + s * trace->sine[k];
+            const long double weight = (k % 2 ? -first : first) * above / below;
+            /* An odd number of turns of an odd N changes the sign, which the half turns of q/N already hold. */
+            value.re += weight * creal(trace->samples[k]);
+            value.im += weight * cimag(trace->samples[k]);
+        }
+        if (count % 2 && fmodl(floorl(q / n), 2.0L) != 0.0L) {
+            value.re = -value.re;
+            value.im = -value.im;
+        }
+    }
+    value.size = hypotl(value.re, value.im) + trace->level;
+    return value;
+}
+
+/* I0 by its power series, whose terms are all positive. */
+static long double bessel_i0(long double x)
+{
+    long double sum = 1.0L, term = 1.0L;
+    for (int k = 1; term > 1e-21L * sum; k++) {
+        term *= x / 2.0L / k * (x / 2.0L / k);
+        sum += term;
+    }
+    return sum;
+}
+
+static struct value read_sinc(const struct trace *trace, long double q)
+{
+    const int taps = trace->reading->taps;
+    const long double beta = trace->reading->kaiser, whole = floorl(q), f = q - whole;
+    struct value value = {0};
+    for (int k = 1 - taps / 2; k <= taps / 2; k++) {
+        const long double z = f - k, edge = 2.0L * z / taps, inside = 1.0L - edge * edge;
+        const long double kernel = z == 0.0L ? 1.0L : sinl(exact_pi * z) / (exact_pi * z);
+        const long double window =
+            beta > 0.0L ? bessel_i0(beta * sqrtl(inside > 0.0L ? inside : 0.0L)) / bessel_i0(beta) : 1.0L;
+        add_tap(trace, whole + k, kernel * window, &value);
+    }
+    return value;
+}
+
+/* At a position in upsampled samples, rounded already where the method rounds. */
+static struct value read_position(const struct trace *trace, long double position)
+{
+    struct value value = {0};
+    switch (trace->reading->kind) {
+    case EXACT_NEAREST:
+        if (trace->reading->upsample > 1)
+            return read_band(trace, position / trace->reading->upsample);
+        add_tap(trace, position, 1.0L, &value);
+        break;
+    case EXACT_LINEAR: {
+        const long double whole = floorl(position), f = position - whole;
+        add_tap(trace, whole, 1.0L - f, &value);
+        add_tap(trace, whole + 1.0L, f, &value);
+        break;
+    }
+    case EXACT_SINC: return read_sinc(trace, position);
+    case EXACT_BAND: return read_band(trace, position);
+    }
+    return value;
+}
+
+/* Add a pair: its value, and what becomes of it at the other side of a tie. */
+static void add_pair(const struct trace *trace, const struct acquisition *a, long double after, long double cycles,
+                     struct exact_sum *sum)
+{
+    const struct exact_reading *reading = trace->reading;
+    const long double q = after * a->fs, last = a->samples - 1, slack = reading->slack_s * (long double)a->fs;
+    if (!(q >= -slack && q <= last + slack))
+        return;
+    const bool inside = q >= 0.0L && q <= last, end = fabsl(q) <= slack || fabsl(q - last) <= slack;
+    struct value value;
+    if (reading->phases > 0) {
+        const long double fine = q * reading->upsample * reading->phases, whole = floorl(fine + 0.5L);
+        const long double edge = 0.5L - fabsl(fine - whole);
+        const long double near = slack * reading->upsample * reading->phases + reading->slack_point * reading->phases;
+        value = read_position(trace, whole / reading->phases);
+        if (edge <= near) {
+            const struct value other =
+                read_position(trace, (fine > whole ? whole + 1.0L : whole - 1.0L) / reading->phases);
+            sum->ties += hypotl(other.re - value.re, other.im - value.im);
+        }
+    } else {
+        value = read_position(trace, q);
+    }
+    if (end)
+        sum->ties += hypotl(value.re, value.im);
+    if (inside) {
+        add_turned(sum, value.re, value.im, cycles);
+        sum->size += value.size;
+        sum->pairs++;
+    }
+}
+
+/* False for a record that is zero throughout: it adds nothing. */
+static bool trace_open(const struct acquisition *a, const double complex *samples, struct trace *trace)
+{
+    long double sum = 0.0L;
+    for (int n = 0; n < a->samples; n++)
+        sum += (long double)creal(samples[n]) * creal(samples[n]) + (long double)cimag(samples[n]) * cimag(samples[n]);
+    trace->samples = samples;
+    trace->level = sqrtl(sum / a->samples);
+    return sum > 0.0L;
+}
+
+enum status exact_method(const struct problem *problem, const double complex *samples,
+                         const struct exact_reading *reading, struct exact_sum *sums)
+{
+    const struct acquisition *a = problem->acquisition;
+    const size_t pixels = exact_pixels(problem->patch_count, problem->patches), n = (size_t)a->samples;
+    long double *cosine = malloc(2 * n * sizeof *cosine);
+    if (!cosine)
+        return status_set(STATUS_FAILED, "no memory for %zu exact samples", n);
+    for (size_t k = 0; k < n; k++) {
+        cosine[k] = cosl(exact_pi * (long double)k / (long double)n);
+        cosine[n + k] = sinl(exact_pi * (long double)k / (long double)n);
+    }
+    for (size_t i = 0; i < pixels; i++)
+        sums[i] = (struct exact_sum){0};
+    struct trace trace = {.count = a->samples, .cosine = cosine, .sine = cosine + n, .reading = reading};
+    for (int ping = 0; ping < a->pings; ping++)
+        for (int m = 0; m < a->receivers; m++) {
+            const struct exact_pair pair = exact_pair_of(a, ping, m);
+            if (!trace_open(a, samples + ((size_t)ping * (size_t)a->receivers + (size_t)m) * n, &trace))
+                continue;
+#pragma omp parallel for schedule(dynamic, 4)
+            for (size_t i = 0; i < pixels; i++) {
+                const struct exact_point p = pixel_number(problem->patches, i);
+                const long double delay = exact_delay(&pair, p, a->sound_speed);
+                if (!(a->aperture_limit < 1) || exact_sine(&pair, p, acquisition_heading(a, ping)) <= a->aperture_limit)
+                    add_pair(&trace, a, delay - pair.t0, a->fc * delay, &sums[i]);
+            }
+        }
+    free(cosine);
+    return STATUS_OK;
+}

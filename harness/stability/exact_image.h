@@ -1,0 +1,49 @@
+/* Images of a few dozen pixels beyond doubt: direct sums over all pings and receivers in extended precision, which use
+   neither the engines nor the simulator.
+
+   Two questions, two sums. Is the image right? Then closed-form echoes are evaluated at exact delays (exact_ideal). Is
+   a method computed with care? Then its own interpolation of the recorded samples is done in long double
+   (exact_method), so that all that is left between it and the program's image is rounding. */
+#ifndef SASBENCH_STABILITY_EXACT_IMAGE_H
+#define SASBENCH_STABILITY_EXACT_IMAGE_H
+
+#include "scene/scene.h"
+
+/* One pixel of a direct sum. */
+struct exact_sum {
+    long double re, im;
+    long double size; /* sum of |weight sample| over pairs and taps: what rounding is relative to */
+    long double ties; /* what the pixel may change by where a rounded position or the record's end is a tie */
+    int pairs;        /* summed */
+};
+
+/* How a method reads a record between its samples: rows as in struct interpolator (backprojection/bp.h). */
+struct exact_reading {
+    enum { EXACT_NEAREST, EXACT_LINEAR, EXACT_SINC, EXACT_BAND } kind; /* band: the band-limited record itself */
+    int upsample;                                                      /* nearest: by zero padding; else 1 */
+    int phases;         /* > 0: positions are rounded to 1/phases of an upsampled sample */
+    int taps;           /* sinc */
+    double kaiser;      /* sinc: the window's parameter, 0 for none */
+    double slack_s;     /* delays are this uncertain in the method under test (s) */
+    double slack_point; /* and positions this much beside, in upsampled samples */
+};
+
+/* Pixels of all patches of a problem or scene, patch after patch, row by row. */
+size_t exact_pixels(int patch_count, const struct grid *patches);
+
+/* What the closed form covers: NULL, or what of the scene it does not. Flat pulses without noise or frequency-dependent
+ * beams. */
+const char *exact_ideal_excludes(const struct scene *scene);
+
+/* The image of the scene's closed-form echoes: each is its band's inverse transform over the record's period,
+   sin(pi K x/N)/(K tan(pi x/N)) or /(K sin(pi x/N)), which tends to sinc(B t) for long records (exact_echo). Fills
+   sums[exact_pixels]. Errors: STATUS_FAILED without memory. */
+enum status exact_ideal(const struct scene *scene, struct exact_sum *sums);
+/* The echo at t seconds from its middle. */
+long double exact_echo(const struct acquisition *acquisition, long double t);
+
+/* The image of range compressed double samples by a method's own reading. Errors: STATUS_FAILED without memory. */
+enum status exact_method(const struct problem *problem, const double complex *samples,
+                         const struct exact_reading *reading, struct exact_sum *sums);
+
+#endif

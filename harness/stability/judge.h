@@ -1,0 +1,42 @@
+/* The verdict on one SPEC in one trial: digits lost against the method's own sum, error against the right image, spread
+   over rounding modes, and what else must never be.
+
+   Digits lost D = log10(difference/conditioning). Both are relative L2 norms over one target's patch, the worst patch
+   counts. The difference is from the same method in extended precision. The conditioning is what rounding may do to
+   careful code:
+
+       sum |w s| (eps64 kappa_phase + eps64 kappa_place + declared + eps_T (1 + sqrt(pairs))) + ties
+
+   kappa_phase = 2 pi (fc + fs/2) tau_max, kappa_place = 2 pi fc 2 |x|_max/c for coordinates far from the origin;
+   declared is what the engine changes on purpose (method.h); eps64 = 2^-53, eps_T = 2^-24 in float. Careful code has D
+   below 1, a fault stands out. */
+#ifndef SASBENCH_STABILITY_JUDGE_H
+#define SASBENCH_STABILITY_JUDGE_H
+
+#include "stability/trial.h"
+
+#define DIGITS_MOST 2.0
+
+enum verdict_kind { VERDICT_WORKS, VERDICT_DEGRADES, VERDICT_REFUSED, VERDICT_FAILS };
+
+struct stability_verdict {
+    enum verdict_kind kind;
+    char why[80];       /* the condition that refuses, or what fails; else empty */
+    char message[400];  /* in full */
+    const char *engine; /* borrowed from the trial */
+    double error;       /* relative L2 against the right image, worst patch and mode; NAN: none, or the image is zero */
+    double error_most;  /* the method's promise */
+    double difference, conditioning, digits; /* NAN where there is nothing to compare with */
+    double spread;                           /* largest difference between two modes' images, relative L2 */
+    bool same_bits, finite;
+    int exceptions; /* raised in any mode */
+};
+
+struct stability_verdict trial_judge(const struct trial *trial, int spec);
+/* Of a scene that is not read at all, by its message. */
+struct stability_verdict refusal_judge(const char *message);
+
+/* "works", "degrades", "refused: lbf_law", "fails: digits". */
+void verdict_text(const struct stability_verdict *verdict, char *text, size_t size);
+
+#endif

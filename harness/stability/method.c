@@ -1,0 +1,78 @@
+/* The methods' promises (method.h). */
+#include "stability/method.h"
+
+#include <math.h>
+#include <string.h>
+
+/* An option by name; `missing` where the algorithm has none. */
+static double option_value(const struct spec *spec, const char *name, double missing)
+{
+    for (const struct param *param = spec->algorithm->params; param && param->name; param++)
+        if (strcmp(param->name, name) == 0) {
+            const void *field = (const char *)spec->options + param->offset;
+            return param->type == PARAM_REAL ? *(const double *)field : *(const int *)field;
+        }
+    return missing;
+}
+
+/* Error laws at fs = 2 B, measured over 52 extreme scenes, with room (docs/stability.md). Range migration promises
+ * 0.12. */
+static const struct {
+    const char *name;
+    int kind;
+    double error_most;
+} laws[] = {
+    {"reference", EXACT_BAND, 1e-9}, {"bp_nearest", EXACT_NEAREST, 0.15}, {"bp_linear", EXACT_LINEAR, 0.12},
+    {"bp_sinc", EXACT_SINC, 0.05},   {"bp_zeropad", EXACT_NEAREST, 0.01},
+};
+enum { LAWS = sizeof laws / sizeof *laws };
+
+static const double ERROR_MOST = 0.12, ERROR_KAISER = 0.005;
+/* Range migration cuts swath and band at whole cells. Rounding may choose the next one, which moves the image by 2e-6
+ * at most. */
+static const double CHOICES = 1e-7;
+
+/* General engine, backprojection/general/sum.h: the limit L, lowered where a step between positions is long; 2.5e-6 rad
+   of short polynomials in float, 1e-9 of fixed-point phases in double; positions to 2^-17 and 2^-19 of a sample. */
+static void interpolated_delays(const struct spec *spec, const struct acquisition *a, struct method *method)
+{
+    const struct exact_reading *reading = &method->reading;
+    const double finest = a->fs * reading->upsample * fmax(1, reading->phases);
+    const double limit = fmin(option_value(spec, "phase_limit", 0), 1.57 * a->fc / finest);
+    const bool is_float = spec->precision == PRECISION_FLOAT;
+    method->phase_rad = limit + (is_float ? 2.5e-6 : 1e-9);
+    method->reading.slack_s = limit / (2 * M_PI * a->fc);
+    method->reading.slack_point = is_float ? 0x1p-17 : 0x1p-19;
+}
+
+struct method method_of(const struct spec *spec, const char *engine, const struct acquisition *acquisition)
+{
+    struct method method = {.error_most = ERROR_MOST, .weight = CHOICES, .reading = {.upsample = 1}};
+    for (int k = 0; k < LAWS; k++)
+        if (strcmp(spec->algorithm->name, laws[k].name) == 0) {
+            method.has_reading = true;
+            method.reading.kind = laws[k].kind;
+            method.error_most = laws[k].error_most;
+        }
+    if (!method.has_reading)
+        return method;
+    method.weight = 0;
+    if (method.reading.kind == EXACT_BAND && !(acquisition->bandwidth < acquisition->fs))
+        method.error_most += 1.0 / acquisition->samples; /* one bin stands for both ends of the band */
+    if (method.reading.kind == EXACT_NEAREST || method.reading.kind == EXACT_LINEAR)
+        method.reading.phases = (int)option_value(spec, "beta", 0) + 1;
+    method.reading.upsample = (int)option_value(spec, "factor", 1);
+    if (method.reading.kind == EXACT_SINC) {
+        method.reading.taps = (int)option_value(spec, "taps", 8);
+        if (option_value(spec, "window", 0) != 0) {
+            method.reading.kaiser = 5;
+            method.error_most = ERROR_KAISER;
+        }
+    }
+    /* Cubics through a kernel at 4 of 1024 places a sample; the reference's kernel over four times as many samples. */
+    if (method.reading.kind == EXACT_SINC || method.reading.kind == EXACT_BAND)
+        method.weight = 2e-10;
+    if (strcmp(engine, "general") == 0)
+        interpolated_delays(spec, acquisition, &method);
+    return method;
+}
