@@ -11,6 +11,7 @@
 
 #include "data/number.h"
 #include "data/shown_text.h"
+#include "data/supervisor.h"
 #include "command/task.h"
 #include "measure/provenance.h"
 #include "data/temporary.h"
@@ -20,32 +21,35 @@ struct command {
     const char *options; /* the letters of the options it takes */
     int names_least, names_most;
     enum status (*run)(const struct task *task);
+    bool supervised; /* a crash ends one measurement, and the others go on */
 };
 
 static const struct command commands[] = {
-    {"list", "", "the algorithms, with summary, reference and traits", "", 0, 0, command_list},
-    {"info", "NAME", "one algorithm's parameters, with default, bounds and sweep", "", 1, 1, command_info},
-    {"simulate", "SCENE -o FILE.mat", "write a scene's echoes", "ot", 1, 1, command_simulate},
+    {"list", "", "the algorithms, with summary, reference and traits", "", 0, 0, command_list, false},
+    {"info", "NAME", "one algorithm's parameters, with default, bounds and sweep", "", 1, 1, command_info, false},
+    {"simulate", "SCENE -o FILE.mat", "write a scene's echoes", "ot", 1, 1, command_simulate, false},
     {"image", "(--scene SCENE | --echoes FILE.mat --grid GRID) --algorithm SPEC -o FILE.mat", "form one image",
-     "oseagt", 0, 0, command_image},
+     "oseagt", 0, 0, command_image, false},
     {"run", "[SCENE ...] [--algorithm SPEC ...] [-o DIR]", "compare algorithms on scenes", "oat", 0, INT_MAX,
-     command_run},
+     command_run, true},
     {"compare",
      "(OLD NEW | --ab OLD_BINARY NEW_BINARY [SCENE ...] [--algorithm SPEC ...]) [--markdown FILE] [--json FILE]",
      "what got worse between two results folders or CSV files; what got slower between two programs, run side by side",
-     "aBMJ", 2, INT_MAX, command_compare},
-    {"measure", "", "the other end of `compare --ab`, which starts it", "", 0, 0, command_measure},
+     "aBMJ", 2, INT_MAX, command_compare, false},
+    {"measure", "", "the other end of `compare --ab`, which starts it", "", 0, 0, command_measure, false},
     {"baseline", "[-o FILE.csv]", "measure quality and work of the gate's scenes anew, into results/baseline.csv", "ot",
-     0, 0, command_baseline},
-    {"reproduce", "[ID ...] [-o DIR]", "the papers' tables and claims beside ours", "ot", 0, INT_MAX,
-     command_reproduce},
+     0, 0, command_baseline, false},
+    {"reproduce", "[ID ...] [-o DIR]", "the papers' tables and claims beside ours", "ot", 0, INT_MAX, command_reproduce,
+     true},
     {"sweep", "[SCENE ...] [--algorithm SPEC ...] [-o DIR]",
-     "parameter sweep: error against run time, each algorithm over its settings", "oat", 0, INT_MAX, command_sweep},
-    {"report", "DIR", "a results folder as one page: DIR/report.html, and DIR/report.md", "", 1, 1, command_report},
+     "parameter sweep: error against run time, each algorithm over its settings", "oat", 0, INT_MAX, command_sweep,
+     true},
+    {"report", "DIR", "a results folder as one page: DIR/report.html, and DIR/report.md", "", 1, 1, command_report,
+     false},
     {"phase", "([SCENE] [-o DIR] | --at FILE.csv)", "phase errors of the two-dimensional spectra (LBF21 Figs 2-9)",
-     "oA", 0, 1, command_phase},
+     "oA", 0, 1, command_phase, false},
     {"bench", "[-o DIR]", "speed of the engines against the processor's peak and the scalar reference loop", "ot", 0, 0,
-     command_bench},
+     command_bench, false},
 };
 
 static const struct option long_options[] = {
@@ -242,8 +246,11 @@ int main(int argc, char **argv)
         version();
     else if (status == STATUS_OK && helped)
         help();
-    else if (status == STATUS_OK)
+    else if (status == STATUS_OK) {
+        if (command->supervised)
+            supervisor_begin();
         status = command->run(&task);
+    }
     if (status == STATUS_OK && (fflush(stdout) != 0 || ferror(stdout)))
         status = status_set(STATUS_FAILED, "standard output cannot be written");
     for (int k = 0; k < task.spec_count; k++)

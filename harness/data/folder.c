@@ -9,12 +9,15 @@
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "data/temporary.h"
 
 /* With room for the longest name of a file in it. */
 enum { DIRECTORY_MAX = PATH_MAX - NAME_MAX - 2 };
+
+enum { RETRIES = 20 }; /* for the lock: a second */
 
 static enum status name_check(const char *directory)
 {
@@ -63,7 +66,12 @@ enum status folder_take(const char *directory, int *lock)
     int descriptor = open(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (descriptor < 0)
         return status_set(STATUS_INVALID, "%s: cannot be opened: %s; a folder is needed", directory, strerror(errno));
-    if (flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+    int taken = flock(descriptor, LOCK_EX | LOCK_NB);
+    for (int k = 0; k < RETRIES && taken != 0 && errno == EWOULDBLOCK; k++) { /* one that was killed is still ending */
+        nanosleep(&(struct timespec){.tv_nsec = 50000000}, NULL);
+        taken = flock(descriptor, LOCK_EX | LOCK_NB);
+    }
+    if (taken != 0) {
         if (errno == EWOULDBLOCK) {
             close(descriptor);
             return status_set(STATUS_INVALID,

@@ -47,18 +47,27 @@ static enum status check_pulse(const struct reading *reading)
     return STATUS_OK;
 }
 
+/* The largest factor is named, for it is the one that was most likely meant otherwise; all of them are shown. */
 static enum status check_sizes(const struct reading *reading)
 {
     const struct acquisition *a = &reading->scene.acquisition;
     double records = (double)a->pings * a->receivers, bytes = records * a->samples * sizeof(double complex);
+    bool by_receivers = a->receivers > a->pings;
+    const config_setting_t *group = by_receivers ? reading->array : reading->track;
+    const char *group_name = by_receivers ? "array" : "track", *name = by_receivers ? "receivers" : "pings";
     if (!(records <= RECORDS_MAX)) {
-        return refuse(reading, reading->track, "track", "pings", "at most %.10g with %d receivers (2^26 records)",
-                      floor(RECORDS_MAX / a->receivers), a->receivers);
+        return refuse(reading, group, group_name, name, "such that %d pings x %d receivers are at most %.10g records",
+                      a->pings, a->receivers, RECORDS_MAX);
+    }
+    if (a->samples > a->receivers && a->samples > a->pings) {
+        group = reading->record;
+        group_name = "record";
+        name = "samples";
     }
     if (!(bytes <= BYTES_MAX)) {
-        return refuse(reading, reading->record, "record", "samples",
-                      "at most %.10g with %.10g records (2^40 bytes of samples)",
-                      floor(BYTES_MAX / sizeof(double complex) / records), records);
+        return refuse(reading, group, group_name, name,
+                      "such that %d samples x %d receivers x %d pings are at most %.10g samples (2^40 bytes)",
+                      a->samples, a->receivers, a->pings, BYTES_MAX / sizeof(double complex));
     }
     return STATUS_OK;
 }

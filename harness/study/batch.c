@@ -13,6 +13,7 @@
 #include "measure/outcome.h"
 #include "show/table.h"
 #include "data/paths.h"
+#include "data/supervisor.h"
 
 /* One scene while its algorithms run. */
 struct visit {
@@ -30,12 +31,28 @@ static void visit_close(struct visit *visit)
     session_close(&visit->session);
 }
 
+/* As the supervisor knows it; without a SPEC the echoes and the exact image of a scene. */
+static void task_format(const struct scene *scene, const struct spec *spec, char *task, size_t size)
+{
+    if (spec)
+        snprintf(task, size, "%s, %s:%s%sprecision=%s", scene->name, spec->algorithm->name, spec->text,
+                 *spec->text ? "," : "", precision_name(spec->precision));
+    else
+        snprintf(task, size, "%s, echoes and exact image", scene->name);
+}
+
 /* On failure the visit is closed. */
 static enum status visit_open(const struct batch *batch, const struct scene *scene, int spec_count,
                               const struct spec *specs, struct visit *visit)
 {
     *visit = (struct visit){.specs = specs, .spec_count = spec_count};
-    enum status status = session_open(scene, &visit->session);
+    char task[700];
+    task_format(scene, NULL, task, sizeof task);
+    const char *crash = supervisor_crash(task);
+    supervisor_enter(task);
+    enum status status = crash ? status_set(STATUS_FAILED, "making the echoes and the exact image %s", crash)
+                               : session_open(scene, &visit->session);
+    supervisor_leave();
     if (status != STATUS_OK)
         return status;
     visit->works = calloc((size_t)spec_count, sizeof *visit->works);
@@ -62,6 +79,17 @@ static void draw(struct visit *visit, int index, const struct image *image)
     pictures_add(&visit->pictures, index, label, image);
 }
 
+/* A row of what was not measured. */
+static struct measurement failed_row(const struct batch *batch, const struct scene *scene, const struct spec *spec,
+                                     const char *reason)
+{
+    struct measurement row = measurement_empty(scene->name, spec->algorithm->name, spec->text, spec->precision);
+    row.threads = batch->threads;
+    row.status = "failed";
+    row.reason = reason;
+    return row;
+}
+
 /* A scene whose echoes cannot be made has a failed row for every algorithm that is missing, and the next one goes on. */
 static enum status fail_scene(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs)
 {
@@ -70,12 +98,8 @@ static enum status fail_scene(struct batch *batch, const struct scene *scene, in
     snprintf(reason, sizeof reason, "%s", status_message());
     batch->failed = true;
     for (int k = 0; k < spec_count && status == STATUS_OK; k++, batch->done++) {
-        struct measurement row =
-            measurement_empty(scene->name, specs[k].algorithm->name, specs[k].text, specs[k].precision);
+        struct measurement row = failed_row(batch, scene, &specs[k], reason);
         const struct measurement *earlier = batch_find(batch, scene, &specs[k]);
-        row.threads = batch->threads;
-        row.status = "failed";
-        row.reason = reason;
         if (!earlier)
             status = results_folder_add(batch->results, &row);
         if (status == STATUS_OK)
@@ -85,13 +109,31 @@ static enum status fail_scene(struct batch *batch, const struct scene *scene, in
     return status;
 }
 
+/* A measurement that crashed an earlier process of this run. */
+static enum status add_crashed(struct batch *batch, const struct scene *scene, const struct spec *spec, const char *how)
+{
+    struct measurement row = failed_row(batch, scene, spec, how);
+    enum status status = results_folder_add(batch->results, &row);
+    batch->failed = true;
+    if (status == STATUS_OK)
+        table_row(stdout, &row);
+    return status;
+}
+
 /* Measure one algorithm on one scene, record and draw it. Only a fault of the record itself is an error: what fails or
    is unsupported becomes a row. */
 static enum status measure(struct batch *batch, struct visit *visit, int index)
 {
     struct outcome outcome;
+    char task[700];
     enum status status = STATUS_OK;
+    task_format(visit->session.scene, &visit->specs[index], task, sizeof task);
+    const char *crash = supervisor_crash(task);
+    if (crash)
+        return add_crashed(batch, visit->session.scene, &visit->specs[index], crash);
+    supervisor_enter(task);
     outcome_measure(&visit->session, &visit->specs[index], true, &outcome);
+    supervisor_leave();
     outcome.row.threads = batch->threads;
     visit->works[index] = outcome.work;
     if (strcmp(outcome.row.status, "ok") == 0) {
@@ -144,9 +186,16 @@ const struct measurement *batch_find(const struct batch *batch, const struct sce
 static void redraw(struct visit *visit, int index, const struct measurement *row)
 {
     struct image image = {0};
+    char task[700];
     if (strcmp(row->status, "ok") != 0)
         return;
-    if (session_image(&visit->session, &visit->specs[index], &image) == STATUS_OK) {
+    task_format(visit->session.scene, &visit->specs[index], task, sizeof task);
+    const char *crash = supervisor_crash(task);
+    supervisor_enter(task);
+    enum status status =
+        crash ? status_set(STATUS_FAILED, "%s", crash) : session_image(&visit->session, &visit->specs[index], &image);
+    supervisor_leave();
+    if (status == STATUS_OK) {
         draw(visit, index, &image);
     } else {
         fprintf(stderr, "sasbench: %s with %s is not drawn: %s\n", row->scene, row->algorithm, status_message());
