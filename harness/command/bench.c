@@ -5,5 +5,5 @@
 
 enum status command_bench(const struct task *task)
 {
-    return bench_run(task->output ? task->output : "results/bench");
+    return bench_run(task->output ? task->output : "results/bench", task->names, task->name_count);
 }

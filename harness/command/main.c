@@ -48,8 +48,9 @@ static const struct command commands[] = {
      false},
     {"phase", "([SCENE] [-o DIR] | --at FILE.csv)", "phase errors of the two-dimensional spectra (LBF21 Figs 2-9)",
      "oA", 0, 1, command_phase, false},
-    {"bench", "[-o DIR]", "speed of the engines against the processor's peak and the scalar reference loop", "ot", 0, 0,
-     command_bench, false},
+    {"bench", "[SPEC ...] [-o DIR]",
+     "speed of the engines, or of algorithms by name, against the processor's peak and the scalar reference loop", "ot",
+     0, INT_MAX, command_bench, false},
 };
 
 static const struct option long_options[] = {

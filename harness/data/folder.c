@@ -56,12 +56,10 @@ enum status directory_make(const char *directory)
     return status;
 }
 
-enum status folder_take(const char *directory, int *lock)
+/* Swept: what killed programs left there is removed. */
+static enum status take(const char *directory, bool swept, int *lock)
 {
     *lock = -1;
-    enum status status = name_check(directory);
-    if (status != STATUS_OK)
-        return status;
     /* The folder itself is what is locked. Programs that we start do not inherit it. */
     int descriptor = open(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (descriptor < 0)
@@ -82,9 +80,32 @@ enum status folder_take(const char *directory, int *lock)
         fprintf(stderr, "sasbench: %s: this file system cannot lock a folder (%s); start no second program in it\n",
                 directory, strerror(errno));
     }
-    temporary_sweep(directory);
+    if (swept)
+        temporary_sweep(directory);
     *lock = descriptor;
     return STATUS_OK;
+}
+
+enum status folder_take(const char *directory, int *lock)
+{
+    *lock = -1;
+    enum status status = name_check(directory);
+    return status == STATUS_OK ? take(directory, true, lock) : status;
+}
+
+enum status folder_take_around(const char *path, int *lock)
+{
+    struct stat info;
+    const char *slash = strrchr(path, '/');
+    *lock = -1;
+    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode)) /* written to as it is */
+        return STATUS_OK;
+    char *directory = slash ? strndup(path, slash == path ? 1 : (size_t)(slash - path)) : strdup(".");
+    if (!directory)
+        return status_set(STATUS_FAILED, "%s: no memory for the name of its folder", path);
+    enum status status = take(directory, false, lock);
+    free(directory);
+    return status;
 }
 
 void folder_leave(int lock)

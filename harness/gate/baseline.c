@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "data/echo_data.h"
+#include "data/folder.h"
 #include "data/paths.h"
 
 static const char *const scene_list[] = {"gate/points", "gate/field", "gate/blocks"};
@@ -139,11 +140,14 @@ enum status baseline_write(const char *path)
     struct scene_hash hashes[SCENES];
     struct spec *specs;
     int count, row_count = 0;
+    int lock = -1;
     enum status status = specs_make(&specs, &count);
     struct measurement *rows = calloc(SCENES * (size_t)count + 1, sizeof *rows);
     struct reason *reasons = calloc(SCENES * (size_t)count + 1, sizeof *reasons);
     if (status == STATUS_OK && (!rows || !reasons))
         status = status_set(STATUS_FAILED, "no memory for %d rows", SCENES * count);
+    if (status == STATUS_OK)
+        status = folder_take_around(path, &lock);
     for (int k = 0; k < SCENES && status == STATUS_OK; k++) {
         if (isatty(STDERR_FILENO))
             fprintf(stderr, "\r\033[K[%d/%d] %s\r", k + 1, SCENES, scene_list[k]);
@@ -155,6 +159,7 @@ enum status baseline_write(const char *path)
     if (status == STATUS_OK)
         status = measurements_write(path, "baseline: quality and work, no seconds; made by ./sasbench baseline", hashes,
                                     SCENES, rows, row_count);
+    folder_leave(lock);
     free(rows);
     free(reasons);
     specs_free(specs, count);

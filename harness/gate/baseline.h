@@ -11,7 +11,7 @@ void baseline_row(const struct session *session, const struct spec *spec, char *
                   struct measurement *row);
 
 /* Measure all scenes of the gate with all algorithms and some of their settings, and write the file. Errors: as
-   scene_load, session_open and measurements_write; nothing is then written. */
+   scene_load, session_open, folder_take_around and measurements_write; nothing is then written. */
 enum status baseline_write(const char *path);
 
 /* Where the reviewed one lies. */

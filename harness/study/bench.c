@@ -11,6 +11,7 @@
 #include "common/isa.h"
 #include "common/peak.h"
 #include "study/bench.h"
+#include "study/bench_algorithms.h"
 #include "study/bench_rma.h"
 #include "data/echo_data.h"
 #include "data/folder.h"
@@ -75,23 +76,32 @@ static double memory_peak(void)
     return getrusage(RUSAGE_SELF, &usage) == 0 ? 1024.0 * (double)usage.ru_maxrss : NAN;
 }
 
-/* One round of a line; the peak is measured before and after, as the scalar reference loop is. `alone`: the line on one thread. */
-static enum status measure(const struct bench *bench, const struct bench_case *one, const struct method *method,
-                           const struct problem *problem, const struct echoes *echoes,
-                           const struct echoes *control_echoes, const struct line *alone, int round, struct line *line)
+/* What a line measures. */
+struct subject {
+    const struct bench_case *one;
+    const struct method *method;
+    const struct problem *problem;
+    const struct echoes *echoes, *control_echoes; /* of the problem's precision; in float */
+    const struct line *alone;                     /* the line on one thread */
+};
+
+/* One round of a line; the peak is measured before and after, as the scalar reference loop is. */
+static enum status measure(const struct bench *bench, const struct subject *subject, int round, struct line *line)
 {
+    const struct method *method = subject->method;
+    const struct problem *problem = subject->problem;
     char text[96];
     struct spec spec;
     struct image image;
     struct timing timing;
-    snprintf(text, sizeof text, "%s:%sengine=%s,precision=%s", method->name, method->settings, one->engine,
+    snprintf(text, sizeof text, "%s:%sengine=%s,precision=%s", method->name, method->settings, subject->one->engine,
              precision_name(problem->precision));
     enum status status = spec_parse(text, &spec);
     if (status != STATUS_OK)
         return status;
     omp_set_num_threads(line->threads);
     double peak = 0.5 * peak_flops(problem->precision, line->threads);
-    status = timing_measure(&spec, problem, echoes, control_echoes, &image, &timing);
+    status = timing_measure(&spec, problem, subject->echoes, subject->control_echoes, &image, &timing);
     peak += 0.5 * peak_flops(problem->precision, line->threads);
     image_free(&image);
     spec_free(&spec);
@@ -109,7 +119,7 @@ static enum status measure(const struct bench *bench, const struct bench_case *o
         [PER_PEAK] = rate / peak,
         [CONTROL] = timing.control_s / sums,
         [RUN_TO_SUM] = timing.run_s / sums,
-        [GAIN] = alone->runs > 0 ? alone->value[RUN_S][round] / timing.run_s : NAN,
+        [GAIN] = subject->alone->runs > 0 ? subject->alone->value[RUN_S][round] / timing.run_s : NAN,
     };
     for (int k = 0; k < VALUES; k++)
         line->value[k][round] = values[k];
@@ -166,8 +176,10 @@ static enum status bench_case(struct bench *bench, const struct bench_case *one)
                     struct problem problem = {&scene.acquisition, 1, &grid, (enum precision)p};
                     lines[m][p][n].threads = n == 0 ? 1 : bench->threads;
                     if (alone || all)
-                        status = measure(bench, one, &methods[m], &problem, &echoes[p], &echoes[PRECISION_FLOAT],
-                                         &lines[m][p][0], round, &lines[m][p][n]);
+                        status = measure(bench,
+                                         &(struct subject){one, &methods[m], &problem, &echoes[p],
+                                                           &echoes[PRECISION_FLOAT], &lines[m][p][0]},
+                                         round, &lines[m][p][n]);
                 }
     for (int m = 0; m < one->methods; m++)
         for (int p = 0; p < 2; p++)
@@ -227,13 +239,29 @@ static enum status bench_bp(const char *directory)
 /* Each measures into files of its own in the folder. */
 static enum status (*const parts[])(const char *directory) = {bench_bp, bench_rma};
 
-enum status bench_run(const char *directory)
+static enum status specs_check(const char *const *specs, int count)
+{
+    enum status status = STATUS_OK;
+    for (int k = 0; k < count && status == STATUS_OK; k++) {
+        struct spec spec;
+        status = spec_parse(specs[k], &spec);
+        if (status == STATUS_OK)
+            spec_free(&spec);
+    }
+    return status;
+}
+
+enum status bench_run(const char *directory, const char *const *specs, int count)
 {
     int lock = -1;
-    enum status status = directory_make(directory);
+    enum status status = specs_check(specs, count);
+    if (status == STATUS_OK)
+        status = directory_make(directory);
     if (status == STATUS_OK)
         status = folder_take(directory, &lock);
-    for (size_t k = 0; k < sizeof parts / sizeof *parts && status == STATUS_OK; k++)
+    if (status == STATUS_OK && count > 0)
+        status = bench_algorithms(directory, specs, count);
+    for (size_t k = 0; k < sizeof parts / sizeof *parts && count == 0 && status == STATUS_OK; k++)
         status = parts[k](directory);
     folder_leave(lock);
     return status;

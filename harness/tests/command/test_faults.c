@@ -68,6 +68,7 @@ static void folders_belong_to_one_program(void **state)
         "\"$SASBENCH_PROGRAM\" report r",
         "\"$SASBENCH_PROGRAM\" phase -o r",
         "\"$SASBENCH_PROGRAM\" bench -o r",
+        "\"$SASBENCH_PROGRAM\" baseline -o r/baseline.csv",
     };
     int lock;
     assert_shell(QUICK, 0);

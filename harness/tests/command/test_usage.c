@@ -59,6 +59,7 @@ static const struct refusal usages[] = {
     {{"run", "study/quick", "study/quick", "-o", "r"}, {"scene study/quick is given twice"}},
     {{"run", "study/quick", "-a", "bp_linear", "-a", "bp_linear:beta=8", "-o", "r"},
      {"--algorithm bp_linear is given twice with the same settings"}},
+    {{"bench", "bp_nearest", "no_such_algorithm"}, {"'no_such_algorithm'", "accepted: reference, bp_nearest"}},
     {{"run", "study/quick", "-a"}, {"run: option '-a' needs a value"}},
 
     {THREADS("0"), {"--threads is '0'", "a whole number from 1 to 1024"}},
@@ -137,6 +138,10 @@ static const struct refusal places[] = {
     {{"report", ""}, {"report: an argument is ''"}},
     {{"phase", "--at", ""}, {"phase: --at is ''"}},
     {{"simulate", "study/quick", "-o", long_name}, {"cannot be written", "too long"}},
+    {{"image", "--scene", "study/quick", "-a", "bp_nearest", "-o", "x.png"},
+     {"image: -o x.png is of no known kind", "accepted: FILE.mat"}},
+    {{"image", "--scene", "study/quick", "-a", "bp_nearest", "-o", "mat"}, {"image: -o mat is of no known kind"}},
+    {{"simulate", "study/quick", "-o", "x.csv"}, {"simulate: -o x.csv is of no known kind", "accepted: FILE.mat"}},
     {{"image", "--scene", "study/quick", "-a", "bp_nearest", "-o", "nowhere/x.mat"},
      {"nowhere/x.mat: cannot be written"}},
     {{"image", "--scene", "study/quick", "-a", "bp_nearest", "-o", "plain.txt/x.mat"},

@@ -1,0 +1,166 @@
+/* A command that is killed again and again, at moments that differ each time, and then resumed: the rows are those of an
+   undisturbed one, and nothing else is left. */
+#include <dirent.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <time.h>
+
+#include "data/csv.h"
+#include "data/random.h"
+#include "tests/command/program.h"
+
+/* SASBENCH_KILLS in the environment: more of them, for a long run by hand. */
+static int kills_wanted(void)
+{
+    const char *given = getenv("SASBENCH_KILLS");
+    return given ? atoi(given) : 3;
+}
+
+static double seconds_of(const char *const *arguments)
+{
+    double begin = seconds_now();
+    program_good(arguments);
+    return seconds_now() - begin;
+}
+
+/* True: the signal came before the end. */
+static bool kill_after(const char *const *arguments, double seconds, int number)
+{
+    int status;
+    FILE *sink = tmpfile();
+    assert_non_null(sink);
+    pid_t child = program_start(arguments, sink, sink);
+    nanosleep(&(struct timespec){(time_t)seconds, (long)(1e9 * (seconds - (double)(time_t)seconds))}, NULL);
+    kill(child, number);
+    assert_int_equal(waitpid(child, &status, 0), child);
+    fclose(sink);
+    return WIFSIGNALED(status) && WTERMSIG(status) == number;
+}
+
+/* Two files row by row, whatever their order, but for what is measured in seconds. */
+static void assert_same_rows(const char *whole, const char *killed)
+{
+    static const char *const seconds[] = {"plan_s", "run_s", "run_min_s", "runs", "control_s", "stages"};
+    struct csv a, b;
+    assert_int_equal(csv_read(path_of(whole), CSV_TAIL_KEEP, &a), STATUS_OK);
+    assert_int_equal(csv_read(path_of(killed), CSV_TAIL_KEEP, &b), STATUS_OK);
+    if (a.row_count != b.row_count || a.column_count != b.column_count)
+        fail_msg("%s has %d rows of %d columns, undisturbed %d of %d", killed, b.row_count, b.column_count, a.row_count,
+                 a.column_count);
+    bool timed[64] = {false};
+    for (size_t k = 0; k < COUNT_OF(seconds); k++)
+        if (csv_column(&a, seconds[k]) >= 0)
+            timed[csv_column(&a, seconds[k])] = true;
+    for (int row = 0; row < a.row_count; row++) {
+        bool found = false;
+        for (int other = 0; other < b.row_count && !found; other++) {
+            found = true;
+            for (int k = 0; k < a.column_count && found; k++)
+                found = timed[k] || strcmp(csv_cell(&a, row, k), csv_cell(&b, other, k)) == 0;
+        }
+        if (!found)
+            fail_msg("%s: row %d of the undisturbed file is not there: %s %s %s", killed, row + 1, csv_cell(&a, row, 0),
+                     csv_cell(&a, row, 1), csv_cell(&a, row, 2));
+    }
+    csv_free(&a);
+    csv_free(&b);
+}
+
+static int name_order(const void *a, const void *b)
+{
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/* The names in a folder, sorted, one a line: what both runs leave is the same. */
+static char *names_of(const char *directory)
+{
+    static const char *names[1000];
+    size_t count = 0, size;
+    char *text = NULL;
+    DIR *open = opendir(path_of(directory));
+    FILE *stream = open_memstream(&text, &size);
+    assert_non_null(open);
+    assert_non_null(stream);
+    for (struct dirent *entry; (entry = readdir(open)) && count < COUNT_OF(names);)
+        names[count++] = strdup(entry->d_name);
+    closedir(open);
+    qsort(names, count, sizeof *names, name_order);
+    for (size_t k = 0; k < count; k++) {
+        fprintf(stream, "%s\n", names[k]);
+        free((char *)names[k]);
+    }
+    fclose(stream);
+    return text;
+}
+
+/* The same command into two folders, the second of which is NAME-killed. */
+static void check_resumed(const char *name, const char *const *whole, const char *const *killed)
+{
+    static const int numbers[] = {SIGKILL, SIGINT, SIGTERM};
+    struct random random = random_seed(7, 0);
+    double duration = seconds_of(whole);
+    int count = kills_wanted(), hits = 0;
+    for (int k = 0; k < count; k++)
+        hits += kill_after(killed, duration * (k + random_uniform(&random)) / (count + 1), numbers[k % 3]);
+    assert_true(hits > 0);
+    program_good(killed);
+    char folders[2][40], files[2][60];
+    for (int k = 0; k < 2; k++)
+        snprintf(folders[k], sizeof folders[k], "%s%s", name, k ? "-killed" : "");
+    for (int file = 0; file < 2; file++) {
+        for (int k = 0; k < 2; k++)
+            snprintf(files[k], sizeof files[k], "%.40s/%s", folders[k], file ? "targets.csv" : "measurements.csv");
+        assert_same_rows(files[0], files[1]);
+    }
+    char *wanted = names_of(folders[0]), *names = names_of(folders[1]);
+    assert_string_equal(names, wanted);
+    free(wanted);
+    free(names);
+}
+
+#define RUN(place)                                                                                                     \
+    (const char *const[ARGUMENTS_MAX])                                                                                 \
+    {                                                                                                                  \
+        "run", "study/quick", "scene.cfg", "-a", "bp_nearest", "-a", "bp_sinc", "-a", "rma_lbf", "-o", place           \
+    }
+#define SWEEP(place)                                                                                                   \
+    (const char *const[ARGUMENTS_MAX])                                                                                 \
+    {                                                                                                                  \
+        "sweep", "scene.cfg", "-a", "bp_zeropad:factor=4", "-a", "bp_nearest", "-o", place                             \
+    }
+#define REPRODUCE(place)                                                                                               \
+    (const char *const[ARGUMENTS_MAX])                                                                                 \
+    {                                                                                                                  \
+        "reproduce", "zp15_f3", "-o", place                                                                            \
+    }
+
+static void killed_run_resumes(void **state)
+{
+    (void)state;
+    check_resumed("run", RUN("run"), RUN("run-killed"));
+}
+
+static void killed_sweep_resumes(void **state)
+{
+    (void)state;
+    check_resumed("sweep", SWEEP("sweep"), SWEEP("sweep-killed"));
+}
+
+static void killed_reproduction_resumes(void **state)
+{
+    (void)state;
+    check_resumed("reproduce", REPRODUCE("reproduce"), REPRODUCE("reproduce-killed"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(killed_run_resumes),
+        cmocka_unit_test(killed_sweep_resumes),
+        cmocka_unit_test(killed_reproduction_resumes),
+    };
+    return cmocka_run_group_tests(tests, inputs_make, folder_remove);
+}
