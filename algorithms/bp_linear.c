@@ -30,7 +30,7 @@ static enum status plan(const struct problem *problem, const void *options, void
 {
     int beta = ((const struct options *)options)->beta;
     const struct interpolator linear = {
-        .upsample = 1, .steps = beta + 1, .taps = 2, .weights = weights, .beta = beta, .factor = beta + 1};
+        .upsample = 1, .steps = beta + 1, .taps = 2, .weights = weights, .in_papers = true};
     return bp_plan(problem, &linear, options, plan);
 }
 

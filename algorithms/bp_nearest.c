@@ -12,7 +12,7 @@ static const struct param params[] = {
 
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
-    const struct interpolator nearest = {.upsample = 1, .steps = 1, .taps = 1, .factor = 1};
+    const struct interpolator nearest = {.upsample = 1, .steps = 1, .taps = 1, .in_papers = true};
     return bp_plan(problem, &nearest, options, plan);
 }
 

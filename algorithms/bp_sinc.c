@@ -37,7 +37,7 @@ static enum status plan(const struct problem *problem, const void *options, void
     if (taps % 2)
         return status_set(STATUS_UNSUPPORTED, "bp_sinc: taps is %d, must be even", taps);
     const struct interpolator sinc = {
-        .upsample = 1, .taps = taps, .first = 1 - taps / 2, .weights = weights, .kernel = taps, .factor = taps};
+        .upsample = 1, .taps = taps, .first = 1 - taps / 2, .weights = weights, .in_papers = true};
     return bp_plan(problem, &sinc, options, plan);
 }
 

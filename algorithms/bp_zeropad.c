@@ -22,7 +22,7 @@ static const struct param params[] = {
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
     int factor = ((const struct options *)options)->factor;
-    const struct interpolator zeropad = {.upsample = factor, .steps = 1, .taps = 1, .factor = factor};
+    const struct interpolator zeropad = {.upsample = factor, .steps = 1, .taps = 1, .in_papers = true};
     return bp_plan(problem, &zeropad, options, plan);
 }
 

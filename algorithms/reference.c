@@ -14,12 +14,8 @@ static void weights(const void *options, double fraction, double *w)
 
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
-    const struct interpolator exact = {.upsample = UPSAMPLE,
-                                       .taps = TAPS,
-                                       .first = 1 - TAPS / 2,
-                                       .weights = weights,
-                                       .kernel = TAPS,
-                                       .factor = UPSAMPLE};
+    const struct interpolator exact = {
+        .upsample = UPSAMPLE, .taps = TAPS, .first = 1 - TAPS / 2, .weights = weights, .in_papers = true};
     const struct bp_options plain = {.engine = BP_ENGINE_GENERAL, .exact = 1};
     (void)options;
     return bp_plan(problem, &exact, &plain, plan);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "backprojection/engine.h"
+#include "backprojection/budget.h"
 #include "common/fft_length.h"
 #include "backprojection/pairs.h"
 
@@ -81,7 +82,8 @@ static enum status tabulate(struct bp *bp, const struct interpolator *in, const 
 
 /* The counted and the published work, but for the pairs. BP22 Eq. (11) has N_a records, N_r samples and N_a N_r pixels, every
    pixel summed over every record; here the pixels are counted as they are. LBF21 Eq. (23) lacks the sum over records and
-   contradicts it. */
+   contradicts it. Its interpolation factor, and BP22's points beta between two samples, follow from how a method reads
+   records. */
 static void count_work(struct bp *bp, const struct interpolator *in)
 {
     const struct acquisition *a = bp->problem.acquisition;
@@ -89,16 +91,16 @@ static void count_work(struct bp *bp, const struct interpolator *in)
     double na = (double)a->pings * a->receivers, nr = a->samples, pixels = problem_pixels(&bp->problem);
     double all = na * pixels, transforms = 2 * na * fft_flops(nr) + 6 * na * nr;
     work->flops = na * bp->shape.flops;
-    if (in->factor > 0) {
-        work->published[0].source = "BP22 Eq. (11)";
-        work->published[0].flops = transforms + 6 * all + 6 * in->beta * na * (nr - 1);
-        if (in->kernel > 0) {
-            work->published[0].source = "BP22 Eq. (11) + sinc load";
-            work->published[0].flops += 2 * (2.0 * in->kernel - 1) * all;
-        }
+    if (in->in_papers) {
+        const bool kernel = in->steps == 0; /* each value is summed over one */
+        const double beta = kernel ? 0 : in->steps - 1, points = kernel ? in->taps : in->steps;
+        const double factor = in->upsample > 1 ? in->upsample : points;
+        work->published[0].source = kernel ? "BP22 Eq. (11) + sinc load" : "BP22 Eq. (11)";
+        work->published[0].flops = transforms + 6 * all + 6 * beta * na * (nr - 1);
+        if (kernel)
+            work->published[0].flops += 2 * (2.0 * in->taps - 1) * all;
         work->published[1].source = "LBF21 Eq. (23)";
-        work->published[1].flops =
-            1.5 * na * nr * log2(nr) + na * nr + 1.5 * na * in->factor * nr * log2(in->factor * nr);
+        work->published[1].flops = 1.5 * na * nr * log2(nr) + na * nr + 1.5 * na * factor * nr * log2(factor * nr);
     }
     snprintf(work->engine, sizeof work->engine, "%s%s", bp->engine->name,
              bp->engine == &bp_general && !(bp->medium.phase_limit > 0) ? " exact" : "");
@@ -129,7 +131,7 @@ static enum status choose_engine(struct bp *bp, const struct bp_options *options
     /* The approximation may not move a sample coordinate by more than a quarter of the finest step either. */
     double finest = bp->medium.fs * bp->table.upsample * (bp->table.steps > 0 ? bp->table.steps : 1);
     if (!options->exact)
-        bp->medium.phase_limit = fmin(options->phase_limit, 1.57 * bp->medium.fc / finest);
+        bp->medium.phase_limit = budget_limit(options->phase_limit, bp->medium.fc, finest);
     return STATUS_OK;
 }
 
@@ -162,6 +164,9 @@ enum status bp_plan(const struct problem *problem, const struct interpolator *in
 {
     const struct acquisition *a = problem->acquisition;
     *plan = NULL;
+    if (interpolator->steps > BP_STEPS_MOST)
+        return status_set(STATUS_UNSUPPORTED, "positions are rounded to %d steps between samples, must be at most %d",
+                          interpolator->steps, BP_STEPS_MOST);
     struct bp *bp = calloc(1, sizeof *bp);
     if (!bp)
         return status_set(STATUS_FAILED, "no memory for the plan");

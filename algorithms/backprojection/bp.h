@@ -15,16 +15,11 @@
    the band-limited signal's own continuation). */
 struct interpolator {
     int upsample;    /* records are upsampled by zero padding (exactly) by this factor first; >= 1 */
-    int steps;       /* > 0: q is rounded to the nearest multiple of 1/steps first; 0: it is not */
+    int steps;       /* > 0: q is rounded to the nearest multiple of 1/steps first, at most 4096; 0: it is not */
     int taps, first; /* taps >= 1; first <= 0 */
     /* Fill w[taps] for a fraction in [0, 1). Called while planning only; NULL when taps == 1 (the weight is 1). */
     void (*weights)(const void *options, double fraction, double *w);
-    /* For the published FLOPs, BP22 Eq. (11): points inserted between samples; the kernel's length where each value is
-       summed over a kernel (0: not); LBF21 Eq. (23): the interpolation factor, 0: the method is in neither paper and
-       claims none. */
-    double beta;
-    int kernel;
-    int factor;
+    bool in_papers; /* BP22 Eq. (11) and LBF21 Eq. (23) count its FLOPs (struct work): published numbers are given */
 };
 
 /* Settings of every back projection: the first member of a method's options struct. */

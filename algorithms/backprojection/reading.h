@@ -15,6 +15,7 @@ enum bp_reading {
                    [BP_INTERVALS][4][taps], lowest power first */
 };
 enum { BP_INTERVAL_BITS = 8, BP_INTERVALS = 1 << BP_INTERVAL_BITS };
+enum { BP_STEPS_MOST = 4096 }; /* between two samples: times 19 bits of fraction, they fit 31 bits (general/run.h) */
 
 /* struct interpolator with its weights tabulated. */
 struct bp_table {
@@ -26,7 +27,7 @@ struct bp_table {
 struct bp_medium {
     double sound_speed, fc, fs;
     int samples;
-    double phase_limit; /* rad: L of the error budget (general/sum.h); 0: every delay is evaluated */
+    double phase_limit; /* rad: L of the error budget (backprojection/budget.h); 0: every delay is evaluated */
 };
 
 #endif

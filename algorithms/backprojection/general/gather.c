@@ -34,7 +34,7 @@ PHASOR(phasor_short, vector_real, PHASOR_SHORT_SINE, PHASOR_SHORT_COSINE)
 #endif
 
 /* LANES values: copies, which are faster than gather instructions. */
-INLINE vector_real gather(const real *from, const int *index)
+INLINE vector_real gather_one(const real *from, const int *index)
 {
 #define FROM(n) from[index[n]]
     return (vector_real)ALL(FROM);
@@ -44,8 +44,8 @@ INLINE vector_real gather(const real *from, const int *index)
 INLINE void gather_two(const real *from, const int *index, vector_real *value, vector_real *next)
 {
 #if REAL_DOUBLE
-    *value = gather(from, index);
-    *next = gather(from + 1, index);
+    *value = gather_one(from, index);
+    *next = gather_one(from + 1, index);
 #else
 #define BOTH(n) *(const two_floats *)(from + index[n])
     vector_real low = (vector_real)(vector_double)PART(BOTH, 0), high = (vector_real)(vector_double)PART(BOTH, 2);
@@ -96,7 +96,7 @@ INLINE vector_real take_apart(bool line, const real *row, const struct run *run,
 {
     vector_real value, next;
     if (!line)
-        return gather(row, run->sample + i);
+        return gather_one(row, run->sample + i);
     gather_two(row, run->sample + i, &value, &next);
     return value + *at(run->rest + i) * (next - value);
 }
@@ -122,19 +122,20 @@ INLINE void take(bool line, enum loading loading, const real *row, size_t row_le
     *im = *im + x * s + y * c;
 }
 
-/* One run of each of `group` records, a constant where this is inlined. */
-INLINE void add_taken(bool line, enum loading loading, int group, const real *row, size_t row_length, int count,
-                      struct run *runs, real *re, real *im)
+/* One run of each of a group's records; `receivers` is the group's, as a constant where this is inlined. */
+INLINE void add_taken(bool line, enum loading loading, int receivers, const struct receiver_group *group,
+                      struct run *runs, int count, real *re, real *im)
 {
-    const real *from[GROUP];
+    const real *from[GROUP_RECEIVERS];
+    const size_t row_length = group->row_length;
     int i = 0;
-    for (int g = 0; g < group; g++) {
-        from[g] = row + 2 * (size_t)g * row_length + runs[g].base;
+    for (int g = 0; g < receivers; g++) {
+        from[g] = group->row + group->table->guard + group->table->first + 2 * (size_t)g * row_length + runs[g].base;
         OPAQUE(from[g]);
     }
     for (; i <= count - LANES; i += LANES) {
         vector_real x = *at(re + i), y = *at(im + i);
-        for (int g = 0; g < group; g++)
+        for (int g = 0; g < receivers; g++)
             take(line, loading, from[g], row_length, &runs[g], i, &x, &y);
         *at(re + i) = x;
         *at(im + i) = y;
@@ -142,7 +143,7 @@ INLINE void add_taken(bool line, enum loading loading, int group, const real *ro
     if (i == count)
         return;
     vector_real x = {0}, y = {0};
-    for (int g = 0; g < group; g++) {
+    for (int g = 0; g < receivers; g++) {
         for (int k = count; k < i + LANES; k++) { /* the last vector's other pixels read what may be read */
             runs[g].sample[k] = runs[g].sample[count - 1];
             runs[g].rest[k] = runs[g].cycles[k] = 0;
@@ -155,24 +156,27 @@ INLINE void add_taken(bool line, enum loading loading, int group, const real *ro
     }
 }
 
-INLINE void add_group(bool line, enum loading loading, int group, const real *row, size_t row_length, int count,
-                      struct run *runs, real *re, real *im)
+/* `loading` is a constant where this is inlined. */
+INLINE void add_group(bool line, enum loading loading, const struct receiver_group *group, struct run *runs, int count,
+                      real *re, real *im)
 {
-    if (group == GROUP)
-        add_taken(line, loading, GROUP, row, row_length, count, runs, re, im);
-    else
-        for (int g = 0; g < group; g++)
-            add_taken(line, loading, 1, row + 2 * (size_t)g * row_length, row_length, count, &runs[g], re, im);
+    if (group->receivers == GROUP_RECEIVERS) {
+        add_taken(line, loading, GROUP_RECEIVERS, group, runs, count, re, im);
+        return;
+    }
+    struct receiver_group one = *group;
+    one.receivers = 1;
+    for (int g = 0; g < group->receivers; g++, one.row += 2 * one.row_length)
+        add_taken(line, loading, 1, &one, &runs[g], count, re, im);
 }
 
-/* `loading` is a constant where this is inlined. */
-INLINE void add_all(bool line, enum loading loading, int group, const real *row, size_t row_length, int count,
-                    struct run *runs, real *re, real *im)
+INLINE void add_all(enum loading loading, const struct receiver_group *group, struct run *runs, int count, real *re,
+                    real *im)
 {
-    if (line)
-        add_group(true, loading, group, row, row_length, count, runs, re, im);
+    if (group->table->reading == BP_LINE)
+        add_group(true, loading, group, runs, count, re, im);
     else
-        add_group(false, loading, group, row, row_length, count, runs, re, im);
+        add_group(false, loading, group, runs, count, re, im);
 }
 
 /* Many weights, from a table of steps or from cubics in the fraction; the record's parts lie apart. `taps` is a constant
@@ -181,7 +185,7 @@ INLINE void add_taps(const struct bp_table *table, int taps, const real *row_re,
                      const struct run *run, real *re, real *im)
 {
     const real *weights = table->weights;
-    real wr[RUN], wi[RUN];
+    real wr[RUN_PIXELS], wi[RUN_PIXELS];
 #pragma omp simd
     for (int i = 0; i < count; i++)
         phasor(run->cycles[i], &wr[i], &wi[i]);
@@ -209,27 +213,27 @@ INLINE void add_taps(const struct bp_table *table, int taps, const real *row_re,
     }
 }
 
-void BP_TAKE(const struct bp_table *table, enum loading loading, int group, const void *rows, int row_length, int count,
-             struct run *runs, void *re, void *im)
+void BP_GATHER(const struct receiver_group *group, enum loading loading, int count, struct run *runs, real *re,
+               real *im)
 {
-    const size_t length = (size_t)row_length;
-    const bool line = table->reading == BP_LINE;
-    const real *row = (const real *)rows + table->guard + table->first;
-    if (!line && table->reading != BP_NEAREST) {
-        for (int g = 0; g < group; g++, row += 2 * length) {
-            const real *from = row + runs[g].base;
-            switch (table->taps) { /* the shipped kernels unroll, any other length works as well */
-            case 8: add_taps(table, 8, from, from + length, count, &runs[g], re, im); break;
-            case 16: add_taps(table, 16, from, from + length, count, &runs[g], re, im); break;
-            case 20: add_taps(table, 20, from, from + length, count, &runs[g], re, im); break;
-            default: add_taps(table, table->taps, from, from + length, count, &runs[g], re, im); break;
-            }
+    const struct bp_table *table = group->table;
+    if (table->reading == BP_NEAREST || table->reading == BP_LINE) {
+        switch (loading) {
+        case APART: add_all(APART, group, runs, count, re, im); break;
+        case FOURS: add_all(FOURS, group, runs, count, re, im); break;
+        case TOGETHER: add_all(TOGETHER, group, runs, count, re, im); break;
         }
         return;
     }
-    switch (loading) {
-    case APART: add_all(line, APART, group, row, length, count, runs, re, im); break;
-    case FOURS: add_all(line, FOURS, group, row, length, count, runs, re, im); break;
-    case TOGETHER: add_all(line, TOGETHER, group, row, length, count, runs, re, im); break;
+    const size_t length = group->row_length;
+    const real *row = group->row + table->guard + table->first;
+    for (int g = 0; g < group->receivers; g++, row += 2 * length) {
+        const real *from = row + runs[g].base;
+        switch (table->taps) { /* the shipped kernels unroll, any other length works as well */
+        case 8: add_taps(table, 8, from, from + length, count, &runs[g], re, im); break;
+        case 16: add_taps(table, 16, from, from + length, count, &runs[g], re, im); break;
+        case 20: add_taps(table, 20, from, from + length, count, &runs[g], re, im); break;
+        default: add_taps(table, table->taps, from, from + length, count, &runs[g], re, im); break;
+        }
     }
 }

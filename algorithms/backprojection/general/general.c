@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "backprojection/engine.h"
+#include "backprojection/budget.h"
 #include "backprojection/general/sum.h"
 #include "backprojection/pairs.h"
 
@@ -106,12 +107,10 @@ static enum status general_plan(struct bp *bp)
     if (!general->rows || !general->interleaved || !general->heading || !general->boxes || !general->along_x
         || !general->sums)
         return status_set(STATUS_FAILED, "no memory for %d records of %d values", general->batch, bp->shape.length);
-    /* The rest of the limit is for the sums in float (error budget: sum.h). */
-    const double quintics = problem->precision == PRECISION_FLOAT ? 0.85 : 1;
+    const double quintics = budget_quintics(bp->medium.phase_limit, problem->precision);
     for (int p = 0; p < a->pings; p++) {
         general->heading[p] = acquisition_heading(a, p);
-        general->boxes[p] =
-            ping_box_make(a, p, problem->patch_count, problem->patches, quintics * bp->medium.phase_limit);
+        general->boxes[p] = ping_box_make(a, p, problem->patch_count, problem->patches, quintics);
     }
     for (int k = 0; k < problem->patch_count; k++) {
         const struct grid *grid = &problem->patches[k];

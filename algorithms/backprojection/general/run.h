@@ -1,9 +1,9 @@
-/* What the general engine's two inner files share: runs of pixels. sum.c fills them in, gather.c adds what they take
-   from the records to the sums. sum.h has the error budget.
+/* What the general engine's inner files share: runs of pixels. runs.c makes them from a block's delays, gather.c adds what
+   they take from the records to the sums. budget.h has the error budget.
 
    A RUN OF PIXELS. A line of pixels is cut into blocks (blocks.c). In each block the delay to a receiver is a quintic
-   through six exact delays at Chebyshev points (x). A block is cut into runs of at most RUN pixels. A run is worked on
-   by vectors of LANES pixels, for GROUP receivers at a time:
+   through six exact delays at Chebyshev points (x). A block is cut into runs of at most RUN_PIXELS pixels. A run is worked on
+   by vectors of LANES pixels, for GROUP_RECEIVERS receivers at a time:
 
        pixels      begin                             middle                              end
        block       |x---------x---------------x-----------------x---------------x---------x|
@@ -27,7 +27,7 @@
        window     [ m-1,  m,  m+1,  m+2 ]       value = window[place]; on a line also next = window[place + 1]
 
    A pixel is at most LANES/2 pixels from the middle one. A slope below 2/LANES samples a pixel keeps its sample within
-   one of m. A slope below 1/2 does so for four pixels. sum_block chooses by the slope, with a slack of 0.01 for
+   one of m. A slope below 1/2 does so for four pixels. loading_choose does so by the slope, with a slack of 0.01 for
    rounding. On steeper slopes, in double and without AVX each pixel loads its own samples (APART).
 
    PART, EVEN, ODD: an example of 8 lanes (float, AVX2). Positions are double, so that 8 pixels are two vectors of 4
@@ -42,27 +42,26 @@
    gather_two (gather.c) uses the same order for two neighbouring floats that it moves as one double. EVEN then gives
    the values, ODD the next ones.
 
-   FIXED-POINT NUMBERS IN DOUBLES (points and points_flat in sum.c). A double has 1 bit of sign, 11 of exponent and 52
+   FIXED-POINT NUMBERS IN DOUBLES (points and points_flat in runs.c). A double has 1 bit of sign, 11 of exponent and 52
    of mantissa. Its high word holds sign, exponent and 20 bits of the mantissa, its low word the other 32. To a number
    of magnitude below 2^(n-1), add 1.5 times 2^n: the exponent becomes n, whatever the number's sign. The last bit is
-   then worth 2^(n-52), and the mantissa's lower bits are the number in two's complement. n = 52 rounds to a whole
-   number:
+   then worth 2^(n-52), and the mantissa's lower bits are the number in two's complement:
 
-       added      last bit   high word, 20 bits        low word, 32 bits
-       0x1.8p52   1          -                         whole number                             (not used here)
-       0x1.8p33   2^-19      more of the whole part    13 bits of whole part, sign included; 19 of fraction (BITS)
-       0x1.8p20   2^-32      whole part                32 bits of fraction
+       added      = 1.5 times   last bit   high word, 20 bits        low word, 32 bits
+       FIXED_19   2^33          2^-19      more of the whole part    13 bits of whole part, sign included; 19 of fraction
+       FIXED_32   2^20          2^-32      whole part                32 bits of fraction
 
    Where the index comes from, by the way of reading (enum bp_reading):
 
-       BP_NEAREST             0x1.8p20   sample = high word - 0x41380000, which is the high word of 0x1.8p20
-       BP_LINE, BP_STEPS     0x1.8p33   sample = low word >> 19; step = fraction x steps >> 19 (steps <= 2^12)
-       BP_CUBICS              0x1.8p33   all 64 bits >> 19 leave 32 bits of whole part: interval = its lowest 8 bits
+       BP_NEAREST             FIXED_32   sample = high word - FIXED_32_HIGH, which is the high word of FIXED_32
+       BP_LINE, BP_STEPS      FIXED_19   sample = low word >> 19; step = fraction x steps >> 19 (steps <= BP_STEPS_MOST)
+       BP_CUBICS              FIXED_19   all 64 bits >> 19 leave 32 bits of whole part: interval = its lowest 8 bits
                                          (BP_INTERVAL_BITS), sample = the others; rest = fraction 2^-19
-       phase in cycles        0x1.8p20   low word as a signed number, times 2^-32: -1/2 to 1/2, whole cycles drop out
+       phase in cycles        FIXED_32   low word as a signed number, times 2^-32: -1/2 to 1/2, whole cycles drop out
 
-   13 bits are -4096 to 4095 points: run.base is taken off, and a run spans at most SPAN = 4000 points. Half a step is
-   added before (scale.shift) where positions are rounded to the nearest step, as cutting bits off is floor. */
+   13 bits are -4096 to 4095 points: run.base is taken off, and a run spans at most POINTS_MOST points, but for cubics.
+   Half a step is added before (scale.shift) where positions are rounded to the nearest step, as cutting bits off is
+   floor. */
 #ifndef SASBENCH_BACKPROJECTION_GENERAL_RUN_H
 #define SASBENCH_BACKPROJECTION_GENERAL_RUN_H
 
@@ -80,8 +79,9 @@
 #define INLINE static inline __attribute__((always_inline))
 
 enum {
-    RUN = 256, /* pixels at a time: a group's runs stay in the first-level cache */
-    GROUP = 4, /* receivers that are summed together: sums are loaded and stored once for all */
+    NODES = 6,           /* of a quintic */
+    RUN_PIXELS = 256,    /* pixels at a time: a group's runs stay in the first-level cache */
+    GROUP_RECEIVERS = 4, /* receivers that are summed together: sums are loaded and stored once for all */
     PARTS = LANES * sizeof(double) / VECTOR_BYTES /* vectors of doubles to a vector of `real` */
 };
 
@@ -98,18 +98,50 @@ enum loading {
 
 /* Where a run of pixels reads a record. */
 struct run {
-    int base;                                /* sample of the upsampled record from which the others are counted */
-    _Alignas(VECTOR_BYTES) int sample[RUN];  /* on from which the taps are counted */
-    _Alignas(VECTOR_BYTES) int step[RUN];    /* row of the table of weights; where one is used */
-    _Alignas(VECTOR_BYTES) real rest[RUN];   /* position in the interval of a cubic, or a line's fraction */
-    _Alignas(VECTOR_BYTES) real cycles[RUN]; /* phase, |cycles| <= 1/2 */
+    int base; /* sample of the upsampled record from which the others are counted */
+    _Alignas(VECTOR_BYTES) int sample[RUN_PIXELS];  /* on from which the taps are counted */
+    _Alignas(VECTOR_BYTES) int step[RUN_PIXELS];    /* row of the table of weights; where one is used */
+    _Alignas(VECTOR_BYTES) real rest[RUN_PIXELS];   /* position in the interval of a cubic, or a line's fraction */
+    _Alignas(VECTOR_BYTES) real cycles[RUN_PIXELS]; /* phase, |cycles| <= 1/2 */
 };
 
-/* Add one run of each of `group` <= GROUP records, whose rows follow one another from `row` on (struct bp_ping), to
-   `count` pixels. Changes what the runs hold behind them. */
-#define BP_TAKE REAL_ISA_NAME(bp_take)
-void BP_TAKE(const struct bp_table *table, enum loading loading, int group, const void *row, int row_length, int count,
-             struct run *runs, void *re, void *im);
+/* From a delay to a point, point = (tau - t0) fs fine + shift, whose whole part is a sample or one of a cubic's
+   intervals, and from a point to cycles, cycles = point ratio + base. */
+struct scale {
+    double t0, fs, fine, shift, ratio, base;
+};
+
+/* Neighbouring receivers of a ping that are summed together. */
+struct receiver_group {
+    const struct bp_table *table;
+    const struct scale *scale;
+    double phase_limit; /* rad */
+    int receivers;      /* 1 to GROUP_RECEIVERS */
+    const real *row;    /* [receivers][2 row_length] their records (struct bp_ping) */
+    size_t row_length;
+    real *re, *im; /* sums of the line's pixel 0 */
+};
+
+/* Add a group to the pixels of a block, by quintics through its delays at the block's Chebyshev points, tau [node][receiver]. */
+#define BP_RUNS REAL_ISA_NAME(bp_runs)
+void BP_RUNS(const struct receiver_group *group, const struct bp_block *block, double (*tau)[GROUP_RECEIVERS]);
+
+/* Add one run of each of the group's records to `count` pixels, re[0] the first one's. Changes what the runs hold behind
+   them. */
+#define BP_GATHER REAL_ISA_NAME(bp_gather)
+void BP_GATHER(const struct receiver_group *group, enum loading loading, int count, struct run *runs, real *re,
+               real *im);
+
+/* Chebyshev points of a block: its middle -+ these half lengths. */
+static const double node[NODES] = {-0.96592582628906829, -0.70710678118654752, -0.25881904510252076,
+                                   0.25881904510252076,  0.70710678118654752,  0.96592582628906829};
+
+/* Fixed-point numbers: what brings a double to 19 or to 32 bits of fraction, the worth of their last bits. */
+enum { POINT_BITS = 19, POINTS_MOST = 4000, FIXED_32_HIGH = 0x41380000 };
+#define FIXED_19 0x1.8p33
+#define FIXED_32 0x1.8p20
+#define LAST_19  ((real)0x1p-19)
+#define LAST_32  ((real)0x1p-32)
 
 INLINE vector_real *at(const real *values)
 {

@@ -250,12 +250,12 @@ static void own_interpolator_claims_nothing(void **state)
     random_case(1, &a, &grid, &echoes);
     struct problem problem = {&a, 1, &grid, PRECISION_FLOAT};
     const struct bp_options options = {.phase_limit = 1e-4};
-    for (int factor = 0; factor < 2; factor++) {
-        const struct interpolator own = {.upsample = 1, .steps = 1, .taps = 1, .factor = factor};
+    for (int claims = 0; claims < 2; claims++) {
+        const struct interpolator own = {.upsample = 1, .steps = 1, .taps = 1, .in_papers = claims};
         void *plan;
         assert_int_equal(bp_plan(&problem, &own, &options, &plan), STATUS_OK);
         struct work work = bp_work(plan);
-        assert_true((work.published[0].source != NULL) == factor && (work.published[1].source != NULL) == factor);
+        assert_true((work.published[0].source != NULL) == claims && (work.published[1].source != NULL) == claims);
         bp_destroy(plan);
     }
     echoes_free(&echoes);

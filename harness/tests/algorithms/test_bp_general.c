@@ -1,12 +1,12 @@
-/* The general engine's fast path, quintics in place of delays, against the exact path: the phase of random geometries, images
-   of odd scenes, threads and instruction sets. */
+/* The general engine's fast path, quintics in place of delays, against the exact path: images of odd scenes, threads and
+   instruction sets. test_budget.c measures its phase. */
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "backprojection/general/blocks.h"
+#include "backprojection/bp.h"
 #include "common/delay.h"
 #include "data/random.h"
 #include "tests/support.h"
@@ -24,99 +24,6 @@ static struct vector vector_random(struct random *random, double size)
     v.y = uniform(random, -size, size);
     v.z = uniform(random, -size, size);
     return v;
-}
-
-/* ---- the phase itself ---- */
-
-/* One ping and one receiver near a line of pixels, at any scale from centimetres to kilometres; records of ones that hold
-   every delay, so that each pixel of a nearest-sample image is the pair's phase factor. */
-static void random_pair(uint64_t seed, struct acquisition *a, struct grid *grid, struct echoes *echoes)
-{
-    static const double machs[] = {0, 1e-3, 0.05, 0.3};
-    struct random random = random_seed(seed, 1);
-    double size = pow(10, uniform(&random, -1, 3)), c = 1500, speed = c * machs[seed % 4];
-    int count = (int)uniform(&random, 17, 1200);
-    *a = (struct acquisition){
-        .sound_speed = c, .receivers = 1, .pings = 1, .samples = 3000, .compressed = true, .aperture_limit = INFINITY};
-    assert_int_equal(acquisition_allocate(a), STATUS_OK);
-    a->tx[0] = vector_random(&random, size);
-    a->tx[0].z *= 0.1;
-    struct vector offset = vector_random(&random, 0.3 * size), heading = vector_random(&random, 1);
-    double length = sqrt(heading.x * heading.x + heading.y * heading.y + heading.z * heading.z);
-    a->rx[0] = (struct vector){a->tx[0].x + offset.x, a->tx[0].y + offset.y, a->tx[0].z + offset.z};
-    a->velocity[0] =
-        (struct vector){speed * heading.x / length, speed * heading.y / length, speed * heading.z / length};
-    double step = 2 * size * random_uniform(&random) / count;
-    *grid = (struct grid){uniform(&random, -size, size), step, seed % 2 ? count : 1,
-                          uniform(&random, -size, size), step, seed % 2 ? 1 : count};
-    double longest = 2 * 8 * size / (c - speed); /* every distance is below 8 size */
-    a->fs = a->bandwidth = (a->samples - 2) / longest;
-    a->fc = pow(10, uniform(&random, 1, 5.5)) / longest; /* at most 3e5 cycles: rounding stays below 1e-9 rad */
-    assert_int_equal(echoes_allocate(a, PRECISION_DOUBLE, echoes), STATUS_OK);
-    for (int n = 0; n < a->samples; n++)
-        ((double complex *)echoes->samples)[n] = 1;
-}
-
-/* The share of the line's pixels that take their delay from a quintic. */
-static double share_of_quintics(const struct acquisition *a, const struct grid *grid, double limit)
-{
-    struct ping_box box = ping_box_make(a, 0, 1, grid, limit);
-    struct pixel_line line = grid_line(grid, grid->x_count > 1, 0);
-    struct pair_span left = {0, line.count};
-    struct bp_block blocks[BP_BLOCKS];
-    double pixels = 0;
-    for (int count, next = 0; (count = blocks_make(&box, &line, &left, blocks)) > 0;)
-        for (int b = 0; b < count; b++) {
-            assert_int_equal(blocks[b].begin, next); /* no gap, no overlap */
-            next = blocks[b].end;
-            pixels += blocks[b].exact ? 0 : blocks[b].end - blocks[b].begin;
-        }
-    assert_int_equal(left.begin, line.count);
-    return pixels / line.count;
-}
-
-/* The phase errs by less than the limit, for any geometry and limit, and comes near it: the bound is no idle one. In single
-   precision the short polynomials' 1.8e-6 and the rounding of a turn and of the value are on top. */
-static void phase_below_limit(void **state)
-{
-    (void)state;
-    static const double limits[] = {1e-2, 1e-4, 1e-6};
-    for (size_t k = 0; k < sizeof limits / sizeof *limits; k++) {
-        double worst[2] = {0, 0}, share = 0;
-        int cases = 600;
-        for (int seed = 0; seed < cases; seed++) {
-            struct acquisition a;
-            struct grid grid;
-            struct echoes echoes;
-            struct image images[2];
-            random_pair((uint64_t)seed, &a, &grid, &echoes);
-            struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
-            for (int n = 0; n < 2; n++) {
-                char spec[96];
-                snprintf(spec, sizeof spec, "bp_nearest:precision=%s,phase_limit=%g", precision_name((enum precision)n),
-                         limits[k]);
-                assert_int_equal(support_image(spec, problem, &echoes, &images[n]), STATUS_OK);
-            }
-            share += share_of_quintics(&a, &grid, limits[k]) / cases;
-            for (int i = 0; i < grid.r_count; i++)
-                for (int j = 0; j < grid.x_count; j++) {
-                    struct vector p = {grid.x_first + j * grid.x_step, grid.r_first + i * grid.r_step, 0};
-                    double cycles = a.fc * delay_exact(a.tx[0], a.rx[0], a.velocity[0], p, a.sound_speed);
-                    double complex exact = cexp(I * 2 * pi * (cycles - rint(cycles)));
-                    for (int n = 0; n < 2; n++)
-                        worst[n] = worse_of(worst[n], cabs(image_pixel(&images[n], 0, i, j) - exact));
-                }
-            image_free(&images[0]);
-            image_free(&images[1]);
-            echoes_free(&echoes);
-            acquisition_free(&a);
-        }
-        print_message(
-            "limit %g rad: largest phase error %.1e rad (float), %.1e (double), %.0f %% of the delays from quintics\n",
-            limits[k], worst[PRECISION_FLOAT], worst[PRECISION_DOUBLE], 100 * share);
-        assert_true(worst[PRECISION_DOUBLE] <= limits[k] + 1e-9 && worst[PRECISION_FLOAT] <= limits[k] + 2.5e-6);
-        assert_true(worst[PRECISION_DOUBLE] > 0.05 * limits[k] && share > 0.5);
-    }
 }
 
 /* ---- images ---- */
@@ -284,7 +191,7 @@ static void fast_near_exact(void **state)
 
 /* The functions for a machine without AVX and without fused multiply-adds, and those with AVX2 on a machine that has more,
    show the same images, on either path and in the invariant engine; in float but for what the general engine's fast path may
-   err by (general/sum.c). */
+   err by (backprojection/budget.h). */
 static void instruction_sets_agree(void **state)
 {
     (void)state;
@@ -350,13 +257,55 @@ static void no_carrier_leaves_the_record(void **state)
     }
 }
 
+static void weights_linear(const void *options, double fraction, double *w)
+{
+    (void)options;
+    w[0] = 1 - fraction;
+    w[1] = fraction;
+}
+
+/* Positions are fixed-point numbers: as many steps as they have room for are rounded to as exactly, more are refused. */
+static void steps_fit_their_bits(void **state)
+{
+    (void)state;
+    struct acquisition a;
+    struct grid grid;
+    struct echoes echoes;
+    struct image images[2];
+    make_image_case(&image_cases[0], &a, &grid, &echoes);
+    const struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+    struct interpolator linear = {.upsample = 1, .steps = 4096, .taps = 2, .weights = weights_linear};
+    void *plan;
+    for (int exact = 0; exact < 2; exact++) {
+        const struct bp_options options = {.engine = BP_ENGINE_GENERAL, .exact = exact, .phase_limit = 1e-6};
+        struct stages stages;
+        assert_int_equal(bp_plan(&problem, &linear, &options, &plan), STATUS_OK);
+        assert_int_equal(image_allocate(1, &grid, PRECISION_DOUBLE, &images[exact]), STATUS_OK);
+        stages_begin(&stages);
+        assert_int_equal(bp_execute(plan, &echoes, &images[exact], &stages), STATUS_OK);
+        bp_destroy(plan);
+    }
+    const double difference = support_difference(&images[0], &images[1]);
+    print_message("4096 steps: within %.1e of the exact path\n", difference);
+    assert_true(difference > 0 && difference < 1e-3); /* a step more or less changes a linear value by 1/4096 */
+    const struct bp_options options = {.engine = BP_ENGINE_GENERAL, .phase_limit = 1e-6};
+    linear.steps = 4097;
+    assert_int_equal(bp_plan(&problem, &linear, &options, &plan), STATUS_UNSUPPORTED);
+    assert_null(plan);
+    assert_non_null(strstr(status_message(), "4097 steps between samples, must be at most 4096"));
+    image_free(&images[0]);
+    image_free(&images[1]);
+    echoes_free(&echoes);
+    acquisition_free(&a);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(phase_below_limit),
         cmocka_unit_test(fast_near_exact),
         cmocka_unit_test(instruction_sets_agree),
         cmocka_unit_test(no_carrier_leaves_the_record),
+        cmocka_unit_test(steps_fit_their_bits),
     };
     return cmocka_run_group_tests_name("bp_general", tests, NULL, NULL);
 }

@@ -32,7 +32,7 @@ static const struct param by_hand[] = {
 
 static enum status plan_of(const struct acquisition *acquisition, const struct problem *problem, void **plan)
 {
-    const struct interpolator nearest = {.upsample = 1, .steps = 1, .taps = 1, .factor = 1};
+    const struct interpolator nearest = {.upsample = 1, .steps = 1, .taps = 1};
     const struct bp_options options = {.engine = BP_ENGINE_GENERAL, .phase_limit = 1e-4};
     struct problem changed = *problem;
     changed.acquisition = acquisition;

@@ -1,0 +1,74 @@
+/* The error budget of the general engine: all that its fast path may add to the phase of a pair, in one place. Other paths
+   evaluate every delay: exact=true, pixels too near the array, blocks that reach out of the record.
+
+   `phase_limit` L (rad, 1e-4 by default) bounds what stands in for delays. All errors of the fast path:
+
+   share           what errs, and why by no more                                                used in
+
+   L lowered       A delay may err by a quarter of the finest step between positions at most:   bp.c, choose_engine
+                   L/(2 pi fc) s times `finest` steps a second. So L <= (pi/2) fc/finest.
+
+   0.85 L (float)  Quintics in place of delays. Blocks are so short that the sixth derivative   general/general.c
+   1.00 L (double) of the path bounds the error by this share. general/blocks.c derives it.
+
+   0.15 L (float)  Bends in float. Cycles of a run that bends little are a straight line,       general/runs.c
+                   counted on in fixed point, plus a bend in float. A bend of n cycles errs by
+                   about three roundings (coefficient, polynomial, product): 3 n 2^-24 cycles,
+                   or 1.1e-6 n rad. n <= 2^17 L makes that 0.144 L. A bend is at most half
+                   its second derivative times the square of half a run's length, which gives
+                   the longest run. n <= 16 in any case.
+
+   3.0e-6 rad      The sum of line and bend, besides L. It is a float of up to n + 1/2 cycles,  runs.c, points_flat:
+   (float)         rounded once: 2^-21 cycles where the sum is below 16, as at the default      `cycle`
+                   limit, where n = 13. Above L = 1.2e-4 rad, 6.0e-6.
+
+   2.2e-6 rad      Phase factors in float, besides L. Short polynomials of sine and cosine err  common/phasor.h,
+   (float)         by 1.8e-6 (measured over all phases). Phases are floats below 1/2 cycle:     PHASOR_SHORT_SINE;
+                   2^-26 cycles, 0.9e-7 rad. The line that is counted on: 32 steps of 2^-32     runs.c, points_flat
+                   cycles, 0.5e-7 rad. The product with the sample: some 2e-7.
+
+   1e-9 rad        Phases in double, besides L. They are fixed-point numbers with 32 bits of    runs.c, points:
+   (double)        a cycle, rounded: 2^-33 cycles, 0.7e-9 rad.                                  `fixed`
+
+   In all, in float: 0.994 L + 5.2e-6 rad at the default limit, that is, L + 4.6e-6 rad. In double: L + 1e-9 rad.
+
+   Two errors of positions come on top of L/(2 pi fc) s. They do not change phases. They decide which of two samples, or
+   of two steps of a table, a position takes that is as near to a tie between them:
+
+   2^-17 sample    Runs that bend little, in float. Their positions are floats that count from  runs.c, points_flat:
+   (float)         the run's middle. Half of 256 pixels with less than 1/4 sample each are      `point`
+                   some 32 samples, where a float's last bit is 2^-19 to 2^-18. A few roundings
+                   of half a bit stay below 2^-17.
+
+   2^-19 sample    All other runs, and so all in double. Points are fixed-point numbers with    runs.c, points:
+                   19 bits of fraction (POINT_BITS). Nearest samples have 32 bits; the points   `point`
+                   of cubics are 1/256 sample.
+
+   harness/tests/algorithms/test_budget.c measures the phases, in all and what float adds alone, test_bp_general.c the
+   positions (near_ties). */
+#ifndef SASBENCH_BACKPROJECTION_BUDGET_H
+#define SASBENCH_BACKPROJECTION_BUDGET_H
+
+#include <math.h>
+
+#include "algorithm.h"
+
+/* rad: what is left of `phase_limit` where positions may lie `finest_hz` steps a second apart. */
+static inline double budget_limit(double phase_limit, double fc_hz, double finest_hz)
+{
+    return fmin(phase_limit, 1.57 * fc_hz / finest_hz);
+}
+
+/* rad: the share of the quintics. */
+static inline double budget_quintics(double phase_limit, enum precision precision)
+{
+    return (precision == PRECISION_FLOAT ? 0.85 : 1) * phase_limit;
+}
+
+/* cycles: the most that a run in float may bend. */
+static inline double budget_bend(double phase_limit)
+{
+    return fmin(16, 0x1p17 * phase_limit);
+}
+
+#endif
