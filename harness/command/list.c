@@ -20,6 +20,8 @@ static void print_traits(const struct algorithm *algorithm)
             printf("%s%s", separator, traits[k].text);
             separator = ", ";
         }
+    if (!(algorithm->traits & TRAIT_ANY_TRACK))
+        printf("%suniform straight tracks", separator);
     printf("\n");
 }
 
@@ -48,6 +50,8 @@ static void accepted_format(const struct param *param, char *text, size_t size)
     snprintf(text, size, "%s to %s", min, max);
 }
 
+#define LAYOUT "%-11s %-10s %-24s %-18s %s\n"
+
 enum status command_info(const struct task *task)
 {
     const struct algorithm *algorithm = algorithm_find(task->names[0]);
@@ -62,14 +66,17 @@ enum status command_info(const struct task *task)
     }
     printf("%s: %s\nreference: %s\ntraits: ", algorithm->name, algorithm->summary, algorithm->reference);
     print_traits(algorithm);
-    printf("\n%-10s %-10s %-18s %-24s %s\n", "parameter", "default", "accepted", "sweep", "");
-    printf("%-10s %-10s %-18s %-24s %s\n", "precision", "float", "float, double", "float double",
+    printf("\n" LAYOUT, "parameter", "default", "accepted", "sweep", "");
+    printf(LAYOUT, "precision", "float", "float, double", "float double",
            "of samples, sums and pixels; geometry is always double");
     for (const struct param *p = algorithm->params; p && p->name; p++) {
         char initial[64], accepted[160];
-        param_format(p, p->initial, initial, sizeof initial);
+        if (p->type == PARAM_REAL)
+            snprintf(initial, sizeof initial, "%.6g", p->initial);
+        else
+            param_format(p, p->initial, initial, sizeof initial);
         accepted_format(p, accepted, sizeof accepted);
-        printf("%-10s %-10s %-18s %-24s %s\n", p->name, initial, accepted, p->sweep ? p->sweep : "-", p->summary);
+        printf(LAYOUT, p->name, initial, accepted, p->sweep ? p->sweep : "-", p->summary);
     }
     return STATUS_OK;
 }

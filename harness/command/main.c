@@ -62,30 +62,46 @@ static const struct option long_options[] = {
     {"help", no_argument, NULL, 'h'},         {NULL, 0, NULL, 0},
 };
 
-static const char *const option_texts[] = {
-    "-o, --output PATH     where the result goes",
-    "-s, --scene SCENE     a path, or a name below scenes/ without .cfg",
-    "-e, --echoes FILE     recorded echoes in MATLAB format",
-    "-a, --algorithm SPEC  NAME or NAME:key=value,...; every algorithm takes precision=float|double",
-    "-g, --grid GRID       xmin:xstep:xcount,rmin:rstep:rcount in metres",
-    "-t, --threads N       OpenMP threads, 1 to 1024",
-    "    --at FILE.csv     points of `phase`: columns d, r, F, f, fc, v, c",
-    "    --ab              `compare` runs two programs side by side, to compare their times",
-    "    --markdown FILE   what `compare` found, as a comment for a CI",
-    "    --json FILE       the same as trackers of benchmarks read it: name, unit, value, range",
+static const struct {
+    int letter;
+    const char *text;
+} option_texts[] = {
+    {'o', "-o, --output PATH     where the result goes"},
+    {'s', "-s, --scene SCENE     a path, or a name below scenes/ without .cfg"},
+    {'e', "-e, --echoes FILE     recorded echoes in MATLAB format"},
+    {'a', "-a, --algorithm SPEC  NAME or NAME:key=value,...; every algorithm takes precision=float|double"},
+    {'g', "-g, --grid GRID       xmin:xstep:xcount,rmin:rstep:rcount in metres"},
+    {'t', "-t, --threads N       OpenMP threads, 1 to 1024"},
+    {'A', "    --at FILE.csv     points: columns d, r, F, f, fc, v, c"},
+    {'B', "    --ab              run two programs side by side and compare their times"},
+    {'M', "    --markdown FILE   the findings as a comment for a CI"},
+    {'J', "    --json FILE       the findings as trackers of benchmarks read them: name, unit, value, range"},
 };
+static const char exit_text[] = "\nExit status: 0 done, 1 a run failed or got worse, 2 bad usage or bad input.\n";
 
 static void help(void)
 {
     printf("sasbench: imaging algorithms for multi-receiver synthetic aperture sonar, compared on identical "
            "echoes\n\nUsage: sasbench COMMAND [OPTIONS]\n\n");
     for (size_t k = 0; k < sizeof commands / sizeof *commands; k++)
-        printf("  %s %s\n        %s\n", commands[k].name, commands[k].arguments, commands[k].summary);
-    printf("  test\n        verify this build (of the ./sasbench script)\n  --version\n        version, commit, "
-           "compiler, libraries, instruction set\n\nOptions:\n");
+        printf("  %s%s%s\n        %s\n", commands[k].name, *commands[k].arguments ? " " : "", commands[k].arguments,
+               commands[k].summary);
+    printf("  test\n        verify this build (of the ./sasbench script)\n  help COMMAND, COMMAND --help\n        one "
+           "command with its options\n  --version\n        version, commit, compiler, libraries, instruction "
+           "set\n\nOptions:\n");
     for (size_t k = 0; k < sizeof option_texts / sizeof *option_texts; k++)
-        printf("  %s\n", option_texts[k]);
-    printf("\nExit status: 0 done, 1 a run failed or got worse, 2 bad usage or bad input.\n");
+        printf("  %s\n", option_texts[k].text);
+    fputs(exit_text, stdout);
+}
+
+static void help_command(const struct command *command)
+{
+    printf("Usage: sasbench %s%s%s\n\n%s.\n", command->name, *command->arguments ? " " : "", command->arguments,
+           command->summary);
+    for (size_t k = 0, shown = 0; k < sizeof option_texts / sizeof *option_texts; k++)
+        if (strchr(command->options, option_texts[k].letter))
+            printf("%s  %s\n", shown++ ? "" : "\nOptions:\n", option_texts[k].text);
+    fputs(exit_text, stdout);
 }
 
 static enum status threads_parse(const char *text)
@@ -240,11 +256,17 @@ int main(int argc, char **argv)
     signal(SIGXFSZ, SIG_IGN); /* a file beyond the limit is an error where it is written */
     temporary_guard();
     const bool versioned = strcmp(name, "--version") == 0;
-    enum status status = helped || versioned ? STATUS_OK : command_find(name, &command);
-    if (status == STATUS_OK && command)
+    enum status status = STATUS_OK;
+    if (strcmp(name, "help") == 0 && argc > 2)
+        status = command_find(argv[2], &command);
+    else if (!helped && !versioned)
+        status = command_find(name, &command);
+    if (status == STATUS_OK && command && !helped)
         status = parse(command, argc - 1, argv + 1, &task, &helped);
     if (status == STATUS_OK && versioned)
         version();
+    else if (status == STATUS_OK && helped && command)
+        help_command(command);
     else if (status == STATUS_OK && helped)
         help();
     else if (status == STATUS_OK) {

@@ -21,12 +21,22 @@ static void assert_holds(const char *text, const char *part)
 static void help_list_and_info_tell_everything(void **state)
 {
     (void)state;
-    static const char *const helps[][ARGUMENTS_MAX] = {{"--help"}, {"-h"}, {"help"}, {"run", "--help"}};
+    static const char *const helps[][ARGUMENTS_MAX] = {{"--help"}, {"-h"}, {"help"}};
     static const char *const commands[] = {"  list", "  info", "  simulate", "  image", "  run", "  test", "--threads"};
     for (size_t k = 0; k < COUNT_OF(helps); k++) {
         char *text = program_output(helps[k]);
         for (size_t n = 0; n < COUNT_OF(commands); n++)
             assert_holds(text, commands[n]);
+        free(text);
+    }
+    static const char *const of_run[][ARGUMENTS_MAX] = {{"run", "--help"}, {"help", "run"}, {"run", "x", "-h"}};
+    for (size_t k = 0; k < COUNT_OF(of_run); k++) {
+        char *text = program_output(of_run[k]);
+        assert_holds(text, "Usage: sasbench run [SCENE ...]");
+        assert_holds(text, "--algorithm SPEC");
+        assert_holds(text, "Exit status: 0 done");
+        assert_null(strstr(text, "--grid"));
+        assert_null(strstr(text, "simulate"));
         free(text);
     }
     static const char *const facts[] = {"sasbench 0.", "commit ", "compiler: ", "libraries: fftw", "instruction set: "};

@@ -22,6 +22,7 @@ static const struct refusal usages[] = {
     {{NULL}, {"is not a command", "accepted: list, info, simulate, image, run"}},
     {{""}, {"'' is not a command", "accepted: list"}},
     {{"focus"}, {"'focus' is not a command", "accepted: list"}},
+    {{"help", "focus"}, {"'focus' is not a command", "accepted: list"}},
     {{"two\nlines"}, {"'two?lines' is not a command"}},
     {{"--threads"}, {"'--threads' is not a command"}},
     {{"list", "all"}, {"list: 'all' is one argument too many"}},
