@@ -81,11 +81,11 @@ static bool grid_take(struct bytes *bytes, const struct acquisition *a, struct g
     return grid_check(grid, "fuzz") == STATUS_OK && grid_meets_records(a, 1, grid, "fuzz") == STATUS_OK;
 }
 
-/* Any settings within their bounds, but none beyond 64, for a few pixels shall not take seconds. */
+/* Any settings within their bounds, but none beyond 16, for a few pixels shall not take seconds. */
 static void options_take(struct bytes *bytes, const struct algorithm *algorithm, void *options)
 {
     for (const struct param *param = algorithm->params; param && param->name; param++) {
-        double most = fmin(param->max, fmax(64, param->initial)), share = take_byte(bytes) / 255.0;
+        double most = fmin(param->max, fmax(16, param->initial)), share = take_byte(bytes) / 255.0;
         double value = share == 0 ? param->initial : param->min + (most - param->min) * share;
         if (param->type == PARAM_REAL)
             *(double *)((char *)options + param->offset) = value;
