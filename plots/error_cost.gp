@@ -35,7 +35,7 @@ do for [picture = 1:pictures] {
     set label 1 caption at screen 0.5,12.0/height center font ",10" textcolor "#606060"
     front = cost == 2 ? "$front_run_s" : "$front_flops"
     if (cost == 2) { set arrow 1 from control_max,graph 0 to control_max,graph 1 nohead dashtype 3 linewidth 1.5 }
-    plot front using 1:2 with lines linetype 1 linewidth 7 title "front", \
+    plot front using 1:2 with lines linetype 1 linewidth 7 title "Pareto front", \
         for [k = 1:|series|] $rows index k - 1 using cost:4 with linespoints \
             linecolor rgb family_colour[family[k]] linewidth (precise[k] ? 1 : 1.8) dashtype 1 + (member[k] > 1) \
             pointtype (precise[k] ? family_open[family[k]] : family_filled[family[k]]) \

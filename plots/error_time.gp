@@ -1,4 +1,4 @@
-# Error against run time: one point for each setting, a line through each ladder, the front, the scalar reference loop's time.
+# Error against run time: one point for each setting, a line through each series, the Pareto front, the scalar reference loop's time.
 #
 # By hand:    gnuplot -c plots/error_time.gp results/sweep                   (variables: folder.gp)
 

@@ -1,5 +1,5 @@
-# One scene of a results folder as gnuplot commands: reads measurements.csv and, where they are, the tables that `sweep`
-# makes of it. plots/folder.gp runs it; FOLDER and SCENE are taken from the environment, since -v would interpret them.
+# One scene of a results folder as gnuplot commands: formats points.csv, which `sweep` and `report` write, and, where they
+# are, the other tables of `sweep`; nothing is judged here. plots/folder.gp runs it; FOLDER and SCENE are taken from the environment, since -v would interpret them.
 #
 # Without SCENE it prints the array scenes[]. With it:
 #   caption                        scene, machine, threads and commit
@@ -18,7 +18,7 @@
 #                                  "label"; has_slopes: 1 where there are any
 #   has_rules, bp22_rate, zp15_rate, edge_phase, linear_floor     0 or 1; NaN where unknown
 #
-# Rows that are not `ok`, or whose image is smaller than the others' (exact ones), are left out.
+# Rows whose image is smaller than the others' (exact ones) are no points.
 #
 # What is printed is run by gnuplot, and the folder may come from anywhere: no sign of its texts is printed as it is. Numbers are
 # printed as they were understood, texts as octal codes.
@@ -102,27 +102,6 @@ function note_read(line)
         note[substr(line, 1, index(line, ":") - 1)] = substr(line, index(line, ": ") + 2)
 }
 
-# The first option that is a number goes to `value` (its name to `setting`), the others to `rest`.
-function options_read(text,    option, count, k, equals)
-{
-    setting = value = rest = ""
-    count = split(text, option, ",")
-    for (k = 1; k <= count; k++) {
-        equals = index(option[k], "=")
-        if (setting == "" && is_number(substr(option[k], equals + 1))) {
-            setting = substr(option[k], 1, equals - 1)
-            value = number(substr(option[k], equals + 1))
-        } else
-            rest = rest (rest == "" ? "" : ",") option[k]
-    }
-}
-
-# beta points are inserted between two samples; the nearest sample alone is rate 1.
-function rate_of(algorithm)
-{
-    return setting == "beta" ? value + 1 : setting == "factor" ? value : algorithm == "bp_nearest" ? 1 : "NaN"
-}
-
 function family_of(algorithm)
 {
     if (!(algorithm in families))
@@ -141,32 +120,30 @@ function series_add(key, order, line,    at)
     lines[key, at] = line
 }
 
-function measurement_take(    key, at)
+function point_take(    key, at)
 {
     family_of(field["algorithm"])
-    if (field["scene"] != scene || field["status"] != "ok" || !is_number(field["run_s"]) || !is_number(field["error"]) \
+    if (field["scene"] != scene || !is_number(field["run_s"]) || !is_number(field["error"]) \
         || !(field["run_s"] + 0 > 0) || !(field["error"] + 0 > 0))
         return
     if (field["algorithm"] == "reference") {
         reference_pslr = field["pslr_db"]
         reference_islr = field["islr_db"]
     }
-    if (field["pairs"] + 0 > most_pairs)
-        most_pairs = field["pairs"] + 0
-    options_read(field["options"])
-    key = field["algorithm"] SUBSEP rest SUBSEP field["precision"]
+    key = field["algorithm"] SUBSEP field["rest"] SUBSEP field["precision"]
     if (!(key in length_of)) {
         keys[++key_count] = key
-        title_of[key] = field["algorithm"] (rest == "" ? "" : " " rest)
+        title_of[key] = field["algorithm"] (field["rest"] == "" ? "" : " " field["rest"])
         family_at[key] = family_of(field["algorithm"])
-        if (!((field["algorithm"], rest) in member_of))
-            member_of[field["algorithm"], rest] = ++member_count[field["algorithm"]]
-        member_at[key] = member_of[field["algorithm"], rest]
+        if (!((field["algorithm"], field["rest"]) in member_of))
+            member_of[field["algorithm"], field["rest"]] = ++member_count[field["algorithm"]]
+        member_at[key] = member_of[field["algorithm"], field["rest"]]
         precise_at[key] = field["precision"] == "double"
     }
-    series_add(key, value + 0, rate_of(field["algorithm"]) " " number(field["run_s"]) " " \
-        number(field["flops"]) " " number(field["error"]) " " number(field["pslr_db"]) " " number(field["islr_db"]) " " \
-        (value == "" ? "-" : value) " " (is_number(field["pairs"]) ? number(field["pairs"]) : 0))
+    series_add(key, field["value"] + 0, number(field["rate"]) " " number(field["run_s"]) " " number(field["flops"]) " " \
+        number(field["error"]) " " number(field["pslr_db"]) " " number(field["islr_db"]) " " \
+        (is_number(field["value"]) ? number(field["value"]) : "-") " " (field["is_point"] == "1") " " \
+        (field["front_run_s"] == "1") " " (field["front_flops"] == "1"))
     if (!is_number(field["control_s"]))
         return
     for (at = ++control_count; at > 1 && control[at - 1] + 0 > field["control_s"] + 0; at--)
@@ -180,7 +157,7 @@ function points_collect(    k, at, part)
     for (k = 1; k <= key_count; k++)
         for (at = 1; at <= length_of[keys[k]]; at++) {
             split(lines[keys[k], at], part, " ")
-            if (part[8] > 0 && part[8] < 0.999*most_pairs)
+            if (!part[8])
                 continue
             point[++points, "key"] = k
             point[points, "line"] = part[1] " " part[2] " " part[3] " " part[4] " " part[5] " " part[6]
@@ -188,6 +165,8 @@ function points_collect(    k, at, part)
             point[points, "x", 2] = log(part[3])
             point[points, "y"] = log(part[4])
             point[points, "label"] = part[7]
+            point[points, "front", 1] = part[9]
+            point[points, "front", 2] = part[10]
             lobes = lobes || (part[5] != "NaN" && title_of[keys[k]] != "reference")
             if (part[1] != "NaN" && rated[rated_count] != k)
                 rated[++rated_count] = k
@@ -195,17 +174,7 @@ function points_collect(    k, at, part)
         }
 }
 
-# Is the point one of the front?
-function on_front(n, axis,    m)
-{
-    for (m = 1; m <= points; m++)
-        if (point[m, "x", axis] <= point[n, "x", axis] && point[m, "y"] <= point[n, "y"] \
-            && (point[m, "x", axis] < point[n, "x", axis] || point[m, "y"] < point[n, "y"]))
-            return 0
-    return 1
-}
-
-# Which points in float get a label: those of the front, then the ends of the ladders, then the rest, while there is room.
+# Which points in float get a label: those of the Pareto front, then the ends of the series, then the rest, while there is room.
 # A label takes about 1/30 of the axis's width and 1/30 of its height.
 function labels_place(axis,    n, m, rank, ranks, free, x_least, x_most, y_least, y_most)
 {
@@ -216,7 +185,7 @@ function labels_place(axis,    n, m, rank, ranks, free, x_least, x_most, y_least
         if (point[n, "x", axis] > x_most) x_most = point[n, "x", axis]
         if (point[n, "y"] < y_least) y_least = point[n, "y"]
         if (point[n, "y"] > y_most) y_most = point[n, "y"]
-        ranks[n] = precise_at[keys[point[n, "key"]]] ? 4 : on_front(n, axis) ? 1 \
+        ranks[n] = precise_at[keys[point[n, "key"]]] ? 4 : point[n, "front", axis] ? 1 \
             : point[n - 1, "key"] != point[n, "key"] || point[n + 1, "key"] != point[n, "key"] ? 2 : 3
     }
     for (rank = 1; rank <= 3; rank++)
@@ -278,11 +247,11 @@ function rows_print(    k, n, size, least, most)
         lobes && reference_pslr != "" && reference_islr != "", rates
 }
 
-# The points that no other beats, the cheapest first.
+# The Pareto front, the cheapest first.
 function front_print(axis, name,    n, at, count, order)
 {
     for (n = 1; n <= points; n++)
-        if (on_front(n, axis)) {
+        if (point[n, "front", axis]) {
             for (at = ++count; at > 1 && point[order[at - 1], "x", axis] > point[n, "x", axis]; at--)
                 order[at] = order[at - 1]
             order[at] = n
@@ -293,7 +262,7 @@ function front_print(axis, name,    n, at, count, order)
     print "END_OF_FRONT"
 }
 
-# Lines through the float ladders of the upsampling rate, and what is said at their middle.
+# Lines through the float series of the upsampling rate, and what is said at their middle.
 function slopes_print(    text, ends)
 {
     while (row_read(folder "/slopes.csv"))
@@ -328,12 +297,12 @@ BEGIN {
     families["reference"] = family_count = 1
     folder = ENVIRON["FOLDER"]
     scene = ENVIRON["SCENE"]
-    while (row_read(folder "/measurements.csv")) {
+    while (row_read(folder "/points.csv")) {
         if (!(field["scene"] in seen)) {
             seen[field["scene"]] = 1
             scenes[++scene_count] = field["scene"]
         }
-        measurement_take()
+        point_take()
     }
     if (scene == "") {
         print "array scenes[" scene_count "]"

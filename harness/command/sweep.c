@@ -3,6 +3,7 @@
 
 #include "study/batch.h"
 #include "show/plot.h"
+#include "show/plot_points.h"
 #include "study/sweep_settings.h"
 #include "study/sweep_tables.h"
 #include "command/task.h"
@@ -65,11 +66,13 @@ enum status command_sweep(const struct task *task)
         status = batch_scene(&batch, &scenes[k], settings.count, settings.specs);
     if (status == STATUS_OK)
         status = sweep_tables(directory, scenes, scene_count);
+    if (status == STATUS_OK)
+        status = plot_points_write(directory);
     for (int k = 0; k < scene_count && status == STATUS_OK; k++)
         batch.undrawn += draw(directory, &scenes[k]);
     if (status == STATUS_OK)
-        printf("\nResults: %s/measurements.csv, targets.csv, fronts.csv, cheapest.csv, slopes.csv, rules.csv and "
-               "plots.\n",
+        printf("\nResults: %s/measurements.csv, targets.csv, fronts.csv, cheapest.csv, slopes.csv, rules.csv, "
+               "points.csv and plots.\n",
                directory);
     status = batch_close(&batch, status);
     scenes_free(scenes, scene_count);

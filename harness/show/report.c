@@ -9,6 +9,7 @@
 
 #include "data/folder.h"
 #include "show/plot.h"
+#include "show/plot_points.h"
 #include "measure/results.h"
 #include "show/report_tables.h"
 #include "show/table.h"
@@ -99,6 +100,9 @@ static enum status folder_read(const char *directory, struct folder *folder)
     folder->drawings = calloc((size_t)(folder->scene_count * plots) + 1, sizeof *folder->drawings);
     if (!folder->scenes || !folder->drawings)
         return status_set(STATUS_FAILED, "%s: no memory for %zu rows", directory, rows);
+    status = plot_points_write(directory);
+    if (status != STATUS_OK)
+        return status;
     drawings_make(folder);
     int count = scandir(directory, &folder->files, is_figure, alphasort);
     folder->file_count = count > 0 ? count : 0;

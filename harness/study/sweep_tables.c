@@ -10,31 +10,12 @@
 #include "data/csv.h"
 #include "scene/scene.h"
 #include "data/shown_text.h"
+#include "show/plot_points.h"
 #include "show/table.h"
 #include "data/paths.h"
 #include "data/text_file.h"
 
 static const double floor_tolerance = 0.05;
-
-/* --- Pareto fronts ---------------------------------------------------------------------------------------------------- */
-
-int pareto_front_find(int count, const double *cost, const double *error, int *front)
-{
-    int size = 0;
-    for (int i = 0; i < count; i++) {
-        bool beaten = !(cost[i] > 0 && error[i] > 0);
-        for (int j = 0; j < count && !beaten; j++)
-            beaten = cost[j] > 0 && error[j] > 0 && cost[j] <= cost[i] && error[j] <= error[i]
-                     && (cost[j] < cost[i] || error[j] < error[i] || j < i);
-        if (beaten)
-            continue;
-        int at = size++;
-        for (; at > 0 && cost[front[at - 1]] > cost[i]; at--)
-            front[at] = front[at - 1];
-        front[at] = i;
-    }
-    return size;
-}
 
 /* --- Series --------------------------------------------------------------------------------------------------- */
 
@@ -74,49 +55,35 @@ int floor_find(int count, const double *error)
 
 /* --- Rows ------------------------------------------------------------------------------------------------------ */
 
-/* A measured setting as a point of its series: the first option that is a number, and the rest, which stays. */
+/* A measured setting as a point of its series. */
 struct sweep_point {
     const struct measurement *row;
-    char setting[32], rest[256]; /* empty setting: no option is a number */
-    double value;
-    bool taken; /* belongs to a series that is done */
+    struct setting setting; /* what varies along the series, and what does not */
+    bool taken;             /* belongs to a series that is done */
 };
 
 static struct sweep_point point_read(const struct measurement *row)
 {
-    struct sweep_point point = {.row = row, .value = NAN};
-    char options[256], *rest = options;
-    snprintf(options, sizeof options, "%s", row->options);
-    for (char *option; (option = strsep(&rest, ","));) {
-        const char *value = strchr(option, '=');
-        double number;
-        size_t used = strlen(point.rest);
-        if (!*point.setting && value && csv_number(value + 1, &number) && isfinite(number)) {
-            snprintf(point.setting, sizeof point.setting, "%.*s", (int)(value - option), option);
-            point.value = number;
-        } else {
-            snprintf(point.rest + used, sizeof point.rest - used, "%s%s", used ? "," : "", option);
-        }
-    }
-    return point;
+    return (struct sweep_point){.row = row, .setting = setting_read(row->options)};
 }
 
 static bool same_series(const struct sweep_point *a, const struct sweep_point *b)
 {
     return strcmp(a->row->scene, b->row->scene) == 0 && strcmp(a->row->algorithm, b->row->algorithm) == 0
-           && strcmp(a->row->precision, b->row->precision) == 0 && strcmp(a->setting, b->setting) == 0
-           && strcmp(a->rest, b->rest) == 0;
+           && strcmp(a->row->precision, b->row->precision) == 0 && strcmp(a->setting.name, b->setting.name) == 0
+           && strcmp(a->setting.rest, b->setting.rest) == 0;
 }
 
-/* Samples for each one recorded: beta points are inserted between two. Other settings count by themselves. */
+/* Settings that upsample nothing count by themselves. */
 static double point_rate(const struct sweep_point *point)
 {
-    return strcmp(point->setting, "beta") == 0 ? point->value + 1 : point->value;
+    double rate = setting_rate(point->row->algorithm, &point->setting);
+    return isnan(rate) ? point->setting.value : rate;
 }
 
 static int point_order(const void *a, const void *b)
 {
-    double x = ((const struct sweep_point *)a)->value, y = ((const struct sweep_point *)b)->value;
+    double x = ((const struct sweep_point *)a)->setting.value, y = ((const struct sweep_point *)b)->setting.value;
     return (x > y) - (x < y);
 }
 
@@ -153,15 +120,10 @@ static enum status group_fill(const struct results *results, const char *scene, 
                             .series = calloc(most, sizeof *group->series)};
     if (!group->rows || !group->error || !group->cost || !group->front || !group->points || !group->series)
         return status_set(STATUS_FAILED, "%s: no memory for %zu rows", scene, most);
-    double most_pairs = 0;
-    for (int k = 0; k < results->csv.row_count; k++)
-        if (strcmp(results->measurements[k].scene, scene) == 0)
-            most_pairs = fmax(most_pairs, results->measurements[k].pairs);
+    double most_pairs = scene_most_pairs(results, scene);
     for (int k = 0; k < results->csv.row_count; k++) {
         const struct measurement *row = &results->measurements[k];
-        bool partial = row->pairs > 0 && row->pairs < 0.999 * most_pairs;
-        if (strcmp(row->scene, scene) == 0 && strcmp(row->status, "ok") == 0 && row->run_s > 0 && row->error > 0
-            && !partial) {
+        if (strcmp(row->scene, scene) == 0 && row_is_point(row, most_pairs)) {
             group->rows[group->count] = row;
             group->points[group->count++] = point_read(row);
         }
@@ -262,16 +224,17 @@ static void slope_write(const struct sweep_point *points, const double *rates, c
     char name[512], range[80];
     if (isnan(fit.slope))
         return;
-    fields_write(
-        file,
-        (const char *const[]){row->scene, row->algorithm, points->rest, row->precision, points->setting, part, NULL},
-        (double[]){points[0].value, points[count - 1].value, rates[0], rates[count - 1], fit.points, fit.slope,
-                   fit.first, fit.last, fit.residual_log10},
-        9);
-    snprintf(name, sizeof name, "%s%s%s%s", row->algorithm, *points->rest ? ":" : "", points->rest,
+    fields_write(file,
+                 (const char *const[]){row->scene, row->algorithm, points->setting.rest, row->precision,
+                                       points->setting.name, part, NULL},
+                 (double[]){points[0].setting.value, points[count - 1].setting.value, rates[0], rates[count - 1],
+                            fit.points, fit.slope, fit.first, fit.last, fit.residual_log10},
+                 9);
+    snprintf(name, sizeof name, "%s%s%s%s", row->algorithm, *points->setting.rest ? ":" : "", points->setting.rest,
              strcmp(row->precision, "double") == 0 ? " double" : "");
     shown_make(name);
-    snprintf(range, sizeof range, "%s %g to %g", points->setting, points[0].value, points[count - 1].value);
+    snprintf(range, sizeof range, "%s %g to %g", points->setting.name, points[0].setting.value,
+             points[count - 1].setting.value);
     shown_make(range);
     printf("  %-36s %-8s %-18s %6d  %6.3f  %7.1e  %7.1e  %8.4f\n", name, part, range, fit.points, fit.slope, fit.first,
            fit.last, fit.residual_log10);
@@ -298,7 +261,7 @@ static void slopes_write(struct group *group, FILE *file)
     for (int k = 0; k < group->count; k++) {
         const struct sweep_point *start = &group->points[k];
         int size = 0;
-        if (start->taken || !*start->setting)
+        if (start->taken || !*start->setting.name)
             continue;
         for (int j = k; j < group->count; j++)
             if (same_series(start, &group->points[j])) {

@@ -6,11 +6,6 @@
 #include "measure/results.h"
 #include "scene/scene.h"
 
-/* The Pareto front: the points of which no other has both less or equal cost and less or equal error. Of equal points the
-   first stays. Their indices go to front [count], cost ascending; returns how many. Values that are not > 0 are no
-   points. */
-int pareto_front_find(int count, const double *cost, const double *error, int *front);
-
 /* A straight line through log10 error against log10 rate, by least squares. */
 struct line_fit {
     int points;

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "show/plot.h"
+#include "show/plot_points.h"
 #include "show/report.h"
 #include "data/shown_text.h"
 #include "tests/support.h"
@@ -184,6 +185,7 @@ static void texts_are_given_as_codes(void **state)
     (void)state;
     static char text[1 << 16];
     results_fill(".", "\"touch\" 'me'", "touch", "touch");
+    assert_int_equal(plot_points_write("."), STATUS_OK);
     setenv("FOLDER", ".", 1);
     setenv("SCENE", "\"touch\" 'me'", 1);
     FILE *stream = popen("LC_ALL=C awk -f " PLOTS "/scene.awk", "r");
@@ -208,6 +210,7 @@ static void control_characters_are_refused(void **state)
                          place == 2 ? broken[k] : "1");
             assert_int_equal(report_write("results"), STATUS_INVALID);
             assert_non_null(strstr(status_message(), ".csv:"));
+            assert_int_equal(system("cp results/measurements.csv results/points.csv"), 0);
             plot_by_hand("error_time", "results");
             plot_by_hand("upsampling", "results");
             assert_no_canary("a broken line", broken[k]);

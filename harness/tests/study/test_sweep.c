@@ -11,6 +11,7 @@
 #include "data/csv.h"
 #include "measure/results_folder.h"
 #include "study/sweep_settings.h"
+#include "show/plot_points.h"
 #include "study/sweep_tables.h"
 #include "command/task.h"
 #include "tests/support.h"
