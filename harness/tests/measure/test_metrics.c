@@ -3,177 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/delay.h"
-#include "data/echo_data.h"
 #include "measure/metrics.h"
-#include "tests/support.h"
-
-/* --- Exact images of one target, straight from the formulas -------------------------------------------------- */
-
-/* A straight scene with a flat spectrum: the echo of a pair is w exp(-j 2 pi fc tau) sinc(B (t - tau)). */
-struct exact_scene {
-    double bandwidth, speed, pri;
-    int receivers;
-    double rx_length, pitch; /* the first receiver lies one pitch ahead of the transmitter */
-    double tx_length;
-    int pings;
-    double x_first, target_r, target_x;
-    bool element_beams, cut_at_midpoint;
-    double cut; /* of |sin theta| lambda/D_tx */
-    /* The numbers to be met, computed by an independent program: azimuth slice +-3 m. */
-    double x_step, pslr_db, islr_null_db, islr_3db_db, width_m, peak;
-};
-
-static const double fc = 150e3, c = 1500;
-
-static const struct exact_scene scene_a = {15e3,
-                                           2.5,
-                                           0.32,
-                                           40,
-                                           0.04,
-                                           0.04,
-                                           0.08,
-                                           25,
-                                           -9.5863,
-                                           90,
-                                           0,
-                                           false,
-                                           false,
-                                           0.443,
-                                           0.02,
-                                           -13.306375854280315,
-                                           -10.41435956461415,
-                                           -4.355839965091554,
-                                           0.0383694168274542,
-                                           520};
-static const struct exact_scene scene_b = {20e3,
-                                           2.5,
-                                           0.2,
-                                           25,
-                                           0.04,
-                                           0.04,
-                                           0.08,
-                                           29,
-                                           -0.9863,
-                                           74,
-                                           6,
-                                           true,
-                                           false,
-                                           0.443,
-                                           0.02,
-                                           -16.263073439530086,
-                                           -13.989989549264855,
-                                           -5.105523566410879,
-                                           0.04118278745544757,
-                                           368.064119483484};
-static const struct exact_scene scene_c = {20e3,
-                                           3,
-                                           0.44,
-                                           66,
-                                           0.04,
-                                           0.04,
-                                           0.08,
-                                           31,
-                                           -3.7863,
-                                           260,
-                                           16,
-                                           false,
-                                           true,
-                                           0.443,
-                                           0.02,
-                                           -13.371362664810466,
-                                           -10.68692946729094,
-                                           -4.454299346451544,
-                                           0.039951849404120665,
-                                           1442};
-static const struct exact_scene scene_d = {20e3,
-                                           3,
-                                           0.44,
-                                           132,
-                                           0.02,
-                                           0.02,
-                                           0.04,
-                                           15,
-                                           -6.7263,
-                                           50,
-                                           2.5,
-                                           false,
-                                           false,
-                                           0.443,
-                                           0.01,
-                                           -13.2787200518272,
-                                           -10.571800017815299,
-                                           -4.40437231411396,
-                                           0.01872631694402438,
-                                           1188};
-
-/* The pairs that see the target, with their delay and weight. */
-struct exact_pair {
-    struct vector tx, rx, velocity;
-    double tau, weight;
-};
-
-static double sinc(double z)
-{
-    return z == 0 ? 1 : sin(M_PI * z) / (M_PI * z);
-}
-
-static struct exact_pair *exact_pairs(const struct exact_scene *s, int *count)
-{
-    struct exact_pair *pairs = malloc(sizeof *pairs * (size_t)s->pings * (size_t)s->receivers);
-    assert_non_null(pairs);
-    struct vector p = {s->target_x, s->target_r, 0};
-    double lambda = c / fc;
-    *count = 0;
-    for (int ping = 0; ping < s->pings; ping++) {
-        for (int m = 0; m < s->receivers; m++) {
-            double x_t = s->x_first + ping * s->speed * s->pri;
-            struct exact_pair pair = {{x_t, 0, 0}, {x_t + (m + 1) * s->pitch, 0, 0}, {s->speed, 0, 0}, 0, 1};
-            pair.tau = delay_exact(pair.tx, pair.rx, pair.velocity, p, c);
-            double u = x_t - p.x, u_rx = pair.rx.x + s->speed * pair.tau - p.x, mid = 0.5 * (u + u_rx);
-            double sin_t = u / hypot(u, p.y), sin_r = u_rx / hypot(u_rx, p.y);
-            double sin_cut = s->cut_at_midpoint ? mid / hypot(mid, p.y) : sin_t;
-            if (fabs(sin_cut) > s->cut * lambda / s->tx_length)
-                continue;
-            if (s->element_beams)
-                pair.weight = sinc(s->tx_length * sin_t / lambda) * sinc(s->rx_length * sin_r / lambda);
-            pairs[(*count)++] = pair;
-        }
-    }
-    return pairs;
-}
-
-static double complex exact_value(const struct exact_scene *s, const struct exact_pair *pairs, int count, double x,
-                                  double r)
-{
-    struct vector p = {x, r, 0};
-    double complex sum = 0;
-    for (int k = 0; k < count; k++) {
-        double tau = delay_exact(pairs[k].tx, pairs[k].rx, pairs[k].velocity, p, c), lag = tau - pairs[k].tau;
-        double phase = 2 * M_PI * fc * lag, value = pairs[k].weight * sinc(s->bandwidth * lag);
-        sum += value * (cos(phase) + I * sin(phase));
-    }
-    return sum;
-}
-
-static void exact_image(const struct exact_scene *s, const struct grid *grid, enum precision precision,
-                        struct image *image)
-{
-    int count;
-    struct exact_pair *pairs = exact_pairs(s, &count);
-    support_image_make(grid, 1, precision, image);
-    for (int i = 0; i < grid->r_count; i++)
-        for (int j = 0; j < grid->x_count; j++)
-            support_pixel_set(
-                image, 0, i, j,
-                exact_value(s, pairs, count, grid->x_first + j * grid->x_step, grid->r_first + i * grid->r_step));
-    free(pairs);
-}
-
-static struct acquisition acquisition_of(const struct exact_scene *s)
-{
-    return (struct acquisition){.sound_speed = c, .fc = fc, .bandwidth = s->bandwidth, .tx_length = s->tx_length};
-}
+#include "tests/measure/exact_image.h"
 
 static void check_slice(const struct exact_scene *s, const struct slice_metrics *m)
 {
@@ -233,7 +64,7 @@ static void test_off_raster(void **state)
     /* A flat spectrum over B makes a sinc of c t/2 in range: zeros every c/(2B), -13.26 dB, narrowed by nothing. */
     m = metrics_slice(&image, &acquisition, &target, AXIS_RANGE);
     assert_string_equal(m.reason, "");
-    assert_close(m.width_m, 0.88589 * c / (2 * s->bandwidth), 0.0004);
+    assert_close(m.width_m, 0.88589 * sound_m_s / (2 * s->bandwidth), 0.0004);
     assert_close(m.pslr_db[DEFINITION_NULL], -13.26, 0.1);
     assert_close(m.position_error_m, 0, 1e-4);
     assert_true(isnan(m.pslr_db[DEFINITION_PIXEL]));
@@ -255,11 +86,12 @@ static void test_interpolation(void **state)
             for (int i = 0; pass == 0 && i < grid.r_count; i++)
                 for (int j = 0; j < grid.x_count; j++) {
                     double x = -1 + j * 0.02, r = 50 + i * 0.025;
-                    support_pixel_set(&image, 0, i, j, cexp(2 * M_PI * I * (kx[w] * x + (kr[w] + 2 * fc / c) * r)));
+                    support_pixel_set(&image, 0, i, j,
+                                      cexp(2 * M_PI * I * (kx[w] * x + (kr[w] + 2 * carrier_hz / sound_m_s) * r)));
                 }
             for (int k = 0; pass == 1 && k < 50; k++) {
                 double x = 0.3 * sin(11.0 * k), r = 51.25 + 0.4 * sin(17.0 * k);
-                double complex wanted = cexp(2 * M_PI * I * (kx[w] * x + (kr[w] + 2 * fc / c) * r));
+                double complex wanted = cexp(2 * M_PI * I * (kx[w] * x + (kr[w] + 2 * carrier_hz / sound_m_s) * r));
                 assert_true(cabs(metrics_value(&image, &acquisition, x, r) - wanted) < 1e-4);
             }
         }

@@ -1,0 +1,222 @@
+/* What is written into results, foreign files, places that cannot be written, and the terminal's table. */
+#include <locale.h>
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "show/table.h"
+#include "tests/measure/results_fixture.h"
+
+static void check_refused(const char *place)
+{
+    struct provenance provenance = provenance_of("c1", 2);
+    struct results_folder *results = (struct results_folder *)&provenance;
+    static char before[65536];
+    snprintf(before, sizeof before, "%s", file_text(measurements_path));
+    assert_int_equal(results_folder_open(results_directory, &provenance, &results), STATUS_INVALID);
+    assert_null(results);
+    assert_non_null(strstr(status_message(), place));
+    assert_string_equal(file_text(measurements_path), before);
+}
+
+static void test_foreign_files(void **state)
+{
+    (void)state;
+    file_write(measurements_path, "w", "my,own\ndata,1\n");
+    check_refused("measurements.csv:1: not a file of ours");
+    file_write(measurements_path, "w", "");
+    check_refused("measurements.csv:1: not a file of ours");
+    file_write(measurements_path, "w", "# sasbench measurements 2\na\n");
+    check_refused("measurements.csv:1: not a file of ours");
+    file_write(measurements_path, "w", "# sasbench measurements 1\na,b\n1\n");
+    check_refused("measurements.csv:3: 1 fields");
+    file_write(measurements_path, "w",
+               "# sasbench measurements 1\n" PROVENANCE MEASUREMENT_HEADER "s,a,,float,2,,ok,,,1,1,1,x,,,,,,,,,,,,\n");
+    file_write(targets_path, "w", "# sasbench targets 1\n" PROVENANCE TARGET_HEADER);
+    check_refused("measurements.csv:9: runs is 'x'");
+    file_write(measurements_path, "w", "# sasbench measurements 1\n" PROVENANCE "scene,algorithm\n");
+    check_refused("measurements.csv: the header line");
+    remove(measurements_path);
+    results_folder_close(open_ok("c1", 2));
+    file_write(targets_path, "w", "notes\n");
+    check_refused("targets.csv:1: not a file of ours");
+}
+
+static void test_unwritable(void **state)
+{
+    (void)state;
+    struct provenance provenance = provenance_of("c1", 2);
+    struct results_folder *results;
+    char below[320];
+    file_write(measurements_path, "w", "a file\n");
+    snprintf(below, sizeof below, "%s/folder", measurements_path);
+    assert_int_equal(results_folder_open(below, &provenance, &results), STATUS_INVALID);
+    assert_non_null(strstr(status_message(), below));
+    assert_int_equal(results_folder_open(measurements_path, &provenance, &results), STATUS_INVALID);
+    assert_int_equal(results_folder_open("/proc/sasbench", &provenance, &results), STATUS_INVALID);
+    assert_int_equal(results_folder_open("/proc", &provenance, &results), STATUS_INVALID);
+    assert_null(results);
+}
+
+static void test_folder_made(void **state)
+{
+    (void)state;
+    struct provenance provenance = provenance_of("c1", 2);
+    struct results_folder *results;
+    char outer[300], inner[320], path[360];
+    snprintf(outer, sizeof outer, "%s/outer", results_directory);
+    snprintf(inner, sizeof inner, "%s/inner", outer);
+    snprintf(path, sizeof path, "%s//", inner);
+    assert_int_equal(results_folder_open(path, &provenance, &results), STATUS_OK);
+    results_folder_close(results);
+    snprintf(path, sizeof path, "%s/measurements.csv", inner);
+    assert_int_equal(remove(path), 0);
+    snprintf(path, sizeof path, "%s/targets.csv", inner);
+    assert_int_equal(remove(path), 0);
+    assert_int_equal(rmdir(inner), 0);
+    assert_int_equal(rmdir(outer), 0);
+}
+
+/* A full disk, acted by a limit of the file size: said at once, and the next run finds whole rows only. */
+static void test_full_disk(void **state)
+{
+    (void)state;
+    struct results_folder *results = open_ok("c1", 2);
+    assert_int_equal(results_folder_scene(results, "s", 1), STATUS_OK);
+    add_ok(results, "s", "first");
+    struct stat info;
+    struct rlimit before, limit;
+    assert_int_equal(stat(measurements_path, &info), 0);
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    limit = before;
+    limit.rlim_cur = (rlim_t)info.st_size + 20;
+    signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
+    struct measurement row = measurement_of("s", "second");
+    enum status status = results_folder_add(results, &row);
+    limit.rlim_cur = 100;
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
+    enum status scene_status = results_folder_scene(results, "t", 2);
+    enum status add_status = results_folder_add(results, &row);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+    signal(SIGXFSZ, SIG_DFL);
+    assert_int_equal(status, STATUS_FAILED);
+    assert_int_not_equal(scene_status, STATUS_OK);
+    assert_int_equal(add_status, STATUS_FAILED);
+    results_folder_close(results);
+    results = open_ok("c1", 2);
+    assert_non_null(find(results, "s", "first"));
+    assert_null(find(results, "s", "second"));
+    results_folder_close(results);
+    assert_int_equal(rows_of(measurements_path), 1);
+}
+
+static void test_provenance(void **state)
+{
+    (void)state;
+    struct provenance a, b;
+    provenance_fill(&a, 7);
+    provenance_fill(&b, 7);
+    assert_int_equal(a.threads, 7);
+    assert_int_equal(strlen(a.program), 16);
+    assert_string_equal(a.program, b.program);
+    assert_non_null(strstr(a.machine, " GiB"));
+    assert_non_null(strstr(a.libraries, "fftw-3."));
+    assert_non_null(strstr(a.libraries, "matio-1."));
+    assert_non_null(strstr(a.libraries, "libconfig-1."));
+    assert_true(*a.compiler && *a.flags && *a.commit);
+    assert_int_equal(strlen(a.date), strlen("2000-01-01T00:00:00Z"));
+}
+
+/* The metric table names columns of the CSV and points to their values. */
+static void test_metric_table(void **state)
+{
+    (void)state;
+    struct measurement row = measurement_of("s", "a");
+    int count = 0;
+    for (const struct metric *metric = metrics; metric->name; metric++, count++) {
+        char column[64];
+        snprintf(column, sizeof column, ",%s", metric->name);
+        assert_non_null(strstr(MEASUREMENT_HEADER, column));
+        assert_true(metric->unit && metric->title
+                    && metric->absolute_slack[PRECISION_FLOAT] >= metric->absolute_slack[PRECISION_DOUBLE]
+                    && metric->absolute_slack[PRECISION_DOUBLE] >= 0 && metric->relative_slack >= 0);
+        double value = *(const double *)((const char *)&row + metric->offset);
+        if (strcmp(metric->name, "pslr_db") == 0)
+            assert_close(value, -13.3, 0);
+        if (strcmp(metric->name, "run_s") == 0)
+            assert_close(value, 1.0 / 3, 0);
+    }
+    assert_int_equal(count, 11);
+}
+
+static void test_table(void **state)
+{
+    (void)state;
+    static char text[8192];
+    FILE *stream = fmemopen(text, sizeof text, "w");
+    assert_non_null(stream);
+    struct measurement row = measurement_of("bp22/table3", "bp_sinc");
+    table_header(stream);
+    table_row(stream, &row);
+    row.algorithm = "bp_linear";
+    row.options = "beta=8";
+    row.precision = "double";
+    row.run_s = 2.5e-5;
+    row.pairs = 0;
+    row.flops = 1e6;
+    row.phase_rms_rad = NAN;
+    table_row(stream, &row);
+    row.options = "";
+    row.run_s = NAN;
+    row.pairs = NAN;
+    table_row(stream, &row);
+    row.algorithm = "rma_lbf";
+    row.options = "variant=corrected,blocks=8,spacing=inverse,blend=linear,stolt=8";
+    row.run_s = 1234.4;
+    table_row(stream, &row);
+    row.scene = "study/point";
+    row.status = "unsupported";
+    row.reason = "the track is not uniform and straight, which range migration needs: ping 17 lies 0.0123 m away "
+                 "from its place in the line through all the others, 0.00001 m are accepted";
+    table_row(stream, &row);
+    fclose(stream);
+    int headings = 0;
+    for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n")) {
+        if (strlen(line) > 110)
+            fail_msg("%zu columns: %s", strlen(line), line);
+        headings += strcmp(line, "bp22/table3") == 0 || strcmp(line, "study/point") == 0;
+        if (strncmp(line, "  bp_sinc:taps=8,window=none ", 29) == 0) {
+            assert_non_null(strstr(line, " 333 ms "));
+            assert_non_null(strstr(line, " 6x "));
+            assert_non_null(strstr(line, " 37 Gp/s "));
+            assert_non_null(strstr(line, " 38.40 -13.30 -10.40"));
+        }
+        if (strncmp(line, "  bp_linear:beta=8,precision=double ", 36) == 0)
+            assert_true(strstr(line, " 25 us ") && strstr(line, " 40 GF/s "));
+        if (strncmp(line, "  bp_linear:precision=double ", 29) == 0)
+            assert_non_null(strstr(line, "  -        -         - "));
+        headings += 10 * (strstr(line, " 1234 s ") != NULL) + 100 * (strstr(line, "0.00001 m are accepted") != NULL);
+    }
+    assert_int_equal(headings, 112);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_foreign_files, results_make, results_remove),
+        cmocka_unit_test_setup_teardown(test_unwritable, results_make, results_remove),
+        cmocka_unit_test_setup_teardown(test_folder_made, results_make, results_remove),
+        cmocka_unit_test_setup_teardown(test_full_disk, results_make, results_remove),
+        cmocka_unit_test(test_provenance),
+        cmocka_unit_test(test_metric_table),
+        cmocka_unit_test(test_table),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
