@@ -16,6 +16,7 @@ static enum status plan(const struct problem *problem, const void *options, void
     static const struct rma_method method = {
         .name = "rma_numeric",
         .law = "phase",
+        .error_limit = 0.1,
         .spectrum = spectrum_exact,
         .source = "LBF21 Eq. (20)",
         .range = {2, 2},

@@ -1,13 +1,57 @@
-/* The conditions of range migration (conditions.h). Limits are measured: over several hundred scenes whose images were
-   compared with exact ones, all else accepted has errors below 0.12. */
+/* The conditions of range migration (conditions.h). Limits are measured, over several hundred scenes whose images were
+   compared with exact ones (docs/range_migration.md). */
 #include "range_migration/conditions.h"
 
 #include <math.h>
+
+#include "range_migration/prediction.h"
 
 static const double pi = 3.14159265358979323846;
 
 /* The beam of echoes that do not say theirs: where the transmitter's power is half of that abeam, in lambda/D. */
 static const double LOBE = 0.443;
+static const double WIDEST_SINE = 0.95; /* of the aperture where neither sampling nor element length bounds it */
+static const double FRESNEL_ZONES = 6;  /* beyond the track's ends: what is cut farther out leaves no ripple */
+
+static double offset_at(const struct rma_view *view, int n);
+
+/* How wide the engine focuses: what lies farther out does not exist, or is left out. */
+static void view_bounds(struct rma_view *view)
+{
+    const struct acquisition *a = view->problem->acquisition;
+    double lowest = a->fc - a->bandwidth / 2, farthest = 0;
+    view->aside = fmax(fabs(offset_at(view, 0)), fabs(offset_at(view, 2)));
+    /* nu of the full rate, as an angle at the lowest frequency of the pulse. */
+    view->sine = fmin(WIDEST_SINE, a->sound_speed * a->receivers / view->spacing / 4 / lowest);
+    if (a->tx_length > 0)
+        view->sine = fmin(view->sine, fmax(a->sound_speed / lowest / a->tx_length, a->echo_tapers ? 0 : a->echo_sine));
+    for (int k = 0; k < view->problem->patch_count; k++) {
+        const struct grid *g = &view->problem->patches[k];
+        double last = g->x_first + (g->x_count - 1) * g->x_step;
+        view->way = fmax(view->way, fmax(last - view->x_low, view->x_high - g->x_first));
+        farthest = fmax(farthest, g->r_first + (g->r_count - 1) * g->r_step);
+    }
+    /* A record that holds what the widest angle sees needs no other bound. */
+    double tangent = view->sine / sqrt(1 - view->sine * view->sine);
+    if (2 * farthest * (hypot(1, tangent) - 1) / a->sound_speed * a->fs <= a->samples)
+        view->way = INFINITY;
+}
+
+double rma_sinc(double z)
+{
+    return fabs(z) < 1e-9 ? 1 : sin(pi * z) / (pi * z);
+}
+
+/* Where the echoes' amplitude, by both elements' sinc, falls to a quarter. */
+static double quarter_sine(const struct acquisition *a)
+{
+    double inside = 0, outside = 1 / fmax(a->tx_length, a->rx_length); /* in 1/m: the first null */
+    for (int k = 0; k < 50; k++) {
+        double middle = (inside + outside) / 2;
+        *(rma_sinc(a->tx_length * middle) * rma_sinc(a->rx_length * middle) > 0.25 ? &inside : &outside) = middle;
+    }
+    return inside * a->sound_speed / a->fc;
+}
 
 struct rma_view rma_view_of(const struct problem *problem, const struct rma_method *method,
                             const struct straight_track *track)
@@ -26,7 +70,18 @@ struct rma_view rma_view_of(const struct problem *problem, const struct rma_meth
     };
     if (!(a->echo_sine > 0) && a->tx_length > 0)
         view.beam_sine = LOBE * a->sound_speed / a->fc / a->tx_length;
+    if (a->echo_tapers)
+        view.beam_sine = fmin(view.beam_sine, quarter_sine(a));
+    view_bounds(&view);
     return view;
+}
+
+double rma_view_reach(const struct rma_view *view, double r)
+{
+    const struct acquisition *a = view->problem->acquisition;
+    double wavelength = a->sound_speed / (a->fc - a->bandwidth / 2);
+    double track = view->way + FRESNEL_ZONES * sqrt(wavelength * r / 2);
+    return fmin(r * view->sine / sqrt(1 - view->sine * view->sine), track);
 }
 
 bool rma_view_aperture(const struct rma_view *view, const struct grid *patch, double r, double *low, double *high)
@@ -140,11 +195,6 @@ static struct rma_condition doppler(const struct rma_view *view)
         "pings closer together, more receivers, a narrower beam or a lower speed"};
 }
 
-static double sinc(double z)
-{
-    return fabs(z) < 1e-9 ? 1 : sin(pi * z) / (pi * z);
-}
-
 /* Root mean square over the beam, the band and the array of the phase that the method's formula misses. */
 static double formula_at(const struct rma_view *view, double r, double low, double high)
 {
@@ -160,7 +210,8 @@ static double formula_at(const struct rma_view *view, double r, double low, doub
                 double exact = -2 * pi * (frequency * spectrum_delay(&view->setting, d, r, u) + nu * u);
                 double error = view->method->spectrum(&view->setting, d, r, frequency, nu) - exact;
                 double sine = u / hypot(u, r) * frequency / a->sound_speed;
-                double weight = a->echo_tapers ? pow(sinc(a->tx_length * sine) * sinc(a->rx_length * sine), 2) : 1;
+                double weight =
+                    a->echo_tapers ? pow(rma_sinc(a->tx_length * sine) * rma_sinc(a->rx_length * sine), 2) : 1;
                 sum += weight * error * error;
                 weights += weight;
             }
@@ -180,8 +231,19 @@ static struct rma_condition formula(const struct rma_view *view)
         "lower speed"};
 }
 
+static struct rma_condition predicted_error(const struct rma_view *view)
+{
+    return (struct rma_condition){"predicted_error",
+                                  prediction_error(view),
+                                  view->method->error_limit,
+                                  false,
+                                  "the error predicted for azimuth slices through point targets (relative L2)",
+                                  "more pings in the beam, columns within the track, pings closer together, or rows "
+                                  "farther away"};
+}
+
 rma_condition_function *const rma_conditions[RMA_CONDITIONS] = {
-    above_dc, subsonic, stationary, spa_amplitude, doppler, formula,
+    above_dc, subsonic, stationary, spa_amplitude, doppler, formula, predicted_error,
 };
 
 bool rma_condition_holds(const struct rma_condition *condition)
@@ -189,14 +251,27 @@ bool rma_condition_holds(const struct rma_condition *condition)
     return condition->at_least ? condition->value > condition->limit : condition->value <= condition->limit;
 }
 
+static enum status refuse(const struct rma_view *view, const struct rma_condition *c)
+{
+    return status_set(STATUS_UNSUPPORTED, "%s: condition %s: %s is %.3g; %s %g is needed (cure: %s)",
+                      view->method->name, c->name, c->meaning, c->value, c->at_least ? "more than" : "at most",
+                      c->limit, c->cure);
+}
+
 enum status rma_conditions_check(const struct rma_view *view)
 {
-    for (int k = 0; k < RMA_CONDITIONS; k++) {
+    for (int k = 0; k < RMA_CAUSES; k++) {
         struct rma_condition c = rma_conditions[k](view);
         if (!rma_condition_holds(&c))
-            return status_set(STATUS_UNSUPPORTED, "%s: condition %s: %s is %.3g; %s %g is needed (cure: %s)",
-                              view->method->name, c.name, c.meaning, c.value, c.at_least ? "more than" : "at most",
-                              c.limit, c.cure);
+            return refuse(view, &c);
     }
-    return STATUS_OK;
+    struct rma_condition error = rma_conditions[RMA_CONDITIONS - 1](view);
+    if (rma_condition_holds(&error))
+        return STATUS_OK;
+    for (int k = RMA_CAUSES; k < RMA_CONDITIONS - 1; k++) {
+        struct rma_condition c = rma_conditions[k](view);
+        if (!rma_condition_holds(&c))
+            return refuse(view, &c);
+    }
+    return refuse(view, &error);
 }

@@ -21,23 +21,34 @@ struct rma_view {
     struct spectrum_setting setting;
     double x_low, x_high, spacing; /* m: the track's ends; ping to ping, > 0 */
     bool converts;                 /* not a single receiver at the transmitter, which needs no formula */
-    double beam_sine;              /* of the echoes' beam at the transmitter; INFINITY: everything is seen */
+    double sine;                   /* of the widest angle off abeam that wavenumbers, beam and lowest frequency allow */
+    double way;       /* m: the farthest that a ping is from a wanted column, along the track; INFINITY: no bound */
+    double aside;     /* m: greatest magnitude of an offset */
+    double beam_sine; /* of the echoes' beam at the transmitter; INFINITY: everything is seen */
 };
 
 struct rma_view rma_view_of(const struct problem *problem, const struct rma_method *method,
                             const struct straight_track *track);
 
+double rma_sinc(double z); /* sin(pi z)/(pi z) */
+
+/* How far ahead or behind a target at range r the transmitter can be, m: by angle, or by the track's own extent and some
+   Fresnel zones beyond it. */
+double rma_view_reach(const struct rma_view *view, double r);
+
 /* The transmitter's places that echo a row at range r of a patch, from its columns: [*low, *high] m ahead of the pixel.
    False where there are none. */
 bool rma_view_aperture(const struct rma_view *view, const struct grid *patch, double r, double *low, double *high);
 
-enum { RMA_CONDITIONS = 6 };
-/* In the order in which they are checked; a condition that fails makes the ones after it meaningless. */
+/* Those up to RMA_CAUSES refuse by themselves, in this order. The last one is the predicted error; where that is too large,
+   those before it are what may have caused it, and the first of them that fails is named. Where the predicted error
+   is small they may fail. */
+enum { RMA_CAUSES = 3, RMA_CONDITIONS = 7 };
 typedef struct rma_condition rma_condition_function(const struct rma_view *view);
 extern rma_condition_function *const rma_conditions[RMA_CONDITIONS];
 
 bool rma_condition_holds(const struct rma_condition *condition);
-/* STATUS_UNSUPPORTED with name, value, limit and cure of the first condition that does not hold. */
+/* STATUS_UNSUPPORTED with name, value, limit and cure of the condition that refuses. */
 enum status rma_conditions_check(const struct rma_view *view);
 
 #endif

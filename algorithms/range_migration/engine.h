@@ -43,7 +43,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include "range_migration/rma.h"
+#include "range_migration/conditions.h"
 
 enum {
     RMA_ALIGNMENT = 64,   /* bytes: a vector, and a line of the cache */
@@ -150,9 +150,7 @@ struct rma {
     double *offset;           /* [receivers] m */
     int extremes[2];          /* the receivers of least and greatest offset */
     double nearest, farthest; /* m: all rows asked for */
-    double sine;              /* of the widest angle off abeam that wavenumbers, beam and lowest frequency allow */
-    double way;               /* m: the farthest that a ping is from a wanted column, along the track */
-    double aside;             /* m: greatest magnitude of an offset */
+    struct rma_view view;     /* what the conditions looked at, and how wide wavenumbers are focused */
     int groups;               /* of receivers */
     bool recurs;              /* by recurrence: receivers are evenly spaced, and libm is not asked for */
     bool converts;            /* false: one receiver, at the transmitter */
@@ -190,10 +188,6 @@ struct rma {
 };
 
 /* ---- layout.c ---- */
-
-/* How far ahead or behind a target at range r the transmitter can be, m: by angle, or by the track's own extent and some
-   Fresnel zones beyond it. */
-double rma_reach(const struct rma *rma, double r);
 
 /* Fills everything but the pointers that rma_transform's plan fills. */
 enum status rma_layout(struct rma *rma);

@@ -17,7 +17,6 @@ static const double BAND_LOSS = 4e-6;   /* of the compressed pulse's energy may 
 static const double WIDEST_SINE = 0.95; /* of the aperture where neither sampling nor element length bounds it */
 static const double FADE_PERIODS = 8;   /* of fs - B, or of B, in a cut's fade: what it smears stays beside the band */
 static const double PULSE_PERIODS = 8;  /* of B: beside the rows, so that no pulse wraps around the cut */
-static const double FRESNEL_ZONES = 6;  /* beyond the track's ends: what is cut farther out leaves no ripple */
 static const double EVEN = 1e-12;       /* relative: columns that divide the period but for rounding */
 static const int stolt_taps[] = {0, 4, 6, 8, 12, 16};
 
@@ -71,36 +70,14 @@ static enum status lay_track(struct rma *rma)
         rma->nearest = fmin(rma->nearest, rma->problem.patches[k].r_first);
         rma->farthest = fmax(rma->farthest, last_row(&rma->problem.patches[k]));
     }
-    /* nu of the full rate, as an angle at the lowest frequency of the pulse. */
-    double lowest = a->fc - a->bandwidth / 2;
-    rma->sine = fmin(WIDEST_SINE, a->sound_speed * rma->receivers / fabs(rma->spacing) / 4 / lowest);
-    if (a->tx_length > 0)
-        rma->sine = fmin(rma->sine, a->sound_speed / lowest / a->tx_length);
     rma->setting.reference_offset = rma->offset[a->receivers / 2];
     if (!(rma->nearest > 0))
         return status_set(STATUS_UNSUPPORTED, "%s: image rows begin at r = %g m; range migration needs r > 0",
                           rma->method.name, rma->nearest);
-    rma->aside = fmax(fabs(rma->offset[rma->extremes[0]]), fabs(rma->offset[rma->extremes[1]]));
     struct rma_view view = rma_view_of(&rma->problem, &rma->method, &track);
-    for (int k = 0; k < rma->problem.patch_count; k++) {
-        const struct grid *g = &rma->problem.patches[k];
-        double last = g->x_first + (g->x_count - 1) * g->x_step;
-        rma->way = fmax(rma->way, fmax(last - view.x_low, view.x_high - g->x_first));
-    }
-    /* A record that holds what the widest angle sees needs no other bound. */
-    double tangent = rma->sine / sqrt(1 - rma->sine * rma->sine);
-    if (2 * rma->farthest * (hypot(1, tangent) - 1) / a->sound_speed * a->fs <= a->samples)
-        rma->way = INFINITY;
+    rma->view = view;
     rma->converts = view.converts;
     return rma_conditions_check(&view);
-}
-
-double rma_reach(const struct rma *rma, double r)
-{
-    const struct acquisition *a = rma->problem.acquisition;
-    double wavelength = a->sound_speed / (a->fc - a->bandwidth / 2);
-    double track = rma->way + FRESNEL_ZONES * sqrt(wavelength * r / 2);
-    return fmin(r * rma->sine / sqrt(1 - rma->sine * rma->sine), track);
 }
 
 /* The bins that hold the compressed pulse; of echoes that come compressed already, twice the band. */
@@ -168,7 +145,8 @@ static bool blocks_suffice(struct rma *rma, int count)
     double beta = fabs(rma->setting.speed) / a->sound_speed;
     nu = fmin(nu, 2 * WIDEST_SINE * (a->fc - a->bandwidth / 2) / a->sound_speed / (1 + beta));
     if (a->tx_length > 0)
-        nu = fmin(nu, 1 / a->tx_length);
+        nu = fmin(nu, fmax(1 / a->tx_length,
+                           a->echo_tapers ? 0 : 2 * (a->fc + a->bandwidth / 2) / a->sound_speed * a->echo_sine));
     for (int n = 0; n < count; n++)
         for (int end = -1; end <= 1; end += 2) {
             double edge = rma->block_from + (n + end * 0.5) * rma->block_width;
@@ -194,7 +172,7 @@ static double lone_block_error(struct rma *rma)
     enum { PLACES = 16, FREQUENCIES = 3 };
     const struct acquisition *a = rma->problem.acquisition;
     blocks_place(rma, 1);
-    double worst = 0, r0 = rma_block_range(rma, 0), reach = rma_reach(rma, rma->nearest);
+    double worst = 0, r0 = rma_block_range(rma, 0), reach = rma_view_reach(&rma->view, rma->nearest);
     for (int end = 0; end < 2; end++) {
         double sum = 0, r = end ? rma->farthest : rma->nearest;
         for (int m = 0; m < 2; m++)
@@ -230,7 +208,7 @@ static enum status lay_blocks(struct rma *rma)
             int middle = (count + too_few) / 2;
             *(blocks_suffice(rma, middle) ? &count : &too_few) = middle;
         }
-        if (count == 1 && !(lone_block_error(rma) <= rma->options.limit / pi))
+        if (count == 1 && !(lone_block_error(rma) <= rma->options.limit / (4 * pi)))
             count = RMA_NODES;
     }
     blocks_place(rma, count);
@@ -271,7 +249,7 @@ static void swath_blocks(const struct rma *rma, struct rma_swath *swath, int *li
    conversion. */
 static void delays_span(const struct rma *rma, double nearest, double farthest, double *first, double *last)
 {
-    double c = rma->setting.sound_speed, reach = rma_reach(rma, farthest);
+    double c = rma->setting.sound_speed, reach = rma_view_reach(&rma->view, farthest);
     struct vector velocity = {rma->setting.speed, 0, 0}, target = {0, farthest, 0};
     double delay = 2 * hypot(farthest, reach) / c * (1 + 2 * fabs(rma->setting.speed) / c);
     for (int k = 0; k < 4; k++) {
@@ -329,8 +307,9 @@ static enum status lay_patches(struct rma *rma)
    is focused beyond either end of the track, as far as the widest angle sees, must not reach a wanted column. */
 static enum status swath_azimuth(const struct rma *rma, struct rma_swath *swath)
 {
-    double spacing = fabs(rma->spacing), angle = swath->farthest * rma->sine / sqrt(1 - rma->sine * rma->sine);
-    double reach = rma_reach(rma, swath->farthest), folds = reach < angle ? rma->way + reach : 0;
+    double spacing = fabs(rma->spacing),
+           angle = swath->farthest * rma->view.sine / sqrt(1 - rma->view.sine * rma->view.sine);
+    double reach = rma_view_reach(&rma->view, swath->farthest), folds = reach < angle ? rma->view.way + reach : 0;
     double x_low = fmin(rma->x_first, rma->x_first + (rma->pings - 1) * rma->spacing);
     double x_high = x_low + (rma->pings - 1) * spacing, overhang = 0;
     for (int k = 0; k < swath->patch_count; k++) {

@@ -87,21 +87,11 @@ double beam_sine(const struct scene *scene)
 {
     const struct acquisition *a = &scene->acquisition;
     double lowest = scene->beam.per_frequency ? a->fc - a->bandwidth / 2 : a->fc;
-    double sine = scene->beam.truncation == TRUNCATION_SINE ? scene->beam.limit : INFINITY;
-    if (!(lowest > 0))
-        return sine;
-    double wavelength = a->sound_speed / lowest;
-    if (scene->beam.truncation != TRUNCATION_NONE && scene->beam.truncation != TRUNCATION_SINE)
-        sine = scene->beam.limit * wavelength / a->tx_length;
-    if (scene->beam.kind == BEAM_TXRX) {
-        double inside = 0, outside = 1 / fmax(a->tx_length, a->rx_length); /* in 1/m: the first null */
-        for (int k = 0; k < 50; k++) {
-            double middle = (inside + outside) / 2;
-            *(sinc(a->tx_length * middle) * sinc(a->rx_length * middle) > 0.25 ? &inside : &outside) = middle;
-        }
-        sine = fmin(sine, inside * wavelength);
-    }
-    return sine;
+    if (scene->beam.truncation == TRUNCATION_SINE)
+        return scene->beam.limit;
+    if (!(lowest > 0) || scene->beam.truncation == TRUNCATION_NONE)
+        return INFINITY;
+    return scene->beam.limit * a->sound_speed / lowest / a->tx_length;
 }
 
 /* What all pairs share: the spectrum that is delayed, on `length` bins, and where the record lies in its period. */

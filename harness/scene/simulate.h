@@ -17,8 +17,7 @@ void pulse_lfm(double bandwidth, double duration, double fs, int length, double 
 /* Amplitude of a pair's echo from target point p at total frequency F (Hz), tau = the exact delay. */
 double beam_weight(const struct scene *scene, int ping, int receiver, struct vector p, double tau, double frequency);
 
-/* |sin theta_t| up to which the scene's beam sees targets: its truncation, or where the amplitude of both elements abeam of
-   each other falls to a quarter; INFINITY where nothing bounds it. */
+/* |sin theta_t| up to which the scene's beam sees targets, by its truncation; INFINITY where nothing bounds it. */
 double beam_sine(const struct scene *scene);
 
 #endif

@@ -1,0 +1,288 @@
+/* Prediction of an image's error (prediction.h).
+
+   Back projection multiplies the echo of receiver m, u metres ahead of the pixel, by exp(j 2 pi F tau_m(u)). Range
+   migration puts in its place (rma.h)
+
+       h_m(u) = integral over |nu| <= M/(2 spacing) of  w(F, nu) exp(-j (phi_m(F, nu) + 2 pi nu u)),
+
+   whose relative error e_m(u) = h_m(u) exp(-j 2 pi F tau_m(u)) - 1 holds all that goes wrong in azimuth: wavenumbers
+   that the receivers do not sample, the ripple where they end, what stationary phase drops, the amplitude of a
+   monostatic sonar, the formula's own phase. An FFT over nu gives e_m for all u at once. The slice through a target is
+
+       sum over pings and receivers of  a sinc(B dtau) exp(j 2 pi fc dtau),
+
+   dtau the difference of the delays of pixel and target and a the beam's amplitude; its error is the same sum with e_m.
+   Energies are summed over the slices of some targets, and errors over some frequencies. Few of many pings and
+   receivers stand for all. */
+#include "range_migration/prediction.h"
+
+#include <complex.h>
+#include <fftw3.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/fft_length.h"
+
+static const double pi = 3.14159265358979323846;
+
+enum {
+    TARGETS = 3,      /* on a row */
+    COLUMNS = 17,     /* of a slice: evenly over the patch, and as many near the target */
+    PINGS = 40,       /* that are summed, at most */
+    RECEIVERS = 12,   /* that are summed, at most */
+    TABLES = 5,       /* receivers whose errors are tabulated: each stands for those nearest to it */
+    FREQUENCIES = 3,  /* of the band: Gauss and Legendre's */
+    FINER = 3,        /* places of a table for each independent one */
+    LONGEST = 1 << 14 /* wavenumbers; places that would take more are left out */
+};
+static const double abscissas[FREQUENCIES] = {-0.7745966692414834, 0, 0.7745966692414834};
+static const double weights[FREQUENCIES] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+static const double FRESNEL_ZONES = 6; /* beside the places asked for, over which the kernel fades */
+static const double SPARE = 1.1;       /* of the tables' period, so that fading ends do not overlap */
+static const double LOBES = 3;         /* of a beam that tapers are followed this far, in nulls */
+static const double NEAR = 4;          /* resolutions: what is near a target */
+static const double DEEP = 0.05;       /* of their range: patches whose first and last row are looked at both */
+
+/* Errors e of the kernel at one row, at places `step` apart. */
+struct kernel {
+    const struct rma_view *view;
+    double r;              /* m */
+    double reach, margin;  /* m: the places asked for, on either side; over the margin beside them it fades */
+    int count;             /* wavenumbers: k nu_step, k = -count/2 ... count/2 */
+    double nu_step;        /* cycles/m */
+    int length;            /* of a table: places from -length/2 step on */
+    double step;           /* m */
+    double offset[TABLES]; /* m: of the receivers */
+    double complex *error; /* [TABLES][length][FREQUENCIES] */
+    double complex *wave;  /* [length] */
+    fftw_plan transform;
+};
+
+static double offset_of(const struct rma_view *view, int receiver)
+{
+    return view->problem->acquisition->rx[receiver].x - view->problem->acquisition->tx[0].x;
+}
+
+/* The k-th of `count` that stand for all receivers. */
+static int receiver_of(const struct rma_view *view, int k, int count)
+{
+    return count > 1 ? (int)((long long)k * (view->problem->acquisition->receivers - 1) / (count - 1)) : 0;
+}
+
+/* Share of the kernel that is kept whose stationary point is u ahead of the pixel. */
+static double fade(const struct kernel *kernel, double u)
+{
+    double beyond = (fabs(u) - kernel->reach) / kernel->margin;
+    return beyond <= 0.5 ? 1 : beyond < 1 ? 0.5 - 0.5 * cos(2 * pi * beyond) : 0;
+}
+
+/* h of a receiver at offset d and one frequency, into `wave`, place 0 first. */
+static void kernel_transform(const struct kernel *kernel, double d, double frequency)
+{
+    const struct rma_view *view = kernel->view;
+    const struct spectrum_setting *setting = &view->setting;
+    const double c = setting->sound_speed, r = kernel->r, beta = setting->speed / c;
+    const double f = frequency / ((1 - beta) * (1 + beta)), focused = rma_view_reach(view, r) + view->aside;
+    memset(kernel->wave, 0, (size_t)kernel->length * sizeof *kernel->wave);
+    for (int k = -kernel->count / 2; k <= kernel->count / 2; k++) {
+        double nu = k * kernel->nu_step, monostatic = spectrum_monostatic(setting, frequency, nu);
+        double kappa = c * monostatic / (4 * pi), place = -r * (c * nu / 2 + f * beta) / kappa;
+        if (!(fabs(place) <= focused))
+            continue;
+        double phase = view->converts ? view->method->spectrum(setting, d, r, frequency, nu) : -r * monostatic;
+        double weight = f * sqrt(c * r / (2 * kappa * kappa * kappa)) * kernel->nu_step * fade(kernel, place - d / 2);
+        if (weight > 0 && isfinite(phase))
+            kernel->wave[k < 0 ? kernel->length + k : k] =
+                (2 * abs(k) == kernel->count ? 0.5 : 1) * weight * cexp(I * (pi / 4 - phase));
+    }
+    fftw_execute(kernel->transform);
+}
+
+static void kernel_fill(const struct kernel *kernel, double d, double complex *error)
+{
+    const struct acquisition *a = kernel->view->problem->acquisition;
+    for (int n = 0; n < FREQUENCIES; n++) {
+        double frequency = a->fc + abscissas[n] * a->bandwidth / 2;
+        kernel_transform(kernel, d, frequency);
+        for (int i = 0; i < kernel->length; i++) {
+            int place = i - kernel->length / 2;
+            double cycles = frequency * spectrum_delay(&kernel->view->setting, d, kernel->r, place * kernel->step);
+            double complex h = kernel->wave[place < 0 ? kernel->length + place : place];
+            error[i * FREQUENCIES + n] = h * cexp(-2 * I * pi * (cycles - floor(cycles))) - 1;
+        }
+    }
+}
+
+static void kernel_free(struct kernel *kernel)
+{
+    if (kernel->transform)
+        fftw_destroy_plan(kernel->transform);
+    fftw_free(kernel->error);
+    fftw_free(kernel->wave);
+}
+
+/* At range r, for places up to `reach` on either side. False without memory; freed with kernel_free in any case. */
+static bool kernel_make(const struct rma_view *view, double r, double reach, struct kernel *kernel)
+{
+    const struct acquisition *a = view->problem->acquisition;
+    const double c = a->sound_speed, highest = a->fc + a->bandwidth / 2, lowest = a->fc - a->bandwidth / 2;
+    const double beta = fabs(view->setting.speed) / c, margin = FRESNEL_ZONES * sqrt(c / lowest * r / 2);
+    double far = reach + margin + view->aside; /* the angle to there, and what the speed adds, bound the wavenumbers */
+    double band =
+        fmin(a->receivers / view->spacing, 4 * highest / c / (1 - beta) * fmin(1, far / hypot(far, r) + 2 * beta));
+    int count = (int)fmin(ceil(band * 2 * SPARE * far), LONGEST);
+    *kernel = (struct kernel){.view = view, .r = r, .reach = reach, .margin = margin, .count = count + count % 2};
+    kernel->length = fft_length_fast(FINER * ((long long)kernel->count + 2));
+    kernel->nu_step = fmax(band / kernel->count, 0);
+    kernel->step = 1 / (kernel->nu_step * kernel->length);
+    const size_t size = (size_t)kernel->length * FREQUENCIES;
+    kernel->wave = fftw_malloc((size_t)kernel->length * sizeof *kernel->wave);
+    kernel->error = fftw_malloc(TABLES * size * sizeof *kernel->error);
+    if (!kernel->wave || !kernel->error)
+        return false;
+    kernel->transform = fftw_plan_dft_1d(kernel->length, kernel->wave, kernel->wave, FFTW_FORWARD, FFTW_ESTIMATE);
+    for (int t = 0; t < TABLES; t++) {
+        kernel->offset[t] = offset_of(view, receiver_of(view, t, TABLES));
+        double complex *error = kernel->error + (size_t)t * size;
+        if (t > 0 && kernel->offset[t] == kernel->offset[t - 1])
+            memcpy(error, error - size, size * sizeof *error);
+        else
+            kernel_fill(kernel, kernel->offset[t], error);
+    }
+    return true;
+}
+
+/* e at all frequencies; NULL where the tables do not reach. */
+static const double complex *kernel_error(const struct kernel *kernel, double d, double u)
+{
+    int table = 0;
+    for (int t = 1; t < TABLES; t++)
+        table = fabs(kernel->offset[t] - d) < fabs(kernel->offset[table] - d) ? t : table;
+    double place = floor(u / kernel->step + 0.5) + kernel->length / 2;
+    if (!(place >= 0 && place < kernel->length))
+        return NULL;
+    return &kernel->error[((size_t)table * (size_t)kernel->length + (size_t)place) * FREQUENCIES];
+}
+
+/* |sin theta_t| up to which anything is seen. */
+static double seen_sine(const struct rma_view *view)
+{
+    const struct acquisition *a = view->problem->acquisition;
+    return a->echo_tapers ? fmin(a->echo_sine, LOBES * a->sound_speed / a->fc / a->tx_length) : view->beam_sine;
+}
+
+/* Amplitude of the echo of a target at range r, the transmitter u ahead of it. */
+static double amplitude(const struct rma_view *view, double r, double u)
+{
+    const struct acquisition *a = view->problem->acquisition;
+    double sine = u / hypot(u, r), turns = sine * a->fc / a->sound_speed;
+    if (!(fabs(sine) <= seen_sine(view)))
+        return 0;
+    return a->echo_tapers ? rma_sinc(a->tx_length * turns) * rma_sinc(a->rx_length * turns) : 1;
+}
+
+/* Energies of an image and of its error. */
+struct energies {
+    double image, error;
+};
+
+/* A target, and the pings that stand for those that see it. */
+struct target {
+    double x;                /* m */
+    int first, count, every; /* pings */
+};
+
+static void pixel_add(const struct kernel *kernel, const struct target *target, double x, double weight,
+                      struct energies *energies)
+{
+    const struct rma_view *view = kernel->view;
+    const struct acquisition *a = view->problem->acquisition;
+    const int receivers = a->receivers < RECEIVERS ? a->receivers : RECEIVERS;
+    double complex image = 0, errors[FREQUENCIES] = {0};
+    for (int p = target->first; p < target->first + target->count; p += target->every) {
+        double u = a->tx[p].x - target->x, at = a->tx[p].x - x, seen = amplitude(view, kernel->r, u);
+        for (int k = 0; k < receivers && seen != 0; k++) {
+            double d = offset_of(view, receiver_of(view, k, receivers));
+            const double complex *error = kernel_error(kernel, d, at);
+            if (!error)
+                continue;
+            double late =
+                spectrum_delay(&view->setting, d, kernel->r, at) - spectrum_delay(&view->setting, d, kernel->r, u);
+            double cycles = a->fc * late;
+            double complex pair = seen * rma_sinc(a->bandwidth * late) * cexp(2 * I * pi * (cycles - floor(cycles)));
+            image += pair;
+            for (int n = 0; n < FREQUENCIES; n++)
+                errors[n] += pair * error[n];
+        }
+    }
+    energies->image += weight * creal(image * conj(image));
+    for (int n = 0; n < FREQUENCIES; n++)
+        energies->error += weight * weights[n] * creal(errors[n] * conj(errors[n]));
+}
+
+/* The slice through a target at column x of a patch. */
+static void slice_add(const struct kernel *kernel, const struct grid *patch, double x, struct energies *energies)
+{
+    const struct rma_view *view = kernel->view;
+    const struct acquisition *a = view->problem->acquisition;
+    const double width = (patch->x_count - 1) * patch->x_step, wavelength = a->sound_speed / a->fc;
+    struct target target = {x, 0, 0, 1};
+    for (int p = a->pings - 1; p >= 0; p--)
+        if (amplitude(view, kernel->r, a->tx[p].x - x) != 0) {
+            target.count = target.count > 0 ? target.count + target.first - p : 1;
+            target.first = p;
+        }
+    if (target.count == 0)
+        return;
+    target.every = (target.count + PINGS - 1) / PINGS;
+    if (!(width > 0)) {
+        pixel_add(kernel, &target, x, 1, energies);
+        return;
+    }
+    double resolution = fmax(wavelength / (4 * fmin(seen_sine(view), 1)),
+                             wavelength * kernel->r / 2 / (view->x_high - view->x_low + view->spacing));
+    double near = fmin(NEAR * resolution, width), near_step = 2 * near / (COLUMNS - 1), step = width / (COLUMNS - 1);
+    for (int k = 0; k < COLUMNS; k++) {
+        double beside = (k - COLUMNS / 2) * near_step, column = patch->x_first + k * step;
+        if (x + beside >= patch->x_first - patch->x_step / 2
+            && x + beside <= patch->x_first + width + patch->x_step / 2)
+            pixel_add(kernel, &target, x + beside, near_step, energies);
+        if (fabs(column - x) > near + near_step / 2)
+            pixel_add(kernel, &target, column, step, energies);
+    }
+}
+
+/* One row of a patch: error over image, negative where no ping sees anything, NAN without memory. */
+static double row_error(const struct rma_view *view, const struct grid *patch, double r)
+{
+    double width = (patch->x_count - 1) * patch->x_step, sine = seen_sine(view);
+    double reach = fmax(patch->x_first + width - view->x_low, view->x_high - patch->x_first);
+    struct kernel kernel;
+    struct energies energies = {0, 0};
+    if (sine < 1)
+        reach = fmin(reach, width + r * sine / sqrt((1 - sine) * (1 + sine)));
+    bool made = kernel_make(view, r, reach, &kernel);
+    for (int t = 0; t < (width > 0 ? TARGETS : 1) && made; t++)
+        slice_add(&kernel, patch, patch->x_first + t * width / (TARGETS - 1), &energies);
+    kernel_free(&kernel);
+    return !made ? NAN : energies.image > 0 ? sqrt(energies.error / energies.image) : -1;
+}
+
+double prediction_error(const struct rma_view *view)
+{
+    const struct acquisition *a = view->problem->acquisition;
+    double worst = -1;
+    if (!(a->fc > a->bandwidth / 2))
+        return INFINITY;
+    for (int k = 0; k < view->problem->patch_count; k++) {
+        const struct grid *patch = &view->problem->patches[k];
+        double depth = (patch->r_count - 1) * patch->r_step;
+        bool deep = depth > DEEP * patch->r_first;
+        for (int end = 0; end < (deep ? 2 : 1); end++) {
+            double error = row_error(view, patch, patch->r_first + (deep ? end : 0.5) * depth);
+            worst = error <= worst ? worst : error; /* a NaN is kept */
+        }
+    }
+    return worst < 0 ? INFINITY : worst;
+}
