@@ -265,7 +265,9 @@ enum status rma_conditions_check(const struct rma_view *view)
         if (!rma_condition_holds(&c))
             return refuse(view, &c);
     }
-    struct rma_condition error = rma_conditions[RMA_CONDITIONS - 1](view);
+    struct rma_condition error = predicted_error(view);
+    if (isnan(error.value))
+        return status_set(STATUS_FAILED, "%s: no memory to predict the image's error", view->method->name);
     if (rma_condition_holds(&error))
         return STATUS_OK;
     for (int k = RMA_CAUSES; k < RMA_CONDITIONS - 1; k++) {

@@ -48,7 +48,8 @@ typedef struct rma_condition rma_condition_function(const struct rma_view *view)
 extern rma_condition_function *const rma_conditions[RMA_CONDITIONS];
 
 bool rma_condition_holds(const struct rma_condition *condition);
-/* STATUS_UNSUPPORTED with name, value, limit and cure of the condition that refuses. */
+/* STATUS_UNSUPPORTED with name, value, limit and cure of the condition that refuses; STATUS_FAILED without
+   memory. */
 enum status rma_conditions_check(const struct rma_view *view);
 
 #endif

@@ -142,6 +142,8 @@ static bool kernel_make(const struct rma_view *view, double r, double reach, str
     if (!kernel->wave || !kernel->error)
         return false;
     kernel->transform = fftw_plan_dft_1d(kernel->length, kernel->wave, kernel->wave, FFTW_FORWARD, FFTW_ESTIMATE);
+    if (!kernel->transform)
+        return false;
     for (int t = 0; t < TABLES; t++) {
         kernel->offset[t] = offset_of(view, receiver_of(view, t, TABLES));
         double complex *error = kernel->error + (size_t)t * size;
