@@ -26,7 +26,6 @@ static enum status plan(const struct problem *problem, const void *options, void
     const struct rma_method method = {
         .name = "rma_lbf",
         .law = "lbf_law",
-        .law_limit = 0.1,
         .error_limit = 0.1,
         .spectrum = spectra[((const struct rma_options *)options)->variant],
         .source = "LBF21 Eq. (20)",

@@ -19,7 +19,6 @@ static enum status plan(const struct problem *problem, const void *options, void
     static const struct rma_method method = {
         .name = "rma_pca",
         .law = "pca_law",
-        .law_limit = 0.1,
         .error_limit = 0.11, /* LBF21 Table IV studies it at 0.105 */
         .spectrum = spectrum_pca,
         .source = "LBF21 Eq. (21)",

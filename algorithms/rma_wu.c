@@ -15,7 +15,6 @@ static enum status plan(const struct problem *problem, const void *options, void
     static const struct rma_method method = {
         .name = "rma_wu",
         .law = "wu_law",
-        .law_limit = 0.1,
         .error_limit = 0.11, /* as for rma_pca */
         .spectrum = spectrum_wu,
         .source = "LBF21 Eq. (22)",

@@ -10,31 +10,34 @@ static const double pi = 3.14159265358979323846;
 
 /* The beam of echoes that do not say theirs: where the transmitter's power is half of that abeam, in lambda/D. */
 static const double LOBE = 0.443;
+static const double LAW_LIMIT = 0.1;    /* rad: an image is as wrong as its phases */
 static const double WIDEST_SINE = 0.95; /* of the aperture where neither sampling nor element length bounds it */
 static const double FRESNEL_ZONES = 6;  /* beyond the track's ends: what is cut farther out leaves no ripple */
 
 static double offset_at(const struct rma_view *view, int n);
 
-/* How wide the engine focuses: what lies farther out does not exist, or is left out. */
-static void view_bounds(struct rma_view *view)
+static struct rma_bounds bounds_of(const struct rma_view *view)
 {
+    struct rma_bounds bounds = {0};
     const struct acquisition *a = view->problem->acquisition;
     double lowest = a->fc - a->bandwidth / 2, farthest = 0;
-    view->aside = fmax(fabs(offset_at(view, 0)), fabs(offset_at(view, 2)));
+    bounds.aside = fmax(fabs(offset_at(view, 0)), fabs(offset_at(view, 2)));
     /* nu of the full rate, as an angle at the lowest frequency of the pulse. */
-    view->sine = fmin(WIDEST_SINE, a->sound_speed * a->receivers / view->spacing / 4 / lowest);
+    bounds.sine = fmin(WIDEST_SINE, a->sound_speed * a->receivers / view->spacing / 4 / lowest);
     if (a->tx_length > 0)
-        view->sine = fmin(view->sine, fmax(a->sound_speed / lowest / a->tx_length, a->echo_tapers ? 0 : a->echo_sine));
+        bounds.sine =
+            fmin(bounds.sine, fmax(a->sound_speed / lowest / a->tx_length, a->echo_tapers ? 0 : a->echo_sine));
     for (int k = 0; k < view->problem->patch_count; k++) {
         const struct grid *g = &view->problem->patches[k];
         double last = g->x_first + (g->x_count - 1) * g->x_step;
-        view->way = fmax(view->way, fmax(last - view->x_low, view->x_high - g->x_first));
+        bounds.way = fmax(bounds.way, fmax(last - view->x_low, view->x_high - g->x_first));
         farthest = fmax(farthest, g->r_first + (g->r_count - 1) * g->r_step);
     }
     /* A record that holds what the widest angle sees needs no other bound. */
-    double tangent = view->sine / sqrt(1 - view->sine * view->sine);
+    double tangent = bounds.sine / sqrt(1 - bounds.sine * bounds.sine);
     if (2 * farthest * (hypot(1, tangent) - 1) / a->sound_speed * a->fs <= a->samples)
-        view->way = INFINITY;
+        bounds.way = INFINITY;
+    return bounds;
 }
 
 double rma_sinc(double z)
@@ -72,16 +75,15 @@ struct rma_view rma_view_of(const struct problem *problem, const struct rma_meth
         view.beam_sine = LOBE * a->sound_speed / a->fc / a->tx_length;
     if (a->echo_tapers)
         view.beam_sine = fmin(view.beam_sine, quarter_sine(a));
-    view_bounds(&view);
+    view.bounds = bounds_of(&view);
     return view;
 }
 
-double rma_view_reach(const struct rma_view *view, double r)
+double rma_reach(const struct acquisition *acquisition, const struct rma_bounds *bounds, double r)
 {
-    const struct acquisition *a = view->problem->acquisition;
-    double wavelength = a->sound_speed / (a->fc - a->bandwidth / 2);
-    double track = view->way + FRESNEL_ZONES * sqrt(wavelength * r / 2);
-    return fmin(r * view->sine / sqrt(1 - view->sine * view->sine), track);
+    double wavelength = acquisition->sound_speed / (acquisition->fc - acquisition->bandwidth / 2);
+    double track = bounds->way + FRESNEL_ZONES * sqrt(wavelength * r / 2);
+    return fmin(r * bounds->sine / sqrt(1 - bounds->sine * bounds->sine), track);
 }
 
 bool rma_view_aperture(const struct rma_view *view, const struct grid *patch, double r, double *low, double *high)
@@ -224,7 +226,7 @@ static struct rma_condition formula(const struct rma_view *view)
     return (struct rma_condition){
         view->method->law,
         exact ? 0 : worst_row(view, formula_at),
-        view->method->law_limit,
+        LAW_LIMIT,
         false,
         "the formula's phase error over the beam (rad, rms)",
         "rma_numeric, which has no such error; rows farther away or nearer, a narrower beam or a "

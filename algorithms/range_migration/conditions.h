@@ -21,9 +21,7 @@ struct rma_view {
     struct spectrum_setting setting;
     double x_low, x_high, spacing; /* m: the track's ends; ping to ping, > 0 */
     bool converts;                 /* not a single receiver at the transmitter, which needs no formula */
-    double sine;                   /* of the widest angle off abeam that wavenumbers, beam and lowest frequency allow */
-    double way;       /* m: the farthest that a ping is from a wanted column, along the track; INFINITY: no bound */
-    double aside;     /* m: greatest magnitude of an offset */
+    struct rma_bounds bounds;
     double beam_sine; /* of the echoes' beam at the transmitter; INFINITY: everything is seen */
 };
 
@@ -31,10 +29,6 @@ struct rma_view rma_view_of(const struct problem *problem, const struct rma_meth
                             const struct straight_track *track);
 
 double rma_sinc(double z); /* sin(pi z)/(pi z) */
-
-/* How far ahead or behind a target at range r the transmitter can be, m: by angle, or by the track's own extent and some
-   Fresnel zones beyond it. */
-double rma_view_reach(const struct rma_view *view, double r);
 
 /* The transmitter's places that echo a row at range r of a patch, from its columns: [*low, *high] m ahead of the pixel.
    False where there are none. */

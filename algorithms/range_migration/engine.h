@@ -43,7 +43,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include "range_migration/conditions.h"
+#include "range_migration/rma.h"
 
 enum {
     RMA_ALIGNMENT = 64,   /* bytes: a vector, and a line of the cache */
@@ -150,10 +150,10 @@ struct rma {
     double *offset;           /* [receivers] m */
     int extremes[2];          /* the receivers of least and greatest offset */
     double nearest, farthest; /* m: all rows asked for */
-    struct rma_view view;     /* what the conditions looked at, and how wide wavenumbers are focused */
-    int groups;               /* of receivers */
-    bool recurs;              /* by recurrence: receivers are evenly spaced, and libm is not asked for */
-    bool converts;            /* false: one receiver, at the transmitter */
+    struct rma_bounds bounds;
+    int groups;    /* of receivers */
+    bool recurs;   /* by recurrence: receivers are evenly spaced, and libm is not asked for */
+    bool converts; /* false: one receiver, at the transmitter */
 
     /* pulse compression */
     int record_length; /* of its transform; 0: the echoes come compressed */

@@ -75,7 +75,7 @@ static enum status lay_track(struct rma *rma)
         return status_set(STATUS_UNSUPPORTED, "%s: image rows begin at r = %g m; range migration needs r > 0",
                           rma->method.name, rma->nearest);
     struct rma_view view = rma_view_of(&rma->problem, &rma->method, &track);
-    rma->view = view;
+    rma->bounds = view.bounds;
     rma->converts = view.converts;
     return rma_conditions_check(&view);
 }
@@ -172,7 +172,8 @@ static double lone_block_error(struct rma *rma)
     enum { PLACES = 16, FREQUENCIES = 3 };
     const struct acquisition *a = rma->problem.acquisition;
     blocks_place(rma, 1);
-    double worst = 0, r0 = rma_block_range(rma, 0), reach = rma_view_reach(&rma->view, rma->nearest);
+    double worst = 0, r0 = rma_block_range(rma, 0),
+           reach = rma_reach(rma->problem.acquisition, &rma->bounds, rma->nearest);
     for (int end = 0; end < 2; end++) {
         double sum = 0, r = end ? rma->farthest : rma->nearest;
         for (int m = 0; m < 2; m++)
@@ -249,7 +250,7 @@ static void swath_blocks(const struct rma *rma, struct rma_swath *swath, int *li
    conversion. */
 static void delays_span(const struct rma *rma, double nearest, double farthest, double *first, double *last)
 {
-    double c = rma->setting.sound_speed, reach = rma_view_reach(&rma->view, farthest);
+    double c = rma->setting.sound_speed, reach = rma_reach(rma->problem.acquisition, &rma->bounds, farthest);
     struct vector velocity = {rma->setting.speed, 0, 0}, target = {0, farthest, 0};
     double delay = 2 * hypot(farthest, reach) / c * (1 + 2 * fabs(rma->setting.speed) / c);
     for (int k = 0; k < 4; k++) {
@@ -308,8 +309,9 @@ static enum status lay_patches(struct rma *rma)
 static enum status swath_azimuth(const struct rma *rma, struct rma_swath *swath)
 {
     double spacing = fabs(rma->spacing),
-           angle = swath->farthest * rma->view.sine / sqrt(1 - rma->view.sine * rma->view.sine);
-    double reach = rma_view_reach(&rma->view, swath->farthest), folds = reach < angle ? rma->view.way + reach : 0;
+           angle = swath->farthest * rma->bounds.sine / sqrt(1 - rma->bounds.sine * rma->bounds.sine);
+    double reach = rma_reach(rma->problem.acquisition, &rma->bounds, swath->farthest),
+           folds = reach < angle ? rma->bounds.way + reach : 0;
     double x_low = fmin(rma->x_first, rma->x_first + (rma->pings - 1) * rma->spacing);
     double x_high = x_low + (rma->pings - 1) * spacing, overhang = 0;
     for (int k = 0; k < swath->patch_count; k++) {

@@ -83,7 +83,8 @@ static void kernel_transform(const struct kernel *kernel, double d, double frequ
     const struct rma_view *view = kernel->view;
     const struct spectrum_setting *setting = &view->setting;
     const double c = setting->sound_speed, r = kernel->r, beta = setting->speed / c;
-    const double f = frequency / ((1 - beta) * (1 + beta)), focused = rma_view_reach(view, r) + view->aside;
+    const double f = frequency / ((1 - beta) * (1 + beta)),
+                 focused = rma_reach(view->problem->acquisition, &view->bounds, r) + view->bounds.aside;
     memset(kernel->wave, 0, (size_t)kernel->length * sizeof *kernel->wave);
     for (int k = -kernel->count / 2; k <= kernel->count / 2; k++) {
         double nu = k * kernel->nu_step, monostatic = spectrum_monostatic(setting, frequency, nu);
@@ -128,7 +129,8 @@ static bool kernel_make(const struct rma_view *view, double r, double reach, str
     const struct acquisition *a = view->problem->acquisition;
     const double c = a->sound_speed, highest = a->fc + a->bandwidth / 2, lowest = a->fc - a->bandwidth / 2;
     const double beta = fabs(view->setting.speed) / c, margin = FRESNEL_ZONES * sqrt(c / lowest * r / 2);
-    double far = reach + margin + view->aside; /* the angle to there, and what the speed adds, bound the wavenumbers */
+    double far =
+        reach + margin + view->bounds.aside; /* the angle to there, and what the speed adds, bound the wavenumbers */
     double band =
         fmin(a->receivers / view->spacing, 4 * highest / c / (1 - beta) * fmin(1, far / hypot(far, r) + 2 * beta));
     int count = (int)fmin(ceil(band * 2 * SPARE * far), LONGEST);

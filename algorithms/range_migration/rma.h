@@ -85,7 +85,6 @@ extern const char *const rma_spacing_names[],
 
 struct rma_method {
     const char *name, *law; /* law: of the condition that bounds the error of `spectrum` (conditions.h) */
-    double law_limit;       /* rad: its limit; an image's error is that of its phases */
     double error_limit;     /* of the predicted error of an image */
     spectrum_function *spectrum;
     /* The paper's FLOPs for M receivers (LBF21 Eqs. (20) to (22)): numbers[0] M + numbers[1] range transforms of
@@ -93,6 +92,17 @@ struct rma_method {
     const char *source;
     double range[2], azimuth[2], products[2], interpolations;
 };
+
+/* How wide the engine focuses; what lies farther out does not exist, or is left out. */
+struct rma_bounds {
+    double sine;  /* of the widest angle off abeam that wavenumbers, beam and lowest frequency allow */
+    double way;   /* m: the farthest that a ping is from a wanted column, along the track; INFINITY: no bound */
+    double aside; /* m: greatest magnitude of an offset */
+};
+
+/* How far ahead or behind a target at range r the transmitter can be, m: by angle, or by the track's own extent and some
+   Fresnel zones beyond it. */
+double rma_reach(const struct acquisition *acquisition, const struct rma_bounds *bounds, double r);
 
 /* The callbacks of struct algorithm, for a method. `options` is only used during the call. */
 enum status rma_plan(const struct problem *problem, const struct rma_method *method, const struct rma_options *options,

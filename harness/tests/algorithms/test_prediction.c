@@ -1,0 +1,106 @@
+/* Range migration on scenes that nobody chose for it: images within the error that was predicted, or refused by name. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "tests/support.h"
+
+/* 150 kHz, receivers 0.04 m apart, tracks about x = 0, one target at range r and 21 rows about it. */
+struct setup {
+    const char *what;
+    double bandwidth, first_offset, tx_length, spacing, r, target, half, first; /* Hz, m: columns first +- half */
+    int receivers, pings, columns;
+    const char *beam;
+    const char *spec, *refused; /* refused by this condition; "": not refused */
+    double error;               /* at most, where not refused */
+};
+
+#define OPEN  "kind = \"rect\";"
+#define CUT   "kind = \"rect\"; truncation = \"tx\"; limit = 0.443;"
+#define TAPER "kind = \"txrx\";"
+
+static const struct setup setups[] = {
+    {"plain", 15e3, 0.04, 0.08, 0.16, 20, 0, 0.5, 0, 8, 17, 33, CUT, "rma_lbf", "", 0.005},
+    {"narrow columns, few pings", 15e3, 0.04, 0.08, 0.1, 4, 0, 0.05, 0, 8, 4, 33, OPEN, "rma_lbf", "", 0.1},
+    {"echoes from beyond the element's null", 15e3, 0.04, 0.28, 0.8, 100, 0, 0.56, 0, 40, 21, 33, OPEN, "rma_lbf", "",
+     0.005}, /* was 0.70 */
+    {"more wavenumbers than sampled, of the upper band's edge alone", 140e3, 0.04, 0.08, 0.16, 20, 0, 0.5, 0, 8, 17, 33,
+     OPEN, "rma_lbf", "", 0.02}, /* was refused */
+    {"receiver far astern, deep", 15e3, -1.84, 0.08, 0.03, 20, 0, 0.7, 0, 2, 17, 33, OPEN, "rma_numeric", "",
+     0.05}, /* was 0.15, by a lone block */
+    {"two pings, one of them in the beam", 15e3, 0.04, 0.08, 0.16, 20, 0.9, 1.5, 1.2, 8, 2, 33, CUT, "rma_lbf", "",
+     0.06},
+    {"two pings, wide columns", 15e3, 0.04, 0.08, 0.8, 100, 0, 12, 0, 40, 2, 81, OPEN, "rma_lbf", "doppler", 0},
+    {"five pings close to the rows", 15e3, 0.04, 0.08, 0.2, 4, 0, 0.64, 0, 8, 5, 65, OPEN, "rma_lbf", "doppler", 0},
+    {"nine pings close to the rows, wide columns", 15e3, 0.04, 0.08, 0.1, 4, 0, 3, 0, 8, 9, 65, OPEN, "rma_lbf",
+     "doppler", 0},
+    {"receiver 104 wavelengths astern", 15e3, -1.04, 0.08, 0.005, 4, 0, 0.1, 0, 1, 81, 33, OPEN, "rma_pca", "pca_law",
+     0},
+    {"columns that no ping sees", 15e3, 0.04, 0.08, 0.16, 20, 5, 0.3, 5, 8, 9, 33, CUT, "rma_lbf", "predicted_error",
+     0},
+};
+
+static struct scene scene_of(const struct setup *s)
+{
+    char text[2000];
+    double fs = 2 * s->bandwidth, delay = 2 * s->r / 1500, aside = s->half + s->pings * s->spacing / 2;
+    int first = (int)(delay * fs) - 100, count = (int)((hypot(s->r, 2 * aside) - s->r) / 750 * fs) + 300;
+    snprintf(
+        text, sizeof text,
+        "sonar = { fc = 150e3; bandwidth = %.17g; fs = %.17g; };\npulse = { kind = \"flat\"; };\n"
+        "array = { tx_length = %.17g; rx_length = 0.04; receivers = %d; first_offset = %.17g; pitch = 0.04; };\n"
+        "track = { speed = 2.5; pri = %.17g; pings = %d; x_first = %.17g; };\n"
+        "record = { first_sample = %d; samples = %d; };\nbeam = { %s };\n"
+        "targets = { points = ( { x = %.17g; r = %.17g; } ); };\n"
+        "image = { x = { first = %.17g; step = %.17g; count = %d; }; r = { first = %.17g; step = 0.01; count = 21; "
+        "}; };\n",
+        s->bandwidth, fs, s->tx_length, s->receivers, s->first_offset, s->spacing / 2.5, s->pings,
+        -(s->pings - 1) * s->spacing / 2, first > 0 ? first : 0, count, s->beam, s->target, s->r, s->first - s->half,
+        2 * s->half / (s->columns - 1), s->columns, s->r - 0.2);
+    struct scene scene;
+    support_write("scene.cfg", text);
+    if (scene_load(path_of("scene.cfg"), SASBENCH_ROOT "/scenes", &scene) != STATUS_OK)
+        fail_msg("%s: %s", s->what, status_message());
+    return scene;
+}
+
+static void images_are_right_or_refused(void **state)
+{
+    (void)state;
+    int failures = 0;
+    for (size_t k = 0; k < sizeof setups / sizeof *setups; k++) {
+        const struct setup *s = &setups[k];
+        struct scene scene = scene_of(s);
+        struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE};
+        struct echoes echoes;
+        struct image exact, image;
+        char spec[60], name[60];
+        support_echoes(&scene, &echoes);
+        snprintf(spec, sizeof spec, "%s:precision=double", s->spec);
+        snprintf(name, sizeof name, "condition %s:", s->refused);
+        assert_int_equal(support_image("reference:precision=double", problem, &echoes, &exact), STATUS_OK);
+        if (support_image(spec, problem, &echoes, &image) == STATUS_OK) {
+            double error = support_difference(&image, &exact);
+            print_message("    %s: %.2e\n", s->what, error);
+            if (s->refused[0] || !(error <= s->error))
+                print_error("%s: error %g of %s is accepted\n", s->what, error, spec), failures++;
+            image_free(&image);
+        } else {
+            print_message("    %s: %s\n", s->what, status_message());
+            if (!s->refused[0] || !strstr(status_message(), name))
+                print_error("%s: %s\n", s->what, status_message()), failures++;
+        }
+        image_free(&exact);
+        echoes_free(&echoes);
+        scene_free(&scene);
+    }
+    assert_int_equal(failures, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(images_are_right_or_refused, folder_make, folder_remove),
+    };
+    return cmocka_run_group_tests_name("prediction", tests, NULL, NULL);
+}
