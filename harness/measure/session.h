@@ -9,7 +9,7 @@
 /* Made by session_open, released by session_close. */
 struct session {
     const struct scene *scene; /* borrowed, outlives the session */
-    struct echoes echoes[2];   /* by enum precision */
+    struct echoes echoes[2];   /* by enum precision; extreme ones divided by one power of two, which images keep */
     struct image reference;    /* double, on the patches where images are compared; no patches without one */
     char no_reference[512];    /* why there is none: refused, or no memory; else empty */
 };

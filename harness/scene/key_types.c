@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#define LEVEL_MIN 1e-100 /* of amplitudes, unless they are 0 */
+#define LEVEL_MIN 1e-300 /* of amplitudes, unless they are 0 */
 
 static bool within(const struct key *key, double value)
 {
@@ -137,9 +137,9 @@ const struct type BOOLEAN = {"true or false", read_boolean, sizeof(bool), false}
 const struct type CHOICE = {"one of", read_choice, sizeof(int), false};
 const struct type TEXT = {"a text of one line", read_text, 0, false};
 const struct type SPAN = {"[min, max] with min <= max, each", read_span, 2 * sizeof(double), false};
-const struct type AMPLITUDE = {"0 or of magnitude >= 1e-100, a number or [re, im], each", read_amplitude,
+const struct type AMPLITUDE = {"0 or of magnitude >= 1e-300, a number or [re, im], each", read_amplitude,
                                sizeof(double complex), false};
-const struct type LEVEL = {"0 or >= 1e-100, a number", read_level, sizeof(double), false};
+const struct type LEVEL = {"0 or >= 1e-300, a number", read_level, sizeof(double), false};
 const struct type GROUP = {"a group { ... }", read_group, 0, false};
 const struct type LIST = {"a list ( ... )", read_list, 0, false};
 

@@ -242,9 +242,41 @@ static bool is_constant(const void *values, size_t size, int pings)
     return true;
 }
 
+/* Echoes as they were recorded: times 2^exponent. Errors: STATUS_INVALID where double cannot hold them. */
+static enum status echoes_restore(const char *path, const struct echoes *echoes, struct echoes *restored)
+{
+    const struct acquisition *a = echoes->acquisition;
+    enum status status = echoes_allocate(a, PRECISION_DOUBLE, restored);
+    size_t count = (size_t)a->samples * (size_t)a->receivers * (size_t)a->pings;
+    for (size_t i = 0; i < count && status == STATUS_OK; i++) {
+        double complex z = echoes->precision == PRECISION_FLOAT ? ((const float complex *)echoes->samples)[i]
+                                                                : ((const double complex *)echoes->samples)[i];
+        double re = ldexp(creal(z), echoes->exponent), im = ldexp(cimag(z), echoes->exponent);
+        ((double complex *)restored->samples)[i] = __builtin_complex(re, im);
+        if (!isfinite(re) || !isfinite(im))
+            status =
+                status_set(STATUS_INVALID,
+                           "%s: sample %zu would be %g%+gi times 2^%d, beyond the range of double; the echoes must "
+                           "be smaller",
+                           path, i + 1, creal(z), cimag(z), echoes->exponent);
+    }
+    if (status != STATUS_OK)
+        echoes_free(restored);
+    return status;
+}
+
 enum status echo_file_write(const char *path, const struct echoes *echoes, const char *description)
 {
     const struct acquisition *a = echoes->acquisition;
+    if (echoes->exponent != 0) {
+        struct echoes restored;
+        enum status status = echoes_restore(path, echoes, &restored);
+        if (status == STATUS_OK) {
+            status = echo_file_write(path, &restored, description);
+            echoes_free(&restored);
+        }
+        return status;
+    }
     size_t samples = (size_t)a->samples, receivers = (size_t)a->receivers, pings = (size_t)a->pings;
     size_t samples_bytes = samples * receivers * pings * precision_size(echoes->precision);
     size_t rx_bytes = receivers * pings * sizeof *a->rx;

@@ -77,14 +77,14 @@ enum status writer_open(struct writer *writer, const char *path, size_t largest_
 }
 
 static void write_variable(struct writer *writer, const char *name, enum matio_classes class, enum matio_types type,
-                           size_t rows, size_t columns, size_t pages, void *data, int flags)
+                           const size_t shape[3], void *data, int flags)
 {
     if (writer->status != STATUS_OK) {
         return;
     }
-    size_t dims[3] = {rows, columns, pages};
+    size_t dims[3] = {shape[0], shape[1], shape[2]};
     errno = 0;
-    matvar_t *matvar = Mat_VarCreate(name, class, type, pages == 1 ? 2 : 3, dims, data, MAT_F_DONT_COPY_DATA | flags);
+    matvar_t *matvar = Mat_VarCreate(name, class, type, dims[2] == 1 ? 2 : 3, dims, data, MAT_F_DONT_COPY_DATA | flags);
     /* Version 7.3 stays unpacked: HDF5 would pack real and imaginary parts in turns, which takes minutes. */
     bool is_packed = Mat_GetVersion(writer->mat) == MAT_FT_MAT5;
     if (!matvar || Mat_VarWrite(writer->mat, matvar, is_packed ? MAT_COMPRESSION_ZLIB : MAT_COMPRESSION_NONE) != 0) {
@@ -97,12 +97,13 @@ static void write_variable(struct writer *writer, const char *name, enum matio_c
 void write_reals(struct writer *writer, const char *name, size_t rows, size_t columns, size_t pages,
                  const double *values)
 {
-    write_variable(writer, name, MAT_C_DOUBLE, MAT_T_DOUBLE, rows, columns, pages, (void *)values, 0);
+    write_variable(writer, name, MAT_C_DOUBLE, MAT_T_DOUBLE, (size_t[]){rows, columns, pages}, (void *)values, 0);
 }
 
 void write_text(struct writer *writer, const char *name, const char *text)
 {
-    write_variable(writer, name, MAT_C_CHAR, MAT_T_UTF8, strlen(text) > 0, strlen(text), 1, (void *)text, 0);
+    write_variable(writer, name, MAT_C_CHAR, MAT_T_UTF8, (size_t[]){strlen(text) > 0, strlen(text), 1}, (void *)text,
+                   0);
 }
 
 /* libmatio wants real and imaginary parts apart. */
@@ -127,8 +128,8 @@ void write_complex(struct writer *writer, const char *name, const size_t dims[3]
         }
     }
     bool is_float = precision == PRECISION_FLOAT;
-    write_variable(writer, name, is_float ? MAT_C_SINGLE : MAT_C_DOUBLE, is_float ? MAT_T_SINGLE : MAT_T_DOUBLE,
-                   dims[0], dims[1], dims[2], &parts, MAT_F_COMPLEX);
+    write_variable(writer, name, is_float ? MAT_C_SINGLE : MAT_C_DOUBLE, is_float ? MAT_T_SINGLE : MAT_T_DOUBLE, dims,
+                   &parts, MAT_F_COMPLEX);
     free(parts.Re);
     free(parts.Im);
 }

@@ -99,6 +99,7 @@ struct replica {
     int length, lead;         /* lead: samples before the record, so that echoes under way at t0 are whole */
     double *frequency;        /* [length] Hz, -fs/2 < f <= fs/2 */
     double complex *spectrum; /* [length] scaled for an unnormalised inverse FFT */
+    double scale;             /* of amplitudes and noise, a power of two */
     bool nyquist;             /* the last positive bin is fs/2, which stands for both ends of the band */
     fftw_plan inverse;
 };
@@ -228,7 +229,7 @@ static void simulate_pair(const struct scene *scene, const struct replica *repli
         if (!(delay > -duration && delay < window)) /* no part of the echo lies in the record */
             continue;
         struct angles angles = pair_angles(a, ping, receiver, p, tau);
-        double complex amplitude = target->amplitude * turn(-a->fc * tau);
+        double complex amplitude = replica->scale * target->amplitude * turn(-a->fc * tau);
         any = true;
         if (sampled)
             add_sampled(scene, &angles, amplitude, delay, record);
@@ -240,9 +241,10 @@ static void simulate_pair(const struct scene *scene, const struct replica *repli
         memcpy(record, work + replica->lead, samples * sizeof *record);
     }
     if (scene->noise_std > 0) {
+        const double std = replica->scale * scene->noise_std;
         struct random random = random_seed(scene->noise_seed, index);
         for (size_t n = 0; n < samples; n++)
-            record[n] += scene->noise_std * random_normal(&random);
+            record[n] += std * random_normal(&random);
     }
 }
 
@@ -252,6 +254,21 @@ static bool is_finite(const double complex *record, int samples)
     for (int n = 0; n < samples; n++)
         sum += 0 * creal(record[n]) + 0 * cimag(record[n]);
     return sum == 0;
+}
+
+/* The power of two by which the echoes are divided: 0 unless the largest amplitude lies so far out that sums of echoes, or
+   squares of the image, could leave double. */
+static int amplitude_exponent(const struct scene *scene)
+{
+    double largest = scene->noise_std;
+    int exponent = 0;
+    for (int k = 0; k < scene->target_count; k++) {
+        double complex amplitude = scene->targets[k].amplitude;
+        largest = fmax(largest, fmax(fabs(creal(amplitude)), fabs(cimag(amplitude))));
+    }
+    if (largest > 0 && !(largest >= 0x1p-400 && largest <= 0x1p400))
+        frexp(largest, &exponent);
+    return exponent;
 }
 
 enum status scene_simulate(const struct scene *scene, struct echoes *echoes)
@@ -264,6 +281,9 @@ enum status scene_simulate(const struct scene *scene, struct echoes *echoes)
     if (status != STATUS_OK)
         return status;
     status = echoes_allocate(a, PRECISION_DOUBLE, echoes);
+    const int exponent = amplitude_exponent(scene);
+    echoes->exponent = exponent;
+    replica.scale = ldexp(1, -exponent);
     double complex *work = fftw_malloc((size_t)omp_get_max_threads() * (size_t)replica.length * sizeof *work);
     if (status == STATUS_OK && !work) {
         echoes_free(echoes);

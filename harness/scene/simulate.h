@@ -6,7 +6,8 @@
 
 /* Allocates *echoes (double) and fills it; freed with echoes_free. lfm: the replica's spectrum delayed by
    exp(-j 2 pi (fc+f) tau), raw; lfm_time: the chirp sampled at n/fs - tau, raw; flat: spectrum 1 on |f| <= B/2 (bins
-   at B/2 weigh 1/2), compressed. The same bits for any number of threads. Errors: STATUS_FAILED without memory,
+   at B/2 weigh 1/2), compressed. The same bits for any number of threads. Echoes of amplitudes beyond
+   2^+-400 are divided by a power of two, exactly: echoes->exponent. Errors: STATUS_FAILED without memory,
    STATUS_INVALID for numbers so extreme that an echo is not finite; nothing to free then. */
 enum status scene_simulate(const struct scene *scene, struct echoes *echoes);
 

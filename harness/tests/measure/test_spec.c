@@ -105,70 +105,71 @@ static void canonical_text_reads_back(void **state)
     }
 }
 
+/* The SPEC, and what the message must hold: the value, and what would be accepted. */
+static const struct {
+    const char *text, *value, *accepted;
+} bad_specs[] = {
+    {"", "unknown algorithm ''", "full, bare"},
+    {"fulll", "'fulll'", "full, bare"},
+    {"Full:taps=8", "'Full'", "full, bare"},
+    {" full", "' full'", "full, bare"},
+    {"full,taps=8", "'full,taps=8'", "full, bare"},
+    {"full:", "''", "key=value"},
+    {"full:taps=8,", "''", "key=value"},
+    {"full:,taps=8", "''", "key=value"},
+    {"full:taps=8,,window=none", "''", "key=value"},
+    {"full:taps", "'taps'", "key=value"},
+    {"full:tap=8", "'tap'", "taps, window, spacing, length, precision"},
+    {"full:Taps=8", "'Taps'", "taps, window, spacing, length, precision"},
+    {"full:taps =8", "'taps '", "taps, window, spacing, length, precision"},
+    {"full:=8", "unknown key ''", "taps, window, spacing, length, precision"},
+    {"bare:taps=8", "'taps'", "accepted: precision"},
+    {"full:taps=8,taps=8", "taps is given twice", "once"},
+    {"full:precision=float,precision=float", "precision is given twice", "once"},
+    {"full:taps=", "taps is ''", "from -4 to 64"},
+    {"full:taps= 8", "taps is ' 8'", "from -4 to 64"},
+    {"full:taps=8 ", "taps is '8 '", "from -4 to 64"},
+    {"full:taps=8x", "taps is '8x'", "from -4 to 64"},
+    {"full:taps=8.5", "taps is '8.5'", "whole number from -4 to 64"},
+    {"full:taps=8e0", "taps is '8e0'", "whole number"},
+    {"full:taps=0x8", "taps is '0x8'", "whole number"},
+    {"full:taps=8-", "taps is '8-'", "whole number"},
+    {"full:taps=-", "taps is '-'", "whole number"},
+    {"full:taps=8=8", "taps is '8=8'", "whole number"},
+    {"full:taps=65", "taps is '65'", "from -4 to 64"},
+    {"full:taps=-5", "taps is '-5'", "from -4 to 64"},
+    {"full:taps=4294967304", "taps is '4294967304'", "from -4 to 64"},
+    {"full:taps=99999999999999999999", "taps is '99999999999999999999'", "from -4 to 64"},
+    {"full:spacing=nan", "spacing is 'nan'", "from 0.001 to 1000"},
+    {"full:spacing=inf", "spacing is 'inf'", "from 0.001 to 1000"},
+    {"full:spacing=1e999", "spacing is '1e999'", "from 0.001 to 1000"},
+    {"full:spacing=1e-999", "spacing is '1e-999'", "from 0.001 to 1000"},
+    {"full:spacing=0.0009", "spacing is '0.0009'", "from 0.001 to 1000"},
+    {"full:spacing=1000.1", "spacing is '1000.1'", "from 0.001 to 1000"},
+    {"full:spacing=1e", "spacing is '1e'", "from 0.001 to 1000"},
+    {"full:spacing=0x1p3", "spacing is '0x1p3'", "from 0.001 to 1000"},
+    {"full:spacing=1.2.3", "spacing is '1.2.3'", "from 0.001 to 1000"},
+    {"full:spacing=", "spacing is ''", "from 0.001 to 1000"},
+    {"full:length=1e999", "length is '1e999'", "from 0 to inf"},
+    {"full:length=inf", "length is 'inf'", "from 0 to inf"},
+    {"full:length=-1", "length is '-1'", "from 0 to inf"},
+    {"full:window=hann", "window is 'hann'", "none, kaiser"},
+    {"full:window=", "window is ''", "none, kaiser"},
+    {"full:window=1", "window is '1'", "none, kaiser"},
+    {"full:precision=half", "precision is 'half'", "float, double"},
+};
+
 static void bad_specs_are_refused(void **state)
 {
     (void)state;
-    /* The SPEC, and what the message must hold: the value, and what would be accepted. */
-    static const struct {
-        const char *text, *value, *accepted;
-    } cases[] = {
-        {"", "unknown algorithm ''", "full, bare"},
-        {"fulll", "'fulll'", "full, bare"},
-        {"Full:taps=8", "'Full'", "full, bare"},
-        {" full", "' full'", "full, bare"},
-        {"full,taps=8", "'full,taps=8'", "full, bare"},
-        {"full:", "''", "key=value"},
-        {"full:taps=8,", "''", "key=value"},
-        {"full:,taps=8", "''", "key=value"},
-        {"full:taps=8,,window=none", "''", "key=value"},
-        {"full:taps", "'taps'", "key=value"},
-        {"full:tap=8", "'tap'", "taps, window, spacing, length, precision"},
-        {"full:Taps=8", "'Taps'", "taps, window, spacing, length, precision"},
-        {"full:taps =8", "'taps '", "taps, window, spacing, length, precision"},
-        {"full:=8", "unknown key ''", "taps, window, spacing, length, precision"},
-        {"bare:taps=8", "'taps'", "accepted: precision"},
-        {"full:taps=8,taps=8", "taps is given twice", "once"},
-        {"full:precision=float,precision=float", "precision is given twice", "once"},
-        {"full:taps=", "taps is ''", "from -4 to 64"},
-        {"full:taps= 8", "taps is ' 8'", "from -4 to 64"},
-        {"full:taps=8 ", "taps is '8 '", "from -4 to 64"},
-        {"full:taps=8x", "taps is '8x'", "from -4 to 64"},
-        {"full:taps=8.5", "taps is '8.5'", "whole number from -4 to 64"},
-        {"full:taps=8e0", "taps is '8e0'", "whole number"},
-        {"full:taps=0x8", "taps is '0x8'", "whole number"},
-        {"full:taps=8-", "taps is '8-'", "whole number"},
-        {"full:taps=-", "taps is '-'", "whole number"},
-        {"full:taps=8=8", "taps is '8=8'", "whole number"},
-        {"full:taps=65", "taps is '65'", "from -4 to 64"},
-        {"full:taps=-5", "taps is '-5'", "from -4 to 64"},
-        {"full:taps=4294967304", "taps is '4294967304'", "from -4 to 64"},
-        {"full:taps=99999999999999999999", "taps is '99999999999999999999'", "from -4 to 64"},
-        {"full:spacing=nan", "spacing is 'nan'", "from 0.001 to 1000"},
-        {"full:spacing=inf", "spacing is 'inf'", "from 0.001 to 1000"},
-        {"full:spacing=1e999", "spacing is '1e999'", "from 0.001 to 1000"},
-        {"full:spacing=1e-999", "spacing is '1e-999'", "from 0.001 to 1000"},
-        {"full:spacing=0.0009", "spacing is '0.0009'", "from 0.001 to 1000"},
-        {"full:spacing=1000.1", "spacing is '1000.1'", "from 0.001 to 1000"},
-        {"full:spacing=1e", "spacing is '1e'", "from 0.001 to 1000"},
-        {"full:spacing=0x1p3", "spacing is '0x1p3'", "from 0.001 to 1000"},
-        {"full:spacing=1.2.3", "spacing is '1.2.3'", "from 0.001 to 1000"},
-        {"full:spacing=", "spacing is ''", "from 0.001 to 1000"},
-        {"full:length=1e999", "length is '1e999'", "from 0 to inf"},
-        {"full:length=inf", "length is 'inf'", "from 0 to inf"},
-        {"full:length=-1", "length is '-1'", "from 0 to inf"},
-        {"full:window=hann", "window is 'hann'", "none, kaiser"},
-        {"full:window=", "window is ''", "none, kaiser"},
-        {"full:window=1", "window is '1'", "none, kaiser"},
-        {"full:precision=half", "precision is 'half'", "float, double"},
-    };
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    for (size_t i = 0; i < sizeof bad_specs / sizeof *bad_specs; i++) {
         struct spec spec;
         status_set(STATUS_OK, "%s", "");
-        if (spec_parse(cases[i].text, &spec) != STATUS_INVALID)
-            fail_msg("'%s' was accepted", cases[i].text);
-        if (!strstr(status_message(), cases[i].value) || !strstr(status_message(), cases[i].accepted))
-            fail_msg("'%s': the message lacks \"%s\" or \"%s\": %s", cases[i].text, cases[i].value, cases[i].accepted,
-                     status_message());
+        if (spec_parse(bad_specs[i].text, &spec) != STATUS_INVALID)
+            fail_msg("'%s' was accepted", bad_specs[i].text);
+        if (!strstr(status_message(), bad_specs[i].value) || !strstr(status_message(), bad_specs[i].accepted))
+            fail_msg("'%s': the message lacks \"%s\" or \"%s\": %s", bad_specs[i].text, bad_specs[i].value,
+                     bad_specs[i].accepted, status_message());
         assert_null(spec.algorithm);
         assert_null(spec.options);
         spec_free(&spec);
