@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "gate/diff.h"
+#include "measure/results_folder.h"
 #include "tests/fuzz/input.h"
 
 static FILE *nowhere;
@@ -44,12 +45,12 @@ static void folder_resume(void)
                                           .program = "p",
                                           .date = "d",
                                           .threads = 2};
-    struct record *record;
-    if (record_open(fuzz_folder(), &provenance, &record) != STATUS_OK)
+    struct results_folder *results;
+    if (results_folder_open(fuzz_folder(), &provenance, &results) != STATUS_OK)
         return;
-    if (record_scene(record, "s", 1) == STATUS_OK)
-        record_find(record, "s", "bp_nearest", "", "float");
-    record_close(record);
+    if (results_folder_scene(results, "s", 1) == STATUS_OK)
+        results_folder_find(results, "s", "bp_nearest", "", "float");
+    results_folder_close(results);
 }
 
 static void folder_empty(void)
