@@ -8,7 +8,7 @@
    - `plan` does all that depends on geometry and settings only: tables, FFTW plans, scratch memory. It is timed apart.
    - `execute` is the timed part. It goes from the samples in memory to the image in memory, allocates nothing, writes
      every pixel, gives the same bits for any number of threads, and may be called any number of times.
-   - Neither prints, exits or keeps state outside the plan. What goes wrong is said with status_set.
+   - Neither prints, exits or keeps state outside the plan. What goes wrong is reported with status_set.
    - Threads are OpenMP's; a plan is executed with at most the omp_get_max_threads() it was made with.
    - The acquisition and the patches outlive the plan; samples and pixels belong to the caller. */
 #ifndef SASBENCH_ALGORITHM_H
@@ -68,9 +68,6 @@ struct stages {
 void stages_begin(struct stages *stages);                 /* forget all, start the clock */
 void stages_end(struct stages *stages, const char *name); /* time since the last mark goes to `name` (summed) */
 double seconds_now(void);                                 /* monotonic clock, s */
-/* From now on seconds_now, called by this thread, leaves out the time in which the thread was ready to run and other
-   work had the processor (what the thread sleeps still counts). Where the system does not tell that, nothing changes. */
-void seconds_skip_waiting(void);
 
 /* What the plan will do, and what it leaves out. */
 struct work {
@@ -95,7 +92,7 @@ struct param {
     size_t offset, size;        /* of the field in the options struct */
     double initial, min, max;   /* default and closed bounds; for a choice initial is the index */
     const char *const *choices; /* NULL-terminated names of a choice, else NULL */
-    const char *sweep;          /* the ladder of values that `sweep` runs, separated by blanks; may be NULL */
+    const char *sweep;          /* the values that `sweep` runs, separated by blanks; may be NULL */
     bool terse;                 /* left out of the options text while it has its default */
 };
 

@@ -51,7 +51,7 @@ static enum status tabulate(struct bp *bp, const struct interpolator *in, const 
             /* The cubic through the four Chebyshev points of the interval, from Newton's divided differences. */
             double u[4], *c = w + (size_t)k * 4 * taps;
             for (int n = 0; n < 4; n++) {
-                u[n] = 0.5 - 0.5 * cos(3.14159265358979323846 * (2 * n + 1) / 8);
+                u[n] = 0.5 - 0.5 * cos(M_PI * (2 * n + 1) / 8);
                 in->weights(options, (k + u[n]) / BP_INTERVALS, at + (size_t)n * taps);
             }
             for (size_t t = 0; t < taps; t++) {

@@ -1,39 +1,27 @@
 /* The clock and the stage times of algorithm.h. */
-#include <fcntl.h>
-#include <stdio.h>
 #include <string.h>
 #include <time.h>
-#include <unistd.h>
 
 #include "algorithm.h"
+#include "common/clock.h"
 
-static int waits = -1; /* Linux's account of the thread, when waiting is left out */
-
-void seconds_skip_waiting(void)
+double clock_monotonic(void)
 {
-    waits = open("/proc/thread-self/schedstat", O_RDONLY | O_CLOEXEC);
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* Its second number: ns that the thread was ready to run and had no processor. */
-static long long waited_ns(void)
+static double (*clock_now)(void) = clock_monotonic;
+
+void clock_set(double (*clock)(void))
 {
-    char text[80];
-    long long waited = 0;
-    ssize_t length = waits >= 0 ? pread(waits, text, sizeof text - 1, 0) : 0;
-    text[length > 0 ? length : 0] = '\0';
-    sscanf(text, "%*d %lld", &waited);
-    return waited;
+    clock_now = clock;
 }
 
 double seconds_now(void)
 {
-    struct timespec now;
-    long long waited;
-    do { /* again when the processor was lost between the two clocks */
-        waited = waited_ns();
-        clock_gettime(CLOCK_MONOTONIC, &now);
-    } while (waited_ns() != waited);
-    return (double)now.tv_sec + 1e-9 * (double)(now.tv_nsec - waited);
+    return clock_now();
 }
 
 void stages_begin(struct stages *stages)

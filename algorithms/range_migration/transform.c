@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/bessel.h"
 #include "common/fft_length.h"
 #include "common/real.h"
 #include "range_migration/engine.h"
@@ -65,17 +66,6 @@ static bool filter_fill(struct rma *rma)
     return true;
 }
 
-/* I0(x)/exp(x) by its power series: all terms are positive. */
-static double bessel_i0(double x)
-{
-    double term = exp(-x), sum = term, y = x * x / 4;
-    for (int k = 1; term > 1e-17 * sum; k++) {
-        term *= y / ((double)k * k);
-        sum += term;
-    }
-    return sum;
-}
-
 /* The Kaiser kernel of the Stolt interpolation. */
 static void kernel_fill(const struct rma *rma)
 {
@@ -85,7 +75,8 @@ static void kernel_fill(const struct rma *rma)
     for (int i = 0; taps && i < RMA_INTERVALS + 2; i++)
         for (int k = 0; k < taps; k++) {
             double z = 2 * ((double)i / RMA_INTERVALS - (1 - taps / 2 + k)) / taps, inside = sqrt(fmax(1 - z * z, 0));
-            kernel[i * taps + k] = (real)(fabs(z) <= 1 ? bessel_i0(shape * inside) * exp(shape * (inside - 1)) : 0);
+            kernel[i * taps + k] =
+                (real)(fabs(z) <= 1 ? bessel_i0_scaled(shape * inside) * exp(shape * (inside - 1)) : 0);
         }
 }
 

@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "measure/imaging.h"
+#include "measure/timing.h"
 #include "measure/session.h"
 #include "scene/simulate.h"
 #include "data/echo_data.h"

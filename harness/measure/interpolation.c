@@ -4,21 +4,11 @@
 #include <float.h>
 #include <math.h>
 
+#include "common/bessel.h"
 #include "data/echo_data.h"
 #include "measure/metrics.h"
 
 #define KAISER_BETA 10.0 /* stop band of 100 dB */
-
-/* Modified Bessel function of order 0 by its power series; the arguments are small. */
-static double bessel_i0(double x)
-{
-    double sum = 1, term = 1;
-    for (int k = 1; term > 1e-17 * sum; k++) {
-        term *= (x / (2 * k)) * (x / (2 * k));
-        sum += term;
-    }
-    return sum;
-}
 
 void taps_fill(double fraction, double taps[2 * TAPS_HALF])
 {

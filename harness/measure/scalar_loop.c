@@ -47,7 +47,6 @@ double control_seconds_per_pair(const struct problem *problem, const struct echo
     const struct acquisition *a = problem->acquisition;
     const struct grid *grid = &problem->patches[problem->patch_count / 2];
     const float *samples = echoes->samples;
-    const double pi = 3.14159265358979323846;
     struct choice *chosen = malloc(PAIRS * sizeof *chosen);
     int count = chosen ? choose(a, grid, chosen) : 0;
     volatile float sink;
@@ -58,7 +57,7 @@ double control_seconds_per_pair(const struct problem *problem, const struct echo
         if (!(position >= 0 && position < a->samples))
             continue;
         const float *s = samples + 2 * (chosen[k].pair * a->samples + (long long)position);
-        double cycles = a->fc * tau, phase = 2 * pi * (cycles - floor(cycles));
+        double cycles = a->fc * tau, phase = 2 * M_PI * (cycles - floor(cycles));
         float wr = (float)cos(phase), wi = (float)sin(phase);
         re += s[0] * wr - s[1] * wi;
         im += s[0] * wi + s[1] * wr;

@@ -14,8 +14,6 @@
 #include "data/echo_data.h"
 #include "data/random.h"
 
-static const double pi = 3.14159265358979323846;
-
 int pulse_length_lfm(double duration, double fs)
 {
     double length = floor(duration * fs * (1 + 1e-12));
@@ -25,7 +23,7 @@ int pulse_length_lfm(double duration, double fs)
 static double complex chirp(double bandwidth, double duration, double t)
 {
     double u = t - duration / 2, cycles = bandwidth / (2 * duration) * u * u;
-    return cexp(I * (2 * pi * (cycles - floor(cycles))));
+    return cexp(I * (2 * M_PI * (cycles - floor(cycles))));
 }
 
 void pulse_lfm(double bandwidth, double duration, double fs, int length, double complex *pulse)
@@ -36,7 +34,7 @@ void pulse_lfm(double bandwidth, double duration, double fs, int length, double 
 
 static double sinc(double z)
 {
-    return fabs(z) < 1e-9 ? 1 : sin(pi * z) / (pi * z);
+    return fabs(z) < 1e-9 ? 1 : sin(M_PI * z) / (M_PI * z);
 }
 
 /* Sines of the angles off the plane across the track: of the transmitter at emission, of the receiver at reception, and
@@ -177,7 +175,7 @@ static double complex product(double complex a, double complex b)
 
 static double complex turn(double cycles)
 {
-    double angle = 2 * pi * (cycles - floor(cycles + 0.5));
+    double angle = 2 * M_PI * (cycles - floor(cycles + 0.5));
     return __builtin_complex(cos(angle), sin(angle)); /* CMPLX, which clang 14 lacks */
 }
 
@@ -196,7 +194,7 @@ static void add_delayed(const struct scene *scene, const struct replica *replica
         phase =
             k % 16 && 2 * k != length + 2 - length % 2 ? product(phase, step) : turn(-f * shift); /* restart: 1e-15 */
         double weight = scene->beam.per_frequency ? angles_weight(scene, angles, a->fc + f) : common;
-        double complex value = replica->nyquist && 2 * k == length ? cos(2 * pi * f * shift) : phase;
+        double complex value = replica->nyquist && 2 * k == length ? cos(2 * M_PI * f * shift) : phase;
         spectrum[k] += product(weight * amplitude, product(replica->spectrum[k], value));
     }
 }

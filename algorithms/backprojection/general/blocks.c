@@ -56,7 +56,7 @@ static void include(struct ping_box *box, struct vector p)
 struct ping_box ping_box_make(const struct acquisition *a, int ping, int patch_count, const struct grid *patches,
                               double phase_limit)
 {
-    const double pi = 3.14159265358979323846, c = a->sound_speed;
+    const double c = a->sound_speed;
     struct vector v = a->velocity[ping];
     const struct vector *rx = a->rx + (size_t)ping * (size_t)a->receivers;
     struct ping_box box = {a->tx[ping], a->tx[ping], 0, 0};
@@ -71,7 +71,7 @@ struct ping_box ping_box_make(const struct acquisition *a, int ping, int patch_c
     double longest = 2 * furthest / (c * (1 - mach)); /* s: no delay is longer */
     for (int m = 0; m < a->receivers; m++)
         include(&box, (struct vector){rx[m].x + v.x * longest, rx[m].y + v.y * longest, rx[m].z + v.z * longest});
-    box.reach = pow(256 * phase_limit * c / (2 * pi * a->fc) * pow((1 - mach) / (1 + mach), 4), 1.0 / 6);
+    box.reach = pow(256 * phase_limit * c / (2 * M_PI * a->fc) * pow((1 - mach) / (1 + mach), 4), 1.0 / 6);
     box.longest = 0x1p18 * (1 - mach) * c / a->fc;
     return box;
 }

@@ -11,8 +11,6 @@
 #include "data/random.h"
 #include "tests/support.h"
 
-static const double pi = 3.14159265358979323846;
-
 static double uniform(struct random *random, double low, double high)
 {
     return low + (high - low) * random_uniform(random);
@@ -89,7 +87,7 @@ enum { METHODS = sizeof methods / sizeof *methods };
    bend little. */
 static double position_error(const struct acquisition *a, enum precision precision, double limit)
 {
-    return limit * a->fs / (2 * pi * a->fc) + (precision == PRECISION_DOUBLE ? 0x1p-19 : 0x1p-17);
+    return limit * a->fs / (2 * M_PI * a->fc) + (precision == PRECISION_DOUBLE ? 0x1p-19 : 0x1p-17);
 }
 
 /* How many of a pixel's delays lie so near the middle between two points of the grid that an approximate one may choose

@@ -9,8 +9,6 @@
 #include "data/random.h"
 #include "tests/support.h"
 
-static const double pi = 3.14159265358979323846;
-
 static double uniform(struct random *random, double low, double high)
 {
     return low + (high - low) * random_uniform(random);
@@ -98,7 +96,7 @@ static void phase_below_limit(void **state)
                 for (int j = 0; j < grid.x_count; j++) {
                     struct vector p = {grid.x_first + j * grid.x_step, grid.r_first + i * grid.r_step, 0};
                     double cycles = a.fc * delay_exact(a.tx[0], a.rx[0], a.velocity[0], p, a.sound_speed);
-                    double complex exact = cexp(I * 2 * pi * (cycles - rint(cycles)));
+                    double complex exact = cexp(I * 2 * M_PI * (cycles - rint(cycles)));
                     for (int n = 0; n < 2; n++)
                         worst[n] = worse_of(worst[n], cabs(image_pixel(&images[n], 0, i, j) - exact));
                 }
@@ -120,7 +118,7 @@ static void phase_below_limit(void **state)
 static void bent_line(double range, double limit, double fc, struct acquisition *a, struct grid *grid,
                       struct echoes *echoes)
 {
-    const double c = 1500, half = 0.4 * pow(256 * pow(range, 5) * limit * c / (2 * pi * fc), 1.0 / 6);
+    const double c = 1500, half = 0.4 * pow(256 * pow(range, 5) * limit * c / (2 * M_PI * fc), 1.0 / 6);
     *a = (struct acquisition){.sound_speed = c,
                               .fc = fc,
                               .fs = 10e3,
@@ -142,7 +140,7 @@ static void bent_line(double range, double limit, double fc, struct acquisition 
 static double float_bound(double limit)
 {
     const double bend = fmin(16, 0x1p17 * limit), sum = exp2(ceil(log2(bend + 0.5)));
-    return 2 * pi * (3 * 0x1p-24 * bend + 0x1p-25 * sum) + 2.2e-6;
+    return 2 * M_PI * (3 * 0x1p-24 * bend + 0x1p-25 * sum) + 2.2e-6;
 }
 
 /* Bends, their sum with the straight line and the phase factors, where quintics have no share in the error. */
@@ -167,7 +165,7 @@ static void bends_keep_their_share(void **state)
                 struct vector p = {grid.x_first + j * grid.x_step, grid.r_first, 0};
                 double cycles = a.fc * delay_exact(a.tx[0], a.rx[0], a.velocity[0], p, a.sound_speed);
                 worst =
-                    worse_of(worst, cabs(image_pixel(&image, 0, 0, j) - cexp(I * 2 * pi * (cycles - rint(cycles)))));
+                    worse_of(worst, cabs(image_pixel(&image, 0, 0, j) - cexp(I * 2 * M_PI * (cycles - rint(cycles)))));
             }
             image_free(&image);
             echoes_free(&echoes);

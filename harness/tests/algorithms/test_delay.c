@@ -60,7 +60,7 @@ static void images_at_speed(void **state)
 {
     (void)state;
     enum { PINGS = 5, RECEIVERS = 4, SAMPLES = 1024, COLUMNS = 33, ROWS = 3 };
-    const double c = 1500, pi = 3.14159265358979323846;
+    const double c = 1500;
     for (int n = 0; n < 14; n++) {
         const double v = c * (1 - rests[n / 2]) * (n % 2 ? -1 : 1), ahead = n % 2 ? 50 : -50;
         struct acquisition a = {.sound_speed = c,
@@ -97,7 +97,7 @@ static void images_at_speed(void **state)
             for (int k = 0; k < PINGS * RECEIVERS; k++) {
                 const long double tau = delay_halving(a.tx[k / RECEIVERS].x, a.rx[k].x, v, x, r, c),
                                   cycles = a.fc * tau;
-                const double q = (double)((tau - a.t0[0]) * a.fs), phase = 2 * pi * (double)(cycles - floorl(cycles));
+                const double q = (double)((tau - a.t0[0]) * a.fs), phase = 2 * M_PI * (double)(cycles - floorl(cycles));
                 if (q >= 0 && q <= SAMPLES - 1)
                     sum += ((double complex *)echoes.samples)[k * SAMPLES + (int)(q + 0.5)] * cexp(I * phase);
             }

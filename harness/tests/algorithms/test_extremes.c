@@ -10,6 +10,7 @@
 
 #include "study/batch.h"
 #include "measure/scalar_loop.h"
+#include "measure/timing.h"
 #include "measure/metrics.h"
 #include "data/number.h"
 #include "measure/outcome.h"

@@ -7,7 +7,6 @@
 #include "tests/assertions.h"
 #include "tests/algorithms/spectrum_numbers.h"
 
-static const double pi = 3.14159265358979323846;
 static const struct spectrum_setting lbf21 = {.sound_speed = 1500, .speed = 3, .fc = 150e3};
 
 static void independent_numbers(void **state)
@@ -81,7 +80,7 @@ static void exactness(void **state)
             for (double u = -r; u <= r; u += 1e-3) {
                 double tau = delay_exact((struct vector){u, 0, 0}, (struct vector){u + d, 0, 0},
                                          (struct vector){setting.speed, 0, 0}, (struct vector){0, r, 0}, 1500);
-                largest = worse_of(largest, -2 * pi * (frequency * tau + nu * u));
+                largest = worse_of(largest, -2 * M_PI * (frequency * tau + nu * u));
             }
             assert_true(largest - value < 1e-6 && value - largest < 2e-4);
             double closed = -r * spectrum_monostatic(&setting, frequency, nu);
@@ -115,8 +114,8 @@ static void hard_cases(void **state)
         }
         assert_true(isfinite(value));
         if (isfinite(expected) ? fabs(value - expected) > 1e-4
-                               : !(value >= -2 * pi * least - 1e-4 && value <= -2 * pi * least + 5))
-            fail_msg("case %d: %.9g, expected %.9g, least %.9g", (int)k, value, expected, -2 * pi * least);
+                               : !(value >= -2 * M_PI * least - 1e-4 && value <= -2 * M_PI * least + 5))
+            fail_msg("case %d: %.9g, expected %.9g, least %.9g", (int)k, value, expected, -2 * M_PI * least);
     }
     static const double betas[] = {-0.999, -0.9, -0.62, 0, 0.2, 0.62, 0.9, 0.999};
     for (int k = 0; k < 8; k++)
