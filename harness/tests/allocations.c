@@ -171,5 +171,7 @@ static void *planned(void *plan)
         count.plans_destroyed += counting && plan;                                                                     \
         __real_##X##_destroy_plan(plan);                                                                               \
     }
+/* NOLINTBEGIN(readability-function-size): the parameters are those of FFTW. */
 PRECISION(fftw, double)
 PRECISION(fftwf, float)
+/* NOLINTEND(readability-function-size) */
