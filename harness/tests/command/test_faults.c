@@ -275,7 +275,7 @@ static void folder_names(void **state)
     assert_shell("ls -A | cmp - before", 0);
 }
 
-/* A limit of the files' size stands for a full disk, at every size: told, exit 1 or 2, and the next call mends it. */
+/* A limit of the files' size stands for a full disk, at every size: reported, exit 1 or 2, and the next call mends it. */
 static void files_beyond_the_limit(void **state)
 {
     (void)state;

@@ -218,7 +218,7 @@ static void rows_of_another_scene_content_are_not_compared(void **state)
     diff_free(&diff);
 }
 
-/* Folders: measurements and targets; a target is named, and not told again when its measurement is. */
+/* Folders: measurements and targets; a target is named, and not reported again when its measurement is. */
 static void folders_are_compared_with_their_targets(void **state)
 {
     (void)state;
