@@ -220,6 +220,13 @@ static struct work work_few_flops(const void *plan)
     return work;
 }
 
+static struct work work_many_flops(const void *plan)
+{
+    struct work work = bp_work(plan);
+    work.flops *= 1000;
+    return work;
+}
+
 static struct work work_without_pairs(const void *plan)
 {
     struct work work = bp_work(plan);
@@ -259,6 +266,7 @@ static const struct fault {
     {"fftw_alloc in execute", "raw, float: execute allocates 2 and frees 2 blocks", {.execute = execute_allocates}},
     {"fftw_plan in execute", "raw, float: execute makes 2 FFT plans", {.execute = execute_plans}},
     {"flops off by 1000", "ordinary: work.flops is", {.work = work_few_flops}},
+    {"flops 1000 times too many", "work.flops is", {.work = work_many_flops}},
     {"3 pairs", "ordinary: work.pairs is 3,", {.work = work_three_pairs}},
     {"1 byte", "raw, float: work.bytes is 1,", {.work = work_one_byte}},
     {"aperture limit ignored",
