@@ -16,7 +16,7 @@ struct wanted {
     const char *accepted; /* for messages: "X is needed" */
 };
 
-enum { WANTED_MAX = 16 };
+enum { WANTED_MAX = 20 };
 
 /* A variable as read: complex doubles whatever its class, text as character codes, MATLAB's order. */
 struct variable {

@@ -79,6 +79,8 @@ struct acquisition make_acquisition(int samples, int receivers, int pings, bool 
                             .tx_length = 0.04,
                             .rx_length = 0.03,
                             .aperture_limit = 0.25,
+                            .echo_sine = compressed ? INFINITY : 0.07,
+                            .echo_tapers = !compressed,
                             .compressed = compressed,
                             .pulse_length = compressed ? 0 : 3};
     assert_ok(acquisition_allocate(&a));

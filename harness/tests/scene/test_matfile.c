@@ -22,6 +22,8 @@ static void assert_same_echoes(const struct echoes *written, const struct echoes
         {a->tx_length, b->tx_length},
         {a->rx_length, b->rx_length},
         {a->aperture_limit, b->aperture_limit},
+        {a->echo_sine, b->echo_sine},
+        {a->echo_tapers, b->echo_tapers},
         {a->compressed, b->compressed},
         {a->pulse_length, b->pulse_length},
     };

@@ -61,6 +61,10 @@ static const struct wrong {
     {"tx_length", MAT_C_DOUBLE, 1, 1, 1, false, -1, "tx_length is -1"},
     {"beam_limit", MAT_C_DOUBLE, 1, 1, 1, false, 1.5, "`beam_limit` is 1.5; a scalar in (0, 1]"},
     {"beam_limit", MAT_C_DOUBLE, 1, 1, 1, false, 0, "`beam_limit` is 0"},
+    {"echo_sine", MAT_C_DOUBLE, 1, 1, 1, false, 0, "`echo_sine` is 0; a scalar > 0"},
+    {"echo_sine", MAT_C_DOUBLE, 1, 1, 1, false, NAN, "`echo_sine` is nan"},
+    {"echo_sine", MAT_C_DOUBLE, 2, 1, 1, false, 1, "`echo_sine` is [2 x 1 x 1]"},
+    {"echo_tapers", MAT_C_DOUBLE, 1, 1, 1, false, 2, "`echo_tapers` is 2; 0 or 1"},
 };
 
 static void wrong_write(mat_t *mat, const struct wrong *wrong, double *values, char *text)
