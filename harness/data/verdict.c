@@ -3,5 +3,6 @@
 
 const char *const claim_verdict_names[CLAIM_VERDICTS] = {[CLAIM_HOLDS] = "holds",
                                                          [CLAIM_ASSUMED] = "holds under stated assumption",
+                                                         [CLAIM_IDENTITY] = "identity",
                                                          [CLAIM_FAILS] = "does not hold",
                                                          [CLAIM_UNDECIDED] = "cannot be decided"};

@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "data/paths.h"
 #include "measure/timing.h"
+#include "scene/scene.h"
 
 static const struct {
     const char *name;
@@ -42,43 +44,76 @@ static enum status row_read(const struct csv *csv, int row, struct claim *claim)
     return STATUS_OK;
 }
 
-/* Room for all needs was made for the number of commas in the file, of which each measurement has one at least. */
+/* The list grows by one; without memory it stays, and the count says one less than were asked for. */
+struct needs_list {
+    struct claim *claim;
+    bool failed;
+};
+
 static void need_keep(void *to, const char *scene, const char *spec)
 {
-    struct claims *claims = to;
-    for (int k = 0; k < claims->need_count; k++)
-        if (strcmp(claims->needs[k].scene, scene) == 0 && strcmp(claims->needs[k].spec, spec) == 0)
+    struct needs_list *list = to;
+    struct claim *claim = list->claim;
+    for (int k = 0; k < claim->need_count; k++)
+        if (strcmp(claim->needs[k].scene, scene) == 0 && strcmp(claim->needs[k].spec, spec) == 0)
             return;
-    claims->needs[claims->need_count++] = (struct need){strdup(scene), strdup(spec)};
+    struct need *needs = realloc(claim->needs, (size_t)(claim->need_count + 1) * sizeof *needs);
+    claim->needs = needs ? needs : claim->needs;
+    const char *texts[] = {strdup(scene), strdup(spec)};
+    list->failed |= !needs || !texts[0] || !texts[1];
+    if (list->failed) {
+        free((char *)texts[0]);
+        free((char *)texts[1]);
+        return;
+    }
+    claim->needs[claim->need_count++] = (struct need){texts[0], texts[1]};
+}
+
+/* Check a claim's cells to their ends in both schemes, and collect what they ask for. */
+static enum status cells_check(const struct csv *csv, const struct csv *published, struct claim *claim)
+{
+    struct needs_list list = {.claim = claim};
+    enum status status = STATUS_OK;
+    for (enum scheme scheme = 0; scheme < SCHEMES && status == STATUS_OK; scheme++) {
+        struct formula formula = {.published = published,
+                                  .scheme = scheme,
+                                  .path = csv->path,
+                                  .line = claim->line,
+                                  .need = need_keep,
+                                  .to = &list};
+        struct judgement judgement = {.evidence = ""};
+        status = quantities_read(&formula, "arguments", claim->arguments);
+        if (status == STATUS_OK)
+            status = judges_read(&formula, "judge", claim->judge, &judgement);
+        claim->by_scheme = formula.by_scheme;
+        claim->measures = formula.measures;
+        claim->phases = formula.phases;
+    }
+    if (status == STATUS_OK && list.failed)
+        status = status_set(STATUS_FAILED, "%s: line %d: no memory for %d measurements", csv->path, claim->line,
+                            claim->need_count + 1);
+    bool phases_alone = claim->phases && claim->need_count == 0; /* formulas against the exact spectrum */
+    if (status == STATUS_OK && judge_decides(claim->judge) && !phases_alone
+        && claim->measures == judge_identity(claim->judge))
+        status = status_set(STATUS_INVALID, "%s: line %d: column judge: %s", csv->path, claim->line,
+                            claim->measures ? "'identity' is for claims that ask for nothing measured"
+                                            : "nothing measured is asked for; 'identity JUDGE(...)' is needed");
+    return status;
 }
 
 static enum status rows_read(struct claims *claims, const struct csv *published)
 {
     struct csv *csv = &claims->csv;
-    size_t commas = 0;
-    for (int row = 0; row < csv->row_count; row++)
-        for (int column = COLUMNS - 2; column < COLUMNS; column++) /* judge and arguments */
-            for (const char *at = csv_cell(csv, row, column); *at; at++)
-                commas += *at == ',';
-    claims->claims = calloc((size_t)csv->row_count + 1, sizeof *claims->claims);
-    claims->needs = calloc(commas + 1, sizeof *claims->needs);
-    if (!claims->claims || !claims->needs)
-        return status_set(STATUS_FAILED, "%s: no memory for %d claims", csv->path, csv->row_count);
     enum status status = STATUS_OK;
+    claims->claims = calloc((size_t)csv->row_count + 1, sizeof *claims->claims);
+    if (!claims->claims)
+        return status_set(STATUS_FAILED, "%s: no memory for %d claims", csv->path, csv->row_count);
     for (int row = 0; row < csv->row_count && status == STATUS_OK; row++) {
         struct claim *claim = &claims->claims[claims->count++];
-        struct formula formula = {
-            .published = published, .path = csv->path, .line = csv->lines[row], .need = need_keep, .to = claims};
-        struct judgement judgement = {.evidence = ""};
         status = row_read(csv, row, claim);
         if (status == STATUS_OK)
-            status = quantities_read(&formula, "arguments", claim->arguments);
-        if (status == STATUS_OK)
-            status = judges_read(&formula, "judge", claim->judge, &judgement);
+            status = cells_check(csv, published, claim);
     }
-    for (int k = 0; k < claims->need_count && status == STATUS_OK; k++)
-        if (!claims->needs[k].scene || !claims->needs[k].spec)
-            status = status_set(STATUS_FAILED, "%s: no memory for %d measurements", csv->path, claims->need_count);
     return status;
 }
 
@@ -102,11 +137,13 @@ enum status claims_read(const char *path, struct claims *claims)
 
 void claims_free(struct claims *claims)
 {
-    for (int k = 0; k < claims->need_count; k++) {
-        free((char *)claims->needs[k].scene);
-        free((char *)claims->needs[k].spec);
+    for (int n = 0; n < claims->count; n++) {
+        for (int k = 0; k < claims->claims[n].need_count; k++) {
+            free((char *)claims->claims[n].needs[k].scene);
+            free((char *)claims->claims[n].needs[k].spec);
+        }
+        free(claims->claims[n].needs);
     }
-    free(claims->needs);
     free(claims->claims);
     csv_free(&claims->csv);
     *claims = (struct claims){0};
@@ -129,10 +166,59 @@ static void evidence_begin(struct judgement *judgement, const struct formula *fo
                 claim->criterion);
 }
 
-struct judgement claim_judge(const struct claims *claims, const struct claim *claim, struct measured *measured)
+/* What was measured for a verdict: its settings and scenes, each named once. */
+struct basis {
+    char settings[900], scenes[900];
+};
+
+static bool named(const char *list, const char *text)
 {
-    struct formula formula = {
-        .measured = measured, .published = &measured->published, .path = claims->csv.path, .line = claim->line};
+    size_t length = strlen(text);
+    for (const char *at = list; (at = strstr(at, text)); at += length)
+        if ((at == list || at[-1] == ' ') && strchr(", (", at[length]))
+            return true;
+    return false;
+}
+
+/* "bp22/table3 (c 1500 m/s, beam rect cut at mid 0.405)": what the papers do not print and the scene assumes. */
+static void scene_describe(const char *name, char *text, size_t size)
+{
+    struct scene scene;
+    text_append(text, size, "%s%s", *text ? ", " : "", name);
+    if (scene_load(name, SCENE_DIRECTORY, &scene) != STATUS_OK)
+        return;
+    text_append(text, size, " (c %g m/s, beam %s", scene.acquisition.sound_speed,
+                scene.beam.kind == BEAM_RECT ? "rect" : "of both elements");
+    if (scene.beam.truncation != TRUNCATION_NONE)
+        text_append(text, size, " cut by %s at %g",
+                    scene.beam.truncation == TRUNCATION_TX    ? "theta_t"
+                    : scene.beam.truncation == TRUNCATION_MID ? "the middle angle"
+                                                              : "Doppler",
+                    scene.beam.limit);
+    text_append(text, size, ")");
+    scene_free(&scene);
+}
+
+static void basis_add(void *to, const char *scene, const char *spec)
+{
+    struct basis *basis = to;
+    if (!named(basis->settings, spec))
+        text_append(basis->settings, sizeof basis->settings, "%s%s", *basis->settings ? ", " : "", spec);
+    if (!named(basis->scenes, scene))
+        scene_describe(scene, basis->scenes, sizeof basis->scenes);
+}
+
+struct judgement claim_judge(const struct claims *claims, const struct claim *claim, enum scheme scheme,
+                             struct measured *measured)
+{
+    struct basis basis = {.settings = ""};
+    struct formula formula = {.measured = measured,
+                              .scheme = scheme,
+                              .published = &measured->published,
+                              .path = claims->csv.path,
+                              .line = claim->line,
+                              .need = basis_add,
+                              .to = &basis};
     struct judgement judgement = {.evidence = ""};
     *measured->missing = '\0';
     enum status status = quantities_read(&formula, "arguments", claim->arguments);
@@ -140,6 +226,9 @@ struct judgement claim_judge(const struct claims *claims, const struct claim *cl
         evidence_begin(&judgement, &formula, claim);
         status = judges_read(&formula, "judge", claim->judge, &judgement);
     }
+    if (*basis.settings)
+        text_append(judgement.evidence, sizeof judgement.evidence, "; settings: %s; scenes: %s", basis.settings,
+                    basis.scenes);
     if (status == STATUS_OK && !*measured->missing)
         return judgement;
     judgement.verdict = CLAIM_UNDECIDED;

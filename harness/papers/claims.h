@@ -17,14 +17,17 @@ struct claim {
     const char *criterion; /* the judges in words, or why nothing can be decided */
     const char *judge, *arguments;
     int line;
+    bool by_scheme; /* it names LBF: it has a verdict as printed and one corrected (schemes.h) */
+    bool phases;    /* it asks for the phase study */
+    bool measures;  /* else it is decided by formulas and printed numbers alone */
+    int need_count;
+    struct need *needs; /* [need_count] the measurements that it asks for; owned */
 };
 
 struct claims {
     struct csv csv;
     int count;
     struct claim *claims; /* [count] */
-    int need_count;
-    struct need *needs; /* [need_count] all measurements that they ask for; owned */
 };
 
 /* Every row is checked to its end before the first is judged. Errors: those of csv_read; STATUS_INVALID naming file,
@@ -32,7 +35,9 @@ struct claims {
 enum status claims_read(const char *path, struct claims *claims);
 void claims_free(struct claims *claims);
 
-/* The verdict on a claim. Where a measurement is missing, failed or unsupported: CLAIM_UNDECIDED with the reason. */
-struct judgement claim_judge(const struct claims *claims, const struct claim *claim, struct measured *measured);
+/* The verdict on a claim by one scheme. The evidence is one line: the numbers, the criterion, each comparison with its
+   threshold, the settings and the scenes with what these assume. Where a measurement is missing, failed or unsupported: CLAIM_UNDECIDED with the reason. */
+struct judgement claim_judge(const struct claims *claims, const struct claim *claim, enum scheme scheme,
+                             struct measured *measured);
 
 #endif

@@ -62,30 +62,54 @@ static bool falling(const struct values *v)
     return all;
 }
 
+/* ---- comparisons that noise leaves open: v[2] is the noise, relative ---- */
+
+static bool clearly_above(const struct values *v)
+{
+    return values_extreme(v, false) > v[1].at[0] * (1 + v[2].at[0]);
+}
+
+static bool clearly_below(const struct values *v)
+{
+    return values_extreme(v, true) < v[1].at[0] / (1 + v[2].at[0]);
+}
+
+static bool not_clear(const struct values *v)
+{
+    double low = v[1].at[0] / (1 + v[2].at[0]), high = v[1].at[0] * (1 + v[2].at[0]);
+    bool open = false;
+    for (int k = 0; k < v->count; k++)
+        open |= v->at[k] >= low && v->at[k] <= high;
+    return open;
+}
+
 /* ---- the table ---- */
 
 static const struct judge {
     const char *name;
     int count; /* of expressions; 0: a list of two numbers and more */
     bool (*agrees)(const struct values *v);
-    const char *accepted, *words[2]; /* between the numbers of the evidence */
+    const char *accepted, *words[2];      /* between the numbers of the evidence */
+    bool (*open)(const struct values *v); /* does noise hide the answer? NULL: never */
 } judges[] = {
-    {"above", 2, above, "value, limit", {" above "}},
-    {"below", 2, below, "value, limit", {" below "}},
-    {"at_least", 2, at_least, "value, limit", {" at least "}},
-    {"at_most", 2, at_most, "value, limit", {" at most "}},
-    {"within", 3, within, "value, target, tolerance", {" from ", " by at most "}},
-    {"rounds_to", 3, rounds_to, "value, printed number, its last digit", {" rounds to ", " by steps of "}},
-    {"spread", 2, spread, "values, limit", {" spread over at most "}},
-    {"rising", 0, rising, "two and more values", {" < "}},
-    {"falling", 0, falling, "two and more values", {" > "}},
+    {"above", 2, above, "value, limit", {" above "}, NULL},
+    {"below", 2, below, "value, limit", {" below "}, NULL},
+    {"at_least", 2, at_least, "value, limit", {" at least "}, NULL},
+    {"at_most", 2, at_most, "value, limit", {" at most "}, NULL},
+    {"clearly_above", 3, clearly_above, "value, limit, noise", {" above ", " by more than a noise of "}, not_clear},
+    {"clearly_below", 3, clearly_below, "value, limit, noise", {" below ", " by more than a noise of "}, not_clear},
+    {"within", 3, within, "value, target, tolerance", {" from ", " by at most "}, NULL},
+    {"rounds_to", 3, rounds_to, "value, printed number, its last digit", {" rounds to ", " by steps of "}, NULL},
+    {"spread", 2, spread, "values, limit", {" spread over at most "}, NULL},
+    {"rising", 0, rising, "two and more values", {" < "}, NULL},
+    {"falling", 0, falling, "two and more values", {" > "}, NULL},
 };
 enum { JUDGES = sizeof judges / sizeof *judges };
 
 static enum status judge_find(const struct formula *formula, const char *at, const char *name,
                               const struct judge **judge)
 {
-    char known[300] = "";
+    char known[400] = "";
     for (int k = 0; k < JUDGES; k++) {
         *judge = &judges[k];
         if (strcmp(judges[k].name, name) == 0)
@@ -127,9 +151,13 @@ static void finite_check(const struct formula *formula, const struct judge *judg
                 measured_missing(formula->measured, "%s judges a number that is not finite", judge->name);
 }
 
+/* What a part says: no if one judge says no, else open if noise hides what one of them says. */
+enum answer { ANSWER_NO, ANSWER_OPEN, ANSWER_YES };
+
 /* One call; its numbers and its answer go into `text`. */
-static enum status judge_read(struct formula *formula, bool *agrees, char *text, size_t size)
+static enum status judge_read(struct formula *formula, enum answer *answer, char *text, size_t size)
 {
+    static const char *const words[] = {[ANSWER_NO] = "no", [ANSWER_OPEN] = "within the noise", [ANSWER_YES] = "yes"};
     char name[40];
     const struct judge *judge;
     struct values v[3];
@@ -144,7 +172,7 @@ static enum status judge_read(struct formula *formula, bool *agrees, char *text,
     if (status != STATUS_OK)
         return status;
     finite_check(formula, judge, v);
-    *agrees = judge->agrees(v);
+    *answer = judge->agrees(v) ? ANSWER_YES : judge->open && judge->open(v) ? ANSWER_OPEN : ANSWER_NO;
     if (judge->count)
         values_append(text, size, v);
     for (int k = 1; k < judge->count; k++) {
@@ -153,21 +181,21 @@ static enum status judge_read(struct formula *formula, bool *agrees, char *text,
     }
     for (int k = 0; k < v->count && !judge->count; k++)
         text_append(text, size, "%s%.4g", k ? judge->words[0] : "", v->at[k]);
-    text_append(text, size, ": %s", *agrees ? "yes" : "no");
+    text_append(text, size, ": %s", words[*answer]);
     return STATUS_OK;
 }
 
 /* Judges joined by `and`; *word is what stands behind them. */
-static enum status part_read(struct formula *formula, bool *agrees, char word[40], char *text, size_t size)
+static enum status part_read(struct formula *formula, enum answer *answer, char word[40], char *text, size_t size)
 {
-    *agrees = true;
+    *answer = ANSWER_YES;
     do {
-        bool one;
+        enum answer one;
         text_append(text, size, "; ");
         enum status status = judge_read(formula, &one, text, size);
         if (status != STATUS_OK)
             return status;
-        *agrees = *agrees && one;
+        *answer = one < *answer ? one : *answer;
         formula_blanks(formula);
         const char *at = formula->at;
         formula_word(formula, word, 40);
@@ -182,6 +210,11 @@ bool judge_decides(const char *text)
     return strcmp(text, "undecided") != 0;
 }
 
+bool judge_identity(const char *text)
+{
+    return strncmp(text, "identity ", 9) == 0;
+}
+
 enum status judges_read(struct formula *formula, const char *column, const char *text, struct judgement *judgement)
 {
     char word[40];
@@ -191,22 +224,29 @@ enum status judges_read(struct formula *formula, const char *column, const char 
         judgement->verdict = CLAIM_UNDECIDED;
         return STATUS_OK;
     }
+    enum claim_verdict verdict = judge_identity(text) ? CLAIM_IDENTITY : CLAIM_HOLDS;
     judgement->verdict = CLAIM_FAILS;
+    if (judge_identity(text))
+        formula->at += 9;
     if (strncmp(text, "else ", 5) == 0) {
         formula->at += 5;
         strict = false;
     }
     do {
         char checks[sizeof judgement->evidence] = "";
-        bool agrees;
-        enum status status = part_read(formula, &agrees, word, checks, sizeof checks);
+        enum answer answer;
+        enum status status = part_read(formula, &answer, word, checks, sizeof checks);
         if (status != STATUS_OK)
             return status;
+        if (judge_identity(text) && *word)
+            return formula_error(formula, text, "an identity has no else; `and` is accepted");
         if (!decided)
             text_append(judgement->evidence, sizeof judgement->evidence, "%s", checks);
-        if (!decided && agrees)
-            judgement->verdict = strict ? CLAIM_HOLDS : CLAIM_ASSUMED;
-        decided = decided || agrees;
+        if (!decided && answer == ANSWER_YES)
+            judgement->verdict = strict ? verdict : CLAIM_ASSUMED;
+        else if (!decided && answer == ANSWER_OPEN)
+            judgement->verdict = CLAIM_UNDECIDED;
+        decided = decided || answer == ANSWER_YES;
         strict = false;
     } while (*word);
     return STATUS_OK;

@@ -15,7 +15,7 @@
 /* A call: its texts, where each stands, and the metric that the function's name means. */
 enum { TEXTS_MAX = 5 };
 struct call {
-    char text[TEXTS_MAX][160];
+    char text[TEXTS_MAX][200];
     const char *at[TEXTS_MAX];
     const struct metric *metric;
 };
@@ -72,12 +72,23 @@ static enum status range_check(const struct formula *formula, const struct call 
                                text, low, high);
 }
 
-/* Scene and SPEC are a call's first texts. */
-static enum status measurement_check(struct formula *formula, const struct call *call)
+/* Scene and SPEC are a call's first texts; the latter becomes that of the scheme. */
+static enum status measurement_check(struct formula *formula, struct call *call)
 {
+    char spec[sizeof call->text[1]];
     enum status status = scene_check(formula, call, 0);
+    formula->by_scheme |= scheme_spec(formula->scheme, call->text[1], spec, sizeof spec);
+    strcpy(call->text[1], spec);
     if (status == STATUS_OK)
         status = spec_check(formula, call, 1);
+    return status;
+}
+
+/* The same for a number that has to be measured. */
+static enum status measurement_need(struct formula *formula, struct call *call)
+{
+    enum status status = measurement_check(formula, call);
+    formula->measures = true;
     if (status == STATUS_OK && formula->need)
         formula->need(formula->to, call->text[0], call->text[1]);
     return status;
@@ -85,9 +96,22 @@ static enum status measurement_check(struct formula *formula, const struct call 
 
 /* ---- the functions; without measurements their numbers are 1 ---- */
 
-static enum status image_metric(struct formula *formula, const struct call *call, struct values *values)
+/* FLOPs come from the plan. */
+static enum status flops_metric(struct formula *formula, struct call *call, struct values *values)
 {
+    bool by_formula = call->metric->offset == offsetof(struct measurement, flops_published);
     enum status status = measurement_check(formula, call);
+    *values = (struct values){1, {1}};
+    if (status == STATUS_OK && formula->measured)
+        values->at[0] = measured_flops(formula->measured, call->text[0], call->text[1], by_formula);
+    return status;
+}
+
+static enum status image_metric(struct formula *formula, struct call *call, struct values *values)
+{
+    if (strncmp(call->metric->name, "flops", 5) == 0)
+        return flops_metric(formula, call, values);
+    enum status status = measurement_need(formula, call);
     *values = (struct values){1, {1}};
     if (status == STATUS_OK && formula->measured)
         values->at[0] =
@@ -95,11 +119,11 @@ static enum status image_metric(struct formula *formula, const struct call *call
     return status;
 }
 
-static enum status target_metric(struct formula *formula, const struct call *call, struct values *values)
+static enum status target_metric(struct formula *formula, struct call *call, struct values *values)
 {
     static const char *const definitions[] = {"null", "3db", "pixel", NULL};
     double range[2] = {1, 1};
-    enum status status = measurement_check(formula, call);
+    enum status status = measurement_need(formula, call);
     if (status == STATUS_OK)
         status = word_check(formula, call, 2, definitions);
     if (status == STATUS_OK)
@@ -115,9 +139,9 @@ static enum status target_metric(struct formula *formula, const struct call *cal
     return status;
 }
 
-static enum status stage(struct formula *formula, const struct call *call, struct values *values)
+static enum status stage(struct formula *formula, struct call *call, struct values *values)
 {
-    enum status status = measurement_check(formula, call);
+    enum status status = measurement_need(formula, call);
     *values = (struct values){1, {1}};
     if (status == STATUS_OK && !*call->text[2])
         status = formula_error(formula, call->at[2], "the name of a stage, as in measurements.csv, is needed here");
@@ -126,7 +150,7 @@ static enum status stage(struct formula *formula, const struct call *call, struc
     return status;
 }
 
-static enum status table_time(struct formula *formula, const struct call *call, struct values *values)
+static enum status table_time(struct formula *formula, struct call *call, struct values *values)
 {
     char accepted[600];
     *values = (struct values){1, {1}};
@@ -134,12 +158,40 @@ static enum status table_time(struct formula *formula, const struct call *call, 
     if (unknown >= 0)
         return formula_error(formula, call->at[unknown], "there is no time of '%s'; accepted: %s", call->text[unknown],
                              accepted);
+    struct source source;
+    formula->measures = true;
+    if (table_time_source(formula->scheme, call->text[0], call->text[1], call->text[2], &source)) {
+        formula->by_scheme |= source.by_scheme;
+        if (formula->need)
+            formula->need(formula->to, source.scene, source.spec);
+    }
     if (formula->measured)
-        values->at[0] = table_seconds(formula->measured, call->text[0], call->text[1], call->text[2]);
+        values->at[0] = table_seconds(formula->measured, formula->scheme, call->text[0], call->text[1], call->text[2]);
     return STATUS_OK;
 }
 
-static enum status published(struct formula *formula, const struct call *call, struct values *values)
+static enum status time_noise(struct formula *formula, struct call *call, struct values *values)
+{
+    const char *base = NULL;
+    char accepted[600];
+    *values = (struct values){1, {0.1}};
+    for (const struct paper_table *table = paper_tables; table->id; table++)
+        if (strcmp(table->id, call->text[0]) == 0)
+            base = table->base;
+    int unknown = table_seconds_check(call->text[0], base ? base : "", call->text[1], accepted, sizeof accepted);
+    if (unknown >= 0)
+        return formula_error(formula, call->at[unknown > 0], "there is no time of '%s'; accepted: %s",
+                             call->text[unknown > 0], accepted);
+    struct need needs[64];
+    int count = formula->need && !formula->measured ? table_needs(call->text[0], needs, 0, 64) : 0;
+    for (int k = 0; k < count; k++) /* noise shows in all times of the table */
+        formula->need(formula->to, needs[k].scene, needs[k].spec);
+    if (formula->measured)
+        values->at[0] = table_noise(formula->measured, call->text[0], call->text[1]);
+    return STATUS_OK;
+}
+
+static enum status published(struct formula *formula, struct call *call, struct values *values)
 {
     values->count = published_values(formula->published, call->text[0], call->text[1], call->text[2], call->text[3],
                                      values->at, VALUES_MAX);
@@ -149,13 +201,16 @@ static enum status published(struct formula *formula, const struct call *call, s
                                          "FIRST..LAST), method and quantity of a row with a number are accepted");
 }
 
-static enum status phase(struct formula *formula, const struct call *call, struct values *values)
+static enum status phase(struct formula *formula, struct call *call, struct values *values)
 {
     static const char *const setups[] = {"short", "long", NULL}, *const receivers[] = {"first", "last", NULL};
-    const char *formulas[16] = {NULL};
+    const char *formulas[16] = {NULL}, *meant;
     double range[2] = {0, 0}, share[2] = {0, 0};
     for (int k = 0; k < 15 && phase_formula(k); k++)
         formulas[k] = phase_formula(k);
+    formula->by_scheme |= scheme_formula(formula->scheme, call->text[2], &meant);
+    strcpy(call->text[2], meant);
+    formula->measures = formula->phases = true;
     enum status status = word_check(formula, call, 0, setups);
     if (status == STATUS_OK)
         status = word_check(formula, call, 1, receivers);
@@ -193,15 +248,34 @@ static double wavelength_m(const struct acquisition *a)
     return a->sound_speed / a->fc;
 }
 
+static double speed_m_s(const struct acquisition *a)
+{
+    struct straight_track track;
+    return acquisition_is_straight(a, &track) ? track.speed : NAN;
+}
+
+static double sound_speed_m_s(const struct acquisition *a)
+{
+    return a->sound_speed;
+}
+
+/* What the nearest sample misses at most, half a sample, at the edge of the band. */
+static double edge_phase_rad(const struct acquisition *a)
+{
+    return acos(-1) * a->bandwidth / (2 * a->fs);
+}
+
 static double tx_length_m(const struct acquisition *a)
 {
     return a->tx_length;
 }
 
-static enum status scene_number(struct formula *formula, const struct call *call, struct values *values)
+static enum status scene_number(struct formula *formula, struct call *call, struct values *values)
 {
-    static const char *const names[] = {"bin_m", "wavelength_m", "tx_length_m", "recording_s", NULL};
-    static double (*const numbers[])(const struct acquisition *) = {bin_m, wavelength_m, tx_length_m, recording_s};
+    static const char *const names[] = {"bin_m",     "wavelength_m",    "tx_length_m",    "recording_s",
+                                        "speed_m_s", "sound_speed_m_s", "edge_phase_rad", NULL};
+    static double (*const numbers[])(const struct acquisition *) = {
+        bin_m, wavelength_m, tx_length_m, recording_s, speed_m_s, sound_speed_m_s, edge_phase_rad};
     struct scene scene;
     int k = 0;
     *values = (struct values){1, {1}};
@@ -226,11 +300,12 @@ struct lookup {
     const char *name;
     int count; /* of texts */
     const char *texts;
-    enum status (*read)(struct formula *formula, const struct call *call, struct values *values);
+    enum status (*read)(struct formula *formula, struct call *call, struct values *values);
 };
 static const struct lookup lookups[] = {
     {"stage", 3, "scene, SPEC, stage", stage},
     {"time", 3, "table, method, definition", table_time},
+    {"time_noise", 2, "table, definition", time_noise},
     {"published", 4, "table, target, method, quantity", published},
     {"phase", 5, "set-up, receiver, formula, ranges, share of the Doppler band", phase},
     {"scene", 2, "scene, number", scene_number},

@@ -7,8 +7,10 @@
 #include <unistd.h>
 
 #include "data/echo_data.h"
+#include "data/paths.h"
+#include "measure/imaging.h"
 #include "papers/measured.h"
-#include "measure/spec.h"
+#include "scene/scene.h"
 
 static const char *const phase_files[] = {
     [PHASE_SHORT] = "phase-lbf21__phase_short.csv", [PHASE_LONG] = "phase-lbf21__phase_long.csv"};
@@ -57,25 +59,34 @@ double measured_missing(struct measured *measured, const char *format, ...)
     return NAN;
 }
 
-/* The measurement, if it is there and went well. */
-static const struct measurement *measurement_find(struct measured *measured, const char *scene, const char *spec_text)
+/* The row of a SPEC on a scene, however it went; NULL if there is none or the SPEC is none (*valid: false). */
+static const struct measurement *row_find(const struct measured *measured, const char *scene, const char *spec_text,
+                                          bool *valid)
 {
     struct spec spec;
-    if (spec_parse(spec_text, &spec) != STATUS_OK) {
-        measured_missing(measured, "%s", status_message());
-        return NULL;
-    }
     const struct measurement *row = NULL;
-    for (int k = 0; k < measured->measurements.csv.row_count && !row; k++) {
+    *valid = spec_parse(spec_text, &spec) == STATUS_OK;
+    for (int k = 0; *valid && k < measured->measurements.csv.row_count && !row; k++) {
         const struct measurement *m = &measured->measurements.measurements[k];
         if (strcmp(m->scene, scene) == 0 && strcmp(m->algorithm, spec.algorithm->name) == 0
             && strcmp(m->options, spec.text) == 0 && strcmp(m->precision, precision_name(spec.precision)) == 0)
             row = m;
     }
-    spec_free(&spec);
+    if (*valid)
+        spec_free(&spec);
+    return row;
+}
+
+/* The measurement, if it is there and went well. */
+static const struct measurement *measurement_find(struct measured *measured, const char *scene, const char *spec_text)
+{
+    bool valid;
+    const struct measurement *row = row_find(measured, scene, spec_text, &valid);
     if (row && strcmp(row->status, "ok") == 0)
         return row;
-    if (row)
+    if (!valid)
+        measured_missing(measured, "%s", status_message());
+    else if (row)
         measured_missing(measured, "%s with %s: %s, %s", scene, spec_text, row->status, row->reason);
     else
         measured_missing(measured, "%s with %s was not measured", scene, spec_text);
@@ -90,6 +101,54 @@ double measured_value(struct measured *measured, const char *scene, const char *
         measured_missing(measured, "%s with %s: %s is undefined%s%s", scene, spec, name, *row->reason ? ", " : "",
                          row->reason);
     return value;
+}
+
+/* Work of a plan at the scene's full size. Errors: as scene_load and the plan. */
+static enum status work_plan(const char *scene_name, const char *spec_text, struct work *work)
+{
+    struct scene scene;
+    struct spec spec;
+    struct imaging imaging;
+    enum status status = scene_load(scene_name, SCENE_DIRECTORY, &scene);
+    if (status != STATUS_OK)
+        return status;
+    status = spec_parse(spec_text, &spec);
+    if (status == STATUS_OK) {
+        struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, spec.precision};
+        status = imaging_open(&spec, &problem, &imaging);
+        if (status == STATUS_OK) {
+            *work = spec.algorithm->work(imaging.plan);
+            imaging_close(&imaging);
+        }
+        spec_free(&spec);
+    }
+    scene_free(&scene);
+    return status;
+}
+
+double measured_flops(struct measured *measured, const char *scene, const char *spec, bool by_formula)
+{
+    enum { ROOM = sizeof measured->planned / sizeof *measured->planned };
+    struct work work;
+    bool valid;
+    int k = 0;
+    const struct measurement *row = row_find(measured, scene, spec, &valid);
+    if (row && strcmp(row->status, "ok") == 0)
+        return by_formula ? row->flops_published : row->flops;
+    while (k < measured->planned_count
+           && (strcmp(measured->planned[k].scene, scene) != 0 || strcmp(measured->planned[k].spec, spec) != 0))
+        k++;
+    if (k == measured->planned_count) {
+        if (work_plan(scene, spec, &work) != STATUS_OK)
+            return measured_missing(measured, "%s with %s: %s", scene, spec, status_message());
+        k = k < ROOM ? k : ROOM - 1;
+        measured->planned_count = k + 1;
+        measured->planned[k] = (struct planned){.counted = work.flops,
+                                                .by_formula = work.published[0].source ? work.published[0].flops : NAN};
+        snprintf(measured->planned[k].scene, sizeof measured->planned[k].scene, "%s", scene);
+        snprintf(measured->planned[k].spec, sizeof measured->planned[k].spec, "%s", spec);
+    }
+    return by_formula ? measured->planned[k].by_formula : measured->planned[k].counted;
 }
 
 double measured_stage(struct measured *measured, const char *scene, const char *spec, const char *stage)

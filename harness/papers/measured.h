@@ -6,12 +6,20 @@
 #include "data/published.h"
 #include "measure/results.h"
 
+/* What a plan counts, by scene and SPEC. */
+struct planned {
+    char scene[64], spec[160];
+    double counted, by_formula;
+};
+
 /* A folder's measurements. What is asked of it and not there is NAN, and `missing` then says why. */
 struct measured {
     struct results measurements, targets; /* as results.h reads them; all zero when there is no file */
     struct csv phase[2];                  /* of enum phase_setup, as the command `phase` writes them */
     struct csv published;                 /* results/published.csv */
-    char missing[400];                    /* the first value that was not there since it was last cleared */
+    struct planned planned[16];           /* work that was asked for */
+    int planned_count;
+    char missing[400]; /* the first value that was not there since it was last cleared */
 };
 enum phase_setup { PHASE_SHORT, PHASE_LONG };
 
@@ -26,6 +34,9 @@ double measured_missing(struct measured *measured, const char *format, ...) __at
 #define MEASURED(measured, scene, spec, field)                                                                         \
     measured_value(measured, scene, spec, offsetof(struct measurement, field), #field)
 double measured_value(struct measured *measured, const char *scene, const char *spec, size_t offset, const char *name);
+
+/* FLOPs as our plan counts them or by its paper's formula. Planned now where it was not measured. */
+double measured_flops(struct measured *measured, const char *scene, const char *spec, bool by_formula);
 
 /* Seconds of one stage of it ("compress"). */
 double measured_stage(struct measured *measured, const char *scene, const char *spec, const char *stage);

@@ -8,6 +8,7 @@
 #define SASBENCH_PAPERS_QUANTITY_H
 
 #include "papers/measured.h"
+#include "papers/schemes.h"
 
 /* One number, or one for each of several targets or ranges. */
 enum { VALUES_MAX = 64 };
@@ -17,9 +18,13 @@ struct values {
 };
 
 /* Where the reading of a claim stands, and the names that it has defined. */
-enum { NAMES_MAX = 24 };
+enum { NAMES_MAX = 32 };
 struct formula {
     struct measured *measured; /* NULL: only check */
+    enum scheme scheme;        /* what LBF means */
+    bool by_scheme;            /* LBF was named: the other scheme may give other numbers */
+    bool phases;               /* the phase study was asked for */
+    bool measures;             /* something measured was asked for */
     const struct csv *published;
     void (*need)(void *to, const char *scene, const char *spec); /* hears of each measurement; may be NULL */
     void *to;

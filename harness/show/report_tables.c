@@ -111,8 +111,11 @@ enum status report_table_read(const char *directory, const struct report_table *
 /* How a verdict looks; NULL for none of the verdicts. */
 static const char *verdict_class(const char *verdict)
 {
-    static const char *const classes[CLAIM_VERDICTS] = {
-        [CLAIM_HOLDS] = "good", [CLAIM_ASSUMED] = "soft", [CLAIM_FAILS] = "bad", [CLAIM_UNDECIDED] = "open"};
+    static const char *const classes[CLAIM_VERDICTS] = {[CLAIM_HOLDS] = "good",
+                                                        [CLAIM_ASSUMED] = "soft",
+                                                        [CLAIM_IDENTITY] = "soft",
+                                                        [CLAIM_FAILS] = "bad",
+                                                        [CLAIM_UNDECIDED] = "open"};
     for (int k = 0; k < CLAIM_VERDICTS; k++)
         if (strcmp(claim_verdict_names[k], verdict) == 0)
             return classes[k];

@@ -36,7 +36,8 @@ void planted_add(const char *scene, const char *spec_text, double run_s, const c
     struct spec spec;
     assert_int_equal(spec_parse(spec_text, &spec), STATUS_OK);
     struct measurement row = planted_row(scene, &spec);
-    row.run_s = run_s;
+    row.run_s = row.run_min_s = run_s;
+    row.control_s = 1;
     row.stages = stages;
     row.flops_published = row.flops = 1;
     assert_int_equal(results_folder_add(rows, &row), STATUS_OK);
@@ -67,7 +68,7 @@ void planted_clear(struct measured *measured)
     assert_int_equal(mkdir(folder, 0700), 0);
 }
 
-struct judgement judgement_of(struct measured *measured, const char *id)
+struct judgement judgement_of(struct measured *measured, const char *id, enum scheme scheme)
 {
     struct claims claims;
     struct judgement judgement = {.evidence = ""};
@@ -75,7 +76,7 @@ struct judgement judgement_of(struct measured *measured, const char *id)
     assert_int_equal(claims_read(CLAIMS_FILE, &claims), STATUS_OK);
     for (int k = 0; k < claims.count && !found; k++)
         if (strcmp(claims.claims[k].id, id) == 0) {
-            judgement = claim_judge(&claims, &claims.claims[k], measured);
+            judgement = claim_judge(&claims, &claims.claims[k], scheme, measured);
             found = true;
         }
     claims_free(&claims);
@@ -84,12 +85,22 @@ struct judgement judgement_of(struct measured *measured, const char *id)
     return judgement;
 }
 
+static void expect_scheme(struct measured *measured, const char *id, enum scheme scheme, enum claim_verdict verdict)
+{
+    struct judgement judgement = judgement_of(measured, id, scheme);
+    if (judgement.verdict != verdict)
+        fail_msg("%s, %s: '%s' instead of '%s'; %s", id, scheme_names[scheme], claim_verdict_names[judgement.verdict],
+                 claim_verdict_names[verdict], judgement.evidence);
+}
+
 void expect(struct measured *measured, const char *id, enum claim_verdict verdict)
 {
-    struct judgement judgement = judgement_of(measured, id);
-    if (judgement.verdict != verdict)
-        fail_msg("%s: '%s' instead of '%s'; %s", id, claim_verdict_names[judgement.verdict],
-                 claim_verdict_names[verdict], judgement.evidence);
+    expect_scheme(measured, id, SCHEME_PRINTED, verdict);
+}
+
+void expect_corrected(struct measured *measured, const char *id, enum claim_verdict verdict)
+{
+    expect_scheme(measured, id, SCHEME_CORRECTED, verdict);
 }
 
 enum status planted_claim(const char *judge, const char *arguments, struct claims *claims)

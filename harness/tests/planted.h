@@ -19,9 +19,11 @@ void planted_add(const char *scene, const char *spec_text, double run_s, const c
 /* Azimuth slices of targets [first, first + count) with one ISLR. */
 void planted_islr(const char *scene, const char *spec_text, int first, int count, double islr_db);
 
-/* The judgement on a claim of results/claims.csv; the test fails when its verdict is another one. */
-struct judgement judgement_of(struct measured *measured, const char *id);
+/* The judgement on a claim of results/claims.csv; the test fails when its verdict, as printed or corrected, is another
+   one. */
+struct judgement judgement_of(struct measured *measured, const char *id, enum scheme scheme);
 void expect(struct measured *measured, const char *id, enum claim_verdict verdict);
+void expect_corrected(struct measured *measured, const char *id, enum claim_verdict verdict);
 
 /* Read a list of one claim with these two cells; the file is bad.csv in the test's folder. */
 enum status planted_claim(const char *judge, const char *arguments, struct claims *claims);

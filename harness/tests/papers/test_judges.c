@@ -33,7 +33,7 @@ static struct judgement judge(const char *cell, const char *arguments, struct me
     struct claims claims;
     if (planted_claim(cell, arguments, &claims) != STATUS_OK)
         fail_msg("%s", status_message());
-    struct judgement judgement = claim_judge(&claims, claims.claims, measured);
+    struct judgement judgement = claim_judge(&claims, claims.claims, SCHEME_PRINTED, measured);
     claims_free(&claims);
     return judgement;
 }
@@ -61,6 +61,7 @@ static void arithmetic_is_right(void **state)
         {"min(list(1, 2), v, 3)", -12},
         {"max(abs(v + 10))", 7},
         {"log2(8)", 3},
+        {"sqrt(9)", 3},
         {"min(2 * v + v)", -36},
         {"upsampling_rate(0.025, 0.041, 0.01)", 2},
         {"published(bp22_t4, '', sinc, time_s)", 31276},
@@ -108,6 +109,13 @@ static void judges_compare(void **state)
         {"rounds_to(a, b, 0.5)", 0.625, 1, no},
         {"spread(list(a, b), 1)", 1, 2, yes},
         {"spread(list(a, b), 1)", 2.5, 1, no},
+        {"clearly_above(a, b, 0.25)", 1.26, 1, yes},
+        {"clearly_above(a, b, 0.25)", 1.25, 1, CLAIM_UNDECIDED},
+        {"clearly_above(a, b, 0.25)", 0.8, 1, CLAIM_UNDECIDED},
+        {"clearly_above(a, b, 0.25)", 0.79, 1, no},
+        {"clearly_below(a, b, 0.25)", 0.79, 1, yes},
+        {"clearly_below(a, b, 0.25)", 0.8, 1, CLAIM_UNDECIDED},
+        {"clearly_below(a, b, 0.25)", 1.26, 1, no},
         {"rising(a, b)", 1, 2, yes},
         {"rising(a, b)", 1, 1, no},
         {"falling(a, b)", 2, 1, yes},
@@ -193,6 +201,10 @@ static void judges_are_joined(void **state)
         {"above(a, 9) else above(a, 0) and above(b, 9)", CLAIM_FAILS},
         {"else above(a, 0)", CLAIM_ASSUMED},
         {"else above(a, 9)", CLAIM_FAILS},
+        {"clearly_above(a, b, 1) and above(a, 9)", CLAIM_FAILS}, /* a no is a no, whatever noise hides */
+        {"clearly_above(a, b, 1) and above(a, 0)", CLAIM_UNDECIDED},
+        {"clearly_above(a, b, 1) else above(a, 0)", CLAIM_ASSUMED},
+        {"clearly_above(a, b, 1) else above(a, 9)", CLAIM_UNDECIDED},
     };
     struct measured measured;
     numbers_plant(3, 2, (double[]){1, 2, 3}, &measured);
@@ -204,8 +216,11 @@ static void judges_are_joined(void **state)
     assert_string_equal(
         judge("above(a, 9) else within(b, a, 0.5) else above(v, 0)", LANGUAGE_A "; " LANGUAGE_V, &measured).evidence,
         "a = 3, b = 2, v = 1 to 3 (median 2); criterion: a criterion; 3 above 9: no; 2 from 3 by at "
-        "most 0.5: no; 1 to 3 above 0: yes");
-    assert_string_equal(judge("undecided", LANGUAGE_A, &measured).evidence, "a = 3, b = 2; a criterion");
+        "most 0.5: no; 1 to 3 above 0: yes; settings: bp_nearest, bp_linear:beta=8; scenes: bp22/speckle (c "
+        "1500 m/s, beam rect cut by the middle angle at 0.405), bp22/many (c 1500 m/s, beam rect cut by the "
+        "middle angle at 0.405)");
+    assert_non_null(
+        strstr(judge("undecided", LANGUAGE_A, &measured).evidence, "a = 3, b = 2; a criterion; settings: "));
     planted_clear(&measured);
 }
 

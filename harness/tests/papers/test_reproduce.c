@@ -99,12 +99,16 @@ static void nothing_is_said_without_measurements(void **state)
     assert_int_equal(measured_read(folder, &measured), STATUS_OK);
     assert_int_equal(claims_read(CLAIMS_FILE, &claims), STATUS_OK);
     for (int k = 0; k < claims.count; k++) {
-        struct judgement found = claim_judge(&claims, &claims.claims[k], &measured);
-        if (found.verdict != CLAIM_UNDECIDED || !*found.evidence)
+        if (strstr(claims.claims[k].arguments, "flops")) /* from plans of full-size scenes, which take seconds */
+            continue;
+        struct judgement found = claim_judge(&claims, &claims.claims[k], SCHEME_PRINTED, &measured);
+        bool formula = judge_identity(claims.claims[k].judge) && !claims.claims[k].phases;
+        if ((found.verdict == CLAIM_UNDECIDED) == formula || !*found.evidence)
             fail_msg("%s: %s, %s", claims.claims[k].id, claim_verdict_names[found.verdict], found.evidence);
     }
-    assert_int_equal(tables_evaluate(&measured, &lines, &count), STATUS_OK);
-    assert_true(count > 2 * measured.published.row_count);
+    bool asked[64] = {false};
+    assert_int_equal(tables_evaluate(&measured, asked, &lines, &count), STATUS_OK);
+    assert_true(count > 2 * (measured.published.row_count - 40)); /* those of plans and sentences are left out */
     for (int k = 0; k < count; k++)
         if (strcmp(lines[k].definition, "rho_a = D_tx/2") != 0 && (isfinite(lines[k].ours) || !*lines[k].missing))
             fail_msg("%s %s %s: %g without a measurement", lines[k].table, lines[k].target, lines[k].method,
@@ -141,7 +145,8 @@ static void need_plant(const struct need *need)
         }
     struct measurement row = planted_row(need->scene, &spec);
     row.stages = "compress=1;bulk=1;differential=1;reconstruct=1;focus=1";
-    row.run_s = row.flops = row.flops_published = row.error = row.phase_rms_rad = row.width_m = 10;
+    row.run_s = row.run_min_s = row.control_s = row.flops = row.flops_published = row.error = row.phase_rms_rad =
+        row.width_m = 10;
     row.pslr_db = row.islr_db = -10;
     assert_int_equal(results_folder_add(rows, &row), STATUS_OK);
     spec_free(&spec);
@@ -172,19 +177,22 @@ static void every_line_can_be_measured(void **state)
     struct reproduced *lines;
     struct claims claims;
     struct need needs[256];
-    int count, need_count = table_needs("claims", needs, 0, 256);
+    int count, need_count = 0;
     assert_int_equal(claims_read(CLAIMS_FILE, &claims), STATUS_OK);
-    for (int k = 0; k < claims.need_count; k++)
-        need_count = need_add(needs, need_count, 256, claims.needs[k]);
+    for (int k = 0; paper_tables[k].id; k++)
+        need_count = table_needs(paper_tables[k].id, needs, need_count, 256);
+    for (int n = 0; n < claims.count; n++)
+        for (int k = 0; k < claims.claims[n].need_count; k++)
+            need_count = need_add(needs, need_count, 256, claims.claims[n].needs[k]);
     assert_true(need_count < 256);
     planted_begin();
     for (int k = 0; k < need_count; k++)
         need_plant(&needs[k]);
     planted_end(&measured);
-    assert_int_equal(tables_evaluate(&measured, &lines, &count), STATUS_OK);
+    assert_int_equal(tables_evaluate(&measured, NULL, &lines, &count), STATUS_OK);
     assert_all_measured(&measured, lines, count);
     for (int k = 0; k < claims.count; k++) {
-        struct judgement found = claim_judge(&claims, &claims.claims[k], &measured);
+        struct judgement found = claim_judge(&claims, &claims.claims[k], SCHEME_PRINTED, &measured);
         if (strstr(found.evidence, "was not measured") || strstr(found.evidence, "is undefined"))
             fail_msg("%s: %s", claims.claims[k].id, found.evidence);
         assert_true(strlen(found.evidence) < sizeof found.evidence - 1); /* nothing was cut off */
@@ -194,28 +202,71 @@ static void every_line_can_be_measured(void **state)
     measured_free(&measured);
 }
 
-/* Times of a part are scaled stage by stage, and judged by the paper's ratio. */
+/* Times of a part are scaled stage by stage, and judged by the paper's ratio with a margin for noise. */
 static void times_are_scaled(void **state)
 {
     (void)state;
-    for (int faster = 0; faster < 2; faster++) {
+    static const struct {
+        double sinc_s;
+        const char *stages;
+        enum claim_verdict verdict;
+    } cases[] = {
+        {5.25, "compress=0.25;focus=5", CLAIM_HOLDS},
+        {4.55, "compress=0.25;focus=4.3", CLAIM_UNDECIDED}, /* 4.28 times, which noise may be */
+        {3.25, "compress=0.25;focus=3", CLAIM_FAILS},
+    };
+    static const char *const lines[] = {NEAREST, LINEAR_2, LINEAR_8};
+    for (int n = 0; n < 3; n++) {
         struct measured measured;
         planted_begin();
-        planted_add("bp22/full_rows", LINEAR_8 "," PLAIN_BP, 1.25, "compress=0.25;focus=1");
-        planted_add("bp22/full_rows", SINC_8 "," PLAIN_BP, 0.25 + (faster ? 4.3 : 4.1),
-                    faster ? "compress=0.25;focus=4.3" : "compress=0.25;focus=4.1");
-        planted_add("lbf21/real_size_part", LBF_16 "," PLAIN_RMA, 10,
-                    "compress=1;bulk=2;differential=3;reconstruct=2;stolt=2");
+        for (int k = 0; k < 3; k++) {
+            char spec[200];
+            snprintf(spec, sizeof spec, "%s%s" PLAIN_BP, lines[k], k ? "," : ":");
+            planted_add("bp22/full_rows", spec, 1.25, "compress=0.25;focus=1");
+        }
+        planted_add("bp22/full_rows", SINC_8 "," PLAIN_BP, cases[n].sinc_s, cases[n].stages);
+        planted_add("lbf21/real_size_part", "rma_lbf:variant=printed,spacing=uniform,blend=off,blocks=16," PLAIN_RMA,
+                    10, "compress=1;bulk=2;differential=3;reconstruct=2;stolt=2");
         static const char *const scenes[] = {"bp22/full", "bp22/full_limited"};
         for (int k = 0; k < 2; k++) {
-            planted_add(scenes[k], LINEAR_8, 1, "");
+            for (int l = 0; l < 3; l++)
+                planted_add(scenes[k], lines[l], 1, "");
             planted_add(scenes[k], SINC_8, 3, "");
         }
         planted_end(&measured);
-        assert_close(table_seconds(&measured, "bp22_t4", "linear, beta 8", PLAIN_TIMES), 50 * 1 + 0.25, 1e-9);
-        assert_close(table_seconds(&measured, "lbf21_t5", "LBF, 16 blocks", PLAIN_TIMES), 36 * 7 + 6 * 3, 1e-9);
-        assert_close(table_seconds(&measured, "bp22_t4", "sinc", FAST_TIMES), 3, 1e-9);
-        expect(&measured, "bp22-4.2-5", faster ? CLAIM_HOLDS : CLAIM_FAILS);
+        const enum scheme scheme = SCHEME_PRINTED;
+        assert_close(table_seconds(&measured, scheme, "bp22_t4", "linear, beta 8", PLAIN_TIMES), 50 * 1 + 0.25, 1e-9);
+        assert_close(table_seconds(&measured, scheme, "lbf21_t5", "LBF, 16 blocks", PLAIN_TIMES), 36 * 7 + 6 * 3, 1e-9);
+        assert_close(table_seconds(&measured, scheme, "bp22_t4", "sinc", FAST_TIMES), 3, 1e-9);
+        assert_close(table_noise(&measured, "bp22_t4", FAST_TIMES), 0.1, 1e-9);
+        expect(&measured, "bp22-4.2-5", cases[n].verdict);
+        planted_clear(&measured);
+    }
+}
+
+/* Noise is a tenth at least, and what a method's runs or the loop timed beside them differ by. */
+static void noise_is_measured(void **state)
+{
+    (void)state;
+    static const char *const specs[] = {NEAREST, LINEAR_2, LINEAR_8, SINC_8};
+    static const struct {
+        double slowest_s, control_s, noise;
+    } cases[] = {{1, 1, 0.1}, {1.25, 1, 0.25}, {1, 1.5, 0.5}};
+    for (int n = 0; n < 3; n++) {
+        struct measured measured;
+        planted_begin();
+        for (int k = 0; k < 4; k++) {
+            struct spec spec;
+            assert_int_equal(spec_parse(specs[k], &spec), STATUS_OK);
+            struct measurement row = planted_row("bp22/full", &spec);
+            row.run_min_s = 1;
+            row.run_s = k == 1 ? cases[n].slowest_s : 1;
+            row.control_s = k == 2 ? cases[n].control_s : 1;
+            assert_int_equal(results_folder_add(rows, &row), STATUS_OK);
+            spec_free(&spec);
+        }
+        planted_end(&measured);
+        assert_close(table_noise(&measured, "bp22_t4", FAST_TIMES), cases[n].noise, 1e-9);
         planted_clear(&measured);
     }
 }
@@ -258,9 +309,11 @@ static void measure(const struct session *session, const char *spec_text)
 {
     struct spec spec, used;
     struct outcome outcome;
-    assert_int_equal(spec_parse(spec_text, &spec), STATUS_OK);
+    char text[200];
+    scheme_spec(SCHEME_CORRECTED, spec_text, text, sizeof text);
+    assert_int_equal(spec_parse(text, &spec), STATUS_OK);
     bool replaced = injected == FAULT_NO_INTERPOLATION && strcmp(spec.algorithm->name, "bp_linear") == 0;
-    assert_int_equal(spec_parse(replaced ? NEAREST : spec_text, &used), STATUS_OK);
+    assert_int_equal(spec_parse(replaced ? NEAREST : text, &used), STATUS_OK);
     struct algorithm faulty = *used.algorithm;
     if ((injected == FAULT_PHASE && strcmp(spec.algorithm->name, "bp_zeropad") == 0)
         || (injected == FAULT_RANGE_MIGRATION && strcmp(spec.algorithm->name, "rma_lbf") == 0)) {
@@ -326,7 +379,8 @@ static void faults_change_verdicts(void **state)
             }
         planted_end(&measured);
         for (size_t k = 0; k < sizeof flips / sizeof *flips; k++)
-            expect(&measured, flips[k].claim, flips[k].fault == injected ? CLAIM_FAILS : CLAIM_HOLDS);
+            (strncmp(flips[k].claim, "lbf21", 5) == 0 ? expect_corrected : expect)(
+                &measured, flips[k].claim, flips[k].fault == injected ? CLAIM_FAILS : CLAIM_HOLDS);
         planted_clear(&measured);
     }
     session_close(&session);
@@ -387,8 +441,8 @@ static void finished_measurements_are_kept(void **state)
     assert_int_equal(results_folder_add(rows, &row), STATUS_OK);
     results_folder_close(rows);
     char *before = strdup(undated(text_read("measurements.csv")));
-    const char *const names[] = {"bp22_eq20", "lbf21_f2"};
-    assert_int_equal(command_reproduce(&(struct task){.names = names, .name_count = 2, .output = folder}), STATUS_OK);
+    const char *const names[] = {"bp22_eq20", "lbf21_f2", "lbf21-3C-1"};
+    assert_int_equal(command_reproduce(&(struct task){.names = names, .name_count = 3, .output = folder}), STATUS_OK);
     assert_string_equal(undated(text_read("measurements.csv")), before);
     const char *text = text_read("reproduced.csv");
     assert_non_null(strstr(text, "table,item,quantity,definition,unit,paper,ours,difference,assumption\n"));
@@ -397,11 +451,10 @@ static void finished_measurements_are_kept(void **state)
     assert_non_null(strstr(text, "\nlbf21_f2,\"1st receiver, 50 to 300 m, LBF\",phase_error_rad,"
                                  "\"Eq. (5), theta by fc\",rad,0.02,0.014"));
     text = text_read("claims.csv");
-    assert_non_null(strstr(text, "id,paper,section,claim,verdict,evidence\n"));
+    assert_non_null(strstr(text, "id,paper,section,claim,verdict,corrected,basis,evidence\n"));
     assert_non_null(strstr(text, "\nlbf21-3C-1,LBF21,\"III-C, Fig. 2\",\"LBF, first receiver: at most 0.02 "
-                                 "rad\",holds,"));
-    assert_non_null(strstr(text, "\nbp22-4.1-11,BP22,4.1,beta = 8 is within 0.07 dB ISLR of sinc,cannot be "
-                                 "decided,"));
+                                 "rad\",holds under stated assumption,,measured,"));
+    assert_null(strstr(text, "\nbp22-4.1-10,")); /* not asked for */
     free(before);
     spec_free(&spec);
     scene_free(&scene);
@@ -415,6 +468,7 @@ int main(void)
         IN_FOLDER(all_printed_numbers_are_there),
         IN_FOLDER(printed_formulas_are_right),
         cmocka_unit_test(rate_of_eq20),
+        IN_FOLDER(noise_is_measured),
         IN_FOLDER(nothing_is_said_without_measurements),
         IN_FOLDER(every_line_can_be_measured),
         IN_FOLDER(times_are_scaled),

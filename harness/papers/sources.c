@@ -1,0 +1,288 @@
+/* Which measurement stands for a printed number (sources.h). */
+#include "papers/sources.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const struct place {
+    const char *table, *target, *scene;
+    int index;
+} places[] = {
+    {"bp22_t3", "T1", "bp22/table3", 0},         {"bp22_t3", "T2", "bp22/table3", 1},
+    {"bp22_t3", "T3", "bp22/table3", 2},         {"bp22_t3", "T4", "bp22/table3", 3},
+    {"bp22_t3", "T5", "bp22/table3", 4},         {"bp22_t3", "T6", "bp22/table3", 5},
+    {"lbf21_t3", "PT1", "lbf21/table3_near", 0}, {"lbf21_t3", "PT2", "lbf21/table3_near", 1},
+    {"lbf21_t3", "PT3", "lbf21/table3_far", 0},  {"lbf21_t3", "PT4", "lbf21/table3_far", 1},
+    {"lbf21_t3", "PT5", "lbf21/table3_far", 2},  {"lbf21_t3", "PT6", "lbf21/table3_far", 3},
+    {"lbf21_t4", "PT7", "lbf21/table4_near", 0}, {"lbf21_t4", "PT8", "lbf21/table4_near", 1},
+    {"lbf21_t4", "PT9", "lbf21/table4_far", 0},  {"lbf21_t4", "PT10", "lbf21/table4_far", 1},
+};
+
+/* Plain engines are timed on a part of the task, and each stage scaled to all of it: back projection on some rows, of
+   which the sums depend and the compression does not; range migration with a sixth of the receivers, on which the
+   conversion depends twice (receivers and wavenumbers) and all else once. */
+static const struct scaling bp22_rows = {50, "focus", 1}, lbf21_rows = {4096.0 / 103, "focus", 1};
+static const struct scaling lbf21_part = {36, "bulk differential reconstruct", 6};
+
+/* What the papers call a method, in the tables named. `kind` tells methods of a table apart that are measured in
+   different ways: back projection by zero padding (b) or sinc (s), range migration by LBF (l) or another formula (r). */
+static const struct method {
+    const char *tables, *name;
+    char kind;
+    const char *scene; /* NULL: the way's */
+    const char *spec;
+} methods[] = {
+    {"bp22_t1 bp22_t3 bp22_t4", "nearest", 'b', NULL, NEAREST},
+    {"bp22_t1 bp22_t3 bp22_t4", "linear, beta 2", 'b', NULL, LINEAR_2},
+    {"bp22_t1 bp22_t3 bp22_t4", "linear, beta 8", 'b', NULL, LINEAR_8},
+    {"bp22_t1 bp22_t3 bp22_t4", "sinc", 'b', NULL, SINC_8},
+    {"bp22_eq20", "linear", 'b', NULL, SINC_8},
+    {"zp15_f3 zp15_f4", "nearest", 'b', NULL, NEAREST},
+    {"zp15_f3 zp15_f4", "truncated sinc", 'b', NULL, SINC_8},
+    {"zp15_f3 zp15_f4", "zero padding", 'b', NULL, ZEROPAD_8},
+    {"lbf21_t2", "LBF, 30.0 m", 'l', "lbf21/blocks_30_0", LBF_BLOCK},
+    {"lbf21_t2", "LBF, 18.0 m", 'l', "lbf21/blocks_18_0", LBF_BLOCK},
+    {"lbf21_t2", "LBF, 12.0 m", 'l', "lbf21/blocks_12_0", LBF_BLOCK},
+    {"lbf21_t2", "LBF, 11.4 m", 'l', "lbf21/blocks_11_4", LBF_BLOCK},
+    {"lbf21_t2", "LBF, 9.6 m", 'l', "lbf21/blocks_9_6", LBF_BLOCK},
+    {"lbf21_t2", "LBF, 2.7 m", 'l', "lbf21/blocks_2_7", LBF_BLOCK},
+    {"lbf21_t2", "PCA", 'r', NULL, PCA_1},
+    {"lbf21_t3 lbf21_t4 lbf21_flops", "LBF", 'l', NULL, LBF_16},
+    {"lbf21_t3 lbf21_t4 lbf21_flops", "PCA", 'r', NULL, PCA_16},
+    {"lbf21_t4 lbf21_flops", "Wu", 'r', NULL, WU_16},
+    {"lbf21_t2 lbf21_t3 lbf21_t4", "BP", 'b', NULL, "reference"},
+    {"lbf21_t5", "LBF, 8 blocks", 'l', NULL, LBF_8},
+    {"lbf21_t5", "LBF, 16 blocks", 'l', NULL, LBF_16},
+    {"lbf21_t5", "PCA", 'r', NULL, PCA_16},
+    {"lbf21_t5", "Wu", 'r', NULL, WU_16},
+    {"lbf21_t5 lbf21_flops", "BP", 'b', NULL, ZEROPAD_8},
+    {"lbf21_t5", "BP", 's', NULL, SINC_8},
+};
+
+/* How the methods of a table are measured. */
+static const struct way {
+    const char *table, *kinds, *definition, *scene, *options;
+    const struct scaling *scaling;
+    bool planned;
+} ways[] = {
+    {.table = "bp22_t1", .definition = "Eq. (11) by the plan", .scene = "bp22/full", .planned = true},
+    {.table = "bp22_t3"},
+    {.table = "bp22_t4",
+     .definition = PLAIN_TIMES,
+     .scene = "bp22/full_rows",
+     .options = PLAIN_BP,
+     .scaling = &bp22_rows},
+    {.table = "bp22_t4", .definition = FAST_TIMES, .scene = "bp22/full"},
+    {.table = "bp22_t4", .definition = FAST_LIMITED, .scene = "bp22/full_limited"},
+    {.table = "bp22_eq20", .scene = "bp22/table3"},
+    {.table = "zp15_f3", .scene = "zp15/target"},
+    {.table = "zp15_f4", .scene = "zp15/target"},
+    {.table = "lbf21_t2", .scene = "lbf21/blocks"},
+    {.table = "lbf21_t3"},
+    {.table = "lbf21_t4"},
+    {"lbf21_t5", "l", PLAIN_TIMES, "lbf21/real_size_part", PLAIN_RMA, &lbf21_part, false},
+    {"lbf21_t5", "r", PLAIN_TIMES, "lbf21/real_size_part", "spacing=uniform,blend=off," PLAIN_RMA, &lbf21_part, false},
+    {"lbf21_t5", "b", PLAIN_TIMES, "lbf21/real_size_rows", PLAIN_BP, &lbf21_rows, false},
+    {"lbf21_t5", "s", PLAIN_SINC, "lbf21/real_size_rows", PLAIN_BP, &lbf21_rows, false},
+    {"lbf21_t5", "lrb", FAST_TIMES, "lbf21/real_size", NULL, NULL, false},
+    {"lbf21_t5", "s", FAST_SINC, "lbf21/real_size", NULL, NULL, false},
+    {"lbf21_flops", "lrb", "by the plan", "lbf21/real_size", NULL, NULL, true},
+};
+enum { PLACES = sizeof places / sizeof *places, METHODS = sizeof methods / sizeof *methods };
+enum { WAYS = sizeof ways / sizeof *ways };
+
+/* Is the table one of those that the method is named for? No id is part of another. */
+static bool goes_with(const struct way *way, const struct method *method)
+{
+    return strstr(method->tables, way->table) && (!way->kinds || strchr(way->kinds, method->kind));
+}
+
+static void source_make(const struct way *way, const struct method *method, enum scheme scheme, struct source *source)
+{
+    char text[160];
+    *source = (struct source){.table = way->table,
+                              .method = method->name,
+                              .definition = way->definition,
+                              .scene = method->scene ? method->scene : way->scene,
+                              .scaling = way->scaling,
+                              .scheme = scheme,
+                              .planned = way->planned};
+    snprintf(text, sizeof text, "%s%s%s", method->spec,
+             !way->options               ? ""
+             : strchr(method->spec, ':') ? ","
+                                         : ":",
+             way->options ? way->options : "");
+    source->by_scheme = scheme_spec(scheme, text, source->spec, sizeof source->spec);
+}
+
+bool source_at(int k, struct source *source)
+{
+    for (int w = 0; w < WAYS; w++)
+        for (int m = 0; m < METHODS; m++)
+            for (enum scheme scheme = 0; scheme < SCHEMES && goes_with(&ways[w], &methods[m]); scheme++) {
+                source_make(&ways[w], &methods[m], scheme, source);
+                if ((scheme == 0 || source->by_scheme) && k-- == 0)
+                    return true;
+            }
+    return false;
+}
+
+const char *source_place(const char *table, const char *target, int *index)
+{
+    for (int p = 0; p < PLACES; p++)
+        if (strcmp(places[p].table, table) == 0 && strcmp(places[p].target, target) == 0) {
+            *index = places[p].index;
+            return places[p].scene;
+        }
+    return NULL;
+}
+
+/* ---- needs ---- */
+
+int need_add(struct need *needs, int count, int room, struct need need)
+{
+    for (int k = 0; k < count; k++)
+        if (strcmp(needs[k].scene, need.scene) == 0 && strcmp(needs[k].spec, need.spec) == 0)
+            return count;
+    if (count == room)
+        return count;
+    needs[count] = need;
+    return count + 1;
+}
+
+/* Texts of needs live as long as the program: SPECs are put together once. */
+static const char *spec_kept(const char *spec)
+{
+    static char kept[64][200];
+    int k = 0;
+    while (k < 63 && *kept[k] && strcmp(kept[k], spec) != 0)
+        k++;
+    snprintf(kept[k], sizeof kept[k], "%s", spec);
+    return kept[k];
+}
+
+int table_needs(const char *id, struct need *needs, int count, int room)
+{
+    struct source source;
+    for (int k = 0; source_at(k, &source); k++) {
+        if (source.planned || strcmp(id, source.table) != 0)
+            continue;
+        const char *spec = spec_kept(source.spec);
+        if (source.scene)
+            count = need_add(needs, count, room, (struct need){source.scene, spec});
+        for (int p = 0; p < PLACES && !source.scene; p++)
+            if (strcmp(places[p].table, source.table) == 0)
+                count = need_add(needs, count, room, (struct need){places[p].scene, spec});
+    }
+    return count;
+}
+
+/* ---- times ---- */
+
+static double source_seconds(struct measured *measured, const struct source *source)
+{
+    const struct scaling *scaling = source->scaling;
+    double seconds = MEASURED(measured, source->scene, source->spec, run_s);
+    if (!scaling)
+        return seconds;
+    double scaled = 0;
+    char stages[64], *rest = stages;
+    snprintf(stages, sizeof stages, "%s", scaling->stages);
+    for (char *stage; (stage = strsep(&rest, " "));)
+        scaled += measured_stage(measured, source->scene, source->spec, stage);
+    return scaling->factor * scaled + scaling->rest * (seconds - scaled);
+}
+
+/* All methods but back projection have the same times where that is by sinc. */
+static const char *definition_of_others(const char *definition)
+{
+    return strcmp(definition, PLAIN_SINC) == 0  ? PLAIN_TIMES
+           : strcmp(definition, FAST_SINC) == 0 ? FAST_TIMES
+                                                : definition;
+}
+
+bool table_time_source(enum scheme scheme, const char *id, const char *method, const char *definition,
+                       struct source *source)
+{
+    const char *const wanted[] = {definition, definition_of_others(definition)};
+    for (int n = 0; n < 2; n++)
+        for (int k = 0; source_at(k, source); k++)
+            if (strcmp(source->table, id) == 0 && strcmp(source->method, method) == 0 && source->definition
+                && strcmp(source->definition, wanted[n]) == 0 && (!source->by_scheme || source->scheme == scheme))
+                return true;
+    return false;
+}
+
+double table_seconds(struct measured *measured, enum scheme scheme, const char *id, const char *method,
+                     const char *definition)
+{
+    struct source source;
+    return table_time_source(scheme, id, method, definition, &source)
+               ? source_seconds(measured, &source)
+               : measured_missing(measured, "%s has no times of %s by %s", id, method, definition);
+}
+
+double table_noise(struct measured *measured, const char *id, const char *definition)
+{
+    struct source one, other;
+    double noise = 0.1;
+    for (int k = 0; source_at(k, &one); k++) {
+        if (strcmp(one.table, id) != 0 || !one.definition
+            || (strcmp(one.definition, definition) != 0
+                && strcmp(one.definition, definition_of_others(definition)) != 0))
+            continue;
+        double control = MEASURED(measured, one.scene, one.spec, control_s);
+        double slowest = MEASURED(measured, one.scene, one.spec, run_s);
+        double fastest = MEASURED(measured, one.scene, one.spec, run_min_s);
+        noise = fmax(noise, slowest / fastest - 1);
+        for (int n = 0; source_at(n, &other); n++)
+            if (strcmp(other.table, id) == 0 && other.definition && strcmp(other.definition, one.definition) == 0
+                && strcmp(other.scene, one.scene) == 0)
+                noise = fmax(noise, fabs(MEASURED(measured, other.scene, other.spec, control_s) / control - 1));
+    }
+    return noise;
+}
+
+/* The table whose times are divided by those of `base` is one of times. */
+static bool table_has_times(const char *id)
+{
+    for (const struct paper_table *table = paper_tables; table->id; table++)
+        if (strcmp(table->id, id) == 0)
+            return table->base;
+    return false;
+}
+
+/* Append 'TEXT' unless it is there. */
+static void accept(char *accepted, size_t size, const char *text)
+{
+    char quoted[100];
+    size_t used = strlen(accepted);
+    snprintf(quoted, sizeof quoted, "'%s'", text);
+    if (!strstr(accepted, quoted))
+        snprintf(accepted + used, size - used, "%s%s", used ? ", " : "", quoted);
+}
+
+int table_seconds_check(const char *id, const char *method, const char *definition, char *accepted, size_t size)
+{
+    const char *const wanted[] = {id, method, definition};
+    struct source source;
+    for (int text = 0; text < 3; text++) {
+        bool known = false;
+        *accepted = '\0';
+        for (int k = 0; source_at(k, &source); k++) {
+            const char *const texts[] = {source.table, source.method, source.definition};
+            bool fits = table_has_times(source.table);
+            for (int n = 0; n < text; n++)
+                fits = fits && strcmp(texts[n], n == 2 ? definition_of_others(wanted[n]) : wanted[n]) == 0;
+            if (!fits)
+                continue;
+            accept(accepted, size, texts[text]);
+            known |= strcmp(texts[text], wanted[text]) == 0
+                     || (text == 2 && strcmp(texts[text], definition_of_others(wanted[text])) == 0);
+        }
+        if (!known)
+            return text;
+    }
+    return -1;
+}

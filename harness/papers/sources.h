@@ -1,0 +1,82 @@
+/* Which measurement stands for a printed number: methods of the papers, ways to measure them, and places of targets. */
+#ifndef SASBENCH_PAPERS_SOURCES_H
+#define SASBENCH_PAPERS_SOURCES_H
+
+#include "papers/measured.h"
+#include "papers/schemes.h"
+
+/* Engines and settings that stand for the papers' methods; LBF by the scheme that is judged (schemes.h). PCA's and Wu's
+   correction follows range by interpolation (LBF21 V-A), for which blocks that blend stand. */
+#define NEAREST   "bp_nearest"
+#define LINEAR_2  "bp_linear:beta=2"
+#define LINEAR_8  "bp_linear:beta=8"
+#define SINC_8    "bp_sinc:taps=8"
+#define ZEROPAD_8 "bp_zeropad:factor=8"
+#define LBF_BLOCK "LBF:blocks=1,spacing=uniform" /* Table II: the target at the edge of its one block */
+#define LBF_8     "LBF:blocks=8"
+#define LBF_16    "LBF:blocks=16"
+#define PCA_1     "rma_pca:blocks=1"
+#define PCA_16    "rma_pca:blocks=16"
+#define WU_16     "rma_wu:blocks=16"
+
+/* Plain engines, which are what the papers compare: every delay evaluated; every cell's phase by libm and each
+   receiver summed by itself. */
+#define PLAIN_BP  "engine=general,exact=true"
+#define PLAIN_RMA "sum=after,phases=libm"
+
+/* Definitions of a time. */
+#define PLAIN_TIMES  "plain engines, extrapolated"
+#define PLAIN_SINC   "plain engines, extrapolated, BP by sinc"
+#define FAST_TIMES   "fast engines"
+#define FAST_SINC    "fast engines, BP by sinc"
+#define FAST_LIMITED "fast engines, aperture limited"
+
+/* One measurement that a table rests on. `spec` may name LBF. */
+struct need {
+    const char *scene, *spec;
+};
+/* Add one to needs [count of room] unless it is there; returns how many there are then. What finds no room is left
+   out. */
+int need_add(struct need *needs, int count, int room, struct need need);
+/* Add the needs of the table `id`. */
+int table_needs(const char *id, struct need *needs, int count, int room);
+
+/* Each stage of a part is scaled to the whole. */
+struct scaling {
+    double factor; /* of the stages in `stages` (separated by blanks) */
+    const char *stages;
+    double rest; /* of the others */
+};
+
+/* A way in which a method is measured for a table. */
+struct source {
+    const char *table, *method;
+    const char *definition;        /* of a time or a formula; NULL: by the definitions of the quantity */
+    const char *scene;             /* NULL: the target's, by source_place */
+    char spec[200];                /* a SPEC: LBF is replaced by the scheme's */
+    const struct scaling *scaling; /* of a time; NULL: the whole was timed */
+    enum scheme scheme;
+    bool by_scheme; /* else it is the same for both */
+    bool planned;   /* the number comes from the plan; nothing has to be measured */
+};
+/* The source k; false behind the last. */
+bool source_at(int k, struct source *source);
+/* The scene whose target, *index from 0, stands for a printed one; NULL if there is none. */
+const char *source_place(const char *table, const char *target, int *index);
+
+/* Seconds of a method of a table of times by one of its definitions ("fast engines"), scaled to the full size where
+   only a part of it was timed. Back projection by sinc is a definition of its own, the same as the others for all other
+   methods. */
+double table_seconds(struct measured *measured, enum scheme scheme, const char *id, const char *method,
+                     const char *definition);
+/* How far apart two times of a table may lie by chance: the largest of a tenth, of the runs of one method, and of the
+   scalar reference loop, which was timed beside each of the definition's methods of one scene. Relative. */
+double table_noise(struct measured *measured, const char *id, const char *definition);
+
+/* Is there such a time? -1, or which of the three texts (from 0) is unknown; `accepted` then lists those that are. */
+int table_seconds_check(const char *id, const char *method, const char *definition, char *accepted, size_t size);
+/* The measurement that stands for such a time; false if there is none. */
+bool table_time_source(enum scheme scheme, const char *id, const char *method, const char *definition,
+                       struct source *source);
+
+#endif
