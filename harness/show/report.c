@@ -33,7 +33,7 @@ struct folder {
     struct csv csvs[REPORT_TABLES]; /* column_count 0: not there */
     struct drawing *drawings;       /* [drawing_count] */
     int drawing_count;
-    struct dirent **files; /* [file_count] PNG files of `phase`, by name */
+    struct dirent **files; /* [file_count] PNG files of `phase` and `reproduce`, by name */
     int file_count;
 };
 
@@ -52,7 +52,8 @@ static void folder_free(struct folder *folder)
 static int is_figure(const struct dirent *entry)
 {
     size_t length = strlen(entry->d_name);
-    return strncmp(entry->d_name, "phase-", 6) == 0 && length > 4 && strcmp(entry->d_name + length - 4, ".png") == 0;
+    return (strncmp(entry->d_name, "phase-", 6) == 0 || strncmp(entry->d_name, "figure-", 7) == 0) && length > 4
+           && strcmp(entry->d_name + length - 4, ".png") == 0;
 }
 
 static void drawings_make(struct folder *folder)
@@ -233,7 +234,44 @@ static enum status picture_show(struct page *page, const char *path, const char 
     return page_image(page, path, caption);
 }
 
-/* Slices and images that `run` left, and the figures of `phase`. */
+/* What of the pictures is not on the page, and why. */
+static void left_out_show(struct page *page, const struct pictures_count *count)
+{
+    char caption[300];
+    if (count->irregular) {
+        snprintf(caption, sizeof caption,
+                 "%d pictures are left out: links, folders or pipes; only regular files of the folder "
+                 "itself are shown.",
+                 count->irregular);
+        page_paragraph(page, caption);
+    }
+    if (count->left_out) {
+        snprintf(caption, sizeof caption,
+                 "%d pictures are left out to keep this page below %d MB; they lie beside "
+                 "it.",
+                 count->left_out, REPORT_HTML_BYTES >> 20);
+        page_paragraph(page, caption);
+    }
+}
+
+/* What `phase` and `reproduce` drew as the papers do. */
+static enum status figures_show(struct page *page, const struct folder *folder)
+{
+    enum status status = STATUS_OK;
+    char path[4096];
+    struct pictures_count count = {0};
+    if (folder->file_count == 0)
+        return STATUS_OK;
+    page_heading(page, 2, "figures", "Papers' figures");
+    for (int k = 0; k < folder->file_count && status == STATUS_OK; k++) {
+        snprintf(path, sizeof path, "%s/%s", folder->directory, folder->files[k]->d_name);
+        status = picture_show(page, path, folder->files[k]->d_name, &count);
+    }
+    left_out_show(page, &count);
+    return status;
+}
+
+/* Slices and images that `run` left. */
 static enum status pictures_show(struct page *page, const struct folder *folder)
 {
     enum status status = STATUS_OK;
@@ -258,57 +296,62 @@ static enum status pictures_show(struct page *page, const struct folder *folder)
         }
         page_gallery_end(page);
     }
-    for (int k = 0; k < folder->file_count && status == STATUS_OK; k++) {
-        snprintf(path, sizeof path, "%s/%s", folder->directory, folder->files[k]->d_name);
-        status = picture_show(page, path, folder->files[k]->d_name, &count);
-    }
     if (count.shown == 0)
         page_paragraph(page, "None in this folder: `run` draws them, `sweep` does not.");
-    if (count.irregular) {
-        snprintf(caption, sizeof caption,
-                 "%d pictures are left out: links, folders or pipes; only regular files of the folder "
-                 "itself are shown.",
-                 count.irregular);
-        page_paragraph(page, caption);
-    }
-    if (count.left_out) {
-        snprintf(caption, sizeof caption,
-                 "%d pictures are left out to keep this page below %d MB; they lie beside "
-                 "it.",
-                 count.left_out, REPORT_HTML_BYTES >> 20);
-        page_paragraph(page, caption);
-    }
+    left_out_show(page, &count);
     return status;
 }
 
-static enum status folder_show(struct page *page, const struct folder *folder)
+static void tables_show(struct page *page, const struct folder *folder, bool first)
 {
-    const char *ids[REPORT_TABLES + 4] = {"machine", "plots"}, *titles[REPORT_TABLES + 4] = {"Machine", "Plots"};
-    int count = 2;
-    char title[4200];
     for (int k = 0; k < REPORT_TABLES; k++)
-        if (folder->csvs[k].row_count > 0) {
-            ids[count] = report_tables[k].id;
-            titles[count++] = report_tables[k].title;
+        if (report_tables[k].first == first)
+            report_table_show(page, &report_tables[k], &folder->csvs[k]);
+}
+
+/* Links to the sections, in their order. */
+static void contents_show(struct page *page, const struct folder *folder)
+{
+    const char *ids[REPORT_TABLES + 5], *titles[REPORT_TABLES + 5];
+    int count = 0;
+    for (int first = 1; first >= 0; first--) {
+        for (int k = 0; k < REPORT_TABLES; k++)
+            if (folder->csvs[k].row_count > 0 && report_tables[k].first == (first == 1)) {
+                ids[count] = report_tables[k].id;
+                titles[count++] = report_tables[k].title;
+            }
+        if (first && folder->file_count) {
+            ids[count] = "figures";
+            titles[count++] = "Papers' figures";
         }
+        for (int k = 0; first && k < 2; k++) {
+            ids[count] = k ? "plots" : "machine";
+            titles[count++] = k ? "Plots" : "Machine";
+        }
+    }
     ids[count] = "measurements";
     titles[count++] = "Measurements";
     ids[count] = "images";
     titles[count++] = "Slices and images";
+    page_contents(page, count, ids, titles);
+}
+
+static enum status folder_show(struct page *page, const struct folder *folder)
+{
+    const bool html = page->format == PAGE_HTML;
+    char title[4200];
     snprintf(title, sizeof title, "sasbench: %s", folder->directory);
     page_begin(page, title);
-    page_contents(page, count, ids, titles);
+    contents_show(page, folder);
+    tables_show(page, folder, true);
+    enum status status = html ? figures_show(page, folder) : STATUS_OK;
     machine_show(page, folder);
-    enum status status = page->format == PAGE_HTML ? plots_show(page, folder) : STATUS_OK;
-    for (int k = 0; k < REPORT_TABLES; k++)
-        if (!report_tables[k].late)
-            report_table_show(page, &report_tables[k], &folder->csvs[k]);
+    if (status == STATUS_OK && html)
+        status = plots_show(page, folder);
+    tables_show(page, folder, false);
     measurements_show(page, folder);
-    if (status == STATUS_OK && page->format == PAGE_HTML)
+    if (status == STATUS_OK && html)
         status = pictures_show(page, folder);
-    for (int k = 0; k < REPORT_TABLES; k++)
-        if (report_tables[k].late)
-            report_table_show(page, &report_tables[k], &folder->csvs[k]);
     page_end(page);
     return status;
 }

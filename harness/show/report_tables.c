@@ -64,13 +64,16 @@ const struct report_table report_tables[REPORT_TABLES] = {
     {.file = "claims.csv",
      .id = "claims",
      .title = "Claims",
-     .text = "What the papers claim, each judged from the measurements of this folder.",
+     .text = "What the papers claim, each judged from the measurements of this folder: as printed, and, where LBF21's "
+             "scheme matters, with the corrected scheme (theta at F, blocks that blend).",
      .group = "paper",
      .stack = true,
+     .first = true,
      .columns = {{"id", "id", SHOW_TEXT},
                  {"section", "section", SHOW_TEXT},
                  {"claim", "claim", SHOW_TEXT},
-                 {"verdict", "verdict", SHOW_VERDICT},
+                 {"verdict", "as printed", SHOW_VERDICT},
+                 {"corrected", "corrected", SHOW_VERDICT},
                  {"evidence", "evidence", SHOW_TEXT}}},
     {.file = "reproduced.csv",
      .id = "reproduced",
@@ -80,7 +83,7 @@ const struct report_table report_tables[REPORT_TABLES] = {
          "for the rows below it.",
      .group = "table",
      .stack = true,
-     .late = true,
+     .first = true,
      .columns = {{"item", "item", SHOW_TEXT},
                  {"quantity", "quantity", SHOW_TEXT},
                  {"definition", "definition", SHOW_TEXT},
@@ -122,22 +125,23 @@ static const char *verdict_class(const char *verdict)
     return NULL;
 }
 
-/* How many of each verdict there are, where the table has verdicts. */
+/* How many of each verdict there are, for each column of verdicts. */
 static void verdicts_count_show(struct page *page, const struct report_table *table, const struct csv *csv)
 {
-    char text[256] = "";
-    for (int k = 0; k < REPORT_COLUMNS && table->columns[k].title; k++)
-        for (int verdict = 0; verdict < CLAIM_VERDICTS && table->columns[k].show == SHOW_VERDICT; verdict++) {
-            int count = 0;
+    for (int k = 0; k < REPORT_COLUMNS && table->columns[k].title; k++) {
+        char text[256] = "";
+        if (table->columns[k].show != SHOW_VERDICT)
+            continue;
+        for (int verdict = 0; verdict < CLAIM_VERDICTS; verdict++) {
+            int count = 0, column = csv_column(csv, table->columns[k].name);
             for (int row = 0; row < csv->row_count; row++)
-                count +=
-                    strcmp(csv_cell(csv, row, csv_column(csv, table->columns[k].name)), claim_verdict_names[verdict])
-                    == 0;
+                count += strcmp(csv_cell(csv, row, column), claim_verdict_names[verdict]) == 0;
             size_t used = strlen(text);
-            snprintf(text + used, sizeof text - used, "%s%d %s", used ? ", " : "", count, claim_verdict_names[verdict]);
+            snprintf(text + used, sizeof text - used, "%s%s%d %s", used ? "" : table->columns[k].title,
+                     used ? ", " : ": ", count, claim_verdict_names[verdict]);
         }
-    if (*text)
         page_paragraph(page, text);
+    }
 }
 
 static void rows_show(struct page *page, const struct report_table *table, const struct csv *csv, const char *group)

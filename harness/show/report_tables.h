@@ -12,7 +12,7 @@ struct report_table {
     const char *file, *id, *title, *text;
     const char *group; /* column whose values become headings, or NULL */
     bool stack;        /* long texts: rows fall apart on a narrow screen */
-    bool late;         /* long and for reference: after the pictures */
+    bool first;        /* of the papers: ahead of the measurements that it rests on */
     struct {
         const char *name, *title;
         enum { SHOW_TEXT, SHOW_NUMBER, SHOW_VERDICT, SHOW_ONCE } show; /* once: not again in the rows below */
