@@ -222,7 +222,7 @@ INLINE void runs_fixed(const struct receiver_group *group, double (*quintic)[GRO
                        struct run *runs)
 {
     const struct scale *scale = group->scale;
-    const int steps = group->table->steps;
+    const int steps = group->table->steps > 1 ? group->table->steps : 1; /* cubics have 0: divisions may be hoisted */
     for (int g = 0; g < group->receivers; g++) {
         switch (group->table->reading) {
         case BP_NEAREST: points(quintic, g, scale, first, count, BP_NEAREST, 1, &runs[g]); break;

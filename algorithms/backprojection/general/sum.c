@@ -202,11 +202,12 @@ INLINE void group_delays(const struct motion *motion, const struct places *place
 static struct scale scale_make(const struct bp_medium *medium, const struct bp_table *table, double t0)
 {
     const bool cubics = table->reading == BP_CUBICS;
+    const int steps = table->steps > 1 ? table->steps : 1; /* cubics have 0: compilers divide before they choose */
     const double fine = table->upsample * (cubics ? BP_INTERVALS : 1), cycles = medium->fc * t0;
     return (struct scale){.t0 = t0,
                           .fs = medium->fs,
                           .fine = fine,
-                          .shift = cubics ? 0 : 0.5 / table->steps,
+                          .shift = cubics ? 0 : 0.5 / steps,
                           .ratio = medium->fc / (medium->fs * fine),
                           .base = cycles - floor(cycles)};
 }
