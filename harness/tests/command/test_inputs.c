@@ -26,7 +26,7 @@ static const struct {
 } scenes[] = {
     {"sonar = { fc = 150e3;", "sonar = {", {"bad.cfg:1: key 'sonar.fc' is missing", "> 0 Hz"}},
     {"image =", "picture =", {"bad.cfg", "picture", "accepted are"}},
-    {"pings = 12", "pings = 12; pongs = 3", {"bad.cfg:4: key 'track.pongs'", "accepted are speed, pri, pings"}},
+    {"pings = 12", "pings = 12; pongs = 3", {"bad.cfg:4: key 'track.pongs'", "accepted are speed, pri, "}},
     {"fc = 150e3", "fc = 0", {"key 'sonar.fc' is 0", "a number > 0 Hz"}},
     {"fc = 150e3", "fc = -150e3", {"key 'sonar.fc' is -150000", "a number > 0 Hz"}},
     {"fc = 150e3", "fc = 1e999", {"key 'sonar.fc' is inf", "a number > 0 Hz"}},
