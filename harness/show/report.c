@@ -240,9 +240,8 @@ static void left_out_show(struct page *page, const struct pictures_count *count)
     char caption[300];
     if (count->irregular) {
         snprintf(caption, sizeof caption,
-                 "%d pictures are left out: links, folders or pipes; only regular files of the folder "
-                 "itself are shown.",
-                 count->irregular);
+                 "%d %s left out: links, folders or pipes; only regular files of the folder itself are shown.",
+                 count->irregular, count->irregular == 1 ? "picture is" : "pictures are");
         page_paragraph(page, caption);
     }
     if (count->left_out) {
