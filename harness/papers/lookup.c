@@ -130,8 +130,8 @@ static enum status target_metric(struct formula *formula, struct call *call, str
         status = range_check(formula, call, 3, 1, VALUES_MAX, range);
     if (status == STATUS_OK && (range[0] != floor(range[0]) || range[1] != floor(range[1])))
         status = formula_error(formula, call->at[3], "targets are counted by whole numbers");
-    values->count = (int)(range[1] - range[0]) + 1;
-    for (int k = 0; k < values->count && status == STATUS_OK; k++)
+    values->count = status == STATUS_OK ? (int)(range[1] - range[0]) + 1 : 0;
+    for (int k = 0; k < values->count; k++)
         values->at[k] = !formula->measured
                             ? 1
                             : measured_target(formula->measured, call->text[0], call->text[1], (int)range[0] - 1 + k,

@@ -69,6 +69,7 @@ static const struct {
     {"undecided", "x = target_islr_db(bp22/many, bp_nearest, pixel, 0..3)", {"'0..3'", "from 1 to 64"}},
     {"undecided", "x = target_islr_db(bp22/many, bp_nearest, pixel, 3..1)", {"'3..1'", "FIRST..LAST"}},
     {"undecided", "x = target_islr_db(bp22/many, bp_nearest, pixel, 1..nan)", {"'1..nan'", "FIRST..LAST"}},
+    {"undecided", "x = target_islr_db(bp22/many, bp_nearest, pixel, 1..)", {"'1..'", "FIRST..LAST"}},
     {"undecided", "x = target_islr_db(bp22/many, bp_nearest, pixel, 1.5)", {"whole numbers"}},
     {"undecided",
      "x = target_islr_db(bp22/many, bp_nearest, pixel, 1..3) - target_islr_db(bp22/many, bp_nearest, "
