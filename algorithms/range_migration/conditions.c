@@ -20,7 +20,8 @@ static struct rma_bounds bounds_of(const struct rma_view *view)
 {
     struct rma_bounds bounds = {0};
     const struct acquisition *a = view->problem->acquisition;
-    double lowest = a->fc - a->bandwidth / 2, farthest = 0;
+    /* A band that reaches 0 Hz has a condition of its own, which refuses it. */
+    double lowest = fmax(a->fc - a->bandwidth / 2, 1e-9 * a->fc), farthest = 0;
     bounds.aside = fmax(fabs(offset_at(view, 0)), fabs(offset_at(view, 2)));
     /* nu of the full rate, as an angle at the lowest frequency of the pulse. */
     bounds.sine = fmin(WIDEST_SINE, a->sound_speed * a->receivers / view->spacing / 4 / lowest);

@@ -84,10 +84,10 @@ static enum status lay_track(struct rma *rma)
 static enum status lay_band(struct rma *rma)
 {
     const struct acquisition *a = rma->problem.acquisition;
-    /* No longer than an eighth of the record for a narrow band's sake; infinite at fs = B. */
+    /* No longer than an eighth of the record for a narrow band's sake; the whole record at fs = B. */
     double band = fmax(a->bandwidth / a->fs, 8 * FADE_PERIODS / a->samples);
-    double fade = ceil(FADE_PERIODS / fmin(1 - a->bandwidth / a->fs, band));
-    rma->fade = fade < a->samples ? (int)fade : a->samples;
+    double share = fmax(fmin(1 - a->bandwidth / a->fs, band), FADE_PERIODS / a->samples);
+    rma->fade = (int)fmin(ceil(FADE_PERIODS / share), a->samples);
     /* What was compressed elsewhere may have flanks beyond its bandwidth; twice the band holds them. Far beyond it there is
        nothing, and the phases' polynomials would have to span it. */
     rma->half_band = fmin(a->fs / 2, fmax(a->bandwidth, 32 * a->fs / a->samples)); /* a record's own ends are in it */

@@ -140,6 +140,7 @@ static const struct {
     {"bright", "targets = { points = ( { x = 0.0; r = 20.0; amplitude = 1e60; } ); };"},
     {"silent", "targets = { points = ( { x = 0.0; r = 20.0; amplitude = 0; } ); };"},
     {"narrow", "sonar = { fc = 150e3; bandwidth = 500; fs = 30e3; };"},
+    {"low", "sonar = { fc = 2e3; bandwidth = 15e3; fs = 30e3; }; beam = { kind = \"rect\"; };"},
     {"limited", "aperture_limit = 0.01;"},
     {"partly_met", "record = { first_sample = 799; samples = 64; }; pulse = { kind = \"flat\"; };"},
 };
