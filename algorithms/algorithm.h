@@ -17,6 +17,7 @@
 #include <stddef.h>
 
 #include "acquisition.h"
+#include "condition.h"
 #include "status.h"
 
 enum precision { PRECISION_FLOAT, PRECISION_DOUBLE };
@@ -119,6 +120,9 @@ struct algorithm {
     size_t options_size;                    /* of the options struct; 0 without params */
     const struct param *params;             /* NULL-terminated; NULL without options */
 
+    /* Fill list[room] with what the problem must fulfil, and return the number; known before any work, and the same that
+       plan refuses by. NULL: conditions_general. */
+    int (*conditions)(const struct problem *problem, const void *options, struct condition *list, int room);
     /* Make a plan in *plan. Errors: STATUS_UNSUPPORTED with the reason, STATUS_FAILED; *plan is then NULL. */
     enum status (*plan)(const struct problem *problem, const void *options, void **plan);
     /* Echoes of the plan's acquisition and precision into an image of the plan's patches and precision. */
@@ -129,6 +133,10 @@ struct algorithm {
 
 /* The registered algorithms in the order of algorithms/meson.build; NULL ends the list. */
 extern const struct algorithm *const algorithms[];
+
+/* The conditions of an algorithm, its own or the general ones. */
+int algorithm_conditions(const struct algorithm *algorithm, const struct problem *problem, const void *options,
+                         struct condition *list, int room);
 
 /* By name; NULL if there is none. */
 const struct algorithm *algorithm_find(const char *name);

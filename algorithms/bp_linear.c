@@ -41,6 +41,7 @@ const struct algorithm bp_linear = {
     .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT,
     .options_size = sizeof(struct options),
     .params = params,
+    .conditions = conditions_sampled,
     .plan = plan,
     .execute = bp_execute,
     .work = bp_work,

@@ -23,6 +23,7 @@ const struct algorithm bp_nearest = {
     .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT,
     .options_size = sizeof(struct bp_options),
     .params = params,
+    .conditions = conditions_sampled,
     .plan = plan,
     .execute = bp_execute,
     .work = bp_work,

@@ -8,41 +8,60 @@
    reports; `corrected` takes it at F. Error of the corrected phase: below 0.01 rad from 50 m on, falling with r
    (rma_numeric has none); the image's error is then that of stationary phase, 8e-3 at 40 m and 1e-3 from 135 m
    on. */
-#include "range_migration/rma.h"
+#include "range_migration/conditions.h"
 
-static const char *const variants[] = {[RMA_PRINTED] = "printed", [RMA_CORRECTED] = "corrected", NULL};
+enum variant { PRINTED, CORRECTED };
+static const char *const variants[] = {[PRINTED] = "printed", [CORRECTED] = "corrected", NULL};
+
+struct lbf_options {
+    struct rma_options shared; /* first: RMA_PARAMS lie in it */
+    int variant;               /* enum variant */
+};
 
 static const struct param params[] = {
-    {PARAM_NAMED(struct rma_options, variant, variants), .summary = "theta at the carrier, as printed, or at F",
-     .initial = RMA_CORRECTED, .max = RMA_CORRECTED, .sweep = "printed corrected"},
+    {PARAM_NAMED(struct lbf_options, variant, variants), .summary = "theta at the carrier, as printed, or at F",
+     .initial = CORRECTED, .max = CORRECTED, .sweep = "printed corrected"},
     RMA_PARAMS,
     {.name = NULL},
 };
 
-static enum status plan(const struct problem *problem, const void *options, void **plan)
+static struct rma_method method_of(const struct lbf_options *options)
 {
     static spectrum_function *const spectra[] = {
-        [RMA_PRINTED] = spectrum_lbf_printed, [RMA_CORRECTED] = spectrum_lbf_corrected};
-    const struct rma_method method = {
+        [PRINTED] = spectrum_lbf_printed, [CORRECTED] = spectrum_lbf_corrected};
+    return (struct rma_method){
         .name = "rma_lbf",
         .law = "lbf_law",
         .error_limit = 0.1,
-        .spectrum = spectra[((const struct rma_options *)options)->variant],
+        .spectrum = spectra[options->variant],
         .source = "LBF21 Eq. (20)",
         .range = {2, 2},
         .azimuth = {1, 1},
         .products = {2, 2},
         .interpolations = 1,
     };
-    return rma_plan(problem, &method, options, plan);
+}
+
+static int conditions(const struct problem *problem, const void *options, struct condition *list, int room)
+{
+    const struct rma_method method = method_of(options);
+    return rma_conditions(problem, &method, list, room);
+}
+
+static enum status plan(const struct problem *problem, const void *options, void **plan)
+{
+    const struct lbf_options *lbf = options;
+    const struct rma_method method = method_of(lbf);
+    return rma_plan(problem, &method, &lbf->shared, plan);
 }
 
 const struct algorithm rma_lbf = {
     .name = "rma_lbf",
     .summary = "range migration by Loffeld's bistatic formula",
     .reference = "LBF21 Eqs. (3) to (5), section IV",
-    .options_size = sizeof(struct rma_options),
+    .options_size = sizeof(struct lbf_options),
     .params = params,
+    .conditions = conditions,
     .plan = plan,
     .execute = rma_execute,
     .work = rma_work,

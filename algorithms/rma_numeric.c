@@ -4,26 +4,33 @@
        phi = -2 pi (F tau(u) + nu u),   F tau'(u) = -nu
 
    Error: none of its own; what is left comes from the method of stationary phase and from the width of the blocks. */
-#include "range_migration/rma.h"
+#include "range_migration/conditions.h"
 
 static const struct param params[] = {
     RMA_PARAMS,
     {.name = NULL},
 };
 
+static const struct rma_method method = {
+    .name = "rma_numeric",
+    .law = "phase",
+    .error_limit = 0.1,
+    .spectrum = spectrum_exact,
+    .source = "LBF21 Eq. (20)",
+    .range = {2, 2},
+    .azimuth = {1, 1},
+    .products = {2, 2},
+    .interpolations = 1,
+};
+
+static int conditions(const struct problem *problem, const void *options, struct condition *list, int room)
+{
+    (void)options;
+    return rma_conditions(problem, &method, list, room);
+}
+
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
-    static const struct rma_method method = {
-        .name = "rma_numeric",
-        .law = "phase",
-        .error_limit = 0.1,
-        .spectrum = spectrum_exact,
-        .source = "LBF21 Eq. (20)",
-        .range = {2, 2},
-        .azimuth = {1, 1},
-        .products = {2, 2},
-        .interpolations = 1,
-    };
     return rma_plan(problem, &method, options, plan);
 }
 
@@ -33,6 +40,7 @@ const struct algorithm rma_numeric = {
     .reference = "LBF21 Eqs. (8) and (9), section IV",
     .options_size = sizeof(struct rma_options),
     .params = params,
+    .conditions = conditions,
     .plan = plan,
     .execute = rma_execute,
     .work = rma_work,

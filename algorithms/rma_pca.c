@@ -7,26 +7,33 @@
    It takes the way of the sonar during propagation, 2 v r/c, as if every target were abeam. Error: grows with range
    and with the beam, 0.14 rad at 300 m and 7 degrees to either side, 1 rad at twice that beam (LBF21 Figs 4, 5, 7
    and 9). */
-#include "range_migration/rma.h"
+#include "range_migration/conditions.h"
 
 static const struct param params[] = {
     RMA_PARAMS,
     {.name = NULL},
 };
 
+static const struct rma_method method = {
+    .name = "rma_pca",
+    .law = "pca_law",
+    .error_limit = 0.11, /* LBF21 Table IV studies it at 0.105 */
+    .spectrum = spectrum_pca,
+    .source = "LBF21 Eq. (21)",
+    .range = {2, 2},
+    .azimuth = {1, 1},
+    .products = {1, 2},
+    .interpolations = 2,
+};
+
+static int conditions(const struct problem *problem, const void *options, struct condition *list, int room)
+{
+    (void)options;
+    return rma_conditions(problem, &method, list, room);
+}
+
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
-    static const struct rma_method method = {
-        .name = "rma_pca",
-        .law = "pca_law",
-        .error_limit = 0.11, /* LBF21 Table IV studies it at 0.105 */
-        .spectrum = spectrum_pca,
-        .source = "LBF21 Eq. (21)",
-        .range = {2, 2},
-        .azimuth = {1, 1},
-        .products = {1, 2},
-        .interpolations = 2,
-    };
     return rma_plan(problem, &method, options, plan);
 }
 
@@ -36,6 +43,7 @@ const struct algorithm rma_pca = {
     .reference = "LBF21 Eq. (6), section IV",
     .options_size = sizeof(struct rma_options),
     .params = params,
+    .conditions = conditions,
     .plan = plan,
     .execute = rma_execute,
     .work = rma_work,

@@ -3,26 +3,33 @@
    receiver M/2, corrected together with the PCA phase of the reference receiver (spectrum.h).
 
    Error: that of PCA, as both take targets to be abeam; less only where d^4/r^3 counts. */
-#include "range_migration/rma.h"
+#include "range_migration/conditions.h"
 
 static const struct param params[] = {
     RMA_PARAMS,
     {.name = NULL},
 };
 
+static const struct rma_method method = {
+    .name = "rma_wu",
+    .law = "wu_law",
+    .error_limit = 0.11, /* as for rma_pca */
+    .spectrum = spectrum_wu,
+    .source = "LBF21 Eq. (22)",
+    .range = {4, 2},
+    .azimuth = {0, 2},
+    .products = {2, 2},
+    .interpolations = 1,
+};
+
+static int conditions(const struct problem *problem, const void *options, struct condition *list, int room)
+{
+    (void)options;
+    return rma_conditions(problem, &method, list, room);
+}
+
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
-    static const struct rma_method method = {
-        .name = "rma_wu",
-        .law = "wu_law",
-        .error_limit = 0.11, /* as for rma_pca */
-        .spectrum = spectrum_wu,
-        .source = "LBF21 Eq. (22)",
-        .range = {4, 2},
-        .azimuth = {0, 2},
-        .products = {2, 2},
-        .interpolations = 1,
-    };
     return rma_plan(problem, &method, options, plan);
 }
 
@@ -32,6 +39,7 @@ const struct algorithm rma_wu = {
     .reference = "LBF21 [22], section IV",
     .options_size = sizeof(struct rma_options),
     .params = params,
+    .conditions = conditions,
     .plan = plan,
     .execute = rma_execute,
     .work = rma_work,

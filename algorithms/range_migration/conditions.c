@@ -8,13 +8,17 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* The beam of echoes that do not say theirs: where the transmitter's power is half of that abeam, in lambda/D. */
-static const double LOBE = 0.443;
+static const double SLOWEST = 0.1; /* 1 - |v|/c that spectra need */
+static const double ERROR_LIMIT = 0.1;
 static const double LAW_LIMIT = 0.1;    /* rad: an image is as wrong as its phases */
 static const double WIDEST_SINE = 0.95; /* of the aperture where neither sampling nor element length bounds it */
 static const double FRESNEL_ZONES = 6;  /* beyond the track's ends: what is cut farther out leaves no ripple */
 
-static double offset_at(const struct rma_view *view, int n);
+/* Offset of the receiver that is n/2 of the way from the least to the greatest. */
+static double offset_at(const struct rma_view *view, int n)
+{
+    return condition_offset(view->problem->acquisition, n);
+}
 
 static struct rma_bounds bounds_of(const struct rma_view *view)
 {
@@ -41,22 +45,6 @@ static struct rma_bounds bounds_of(const struct rma_view *view)
     return bounds;
 }
 
-double rma_sinc(double z)
-{
-    return fabs(z) < 1e-9 ? 1 : sin(pi * z) / (pi * z);
-}
-
-/* Where the echoes' amplitude, by both elements' sinc, falls to a quarter. */
-static double quarter_sine(const struct acquisition *a)
-{
-    double inside = 0, outside = 1 / fmax(a->tx_length, a->rx_length); /* in 1/m: the first null */
-    for (int k = 0; k < 50; k++) {
-        double middle = (inside + outside) / 2;
-        *(rma_sinc(a->tx_length * middle) * rma_sinc(a->rx_length * middle) > 0.25 ? &inside : &outside) = middle;
-    }
-    return inside * a->sound_speed / a->fc;
-}
-
 struct rma_view rma_view_of(const struct problem *problem, const struct rma_method *method,
                             const struct straight_track *track)
 {
@@ -70,12 +58,8 @@ struct rma_view rma_view_of(const struct problem *problem, const struct rma_meth
         .converts = a->receivers > 1 || fabs(a->rx[0].x - a->tx[0].x) > a->sound_speed / a->fc / 1000,
         .x_low = fmin(track->x_first, end),
         .x_high = fmax(track->x_first, end),
-        .beam_sine = a->echo_sine > 0 ? a->echo_sine : INFINITY,
+        .beam_sine = condition_beam_sine(a),
     };
-    if (!(a->echo_sine > 0) && a->tx_length > 0)
-        view.beam_sine = LOBE * a->sound_speed / a->fc / a->tx_length;
-    if (a->echo_tapers)
-        view.beam_sine = fmin(view.beam_sine, quarter_sine(a));
     view.bounds = bounds_of(&view);
     return view;
 }
@@ -113,35 +97,6 @@ static double worst_row(const struct rma_view *view, row_function *function)
     return worst;
 }
 
-/* Offset of the receiver that is n/2 of the way from the least to the greatest. */
-static double offset_at(const struct rma_view *view, int n)
-{
-    const struct acquisition *a = view->problem->acquisition;
-    double least = INFINITY, greatest = -INFINITY;
-    for (int m = 0; m < a->receivers; m++) {
-        least = fmin(least, a->rx[m].x - a->tx[0].x);
-        greatest = fmax(greatest, a->rx[m].x - a->tx[0].x);
-    }
-    return least + n / 2.0 * (greatest - least);
-}
-
-static struct rma_condition above_dc(const struct rma_view *view)
-{
-    const struct acquisition *a = view->problem->acquisition;
-    return (struct rma_condition){"above_dc",
-                                  a->fc - a->bandwidth / 2,
-                                  0,
-                                  true,
-                                  "the lowest frequency fc - B/2 (Hz)",
-                                  "a higher carrier or a narrower band"};
-}
-
-static struct rma_condition subsonic(const struct rma_view *view)
-{
-    return (struct rma_condition){
-        "subsonic", 1 - fabs(view->setting.speed) / view->setting.sound_speed, 0.1, true, "1 - |v|/c", "a lower speed"};
-}
-
 static double stationary_at(const struct rma_view *view, double r, double low, double high)
 {
     const struct acquisition *a = view->problem->acquisition;
@@ -149,14 +104,15 @@ static double stationary_at(const struct rma_view *view, double r, double low, d
     return wavelength / (32 * pi * r) * hypot(1, u / r);
 }
 
-static struct rma_condition stationary(const struct rma_view *view)
+static struct condition stationary(const struct rma_view *view)
 {
-    return (struct rma_condition){"stationary",
-                                  worst_row(view, stationary_at),
-                                  0.01,
-                                  false,
-                                  "the first term that stationary phase drops, lambda/(32 pi r cos theta)",
-                                  "rows farther away, or a higher frequency"};
+    return (struct condition){"stationary",
+                              worst_row(view, stationary_at),
+                              0.01,
+                              false,
+                              SEVERITY_REFUSE,
+                              "the first term that stationary phase drops, lambda/(32 pi r cos theta)",
+                              "rows farther away, or a higher frequency"};
 }
 
 static double amplitude_at(const struct rma_view *view, double r, double low, double high)
@@ -167,14 +123,15 @@ static double amplitude_at(const struct rma_view *view, double r, double low, do
     return pow(1 + d * d, 0.75) - 1;
 }
 
-static struct rma_condition spa_amplitude(const struct rma_view *view)
+static struct condition spa_amplitude(const struct rma_view *view)
 {
-    return (struct rma_condition){"spa_amplitude",
-                                  worst_row(view, amplitude_at),
-                                  0.05,
-                                  false,
-                                  "the amplitude that a monostatic weight gets wrong, (1 + (d/2r)^2)^.75 - 1",
-                                  "rows farther away, or receivers nearer to the transmitter"};
+    return (struct condition){"spa_amplitude",
+                              worst_row(view, amplitude_at),
+                              0.05,
+                              false,
+                              SEVERITY_WARN,
+                              "the amplitude that a monostatic weight gets wrong, (1 + (d/2r)^2)^.75 - 1",
+                              "rows farther away, or receivers nearer to the transmitter"};
 }
 
 static double doppler_at(const struct rma_view *view, double r, double low, double high)
@@ -187,15 +144,15 @@ static double doppler_at(const struct rma_view *view, double r, double low, doub
     return (a->fc + a->bandwidth / 2) * steepest * 2 * view->spacing / a->receivers;
 }
 
-static struct rma_condition doppler(const struct rma_view *view)
+static struct condition doppler(const struct rma_view *view)
 {
-    return (struct rma_condition){
-        "doppler",
-        worst_row(view, doppler_at),
-        1.05,
-        false,
-        "the widest azimuth wavenumber in the beam over what the receivers sample, M/(2 spacing)",
-        "pings closer together, more receivers, a narrower beam or a lower speed"};
+    return (struct condition){"doppler",
+                              worst_row(view, doppler_at),
+                              1.05,
+                              false,
+                              SEVERITY_WARN,
+                              "the widest azimuth wavenumber in the beam over what the receivers sample, M/(2 spacing)",
+                              "pings closer together, more receivers, a narrower beam or a lower speed"};
 }
 
 /* Root mean square over the beam, the band and the array of the phase that the method's formula misses. */
@@ -213,70 +170,113 @@ static double formula_at(const struct rma_view *view, double r, double low, doub
                 double exact = -2 * pi * (frequency * spectrum_delay(&view->setting, d, r, u) + nu * u);
                 double error = view->method->spectrum(&view->setting, d, r, frequency, nu) - exact;
                 double sine = u / hypot(u, r) * frequency / a->sound_speed;
-                double weight =
-                    a->echo_tapers ? pow(rma_sinc(a->tx_length * sine) * rma_sinc(a->rx_length * sine), 2) : 1;
+                double weight = a->echo_tapers
+                                    ? pow(condition_sinc(a->tx_length * sine) * condition_sinc(a->rx_length * sine), 2)
+                                    : 1;
                 sum += weight * error * error;
                 weights += weight;
             }
     return sqrt(sum / weights);
 }
 
-static struct rma_condition formula(const struct rma_view *view)
+static struct condition formula(const struct rma_view *view)
 {
     bool exact = view->method->spectrum == spectrum_exact || !view->converts;
-    return (struct rma_condition){
-        view->method->law,
-        exact ? 0 : worst_row(view, formula_at),
-        LAW_LIMIT,
-        false,
-        "the formula's phase error over the beam (rad, rms)",
-        "rma_numeric, which has no such error; rows farther away or nearer, a narrower beam or a "
-        "lower speed"};
+    return (struct condition){view->method->law,
+                              exact ? 0 : worst_row(view, formula_at),
+                              LAW_LIMIT,
+                              false,
+                              SEVERITY_WARN,
+                              "the formula's phase error over the beam (rad, rms)",
+                              "rma_numeric, which has no such error; rows farther away or nearer, a narrower beam or a "
+                              "lower speed"};
 }
 
-static struct rma_condition predicted_error(const struct rma_view *view)
+static struct condition predicted_error(const struct rma_view *view)
 {
-    return (struct rma_condition){"predicted_error",
-                                  prediction_error(view),
-                                  view->method->error_limit,
-                                  false,
-                                  "the error predicted for azimuth slices through point targets (relative L2)",
-                                  "more pings in the beam, columns within the track, pings closer together, or rows "
-                                  "farther away"};
+    double error = prediction_error(view);
+    return (struct condition){"predicted_error",
+                              error,
+                              ERROR_LIMIT,
+                              false,
+                              error <= view->method->error_limit ? SEVERITY_WARN : SEVERITY_REFUSE,
+                              "the error predicted for azimuth slices through point targets (relative L2)",
+                              "more pings in the beam, columns within the track, pings closer together, or rows "
+                              "farther away"};
 }
 
-rma_condition_function *const rma_conditions[RMA_CONDITIONS] = {
-    above_dc, subsonic, stationary, spa_amplitude, doppler, formula, predicted_error,
-};
-
-bool rma_condition_holds(const struct rma_condition *condition)
+/* What all else takes for granted; false where one of them does not hold. */
+static bool requirements(const struct problem *problem, struct condition *list, int *count,
+                         struct straight_track *track)
 {
-    return condition->at_least ? condition->value > condition->limit : condition->value <= condition->limit;
+    const struct acquisition *a = problem->acquisition;
+    const struct condition *first = list + *count;
+    double nearest = INFINITY;
+    for (int k = 0; k < problem->patch_count; k++)
+        nearest = fmin(nearest, problem->patches[k].r_first);
+    list[(*count)++] = (struct condition){"above_dc",
+                                          a->fc - a->bandwidth / 2,
+                                          0,
+                                          true,
+                                          SEVERITY_REFUSE,
+                                          "the lowest frequency fc - B/2 (Hz)",
+                                          "a higher carrier or a narrower band"};
+    list[(*count)++] = (struct condition){"uniform_track",
+                                          acquisition_is_straight(a, track),
+                                          0,
+                                          true,
+                                          SEVERITY_REFUSE,
+                                          "whether the track is straight and uniform (tx, rx within lambda/1000 of "
+                                          "even points on a line along x, y = z = "
+                                          "0, one velocity, one t0)",
+                                          "back projection"};
+    list[(*count)++] = (struct condition){"pings",
+                                          a->pings,
+                                          1,
+                                          true,
+                                          SEVERITY_REFUSE,
+                                          "the number of pings, of which a single ping has no azimuth spectrum,",
+                                          "back projection"};
+    list[(*count)++] = (struct condition){"whole_aperture",
+                                          fmax(0, 1 - a->aperture_limit),
+                                          0,
+                                          false,
+                                          SEVERITY_REFUSE,
+                                          "what the scene's aperture limit takes off the sine 1, where range migration "
+                                          "cannot choose pings pixel by pixel,",
+                                          "back projection, or a scene without aperture_limit"};
+    list[(*count)++] = (struct condition){
+        "in_front",     nearest, 0, true, SEVERITY_REFUSE, "the first row r (m), where range migration needs r > 0,",
+        "rows at r > 0"};
+    for (; first < list + *count; first++)
+        if (!condition_holds(first))
+            return false;
+    return true;
 }
 
-static enum status refuse(const struct rma_view *view, const struct rma_condition *c)
+int rma_conditions(const struct problem *problem, const struct rma_method *method, struct condition *list, int room)
 {
-    return status_set(STATUS_UNSUPPORTED, "%s: condition %s: %s is %.3g; %s %g is needed (cure: %s)",
-                      view->method->name, c->name, c->meaning, c->value, c->at_least ? "more than" : "at most",
-                      c->limit, c->cure);
-}
-
-enum status rma_conditions_check(const struct rma_view *view)
-{
-    for (int k = 0; k < RMA_CAUSES; k++) {
-        struct rma_condition c = rma_conditions[k](view);
-        if (!rma_condition_holds(&c))
-            return refuse(view, &c);
+    struct straight_track track;
+    struct condition all[CONDITIONS_MAX];
+    int count = conditions_general(problem, all, CONDITIONS_MAX);
+    all[0].limit = SLOWEST;
+    if (requirements(problem, all, &count, &track) && condition_holds(&all[0])) {
+        struct rma_view view = rma_view_of(problem, method, &track);
+        struct condition causes[] = {spa_amplitude(&view), doppler(&view), formula(&view)};
+        struct condition error = predicted_error(&view);
+        bool named = false;
+        all[count++] = stationary(&view);
+        if (problem->acquisition->receivers > 1)
+            all[count++] = condition_ghost(problem->acquisition, track.spacing);
+        for (size_t k = 0; k < sizeof causes / sizeof *causes; k++) {
+            causes[k].severity = error.severity;
+            named = named || !condition_holds(&causes[k]);
+            all[count++] = causes[k];
+        }
+        if (condition_holds(&error) || error.severity == SEVERITY_WARN || !named)
+            all[count++] = error;
     }
-    struct rma_condition error = predicted_error(view);
-    if (isnan(error.value))
-        return status_set(STATUS_FAILED, "%s: no memory to predict the image's error", view->method->name);
-    if (rma_condition_holds(&error))
-        return STATUS_OK;
-    for (int k = RMA_CAUSES; k < RMA_CONDITIONS - 1; k++) {
-        struct rma_condition c = rma_conditions[k](view);
-        if (!rma_condition_holds(&c))
-            return refuse(view, &c);
-    }
-    return refuse(view, &error);
+    for (int k = 0; k < count && k < room; k++)
+        list[k] = all[k];
+    return count < room ? count : room;
 }

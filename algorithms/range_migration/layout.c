@@ -30,54 +30,59 @@ static double last_row(const struct grid *grid)
     return grid->r_first + (grid->r_count - 1) * grid->r_step;
 }
 
-static enum status lay_track(struct rma *rma)
+/* Offsets of the receivers, their extremes, and whether they are evenly spaced. */
+static enum status lay_receivers(struct rma *rma)
 {
     const struct acquisition *a = rma->problem.acquisition;
-    struct straight_track track;
-    if (!acquisition_is_straight(a, &track))
-        return unsupported(rma, "the track is not straight and uniform (tx, rx within lambda/1000 of even points on "
-                                "a line along x, y = z = 0, one velocity, one t0)");
-    if (a->pings < 2)
-        return unsupported(rma, "a single ping has no azimuth spectrum");
-    if (a->aperture_limit < 1)
-        return unsupported(rma, "the scene has an aperture limit, and range migration cannot choose pings pixel by "
-                                "pixel");
-    rma->x_first = track.x_first;
-    rma->spacing = track.spacing;
-    rma->t0 = a->t0[0];
-    rma->fs = a->fs;
+    const double tolerance = a->sound_speed / a->fc / 1000;
     rma->receivers = a->receivers;
-    rma->pings = a->pings;
-    rma->samples = a->samples;
-    rma->setting = (struct spectrum_setting){a->sound_speed, track.speed, a->fc, 0};
     rma->offset = malloc((size_t)a->receivers * sizeof *rma->offset);
     if (!rma->offset)
         return status_set(STATUS_FAILED, "no memory for %d receivers", a->receivers);
-    double tolerance = a->sound_speed / a->fc / 1000;
     rma->groups = (a->receivers + RMA_GROUP - 1) / RMA_GROUP;
     rma->recurs = rma->options.phases == RMA_RECURRENCE;
     for (int m = 0; m < a->receivers; m++)
         rma->offset[m] = a->rx[m].x - a->tx[0].x;
+    double pitch = a->receivers > 1 ? (rma->offset[a->receivers - 1] - rma->offset[0]) / (a->receivers - 1) : 0;
     for (int m = 0; m < a->receivers; m++) {
         rma->extremes[0] = rma->offset[m] < rma->offset[rma->extremes[0]] ? m : rma->extremes[0];
         rma->extremes[1] = rma->offset[m] > rma->offset[rma->extremes[1]] ? m : rma->extremes[1];
-        double pitch = a->receivers > 1 ? (rma->offset[a->receivers - 1] - rma->offset[0]) / (a->receivers - 1) : 0;
         rma->recurs = rma->recurs && fabs(rma->offset[m] - rma->offset[0] - m * pitch) <= tolerance;
     }
+    return STATUS_OK;
+}
+
+static enum status lay_track(struct rma *rma)
+{
+    const struct acquisition *a = rma->problem.acquisition;
+    struct condition list[CONDITIONS_MAX];
+    int count = rma_conditions(&rma->problem, &rma->method, list, CONDITIONS_MAX);
+    if (count > 0 && isnan(list[count - 1].value))
+        return status_set(STATUS_FAILED, "%s: no memory to predict the image's error", rma->method.name);
+    enum status status = conditions_check(rma->method.name, list, count);
+    if (status == STATUS_OK)
+        status = lay_receivers(rma);
+    if (status != STATUS_OK)
+        return status;
+    struct straight_track track;
+    acquisition_is_straight(a, &track);
+    struct rma_view view = rma_view_of(&rma->problem, &rma->method, &track);
+    rma->x_first = track.x_first;
+    rma->spacing = track.spacing;
+    rma->t0 = a->t0[0];
+    rma->fs = a->fs;
+    rma->pings = a->pings;
+    rma->samples = a->samples;
+    rma->setting = view.setting;
+    rma->bounds = view.bounds;
+    rma->converts = view.converts;
     rma->nearest = INFINITY;
     rma->farthest = -INFINITY;
     for (int k = 0; k < rma->problem.patch_count; k++) {
         rma->nearest = fmin(rma->nearest, rma->problem.patches[k].r_first);
         rma->farthest = fmax(rma->farthest, last_row(&rma->problem.patches[k]));
     }
-    rma->setting.reference_offset = rma->offset[a->receivers / 2];
-    if (!(rma->nearest > 0))
-        return status_set(STATUS_UNSUPPORTED, "%s: image rows begin at r = %g m; range migration needs r > 0",
-                          rma->method.name, rma->nearest);
-    struct rma_view view = rma_view_of(&rma->problem, &rma->method, &track);
-    rma->bounds = view.bounds;
-    rma->converts = view.converts;
-    return rma_conditions_check(&view);
+    return STATUS_OK;
 }
 
 /* The bins that hold the compressed pulse; of echoes that come compressed already, twice the band. */
@@ -324,7 +329,9 @@ static enum status swath_azimuth(const struct rma *rma, struct rma_swath *swath)
                               rma->method.name, g->x_first, last, x_low - angle, x_high + angle);
         overhang = fmax(overhang, fmax(x_low - g->x_first, last - x_high));
     }
-    double extent = x_high - x_low + overhang + angle;
+    /* A receiver aside sees half its offset farther; what is less than a Fresnel zone fades like any edge. */
+    double zone = sqrt(rma->setting.sound_speed / rma->setting.fc * swath->farthest / 2);
+    double extent = x_high - x_low + overhang + angle + fmax(0, rma->bounds.aside / 2 - zone);
     swath->period = fft_length((long long)fmin(1e9, fmax(ceil(extent / spacing) + 1, folds / spacing)));
     if (swath->period == 0 || (double)swath->period * rma->receivers > INT_MAX / 4)
         return status_set(STATUS_UNSUPPORTED,

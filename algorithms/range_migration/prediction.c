@@ -183,7 +183,7 @@ static double amplitude(const struct rma_view *view, double r, double u)
     double sine = u / hypot(u, r), turns = sine * a->fc / a->sound_speed;
     if (!(fabs(sine) <= seen_sine(view)))
         return 0;
-    return a->echo_tapers ? rma_sinc(a->tx_length * turns) * rma_sinc(a->rx_length * turns) : 1;
+    return a->echo_tapers ? condition_sinc(a->tx_length * turns) * condition_sinc(a->rx_length * turns) : 1;
 }
 
 /* Energies of an image and of its error. */
@@ -214,7 +214,8 @@ static void pixel_add(const struct kernel *kernel, const struct target *target, 
             double late =
                 spectrum_delay(&view->setting, d, kernel->r, at) - spectrum_delay(&view->setting, d, kernel->r, u);
             double cycles = a->fc * late;
-            double complex pair = seen * rma_sinc(a->bandwidth * late) * cexp(2 * I * pi * (cycles - floor(cycles)));
+            double complex pair =
+                seen * condition_sinc(a->bandwidth * late) * cexp(2 * I * pi * (cycles - floor(cycles)));
             image += pair;
             for (int n = 0; n < FREQUENCIES; n++)
                 errors[n] += pair * error[n];

@@ -28,13 +28,11 @@
 #include "range_migration/spectrum.h"
 
 struct rma_options {
-    int variant;                            /* of rma_lbf: enum rma_variant */
     int blocks;                             /* range blocks over all rows asked for; 0: by Eq. (13) and limit */
     double limit;                           /* rad: the phase error that Eq. (13) accepts */
     int spacing, blend, stolt, sum, phases; /* indices into the choices of RMA_PARAMS */
 };
 
-enum rma_variant { RMA_PRINTED, RMA_CORRECTED };
 enum rma_spacing { RMA_UNIFORM, RMA_INVERSE };
 enum rma_sum { RMA_SUM_BEFORE, RMA_SUM_AFTER };
 enum rma_phases { RMA_RECURRENCE, RMA_LIBM };

@@ -27,6 +27,11 @@ struct command {
 static const struct command commands[] = {
     {"list", "", "the algorithms, with summary, reference and traits", "", 0, 0, command_list, false},
     {"info", "NAME", "one algorithm's parameters, with default, bounds and sweep", "", 1, 1, command_info, false},
+    {"check", "SCENE [--algorithm SPEC ...]",
+     "the conditions of each algorithm on a scene, and its sensitivities, before any work; exit status 1 where an "
+     "algorithm is "
+     "refused",
+     "a", 1, 1, command_check, false},
     {"simulate", "SCENE -o FILE.mat", "write a scene's echoes", "ot", 1, 1, command_simulate, false},
     {"image", "(--scene SCENE | --echoes FILE.mat --grid GRID) --algorithm SPEC -o FILE.mat", "form one image",
      "oseagt", 0, 0, command_image, false},

@@ -28,6 +28,7 @@ enum status command_reproduce(const struct task *task);
 enum status command_sweep(const struct task *task);
 enum status command_report(const struct task *task);
 enum status command_phase(const struct task *task);
+enum status command_check(const struct task *task);
 enum status command_bench(const struct task *task);
 
 #endif

@@ -153,6 +153,17 @@ static void outcome_fail(struct outcome *outcome, enum status status)
     snprintf(outcome->reason, sizeof outcome->reason, "%s", status_message());
 }
 
+/* What fails without refusing: behind the other reasons, so that a table finds it there. */
+static void warnings_fill(const struct spec *spec, const struct problem *problem, struct outcome *outcome)
+{
+    struct condition list[CONDITIONS_MAX];
+    int count = algorithm_conditions(spec->algorithm, problem, spec->options, list, CONDITIONS_MAX);
+    for (int k = 0; k < count; k++)
+        if (list[k].severity == SEVERITY_WARN && !condition_holds(&list[k]))
+            reason_add(outcome->reason, sizeof outcome->reason, OUTCOME_WARNING "condition %s: %s is %.3g, limit %g",
+                       list[k].name, list[k].meaning, list[k].value, list[k].limit);
+}
+
 void outcome_measure(const struct session *session, const struct spec *spec, bool timed, struct outcome *outcome)
 {
     *outcome = (struct outcome){
@@ -167,6 +178,7 @@ void outcome_measure(const struct session *session, const struct spec *spec, boo
     if (status == STATUS_OK) {
         work_fill(session, &problem, outcome);
         status = quality_fill(session, outcome);
+        warnings_fill(spec, &problem, outcome);
     }
     if (status != STATUS_OK) {
         image_free(&outcome->image);

@@ -4,6 +4,9 @@
 
 #include "measure/session.h"
 
+/* Begins a warning in the reason of a row that is ok. */
+#define OUTCOME_WARNING "warning: "
+
 /* Made by outcome_measure, released by outcome_free. Texts of the rows point into it, the session and the SPEC: it is not
    copied. */
 struct outcome {

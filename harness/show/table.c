@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "data/shown_text.h"
+#include "measure/outcome.h"
 
 #define WIDTH      110
 #define SPEC_WIDTH 34
@@ -113,6 +114,13 @@ void table_row(FILE *stream, const struct measurement *row)
                 cell_significant(row->control_s / row->run_s, "x").text, cell_rate(row).text,
                 cell_error(row->error).text, cell_error(row->error_gain).text, cell_error(row->phase_rms_rad).text,
                 cell_fixed(1e3 * row->width_m).text, cell_fixed(row->pslr_db).text, cell_fixed(row->islr_db).text);
+        const char *warning = strstr(row->reason, OUTCOME_WARNING);
+        if (warning) {
+            char text[1024];
+            snprintf(text, sizeof text, "%s", warning);
+            shown_make(text);
+            print_wrapped(stream, 4, text);
+        }
     } else {
         char text[1024];
         snprintf(text, sizeof text, "%s: %s", row->status, row->reason);

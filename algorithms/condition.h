@@ -1,0 +1,54 @@
+/* What a scene must fulfil for an algorithm to image it rightly: conditions by name, each with its value and its limit, known
+   before any work. */
+#ifndef SASBENCH_CONDITION_H
+#define SASBENCH_CONDITION_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "status.h"
+
+struct acquisition;
+struct problem;
+
+enum severity {
+    SEVERITY_REFUSE, /* the algorithm does not image the scene */
+    SEVERITY_WARN,   /* it does, and the image, back projection's as well, may show what the condition says */
+    SEVERITY_INFORM  /* tells which way of computing is open */
+};
+
+struct condition {
+    const char *name;
+    double value, limit;
+    bool at_least; /* the value must lie above the limit, not below */
+    enum severity severity;
+    const char *meaning, *cure; /* what the value is, and what would change it: static texts */
+};
+
+enum { CONDITIONS_MAX = 24 }; /* of one algorithm */
+
+/* A NaN does not hold. */
+bool condition_holds(const struct condition *condition);
+/* "condition NAME: MEANING is VALUE; at most LIMIT is needed (cure: CURE)". */
+void condition_message(const struct condition *condition, char *text, size_t size);
+/* STATUS_UNSUPPORTED with the message of the first of `list` that refuses and does not hold; `name` is the algorithm's. */
+enum status conditions_check(const char *name, const struct condition *list, int count);
+
+/* Fill list[room] with the conditions that all algorithms have, in the order of their names in docs/conditions.md, and
+   return their number. */
+int conditions_general(const struct problem *problem, struct condition *list, int room);
+/* Those, and what the places of pings and receivers, sampled in azimuth, make of any image: what back projections have. */
+int conditions_sampled(const struct problem *problem, const void *options, struct condition *list, int room);
+
+/* The ghosts of a straight track of several receivers, `spacing` m from ping to ping. */
+struct condition condition_ghost(const struct acquisition *acquisition, double spacing);
+
+/* Offset of the receiver that is n/2 of the way from the least to the greatest, m along the track; n = 0, 1, 2. */
+double condition_offset(const struct acquisition *acquisition, int n);
+/* |sin theta_t| up to which the echoes count: their stated truncation, where both elements' amplitude falls to a quarter, or the
+   half-power beam of a transmitter of known length; INFINITY where nothing is known. */
+double condition_beam_sine(const struct acquisition *acquisition);
+/* sin(pi z)/(pi z) */
+double condition_sinc(double z);
+
+#endif

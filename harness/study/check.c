@@ -1,0 +1,161 @@
+/* Conditions and sensitivities of a scene (check.h). */
+#include "study/check.h"
+
+#include <math.h>
+
+#include "common/delay.h"
+#include "measure/session.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* ---- conditions that only the scene's own targets tell ---- */
+
+/* Two of them: amplitudes, and how far apart they lie. */
+static int targets_conditions(const struct scene *scene, enum precision precision, struct condition *list)
+{
+    const struct acquisition *a = &scene->acquisition;
+    double least = INFINITY, greatest = 0, pairs = (double)a->pings * a->receivers;
+    double digits = precision == PRECISION_FLOAT ? 0x1p24 : 0x1p53;
+    for (int k = 0; k < scene->point_count; k++) {
+        double magnitude = cabs(scene->targets[k].amplitude);
+        least = magnitude > 0 ? fmin(least, magnitude) : least;
+        greatest = fmax(greatest, magnitude);
+    }
+    if (!(greatest > 0))
+        return 0;
+    int count = 0;
+    if (precision == PRECISION_FLOAT)
+        list[count++] =
+            (struct condition){"float_range",
+                               fabs(log2(greatest)),
+                               100,
+                               false,
+                               SEVERITY_INFORM,
+                               "the binary exponent of the strongest echo, beyond which a power of two scales "
+                               "the samples,",
+                               "nothing: the scaling is exact"};
+    list[count++] = (struct condition){"dynamic",
+                                       20 * log10(greatest / least),
+                                       20 * log10(digits / sqrt(pairs)),
+                                       false,
+                                       SEVERITY_WARN,
+                                       "from the strongest point target to the weakest (dB)",
+                                       "precision=double"};
+    return count;
+}
+
+static const char *verdict(const struct condition *condition)
+{
+    if (condition_holds(condition))
+        return "holds";
+    return condition->severity == SEVERITY_REFUSE ? "REFUSED" : condition->severity == SEVERITY_WARN ? "warns" : "note";
+}
+
+enum status check_algorithm(FILE *stream, const struct scene *scene, const struct spec *spec, bool *refused)
+{
+    struct problem problem = session_problem(scene, spec->algorithm, spec->precision);
+    struct condition list[CONDITIONS_MAX + 2];
+    void *plan = NULL;
+    int count = algorithm_conditions(spec->algorithm, &problem, spec->options, list, CONDITIONS_MAX);
+    count += targets_conditions(scene, spec->precision, list + count);
+    fprintf(stream, "\n%s%s%s\n", spec->algorithm->name, *spec->text ? ":" : "", spec->text);
+    *refused = false;
+    for (int k = 0; k < count; k++) {
+        const struct condition *c = &list[k];
+        bool holds = condition_holds(c);
+        fprintf(stream, "  %-7s  %-16s %10.3g  %s %-8.3g  %s%s%s\n", verdict(c), c->name, c->value,
+                c->at_least ? ">" : "<=", c->limit, c->meaning, holds ? "" : "; cure: ", holds ? "" : c->cure);
+        *refused = *refused || (!holds && c->severity == SEVERITY_REFUSE);
+    }
+    if (*refused)
+        return STATUS_OK;
+    enum status status = spec->algorithm->plan(&problem, spec->options, &plan);
+    spec->algorithm->destroy(plan);
+    *refused = status == STATUS_UNSUPPORTED;
+    if (*refused)
+        fprintf(stream, "  REFUSED  %s\n", status_message());
+    return *refused ? STATUS_OK : status;
+}
+
+/* ---- sensitivities ---- */
+
+enum quantity { SOUND_SPEED, CARRIER, RANGE, SPEED, POSITION };
+
+/* Phase (rad) of a pair whose quantity is off by a small relative error, the transmitter's position by metres. */
+static double phase_of(const struct scene *scene, int ping, int receiver, struct vector p,
+                       const double off[SENSITIVITIES])
+{
+    const struct acquisition *a = &scene->acquisition;
+    struct vector tx = a->tx[ping], v = a->velocity[ping];
+    struct vector rx = a->rx[(size_t)ping * (size_t)a->receivers + (size_t)receiver];
+    tx.y -= off[POSITION];
+    p.y *= 1 + off[RANGE];
+    v.x *= 1 + off[SPEED];
+    return 2 * pi * a->fc * (1 + off[CARRIER]) * delay_exact(tx, rx, v, p, a->sound_speed * (1 + off[SOUND_SPEED]));
+}
+
+/* The middle of the outermost pixels. */
+static struct vector middle_of(const struct scene *scene)
+{
+    double x[2] = {INFINITY, -INFINITY}, r[2] = {INFINITY, -INFINITY};
+    for (int k = 0; k < scene->patch_count; k++) {
+        const struct grid *g = &scene->patches[k];
+        x[0] = fmin(x[0], g->x_first);
+        x[1] = fmax(x[1], g->x_first + (g->x_count - 1) * g->x_step);
+        r[0] = fmin(r[0], g->r_first);
+        r[1] = fmax(r[1], g->r_first + (g->r_count - 1) * g->r_step);
+    }
+    return (struct vector){(x[0] + x[1]) / 2, (r[0] + r[1]) / 2, 0};
+}
+
+void check_sensitivities(const struct scene *scene, struct sensitivity list[SENSITIVITIES])
+{
+    static const struct {
+        const char *quantity, *change;
+        double size; /* relative; of positions m */
+    } changes[SENSITIVITIES] = {
+        [SOUND_SPEED] = {"sound speed", "a relative error of 1e-5", 1e-5},
+        [CARRIER] = {"carrier", "a relative error of 1e-5", 1e-5},
+        [RANGE] = {"range", "a relative error of 1e-5", 1e-5},
+        [SPEED] = {"speed", "a relative error of 1e-2", 1e-2},
+        [POSITION] = {"positions", "a transmitter 1 mm off", 1e-3},
+    };
+    const struct acquisition *a = &scene->acquisition;
+    const struct vector middle = middle_of(scene);
+    const double sine = condition_beam_sine(a);
+    for (int q = 0; q < SENSITIVITIES; q++) {
+        const double none[SENSITIVITIES] = {0};
+        double off[SENSITIVITIES] = {0}, least = INFINITY, greatest = -INFINITY;
+        off[q] = changes[q].size;
+        for (int n = 0; n < 2 * a->pings; n++) {
+            int m = n % 2 ? a->receivers - 1 : 0;
+            double u = a->tx[n / 2].x - middle.x;
+            if (!(fabs(u) <= sine * hypot(u, a->tx[n / 2].y - middle.y)))
+                continue;
+            double moved = phase_of(scene, n / 2, m, middle, off) - phase_of(scene, n / 2, m, middle, none);
+            least = fmin(least, moved);
+            greatest = fmax(greatest, moved);
+        }
+        double phase = least <= greatest ? fmax(fabs(least), fabs(greatest)) : 0;
+        double shared = least <= greatest ? (least + greatest) / 2 : 0;
+        list[q] = (struct sensitivity){.quantity = changes[q].quantity,
+                                       .change = changes[q].change,
+                                       .kappa = phase / changes[q].size,
+                                       .phase = phase,
+                                       .spread = least <= greatest ? greatest - least : 0,
+                                       .shift_m = fabs(shared) * a->sound_speed / (4 * pi * a->fc)};
+    }
+}
+
+void check_sensitivities_print(FILE *stream, const struct scene *scene)
+{
+    struct sensitivity list[SENSITIVITIES];
+    check_sensitivities(scene, list);
+    fprintf(stream, "Sensitivities, of the image's middle (a spread over the aperture beyond pi/4 blurs):\n");
+    for (int q = 0; q < SENSITIVITIES; q++)
+        fprintf(stream,
+                "  %s in %s moves the phase by %.3g rad, the image by %.3g mm in range; %.3g rad over the "
+                "aperture (kappa %.3g%s)\n",
+                list[q].change, list[q].quantity, list[q].phase, 1e3 * list[q].shift_m, list[q].spread, list[q].kappa,
+                q == POSITION ? " rad/m" : "");
+}

@@ -1,0 +1,29 @@
+/* What can be said of a scene before any work: the conditions of each algorithm, and how sensitive the image is to what is
+   known of sound speed, carrier, range, speed and positions. */
+#ifndef SASBENCH_STUDY_CHECK_H
+#define SASBENCH_STUDY_CHECK_H
+
+#include <stdio.h>
+
+#include "measure/spec.h"
+#include "scene/scene.h"
+
+/* Print the conditions of one SPEC on a scene, those that hold too, and whether its plan can be made. *refused is set where it
+   cannot. Errors: STATUS_FAILED without memory. */
+enum status check_algorithm(FILE *stream, const struct scene *scene, const struct spec *spec, bool *refused);
+
+/* What a small error of one quantity does to a pair of ping and receiver. */
+struct sensitivity {
+    const char *quantity; /* "sound speed" */
+    const char *change;   /* "a relative error of 1e-5" */
+    double kappa;         /* rad for a relative error of 1, for positions rad/m: the amplification factor */
+    double phase;         /* rad: of the strongest pair, by the change */
+    double spread;        /* rad: from one end of the aperture to the other: what blurs */
+    double shift_m;       /* m in range: what the phase that all pairs share looks like */
+};
+enum { SENSITIVITIES = 5 };
+/* For the point halfway between the scene's outermost pixels. */
+void check_sensitivities(const struct scene *scene, struct sensitivity list[SENSITIVITIES]);
+void check_sensitivities_print(FILE *stream, const struct scene *scene);
+
+#endif

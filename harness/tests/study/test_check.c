@@ -1,0 +1,173 @@
+/* `check` on scenes that violate one condition each names exactly that one; sensitivities are what delays say. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "study/check.h"
+#include "tests/support.h"
+
+/* study/quick, compressed, by parts that the tests vary. */
+struct parts {
+    const char *sonar, *array, *track, *record, *limit, *targets, *image;
+};
+static const struct parts plain = {
+    "fc = 150e3; bandwidth = 15e3; fs = 30e3;",
+    "receivers = 8; first_offset = 0.04; pitch = 0.04;",
+    "speed = 2.5; pri = 0.064; pings = 18; x_first = -1.52;",
+    "first_sample = 0; samples = 4000;",
+    "",
+    "{ x = 0.0; r = 20.0; }",
+    "x = { first = -0.6; step = 0.02; count = 61; }; r = { first = 19.9; step = 0.025; count = 9; };",
+};
+
+static struct scene scene_of(const struct parts *varied)
+{
+    struct scene scene;
+    char text[2000];
+#define PART(field) (varied->field ? varied->field : plain.field)
+    snprintf(text, sizeof text,
+             "sonar = { %s };\npulse = { kind = \"flat\"; };\narray = { tx_length = 0.08; rx_length = 0.04; %s };\n"
+             "track = { %s };\nrecord = { %s };\nbeam = { kind = \"rect\"; truncation = \"tx\"; limit = 0.443; };\n%s\n"
+             "targets = { points = ( %s ); };\nimage = { %s };\n",
+             PART(sonar), PART(array), PART(track), PART(record), PART(limit), PART(targets), PART(image));
+    support_write("scene.cfg", text);
+    if (scene_load(path_of("scene.cfg"), SASBENCH_ROOT "/scenes", &scene) != STATUS_OK)
+        fail_msg("%s", status_message());
+    return scene;
+}
+
+/* What check prints of a SPEC; for the caller to free. */
+static char *checked(const struct scene *scene, const char *text, bool *refused)
+{
+    struct spec spec;
+    char *printed = NULL;
+    size_t size;
+    FILE *stream = open_memstream(&printed, &size);
+    assert_non_null(stream);
+    assert_int_equal(spec_parse(text, &spec), STATUS_OK);
+    assert_int_equal(check_algorithm(stream, scene, &spec, refused), STATUS_OK);
+    fclose(stream);
+    spec_free(&spec);
+    return printed;
+}
+
+/* Does exactly the line of `name` not say "holds", but `verdict`? An empty name: all hold. */
+static bool names_one(const char *printed, const char *verdict, const char *name)
+{
+    int failing = 0, right = 0;
+    char *text = strdup(printed), *rest = text;
+    for (char *line; (line = strsep(&rest, "\n"));) {
+        char first[20], second[40];
+        if (strncmp(line, "  ", 2) != 0 || sscanf(line, "%19s %39s", first, second) != 2 || !strcmp(first, "holds"))
+            continue;
+        failing++;
+        right += !strcmp(first, verdict) && !strcmp(second, name);
+    }
+    free(text);
+    return *name ? failing == 1 && right == 1 : failing == 0;
+}
+
+static void exactly_the_violated_condition_is_named(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *spec, *verdict, *name;
+        struct parts parts;
+    } cases[] = {
+        {"rma_lbf", "", "", {0}},
+        {"bp_sinc", "", "", {0}},
+        {"rma_numeric", "REFUSED", "above_dc", {.sonar = "fc = 20e3; bandwidth = 40e3; fs = 80e3;"}},
+        {"bp_sinc", "warns", "above_dc", {.sonar = "fc = 20e3; bandwidth = 40e3; fs = 80e3;"}},
+        {"rma_numeric", "REFUSED", "subsonic", {.track = "speed = 1400.0; pri = 1.0; pings = 18;"}},
+        {"rma_numeric", "REFUSED", "pings", {.track = "speed = 2.5; pri = 0.064; pings = 1;"}},
+        {"rma_numeric", "REFUSED", "whole_aperture", {.limit = "aperture_limit = 0.03;"}},
+        {"rma_numeric",
+         "REFUSED",
+         "in_front",
+         {.image = "x = { first = -0.6; step = 0.02; count = 61; }; r = { first = 0.0; step = 0.025; count = 900; };"}},
+        {"rma_numeric", "warns", "ghost", {.track = "speed = 2.5; pri = 0.06; pings = 18; x_first = -1.4;"}},
+        {"bp_nearest", "warns", "unambiguous", {.track = "speed = 10.0; pri = 0.016; pings = 18; x_first = -1.52;"}},
+        {"rma_numeric",
+         "REFUSED",
+         "stationary",
+         {.sonar = "fc = 2e3; bandwidth = 1e3; fs = 30e3;",
+          .image = "x = { first = -0.1; step = 0.02; count = 11; }; r = { first = 0.5; step = 0.1; count = 1; };"}},
+        {"rma_numeric",
+         "REFUSED",
+         "spa_amplitude",
+         {.image = "x = { first = -0.1; step = 0.02; count = 11; }; r = { first = 0.3; step = 0.1; count = 1; };"}},
+        {"rma_numeric",
+         "REFUSED",
+         "doppler",
+         {.array = "receivers = 8; first_offset = 0.04; pitch = 0.08;",
+          .track = "speed = 2.5; pri = 0.128; pings = 18; x_first = -2.88;"}},
+        {"rma_pca", "REFUSED", "pca_law", {.array = "receivers = 8; first_offset = -4.0; pitch = 0.04;"}},
+        {"rma_lbf",
+         "REFUSED",
+         "predicted_error",
+         {.image = "x = { first = 5.0; step = 0.02; count = 11; }; r = { first = 20.0; step = 0.1; count = 1; };"}},
+        {"bp_sinc",
+         "warns",
+         "dynamic",
+         {.targets = "{ x = 0.0; r = 20.0; }, { x = 0.1; r = 20.0; amplitude = 1e-8; }"}},
+        {"bp_sinc", "note", "float_range", {.targets = "{ x = 0.0; r = 20.0; amplitude = 1e-44; }"}},
+    };
+    int failures = 0;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct scene scene = scene_of(&cases[k].parts);
+        bool refused;
+        char *printed = checked(&scene, cases[k].spec, &refused);
+        if (!names_one(printed, cases[k].verdict, cases[k].name) || refused != !strcmp(cases[k].verdict, "REFUSED")) {
+            failures++;
+            print_error("%s should name %s alone:%s\n", cases[k].spec, cases[k].name, printed);
+        }
+        free(printed);
+        scene_free(&scene);
+    }
+    assert_int_equal(failures, 0);
+}
+
+/* What no condition knows, the plan does: columns that no wavenumber of the track reaches. */
+static void refusals_of_the_plan_are_told(void **state)
+{
+    (void)state;
+    struct scene scene = scene_of(&(struct parts){
+        .image = "x = { first = -0.6; step = 0.02; count = 61; }; r = { first = 90.0; step = 0.1; count = 1; };",
+        .record = "first_sample = 3500; samples = 200;"});
+    bool refused;
+    char *printed = checked(&scene, "rma_numeric", &refused);
+    print_message("%s\n", printed);
+    free(printed);
+    scene_free(&scene);
+}
+
+/* Abeam and slow, the phase is 4 pi fc r/c: so is what it changes by. */
+static void sensitivities_are_those_of_the_delay(void **state)
+{
+    (void)state;
+    struct scene scene = scene_of(&(struct parts){0});
+    struct sensitivity list[SENSITIVITIES];
+    check_sensitivities(&scene, list);
+    const double phase = 4 * M_PI * 150e3 * 20 / 1500;
+    assert_close(list[0].kappa / phase, 1, 0.01);
+    assert_close(list[1].kappa / phase, 1, 0.01);
+    assert_close(list[2].kappa / phase, 1, 0.01);
+    assert_true(list[3].kappa < 1e-3 * phase);
+    assert_close(list[4].kappa / (2 * M_PI * 150e3 / 1500), 1, 0.01);
+    for (int q = 0; q < 3; q++) {
+        assert_close(list[q].shift_m / 20e-5, 1, 0.01);
+        assert_true(list[q].spread < 0.02 * list[q].phase);
+    }
+    scene_free(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(exactly_the_violated_condition_is_named, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(refusals_of_the_plan_are_told, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(sensitivities_are_those_of_the_delay, folder_make, folder_remove),
+    };
+    return cmocka_run_group_tests_name("check", tests, NULL, NULL);
+}
