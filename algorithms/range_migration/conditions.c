@@ -254,6 +254,25 @@ static bool requirements(const struct problem *problem, struct condition *list, 
     return true;
 }
 
+/* The predicted error, and what may have caused it. */
+static int prediction_conditions(const struct rma_view *view, const struct straight_track *track, struct condition *all,
+                                 int count)
+{
+    struct condition causes[] = {spa_amplitude(view), doppler(view), formula(view)};
+    struct condition error = predicted_error(view);
+    bool named = false;
+    if (view->problem->acquisition->receivers > 1)
+        all[count++] = condition_ghost(view->problem->acquisition, track->spacing);
+    for (size_t k = 0; k < sizeof causes / sizeof *causes; k++) {
+        causes[k].severity = error.severity;
+        named = named || !condition_holds(&causes[k]);
+        all[count++] = causes[k];
+    }
+    if (condition_holds(&error) || error.severity == SEVERITY_WARN || !named)
+        all[count++] = error;
+    return count;
+}
+
 int rma_conditions(const struct problem *problem, const struct rma_method *method, struct condition *list, int room)
 {
     struct straight_track track;
@@ -262,19 +281,9 @@ int rma_conditions(const struct problem *problem, const struct rma_method *metho
     all[0].limit = SLOWEST;
     if (requirements(problem, all, &count, &track) && condition_holds(&all[0])) {
         struct rma_view view = rma_view_of(problem, method, &track);
-        struct condition causes[] = {spa_amplitude(&view), doppler(&view), formula(&view)};
-        struct condition error = predicted_error(&view);
-        bool named = false;
         all[count++] = stationary(&view);
-        if (problem->acquisition->receivers > 1)
-            all[count++] = condition_ghost(problem->acquisition, track.spacing);
-        for (size_t k = 0; k < sizeof causes / sizeof *causes; k++) {
-            causes[k].severity = error.severity;
-            named = named || !condition_holds(&causes[k]);
-            all[count++] = causes[k];
-        }
-        if (condition_holds(&error) || error.severity == SEVERITY_WARN || !named)
-            all[count++] = error;
+        if (condition_holds(&all[count - 1]))
+            count = prediction_conditions(&view, &track, all, count);
     }
     for (int k = 0; k < count && k < room; k++)
         list[k] = all[k];
