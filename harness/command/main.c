@@ -53,18 +53,28 @@ static const struct command commands[] = {
      false},
     {"phase", "([SCENE] [-o DIR] | --at FILE.csv)", "phase errors of the two-dimensional spectra (LBF21 Figs 2-9)",
      "oA", 0, 1, command_phase, false},
+    {"stability", "[SCENE ...] [--algorithm SPEC ...] [-o DIR] [--quick]",
+     "extreme scenes in all rounding modes: verdicts and digits lost, against results/stability.csv", "oaQ", 0, INT_MAX,
+     command_stability, false},
     {"bench", "[SPEC ...] [-o DIR]",
      "speed of the engines, or of algorithms by name, against the processor's peak and the scalar reference loop", "ot",
      0, INT_MAX, command_bench, false},
 };
 
 static const struct option long_options[] = {
-    {"output", required_argument, NULL, 'o'}, {"scene", required_argument, NULL, 's'},
-    {"echoes", required_argument, NULL, 'e'}, {"algorithm", required_argument, NULL, 'a'},
-    {"grid", required_argument, NULL, 'g'},   {"threads", required_argument, NULL, 't'},
-    {"at", required_argument, NULL, 'A'},     {"markdown", required_argument, NULL, 'M'},
-    {"json", required_argument, NULL, 'J'},   {"ab", no_argument, NULL, 'B'},
-    {"help", no_argument, NULL, 'h'},         {NULL, 0, NULL, 0},
+    {"output", required_argument, NULL, 'o'},
+    {"scene", required_argument, NULL, 's'},
+    {"echoes", required_argument, NULL, 'e'},
+    {"algorithm", required_argument, NULL, 'a'},
+    {"grid", required_argument, NULL, 'g'},
+    {"threads", required_argument, NULL, 't'},
+    {"at", required_argument, NULL, 'A'},
+    {"markdown", required_argument, NULL, 'M'},
+    {"json", required_argument, NULL, 'J'},
+    {"ab", no_argument, NULL, 'B'},
+    {"quick", no_argument, NULL, 'Q'},
+    {"help", no_argument, NULL, 'h'},
+    {NULL, 0, NULL, 0},
 };
 
 static const struct {
@@ -79,6 +89,7 @@ static const struct {
     {'t', "-t, --threads N       OpenMP threads, 1 to 1024"},
     {'A', "    --at FILE.csv     points: columns d, r, F, f, fc, v, c"},
     {'B', "    --ab              run two programs side by side and compare their times"},
+    {'Q', "    --quick           one scene of each family, in two of the four rounding modes"},
     {'M', "    --markdown FILE   the findings as a comment for a CI"},
     {'J', "    --json FILE       the findings as trackers of benchmarks read them: name, unit, value, range"},
 };
@@ -192,6 +203,8 @@ static enum status parse(const struct command *command, int argc, char **argv, s
             status = spec_add(task, optarg);
         if (letter == 'B')
             task->ab = true;
+        if (letter == 'Q')
+            task->quick = true;
     }
     task->names = (const char *const *)argv + optind;
     task->name_count = argc - optind;

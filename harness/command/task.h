@@ -10,7 +10,7 @@ struct task {
     const char *const *names; /* [name_count] what stands without an option: scenes, an algorithm */
     int name_count;
     const char *output, *scene, *echoes, *grid, *at, *markdown, *json;
-    bool ab;
+    bool ab, quick;
     int spec_count;
     struct spec *specs; /* [spec_count] of --algorithm */
 };
@@ -30,5 +30,6 @@ enum status command_report(const struct task *task);
 enum status command_phase(const struct task *task);
 enum status command_check(const struct task *task);
 enum status command_bench(const struct task *task);
+enum status command_stability(const struct task *task);
 
 #endif

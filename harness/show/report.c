@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "data/folder.h"
 #include "show/plot.h"
@@ -33,9 +34,20 @@ struct folder {
     struct csv csvs[REPORT_TABLES]; /* column_count 0: not there */
     struct drawing *drawings;       /* [drawing_count] */
     int drawing_count;
-    struct dirent **files; /* [file_count] PNG files of `phase` and `reproduce`, by name */
+    struct dirent **files; /* [file_count] PNG files of `phase`, `reproduce` and `stability`, by name */
     int file_count;
 };
+
+/* Has the folder measurements, or only what `stability` wrote? */
+static bool is_measured(const struct folder *folder)
+{
+    return folder->results.csv.column_count > 0;
+}
+
+static const char *figures_title(const struct folder *folder)
+{
+    return is_measured(folder) ? "Papers' figures" : "Figures";
+}
 
 static void folder_free(struct folder *folder)
 {
@@ -52,8 +64,9 @@ static void folder_free(struct folder *folder)
 static int is_figure(const struct dirent *entry)
 {
     size_t length = strlen(entry->d_name);
-    return (strncmp(entry->d_name, "phase-", 6) == 0 || strncmp(entry->d_name, "figure-", 7) == 0) && length > 4
-           && strcmp(entry->d_name + length - 4, ".png") == 0;
+    return strcmp(entry->d_name, "stability.png") == 0
+           || ((strncmp(entry->d_name, "phase-", 6) == 0 || strncmp(entry->d_name, "figure-", 7) == 0) && length > 4
+               && strcmp(entry->d_name + length - 4, ".png") == 0);
 }
 
 static void drawings_make(struct folder *folder)
@@ -82,9 +95,16 @@ static enum status folder_read(const char *directory, struct folder *folder)
     int plots = 0;
     *folder = (struct folder){.directory = directory};
     snprintf(path, sizeof path, "%s/measurements.csv", directory);
-    enum status status = results_read(path, &folder->results);
+    /* What `stability` wrote stands alone. */
+    const bool there = access(path, F_OK) == 0;
+    enum status status = STATUS_OK;
+    if (!there)
+        status = report_table_read(directory, &report_tables[REPORT_STABILITY], &folder->csvs[REPORT_STABILITY]);
+    if (status == STATUS_OK && (there || folder->csvs[REPORT_STABILITY].column_count == 0))
+        status = results_read(path, &folder->results);
     for (int k = 0; k < REPORT_TABLES && status == STATUS_OK; k++)
-        status = report_table_read(directory, &report_tables[k], &folder->csvs[k]);
+        if (folder->csvs[k].column_count == 0)
+            status = report_table_read(directory, &report_tables[k], &folder->csvs[k]);
     if (status != STATUS_OK)
         return status;
     while (folder_plots[plots])
@@ -101,7 +121,8 @@ static enum status folder_read(const char *directory, struct folder *folder)
     folder->drawings = calloc((size_t)(folder->scene_count * plots) + 1, sizeof *folder->drawings);
     if (!folder->scenes || !folder->drawings)
         return status_set(STATUS_FAILED, "%s: no memory for %zu rows", directory, rows);
-    status = plot_points_write(directory);
+    if (is_measured(folder))
+        status = plot_points_write(directory);
     if (status != STATUS_OK)
         return status;
     drawings_make(folder);
@@ -120,7 +141,8 @@ static void machine_show(struct page *page, const struct folder *folder)
     page_heading(page, 2, "machine", "Machine and program");
     page_table_begin(page, 2, columns, false);
     for (size_t k = 0; k < sizeof keys / sizeof *keys; k++) {
-        const char *value = csv_comment(&folder->results.csv, keys[k]);
+        const char *value =
+            csv_comment(is_measured(folder) ? &folder->results.csv : &folder->csvs[REPORT_STABILITY], keys[k]);
         page_row(page, (struct page_cell[]){{keys[k], NULL}, {value ? value : "unknown", NULL}});
     }
     page_table_end(page);
@@ -261,7 +283,7 @@ static enum status figures_show(struct page *page, const struct folder *folder)
     struct pictures_count count = {0};
     if (folder->file_count == 0)
         return STATUS_OK;
-    page_heading(page, 2, "figures", "Papers' figures");
+    page_heading(page, 2, "figures", figures_title(folder));
     for (int k = 0; k < folder->file_count && status == STATUS_OK; k++) {
         snprintf(path, sizeof path, "%s/%s", folder->directory, folder->files[k]->d_name);
         status = picture_show(page, path, folder->files[k]->d_name, &count);
@@ -321,15 +343,17 @@ static void contents_show(struct page *page, const struct folder *folder)
             }
         if (first && folder->file_count) {
             ids[count] = "figures";
-            titles[count++] = "Papers' figures";
+            titles[count++] = figures_title(folder);
         }
-        for (int k = 0; first && k < 2; k++) {
+        for (int k = 0; first && k < (is_measured(folder) ? 2 : 1); k++) {
             ids[count] = k ? "plots" : "machine";
             titles[count++] = k ? "Plots" : "Machine";
         }
     }
-    ids[count] = "measurements";
-    titles[count++] = "Measurements";
+    if (is_measured(folder)) {
+        ids[count] = "measurements";
+        titles[count++] = "Measurements";
+    }
     ids[count] = "images";
     titles[count++] = "Slices and images";
     page_contents(page, count, ids, titles);
@@ -345,10 +369,11 @@ static enum status folder_show(struct page *page, const struct folder *folder)
     tables_show(page, folder, true);
     enum status status = html ? figures_show(page, folder) : STATUS_OK;
     machine_show(page, folder);
-    if (status == STATUS_OK && html)
+    if (status == STATUS_OK && html && is_measured(folder))
         status = plots_show(page, folder);
     tables_show(page, folder, false);
-    measurements_show(page, folder);
+    if (is_measured(folder))
+        measurements_show(page, folder);
     if (status == STATUS_OK && html)
         status = pictures_show(page, folder);
     page_end(page);

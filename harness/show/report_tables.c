@@ -1,4 +1,4 @@
-/* Tables of `sweep` and `reproduce` on a page (report_tables.h). */
+/* Tables of `sweep`, `reproduce` and `stability` on a page (report_tables.h). */
 #include "show/report_tables.h"
 
 #include <math.h>
@@ -92,6 +92,27 @@ const struct report_table report_tables[REPORT_TABLES] = {
                  {"ours", "ours", SHOW_NUMBER},
                  {"difference", "difference", SHOW_NUMBER},
                  {"assumption", "assumption", SHOW_ONCE}}},
+    [REPORT_STABILITY] =
+        {.file = "stability.csv",
+         .id = "stability",
+         .title = "Stability",
+         .first = true,
+         .text = "Extreme scenes in several rounding modes. Error: relative L2 against the right image, and its bound. "
+                 "Digits lost: against the method's own sum in extended precision; 2 are accepted. Spread: the largest "
+                 "difference between two rounding modes.",
+         .group = "scene",
+         .columns = {{"algorithm", "algorithm", SHOW_TEXT},
+                     {"options", "options", SHOW_TEXT},
+                     {"precision", "precision", SHOW_TEXT},
+                     {"engine", "engine", SHOW_TEXT},
+                     {"verdict", "verdict", SHOW_TEXT},
+                     {"error", "error", SHOW_NUMBER},
+                     {"error_bound", "bound", SHOW_NUMBER},
+                     {"digits", "digits lost", SHOW_NUMBER},
+                     {"spread", "spread", SHOW_NUMBER},
+                     {"same_bits", "same bits", SHOW_TEXT},
+                     {"finite", "finite", SHOW_TEXT},
+                     {"reason", "reason", SHOW_TEXT}}},
 };
 
 enum status report_table_read(const char *directory, const struct report_table *table, struct csv *csv)

@@ -18,7 +18,7 @@ struct report_table {
         enum { SHOW_TEXT, SHOW_NUMBER, SHOW_VERDICT, SHOW_ONCE } show; /* once: not again in the rows below */
     } columns[REPORT_COLUMNS];                                         /* title NULL ends */
 };
-enum { REPORT_TABLES = 5 };
+enum { REPORT_TABLES = 6, REPORT_STABILITY = 5 };
 extern const struct report_table report_tables[REPORT_TABLES];
 
 /* The file in DIR, into a zeroed *csv, which stays so where there is none. Errors: as csv_read; STATUS_INVALID naming

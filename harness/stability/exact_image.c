@@ -71,13 +71,50 @@ static void echoes_fill(const struct scene *scene, struct exact_pair pair, struc
     }
 }
 
-/* Is the pair summed: inside the record and the aperture limit? */
-static bool is_summed(const struct acquisition *a, const struct exact_pair *pair, int ping, struct exact_point p,
-                      long double delay)
+/* s: what double may get wrong of a delay and of the record's end: either may be the later one within it. */
+static long double rounding_of(const struct exact_pair *pair, long double delay)
 {
-    const long double last = pair->t0 + (a->samples - 1) / (long double)a->fs;
-    return delay >= pair->t0 && delay <= last
-           && (!(a->aperture_limit < 1) || exact_sine(pair, p, acquisition_heading(a, ping)) <= a->aperture_limit);
+    return 4.0L * 0x1p-53L * (fabsl(delay) + fabsl(pair->t0));
+}
+
+/* A pair whose delay is at the record's end: it may be summed or not. */
+struct bounds {
+    bool inside, tied;
+};
+
+static struct bounds bounds_of(const struct acquisition *a, const struct exact_pair *pair, long double delay,
+                               long double slack)
+{
+    const long double after = delay - pair->t0, left = (a->samples - 1) / (long double)a->fs - after;
+    return (struct bounds){after >= 0.0L && left >= 0.0L,
+                           after >= -slack && left >= -slack && (after <= slack || left <= slack)};
+}
+
+static bool inside_aperture(const struct acquisition *a, const struct exact_pair *pair, int ping, struct exact_point p)
+{
+    return !(a->aperture_limit < 1) || exact_sine(pair, p, acquisition_heading(a, ping)) <= a->aperture_limit;
+}
+
+/* Add a pair's echoes to a pixel. */
+static void add_echoes(const struct scene *scene, const struct exact_pair *pair, const struct echo *echoes,
+                       long double delay, struct exact_sum *sum)
+{
+    const struct acquisition *a = &scene->acquisition;
+    const struct bounds bounds = bounds_of(a, pair, delay, rounding_of(pair, delay));
+    struct exact_sum own = {0};
+    for (int k = 0; k < scene->target_count && (bounds.inside || bounds.tied); k++) {
+        const long double after = delay - echoes[k].delay, value = exact_echo(a, after);
+        add_turned(&own, value * echoes[k].re, value * echoes[k].im, a->fc * after);
+        own.size += fabsl(value) * hypotl(echoes[k].re, echoes[k].im);
+    }
+    if (bounds.tied)
+        sum->ties += hypotl(own.re, own.im);
+    if (bounds.inside) {
+        sum->re += own.re;
+        sum->im += own.im;
+        sum->size += own.size;
+        sum->pairs++;
+    }
 }
 
 enum status exact_ideal(const struct scene *scene, struct exact_sum *sums)
@@ -101,15 +138,8 @@ enum status exact_ideal(const struct scene *scene, struct exact_sum *sums)
 #pragma omp parallel for schedule(dynamic, 4)
             for (size_t i = 0; i < pixels; i++) {
                 const struct exact_point p = pixel_number(scene->patches, i);
-                const long double delay = exact_delay(&pair, p, a->sound_speed);
-                if (!is_summed(a, &pair, ping, p, delay))
-                    continue;
-                for (int k = 0; k < scene->target_count; k++) {
-                    const long double after = delay - echoes[k].delay, value = exact_echo(a, after);
-                    add_turned(&sums[i], value * echoes[k].re, value * echoes[k].im, a->fc * after);
-                    sums[i].size += fabsl(value) * hypotl(echoes[k].re, echoes[k].im);
-                }
-                sums[i].pairs++;
+                if (inside_aperture(a, &pair, ping, p))
+                    add_echoes(scene, &pair, echoes, exact_delay(&pair, p, a->sound_speed), &sums[i]);
             }
         }
     free(echoes);
@@ -141,30 +171,27 @@ static void add_tap(const struct trace *trace, long double n, long double weight
     value->size += fabsl(weight) * hypotl(creal(s), cimag(s));
 }
 
-/* The band-limited signal of period N through all samples; of an even N both ends share the bin at fs/2. With q = i +
-   f, sin(pi (q - n)) is (-1)^(i - n) sin(pi f). */
+/* The band-limited signal of period N through all samples: the sum of s[n] sin(pi x)/(N tan(pi x/N)), x = q - n, where
+   both ends of the band share the bin at fs/2; /(N sin(pi x/N)) for an odd N. With q = i + f, sin(pi x) is (-1)^(i - n)
+   sin(pi f). Sines of pi x/N by the addition theorem have 64 bits of the largest; the sample at q has its own. */
 static struct value read_band(const struct trace *trace, long double q)
 {
     const int count = trace->count;
-    const long double i = floorl(q + 0.5L), f = q - i, n = count;
+    const long double i = floorl(q + 0.5L), f = q - i, n = count, turn = exact_pi * (q / n);
+    const long double c = cosl(turn), s = sinl(turn), near = exact_pi * f / n, wave = sinl(exact_pi * f) / n;
+    const bool odd = count % 2 != 0;
     struct value value = {0};
-    if (fabsl(f) < 1e-17L) {
-        add_tap(trace, i, 1.0L, &value);
-    } else {
-        const long double turn = exact_pi * (q / n - floorl(q / n)), c = cosl(turn), s = sinl(turn);
-        const long double wave = sinl(exact_pi * f) / n, first = fmodl(i, 2.0L) == 0.0L ? wave : -wave;
-        for (int k = 0; k < count; k++) {
-            const long double below = s * trace->cosine[k] - c * trace->sine[k];
-            const long double above = count % 2 ? 1.0L : c * trace->cosine[k] + s * trace->sine[k];
-            const long double weight = (k % 2 ? -first : first) * above / below;
-            /* An odd number of turns of an odd N changes the sign, which the half turns of q/N already hold. */
-            value.re += weight * creal(trace->samples[k]);
-            value.im += weight * cimag(trace->samples[k]);
+    for (int k = 0; k < count; k++) {
+        long double below = s * trace->cosine[k] - c * trace->sine[k];
+        long double above = odd ? 1.0L : c * trace->cosine[k] + s * trace->sine[k];
+        if (k == i) {
+            below = sinl(near);
+            above = odd ? 1.0L : cosl(near);
         }
-        if (count % 2 && fmodl(floorl(q / n), 2.0L) != 0.0L) {
-            value.re = -value.re;
-            value.im = -value.im;
-        }
+        const bool negative = fmodl(i - k, 2.0L) != 0.0L;
+        const long double weight = k == i && f == 0.0L ? 1.0L : (negative ? -wave : wave) * above / below;
+        value.re += weight * creal(trace->samples[k]);
+        value.im += weight * cimag(trace->samples[k]);
     }
     value.size = hypotl(value.re, value.im) + trace->level;
     return value;
@@ -219,32 +246,31 @@ static struct value read_position(const struct trace *trace, long double positio
 }
 
 /* Add a pair: its value, and what becomes of it at the other side of a tie. */
-static void add_pair(const struct trace *trace, const struct acquisition *a, long double after, long double cycles,
-                     struct exact_sum *sum)
+static void add_pair(const struct trace *trace, const struct acquisition *a, const struct exact_pair *pair,
+                     long double delay, struct exact_sum *sum)
 {
     const struct exact_reading *reading = trace->reading;
-    const long double q = after * a->fs, last = a->samples - 1, slack = reading->slack_s * (long double)a->fs;
-    if (!(q >= -slack && q <= last + slack))
-        return;
-    const bool inside = q >= 0.0L && q <= last, end = fabsl(q) <= slack || fabsl(q - last) <= slack;
+    const long double slack = reading->slack_s + rounding_of(pair, delay), q = (delay - pair->t0) * a->fs;
+    const struct bounds bounds = bounds_of(a, pair, delay, slack);
     struct value value;
+    if (!bounds.inside && !bounds.tied)
+        return;
     if (reading->phases > 0) {
-        const long double fine = q * reading->upsample * reading->phases, whole = floorl(fine + 0.5L);
-        const long double edge = 0.5L - fabsl(fine - whole);
-        const long double near = slack * reading->upsample * reading->phases + reading->slack_point * reading->phases;
+        const long double steps = (long double)reading->upsample * reading->phases, fine = q * steps;
+        const long double whole = floorl(fine + 0.5L), edge = 0.5L - fabsl(fine - whole);
         value = read_position(trace, whole / reading->phases);
-        if (edge <= near) {
-            const struct value other =
-                read_position(trace, (fine > whole ? whole + 1.0L : whole - 1.0L) / reading->phases);
+        if (edge <= slack * a->fs * steps + reading->slack_point * reading->phases) {
+            const long double beside = fine > whole ? whole + 1.0L : whole - 1.0L;
+            const struct value other = read_position(trace, beside / reading->phases);
             sum->ties += hypotl(other.re - value.re, other.im - value.im);
         }
     } else {
         value = read_position(trace, q);
     }
-    if (end)
+    if (bounds.tied)
         sum->ties += hypotl(value.re, value.im);
-    if (inside) {
-        add_turned(sum, value.re, value.im, cycles);
+    if (bounds.inside) {
+        add_turned(sum, value.re, value.im, a->fc * delay);
         sum->size += value.size;
         sum->pairs++;
     }
@@ -284,9 +310,8 @@ enum status exact_method(const struct problem *problem, const double complex *sa
 #pragma omp parallel for schedule(dynamic, 4)
             for (size_t i = 0; i < pixels; i++) {
                 const struct exact_point p = pixel_number(problem->patches, i);
-                const long double delay = exact_delay(&pair, p, a->sound_speed);
-                if (!(a->aperture_limit < 1) || exact_sine(&pair, p, acquisition_heading(a, ping)) <= a->aperture_limit)
-                    add_pair(&trace, a, delay - pair.t0, a->fc * delay, &sums[i]);
+                if (inside_aperture(a, &pair, ping, p))
+                    add_pair(&trace, a, &pair, exact_delay(&pair, p, a->sound_speed), &sums[i]);
             }
         }
     free(cosine);

@@ -167,31 +167,38 @@ static void flaws_judge(struct stability_verdict *verdict)
         fail(verdict, "digits");
 }
 
-/* The name of a condition in a message: "condition NAME:", "key 'NAME'", or else the first word after the place. */
+/* The name of a condition in a message: "condition NAME:", "key 'NAME'", a phrase that stands for one, or else what follows the
+   place, as it is. */
 static void name_find(const char *message, char *name, size_t size)
 {
-    if (strstr(message, "engine=invariant")) {
-        snprintf(name, size, "invariance");
-        return;
-    }
     static const struct {
         const char *before, *end;
-    } forms[] = {{"condition ", ":"}, {"key '", "'"}, {": ", " :,"}};
+    } forms[] = {{"condition ", ":"}, {"key '", "'"}, {": ", ":;("}};
+    static const struct {
+        const char *phrase, *name;
+    } phrases[] = {{"engine=invariant", "invariance"},
+                   {"leave a phase error", "phase_digits"},
+                   {"a single ping", "pings"},
+                   {"needs r > 0", "r > 0"}};
+    for (size_t k = 0; k < sizeof phrases / sizeof *phrases; k++)
+        if (strstr(message, phrases[k].phrase)) {
+            snprintf(name, size, "%s", phrases[k].name);
+            return;
+        }
     for (size_t k = 0; k < sizeof forms / sizeof *forms; k++) {
         const char *found = strstr(message, forms[k].before);
         if (found) {
             found += strlen(forms[k].before);
-            snprintf(name, size, "%.*s", (int)strcspn(found, forms[k].end), found);
+            snprintf(name, size, "%.*s", (int)fmin(strcspn(found, forms[k].end), 60), found);
             return;
         }
     }
-    snprintf(name, size, "%.*s", (int)strcspn(message, " "), message);
+    snprintf(name, size, "%.60s", message);
 }
 
 struct stability_verdict refusal_judge(const char *message)
 {
     struct stability_verdict verdict = {.kind = VERDICT_REFUSED,
-                                        .engine = "",
                                         .error = NAN,
                                         .error_most = NAN,
                                         .difference = NAN,
@@ -228,6 +235,22 @@ static bool statuses_judge(const struct trial *trial, int spec, struct stability
     return usual->status == STATUS_OK;
 }
 
+/* What pairs at a record's end may change of the right image, worst patch. */
+static double ties_of(const struct trial *trial)
+{
+    double worst = 0;
+    for (int k = 0; k < trial->scene->patch_count && !trial->ideal_excludes; k++) {
+        size_t first, end;
+        long double sum = 0.0L;
+        patch_span(trial->scene, k, &first, &end);
+        const long double norm = norm_of((struct view){.sums = trial->ideal}, (struct view){0}, first, end);
+        for (size_t i = first; i < end; i++)
+            sum += trial->ideal[i].ties * trial->ideal[i].ties;
+        worst = fmax(worst, norm > 0.0L ? (double)(sqrtl(sum) / norm) : 0);
+    }
+    return worst;
+}
+
 /* The right image: the closed form's, or reference's where there is none. */
 static struct view ideal_of(const struct trial *trial)
 {
@@ -248,14 +271,14 @@ struct stability_verdict trial_judge(const struct trial *trial, int spec)
     const struct attempt *usual = trial_attempt(trial, 0, spec);
     const struct method method = method_of(&trial->specs[spec], usual->engine, &trial->scene->acquisition);
     const struct view ideal = ideal_of(trial), first = {.pixels = trial_image(trial, 0, spec)};
-    verdict = (struct stability_verdict){.engine = usual->engine,
-                                         .error_most = method.error_most,
+    verdict = (struct stability_verdict){.error_most = method.error_most,
                                          .error = ideal.sums || ideal.pixels ? 0 : NAN,
                                          .difference = NAN,
                                          .conditioning = NAN,
                                          .digits = NAN,
                                          .same_bits = true,
                                          .finite = true};
+    snprintf(verdict.engine, sizeof verdict.engine, "%s", usual->engine);
     for (int mode = 0; mode < trial->mode_count; mode++) {
         const struct attempt *attempt = trial_attempt(trial, mode, spec);
         const struct view image = {.pixels = trial_image(trial, mode, spec)};
@@ -269,7 +292,8 @@ struct stability_verdict trial_judge(const struct trial *trial, int spec)
     if (method.reading.kind == EXACT_BAND && verdict.conditioning > 0)
         verdict.error_most += pow(10, DIGITS_MOST) * verdict.conditioning; /* what is exact errs by rounding alone */
     flaws_judge(&verdict);
-    if (verdict.error > 0.5)
+    verdict.error_most += ties_of(trial);
+    if (verdict.error > fmax(0.5, verdict.error_most))
         fail(&verdict, "error");
     if (verdict.kind == VERDICT_WORKS && verdict.error > verdict.error_most)
         verdict.kind = VERDICT_DEGRADES;

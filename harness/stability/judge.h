@@ -21,11 +21,11 @@ enum verdict_kind { VERDICT_WORKS, VERDICT_DEGRADES, VERDICT_REFUSED, VERDICT_FA
 
 struct stability_verdict {
     enum verdict_kind kind;
-    char why[80];       /* the condition that refuses, or what fails; else empty */
-    char message[400];  /* in full */
-    const char *engine; /* borrowed from the trial */
-    double error;       /* relative L2 against the right image, worst patch and mode; NAN: none, or the image is zero */
-    double error_most;  /* the method's promise */
+    char why[80];      /* the condition that refuses, or what fails; else empty */
+    char message[400]; /* in full */
+    char engine[32];
+    double error;      /* relative L2 against the right image, worst patch and mode; NAN: none, or the image is zero */
+    double error_most; /* the method's promise */
     double difference, conditioning, digits; /* NAN where there is nothing to compare with */
     double spread;                           /* largest difference between two modes' images, relative L2 */
     bool same_bits, finite;

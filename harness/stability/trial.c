@@ -4,12 +4,14 @@
 #include "stability/trial.h"
 
 #include <fenv.h>
+#include <math.h>
 #include <omp.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -20,6 +22,8 @@
 
 static const int modes[TRIAL_MODES] = {FE_TONEAREST, FE_DOWNWARD, FE_UPWARD, FE_TOWARDZERO};
 const char *const trial_mode_names[TRIAL_MODES] = {"nearest", "downward", "upward", "zero"};
+
+static const int crashes[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 
 enum { PATIENCE_S = 300 }; /* of one process */
 
@@ -39,13 +43,14 @@ static void echoes_make(struct trial *trial)
 {
     const struct acquisition *a = &trial->scene->acquisition;
     struct echoes echoes;
-    *trial->exact_status = scene_simulate(trial->scene, &echoes);
-    if (*trial->exact_status == STATUS_OK) {
+    trial->note->status = scene_simulate(trial->scene, &echoes);
+    if (trial->note->status == STATUS_OK) {
         memcpy(trial->samples, echoes.samples,
                (size_t)a->pings * (size_t)a->receivers * (size_t)a->samples * sizeof *trial->samples);
+        trial->note->exponent = echoes.exponent;
         echoes_free(&echoes);
     } else {
-        snprintf(*trial->exact_message, sizeof *trial->exact_message, "%s", status_message());
+        snprintf(trial->note->message, sizeof trial->note->message, "%s", status_message());
     }
 }
 
@@ -93,7 +98,7 @@ static void attempt_make(const struct scene *scene, const struct echoes *echoes,
 /* All specs that are not done yet. */
 static void mode_run(struct trial *trial, int mode)
 {
-    const struct echoes shared = {&trial->scene->acquisition, PRECISION_DOUBLE, trial->samples, 0};
+    const struct echoes shared = {&trial->scene->acquisition, PRECISION_DOUBLE, trial->samples, trial->note->exponent};
     struct echoes echoes[2]; /* by enum precision */
     if (fesetround(modes[mode]) != 0 || echoes_convert(&shared, PRECISION_FLOAT, &echoes[PRECISION_FLOAT]) != STATUS_OK
         || echoes_convert(&shared, PRECISION_DOUBLE, &echoes[PRECISION_DOUBLE]) != STATUS_OK)
@@ -108,6 +113,16 @@ static void mode_run(struct trial *trial, int mode)
     echoes_free(&echoes[PRECISION_DOUBLE]);
 }
 
+/* To the samples as they were recorded. */
+static void sums_scale(const struct trial *trial, struct exact_sum *sums)
+{
+    for (size_t i = 0; i < trial->pixels; i++) {
+        long double *const parts[] = {&sums[i].re, &sums[i].im, &sums[i].size, &sums[i].ties};
+        for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
+            *parts[k] = ldexpl(*parts[k], trial->note->exponent);
+    }
+}
+
 /* The right image, and each method's own where it made one. */
 static void exact_make(struct trial *trial)
 {
@@ -117,12 +132,15 @@ static void exact_make(struct trial *trial)
     for (int k = 0; k < trial->spec_count && status == STATUS_OK && scene->acquisition.compressed; k++) {
         const struct attempt *attempt = trial_attempt(trial, 0, k);
         const struct method method = method_of(&trial->specs[k], attempt->engine, &scene->acquisition);
-        if (method.has_reading && attempt->status == STATUS_OK)
-            status = exact_method(&problem, trial->samples, &method.reading, trial->exact + (size_t)k * trial->pixels);
+        struct exact_sum *sums = trial->exact + (size_t)k * trial->pixels;
+        if (method.has_reading && attempt->status == STATUS_OK) {
+            status = exact_method(&problem, trial->samples, &method.reading, sums);
+            sums_scale(trial, sums);
+        }
     }
-    *trial->exact_status = status;
+    trial->note->status = status;
     if (status != STATUS_OK)
-        snprintf(*trial->exact_message, sizeof *trial->exact_message, "%s", status_message());
+        snprintf(trial->note->message, sizeof trial->note->message, "%s", status_message());
 }
 
 /* ---- the parent ---- */
@@ -135,6 +153,9 @@ static enum status process_run(struct trial *trial, void (*work)(struct trial *,
     if (child < 0)
         return status_set(STATUS_FAILED, "%s: no process can be started", trial->scene->name);
     if (child == 0) {
+        for (size_t k = 0; k < sizeof crashes / sizeof *crashes; k++)
+            signal(crashes[k], SIG_DFL); /* whatever the parent does about its own */
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
         alarm(PATIENCE_S);
         work(trial, argument);
         _exit(0);
@@ -166,8 +187,7 @@ static enum status process_need(struct trial *trial, void (*work)(struct trial *
     if (!WIFEXITED(state) || WEXITSTATUS(state) != 0)
         return status_set(STATUS_FAILED, "%s: the process of the %s ended by signal %d", trial->scene->name, what,
                           WIFSIGNALED(state) ? WTERMSIG(state) : 0);
-    return *trial->exact_status == STATUS_OK ? STATUS_OK
-                                             : status_set(*trial->exact_status, "%s", *trial->exact_message);
+    return trial->note->status == STATUS_OK ? STATUS_OK : status_set(trial->note->status, "%s", trial->note->message);
 }
 
 /* A spec that ends its process is noted, and another process takes the rest. */
@@ -201,12 +221,11 @@ static void *part_take(char **next, size_t bytes)
 static enum status memory_share(struct trial *trial)
 {
     const struct acquisition *a = &trial->scene->acquisition;
-    const size_t specs = (size_t)trial->spec_count, images = TRIAL_MODES * specs, parts = 7;
+    const size_t specs = (size_t)trial->spec_count, images = TRIAL_MODES * specs, parts = 6;
     const size_t samples = (size_t)a->pings * (size_t)a->receivers * (size_t)a->samples;
     const size_t bytes = samples * sizeof *trial->samples + images * sizeof *trial->attempts
                          + images * trial->pixels * sizeof *trial->images
-                         + (1 + specs) * trial->pixels * sizeof *trial->ideal + sizeof *trial->exact_status
-                         + sizeof *trial->exact_message + parts * 64;
+                         + (1 + specs) * trial->pixels * sizeof *trial->ideal + sizeof *trial->note + parts * 64;
     void *memory = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (memory == MAP_FAILED)
         return status_set(STATUS_FAILED, "%s: no memory for %.0f MB shared between processes", trial->scene->name,
@@ -218,8 +237,7 @@ static enum status memory_share(struct trial *trial)
     trial->images = part_take(&next, images * trial->pixels * sizeof *trial->images);
     trial->ideal = part_take(&next, trial->pixels * sizeof *trial->ideal);
     trial->exact = part_take(&next, specs * trial->pixels * sizeof *trial->exact);
-    trial->exact_status = part_take(&next, sizeof *trial->exact_status);
-    trial->exact_message = part_take(&next, sizeof *trial->exact_message);
+    trial->note = part_take(&next, sizeof *trial->note);
     return STATUS_OK;
 }
 

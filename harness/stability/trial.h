@@ -22,6 +22,13 @@ struct attempt {
     bool is_stopped; /* the process ended by a signal */
 };
 
+/* What the process of the echoes and that of the exact images say. */
+struct trial_exact {
+    enum status status;
+    char message[400];
+    int exponent; /* of the echoes: recorded were the samples times 2^exponent */
+};
+
 /* Made by trial_run, released by trial_close. */
 struct trial {
     const struct scene *scene; /* borrowed, like the specs */
@@ -30,13 +37,12 @@ struct trial {
     size_t pixels;
     void *memory; /* shared between processes; what follows points into it */
     size_t bytes;
-    double complex *samples;   /* [pings][receivers][samples] */
-    struct attempt *attempts;  /* [mode][spec] */
-    double complex *images;    /* [mode][spec][pixels] */
-    struct exact_sum *ideal;   /* [pixels] the right image */
-    struct exact_sum *exact;   /* [spec][pixels] the method's own, where it has a reading */
-    enum status *exact_status; /* of the echoes and the exact images */
-    char (*exact_message)[400];
+    double complex *samples;    /* [pings][receivers][samples] */
+    struct attempt *attempts;   /* [mode][spec] */
+    double complex *images;     /* [mode][spec][pixels] */
+    struct exact_sum *ideal;    /* [pixels] the right image */
+    struct exact_sum *exact;    /* [spec][pixels] the method's own, where it has a reading */
+    struct trial_exact *note;   /* of the processes that make the echoes and the exact images */
     const char *ideal_excludes; /* why there is no closed form; the ideal is then reference's image */
 };
 

@@ -317,6 +317,32 @@ static void test_failures_alone_make_a_page(void **state)
     free(html);
 }
 
+/* What `stability` writes needs no measurements beside it. */
+static void test_stability_alone_makes_a_page(void **state)
+{
+    (void)state;
+    support_write("stability.csv",
+                  "# sasbench stability 1\n# commit: abc\nscene,algorithm,options,precision,modes,engine,"
+                  "verdict,error,error_bound,difference,conditioning,digits,spread,same_bits,finite,"
+                  "exceptions,reason\n"
+                  "extreme/base,bp_nearest,,float,4,general,works,0.036,0.15,1e-5,1e-4,-1.01,2e-5,yes,"
+                  "yes,0,\n"
+                  "extreme/base,rma_lbf,blocks=0,float,4,,refused: lbf_law,,,,,,,,,,too <wide>\n");
+    support_write("stability.png", "abc");
+    assert_int_equal(report_write(folder), STATUS_OK);
+    char *page = support_read("report.md"), *html = support_read("report.html");
+    assert_holds(page, "## Stability");
+    assert_holds(page, "|bp_nearest||float|general|works|0.036|0.15|-1.01|");
+    assert_holds(page, "refused: lbf_law");
+    assert_holds(page, "|commit|abc|");
+    assert_null(strstr(page, "## Measurements"));
+    assert_holds(html, "stability.png");
+    free(page);
+    free(html);
+    support_write("stability.csv", "scene,algorithm\n");
+    assert_int_equal(report_write(folder), STATUS_INVALID);
+}
+
 static void test_faults_leave_the_old_pages(void **state)
 {
     (void)state;
@@ -383,6 +409,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_everything_is_on_the_page, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(test_failures_alone_make_a_page, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(test_faults_leave_the_old_pages, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(test_stability_alone_makes_a_page, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(test_pages_stay_small, folder_make, folder_remove),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

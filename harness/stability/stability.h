@@ -1,0 +1,23 @@
+/* Extreme scenes x algorithms x precisions x rounding modes x threads: where images hold, and how many digits they
+ * lose. */
+#ifndef SASBENCH_STABILITY_STABILITY_H
+#define SASBENCH_STABILITY_STABILITY_H
+
+#include "measure/spec.h"
+
+#define STABILITY_EXPECTED SASBENCH_ROOT "/results/stability.csv"
+
+struct stability_request {
+    int scene_count, spec_count;
+    const char *const *scenes; /* names or paths; none: all of scenes/extreme, or with `quick` one of each family */
+    const struct spec *specs;  /* none: every algorithm, plain paths and engines beside */
+    const char *directory;     /* for stability.csv, expected.csv and stability.png */
+    bool quick;                /* two of the four rounding modes */
+};
+
+/* Print the table, write the files, and compare with the expected verdicts and bounds in `expected`. Errors:
+   STATUS_INVALID for a scene that cannot be found or a folder that cannot be written; STATUS_FAILED when a verdict or a
+   bound is not as expected, or where nothing is expected, when an image fails. */
+enum status stability_run(const struct stability_request *request, const char *expected);
+
+#endif
