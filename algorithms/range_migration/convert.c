@@ -148,17 +148,22 @@ static void apply_libm(const struct work_place *w, double r, double less, int k,
         }
 }
 
-/* Receivers at bins [k, k + n) times exp(j 2 pi (correction at r less the one at `less`)); `ramps` are those
-   phases. */
-static void apply(const struct work_place *w, const struct rma_ramp *ramps, double r, double less, int k, int n,
-                  struct rows in, struct rows stored, real *sum)
+/* Corrections at range r less those at `less` (0: nothing is taken off); `ramps` are their phases. */
+struct correction {
+    const struct rma_ramp *ramps;
+    double r, less; /* m */
+};
+
+/* Receivers at bins [k, k + n) times exp(j 2 pi correction). */
+static void apply(const struct work_place *w, struct correction correction, int k, int n, struct rows in,
+                  struct rows stored, real *sum)
 {
     if (sum)
         memset(sum, 0, 2 * (size_t)n * sizeof *sum);
     if (w->rma->recurs)
-        apply_recurrence(w, ramps, k, n, in, stored, sum);
+        apply_recurrence(w, correction.ramps, k, n, in, stored, sum);
     else
-        apply_libm(w, r, less, k, n, in, stored, sum);
+        apply_libm(w, correction.r, correction.less, k, n, in, stored, sum);
 }
 
 void REAL_ISA_NAME(rma_convert)(struct work_place *w, real *sums)
@@ -199,12 +204,13 @@ void REAL_ISA_NAME(rma_convert)(struct work_place *w, real *sums)
         struct rows converted = {buffer(w, RMA_CONVERTED), 2 * SPAN};
         if (!add)
             converted = (struct rows){own, row};
-        apply(w, bulk, centre, 0, k, n, in, add && swath->needed == 1 ? none : converted, add ? own : NULL);
+        apply(w, (struct correction){bulk, centre, 0}, k, n, in, add && swath->needed == 1 ? none : converted,
+              add ? own : NULL);
         stage_end(w, RMA_BULK);
         for (int b = 0; b < swath->needed; b++, out += block)
             if (b != reference)
-                apply(w, ramps + b * rma->groups, rma_block_range(rma, swath->blocks[b]), centre, k, n, converted,
-                      add ? none : (struct rows){out, row}, add ? out : NULL);
+                apply(w, (struct correction){ramps + b * rma->groups, rma_block_range(rma, swath->blocks[b]), centre},
+                      k, n, converted, add ? none : (struct rows){out, row}, add ? out : NULL);
         stage_end(w, RMA_DIFFERENTIAL);
     }
 }

@@ -1,4 +1,5 @@
-/* A range migration's plan. layout.c lays it out (track, blocks, swaths and their transforms), phase.c knows the
+/* A range migration's plan. layout.c lays it out (track, swaths and their transforms), blocks.c
+   the blocks of the conversion, phase.c knows the
    corrections' phases, transform.c transforms along range and azimuth (for each precision), convert.c and focus.c
    work on one azimuth wavenumber (for each precision and instruction set), rma.c puts them in order. Pointers without
    a type hold values of the plan's precision.
@@ -191,6 +192,18 @@ struct rma {
 
 /* Fills everything but the pointers that rma_transform's plan fills. */
 enum status rma_layout(struct rma *rma);
+
+static inline double rma_last_row(const struct grid *grid)
+{
+    return grid->r_first + (grid->r_count - 1) * grid->r_step;
+}
+
+/* ---- blocks.c ---- */
+
+/* As many as the options say, or as keep the error at their ends below the limit. */
+enum status rma_blocks_lay(struct rma *rma);
+/* Those that make up a swath's rows, into `list`. */
+void rma_blocks_choose(const struct rma *rma, struct rma_swath *swath, int *list);
 
 /* Blocks that blend at one range. */
 static inline int rma_nodes_blended(const struct rma *rma)

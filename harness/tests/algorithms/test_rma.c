@@ -12,44 +12,9 @@
 #include "measure/metrics.h"
 #include "scene/simulate.h"
 #include "tests/algorithms/rma_numbers.h"
-#include "tests/support.h"
+#include "tests/algorithms/rma_scenes.h"
 
-static const double pi = 3.14159265358979323846, speed = 3, pri = 0.44;
-
-/* A straight track at 3 m/s with 150 kHz and 20 kHz bandwidth, compressed records, receivers from the transmitter
-   on. */
-static void make_scene(int pings, int receivers, int samples, double fs, double t0, double x_first, double spacing,
-                       double pitch, struct scene *scene)
-{
-    *scene = (struct scene){.pulse_kind = PULSE_FLAT, .beam = {BEAM_TXRX, TRUNCATION_DOPPLER, 0.5, true}};
-    struct acquisition *a = &scene->acquisition;
-    *a = (struct acquisition){.sound_speed = 1500,
-                              .fc = 150e3,
-                              .fs = fs,
-                              .bandwidth = 20e3,
-                              .samples = samples,
-                              .receivers = receivers,
-                              .pings = pings,
-                              .tx_length = 0.08,
-                              .rx_length = pitch,
-                              .aperture_limit = INFINITY,
-                              .compressed = true};
-    assert_int_equal(acquisition_allocate(a), STATUS_OK);
-    for (int p = 0; p < pings; p++) {
-        a->t0[p] = t0;
-        a->velocity[p].x = speed;
-        a->tx[p].x = x_first + p * spacing;
-        for (int m = 0; m < receivers; m++)
-            a->rx[p * receivers + m].x = a->tx[p].x + m * pitch;
-    }
-    assert_int_equal(acquisition_check(a, "test"), STATUS_OK);
-}
-
-static void free_scene(struct scene *scene)
-{
-    free(scene->targets);
-    acquisition_free(&scene->acquisition);
-}
+static const double pi = 3.14159265358979323846, speed = RMA_SPEED, pri = 0.44;
 
 /* ---- the five scenes of the independent implementation ---- */
 
@@ -98,8 +63,9 @@ static void compress_lfm(const struct rma_numbers *n, struct scene *scene, struc
 
 static void make_numbers(const struct rma_numbers *n, struct scene *scene, struct echoes *echoes)
 {
-    make_scene(n->pings, n->receivers, n->samples, n->samples * n->df, n->t0, speed * n->t_first, speed * pri,
-               n->rx_length, scene);
+    make_scene(&(struct rma_track){n->pings, n->receivers, n->samples, n->samples * n->df, n->t0, speed * n->t_first,
+                                   speed * pri, n->rx_length},
+               scene);
     scene->acquisition.tx_length = n->tx_length;
     scene->beam.limit = n->limit;
     scene->beam.per_frequency = n->per_frequency;
@@ -113,13 +79,6 @@ static void make_numbers(const struct rma_numbers *n, struct scene *scene, struc
     } else {
         assert_int_equal(scene_simulate(scene, echoes), STATUS_OK);
     }
-}
-
-/* One SPEC's image of a problem; the test fails where that fails. */
-static void form(const char *spec, struct problem problem, const struct echoes *echoes, struct image *image)
-{
-    if (support_image(spec, problem, echoes, image) != STATUS_OK)
-        fail_msg("%s: %s", spec, status_message());
 }
 
 /* Complex relative L2 of one patch. */
@@ -196,35 +155,15 @@ static void independent_numbers(void **state)
 
 enum { TARGETS = 6 };
 
-/* Targets at x = 0 and the ranges given. */
-static void add_targets(struct scene *scene, int count, const double *r)
-{
-    scene->target_count = count;
-    scene->targets = calloc((size_t)count, sizeof *scene->targets);
-    for (int t = 0; t < count; t++)
-        scene->targets[t] = (struct target){0.01 * t - 0.02, r[t], cexp(I * t)};
-}
-
 /* A swath of 20 m, targets off the blocks' centres. */
 static const double swath_targets[TARGETS] = {91.3, 94.1, 97.9, 101.2, 104.7, 108.6};
 static const struct grid swath = {-0.14, 0.02, 15, 90, 0.04, 501};
 
 static void make_swath(struct scene *scene, struct echoes *echoes)
 {
-    make_scene(14, 66, 1280, 24e3, 80 / 750.0, -6.5 * speed * pri, speed * pri, 0.04, scene);
+    make_scene(&(struct rma_track){14, 66, 1280, 24e3, 80 / 750.0, -6.5 * speed * pri, speed * pri, 0.04}, scene);
     add_targets(scene, TARGETS, swath_targets);
     assert_int_equal(scene_simulate(scene, echoes), STATUS_OK);
-}
-
-static double swath_error(const char *spec, struct problem problem, const struct echoes *echoes,
-                          const struct image *exact)
-{
-    struct image image;
-    form(spec, problem, echoes, &image);
-    double error = support_difference(&image, exact);
-    print_message("    %-70s %.2e\n", spec, error);
-    image_free(&image);
-    return error;
 }
 
 /* Blocks of 5 m that blend and eight taps: within 1 % of the exact image, and far better by the cubic blend. */
@@ -267,7 +206,7 @@ static void other_ways(void **state)
     };
     struct scene scene;
     struct echoes echoes;
-    make_scene(8, 40, 1066, 40e3, 0.044, -2.8, 0.8, 0.04, &scene);
+    make_scene(&(struct rma_track){8, 40, 1066, 40e3, 0.044, -2.8, 0.8, 0.04}, &scene);
     add_targets(&scene, 3, targets);
     assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
     struct problem problem = {&scene.acquisition, 1, &part, PRECISION_DOUBLE};
@@ -292,7 +231,7 @@ static void columns(void **state)
     struct scene scene;
     struct echoes echoes;
     struct image image;
-    make_scene(8, 40, 600, 24e3, 0.044, -2.8, 0.8, 0.04, &scene);
+    make_scene(&(struct rma_track){8, 40, 600, 24e3, 0.044, -2.8, 0.8, 0.04}, &scene);
     add_targets(&scene, 1, targets);
     assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
     for (int k = 0; k < 4; k++)
@@ -316,7 +255,8 @@ static void recurrences(void **state)
     struct scene scene;
     struct echoes echoes;
     const double r[] = {35.1};
-    make_scene(3, 37, 300, 24e3, 30 / 750.0, -0.74, 0.74, 0.04, &scene); /* two whole groups and a part of one */
+    make_scene(&(struct rma_track){3, 37, 300, 24e3, 30 / 750.0, -0.74, 0.74, 0.04},
+               &scene); /* two whole groups and a part of one */
     add_targets(&scene, 1, r);
     assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
     struct problem problem = {&scene.acquisition, 1, &grid, PRECISION_DOUBLE};
@@ -344,7 +284,8 @@ static void long_swath(void **state)
     struct echoes echoes;
     struct image exact, image;
     struct grid patches[6] = {{0, 1, 1, 40, 1, 1}, {0, 1, 1, 300, 1, 1}};
-    make_scene(16, 33, 12800, 24e3, 0.032, -7.5 * speed * pri, speed * pri, 0.08, &scene); /* 24 to 424 m */
+    make_scene(&(struct rma_track){16, 33, 12800, 24e3, 0.032, -7.5 * speed * pri, speed * pri, 0.08},
+               &scene); /* 24 to 424 m */
     scene.acquisition.tx_length = 0.16;
     add_targets(&scene, 4, targets);
     assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
@@ -390,7 +331,7 @@ static void block_counts(void **state)
     (void)state;
     struct scene scene;
     struct grid patches[2] = {{0, 1, 1, 40, 1, 1}, {0, 1, 1, 300, 1, 1}};
-    make_scene(2, 66, 12800, 24e3, 0.032, 0, speed * pri, 0.04, &scene);
+    make_scene(&(struct rma_track){2, 66, 12800, 24e3, 0.032, 0, speed * pri, 0.04}, &scene);
     struct problem problem = {&scene.acquisition, 2, patches, PRECISION_DOUBLE};
     struct work inverse = work_of("rma_lbf:blend=off", problem);
     struct work uniform = work_of("rma_lbf:blend=off,spacing=uniform", problem);
@@ -428,7 +369,7 @@ static void ghosts(void **state)
 {
     (void)state;
     struct scene scene;
-    make_scene(16, 20, 400, 24e3, 0.048, -3.75, 0.5, 0.04, &scene);
+    make_scene(&(struct rma_track){16, 20, 400, 24e3, 0.048, -3.75, 0.5, 0.04}, &scene);
     assert_true(small_error("rma_lbf:precision=double", &scene, 0.6) < 0.012);
     struct echoes echoes;
     struct image image;
@@ -450,7 +391,7 @@ static void one_receiver(void **state)
 {
     (void)state;
     struct scene scene;
-    make_scene(300, 1, 400, 24e3, 0.048, -3.7, 0.025, 0.04, &scene);
+    make_scene(&(struct rma_track){300, 1, 400, 24e3, 0.048, -3.7, 0.025, 0.04}, &scene);
     assert_true(small_error("rma_lbf:precision=double", &scene, 0.2) < 0.01);
     struct grid grid = {0, 0.02, 3, 40, 0.5, 9};
     struct problem problem = {&scene.acquisition, 1, &grid, PRECISION_FLOAT};
@@ -464,7 +405,8 @@ static void odd_tracks(void **state)
     (void)state;
     for (int odd = 0; odd < 4; odd++) {
         struct scene scene;
-        make_scene(20, 20, 400, 24e3, 0.048, odd == 1 ? 3.8 : -3.8, odd == 1 ? -0.4 : 0.4, 0.04, &scene);
+        make_scene(&(struct rma_track){20, 20, 400, 24e3, 0.048, odd == 1 ? 3.8 : -3.8, odd == 1 ? -0.4 : 0.4, 0.04},
+                   &scene);
         struct acquisition *a = &scene.acquisition;
         for (int p = 0; p < a->pings; p++) {
             a->velocity[p].x = odd == 2 ? 0 : odd == 3 ? -3 : 3;
@@ -474,163 +416,6 @@ static void odd_tracks(void **state)
         assert_true(small_error("rma_lbf:precision=double", &scene, 0.2) < 0.01);
         free_scene(&scene);
     }
-}
-
-/* What cannot be imaged is refused with its reason. */
-static void refusals(void **state)
-{
-    (void)state;
-    static const struct {
-        const char *reason;
-        struct grid grid;
-        int pings;
-        double limit, bend;
-    } cases[] = {
-        {"straight", {0, 0.02, 3, 40, 0.1, 3}, 8, INFINITY, 0.1},
-        {"single ping", {0, 0.02, 3, 40, 0.1, 3}, 1, INFINITY, 0},
-        {"aperture limit", {0, 0.02, 3, 40, 0.1, 3}, 8, 0.05, 0},
-        {"r > 0", {0, 0.02, 3, 0, 0.1, 3}, 8, INFINITY, 0},
-        {"squint", {0, 5, 9, 40, 0.1, 3}, 8, INFINITY, 0},
-        {"outside the record", {0, 0.02, 3, 90, 0.1, 3}, 8, INFINITY, 0},
-        {"spa_amplitude", {0, 0.02, 3, 0.5, 0.1, 3}, 8, INFINITY, 0},
-        {"work", {0, 1e-6, 3, 40, 1e-6, 3}, 8, INFINITY, 0},
-    };
-    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        struct scene scene;
-        struct spec spec;
-        void *plan;
-        make_scene(cases[k].pings, 20, 400, 24e3, k == 6 ? 0 : 0.048, 0, 0.4, 0.04, &scene);
-        scene.acquisition.aperture_limit = cases[k].limit;
-        scene.acquisition.tx[cases[k].pings - 1].y = cases[k].bend;
-        struct problem problem = {&scene.acquisition, 1, &cases[k].grid, PRECISION_FLOAT};
-        assert_int_equal(spec_parse("rma_lbf", &spec), STATUS_OK);
-        assert_int_equal(spec.algorithm->plan(&problem, spec.options, &plan), STATUS_UNSUPPORTED);
-        print_message("    %s\n", status_message());
-        assert_non_null(strstr(status_message(), cases[k].reason));
-        assert_null(plan);
-        spec_free(&spec);
-        free_scene(&scene);
-    }
-}
-
-/* Why a method refuses a scene at range r; the empty text where it does not. */
-static const char *refusal(const char *text, struct scene *scene, double r)
-{
-    struct grid grid = {-0.16, 0.01, 33, r, 0.025, 1};
-    struct problem problem = {&scene->acquisition, 1, &grid, PRECISION_DOUBLE};
-    struct spec spec;
-    void *plan;
-    assert_int_equal(spec_parse(text, &spec), STATUS_OK);
-    enum status status = spec.algorithm->plan(&problem, spec.options, &plan);
-    spec.algorithm->destroy(plan);
-    spec_free(&spec);
-    return status == STATUS_OK ? "" : status_message();
-}
-
-/* Each condition refuses by name what would be a wrong image, and its neighbour that is sound is not refused. */
-static void conditions(void **state)
-{
-    (void)state;
-    static const struct {
-        const char *spec, *name;
-        double fc, bandwidth, spacing, first_offset, speed,
-            r; /* receivers 0.04 m apart, 150 m before the record's end */
-    } cases[] = {
-        {"rma_numeric", "", 150e3, 15e3, 0.4, 0, 2.5, 100},
-        {"rma_numeric", "above_dc", 10e3, 30e3, 0.4, 0, 2.5, 100}, /* was a crash */
-        {"rma_numeric", "above_dc", 7.5e3, 15e3, 0.4, 0, 2.5, 100},
-        {"rma_numeric", "doppler", 150e3, 15e3, 2, 0, 2.5, 100}, /* pings too far apart: error .58 */
-        {"rma_numeric", "", 150e3, 15e3, 0.16, 0, 75, 100},
-        {"rma_numeric", "doppler", 150e3, 15e3, 0.4, 0, 150, 100},  /* the whole band aside: .59 */
-        {"rma_numeric", "doppler", 150e3, 15e3, 0.4, 30, 2.5, 100}, /* receivers far ahead: 1.0 */
-        {"rma_numeric", "spa_amplitude", 150e3, 15e3, 0.4, 0, 2.5, 0.5},
-        {"rma_numeric", "stationary", 2e3, 1e3, 0.4, 0, 2.5, 0.4},
-        {"rma_numeric", "subsonic", 150e3, 15e3, 0.4, 0, -1400, 100},
-        {"rma_lbf", "", 150e3, 15e3, 0.16, 0, 15, 100},
-        {"rma_lbf", "lbf_law", 150e3, 15e3, 0.16, 0, 75, 100},
-        {"rma_pca", "", 150e3, 15e3, 0.4, 0, 2.5, 100},
-        {"rma_pca", "pca_law", 150e3, 15e3, 0.16, 0, 75, 100}, /* abeam alone does not show it */
-        {"rma_wu", "wu_law", 150e3, 15e3, 0.16, 0, 75, 100},
-    };
-    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        struct scene scene;
-        make_scene(30, 20, 4096, 40e3, 0, -15 * cases[k].spacing, cases[k].spacing, 0.04, &scene);
-        struct acquisition *a = &scene.acquisition;
-        a->fc = cases[k].fc;
-        a->bandwidth = cases[k].bandwidth;
-        for (int p = 0; p < a->pings; p++) {
-            a->velocity[p].x = cases[k].speed;
-            for (int m = 0; m < a->receivers; m++)
-                a->rx[p * a->receivers + m].x += cases[k].first_offset;
-        }
-        const char *reason = refusal(cases[k].spec, &scene, cases[k].r);
-        char name[60];
-        snprintf(name, sizeof name, "condition %s:", cases[k].name);
-        if (cases[k].name[0] ? !strstr(reason, name) : reason[0] != 0)
-            fail_msg("case %d, %s: '%s'", (int)k, name, reason);
-        free_scene(&scene);
-    }
-}
-
-/* A track that is short against what the elements would see: the angles that no ping has need neither record nor work.
-   10 MHz at 50 m with 2 mm elements, and 7.7 cm of record. */
-static void short_track(void **state)
-{
-    (void)state;
-    struct scene scene;
-    struct echoes echoes;
-    struct image exact;
-    make_scene(101, 8, 1024, 10e6, 666161 / 10e6, -0.2, 0.004, 0.001, &scene);
-    struct acquisition *a = &scene.acquisition;
-    a->fc = 10e6;
-    a->bandwidth = 5e6;
-    a->tx_length = 0.002;
-    for (int p = 0; p < a->pings; p++)
-        a->velocity[p].x = 2.5;
-    scene.beam = (struct beam){BEAM_RECT, TRUNCATION_NONE, 0, false};
-    const double r[] = {50};
-    const struct grid grid = {-0.004, 0.00025, 33, 50, 1, 1};
-    add_targets(&scene, 1, r);
-    scene.targets[0].x = 0;
-    assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
-    struct problem problem = {a, 1, &grid, PRECISION_DOUBLE};
-    form("reference:precision=double", problem, &echoes, &exact);
-    assert_true(swath_error("rma_numeric:precision=double", problem, &echoes, &exact) < 0.05);
-    image_free(&exact);
-    echoes_free(&echoes);
-    free_scene(&scene);
-}
-
-/* Sampled 65 times as fast as the band asks for, receivers 17 m astern, in a record of 1 ms: the row lies before the
-   record, where its converted echo has to have room, and what is far outside the band takes no part. */
-static void sampled_much_too_fast(void **state)
-{
-    (void)state;
-    struct scene scene;
-    struct echoes echoes;
-    struct image exact;
-    const double fs = 979137, first = 131087;
-    make_scene(4, 40, 1024, fs, first / fs, -1.2, 0.8, 0.04, &scene);
-    struct acquisition *a = &scene.acquisition;
-    a->bandwidth = 15e3;
-    a->tx_length = 0.08;
-    for (int p = 0; p < a->pings; p++) {
-        a->velocity[p].x = 2.5;
-        for (int m = 0; m < a->receivers; m++)
-            a->rx[p * a->receivers + m].x = a->tx[p].x - 17.333 + 0.04 * m;
-    }
-    scene.beam = (struct beam){BEAM_RECT, TRUNCATION_TX, 0.443, false};
-    const double r[] = {100.137};
-    const struct grid grid = {-0.16, 0.01, 33, 100.137, 1, 1};
-    add_targets(&scene, 1, r);
-    scene.targets[0].x = 0;
-    assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
-    struct problem problem = {a, 1, &grid, PRECISION_DOUBLE};
-    form("reference:precision=double", problem, &echoes, &exact);
-    assert_close(swath_error("rma_numeric:precision=double", problem, &echoes, &exact), 0, 0.02);
-    image_free(&exact);
-    echoes_free(&echoes);
-    free_scene(&scene);
 }
 
 int main(void)
@@ -645,11 +430,7 @@ int main(void)
         cmocka_unit_test(ghosts),
         cmocka_unit_test(one_receiver),
         cmocka_unit_test(odd_tracks),
-        cmocka_unit_test(refusals),
         cmocka_unit_test(columns),
-        cmocka_unit_test(conditions),
-        cmocka_unit_test(short_track),
-        cmocka_unit_test(sampled_much_too_fast),
     };
     return cmocka_run_group_tests_name("rma", tests, NULL, NULL);
 }
