@@ -7,7 +7,7 @@
 
 #include "data/paths.h"
 #include "measure/timing.h"
-#include "scene/scene.h"
+#include "papers/assumptions.h"
 
 static const struct {
     const char *name;
@@ -180,12 +180,13 @@ static bool named(const char *list, const char *text)
     return false;
 }
 
-/* "bp22/table3 (c 1500 m/s, beam rect cut at mid 0.405)": what the papers do not print and the scene assumes. */
+/* "bp22/table3 (c 1500 m/s, beam rect cut by the middle angle at 0.405)": what the papers do not print and the scene
+   assumes. */
 static void scene_describe(const char *name, char *text, size_t size)
 {
     struct scene scene;
-    text_append(text, size, "%s%s", *text ? ", " : "", name);
-    if (scene_load(name, SCENE_DIRECTORY, &scene) != STATUS_OK)
+    snprintf(text, size, "%s", name);
+    if (assumed_scene_load(name, &scene) != STATUS_OK)
         return;
     text_append(text, size, " (c %g m/s, beam %s", scene.acquisition.sound_speed,
                 scene.beam.kind == BEAM_RECT ? "rect" : "of both elements");
@@ -199,13 +200,27 @@ static void scene_describe(const char *name, char *text, size_t size)
     scene_free(&scene);
 }
 
+/* The description of a scene is kept: many claims rest on the same one. */
+static const char *scene_described(const char *name)
+{
+    static char names[32][80], texts[32][200];
+    int k = 0;
+    while (k < 31 && *names[k] && strcmp(names[k], name) != 0)
+        k++;
+    if (strcmp(names[k], name) != 0) {
+        snprintf(names[k], sizeof names[k], "%s", name);
+        scene_describe(name, texts[k], sizeof texts[k]);
+    }
+    return texts[k];
+}
+
 static void basis_add(void *to, const char *scene, const char *spec)
 {
     struct basis *basis = to;
     if (!named(basis->settings, spec))
         text_append(basis->settings, sizeof basis->settings, "%s%s", *basis->settings ? ", " : "", spec);
     if (!named(basis->scenes, scene))
-        scene_describe(scene, basis->scenes, sizeof basis->scenes);
+        text_append(basis->scenes, sizeof basis->scenes, "%s%s", *basis->scenes ? ", " : "", scene_described(scene));
 }
 
 struct judgement claim_judge(const struct claims *claims, const struct claim *claim, enum scheme scheme,

@@ -9,7 +9,7 @@
 #include "data/paths.h"
 #include "measure/spec.h"
 #include "papers/tables.h"
-#include "scene/scene.h"
+#include "papers/assumptions.h"
 #include "study/phase.h"
 
 /* A call: its texts, where each stands, and the metric that the function's name means. */
@@ -182,10 +182,6 @@ static enum status time_noise(struct formula *formula, struct call *call, struct
     if (unknown >= 0)
         return formula_error(formula, call->at[unknown > 0], "there is no time of '%s'; accepted: %s",
                              call->text[unknown > 0], accepted);
-    struct need needs[64];
-    int count = formula->need && !formula->measured ? table_needs(call->text[0], needs, 0, 64) : 0;
-    for (int k = 0; k < count; k++) /* noise shows in all times of the table */
-        formula->need(formula->to, needs[k].scene, needs[k].spec);
     if (formula->measured)
         values->at[0] = table_noise(formula->measured, call->text[0], call->text[1]);
     return STATUS_OK;
@@ -284,7 +280,7 @@ static enum status scene_number(struct formula *formula, struct call *call, stru
         status = word_check(formula, call, 1, names);
     if (status != STATUS_OK || !formula->measured)
         return status;
-    status = scene_load(call->text[0], SCENE_DIRECTORY, &scene);
+    status = assumed_scene_load(call->text[0], &scene);
     if (status != STATUS_OK)
         return status;
     while (strcmp(names[k], call->text[1]) != 0)

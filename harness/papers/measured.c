@@ -10,7 +10,7 @@
 #include "data/paths.h"
 #include "measure/imaging.h"
 #include "papers/measured.h"
-#include "scene/scene.h"
+#include "papers/assumptions.h"
 
 static const char *const phase_files[] = {
     [PHASE_SHORT] = "phase-lbf21__phase_short.csv", [PHASE_LONG] = "phase-lbf21__phase_long.csv"};
@@ -77,6 +77,13 @@ static const struct measurement *row_find(const struct measured *measured, const
     return row;
 }
 
+const struct measurement *measured_row(const struct measured *measured, const char *scene, const char *spec)
+{
+    bool valid;
+    const struct measurement *row = row_find(measured, scene, spec, &valid);
+    return row && strcmp(row->status, "ok") == 0 ? row : NULL;
+}
+
 /* The measurement, if it is there and went well. */
 static const struct measurement *measurement_find(struct measured *measured, const char *scene, const char *spec_text)
 {
@@ -109,7 +116,7 @@ static enum status work_plan(const char *scene_name, const char *spec_text, stru
     struct scene scene;
     struct spec spec;
     struct imaging imaging;
-    enum status status = scene_load(scene_name, SCENE_DIRECTORY, &scene);
+    enum status status = assumed_scene_load(scene_name, &scene);
     if (status != STATUS_OK)
         return status;
     status = spec_parse(spec_text, &spec);
@@ -130,10 +137,9 @@ double measured_flops(struct measured *measured, const char *scene, const char *
 {
     enum { ROOM = sizeof measured->planned / sizeof *measured->planned };
     struct work work;
-    bool valid;
     int k = 0;
-    const struct measurement *row = row_find(measured, scene, spec, &valid);
-    if (row && strcmp(row->status, "ok") == 0)
+    const struct measurement *row = measured_row(measured, scene, spec);
+    if (row)
         return by_formula ? row->flops_published : row->flops;
     while (k < measured->planned_count
            && (strcmp(measured->planned[k].scene, scene) != 0 || strcmp(measured->planned[k].spec, spec) != 0))

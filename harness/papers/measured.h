@@ -19,6 +19,7 @@ struct measured {
     struct csv published;                 /* results/published.csv */
     struct planned planned[16];           /* work that was asked for */
     int planned_count;
+    double load;       /* load average a processor while times were measured; 0: unknown */
     char missing[400]; /* the first value that was not there since it was last cleared */
 };
 enum phase_setup { PHASE_SHORT, PHASE_LONG };
@@ -29,6 +30,9 @@ void measured_free(struct measured *measured);
 
 /* What was just asked for is not there: keep the reason unless there is one already. Returns NAN. */
 double measured_missing(struct measured *measured, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* The measurement of `spec` (SPEC text) on `scene` if there is one that went well, else NULL; nothing is then missing. */
+const struct measurement *measured_row(const struct measured *measured, const char *scene, const char *spec);
 
 /* A field of the measurement of `spec` (SPEC text) on `scene`: MEASURED(measured, scene, spec, error). */
 #define MEASURED(measured, scene, spec, field)                                                                         \

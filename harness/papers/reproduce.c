@@ -9,7 +9,10 @@
 
 #include "data/paths.h"
 #include "measure/spec.h"
+#include "papers/figures.h"
+#include "papers/assumptions.h"
 #include "papers/reproduced.h"
+#include "papers/sensitivity.h"
 #include "scene/scene.h"
 #include "study/batch.h"
 #include "study/phase.h"
@@ -19,7 +22,7 @@ enum { NEEDS_MAX = 256 };
 /* A table by its name, all claims, or one claim by its id. */
 static enum status id_select(const char *id, struct selection *selection)
 {
-    char accepted[600] = "";
+    char accepted[900] = "";
     bool known = false;
     for (int k = 0; paper_tables[k].id; k++) {
         bool same = strcmp(paper_tables[k].id, id) == 0;
@@ -33,7 +36,8 @@ static enum status id_select(const char *id, struct selection *selection)
         selection->asked[k] |= same;
     }
     return known ? STATUS_OK
-                 : status_set(STATUS_INVALID, "reproduce: '%s' is not a table; accepted: %sor a claim as bp22-4.1-1",
+                 : status_set(STATUS_INVALID,
+                              "reproduce: '%s' is not a table; accepted: %sa claim as bp22-4.1-1, or sensitivity alone",
                               id, accepted);
 }
 
@@ -59,7 +63,7 @@ static enum status scene_measure(struct batch *batch, struct need *needs, int co
     struct spec specs[NEEDS_MAX];
     int spec_count = 0;
     const char *name = needs[0].scene;
-    enum status status = scene_load(name, SCENE_DIRECTORY, &scene);
+    enum status status = assumed_scene_load(name, &scene);
     if (status != STATUS_OK)
         return status;
     for (int k = 0; k < count && status == STATUS_OK; k++)
@@ -115,6 +119,26 @@ static bool phases_asked(const struct selection *selection)
     return asked;
 }
 
+/* Needs into a folder, which is made. */
+static enum status needs_measure(const char *directory, struct need *needs, int count)
+{
+    struct batch batch = {0};
+    enum status status = batch_open(directory, count, false, &batch);
+    for (int k = 0; k < count && status == STATUS_OK; k++)
+        if (needs[k].scene)
+            status = scene_measure(&batch, needs + k, count - k);
+    return batch_close(&batch, status);
+}
+
+static bool figure_asked(const void *of, const char *id)
+{
+    const struct selection *selection = of;
+    bool asked = false;
+    for (int k = 0; paper_tables[k].id; k++)
+        asked |= selection->tables[k] && strcmp(paper_tables[k].id, id) == 0;
+    return asked;
+}
+
 enum status papers_reproduce(const char *const *ids, int count, const char *directory)
 {
     struct need needs[NEEDS_MAX];
@@ -124,6 +148,12 @@ enum status papers_reproduce(const char *const *ids, int count, const char *dire
     enum status status = directory_check(directory);
     if (status == STATUS_OK)
         status = claims_read(CLAIMS_FILE, &claims);
+    bool sensitivity = count == 1 && strcmp(ids[0], "sensitivity") == 0;
+    if (status == STATUS_OK && sensitivity) {
+        status = sensitivity_study(directory, &claims, needs_measure);
+        claims_free(&claims);
+        return status;
+    }
     if (status == STATUS_OK)
         status = select_all(ids, count, &selection);
     if (status == STATUS_OK) {
@@ -134,6 +164,8 @@ enum status papers_reproduce(const char *const *ids, int count, const char *dire
                 status = scene_measure(&batch, needs + k, need_count - k);
         if (status == STATUS_OK && phases_asked(&selection))
             status = phase_study(directory, true);
+        if (status == STATUS_OK)
+            status = figures_draw(directory, figure_asked, &selection, &batch.undrawn);
         if (status == STATUS_OK)
             status = reproduced_report(directory, &selection);
         status = batch_close(&batch, status);

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "data/csv.h"
 #include "data/text_file.h"
@@ -19,6 +20,7 @@ static void head_write(FILE *file, const char *what, const struct measured *meas
     for (int k = 0; k < csv->comment_count; k++)
         if (strncmp(csv->comments[k], "sasbench ", 9) != 0 && strncmp(csv->comments[k], "scene ", 6) != 0)
             fprintf(file, "# %s\n", csv->comments[k]);
+    fprintf(file, "# load: %.2f a processor (average of 15 minutes when judged)\n", measured->load);
 }
 
 static enum status reproduced_write(const char *directory, const struct measured *measured,
@@ -78,6 +80,15 @@ static void notes_print(const struct paper_table *table, const struct reproduced
         if (!said)
             printf("  %s: %s\n", *l->target ? l->target : "paper", l->note);
     }
+}
+
+/* Claims and pictures have none. */
+static bool table_has_lines(const struct paper_table *table, const struct reproduced *lines, int count)
+{
+    bool has = false;
+    for (int k = 0; k < count; k++)
+        has |= strcmp(lines[k].table, table->id) == 0;
+    return has;
 }
 
 /* One table, a row a printed number, a column a definition. */
@@ -237,12 +248,20 @@ static void lines_keep(const struct selection *selection, struct reproduced *lin
     *count = kept;
 }
 
+/* A processor, over the last 15 minutes; 0 where it is not known. */
+static double load_average(void)
+{
+    double loads[3];
+    return getloadavg(loads, 3) == 3 ? loads[2] / (double)sysconf(_SC_NPROCESSORS_ONLN) : 0;
+}
+
 enum status reproduced_report(const char *directory, const struct selection *selection)
 {
     struct measured measured;
     struct reproduced *lines = NULL;
     int count = 0;
     enum status status = measured_read(directory, &measured);
+    measured.load = load_average();
     if (status == STATUS_OK)
         status = tables_evaluate(&measured, selection->tables, &lines, &count);
     if (status == STATUS_OK) {
@@ -250,7 +269,7 @@ enum status reproduced_report(const char *directory, const struct selection *sel
         status = reproduced_write(directory, &measured, lines, count);
     }
     for (int k = 0; paper_tables[k].id && status == STATUS_OK; k++)
-        if (selection->tables[k] && strcmp(paper_tables[k].id, "claims") != 0)
+        if (selection->tables[k] && table_has_lines(&paper_tables[k], lines, count))
             table_print(&paper_tables[k], lines, count);
     if (status == STATUS_OK)
         status = claims_report(directory, selection, &measured);

@@ -223,23 +223,28 @@ double table_seconds(struct measured *measured, enum scheme scheme, const char *
                : measured_missing(measured, "%s has no times of %s by %s", id, method, definition);
 }
 
-double table_noise(struct measured *measured, const char *id, const char *definition)
+double table_noise(const struct measured *measured, const char *id, const char *definition)
 {
-    struct source one, other;
-    double noise = 0.1;
-    for (int k = 0; source_at(k, &one); k++) {
-        if (strcmp(one.table, id) != 0 || !one.definition
-            || (strcmp(one.definition, definition) != 0
-                && strcmp(one.definition, definition_of_others(definition)) != 0))
+    struct source source;
+    double noise = fmax(0.1, measured->load - 1), least = INFINITY, most = 0;
+    char scene[80] = "";
+    for (int k = 0; source_at(k, &source); k++) {
+        if (strcmp(source.table, id) != 0 || !source.definition
+            || (strcmp(source.definition, definition) != 0
+                && strcmp(source.definition, definition_of_others(definition)) != 0))
             continue;
-        double control = MEASURED(measured, one.scene, one.spec, control_s);
-        double slowest = MEASURED(measured, one.scene, one.spec, run_s);
-        double fastest = MEASURED(measured, one.scene, one.spec, run_min_s);
-        noise = fmax(noise, slowest / fastest - 1);
-        for (int n = 0; source_at(n, &other); n++)
-            if (strcmp(other.table, id) == 0 && other.definition && strcmp(other.definition, one.definition) == 0
-                && strcmp(other.scene, one.scene) == 0)
-                noise = fmax(noise, fabs(MEASURED(measured, other.scene, other.spec, control_s) / control - 1));
+        const struct measurement *row = measured_row(measured, source.scene, source.spec);
+        if (!row)
+            continue;
+        noise = fmax(noise, row->run_s / row->run_min_s - 1);
+        if (strcmp(scene, source.scene) != 0) {
+            snprintf(scene, sizeof scene, "%s", source.scene);
+            least = INFINITY;
+            most = 0;
+        }
+        least = fmin(least, row->control_s);
+        most = fmax(most, row->control_s);
+        noise = fmax(noise, most / least - 1);
     }
     return noise;
 }

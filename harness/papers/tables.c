@@ -8,7 +8,7 @@
 #include "data/paths.h"
 #include "papers/sources.h"
 #include "papers/tables.h"
-#include "scene/scene.h"
+#include "papers/assumptions.h"
 
 /* Which part of the phase study a figure's printed maximum is of. */
 static const struct figure {
@@ -208,7 +208,7 @@ static void lines_of_phase(struct lines *lines, int row, const struct paper_tabl
 static void lines_of_rate(struct lines *lines, int row, const struct paper_table *table, double paper)
 {
     struct scene scene;
-    if (scene_load("bp22/table3", SCENE_DIRECTORY, &scene) != STATUS_OK) {
+    if (assumed_scene_load("bp22/table3", &scene) != STATUS_OK) {
         snprintf(lines->measured->missing, sizeof lines->measured->missing, "%s", status_message());
         line_add(lines, row, table, "rho_a = D_tx/2", paper, NAN);
         return;

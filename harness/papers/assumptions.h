@@ -1,0 +1,22 @@
+/* What the papers do not print and our scenes assume, changed one at a time: which verdicts depend on it? */
+#ifndef SASBENCH_PAPERS_ASSUMPTIONS_H
+#define SASBENCH_PAPERS_ASSUMPTIONS_H
+
+#include "scene/scene.h"
+
+/* One set of assumptions; the first, "nominal", changes nothing. */
+struct assumptions {
+    const char *name, *title;
+    double sound_speed;              /* m/s; 0: the scene's. Targets on range bins are moved to the nearest new one */
+    double limit;                    /* of the beam's truncation, in lambda/D_tx; 0: the scene's */
+    enum truncation_kind truncation; /* that the limit is of */
+    bool off_bins;                   /* targets, with their patches, are moved by half a range bin */
+};
+extern const struct assumptions assumption_sets[]; /* name NULL ends */
+
+/* Load a shipped scene under the assumptions that were chosen last; they are nominal at first. Its hash tells them apart.
+   Errors: as scene_load. */
+enum status assumed_scene_load(const char *name, struct scene *scene);
+void assumptions_choose(const struct assumptions *assumptions);
+
+#endif

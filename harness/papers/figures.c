@@ -1,0 +1,270 @@
+/* The papers' pictures from our own images (figures.h). */
+#include "papers/figures.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "data/echo_data.h"
+#include "data/paths.h"
+#include "measure/metrics.h"
+#include "measure/session.h"
+#include "papers/sources.h"
+#include "show/plot.h"
+
+enum { SCENES_MAX = 6, METHODS_MAX = 5, PANELS_MAX = 6 };
+
+/* Figures of the same images. A method's SPEC NULL is the exact image, which stands for the papers' back projection. */
+struct figures {
+    const char *images, *slices, *close; /* ids; NULL: there is none. close: the slices near the peak */
+    double close_m;                      /* to either side */
+    const char *title;
+    struct {
+        const char *scene;
+        int targets; /* how many of its targets, the first ones, are the papers' */
+    } scenes[SCENES_MAX];
+    struct {
+        const char *label, *spec;
+    } methods[METHODS_MAX];
+};
+
+#define PRINTED(options)   "rma_lbf:variant=printed,spacing=uniform,blend=off," options
+#define CORRECTED(options) "rma_lbf:" options
+
+static const struct figures sets[] = {
+    {"bp22_f8",
+     "bp22_f9",
+     "bp22_f10",
+     0.1,
+     "BP22 Figs 8 to 10",
+     {{"bp22/table3", 6}},
+     {{"nearest", NEAREST}, {"linear, beta 2", LINEAR_2}, {"linear, beta 8", LINEAR_8}, {"sinc", SINC_8}}},
+    {"zp15_f3",
+     "zp15_f4",
+     "zp15_f4_close",
+     0.1,
+     "ZP15 Figs 3 and 4",
+     {{"zp15/target", 1}},
+     {{"no interpolation", NEAREST}, {"truncated sinc", SINC_8}, {"zero padding", ZEROPAD_8}}},
+    {NULL,
+     "lbf21_f11",
+     "lbf21_f12",
+     0.05,
+     "LBF21 Figs 11 and 12: sub-blocks of 30, 18, 12, 11.4, 9.6, 2.7 m",
+     {{"lbf21/blocks_30_0", 1},
+      {"lbf21/blocks_18_0", 1},
+      {"lbf21/blocks_12_0", 1},
+      {"lbf21/blocks_11_4", 1},
+      {"lbf21/blocks_9_6", 1},
+      {"lbf21/blocks_2_7", 1}},
+     {{"LBF, as printed", "rma_lbf:variant=printed,blend=off,blocks=1,spacing=uniform"},
+      {"PCA", PCA_16},
+      {"BP", NULL}}},
+    {"lbf21_f14",
+     "lbf21_f15",
+     NULL,
+     0,
+     "LBF21 Figs 14 and 15",
+     {{"lbf21/table3_near", 2}, {"lbf21/table3_far", 4}},
+     {{"LBF, as printed", PRINTED("blocks=16")},
+      {"LBF, corrected", CORRECTED("blocks=16")},
+      {"PCA", PCA_16},
+      {"BP", NULL}}},
+    {"lbf21_f17",
+     "lbf21_f18",
+     NULL,
+     0,
+     "LBF21 Figs 17 and 18",
+     {{"lbf21/table4_near", 2}, {"lbf21/table4_far", 2}},
+     {{"LBF, as printed", PRINTED("blocks=16")},
+      {"LBF, corrected", CORRECTED("blocks=16")},
+      {"PCA", PCA_16},
+      {"Wu", WU_16},
+      {"BP", NULL}}},
+};
+enum { SETS = sizeof sets / sizeof *sets };
+
+/* The slices of one set while its images are formed. */
+struct drawing {
+    const struct figures *set;
+    const char *directory;
+    bool images, slices, close; /* asked for and not there */
+    int panel_count, method_count;
+    char titles[PANELS_MAX][120];
+    struct slice_line lines[PANELS_MAX][METHODS_MAX];
+    int *undrawn;
+};
+
+static void picture_name(const struct drawing *drawing, const char *id, const char *scene, const char *label,
+                         char *path, size_t size)
+{
+    char name[160] = "";
+    if (scene)
+        snprintf(name, sizeof name, "-%s-%s", strrchr(scene, '/') + 1, label);
+    for (char *at = name; *at; at++)
+        *at = *at == ' ' || *at == ',' ? '_' : *at;
+    snprintf(path, size, "%s/figure-%s%s.png", drawing->directory, id, name);
+}
+
+static void report(const struct drawing *drawing, enum status status)
+{
+    if (status == STATUS_OK)
+        return;
+    fprintf(stderr, "sasbench: %s\n", status_message());
+    ++*drawing->undrawn;
+}
+
+/* Is there an id, is it asked for, and is its picture, or its last image, missing? */
+static bool wanted(const struct drawing *drawing, const char *id, bool asked, bool images)
+{
+    char path[4200];
+    int s = 0, m = 0;
+    while (s + 1 < SCENES_MAX && drawing->set->scenes[s + 1].scene)
+        s++;
+    while (m + 1 < METHODS_MAX && drawing->set->methods[m + 1].label)
+        m++;
+    if (!id || !asked)
+        return false;
+    picture_name(drawing, id, images ? drawing->set->scenes[s].scene : NULL, drawing->set->methods[m].label, path,
+                 sizeof path);
+    return access(path, F_OK) != 0;
+}
+
+/* One method's image of a scene: drawn, and its slices kept. `first`: the scene's first panel. */
+static void image_use(struct drawing *drawing, const struct session *session, const struct image *image, int s, int m,
+                      int first)
+{
+    const struct scene *scene = session->scene;
+    const struct figures *set = drawing->set;
+    char path[4200], title[200];
+    if (drawing->images) {
+        picture_name(drawing, set->images, set->scenes[s].scene, set->methods[m].label, path, sizeof path);
+        snprintf(title, sizeof title, "%s: %s, %s", set->title, scene->name, set->methods[m].label);
+        report(drawing, plot_image(path, PLOT_DIRECTORY, image, title));
+    }
+    for (int t = 0; t < set->scenes[s].targets && (drawing->slices || drawing->close); t++) {
+        struct slice_line *line = &drawing->lines[first + t][m];
+        line->label = set->methods[m].label;
+        metrics_slice_samples(image, &scene->acquisition, &scene->targets[t], AXIS_AZIMUTH, &line->position_m,
+                              &line->power_db, &line->count);
+    }
+}
+
+static enum status scene_use(struct drawing *drawing, int s, int first)
+{
+    struct scene scene;
+    struct session session;
+    const struct figures *set = drawing->set;
+    enum status status = scene_load(set->scenes[s].scene, SCENE_DIRECTORY, &scene);
+    if (status != STATUS_OK)
+        return status;
+    status = session_open(&scene, &session);
+    if (status != STATUS_OK) {
+        scene_free(&scene);
+        return status;
+    }
+    for (int t = 0; t < set->scenes[s].targets; t++)
+        snprintf(drawing->titles[first + t], sizeof drawing->titles[0], "%s: x = %g m, r = %g m",
+                 strrchr(scene.name, '/') + 1, scene.targets[t].x, scene.targets[t].r);
+    for (int m = 0; m < drawing->method_count && status == STATUS_OK; m++) {
+        struct spec spec;
+        struct image image = {0};
+        if (!set->methods[m].spec) {
+            image_use(drawing, &session, &session.reference, s, m, first);
+            continue;
+        }
+        status = spec_parse(set->methods[m].spec, &spec);
+        if (status != STATUS_OK)
+            break;
+        status = session_image(&session, &spec, &image);
+        if (status == STATUS_OK)
+            image_use(drawing, &session, &image, s, m, first);
+        else
+            report(drawing, status);
+        status = STATUS_OK;
+        image_free(&image);
+        spec_free(&spec);
+    }
+    session_close(&session);
+    scene_free(&scene);
+    return status;
+}
+
+/* One panel a target; `most_m`: only so far from the target. */
+static void slices_draw(const struct drawing *drawing, const char *id, double most_m)
+{
+    struct slice_line shown[PANELS_MAX * METHODS_MAX];
+    const char *titles[PANELS_MAX];
+    char path[4200], title[200];
+    int count = 0;
+    for (int p = 0; p < drawing->panel_count; p++) {
+        titles[p] = drawing->titles[p];
+        for (int m = 0; m < drawing->method_count; m++) {
+            struct slice_line line = drawing->lines[p][m];
+            int from = 0, to = line.count;
+            while (from < to && line.position_m[from] < -most_m)
+                from++;
+            while (to > from && line.position_m[to - 1] > most_m)
+                to--;
+            shown[count++] = (struct slice_line){line.label, line.position_m + from, line.power_db + from, to - from};
+        }
+    }
+    picture_name(drawing, id, NULL, NULL, path, sizeof path);
+    snprintf(title, sizeof title, "%s: azimuth slices%s", drawing->set->title, isfinite(most_m) ? ", close" : "");
+    report(drawing,
+           plot_slices(path, PLOT_DIRECTORY, title, drawing->panel_count, titles, drawing->method_count, shown));
+}
+
+static enum status set_draw(struct drawing *drawing)
+{
+    const struct figures *set = drawing->set;
+    enum status status = STATUS_OK;
+    bool whole = true;
+    while (drawing->method_count < METHODS_MAX && set->methods[drawing->method_count].label)
+        drawing->method_count++;
+    for (int s = 0; s < SCENES_MAX && set->scenes[s].scene && status == STATUS_OK; s++) {
+        status = scene_use(drawing, s, drawing->panel_count);
+        drawing->panel_count += set->scenes[s].targets;
+    }
+    for (int p = 0; p < drawing->panel_count; p++)
+        for (int m = 0; m < drawing->method_count; m++)
+            whole = whole && drawing->lines[p][m].count > 0;
+    if (status == STATUS_OK && whole && drawing->slices)
+        slices_draw(drawing, set->slices, INFINITY);
+    if (status == STATUS_OK && whole && drawing->close)
+        slices_draw(drawing, set->close, set->close_m);
+    for (int p = 0; p < PANELS_MAX; p++)
+        for (int m = 0; m < METHODS_MAX; m++) {
+            free(drawing->lines[p][m].position_m);
+            free(drawing->lines[p][m].power_db);
+        }
+    return status;
+}
+
+bool figure_known(const char *id)
+{
+    bool known = false;
+    for (int k = 0; k < SETS; k++) {
+        const char *const ids[] = {sets[k].images, sets[k].slices, sets[k].close};
+        for (int n = 0; n < 3; n++)
+            known |= ids[n] && strcmp(ids[n], id) == 0;
+    }
+    return known;
+}
+
+enum status figures_draw(const char *directory, bool (*asked)(const void *of, const char *id), const void *of,
+                         int *undrawn)
+{
+    enum status status = STATUS_OK;
+    for (int k = 0; k < SETS && status == STATUS_OK; k++) {
+        struct drawing drawing = {.set = &sets[k], .directory = directory, .undrawn = undrawn};
+        drawing.images = wanted(&drawing, sets[k].images, sets[k].images && asked(of, sets[k].images), true);
+        drawing.slices = wanted(&drawing, sets[k].slices, sets[k].slices && asked(of, sets[k].slices), false);
+        drawing.close = wanted(&drawing, sets[k].close, sets[k].close && asked(of, sets[k].close), false);
+        if (drawing.images || drawing.slices || drawing.close)
+            status = set_draw(&drawing);
+    }
+    return status;
+}

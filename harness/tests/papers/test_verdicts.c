@@ -1,0 +1,275 @@
+/* Verdicts follow what was measured: each that can change does, and a fault in an algorithm changes it. */
+#include <complex.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "data/random.h"
+#include "measure/outcome.h"
+#include "measure/session.h"
+#include "tests/planted.h"
+
+/* --- Faults --------------------------------------------------------------------------------------------------- */
+
+/* A small scene that stands in for those of the claims. */
+static const char scatterers[] =
+    "description = \"stand-in\"; sonar = { fc = 150e3; bandwidth = 15e3; fs = 30e3; };\n"
+    "pulse = { kind = \"flat\"; };\n"
+    "array = { tx_length = 0.08; rx_length = 0.04; receivers = 8; first_offset = 0.06; pitch = 0.06; };\n"
+    "track = { speed = 2.5; pri = 0.096; pings = 24; x_first = -2.8; };\n"
+    "record = { first_sample = 520; samples = 512; };\n"
+    "beam = { kind = \"txrx\"; truncation = \"tx\"; limit = 0.443; };\n"
+    "targets = { fields = ( { x = [-0.3, 0.3]; r = [14.5, 19.5]; count = 60; seed = 4; } ); };\n"
+    "image = { x = { first = -0.4019; step = 0.04; count = 21; };\n"
+    "          r = { first = 14.5113; step = 0.0971; count = 50; }; };\n";
+
+static enum fault { FAULT_NONE, FAULT_NO_INTERPOLATION, FAULT_PHASE, FAULT_RANGE_MIGRATION } injected;
+
+/* A phase that grows along azimuth. */
+static void phase_spoil(struct image *image)
+{
+    float complex *pixels = image->pixels[0];
+    for (int k = 0; k < image->patches[0].r_count * image->patches[0].x_count; k++)
+        pixels[k] *= (float complex)cexp(0.05 * I * (k % image->patches[0].x_count));
+}
+
+static const struct algorithm *spoiled;
+
+static enum status spoiled_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages)
+{
+    enum status status = spoiled->execute(plan, echoes, image, stages);
+    phase_spoil(image);
+    return status;
+}
+
+/* Measure SPEC on a session whose scene has a name that claims ask for, with the fault if it concerns SPEC. */
+static void measure(const struct session *session, const char *spec_text)
+{
+    struct spec spec, used;
+    struct outcome outcome;
+    char text[200];
+    scheme_spec(SCHEME_CORRECTED, spec_text, text, sizeof text);
+    assert_int_equal(spec_parse(text, &spec), STATUS_OK);
+    bool replaced = injected == FAULT_NO_INTERPOLATION && strcmp(spec.algorithm->name, "bp_linear") == 0;
+    assert_int_equal(spec_parse(replaced ? NEAREST : text, &used), STATUS_OK);
+    struct algorithm faulty = *used.algorithm;
+    if ((injected == FAULT_PHASE && strcmp(spec.algorithm->name, "bp_zeropad") == 0)
+        || (injected == FAULT_RANGE_MIGRATION && strcmp(spec.algorithm->name, "rma_lbf") == 0)) {
+        spoiled = used.algorithm;
+        faulty.execute = spoiled_execute;
+        used.algorithm = &faulty;
+    }
+    outcome_measure(session, &used, false, &outcome);
+    assert_string_equal(outcome.row.status, "ok");
+    struct measurement row = planted_row(session->scene->name, &spec);
+    row.error = outcome.row.error;
+    row.error_gain = outcome.row.error_gain;
+    row.phase_rms_rad = outcome.row.phase_rms_rad;
+    row.width_m = outcome.row.width_m;
+    row.pslr_db = outcome.row.pslr_db;
+    row.islr_db = outcome.row.islr_db;
+    assert_int_equal(results_folder_add(rows, &row), STATUS_OK);
+    outcome_free(&outcome);
+    spec_free(&used);
+    spec_free(&spec);
+}
+
+static void faults_change_verdicts(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *scene, *specs[3];
+    } wanted[] = {
+        {"bp22/speckle", {NEAREST, LINEAR_2, LINEAR_8}},
+        {"bp22/many", {NEAREST, LINEAR_2, LINEAR_8}},
+        {"zp15/speckle", {ZEROPAD_8, "bp_zeropad:factor=16", "bp_zeropad:factor=32"}},
+        {"lbf21/table3_near", {LBF_16, PCA_16}},
+        {"lbf21/table3_far", {LBF_16, PCA_16}},
+        {"lbf21/table4_near", {LBF_16, PCA_16}},
+        {"lbf21/table4_far", {LBF_16, PCA_16}},
+    };
+    static const struct {
+        const char *claim;
+        enum fault fault;
+    } flips[] = {
+        {"bp22-5-2", FAULT_NO_INTERPOLATION},        /* two interpolations lower the error */
+        {"zp15-abstract-3", FAULT_PHASE},            /* zero padding is interpolation */
+        {"lbf21-abstract-5", FAULT_RANGE_MIGRATION}, /* LBF images better than PCA */
+    };
+    char path[300];
+    snprintf(path, sizeof path, "%s/scatterers.cfg", folder);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(scatterers, file);
+    assert_int_equal(fclose(file), 0);
+    struct scene scene;
+    struct session session;
+    assert_int_equal(scene_load(path, ".", &scene), STATUS_OK);
+    assert_int_equal(session_open(&scene, &session), STATUS_OK);
+    char *name = scene.name;
+    for (injected = FAULT_NONE; injected <= FAULT_RANGE_MIGRATION; injected++) {
+        struct measured measured;
+        planted_begin();
+        for (size_t k = 0; k < sizeof wanted / sizeof *wanted; k++)
+            for (int n = 0; n < 3 && wanted[k].specs[n]; n++) {
+                scene.name = (char *)wanted[k].scene;
+                measure(&session, wanted[k].specs[n]);
+            }
+        planted_end(&measured);
+        for (size_t k = 0; k < sizeof flips / sizeof *flips; k++)
+            (strncmp(flips[k].claim, "lbf21", 5) == 0 ? expect_corrected : expect)(
+                &measured, flips[k].claim, flips[k].fault == injected ? CLAIM_FAILS : CLAIM_HOLDS);
+        planted_clear(&measured);
+    }
+    session_close(&session);
+    scene.name = name;
+    scene_free(&scene);
+}
+
+/* --- Drawn measurements --------------------------------------------------------------------------------------- */
+
+static struct random generator;
+
+/* Even between two numbers. */
+static double drawn(double low, double high)
+{
+    return low + (high - low) * random_uniform(&generator);
+}
+
+static bool coin(void)
+{
+    return random_uniform(&generator) < 0.5;
+}
+
+/* All rows that a claim asks for, with numbers to be drawn. */
+static void claim_plant(const struct claim *claim)
+{
+    static const char *const definitions[] = {"null", "3db", "pixel"};
+    planted_begin();
+    for (int k = 0; k < claim->need_count; k++) {
+        struct spec spec;
+        assert_int_equal(spec_parse(claim->needs[k].spec, &spec), STATUS_OK);
+        for (int target = 0; target < 48 && strstr(claim->arguments, "target_"); target++)
+            for (int d = 0; d < 3; d++) {
+                const struct target_row row = {
+                    .scene = claim->needs[k].scene,
+                    .algorithm = spec.algorithm->name,
+                    .options = spec.text,
+                    .precision = precision_name(spec.precision),
+                    .target = target,
+                    .axis = "azimuth",
+                    .definition = definitions[d],
+                    .extent_m = 3,
+                };
+                if (target < 8 || strstr(claim->needs[k].scene, "many"))
+                    assert_int_equal(results_folder_targets(rows, &row, 1), STATUS_OK);
+            }
+        struct measurement row = planted_row(claim->needs[k].scene, &spec);
+        row.stages = "compress=1;focus=0;bulk=0;differential=0;reconstruct=0";
+        assert_int_equal(results_folder_add(rows, &row), STATUS_OK);
+        spec_free(&spec);
+    }
+}
+
+/* One draw: methods differ by much or little, and so do targets. */
+static void numbers_draw(struct measured *measured)
+{
+    struct results *images = &measured->measurements, *targets = &measured->targets;
+    const double methods = pow(10, drawn(-4, 0.5)) * coin(), places = pow(10, drawn(-5, 0)) * coin();
+    for (int k = 0; k < images->csv.row_count; k++) {
+        struct measurement *m = &images->measurements[k];
+        m->error = 0.05 * exp(drawn(-5, 4));
+        m->phase_rms_rad = 0.1 * exp(drawn(-3, 3));
+        m->run_s = m->run_min_s = exp(drawn(-3, 5));
+        m->control_s = m->flops = m->flops_published = 1;
+        m->width_m = 0.04 * exp(drawn(-1, 1));
+        m->pslr_db = -14 + methods * drawn(-1, 1);
+        m->islr_db = -10 + methods * drawn(-1, 1);
+        const double width = drawn(-1, 1), shift = drawn(-1, 1);
+        for (int n = 0; n < targets->csv.row_count; n++) {
+            struct target_row *t = &targets->target_rows[n];
+            if (strcmp(t->scene, m->scene) != 0 || strcmp(t->algorithm, m->algorithm) != 0
+                || strcmp(t->options, m->options) != 0)
+                continue;
+            t->pslr_db = m->pslr_db + places * drawn(-1, 1);
+            t->islr_db = m->islr_db + places * drawn(-1, 1);
+            t->width_m = 0.04 * (1 + methods * width * 0.3 + places * drawn(0, 0.01));
+            t->position_error_m = 0.01 * (methods * shift + places * drawn(-1, 1));
+        }
+    }
+}
+
+/* Phase errors that grow or fall with range and Doppler, now and then without order. */
+static void phases_draw(struct measured *measured)
+{
+    static const char *const files[] = {"phase-lbf21__phase_short.csv", "phase-lbf21__phase_long.csv"};
+    static const double ranges[] = {50, 135, 220, 300}, shares[] = {0, 0.25, 0.5, 1};
+    for (int setup = 0; setup < 2; setup++) {
+        FILE *file = fopen(path_of(files[setup]), "w");
+        assert_non_null(file);
+        fputs("receiver,r_m,nu_per_m,lbf_fc_error_rad,lbf_F_error_rad,lbf7_fc_error_rad,pca_error_rad\n", file);
+        for (int receiver = 0; receiver < 2; receiver++) {
+            double size[4], by_range[4], by_share[4];
+            for (int f = 0; f < 4; f++) {
+                size[f] = pow(10, drawn(-2.3, 0.2));
+                by_range[f] = drawn(-1.5, 1.5);
+                by_share[f] = drawn(0, 3);
+            }
+            for (int r = 0; r < 4; r++)
+                for (int s = 0; s < 4; s++) {
+                    fprintf(file, "%s,%g,%g", receiver ? "66" : "1", ranges[r], 10 * shares[s]);
+                    for (int f = 0; f < 4; f++)
+                        fprintf(file, ",%.9g",
+                                size[f] * pow(ranges[r] / 150, by_range[f]) * pow(shares[s] + 1e-3, by_share[f]));
+                    fputc('\n', file);
+                }
+        }
+        assert_int_equal(fclose(file), 0);
+        csv_free(&measured->phase[setup]);
+        assert_int_equal(csv_read(path_of(files[setup]), CSV_TAIL_KEEP, &measured->phase[setup]), STATUS_OK);
+    }
+}
+
+/* Every claim that measurements decide holds by some and fails by others. */
+static void each_verdict_can_flip(void **state)
+{
+    (void)state;
+    enum { DRAWS_MAX = 4000 };
+    struct claims claims;
+    assert_int_equal(claims_read(CLAIMS_FILE, &claims), STATUS_OK);
+    for (int k = 0; k < claims.count; k++) {
+        const struct claim *claim = &claims.claims[k];
+        struct measured measured;
+        bool seen[CLAIM_VERDICTS] = {false};
+        int draws = 0;
+        if (!judge_decides(claim->judge) || judge_identity(claim->judge))
+            continue;
+        generator = random_seed(1, (uint64_t)k);
+        claim_plant(claim);
+        planted_end(&measured);
+        for (; draws < DRAWS_MAX && !((seen[CLAIM_HOLDS] || seen[CLAIM_ASSUMED]) && seen[CLAIM_FAILS]); draws++) {
+            numbers_draw(&measured);
+            if (claim->phases)
+                phases_draw(&measured);
+            seen[claim_judge(&claims, claim, SCHEME_PRINTED, &measured).verdict] = true;
+        }
+        if (getenv("TRACE")) fprintf(stderr, "%s %d\n", claim->id, draws);
+        if (draws == DRAWS_MAX && !getenv("TRACE"))
+            fail_msg("%s never %s; %s", claim->id, seen[CLAIM_FAILS] ? "holds" : "fails",
+                     claim_judge(&claims, claim, SCHEME_PRINTED, &measured).evidence);
+        planted_clear(&measured);
+    }
+    claims_free(&claims);
+}
+
+#define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, folder_make, folder_remove)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        IN_FOLDER(faults_change_verdicts),
+        IN_FOLDER(each_verdict_can_flip),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
