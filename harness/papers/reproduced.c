@@ -176,7 +176,7 @@ static void claim_write(FILE *stream, const struct claim *claim, const struct ju
                                  claim->claim,
                                  claim_verdict_names[judgements[SCHEME_PRINTED].verdict],
                                  corrected,
-                                 claim->measures ? "measured" : "formula",
+                                 claim->measures && !judge_identity(claim->judge) ? "measured" : "formula",
                                  evidence};
     for (int k = 0; k < 8; k++) {
         csv_write_text(stream, texts[k]);
