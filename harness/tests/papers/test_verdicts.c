@@ -177,11 +177,12 @@ static void numbers_draw(struct measured *measured)
 {
     struct results *images = &measured->measurements, *targets = &measured->targets;
     const double methods = pow(10, drawn(-4, 0.5)) * coin(), places = pow(10, drawn(-5, 0)) * coin();
+    const double slowness = exp(drawn(-3, 5)), times = coin() ? 0.05 : 4;
     for (int k = 0; k < images->csv.row_count; k++) {
         struct measurement *m = &images->measurements[k];
         m->error = 0.05 * exp(drawn(-5, 4));
         m->phase_rms_rad = 0.1 * exp(drawn(-3, 3));
-        m->run_s = m->run_min_s = exp(drawn(-3, 5));
+        m->run_s = m->run_min_s = slowness * exp(times * drawn(-1, 1));
         m->control_s = m->flops = m->flops_published = 1;
         m->width_m = 0.04 * exp(drawn(-1, 1));
         m->pslr_db = -14 + methods * drawn(-1, 1);
@@ -214,7 +215,7 @@ static void phases_draw(struct measured *measured)
             for (int f = 0; f < 4; f++) {
                 size[f] = pow(10, drawn(-2.3, 0.2));
                 by_range[f] = drawn(-1.5, 1.5);
-                by_share[f] = drawn(0, 3);
+                by_share[f] = coin() ? drawn(0, 3) : 0; /* 0: all of it within a quarter of the band */
             }
             for (int r = 0; r < 4; r++)
                 for (int s = 0; s < 4; s++) {
@@ -235,7 +236,7 @@ static void phases_draw(struct measured *measured)
 static void each_verdict_can_flip(void **state)
 {
     (void)state;
-    enum { DRAWS_MAX = 4000 };
+    enum { DRAWS_MAX = 1500 };
     struct claims claims;
     assert_int_equal(claims_read(CLAIMS_FILE, &claims), STATUS_OK);
     for (int k = 0; k < claims.count; k++) {
@@ -254,8 +255,7 @@ static void each_verdict_can_flip(void **state)
                 phases_draw(&measured);
             seen[claim_judge(&claims, claim, SCHEME_PRINTED, &measured).verdict] = true;
         }
-        if (getenv("TRACE")) fprintf(stderr, "%s %d\n", claim->id, draws);
-        if (draws == DRAWS_MAX && !getenv("TRACE"))
+        if (draws == DRAWS_MAX)
             fail_msg("%s never %s; %s", claim->id, seen[CLAIM_FAILS] ? "holds" : "fails",
                      claim_judge(&claims, claim, SCHEME_PRINTED, &measured).evidence);
         planted_clear(&measured);
