@@ -14,8 +14,8 @@ struct assumptions {
 };
 extern const struct assumptions assumption_sets[]; /* name NULL ends */
 
-/* Load a shipped scene under the assumptions that were chosen last; they are nominal at first. Its hash tells them apart.
-   Errors: as scene_load. */
+/* Load a shipped scene under the assumptions that were chosen last; they are nominal at first. Its hash tells them
+   apart. Errors: as scene_load. */
 enum status assumed_scene_load(const char *name, struct scene *scene);
 void assumptions_choose(const struct assumptions *assumptions);
 

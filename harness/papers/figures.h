@@ -1,4 +1,5 @@
-/* The papers' pictures from our own images: drawn as the papers draw them, one picture a method or one panel a target. */
+/* The papers' pictures from our own images: drawn as the papers draw them, one picture a method or one panel a
+   target. */
 #ifndef SASBENCH_PAPERS_FIGURES_H
 #define SASBENCH_PAPERS_FIGURES_H
 
@@ -8,9 +9,9 @@
 
 /* Is `id` a figure that is drawn here? */
 bool figure_known(const char *id);
-/* Draw the figures that `asked` accepts into the folder, figure-ID.png, or figure-ID-SCENE-METHOD.png for images. Those that
-   are there already stay. What gnuplot cannot draw is reported on standard error and counted in *undrawn. Errors: those of
-   scenes, echoes and images. */
+/* Draw the figures that `asked` accepts into the folder, figure-ID.png, or figure-ID-SCENE-METHOD.png for images.
+   Those that are there already stay. What gnuplot cannot draw is reported on standard error and counted in *undrawn.
+   Errors: those of scenes, echoes and images. */
 enum status figures_draw(const char *directory, bool (*asked)(const void *of, const char *id), const void *of,
                          int *undrawn);
 

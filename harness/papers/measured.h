@@ -31,7 +31,8 @@ void measured_free(struct measured *measured);
 /* What was just asked for is not there: keep the reason unless there is one already. Returns NAN. */
 double measured_missing(struct measured *measured, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* The measurement of `spec` (SPEC text) on `scene` if there is one that went well, else NULL; nothing is then missing. */
+/* The measurement of `spec` (SPEC text) on `scene` if there is one that went well, else NULL; nothing is then
+   missing. */
 const struct measurement *measured_row(const struct measured *measured, const char *scene, const char *spec);
 
 /* A field of the measurement of `spec` (SPEC text) on `scene`: MEASURED(measured, scene, spec, error). */

@@ -13,8 +13,8 @@ struct selection {
 };
 
 /* Print the tables and claims asked for; write reproduced.csv and claims.csv with these, and with what else the folder
-   holds all measurements of, so that nothing that was measured earlier is lost. Errors: those of measured_read, of files
-   that cannot be written, of memory. */
+   holds all measurements of, so that nothing that was measured earlier is lost. Errors: those of measured_read, of
+   files that cannot be written, of memory. */
 enum status reproduced_report(const char *directory, const struct selection *selection);
 
 #endif

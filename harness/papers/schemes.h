@@ -15,8 +15,8 @@ extern const char *const scheme_names[SCHEMES];
    Returns whether the text depends on the scheme. */
 bool scheme_spec(enum scheme scheme, const char *text, char *spec, size_t size);
 
-/* The formula of the phase study that `name` means: LBF is Eq. (5), LBF7 is Eq. (7), both with theta at the carrier in the
-   one scheme, and Eq. (5) with theta at F in the other. Returns whether the name depends on the scheme. */
+/* The formula of the phase study that `name` means: LBF is Eq. (5), LBF7 is Eq. (7), both with theta at the carrier
+   in the one scheme, and Eq. (5) with theta at F in the other. Returns whether the name depends on the scheme. */
 bool scheme_formula(enum scheme scheme, const char *name, const char **formula);
 
 #endif

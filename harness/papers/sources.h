@@ -69,8 +69,9 @@ const char *source_place(const char *table, const char *target, int *index);
    methods. */
 double table_seconds(struct measured *measured, enum scheme scheme, const char *id, const char *method,
                      const char *definition);
-/* How far apart two times of a table may lie by chance, relative: the largest of a tenth, of the runs of one method, of the
-   scalar reference loop, which was timed beside each of a scene's methods, and of what others did on the machine. */
+/* How far apart two times of a table may lie by chance, relative: the largest of a tenth, of the runs of one method,
+   of the scalar reference loop, which was timed beside each of a scene's methods, and of what others did on the
+   machine. */
 double table_noise(const struct measured *measured, const char *id, const char *definition);
 
 /* Is there such a time? -1, or which of the three texts (from 0) is unknown; `accepted` then lists those that are. */

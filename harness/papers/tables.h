@@ -14,8 +14,9 @@ struct reproduced {
     const char *assumption, *note; /* of the table; of the printed number */
     char missing[400];             /* why `ours` is not there */
 };
-/* All lines, malloc'ed, [*count], for the caller to free; those of a table that takes its numbers from plans, which may be
-   large, only where it is `asked` for ([place in paper_tables]; NULL: all). Errors: STATUS_FAILED without memory. */
+/* All lines, malloc'ed, [*count], for the caller to free; those of a table that takes its numbers from plans, which
+   may be large, only where it is `asked` for ([place in paper_tables]; NULL: all). Errors: STATUS_FAILED without
+   memory. */
 enum status tables_evaluate(struct measured *measured, const bool *asked, struct reproduced **lines, int *count);
 
 /* Is it a figure of the phase study? */
