@@ -243,17 +243,6 @@ static enum status set_draw(struct drawing *drawing)
     return status;
 }
 
-bool figure_known(const char *id)
-{
-    bool known = false;
-    for (int k = 0; k < SETS; k++) {
-        const char *const ids[] = {sets[k].images, sets[k].slices, sets[k].close};
-        for (int n = 0; n < 3; n++)
-            known |= ids[n] && strcmp(ids[n], id) == 0;
-    }
-    return known;
-}
-
 enum status figures_draw(const char *directory, bool (*asked)(const void *of, const char *id), const void *of,
                          int *undrawn)
 {

@@ -7,8 +7,6 @@
 
 #include "status.h"
 
-/* Is `id` a figure that is drawn here? */
-bool figure_known(const char *id);
 /* Draw the figures that `asked` accepts into the folder, figure-ID.png, or figure-ID-SCENE-METHOD.png for images.
    Those that are there already stay. What gnuplot cannot draw is reported on standard error and counted in *undrawn.
    Errors: those of scenes, echoes and images. */
