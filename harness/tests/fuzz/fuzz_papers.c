@@ -19,7 +19,7 @@ static void claims_try(const char *path)
     struct claims claims;
     if (claims_read(path, &claims) == STATUS_OK)
         for (int k = 0; k < claims.count; k++)
-            claim_judge(&claims, &claims.claims[k], &measured);
+            claim_judge(&claims, &claims.claims[k], SCHEME_PRINTED, &measured);
     else if (!*status_message())
         fuzz_fail("refused without a message");
     claims_free(&claims);
