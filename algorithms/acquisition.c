@@ -36,6 +36,34 @@ void acquisition_free(struct acquisition *acquisition)
     *acquisition = (struct acquisition){0};
 }
 
+static struct vector vector_turn(struct vector v, double cosine, double sine)
+{
+    return (struct vector){v.x * cosine - v.y * sine, v.x * sine + v.y * cosine, v.z};
+}
+
+enum status acquisition_turn(const struct acquisition *acquisition, double angle, struct acquisition *out)
+{
+    const double cosine = cos(angle), sine = sin(angle);
+    *out = *acquisition;
+    enum status status = acquisition_allocate(out);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    for (int p = 0; p < out->pings; p++) {
+        out->t0[p] = acquisition->t0[p];
+        out->tx[p] = vector_turn(acquisition->tx[p], cosine, sine);
+        out->velocity[p] = vector_turn(acquisition->velocity[p], cosine, sine);
+        for (int m = 0; m < out->receivers; m++) {
+            size_t k = (size_t)p * (size_t)out->receivers + (size_t)m;
+            out->rx[k] = vector_turn(acquisition->rx[k], cosine, sine);
+        }
+    }
+    for (int k = 0; k < out->pulse_length; k++) {
+        out->pulse[k] = acquisition->pulse[k];
+    }
+    return STATUS_OK;
+}
+
 static bool vector_is_finite(struct vector v)
 {
     return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
@@ -80,6 +108,18 @@ static enum status check_scalars(const struct acquisition *a, const char *place)
     if (!(a->fc >= FC_LEAST * a->fs)) {
         return status_set(STATUS_INVALID, "%s: fc is %.15g Hz; at least %.15g Hz, a millionth of fs, is needed", place,
                           a->fc, FC_LEAST * a->fs);
+    }
+    if (!(fabs(a->echo_squint) < M_PI / 2)) {
+        return status_set(STATUS_INVALID, "%s: the beam's squint is %g degrees; within +-90 is needed", place,
+                          a->echo_squint * 180 / M_PI);
+    }
+    const struct target_area *area = &a->area;
+    bool none = area->half_x == 0 && area->half_r == 0;
+    if (!none && !(area->half_x > 0 && area->half_r > 0 && isfinite(area->x + area->r + area->half_x + area->half_r))) {
+        return status_set(STATUS_INVALID,
+                          "%s: target area about (%g, %g) m, %g and %g m to either side; finite numbers are needed, and "
+                          "sizes > 0",
+                          place, area->x, area->r, area->half_x, area->half_r);
     }
     if (!(a->aperture_limit > 0)) {
         return status_set(STATUS_INVALID, "%s: aperture limit is %g; a sine > 0 is needed", place, a->aperture_limit);

@@ -12,6 +12,11 @@ struct vector {
     double x, y, z;
 };
 
+/* PF05 Eq. (12): |x - x_c| < half_x and |r - r_c| < half_r, m. */
+struct target_area {
+    double x, r, half_x, half_r; /* half_x = half_r = 0: none */
+};
+
 /* Owner: whoever made it (a scene or an echo file), freed with acquisition_free. Plans only read it and may keep the
    pointer until they are destroyed. All arrays are ping-major. */
 struct acquisition {
@@ -28,8 +33,10 @@ struct acquisition {
     struct vector *velocity;     /* [pings] m/s: of the receivers during propagation; zero = stop-and-hop */
     double tx_length, rx_length; /* m: element lengths along the track; 0 = unknown */
     double echo_sine;            /* the echoes come from |sin theta_t| <= this; 0 = unknown, INFINITY = from anywhere */
+    double echo_squint;          /* rad: theta_t counts from the beam's axis, which points so far ahead of abeam (r > 0) */
     bool echo_tapers;            /* and their amplitude falls as both elements' sinc does */
     double aperture_limit;       /* back projection sums pairs with |sin theta_t| <= this only; INFINITY = all */
+    struct target_area area;     /* what is to be seen; a filter may take off the echoes of the rest */
     bool compressed;             /* the samples are range compressed: a unit target peaks at 1 */
     int pulse_length;            /* K: samples of the replica; 0 if compressed */
     double complex *pulse;       /* [pulse_length] replica at fs, beginning at emission; NULL if compressed */
@@ -43,6 +50,10 @@ void acquisition_free(struct acquisition *acquisition);
 /* Check every promise made above (ranges, finite numbers, |velocity| < c, phase precise enough: 8 pi fc tau eps <= 1e-3).
    `place` (a file name) begins the message. Errors: STATUS_INVALID. */
 enum status acquisition_check(const struct acquisition *acquisition, const char *place);
+
+/* A copy, to be freed, as it is seen from axes turned by `angle` (rad) about the origin: x' = x cos - y sin,
+   y' = x sin + y cos. Errors: STATUS_FAILED without memory. */
+enum status acquisition_turn(const struct acquisition *acquisition, double angle, struct acquisition *out);
 
 /* Unit vector along the track at ping p: the difference of the neighbouring transmitter positions; the velocity's
    direction for a single ping; +x where both vanish. theta_t is measured from the plane normal to it. */

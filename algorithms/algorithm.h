@@ -22,13 +22,21 @@
 
 enum precision { PRECISION_FLOAT, PRECISION_DOUBLE };
 
-/* Pixel (i, j), range row i and azimuth column j, lies at x = x_first + j x_step, r = r_first + i r_step, z = 0. */
+/* Pixel (i, j), range row i and azimuth column j, lies at x' = x_first + j x_step, r' = r_first + i r_step, z = 0, in axes
+   turned by angle_rad about the origin:  x = x' cos + r' sin,  r = -x' sin + r' cos  (SQ18's rotated image; 0: the track's
+   axes). */
 struct grid {
     double x_first, x_step; /* m, x_step > 0 */
     int x_count;            /* >= 1 */
     double r_first, r_step; /* m, r_step > 0; r of either sign */
     int r_count;            /* >= 1 */
+    double angle_rad;       /* within +-pi/2; what an algorithm cannot image turned, it refuses */
 };
+
+/* Where row i and column j lie, which need not be whole numbers. */
+struct vector grid_point(const struct grid *grid, double i, double j);
+/* The inverse: (x', r', 0) of a place in the track's axes. */
+struct vector grid_coordinates(const struct grid *grid, double x, double r);
 
 /* One imaging task: every patch of the image is wanted, and nothing else. */
 struct problem {

@@ -130,9 +130,10 @@ static struct extent extent_of(const struct problem *problem)
     struct extent extent = {0, 0, 0};
     for (int k = 0; k < problem->patch_count; k++) {
         const struct grid *g = &problem->patches[k];
-        for (int n = 0; n < 4; n++)
-            extent_add(problem->acquisition, g->x_first + n % 2 * (g->x_count - 1) * g->x_step,
-                       g->r_first + n / 2 * (g->r_count - 1) * g->r_step, &extent);
+        for (int n = 0; n < 4; n++) {
+            const struct vector p = grid_point(g, n / 2 * (g->r_count - 1), n % 2 * (g->x_count - 1));
+            extent_add(problem->acquisition, p.x, p.y, &extent);
+        }
     }
     return extent;
 }

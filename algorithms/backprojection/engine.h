@@ -9,6 +9,8 @@
 
 struct bp {
     struct problem problem;
+    struct acquisition turned; /* seen from the axes of turned grids, whose pixels then lie in rows and columns; else zero */
+    struct grid *patches;      /* those grids, not turned */
     struct bp_medium medium;
     struct bp_table table;
     void *weights; /* of table */

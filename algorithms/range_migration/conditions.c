@@ -273,13 +273,29 @@ static int prediction_conditions(const struct rma_view *view, const struct strai
     return count;
 }
 
+/* What range migration cannot image at all: wavenumbers about another centre than 0, and other axes than the track's. */
+static bool along_track(const struct problem *problem, struct condition *all, int *count)
+{
+    const double squint = fabs(problem->acquisition->echo_squint) * 180 / pi;
+    double turned = 0;
+    for (int k = 0; k < problem->patch_count; k++)
+        turned = fmax(turned, fabs(problem->patches[k].angle_rad) * 180 / pi);
+    if (squint > 0)
+        all[(*count)++] = (struct condition){"squint", squint, 0, false, SEVERITY_REFUSE, "the beam's squint (degrees)",
+                                             "wk_classic, wk_squint"};
+    if (turned > 0)
+        all[(*count)++] = (struct condition){
+            "axes", turned, 0, false, SEVERITY_REFUSE, "the angle of the image's axes (degrees)", "axes along the track"};
+    return squint == 0 && turned == 0;
+}
+
 int rma_conditions(const struct problem *problem, const struct rma_method *method, struct condition *list, int room)
 {
     struct straight_track track;
     struct condition all[CONDITIONS_MAX];
     int count = conditions_general(problem, all, CONDITIONS_MAX);
     all[0].limit = SLOWEST;
-    if (requirements(problem, all, &count, &track) && condition_holds(&all[0])) {
+    if (along_track(problem, all, &count) && requirements(problem, all, &count, &track) && condition_holds(&all[0])) {
         struct rma_view view = rma_view_of(problem, method, &track);
         all[count++] = stationary(&view);
         if (condition_holds(&all[count - 1]))

@@ -9,8 +9,7 @@
 #include "scene/simulate.h"
 #include "command/task.h"
 
-/* The extension says which file is asked for. */
-static enum status check_output(const char *command, const char *output)
+enum status output_check(const char *command, const char *output)
 {
     const char *extension = output ? strrchr(output, '.') : NULL;
     if (!output)
@@ -25,7 +24,7 @@ enum status command_simulate(const struct task *task)
 {
     struct scene scene;
     struct echoes echoes;
-    enum status status = check_output("simulate", task->output);
+    enum status status = output_check("simulate", task->output);
     if (status == STATUS_OK)
         status = scene_load(task->names[0], SCENE_DIRECTORY, &scene);
     if (status != STATUS_OK)
@@ -102,7 +101,7 @@ static enum status check_usage(const struct task *task)
                           task->echoes);
     if (task->spec_count != 1)
         return status_set(STATUS_INVALID, "image: %d --algorithm SPEC given, exactly one is needed", task->spec_count);
-    return check_output("image", task->output);
+    return output_check("image", task->output);
 }
 
 enum status command_image(const struct task *task)

@@ -15,11 +15,15 @@ struct task {
     struct spec *specs; /* [spec_count] of --algorithm */
 };
 
+/* -o of a command that writes a MATLAB file: it is given, its place exists, its extension says so. Errors: STATUS_INVALID. */
+enum status output_check(const char *command, const char *output);
+
 /* Each returns STATUS_OK, or a status with a message for main to print. */
 enum status command_list(const struct task *task);
 enum status command_info(const struct task *task);
 enum status command_simulate(const struct task *task);
 enum status command_image(const struct task *task);
+enum status command_filter(const struct task *task);
 enum status command_run(const struct task *task);
 enum status command_compare(const struct task *task);
 enum status command_measure(const struct task *task);

@@ -11,7 +11,7 @@
 #include "data/folder.h"
 #include "data/paths.h"
 
-static const char *const scene_list[] = {"gate/points", "gate/field", "gate/blocks"};
+static const char *const scene_list[] = {"gate/points", "gate/field", "gate/blocks", "gate/squint"};
 enum { SCENES = sizeof scene_list / sizeof *scene_list };
 
 /* Beside every algorithm as it is by default, in both precisions. */
@@ -38,6 +38,13 @@ static const char *const settings[] = {
     "rma_numeric:blocks=16,stolt=16",
     "rma_numeric:blocks=16,stolt=16,precision=double",
     "rma_numeric:stolt=direct,precision=double",
+    "wk_classic:unfold=stuff",
+    "wk_classic:unfold=baseband",
+    "wk_classic:taps=16,precision=double",
+    "wk_squint:taps=16,pad=2,precision=double",
+    "wk_squint:pad=1",
+    "wk_polar:subapertures=1",
+    "wk_polar:subapertures=1,curvature=on,precision=double",
 };
 enum { SETTINGS = sizeof settings / sizeof *settings };
 

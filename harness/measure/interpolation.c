@@ -39,8 +39,9 @@ struct place place_find(const struct image *image, double x, double r)
     struct place best = {.patch = -1};
     for (int k = 0; k < image->patch_count; k++) {
         const struct grid *grid = &image->patches[k];
-        double column = raster_place(x, grid->x_first, grid->x_step);
-        double row = raster_place(r, grid->r_first, grid->r_step);
+        const struct vector at = grid_coordinates(grid, x, r);
+        double column = raster_place(at.x, grid->x_first, grid->x_step);
+        double row = raster_place(at.y, grid->r_first, grid->r_step);
         double margin_x = grid->x_step * fmin(column, grid->x_count - 1 - column);
         double margin_r = grid->r_step * fmin(row, grid->r_count - 1 - row);
         double margin = fmin(margin_x, margin_r);

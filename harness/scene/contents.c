@@ -1,6 +1,7 @@
 /* The acquisition and the targets of a scene, made from its keys; the image is made in patches.c. */
 #include "scene/contents.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,6 +36,8 @@ static enum status acquisition_fill(struct reading *reading)
                 a->tx[p].x + reading->first_offset_m + m * reading->pitch_m;
         }
     }
+    a->echo_squint = reading->squint_deg * M_PI / 180;
+    a->area.x += a->area.half_x > 0 ? reading->x_offset_m : 0;
     a->echo_sine = beam_sine(scene);
     a->echo_tapers = scene->beam.kind == BEAM_TXRX;
     return acquisition_check(a, reading->path);

@@ -87,7 +87,7 @@ static double sample_at(struct search *search, double i, double j)
 {
     const struct acquisition *a = search->acquisition;
     const struct grid *grid = search->grid;
-    struct vector p = {grid->x_first + j * grid->x_step, grid->r_first + i * grid->r_step, 0};
+    struct vector p = grid_point(grid, i, j);
     double tau = delay_exact(a->tx[search->ping], search->rx, a->velocity[search->ping], p, a->sound_speed);
     search->shortest_s = fmin(search->shortest_s, tau);
     search->longest_s = fmax(search->longest_s, tau);

@@ -103,6 +103,18 @@ static enum status check_places(const struct reading *reading)
     return STATUS_OK;
 }
 
+/* A target area is whole or left out. */
+static enum status check_area(const struct reading *reading)
+{
+    static const char *const names[] = {"x", "r", "half_x", "half_r"};
+    for (size_t k = 0; reading->area && k < sizeof names / sizeof *names; k++) {
+        if (!key_member(reading->area, names[k])) {
+            return refuse(reading, reading->area, "area", names[k], "a number: the target area is x, r, half_x, half_r");
+        }
+    }
+    return STATUS_OK;
+}
+
 static enum status check_image_kind(const struct reading *reading)
 {
     const char *one = "one of `x` with `r`, `around_targets`, `patches`";
@@ -143,7 +155,7 @@ enum status keys_check(const struct reading *reading)
                       a->receivers);
     }
     enum status (*const checks[])(const struct reading *) = {check_beam, check_pulse, check_sizes, check_places,
-                                                             check_image_kind};
+                                                             check_area, check_image_kind};
     enum status status = STATUS_OK;
     for (size_t i = 0; i < sizeof checks / sizeof *checks && status == STATUS_OK; i++) {
         status = checks[i](reading);

@@ -19,19 +19,26 @@ static enum status axis_around(const struct reading *reading, const char *half_k
     return STATUS_OK;
 }
 
+/* Where a target lies in the image's axes. */
+static struct vector target_place(const struct reading *reading, const struct target *target)
+{
+    const struct grid axes = {.angle_rad = reading->angle_deg * M_PI / 180};
+    return grid_coordinates(&axes, target->x, target->r);
+}
+
 static enum status patches_around_targets(struct reading *reading)
 {
     struct scene *scene = &reading->scene;
     struct around_keys around;
     enum status status = group_read(reading, reading->around_targets, "image.around_targets", &around);
     for (; scene->patch_count < scene->point_count && status == STATUS_OK; scene->patch_count++) {
-        const struct target *target = &scene->targets[scene->patch_count];
+        const struct vector target = target_place(reading, &scene->targets[scene->patch_count]);
         struct grid *grid = &scene->patches[scene->patch_count];
         *grid = (struct grid){.x_step = around.x_step_m, .r_step = around.r_step_m};
         status =
-            axis_around(reading, "half_x", target->x, around.half_x_m, grid->x_step, &grid->x_first, &grid->x_count);
+            axis_around(reading, "half_x", target.x, around.half_x_m, grid->x_step, &grid->x_first, &grid->x_count);
         if (status == STATUS_OK) {
-            status = axis_around(reading, "half_r", target->r, around.half_r_m, grid->r_step, &grid->r_first,
+            status = axis_around(reading, "half_r", target.y, around.half_r_m, grid->r_step, &grid->r_first,
                                  &grid->r_count);
         }
     }
@@ -65,8 +72,9 @@ static enum status reference_fill(struct reading *reading)
     }
     for (int i = 0; i < scene->point_count; i++) {
         struct grid cut = scene->patches[0];
-        if (axis_cut(scene->targets[i].x, around.half_x_m, &cut.x_first, cut.x_step, &cut.x_count)
-            && axis_cut(scene->targets[i].r, around.half_r_m, &cut.r_first, cut.r_step, &cut.r_count)) {
+        const struct vector target = target_place(reading, &scene->targets[i]);
+        if (axis_cut(target.x, around.half_x_m, &cut.x_first, cut.x_step, &cut.x_count)
+            && axis_cut(target.y, around.half_r_m, &cut.r_first, cut.r_step, &cut.r_count)) {
             scene->reference_patches[scene->reference_count++] = cut;
         }
     }
@@ -83,10 +91,12 @@ static enum status grid_read(struct reading *reading, config_setting_t *x, confi
         status = group_read(reading, r, "axis", &across);
     }
     if (status == STATUS_OK) {
-        *grid = (struct grid){.x_first = along.first_m + reading->x_offset_m,
+        const struct grid axes = {.angle_rad = reading->angle_deg * M_PI / 180};
+        const struct vector offset = grid_coordinates(&axes, reading->x_offset_m, 0);
+        *grid = (struct grid){.x_first = along.first_m + offset.x,
                               .x_step = along.step_m,
                               .x_count = along.count,
-                              .r_first = across.first_m,
+                              .r_first = across.first_m + offset.y,
                               .r_step = across.step_m,
                               .r_count = across.count};
     }
@@ -119,6 +129,7 @@ enum status image_fill(struct reading *reading)
         status = grid_read(reading, reading->x, reading->r, &scene->patches[0]);
     }
     for (int i = 0; i < scene->patch_count && status == STATUS_OK; i++) {
+        scene->patches[i].angle_rad = reading->angle_deg * M_PI / 180;
         status = grid_check(&scene->patches[i], reading->path);
     }
     if (status == STATUS_OK && reading->reference) {

@@ -12,7 +12,8 @@ enum pulse_kind { PULSE_LFM, PULSE_LFM_TIME, PULSE_FLAT };
 enum beam_kind { BEAM_RECT, BEAM_TXRX };
 enum truncation_kind { TRUNCATION_NONE, TRUNCATION_TX, TRUNCATION_MID, TRUNCATION_DOPPLER, TRUNCATION_SINE };
 
-/* Amplitude of the echo of one pair (element beams sinc(D sin(theta)/lambda) or rect, and their truncation).
+/* Where a beam points is part of the acquisition (echo_squint): all its angles count from there.
+   Amplitude of the echo of one pair (element beams sinc(D sin(theta)/lambda) or rect, and their truncation).
    theta_t is measured at emission, theta_r at reception. A property of the echoes: it never limits imaging. */
 struct beam {
     enum beam_kind kind; /* rect: 1; txrx: sinc(D_tx sin theta_t F/c) sinc(D_rx sin theta_r F/c) */

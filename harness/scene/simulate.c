@@ -37,16 +37,20 @@ static double sinc(double z)
     return fabs(z) < 1e-9 ? 1 : sin(M_PI * z) / (M_PI * z);
 }
 
-/* Sines of the angles off the plane across the track: of the transmitter at emission, of the receiver at reception, and
+/* Sines of the angles off the beam's axis, which lies in the plane across the track but for its squint: of the transmitter at emission, of the receiver at reception, and
    at the bistatic midpoint of the two. */
 struct angles {
     double tx, rx, mid;
 };
 
-/* A point at the element itself lies in no direction: it is seen as from broadside, sine 0. */
-static double sine(double along, double across)
+/* A point at the element itself lies in no direction: it is seen as on the axis, sine 0. `along` counts from the point to the
+   element, backwards. */
+static double sine(const struct acquisition *a, double along, double across)
 {
     double distance = hypot(along, across);
+    if (a->echo_squint != 0) {
+        along = along * cos(a->echo_squint) + across * sin(a->echo_squint);
+    }
     return distance > 0 ? along / distance : 0;
 }
 
@@ -56,7 +60,7 @@ static struct angles pair_angles(const struct acquisition *a, int ping, int rece
     struct vector v = a->velocity[ping];
     double ut = t.x - p.x, ur = r.x + v.x * tau - p.x, um = (ut + ur) / 2;
     double across_t = hypot(t.y - p.y, t.z - p.z), across_r = hypot(r.y + v.y * tau - p.y, r.z + v.z * tau - p.z);
-    return (struct angles){sine(ut, across_t), sine(ur, across_r), sine(um, (across_t + across_r) / 2)};
+    return (struct angles){sine(a, ut, across_t), sine(a, ur, across_r), sine(a, um, (across_t + across_r) / 2)};
 }
 
 static double angles_weight(const struct scene *scene, const struct angles *angles, double frequency)

@@ -35,8 +35,9 @@ struct exact_pair exact_pair_of(const struct acquisition *a, int ping, int recei
 
 struct exact_point exact_pixel_of(const struct grid *patch, int i, int j)
 {
-    return (struct exact_point){patch->x_first + (long double)j * patch->x_step,
-                                patch->r_first + (long double)i * patch->r_step, 0.0L};
+    const long double x = patch->x_first + (long double)j * patch->x_step;
+    const long double r = patch->r_first + (long double)i * patch->r_step, angle = patch->angle_rad;
+    return (struct exact_point){x * cosl(angle) + r * sinl(angle), r * cosl(angle) - x * sinl(angle), 0.0L};
 }
 
 /* From the receiver at reception to the point. */

@@ -14,7 +14,7 @@ struct setting {
     enum trait promise; /* which makes the scene: an algorithm with this trait may not refuse it */
 };
 
-enum { SETTINGS = 13, RAW = 1 };
+enum { SETTINGS = 14, RAW = 1, MONOSTATIC = 12 };
 extern const struct setting settings[SETTINGS];
 
 /* A scene whose only patch is *grid. */

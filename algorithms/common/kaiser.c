@@ -1,0 +1,25 @@
+#include "common/kaiser.h"
+
+#include <math.h>
+
+#include "common/bessel.h"
+
+static const double pi = 3.14159265358979323846;
+
+double kaiser_shape(int taps, double oversampling)
+{
+    double support = taps * (1 - 0.5 / oversampling);
+    return pi * sqrt(fmax(support * support - 0.8, 1));
+}
+
+double kaiser_value(int taps, double shape, double distance)
+{
+    double z = 2 * distance / taps, inside = sqrt(fmax(1 - z * z, 0));
+    return fabs(z) <= 1 ? bessel_i0_scaled(shape * inside) * exp(shape * (inside - 1)) : 0;
+}
+
+double kaiser_transform(int taps, double shape, double place)
+{
+    double x = sqrt(fmax(shape * shape - pi * pi * taps * taps * place * place, 1e-12));
+    return taps * exp(-shape) * sinh(x) / x;
+}

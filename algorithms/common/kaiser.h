@@ -1,0 +1,15 @@
+/* The Kaiser-Bessel kernel of Stolt interpolations: values of a spectrum between its bins, from `taps` bins. What it does to
+   the samples, a smooth weight, is taken off beforehand (kaiser_transform). */
+#ifndef SASBENCH_COMMON_KAISER_H
+#define SASBENCH_COMMON_KAISER_H
+
+/* The parameter of least error when the samples fill 1/oversampling of the transform. */
+double kaiser_shape(int taps, double oversampling);
+
+/* The kernel `distance` bins from its middle: 1 there, 0 from taps/2 on. */
+double kaiser_value(int taps, double shape, double distance);
+
+/* What the kernel weights a sample by that lies `place` (a fraction of the transform) from its middle. */
+double kaiser_transform(int taps, double shape, double place);
+
+#endif

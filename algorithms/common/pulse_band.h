@@ -1,0 +1,17 @@
+/* Which part of the sampled band holds the compressed pulse. */
+#ifndef SASBENCH_COMMON_PULSE_BAND_H
+#define SASBENCH_COMMON_PULSE_BAND_H
+
+#include "acquisition.h"
+
+struct pulse_band {
+    double half_hz; /* the band that matters is |f| <= half_hz; at most fs/2 */
+    double loss;    /* energy of the compressed pulse outside it, relative */
+};
+
+/* Of raw echoes: the replica's band but for 4e-6 of the compressed energy. Of compressed echoes: twice the bandwidth, since
+   what was compressed elsewhere may have flanks, and at least 32 bins of the record, whose own ends are in it.
+   Errors: STATUS_FAILED without memory. */
+enum status pulse_band_find(const struct acquisition *acquisition, int transform_length, struct pulse_band *band);
+
+#endif

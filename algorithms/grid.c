@@ -1,0 +1,20 @@
+#include <math.h>
+
+#include "algorithm.h"
+
+struct vector grid_coordinates(const struct grid *grid, double x, double r)
+{
+    if (grid->angle_rad == 0)
+        return (struct vector){x, r, 0};
+    double cosine = cos(grid->angle_rad), sine = sin(grid->angle_rad);
+    return (struct vector){x * cosine - r * sine, x * sine + r * cosine, 0};
+}
+
+struct vector grid_point(const struct grid *grid, double i, double j)
+{
+    double x = grid->x_first + j * grid->x_step, r = grid->r_first + i * grid->r_step;
+    if (grid->angle_rad == 0)
+        return (struct vector){x, r, 0};
+    double cosine = cos(grid->angle_rad), sine = sin(grid->angle_rad);
+    return (struct vector){x * cosine + r * sine, r * cosine - x * sine, 0};
+}

@@ -1,0 +1,144 @@
+/* The plan of an omega-k imager (wk.h). layout.c lays it out, transform.c transforms along range and azimuth (for each
+   precision), line.c works on one azimuth wavenumber (for each precision and instruction set), wk.c puts them in order.
+   Pointers without a type hold values of the plan's precision; all are complex unless said otherwise, the last dimension is
+   contiguous.
+
+   Positions of an image are taken in the plan's own axes, turned by `angle` (0 where they are the track's) about the track's
+   middle ping at x = x_middle, r = 0:  x' = (x - x_middle) cos - r sin,  r' = (x - x_middle) sin + r cos.
+
+       range     [pings][samples] -> [pings][band], the middle sample and the middle ping being the origins
+       azimuth   [pings][band] -> [azimuth_length][band], in place
+       line      one wavenumber of `lines`: band values, read or interpolated, -> Ky bins of a patch -> its rows
+                 -> [rows][line_stride], `focused`
+       inverse   [rows][line_stride] -> [r_count][x_count] */
+#ifndef SASBENCH_WAVENUMBER_ENGINE_H
+#define SASBENCH_WAVENUMBER_ENGINE_H
+
+#include <math.h>
+
+#include "wavenumber/wk.h"
+
+struct polar_filter;
+struct traces;
+
+enum {
+    WK_ALIGNMENT = 64,   /* bytes */
+    WK_GUARD = 16,       /* zeros beside the band: the longest kernel */
+    WK_INTERVALS = 1024, /* of a kernel's table, linear inside each */
+    WK_SPAN = 256,       /* bins that go through the interpolations together, in the cache */
+    WK_TILE = 8          /* neighbouring lines whose rows are stored together */
+};
+#define WK_OVERSAMPLING 1.5 /* of the record by the range transform, and of an image that is resampled */
+
+/* A kernel, tap after tap: values[tap][interval], real [taps][WK_INTERVALS + 2]. */
+struct wk_kernel {
+    int taps;
+    double shape;
+    void *values;
+};
+
+struct wk_patch {
+    struct grid grid; /* as wanted */
+    struct grid own;  /* what is focused, in the plan's own axes: the same pixels, or a finer grid to resample */
+    bool resampled;
+    double kx_carrier; /* rad/m: taken off before resampling, else 0 */
+    long long bin_carrier;
+    int length; /* of the range IFFT: Ky = bin 2 pi/(length own.r_step) */
+    size_t row; /* of its first row in `focused` */
+    bool folds; /* columns divide the lines' period evenly: one transform; else a convolution with a chirp */
+    int columns;
+    void *before, *kernel, *after; /* [lines], [columns] (chirp only), [own.x_count] */
+    void *wide;                    /* [own.r_count][own.x_count]: resampled only */
+    void *focus_plan, *azimuth_forward, *azimuth_inverse;
+};
+
+enum wk_stage { WK_ROTATE, WK_STOLT, WK_FOCUS, WK_STAGES };
+
+struct wk {
+    struct problem problem;
+    struct wk_method method;
+    struct wk_options options;
+    struct work work;
+
+    /* track: ping n of the transform is at x_middle + (n - middle) spacing */
+    double sound_speed, speed, fc, fs, t0, spacing, x_middle;
+    int pings, samples, middle;
+    bool reversed;          /* the track runs towards -x: its last ping comes first */
+    double squint, slope;   /* rad; the centroid is at Kx = slope K_R */
+    double angle;           /* rad: of the own axes */
+    double sine[2], x_end[2]; /* of the angles off abeam that hold echoes; m from x_middle: the track's ends */
+
+    /* range: bin k of the band is at fc + (band_first + k) fs/range_length; the sample `centre` is the origin */
+    int range_length, centre;
+    int band_first, band, row; /* row: bins of a stored row */
+    double record_pad;         /* samples by which centroids shift a record to either side */
+
+    /* azimuth: the transform's bins are 2 pi/(azimuth_length spacing/stuffed) apart, pings every `stuffed` */
+    int stuffed, azimuth_length;
+    /* lines: line i is at kx_first + i kx_step (rad/m); unfolded: bin line_first + i of the transform */
+    int lines, line_first;
+    size_t line_stride; /* lines rounded up to WK_TILE */
+    double kx_first, kx_step, kx_base; /* kx_base: rad/m, taken off ahead of the azimuth transform */
+    bool skips;         /* cells beyond the support are not worked on */
+
+    int taps;
+    struct wk_kernel range_kernel, azimuth_kernel;
+    void *range_weights;   /* real [WK_WEIGHTS + 2]: 1/transform of the kernel over |t|/half the transform */
+    void *azimuth_weights; /* real [pings] */
+
+    int patch_count;
+    struct wk_patch *patches;
+    size_t rows; /* of all patches */
+
+    struct polar_filter *filter;
+    struct traces *traces;
+    void *compressed; /* [pings][samples]: with the filter only */
+
+    int threads;
+    size_t scratch_bytes;
+    void *scratch; /* [threads] */
+    void *data;    /* [azimuth_length][row] */
+    void *focused; /* [rows][line_stride] */
+    void *range_forward, *azimuth_forward;
+};
+enum { WK_WEIGHTS = 8192 };
+
+/* Own wavenumbers to frequency: F (Hz) of Kx, Ky (rad/m) in the track's axes. */
+static inline double wk_frequency(const struct wk *wk, double kx, double ky)
+{
+    double c = wk->sound_speed, beta = wk->speed / c, scale = c / (4 * M_PI);
+    return beta * scale * kx + scale * sqrt(kx * kx + (1 - beta) * (1 + beta) * ky * ky);
+}
+
+/* Ky0 of frequency F at Kx0, both in the own axes; NAN where evanescent. */
+static inline double wk_ky(const struct wk *wk, double frequency, double kx0)
+{
+    double c = wk->sound_speed, beta = wk->speed / c, b1 = (1 - beta) * (1 + beta), scale = 4 * M_PI / c;
+    double f = frequency * scale, cosine = cos(wk->angle), sine = sin(wk->angle);
+    double root = f * f * (beta * beta * sine * sine + b1) - b1 * kx0 * (2 * f * beta * cosine + b1 * kx0);
+    return root > 0 ? (sqrt(root) - f * beta * sine) / b1 : NAN;
+}
+
+/* ---- layout.c ---- */
+enum status wk_layout(struct wk *wk);
+
+/* ---- transform.c ---- */
+struct wk_transform {
+    enum status (*plan)(struct wk *wk);
+    void (*destroy)(struct wk *wk);
+    void (*compress)(const struct wk *wk, const void *samples);             /* filter only */
+    void (*range)(const struct wk *wk, const void *samples);
+    void (*azimuth)(const struct wk *wk);
+    void (*inverse)(const struct wk *wk, const struct wk_patch *patch, void *pixels);
+    void (*resample)(const struct wk *wk, const struct wk_patch *patch, void *pixels);
+};
+extern const struct wk_transform wk_transform_float, wk_transform_double;
+
+/* ---- line.c ---- */
+/* Lines from `first` to first + WK_TILE - 1, all rows, into `focused`; seconds of each stage are added. */
+typedef void wk_line_function(const struct wk *wk, int thread, int first, double seconds[WK_STAGES]);
+wk_line_function wk_line_float_baseline, wk_line_double_baseline;
+wk_line_function wk_line_float_v3, wk_line_double_v3;
+wk_line_function wk_line_float_v4, wk_line_double_v4;
+
+#endif

@@ -1,0 +1,450 @@
+/* What an omega-k image needs of its scene (engine.h): the track, the conditions, the axes and the lengths of all
+   transforms. All in double; nothing of it depends on the echoes. */
+#include <limits.h>
+#include <stdlib.h>
+
+#include "common/fft_length.h"
+#include "common/kaiser.h"
+#include "common/pulse_band.h"
+#include "range_migration/spectrum.h"
+#include "wavenumber/engine.h"
+
+static const double pi = 3.14159265358979323846;
+
+static const double WIDEST_SINE = 0.98;  /* of the angles that are imaged: nearer to the track nothing is resolved in range */
+static const double LOBE = 0.443;        /* half a beam, in lambda/D, of echoes that do not say theirs */
+static const double PULSE_PERIODS = 8;   /* of 1/B, beside the rows, so that no pulse wraps around */
+static const double EVEN = 1e-12;        /* relative: columns that divide the period but for rounding */
+static const double SAME_ANGLE = 1e-9;   /* rad */
+static const int tap_counts[] = {4, 6, 8, 12, 16};
+
+static enum status unsupported(const struct wk *wk, const char *reason)
+{
+    return status_set(STATUS_UNSUPPORTED, "%s: %s", wk->method.name, reason);
+}
+
+static double wavelength_longest(const struct wk *wk)
+{
+    const struct acquisition *a = wk->problem.acquisition;
+    return a->sound_speed / (a->fc - a->bandwidth / 2);
+}
+
+/* Sines of the angles off abeam between which a beam of `half` (sine, about its axis) sees, and pings sample. */
+static void angles_limit(const struct wk *wk, double half, double sine[2])
+{
+    double b = half < 1 ? asin(half) : pi, sampled = wavelength_longest(wk) / (4 * wk->spacing);
+    double low = wk->squint - b > -pi / 2 ? sin(wk->squint - b) : -1;
+    double high = wk->squint + b < pi / 2 ? sin(wk->squint + b) : 1;
+    sine[0] = fmax(fmax(low, wk->slope - sampled), -WIDEST_SINE);
+    sine[1] = fmin(fmin(high, wk->slope + sampled), WIDEST_SINE);
+}
+
+/* Kx/K_R of the beam's axis. Motion while the pulse travels moves it by about v/c: left alone where that is little of what
+   the pings hold, so that a beam abeam needs no unfolding. */
+static double centroid_slope(const struct wk *wk)
+{
+    const struct spectrum_setting setting = {wk->sound_speed, wk->speed, wk->fc, 0};
+    double still = sin(wk->squint), moving = -spectrum_slope(&setting, 0, 1, -tan(wk->squint)) * wk->sound_speed / 2;
+    return fabs(moving - still) * 4 * wk->spacing * wk->fc / wk->sound_speed > 0.1 ? moving : still;
+}
+
+static enum status lay_track(struct wk *wk)
+{
+    const struct acquisition *a = wk->problem.acquisition;
+    struct straight_track track;
+    if (a->receivers > 1 || fabs(a->rx[0].x - a->tx[0].x) > a->sound_speed / a->fc / 1000)
+        return status_set(STATUS_UNSUPPORTED,
+                          "%s: %d receivers, the first %g m ahead of the transmitter; omega-k needs one receiver at the "
+                          "transmitter (several are imaged by rma_*)",
+                          wk->method.name, a->receivers, a->rx[0].x - a->tx[0].x);
+    if (!acquisition_is_straight(a, &track))
+        return unsupported(wk, "the track is not straight and uniform (tx, rx within lambda/1000 of even points on a "
+                               "line along x, y = z = 0, one velocity, one t0)");
+    if (a->pings < 2)
+        return unsupported(wk, "a single ping has no azimuth spectrum");
+    if (a->aperture_limit < 1)
+        return unsupported(wk, "the scene has an aperture limit, and omega-k cannot choose pings pixel by pixel");
+    if (!(a->fc - a->bandwidth / 2 > 0))
+        return status_set(STATUS_UNSUPPORTED, "%s: the lowest frequency fc - B/2 is %g Hz; more than 0 is needed",
+                          wk->method.name, a->fc - a->bandwidth / 2);
+    if (!(1 - fabs(track.speed) / a->sound_speed > 0.1))
+        return status_set(STATUS_UNSUPPORTED, "%s: the speed is %g m/s; less than 0.9 of sound's is needed",
+                          wk->method.name, track.speed);
+    wk->sound_speed = a->sound_speed;
+    wk->speed = track.speed;
+    wk->fc = a->fc;
+    wk->fs = a->fs;
+    wk->t0 = a->t0[0];
+    wk->pings = a->pings;
+    wk->samples = a->samples;
+    wk->middle = a->pings / 2;
+    wk->centre = a->samples / 2;
+    wk->spacing = fabs(track.spacing);
+    wk->reversed = track.spacing < 0;
+    wk->squint = a->echo_squint;
+    wk->slope = centroid_slope(wk);
+    double first = track.x_first + (wk->reversed ? (a->pings - 1) * track.spacing : 0);
+    wk->x_middle = first + wk->middle * wk->spacing;
+    wk->x_end[0] = first - wk->x_middle;
+    wk->x_end[1] = first + (a->pings - 1) * wk->spacing - wk->x_middle;
+    wk->angle = wk->method.rotates ? wk->squint : 0;
+    /* Echoes reach out to the element's first null. */
+    angles_limit(wk, a->tx_length > 0 ? wavelength_longest(wk) / a->tx_length : INFINITY, wk->sine);
+    if (!(wk->sine[1] > wk->sine[0]) || !(fabs(wk->slope) < WIDEST_SINE))
+        return status_set(STATUS_UNSUPPORTED,
+                          "%s: a squint of %g degrees; omega-k needs the sine of the angle off abeam below %g",
+                          wk->method.name, wk->squint * 180 / pi, WIDEST_SINE);
+    return STATUS_OK;
+}
+
+/* ---- what is seen ---- */
+
+struct place {
+    double x, r; /* m, in the track's axes, from x_middle */
+};
+
+/* Corner k of a grid (0 to 3), or its middle (4). */
+static struct place grid_place(const struct wk *wk, const struct grid *g, int k)
+{
+    double u = k == 4 ? 0.5 : k % 2, w = k == 4 ? 0.5 : k / 2;
+    struct vector p = grid_point(g, w * (g->r_count - 1), u * (g->x_count - 1));
+    return (struct place){p.x - wk->x_middle, p.y};
+}
+
+static struct place place_turned(struct place p, double angle)
+{
+    return (struct place){p.x * cos(angle) - p.r * sin(angle), p.x * sin(angle) + p.r * cos(angle)};
+}
+
+/* Sines of the angles under which pings see a place within `sine`: false if there are none. */
+static bool place_seen(const struct wk *wk, struct place p, const double sine[2], double seen[2])
+{
+    for (int k = 0; k < 2; k++)
+        seen[k] = (p.x - wk->x_end[1 - k]) / hypot(p.x - wk->x_end[1 - k], p.r);
+    seen[0] = fmax(seen[0], sine[0]);
+    seen[1] = fmin(seen[1], sine[1]);
+    return seen[0] <= seen[1];
+}
+
+static enum status check_place(const struct wk *wk, struct place p, const double seen[2])
+{
+    const struct acquisition *a = wk->problem.acquisition;
+    double steepest = fmax(fabs(seen[0] - wk->slope), fabs(seen[1] - wk->slope));
+    double doppler = (a->fc + a->bandwidth / 2) / a->sound_speed * 4 * wk->spacing * steepest;
+    double cosine = sqrt(1 - fmax(seen[0] * seen[0], seen[1] * seen[1]));
+    double stationary = wavelength_longest(wk) / (32 * pi * p.r * cosine);
+    if (!(doppler <= 1.05))
+        return status_set(STATUS_UNSUPPORTED,
+                          "%s: condition doppler: the widest azimuth wavenumber in the beam, off its centroid, over what "
+                          "the pings sample, 1/(2 spacing), is %.3g; at most 1.05 is needed (cure: pings closer together, "
+                          "or a narrower beam)",
+                          wk->method.name, doppler);
+    if (!(stationary <= 0.01))
+        return status_set(STATUS_UNSUPPORTED,
+                          "%s: condition stationary: the first term that stationary phase drops, lambda/(32 pi r cos "
+                          "theta), is %.3g; at most 0.01 is needed (cure: rows farther away, or a higher frequency)",
+                          wk->method.name, stationary);
+    return STATUS_OK;
+}
+
+static enum status check_patches(const struct wk *wk)
+{
+    const struct acquisition *a = wk->problem.acquisition;
+    double half = a->echo_sine > 0 ? a->echo_sine : INFINITY, beam[2], sampled[2] = {-WIDEST_SINE, WIDEST_SINE};
+    if (!(a->echo_sine > 0) && a->tx_length > 0)
+        half = LOBE * a->sound_speed / a->fc / a->tx_length;
+    double b = half < 1 ? asin(half) : pi;
+    beam[0] = fmax(sampled[0], wk->squint - b > -pi / 2 ? sin(wk->squint - b) : -1);
+    beam[1] = fmin(sampled[1], wk->squint + b < pi / 2 ? sin(wk->squint + b) : 1);
+    for (int n = 0; n < wk->problem.patch_count; n++) {
+        bool any = false;
+        for (int k = 0; k < 5; k++) {
+            struct place p = grid_place(wk, &wk->problem.patches[n], k);
+            double seen[2];
+            if (!(p.r > 0))
+                return status_set(STATUS_UNSUPPORTED, "%s: a pixel lies at r = %g m; omega-k needs r > 0",
+                                  wk->method.name, p.r);
+            if (!place_seen(wk, p, beam, seen))
+                continue;
+            any = true;
+            enum status status = check_place(wk, p, seen);
+            if (status != STATUS_OK)
+                return status;
+        }
+        if (!any)
+            return status_set(STATUS_UNSUPPORTED,
+                              "%s: no ping sees patch %d, whose middle lies %g m ahead of the track's at r = %g m: "
+                              "the beam reaches from %.4g to %.4g degrees off abeam",
+                              wk->method.name, n + 1, grid_place(wk, &wk->problem.patches[n], 4).x,
+                              grid_place(wk, &wk->problem.patches[n], 4).r, asin(beam[0]) * 180 / pi,
+                              asin(beam[1]) * 180 / pi);
+    }
+    return STATUS_OK;
+}
+
+/* ---- range ---- */
+
+static enum status lay_range(struct wk *wk)
+{
+    const struct acquisition *a = wk->problem.acquisition;
+    struct pulse_band band;
+    int pulse = a->compressed ? 0 : fft_length_fast((long long)a->samples + a->pulse_length - 1);
+    enum status status = pulse_band_find(a, pulse, &band);
+    if (status != STATUS_OK)
+        return status;
+    wk->record_pad = fmax(-wk->x_end[0], wk->x_end[1]) * fabs(sin(wk->angle)) * 2 * wk->fs / wk->sound_speed;
+    double length = WK_OVERSAMPLING * (wk->samples + 2 * wk->record_pad + WK_GUARD);
+    wk->range_length = length < INT_MAX / 64 ? fft_length_fast((long long)length) : 0;
+    if (wk->range_length == 0)
+        return unsupported(wk, "the range transform is too long");
+    double half = fmin(ceil(band.half_hz / wk->fs * wk->range_length), (wk->range_length - 1) / 2);
+    double lowest = (wk->fc - wk->fs / 2 > 0 ? wk->fs / 2 : wk->fc * (1 - 1e-6)) / wk->fs * wk->range_length;
+    wk->band_first = -(int)fmin(half, floor(lowest)); /* F > 0 */
+    wk->band = (int)half - wk->band_first + 1;
+    int lanes = WK_ALIGNMENT / (wk->problem.precision == PRECISION_DOUBLE ? 8 : 4);
+    wk->row = (wk->band + lanes - 1) / lanes * lanes;
+    return STATUS_OK;
+}
+
+static double band_edge(const struct wk *wk, int end)
+{
+    return wk->fc + (wk->band_first + end * (wk->band - 1)) * wk->fs / wk->range_length;
+}
+
+/* ---- azimuth ---- */
+
+/* The edge of the pulse's band: lines beyond it, of flanks at the beam's own edge, are not laid out. */
+static double pulse_edge(const struct wk *wk, int end)
+{
+    double half = wk->problem.acquisition->bandwidth / 2, edge = wk->fc + (end ? half : -half);
+    return end ? fmin(edge, band_edge(wk, 1)) : fmax(edge, band_edge(wk, 0));
+}
+
+/* Tangents, in the own axes, of the angles that hold echoes. */
+static void own_tangents(const struct wk *wk, double tangent[2])
+{
+    for (int k = 0; k < 2; k++)
+        tangent[k] = tan(fmin(fmax(asin(wk->sine[k]) - wk->angle, -1.5), 1.5));
+}
+
+/* Along the own azimuth, at the own range r: what holds echoes. */
+static void own_extent(const struct wk *wk, double r, double extent[2])
+{
+    double tangent[2], cosine = cos(wk->angle), sine = sin(wk->angle);
+    own_tangents(wk, tangent);
+    extent[0] = INFINITY;
+    extent[1] = -INFINITY;
+    for (int k = 0; k < 2; k++)
+        for (int end = 0; end < 2; end++) {
+            double x = wk->x_end[end], at = x * cosine + (r - x * sine) * tangent[k];
+            extent[0] = fmin(extent[0], at);
+            extent[1] = fmax(extent[1], at);
+        }
+}
+
+/* The shortest period of the own azimuth that lets nothing wrap around onto a pixel. */
+static double own_period(const struct wk *wk)
+{
+    double period = 0;
+    for (int n = 0; n < wk->patch_count; n++) {
+        const struct grid *g = &wk->patches[n].own;
+        double first = g->x_first, last = first + (g->x_count - 1) * g->x_step;
+        for (int k = 0; k < 2; k++) {
+            double extent[2];
+            own_extent(wk, g->r_first + k * (g->r_count - 1) * g->r_step, extent);
+            period = fmax(period, fmax(extent[1], last) - fmin(extent[0], first));
+        }
+    }
+    return period;
+}
+
+static enum status too_long(const struct wk *wk, double period)
+{
+    return status_set(STATUS_UNSUPPORTED, "%s: the azimuth transform is too long: %g m of pings %g m apart",
+                      wk->method.name, period, wk->spacing);
+}
+
+/* Lines over all of Kx that the pings hold: the centroid +- pi/spacing at each frequency. */
+static enum status lay_unfolded(struct wk *wk)
+{
+    double half = pi / wk->spacing, low = INFINITY, high = -INFINITY, period = own_period(wk) / wk->spacing + 1;
+    int length = period < 1e8 ? fft_length((long long)ceil(fmax(period, wk->options.pad * wk->pings))) : 0;
+    if (length == 0)
+        return too_long(wk, period * wk->spacing);
+    for (int end = 0; end < 2; end++) {
+        double centroid = wk->slope * 4 * pi * pulse_edge(wk, end) / wk->sound_speed;
+        low = fmin(low, centroid - half);
+        high = fmax(high, centroid + half);
+    }
+    wk->kx_step = 2 * pi / (length * wk->spacing);
+    wk->stuffed = 1;
+    if (wk->options.unfold == WK_SUPPORT) {
+        wk->line_first = (int)floor(low / wk->kx_step);
+        wk->lines = (int)floor(high / wk->kx_step) - wk->line_first;
+        wk->skips = true;
+    } else {
+        double reach = fmax(high, -low), slack = 1e-9 * half;
+        if (wk->options.unfold == WK_BASEBAND) {
+            reach = (high - low) / 2;
+            wk->kx_base = (low + high) / 2;
+        }
+        wk->stuffed = (int)ceil((reach - slack) / half);
+        if ((double)length * wk->stuffed > INT_MAX / 8)
+            return too_long(wk, period * wk->spacing * wk->stuffed);
+        wk->lines = length * wk->stuffed;
+        wk->line_first = -(wk->lines / 2);
+    }
+    wk->azimuth_length = length * wk->stuffed;
+    wk->kx_first = wk->kx_base + wk->line_first * wk->kx_step;
+    return STATUS_OK;
+}
+
+/* Lines over Kx0 as far as |Kx - K_R slope| <= pi/spacing reaches, at the edges of the band; their spacing needs only to
+   tell the image's own period, the azimuth transform is padded for the interpolation. */
+static enum status lay_rotated(struct wk *wk)
+{
+    double half = pi / wk->spacing, low = INFINITY, high = -INFINITY, period = own_period(wk);
+    double padded = ceil(wk->options.pad * wk->pings);
+    int length = period / wk->spacing < 1e8 ? fft_length((long long)ceil(period / wk->spacing) + 1) : 0;
+    wk->azimuth_length = padded < INT_MAX / 8 ? fft_length((long long)padded) : 0;
+    if (length == 0 || wk->azimuth_length == 0)
+        return too_long(wk, fmax(period, padded * wk->spacing));
+    for (int k = 0; k < 4; k++) {
+        double kr = 4 * pi * pulse_edge(wk, k % 2) / wk->sound_speed, kx = kr * wk->slope + (k / 2 ? half : -half);
+        double ky = sqrt(fmax(kr * kr - kx * kx, 0)), kx0 = kx * cos(wk->angle) - ky * sin(wk->angle);
+        low = fmin(low, kx0);
+        high = fmax(high, kx0);
+    }
+    wk->stuffed = 1;
+    wk->kx_step = 2 * pi / (length * wk->spacing);
+    wk->line_first = (int)floor(low / wk->kx_step);
+    wk->lines = (int)ceil(high / wk->kx_step) - wk->line_first + 1;
+    wk->kx_first = wk->line_first * wk->kx_step;
+    wk->skips = true;
+    return STATUS_OK;
+}
+
+/* ---- patches ---- */
+
+/* What is focused for a patch: the same pixels where its axes are the plan's; a grid around it that samples the spectrum
+   WK_OVERSAMPLING times where they are not. Steps of the latter need the lines: see lay_steps. */
+static enum status lay_patches(struct wk *wk)
+{
+    wk->patch_count = wk->problem.patch_count;
+    wk->patches = calloc((size_t)wk->patch_count, sizeof *wk->patches);
+    if (!wk->patches)
+        return status_set(STATUS_FAILED, "no memory for %d patches", wk->patch_count);
+    for (int n = 0; n < wk->patch_count; n++) {
+        struct wk_patch *patch = &wk->patches[n];
+        const struct grid *g = &wk->problem.patches[n];
+        patch->grid = patch->own = *g;
+        patch->resampled = fabs(g->angle_rad - wk->angle) > SAME_ANGLE;
+        patch->own.angle_rad = wk->angle;
+        if (!patch->resampled) {
+            patch->own.x_first -= wk->x_middle * cos(wk->angle);
+            patch->own.r_first -= wk->x_middle * sin(wk->angle);
+            continue;
+        }
+        struct place low = {INFINITY, INFINITY}, high = {-INFINITY, -INFINITY};
+        for (int k = 0; k < 4; k++) {
+            struct place p = place_turned(grid_place(wk, g, k), wk->angle);
+            low = (struct place){fmin(low.x, p.x), fmin(low.r, p.r)};
+            high = (struct place){fmax(high.x, p.x), fmax(high.r, p.r)};
+        }
+        patch->own.x_first = low.x;
+        patch->own.r_first = low.r;
+        patch->own.x_count = patch->own.r_count = 2;
+        patch->own.x_step = high.x - low.x;
+        patch->own.r_step = high.r - low.r;
+    }
+    return STATUS_OK;
+}
+
+/* One axis of a resampled patch: from `first` over `extent`, `span` rad/m of wavenumbers, and the kernel's reach. */
+static enum status resampled_axis(const struct wk *wk, double span, double *first, double *step, int *count)
+{
+    double extent = *step;
+    *step = 2 * pi / (WK_OVERSAMPLING * span);
+    double beside = wk->taps / 2 + 1, points = ceil(extent / *step) + 2 * beside + 1;
+    if (!(points < 1e8))
+        return status_set(STATUS_UNSUPPORTED, "%s: %g m every %g m are too many places to resample from",
+                          wk->method.name, extent, *step);
+    *first -= beside * *step;
+    *count = (int)points;
+    return STATUS_OK;
+}
+
+static enum status lay_steps(struct wk *wk)
+{
+    /* Ky at the ends of the band, over all lines. */
+    double low = INFINITY, high = -INFINITY, kx_last = wk->kx_first + (wk->lines - 1) * wk->kx_step;
+    for (int k = 0; k < 6; k++) {
+        double kx = k / 2 == 0 ? wk->kx_first : k / 2 == 1 ? kx_last : fmin(fmax(0, wk->kx_first), kx_last);
+        double ky = wk_ky(wk, band_edge(wk, k % 2), kx);
+        low = fmin(low, isfinite(ky) ? ky : 0);
+        high = fmax(high, isfinite(ky) ? ky : 0);
+    }
+    double c = wk->sound_speed, bin = c / (2 * wk->fs), tangent[2], aside = wk->record_pad * bin;
+    own_tangents(wk, tangent);
+    double steepest = fmax(fabs(tangent[0]), fabs(tangent[1])), moving = 1 + 2 * fabs(wk->speed) / c;
+    double nearest = tangent[0] * tangent[1] < 0 ? 1 : hypot(1, fmin(fabs(tangent[0]), fabs(tangent[1])));
+    double record[2] = {fmax(wk->t0, 0) * c / 2 / moving, (wk->t0 + (wk->samples - 1) / wk->fs) * c / 2 * moving};
+    double from = record[0] / hypot(1, steepest) - aside, to = record[1] / nearest + aside;
+    double pulse = fmin(PULSE_PERIODS / wk->problem.acquisition->bandwidth, wk->samples / wk->fs) * c / 2;
+    for (int n = 0; n < wk->patch_count; n++) {
+        struct wk_patch *patch = &wk->patches[n];
+        struct grid *g = &patch->own;
+        if (patch->resampled) {
+            enum status status = resampled_axis(wk, kx_last - wk->kx_first, &g->x_first, &g->x_step, &g->x_count);
+            if (status == STATUS_OK)
+                status = resampled_axis(wk, high - low, &g->r_first, &g->r_step, &g->r_count);
+            if (status != STATUS_OK)
+                return status;
+            patch->kx_carrier = (wk->kx_first + kx_last) / 2;
+        } else if (g->r_count == 1) {
+            g->r_step = bin;
+        }
+        double first = g->r_first, last = first + (g->r_count - 1) * g->r_step;
+        double extent = fmax(last - from, to - first) + 2 * pulse, rows = fmax(ceil(extent / g->r_step), g->r_count);
+        double window = (wk->range_length - wk->samples / 2.0 - wk->record_pad) / wk->fs * c / 2;
+        double centre = (wk->t0 + wk->centre / wk->fs) * c / 2;
+        if (!(first > centre - window && last * hypot(1, steepest) < centre + window))
+            return status_set(STATUS_UNSUPPORTED, "%s: rows from %g to %g m lie too far outside the record's %g to %g m",
+                              wk->method.name, patch->grid.r_first,
+                              patch->grid.r_first + (patch->grid.r_count - 1) * patch->grid.r_step, record[0],
+                              record[1]);
+        patch->length = rows < 1e8 ? fft_length_fast((long long)rows) : 0;
+        double period = 2 * pi / wk->kx_step / g->x_step, whole = floor(period + 0.5);
+        patch->folds = fabs(period - whole) <= EVEN * whole && whole >= g->x_count && whole <= INT_MAX
+                       && fft_length((long long)whole) == whole;
+        patch->columns = patch->folds ? (int)whole : fft_length_fast((long long)wk->lines + g->x_count - 1);
+        if (patch->length == 0 || patch->columns == 0)
+            return status_set(STATUS_UNSUPPORTED, "%s: rows %g m apart over %g m are too many to transform",
+                              wk->method.name, g->r_step, extent);
+        if (patch->resampled)
+            patch->bin_carrier = (long long)floor((low + high) / 2 / (2 * pi / (patch->length * g->r_step)));
+        patch->row = wk->rows;
+        wk->rows += (size_t)g->r_count;
+    }
+    return STATUS_OK;
+}
+
+enum status wk_layout(struct wk *wk)
+{
+    static enum status (*const steps[])(struct wk *) = {lay_track, lay_range, lay_patches};
+    enum status status = STATUS_OK;
+    wk->taps = tap_counts[wk->options.taps];
+    for (size_t k = 0; status == STATUS_OK && k < sizeof steps / sizeof *steps; k++)
+        status = steps[k](wk);
+    if (status == STATUS_OK)
+        status = check_patches(wk);
+    if (status == STATUS_OK)
+        status = wk->angle != 0 ? lay_rotated(wk) : lay_unfolded(wk);
+    if (status == STATUS_OK)
+        status = lay_steps(wk);
+    wk->line_stride = (size_t)(wk->lines + WK_TILE - 1) / WK_TILE * WK_TILE;
+    wk->range_kernel = (struct wk_kernel){wk->taps, kaiser_shape(wk->taps, WK_OVERSAMPLING), NULL};
+    double padded = wk->pings > 0 ? (double)wk->azimuth_length / wk->pings : 1;
+    wk->azimuth_kernel = (struct wk_kernel){wk->taps, kaiser_shape(wk->taps, fmax(padded, 1.0)), NULL};
+    return status;
+}

@@ -1,0 +1,416 @@
+/* The transforms of omega-k along range and azimuth, with their memory, and the resampling of an image to other axes
+   (engine.h). Compiled once for each precision. */
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "backprojection/traces.h"
+#include "common/kaiser.h"
+#include "common/memory.h"
+#include "common/phasor.h"
+#include "wavenumber/engine.h"
+#include "wavenumber/filter.h"
+
+enum {
+    STRIP = 128 / sizeof(complex_real), /* bins that go through the azimuth FFT together: two lines of the cache */
+    TAPS_MOST = 16
+};
+static const double pi = 3.14159265358979323846;
+
+/* Zeroed memory on the plan's account; failure shows as NULL. */
+static void *take(struct wk *wk, size_t count, size_t size, double share)
+{
+    size_t bytes = (count * size + WK_ALIGNMENT - 1) / WK_ALIGNMENT * WK_ALIGNMENT;
+    void *memory = aligned_alloc(WK_ALIGNMENT, bytes ? bytes : WK_ALIGNMENT);
+    if (memory)
+        memset(memory, 0, bytes);
+    wk->work.bytes += share * (double)bytes;
+    return memory;
+}
+
+static real *scratch_of(const struct wk *wk)
+{
+    return (real *)((char *)wk->scratch + (size_t)omp_get_thread_num() * wk->scratch_bytes);
+}
+
+static complex_real rotor(double cycles)
+{
+    double angle = 2 * pi * (cycles - floor(cycles + 0.5));
+    return (real)cos(angle) + (real)sin(angle) * (complex_real)I;
+}
+
+/* ESTIMATE: the same algorithm, hence the same bits, at every planning. */
+static void *plan_line(int length, void *memory, int sign)
+{
+    return FFTW(plan_dft_1d)(length, memory, memory, sign, FFTW_ESTIMATE);
+}
+
+static bool kernel_fill(struct wk *wk, struct wk_kernel *kernel)
+{
+    real *values = kernel->values = take(wk, (size_t)kernel->taps * (WK_INTERVALS + 2), sizeof(real), 1);
+    for (int t = 0; values && t < kernel->taps; t++)
+        for (int i = 0; i < WK_INTERVALS + 2; i++)
+            *values++ = (real)kaiser_value(kernel->taps, kernel->shape,
+                                           (double)i / WK_INTERVALS - (1 - kernel->taps / 2 + t));
+    return kernel->values;
+}
+
+/* 1 over the kernel's transform; held where nothing lies. */
+static double weight_at(const struct wk_kernel *kernel, double place, double most)
+{
+    return 1 / kaiser_transform(kernel->taps, kernel->shape, fmin(fabs(place), most));
+}
+
+static bool weights_fill(struct wk *wk)
+{
+    real *range = wk->range_weights = take(wk, WK_WEIGHTS + 2, sizeof(real), 1);
+    real *azimuth = wk->azimuth_weights = take(wk, (size_t)wk->pings, sizeof(real), 1);
+    if (!range || !azimuth)
+        return false;
+    for (int i = 0; i < WK_WEIGHTS + 2; i++)
+        range[i] = (real)weight_at(&wk->range_kernel, 0.5 * i / WK_WEIGHTS, 0.5 / WK_OVERSAMPLING);
+    for (int n = 0; n < wk->pings; n++)
+        azimuth[n] = wk->angle != 0 ? (real)weight_at(&wk->azimuth_kernel, (double)(n - wk->middle) / wk->azimuth_length,
+                                                      0.45)
+                                    : 1;
+    return true;
+}
+
+/* The azimuth sum over lines kx = kx_first + i kx_step onto columns x = x0 + j dx: one transform where 2 pi/(kx_step dx) is
+   its length, or a convolution (chirp z),  2 i j = i^2 + j^2 - (j - i)^2. */
+static bool azimuth_fill(struct wk *wk, struct wk_patch *patch)
+{
+    const struct grid *g = &patch->own;
+    const int length = patch->columns;
+    complex_real *before = patch->before = take(wk, (size_t)wk->lines, sizeof *before, 1);
+    complex_real *after = patch->after = take(wk, (size_t)g->x_count, sizeof *after, 1);
+    complex_real *kernel = patch->kernel = patch->folds ? NULL : take(wk, (size_t)length, sizeof *kernel, 1);
+    patch->azimuth_inverse = plan_line(length, wk->scratch, FFTW_BACKWARD);
+    if (!before || !after || !patch->azimuth_inverse)
+        return false;
+    const double first = (wk->kx_first - patch->kx_carrier) / (2 * pi), step = wk->kx_step / (2 * pi);
+    const double turn = patch->folds ? 1.0 / length : step * g->x_step, square = patch->folds ? 0 : 0.5 * turn;
+    const double place = step * g->x_step, place_first = first * g->x_step;
+    for (int i = 0; i < wk->lines; i++) {
+        double weight = patch->resampled ? weight_at(&wk->range_kernel, place_first + i * place, 0.5) : 1;
+        before[i] = rotor((first + i * step) * g->x_first + square * i * i) * (real)weight;
+    }
+    for (int j = 0; j < g->x_count; j++)
+        after[j] = rotor(square * j * j + first * g->x_step * j) * (real)(patch->folds ? step : step / length);
+    if (patch->folds)
+        return true;
+    patch->azimuth_forward = plan_line(length, wk->scratch, FFTW_FORWARD);
+    if (!kernel || !patch->azimuth_forward)
+        return false;
+    for (int i = -(wk->lines - 1); i < g->x_count; i++)
+        kernel[i < 0 ? i + length : i] = rotor(-square * i * i);
+    FFTW(execute_dft)(patch->azimuth_forward, kernel, kernel);
+    return true;
+}
+
+/* What a thread needs in turn: a record and its transform; a strip of the azimuth transform; a line with its rows. */
+static size_t scratch_size(const struct wk *wk)
+{
+    size_t complex_count = (size_t)wk->samples + (size_t)wk->range_length, strip = STRIP * (size_t)wk->azimuth_length;
+    size_t line = (size_t)wk->row + (size_t)wk->band + 2 * WK_GUARD + wk->rows * WK_TILE, most = 0;
+    for (int k = 0; k < wk->patch_count; k++) {
+        size_t length = (size_t)wk->patches[k].length, columns = (size_t)wk->patches[k].columns;
+        most = length > most ? length : most;
+        complex_count = columns > complex_count ? columns : complex_count;
+    }
+    line += most + 4 * WK_ALIGNMENT / sizeof(complex_real);
+    complex_count = strip > complex_count ? strip : complex_count;
+    complex_count = line > complex_count ? line : complex_count;
+    return (complex_count * sizeof(complex_real) / WK_ALIGNMENT + 2) * WK_ALIGNMENT;
+}
+
+static bool plan_patch(struct wk *wk, struct wk_patch *patch)
+{
+    if (patch->resampled) {
+        patch->wide = take(wk, (size_t)patch->own.r_count * (size_t)patch->own.x_count, sizeof(complex_real), 1);
+        if (!patch->wide)
+            return false;
+    }
+    patch->focus_plan = plan_line(patch->length, wk->scratch, FFTW_BACKWARD);
+    return patch->focus_plan && azimuth_fill(wk, patch);
+}
+
+static bool plan_all(struct wk *wk)
+{
+    wk->data = take(wk, (size_t)wk->azimuth_length, (size_t)wk->row * sizeof(complex_real), 1);
+    wk->focused = take(wk, wk->rows * wk->line_stride, sizeof(complex_real), 1);
+    wk->scratch = take(wk, (size_t)wk->threads, wk->scratch_bytes, 1.0 / wk->threads);
+    if (!wk->data || !wk->focused || !wk->scratch || !weights_fill(wk) || !kernel_fill(wk, &wk->range_kernel)
+        || (wk->angle != 0 && !kernel_fill(wk, &wk->azimuth_kernel)))
+        return false;
+    wk->range_forward = plan_line(wk->range_length, wk->scratch, FFTW_FORWARD);
+    wk->azimuth_forward = FFTW(plan_many_dft)(1, &wk->azimuth_length, STRIP, wk->scratch, NULL, STRIP, 1, wk->scratch,
+                                              NULL, STRIP, 1, FFTW_FORWARD, FFTW_ESTIMATE);
+    bool complete = wk->range_forward && wk->azimuth_forward;
+    for (int k = 0; complete && k < wk->patch_count; k++)
+        complete = plan_patch(wk, &wk->patches[k]);
+    return complete;
+}
+
+static enum status plan_compression(struct wk *wk)
+{
+    const struct acquisition *a = wk->problem.acquisition;
+    struct traces_shape shape;
+    enum status status = STATUS_OK;
+    if (!a->compressed) {
+        status = REAL_NAME(traces_plan)(a, 1, 0, wk->threads, &shape, &wk->traces);
+        if (status == STATUS_OK) {
+            wk->work.bytes += shape.bytes;
+            wk->work.flops += shape.flops * wk->pings;
+        }
+    }
+    if (status != STATUS_OK || !wk->method.filters || !(a->area.half_x > 0))
+        return status;
+    struct polar_shape filter;
+    const struct polar_setting setting = {wk->options.subapertures, wk->options.curvature};
+    status = REAL_NAME(polar_filter_plan)(a, &setting, wk->threads, &filter, &wk->filter);
+    if (status != STATUS_OK)
+        return status;
+    wk->work.bytes += filter.bytes;
+    wk->work.flops += filter.flops;
+    wk->compressed = take(wk, (size_t)wk->pings * (size_t)wk->samples, sizeof(complex_real), 1);
+    return wk->compressed ? STATUS_OK : status_set(STATUS_FAILED, "no memory for the filtered echoes");
+}
+
+static enum status plan(struct wk *wk)
+{
+    wk->scratch_bytes = scratch_size(wk);
+    double wide = 0;
+    for (int k = 0; k < wk->patch_count; k++)
+        wide += wk->patches[k].resampled ? (double)wk->patches[k].own.r_count * wk->patches[k].own.x_count : 0;
+    double bytes = ((double)wk->azimuth_length * wk->row + (double)wk->rows * (double)wk->line_stride + wide)
+                       * sizeof(complex_real)
+                   + (double)wk->threads * (double)wk->scratch_bytes;
+    enum status status = memory_check(bytes, wk->method.name);
+    if (status == STATUS_OK)
+        status = plan_compression(wk);
+    if (status == STATUS_OK && !plan_all(wk))
+        status = status_set(STATUS_FAILED, "no memory for %s (%.0f MB)", wk->method.name, bytes / 1e6);
+    return status;
+}
+
+static void plan_destroy(void *made)
+{
+    if (made)
+        FFTW(destroy_plan)(made);
+}
+
+static void destroy(struct wk *wk)
+{
+    for (int k = 0; wk->patches && k < wk->patch_count; k++) {
+        struct wk_patch *patch = &wk->patches[k];
+        plan_destroy(patch->focus_plan);
+        plan_destroy(patch->azimuth_forward);
+        plan_destroy(patch->azimuth_inverse);
+        free(patch->before);
+        free(patch->after);
+        free(patch->kernel);
+        free(patch->wide);
+    }
+    plan_destroy(wk->range_forward);
+    plan_destroy(wk->azimuth_forward);
+    REAL_NAME(traces_destroy)(wk->traces);
+    REAL_NAME(polar_filter_destroy)(wk->filter);
+    free(wk->compressed);
+    free(wk->range_kernel.values);
+    free(wk->azimuth_kernel.values);
+    free(wk->range_weights);
+    free(wk->azimuth_weights);
+    free(wk->data);
+    free(wk->focused);
+    free(wk->scratch);
+}
+
+/* The weight of a sample `place` transforms from the middle, |place| <= 1/2. */
+static inline real range_weight(const real *weights, double place)
+{
+    double at = fmin(fabs(place) * 2, 1) * WK_WEIGHTS;
+    int i = (int)at;
+    real u = (real)(at - i);
+    return weights[i] + u * (weights[i + 1] - weights[i]);
+}
+
+/* The spectrum of ping n's record, the centroid taken off, into a row of the band. */
+static void range_record(const struct wk *wk, int n, const real *record, real *wave, real *row)
+{
+    const int length = wk->range_length, samples = wk->samples, centre = wk->centre;
+    const double x = (n - wk->middle) * wk->spacing, way = wk->angle != 0 ? 2 * wk->slope * x / wk->sound_speed : 0;
+    const double from = -centre + way * wk->fs;
+    const real *weights = wk->range_weights, azimuth = ((const real *)wk->azimuth_weights)[n];
+    memset(wave + 2 * (samples - centre), 0, 2 * (size_t)(length - samples) * sizeof *wave);
+    for (int i = 0; i < samples; i++) {
+        real weight = azimuth * range_weight(weights, (from + i) / length);
+        size_t to = 2 * (size_t)(i < centre ? i - centre + length : i - centre);
+        wave[to] = record[2 * i] * weight;
+        wave[to + 1] = record[2 * i + 1] * weight;
+    }
+    FFTW(execute_dft)(wk->range_forward, (complex_real *)wave, (complex_real *)wave);
+    const double bin = wk->fs / length, base = wk->kx_base * x / (2 * pi);
+    const int below = -wk->band_first;
+    memcpy(row, wave + 2 * (length - below), 2 * (size_t)below * sizeof *row);
+    memcpy(row + 2 * below, wave, 2 * (size_t)(wk->band - below) * sizeof *row);
+    memset(row + 2 * wk->band, 0, 2 * (size_t)(wk->row - wk->band) * sizeof *row);
+    if (way == 0 && base == 0)
+        return;
+#pragma omp simd
+    for (int k = 0; k < wk->band; k++) {
+        double cycles = -(wk->fc + (k - below) * bin) * way - base;
+        real c, s, re = row[2 * k], im = row[2 * k + 1];
+        phasor((real)(cycles - floor(cycles + 0.5)), &c, &s);
+        row[2 * k] = re * c - im * s;
+        row[2 * k + 1] = re * s + im * c;
+    }
+}
+
+/* Records through the matched filter and the polar-format filter. */
+static void compress(const struct wk *wk, const void *samples)
+{
+    const size_t count = (size_t)wk->samples;
+    const complex_real *from = samples;
+    complex_real *to = wk->compressed;
+#pragma omp parallel for schedule(static) num_threads(wk->threads)
+    for (int n = 0; n < wk->pings; n++) {
+        if (wk->traces)
+            REAL_NAME(traces_fill)(wk->traces, omp_get_thread_num(), from + count * (size_t)n, to + count * (size_t)n);
+        else
+            memcpy(to + count * (size_t)n, from + count * (size_t)n, count * sizeof *to);
+    }
+    REAL_NAME(polar_filter_apply)(wk->filter, to);
+}
+
+static void range(const struct wk *wk, const void *samples)
+{
+#pragma omp parallel for schedule(static) num_threads(wk->threads)
+    for (int n = 0; n < wk->pings; n++) {
+        const size_t record = 2 * (size_t)wk->samples * (size_t)(wk->reversed ? wk->pings - 1 - n : n);
+        const real *from = (const real *)samples + record;
+        real *scratch = scratch_of(wk);
+        if (wk->traces && !wk->filter) {
+            REAL_NAME(traces_fill)
+            (wk->traces, omp_get_thread_num(), (const complex_real *)from, (complex_real *)scratch + wk->range_length);
+            from = scratch + 2 * (size_t)wk->range_length;
+        }
+        range_record(wk, n, from, scratch, (real *)wk->data + 2 * (size_t)wk->row * (size_t)n);
+    }
+}
+
+/* Azimuth FFT over the pings, which stand in rows 0 to pings - 1, and the zeros between and after them. */
+static void azimuth(const struct wk *wk)
+{
+    const int strips = (wk->row + STRIP - 1) / STRIP;
+    const size_t row = 2 * (size_t)wk->row, length = (size_t)wk->azimuth_length;
+#pragma omp parallel for schedule(static) num_threads(wk->threads)
+    for (int s = 0; s < strips; s++) {
+        const size_t width = 2 * (size_t)(wk->row - s * STRIP < STRIP ? wk->row - s * STRIP : STRIP);
+        real *lines = scratch_of(wk), *data = (real *)wk->data + (size_t)s * 2 * STRIP;
+        memset(lines, 0, 2 * STRIP * length * sizeof *lines);
+        for (int n = 0; n < wk->pings; n++) {
+            long long at = (long long)(n - wk->middle) * wk->stuffed;
+            size_t to = at < 0 ? (size_t)(at + wk->azimuth_length) : (size_t)at;
+            memcpy(lines + 2 * STRIP * to, data + (size_t)n * row, width * sizeof *lines);
+        }
+        FFTW(execute_dft)(wk->azimuth_forward, (complex_real *)lines, (complex_real *)lines);
+        for (size_t p = 0; p < length; p++)
+            memcpy(data + p * row, lines + 2 * STRIP * p, width * sizeof *lines);
+    }
+}
+
+/* a[k] *= b[k], written out: a complex product would check for NaN. */
+static inline void multiply(real *restrict a, const real *restrict b, int count)
+{
+    for (int k = 0; k < 2 * count; k += 2) {
+        real re = a[k] * b[k] - a[k + 1] * b[k + 1];
+        a[k + 1] = a[k] * b[k + 1] + a[k + 1] * b[k];
+        a[k] = re;
+    }
+}
+
+static void inverse(const struct wk *wk, const struct wk_patch *patch, void *pixels)
+{
+    const struct grid *g = &patch->own;
+    const size_t x_count = (size_t)g->x_count;
+    const int length = patch->columns;
+    const real *before = patch->before;
+#pragma omp parallel for schedule(static) num_threads(wk->threads)
+    for (int i = 0; i < g->r_count; i++) {
+        real *wave = scratch_of(wk), *out = (real *)pixels + 2 * x_count * (size_t)i;
+        const real *from = (const real *)wk->focused + 2 * wk->line_stride * (patch->row + (size_t)i);
+        memset(wave, 0, 2 * (size_t)length * sizeof *wave);
+        for (int n = 0, at = 0; n < wk->lines; n++) {
+            wave[2 * at] += from[2 * n] * before[2 * n] - from[2 * n + 1] * before[2 * n + 1];
+            wave[2 * at + 1] += from[2 * n] * before[2 * n + 1] + from[2 * n + 1] * before[2 * n];
+            at = at + 1 < length ? at + 1 : 0;
+        }
+        if (!patch->folds) {
+            FFTW(execute_dft)(patch->azimuth_forward, (complex_real *)wave, (complex_real *)wave);
+            multiply(wave, patch->kernel, length);
+        }
+        FFTW(execute_dft)(patch->azimuth_inverse, (complex_real *)wave, (complex_real *)wave);
+        multiply(wave, patch->after, g->x_count);
+        for (int j = 0; j < g->x_count; j++) {
+            real root = patch->resampled ? 1 : (real)sqrt(grid_point(&patch->grid, i, j).y);
+            out[2 * j] = wave[2 * j] * root;
+            out[2 * j + 1] = wave[2 * j + 1] * root;
+        }
+    }
+}
+
+/* `taps` weights of a kernel at a fraction of a step. */
+static inline void kernel_at(const struct wk_kernel *kernel, double fraction, real *weight)
+{
+    const real *values = kernel->values;
+    double at = fraction * WK_INTERVALS;
+    int i = (int)at;
+    real u = (real)(at - i);
+    for (int t = 0; t < kernel->taps; t++, values += WK_INTERVALS + 2)
+        weight[t] = values[i] + u * (values[i + 1] - values[i]);
+}
+
+/* A pixel of the image at (u, w) columns and rows of the finer grid. */
+static inline void resample_pixel(const struct wk *wk, const struct wk_patch *patch, double u, double w, real out[2])
+{
+    const int taps = wk->taps, column = (int)floor(u), row = (int)floor(w);
+    const size_t stride = 2 * (size_t)patch->own.x_count;
+    const real *from = (const real *)patch->wide + (size_t)(row + 1 - taps / 2) * stride + 2 * (column + 1 - taps / 2);
+    real across[TAPS_MOST], along[TAPS_MOST];
+    kernel_at(&wk->range_kernel, u - column, along);
+    kernel_at(&wk->range_kernel, w - row, across);
+    out[0] = out[1] = 0;
+    for (int i = 0; i < taps; i++, from += stride) {
+        real re = 0, im = 0;
+        for (int j = 0; j < taps; j++) {
+            re += along[j] * from[2 * j];
+            im += along[j] * from[2 * j + 1];
+        }
+        out[0] += across[i] * re;
+        out[1] += across[i] * im;
+    }
+}
+
+static void resample(const struct wk *wk, const struct wk_patch *patch, void *pixels)
+{
+    const struct grid *g = &patch->grid, *own = &patch->own;
+    const double cosine = cos(wk->angle), sine = sin(wk->angle);
+    const double ky = (double)patch->bin_carrier / (patch->length * own->r_step), kx = patch->kx_carrier / (2 * pi);
+#pragma omp parallel for schedule(static) num_threads(wk->threads)
+    for (int i = 0; i < g->r_count; i++) {
+        real *out = (real *)pixels + 2 * (size_t)g->x_count * (size_t)i;
+        for (int j = 0; j < g->x_count; j++, out += 2) {
+            struct vector p = grid_point(g, i, j);
+            double x = (p.x - wk->x_middle) * cosine - p.y * sine, r = (p.x - wk->x_middle) * sine + p.y * cosine;
+            real value[2];
+            resample_pixel(wk, patch, (x - own->x_first) / own->x_step, (r - own->r_first) / own->r_step, value);
+            complex_real turned = rotor(kx * x + ky * r);
+            real root = (real)sqrt(p.y), re = (real)creal(turned) * root, im = (real)cimag(turned) * root;
+            out[0] = value[0] * re - value[1] * im;
+            out[1] = value[0] * im + value[1] * re;
+        }
+    }
+}
+
+const struct wk_transform REAL_NAME(wk_transform) = {plan, destroy, compress, range, azimuth, inverse, resample};

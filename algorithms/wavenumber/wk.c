@@ -1,0 +1,167 @@
+/* Omega-k imaging (wk.h): the order of work, and its count. Each line is worked on by one thread, so that the bits do not
+   depend on the number of threads. */
+#include "wavenumber/wk.h"
+
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "common/fft_length.h"
+#include "common/isa.h"
+#include "wavenumber/engine.h"
+
+const char *const wk_taps_names[] = {"4", "6", "8", "12", "16", NULL};
+const char *const wk_unfold_names[] = {"stuff", "baseband", "support", NULL};
+
+static const char *const stage_names[WK_STAGES] = {"rotate", "stolt", "focus"};
+
+static wk_line_function *const line_functions[][2] = {
+    [ISA_BASELINE] = {wk_line_float_baseline, wk_line_double_baseline},
+#ifdef SASBENCH_X86_64
+    [ISA_V3] = {wk_line_float_v3, wk_line_double_v3},
+    [ISA_V4] = {wk_line_float_v4, wk_line_double_v4},
+#endif
+};
+
+static const struct wk_transform *transform(const struct wk *wk)
+{
+    return wk->problem.precision == PRECISION_DOUBLE ? &wk_transform_double : &wk_transform_float;
+}
+
+/* Ky bins that are interpolated for a patch, of all lines. */
+static double stolt_cells(const struct wk *wk, const struct wk_patch *patch)
+{
+    const double step = 2 * M_PI / (patch->length * patch->own.r_step), half = M_PI / wk->spacing;
+    const double first = wk->fc + wk->band_first * wk->fs / wk->range_length;
+    const double last = first + (wk->band - 1) * wk->fs / wk->range_length;
+    const double slope = 4 * M_PI / wk->sound_speed * wk->slope;
+    double cells = 0;
+    for (int i = 0; i < wk->lines; i++) {
+        double kx = wk->kx_first + i * wk->kx_step, low = first, high = last;
+        if (wk->skips && wk->angle == 0 && fabs(slope) * wk->fc > 1e-9 * half) {
+            low = fmax(low, fmin((kx - half) / slope, (kx + half) / slope));
+            high = fmin(high, fmax((kx - half) / slope, (kx + half) / slope));
+        }
+        double from = wk_ky(wk, low, kx), to = wk_ky(wk, high, kx);
+        cells += isfinite(to) && high > low ? floor(to / step) - (isfinite(from) ? ceil(from / step) : 1) + 1 : 0;
+    }
+    return cells;
+}
+
+static void count_work(struct wk *wk)
+{
+    struct work *work = &wk->work;
+    const double lines = wk->lines, pings = wk->pings, band = wk->band;
+    work->flops += pings * (fft_flops(wk->range_length) + 4.0 * wk->samples) + band * fft_flops(wk->azimuth_length);
+    if (wk->angle != 0 || wk->kx_base != 0)
+        work->flops += pings * band * 6;
+    if (wk->angle != 0)
+        work->flops += lines * band * (7.0 * wk->taps);
+    for (int k = 0; k < wk->patch_count; k++) {
+        const struct wk_patch *patch = &wk->patches[k];
+        double rows = patch->own.r_count, columns = patch->own.x_count;
+        work->flops += stolt_cells(wk, patch) * (7.0 * wk->taps + 10) + lines * fft_flops(patch->length);
+        work->flops += rows
+                       * (lines * 8 + columns * 8
+                          + (patch->folds ? 1 : 2) * fft_flops(patch->columns) + (patch->folds ? 0 : 6 * patch->columns));
+        if (patch->resampled)
+            work->flops += (double)patch->grid.r_count * patch->grid.x_count * (4.0 * wk->taps * wk->taps + 10);
+    }
+    const bool turned = wk->method.rotates && wk->angle == 0, unfiltered = wk->method.filters && !wk->filter;
+    snprintf(work->engine, sizeof work->engine, "%s",
+             wk->angle != 0 ? "rotated" : wk_unfold_names[wk->options.unfold]);
+    snprintf(work->skipped, sizeof work->skipped, "%s%s%s", turned ? "rotation (no squint)" : "",
+             turned && unfiltered ? "; " : "", unfiltered ? "filter (no target area)" : "");
+}
+
+enum status wk_plan(const struct problem *problem, const struct wk_method *method, const struct wk_options *options,
+                    void **plan)
+{
+    struct wk *wk = calloc(1, sizeof *wk);
+    *plan = NULL;
+    if (!wk)
+        return status_set(STATUS_FAILED, "no memory for %s", method->name);
+    wk->problem = *problem;
+    wk->method = *method;
+    wk->options = *options;
+    wk->threads = omp_get_max_threads();
+    wk->work.bytes = sizeof *wk + (double)problem->patch_count * sizeof *wk->patches;
+    enum status status = wk_layout(wk);
+    if (status == STATUS_OK)
+        status = transform(wk)->plan(wk);
+    if (status != STATUS_OK) {
+        wk_destroy(wk);
+        return status;
+    }
+    count_work(wk);
+    *plan = wk;
+    return STATUS_OK;
+}
+
+static void focus_lines(const struct wk *wk, struct stages *stages)
+{
+    double seconds[WK_STAGES] = {0}, sum = 0;
+    wk_line_function *line = line_functions[isa_choose()][wk->problem.precision];
+#pragma omp parallel for schedule(static) num_threads(wk->threads) reduction(+ : seconds[:WK_STAGES])
+    for (int first = 0; first < wk->lines; first += WK_TILE)
+        line(wk, omp_get_thread_num(), first, seconds);
+    /* The threads' time in each stage, as shares of the time that passed. */
+    for (int k = 0; k < WK_STAGES; k++)
+        sum += seconds[k];
+    double passed = seconds_now() - stages->mark;
+    for (int k = 0; k < WK_STAGES; k++)
+        if (seconds[k] > 0) {
+            stages->mark = seconds_now() - passed * seconds[k] / sum;
+            stages_end(stages, stage_names[k]);
+        }
+}
+
+enum status wk_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages)
+{
+    struct wk *wk = plan;
+    const struct wk_transform *t = transform(wk);
+    const void *samples = echoes->samples;
+    if (wk->filter) {
+        t->compress(wk, samples);
+        samples = wk->compressed;
+        stages_end(stages, "compress");
+    }
+    t->range(wk, samples);
+    stages_end(stages, wk->traces ? "compress" : "range");
+    t->azimuth(wk);
+    stages_end(stages, "azimuth");
+    focus_lines(wk, stages);
+    for (int k = 0; k < wk->patch_count; k++) {
+        const struct wk_patch *patch = &wk->patches[k];
+        t->inverse(wk, patch, patch->resampled ? patch->wide : image->pixels[k]);
+        stages_end(stages, "inverse");
+        if (patch->resampled) {
+            t->resample(wk, patch, image->pixels[k]);
+            stages_end(stages, "resample");
+        }
+    }
+    return STATUS_OK;
+}
+
+struct work wk_work(const void *plan)
+{
+    return ((const struct wk *)plan)->work;
+}
+
+double wk_size_factor(const void *plan)
+{
+    const struct wk *wk = plan;
+    if (wk->angle != 0)
+        return (double)wk->azimuth_length / wk->pings;
+    return wk->lines * wk->kx_step * wk->spacing / (2 * M_PI);
+}
+
+void wk_destroy(void *plan)
+{
+    struct wk *wk = plan;
+    if (!wk)
+        return;
+    transform(wk)->destroy(wk);
+    free(wk->patches);
+    free(wk);
+}

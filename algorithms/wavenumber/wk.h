@@ -1,0 +1,70 @@
+/* Omega-k imaging of monostatic echoes, broadside or squinted (SQ18), with or without the polar-format filter ahead (PF05).
+
+   The echo of a point at (x, r), seen from X, has the range spectrum exp(-j K_R R(X)), K_R = 4 pi F/c, and along the track
+   the spectrum exp(-j (Kx x + Ky r)): an image is the inverse transform over (Kx, Ky), onto which the spectrum over
+   (Kx, K_R) is interpolated (Stolt). A beam that looks at an angle theta off abeam has its wavenumbers about K_R sin theta,
+   which the pings alias. Two ways to put them in their place:
+
+       unfolded   Kx is laid out as far as the beam's wavenumbers reach, and the alias that belongs to a cell is the one
+                  nearest to K_R sin theta; axes are the track's. wk_classic.
+       rotated    the centroid is taken off, S(K_R, X) exp(-j K_R sin theta X), so that wavenumbers lie about zero; axes
+                  are turned by theta (SQ18 Eqs. (6) to (9)):
+                      Kx0 = Kx cos theta - Ky sin theta,  Ky0 = Kx sin theta + Ky cos theta,  K_R^2 = Kx0^2 + Ky0^2.
+                  Interpolated along azimuth first, from Kx - K_R sin theta to Kx0 (SQ18 Eq. (12)), and then along range.
+                  wk_squint.
+
+   SQ18 prints exp(+j K_R R) in Eq. (2), with which Eq. (3) would double the centroid; the phase is -K_R R.
+   Both are exact for a platform that moves on while the pulse travels: at the speed v, b = v^2/c^2, it is
+       F = v Kx/(4 pi) + sqrt((c Kx/(4 pi))^2 + (1 - b) (c Ky/(4 pi))^2)
+   (spectrum_monostatic solved for F), in whatever axes. Scale and phase are those of back projection: each cell has the
+   weight of range_migration/rma.h. Stages:
+
+       compress   matched filter; wk_polar: the filter
+       range      FFT of each record, the centroid taken off
+       azimuth    FFT over the pings
+       rotate     azimuth interpolation (rotated axes only)
+       stolt      range interpolation onto Ky
+       focus      range IFFT onto the rows
+       inverse    azimuth IFFT onto the columns
+       resample   two-dimensional interpolation, for a grid that lies in other axes */
+#ifndef SASBENCH_WAVENUMBER_WK_H
+#define SASBENCH_WAVENUMBER_WK_H
+
+#include "algorithm.h"
+
+enum wk_unfold { WK_STUFF, WK_BASEBAND, WK_SUPPORT };
+
+struct wk_options {
+    int unfold;       /* enum wk_unfold */
+    int taps;         /* index into wk_taps_names: of all interpolations */
+    double pad;       /* rotated axes: length of the azimuth transform over the pings */
+    int subapertures; /* of the filter; 0: as many as need no upsampling */
+    int curvature;    /* 1: the filter takes off the wavefronts' curvature */
+};
+
+extern const char *const wk_taps_names[], *const wk_unfold_names[];
+
+#define WK_TAPS_PARAM                                                                                                  \
+    {                                                                                                                  \
+        PARAM_NAMED(struct wk_options, taps, wk_taps_names), .summary = "Kaiser taps of the Stolt interpolation",      \
+                                                             .initial = 2, .max = 4, .sweep = "4 6 8 12 16"            \
+    }
+
+struct wk_method {
+    const char *name;
+    bool rotates; /* works in axes turned by the squint */
+    bool filters; /* the polar-format filter comes first */
+};
+
+/* The callbacks of struct algorithm, for a method. `options` is only used during the call. */
+enum status wk_plan(const struct problem *problem, const struct wk_method *method, const struct wk_options *options,
+                    void **plan);
+enum status wk_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
+struct work wk_work(const void *plan);
+void wk_destroy(void *plan);
+
+/* Azimuth samples carried, over those recorded: what SQ18 calls zeros. Unfolded: wavenumbers over the pings' own band;
+   rotated: the padding. */
+double wk_size_factor(const void *plan);
+
+#endif

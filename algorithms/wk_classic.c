@@ -1,0 +1,44 @@
+/* Omega-k in the track's axes, with squint handled as the classic way does: azimuth wavenumbers are laid out as far as the
+   beam's reach, and each cell (Kx, K_R) takes the alias nearest to the centroid K_R sin theta. What SQ18 improves upon.
+
+   unfold says how far they are laid out, which changes the cost and not the image:
+       stuff      zeros between the pings, until the band about Kx = 0 holds all of them: 7 times the pings at 20 degrees
+       baseband   the carrier's centroid taken off first, then zeros: twice
+       support    only the wavenumbers in which the beam has cells: 1.4 times
+
+   Error: that of the method of stationary phase, and of the Stolt interpolation, 1e-4 with 8 taps. */
+#include "wavenumber/wk.h"
+
+static const struct param params[] = {
+    {PARAM_NAMED(struct wk_options, unfold, wk_unfold_names),
+     .summary = "zeros between pings to hold all wavenumbers, the same after basebanding, or the support only",
+     .initial = WK_SUPPORT,
+     .max = WK_SUPPORT,
+     .sweep = "stuff baseband support"},
+    WK_TAPS_PARAM,
+    {PARAM(struct wk_options, pad),
+     .summary = "least length of the azimuth transform over the pings",
+     .initial = 1,
+     .min = 1,
+     .max = 4,
+     .terse = true},
+    {.name = NULL},
+};
+
+static enum status plan(const struct problem *problem, const void *options, void **plan)
+{
+    static const struct wk_method method = {.name = "wk_classic"};
+    return wk_plan(problem, &method, options, plan);
+}
+
+const struct algorithm wk_classic = {
+    .name = "wk_classic",
+    .summary = "omega-k, squint unfolded along the track's own azimuth",
+    .reference = "SQ18 section 1, [3], [4]",
+    .options_size = sizeof(struct wk_options),
+    .params = params,
+    .plan = plan,
+    .execute = wk_execute,
+    .work = wk_work,
+    .destroy = wk_destroy,
+};
