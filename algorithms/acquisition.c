@@ -116,10 +116,11 @@ static enum status check_scalars(const struct acquisition *a, const char *place)
     const struct target_area *area = &a->area;
     bool none = area->half_x == 0 && area->half_r == 0;
     if (!none && !(area->half_x > 0 && area->half_r > 0 && isfinite(area->x + area->r + area->half_x + area->half_r))) {
-        return status_set(STATUS_INVALID,
-                          "%s: target area about (%g, %g) m, %g and %g m to either side; finite numbers are needed, and "
-                          "sizes > 0",
-                          place, area->x, area->r, area->half_x, area->half_r);
+        return status_set(
+            STATUS_INVALID,
+            "%s: target area about (%g, %g) m, %g and %g m to either side; finite numbers are needed, and "
+            "sizes > 0",
+            place, area->x, area->r, area->half_x, area->half_r);
     }
     if (!(a->aperture_limit > 0)) {
         return status_set(STATUS_INVALID, "%s: aperture limit is %g; a sine > 0 is needed", place, a->aperture_limit);

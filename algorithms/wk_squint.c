@@ -9,12 +9,8 @@
 
 static const struct param params[] = {
     WK_TAPS_PARAM,
-    {PARAM(struct wk_options, pad),
-     .summary = "length of the azimuth transform over the pings",
-     .initial = 1.5,
-     .min = 1,
-     .max = 4,
-     .sweep = "1 1.25 1.5 2"},
+    {PARAM(struct wk_options, pad), .summary = "length of the azimuth transform over the pings", .initial = 1.5,
+     .min = 1, .max = 4, .sweep = "1 1.25 1.5 2"},
     {.name = NULL},
 };
 

@@ -183,6 +183,11 @@ static enum status turn_back(struct bp *bp)
     if (status == STATUS_OK) {
         bp->problem.acquisition = &bp->turned;
         bp->problem.patches = bp->patches;
+        const struct acquisition *a = &bp->turned;
+        size_t vectors = (size_t)a->pings * (2 + (size_t)a->receivers) * sizeof *a->tx;
+        bp->work.bytes +=
+            (double)(sizeof *bp - offsetof(struct bp, turned) + (size_t)count * sizeof *bp->patches + vectors
+                     + (size_t)a->pings * sizeof *a->t0 + (size_t)a->pulse_length * sizeof *a->pulse);
     }
     return status;
 }
@@ -200,7 +205,7 @@ enum status bp_plan(const struct problem *problem, const struct interpolator *in
         return status_set(STATUS_FAILED, "no memory for the plan");
     bp->problem = *problem;
     bp->medium = (struct bp_medium){a->sound_speed, a->fc, a->fs, a->samples, 0};
-    bp->work.bytes = sizeof *bp;
+    bp->work.bytes = offsetof(struct bp, turned); /* the rest is for turned grids alone, counted there */
     enum status status = turn_back(bp);
     if (status == STATUS_OK)
         status = tabulate(bp, interpolator, options);

@@ -9,8 +9,6 @@
 
 struct bp {
     struct problem problem;
-    struct acquisition turned; /* seen from the axes of turned grids, whose pixels then lie in rows and columns; else zero */
-    struct grid *patches;      /* those grids, not turned */
     struct bp_medium medium;
     struct bp_table table;
     void *weights; /* of table */
@@ -19,6 +17,9 @@ struct bp {
     const struct bp_engine *engine;
     void *state; /* the engine's own */
     struct work work;
+    struct acquisition
+        turned;           /* seen from the axes of turned grids, whose pixels then lie in rows and columns; else zero */
+    struct grid *patches; /* those grids, not turned; else NULL */
 };
 
 /* One way of doing the sums. */

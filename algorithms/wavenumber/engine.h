@@ -63,9 +63,9 @@ struct wk {
     /* track: ping n of the transform is at x_middle + (n - middle) spacing */
     double sound_speed, speed, fc, fs, t0, spacing, x_middle;
     int pings, samples, middle;
-    bool reversed;          /* the track runs towards -x: its last ping comes first */
-    double squint, slope;   /* rad; the centroid is at Kx = slope K_R */
-    double angle;           /* rad: of the own axes */
+    bool reversed;            /* the track runs towards -x: its last ping comes first */
+    double squint, slope;     /* rad; the centroid is at Kx = slope K_R */
+    double angle;             /* rad: of the own axes */
     double sine[2], x_end[2]; /* of the angles off abeam that hold echoes; m from x_middle: the track's ends */
 
     /* range: bin k of the band is at fc + (band_first + k) fs/range_length; the sample `centre` is the origin */
@@ -77,9 +77,9 @@ struct wk {
     int stuffed, azimuth_length;
     /* lines: line i is at kx_first + i kx_step (rad/m); unfolded: bin line_first + i of the transform */
     int lines, line_first;
-    size_t line_stride; /* lines rounded up to WK_TILE */
+    size_t line_stride;                /* lines rounded up to WK_TILE */
     double kx_first, kx_step, kx_base; /* kx_base: rad/m, taken off ahead of the azimuth transform */
-    bool skips;         /* cells beyond the support are not worked on */
+    bool skips;                        /* cells beyond the support are not worked on */
 
     int taps;
     struct wk_kernel range_kernel, azimuth_kernel;
@@ -126,7 +126,7 @@ enum status wk_layout(struct wk *wk);
 struct wk_transform {
     enum status (*plan)(struct wk *wk);
     void (*destroy)(struct wk *wk);
-    void (*compress)(const struct wk *wk, const void *samples);             /* filter only */
+    void (*compress)(const struct wk *wk, const void *samples); /* filter only */
     void (*range)(const struct wk *wk, const void *samples);
     void (*azimuth)(const struct wk *wk);
     void (*inverse)(const struct wk *wk, const struct wk_patch *patch, void *pixels);

@@ -28,7 +28,7 @@ struct polar_filter {
     const struct acquisition *acquisition;
     struct polar_shape shape;
     bool curvature;
-    double spacing, kc, slope; /* m, signed; 2 pi fc/c; of the beam's axis */
+    double spacing, kc, slope;  /* m, signed; 2 pi fc/c; of the beam's axis */
     int pings, samples, length; /* length: of the range transform */
     int up, rows;               /* rows of the field: up x pings */
     double *delay;              /* [rows] s: delay of the area's centre */
@@ -105,7 +105,8 @@ static bool plan_apertures(struct polar_filter *f)
 static bool plan_memory(struct polar_filter *f, int threads)
 {
     const struct acquisition *a = f->acquisition;
-    size_t strip = STRIP * 3 * (size_t)f->rows, line = (size_t)f->length; /* a padded sub-aperture; both track transforms */
+    size_t strip = STRIP * 3 * (size_t)f->rows,
+           line = (size_t)f->length; /* a padded sub-aperture; both track transforms */
     f->scratch_length = (strip > line ? strip : line) + ALIGNMENT;
     f->scratch_length = f->scratch_length / ALIGNMENT * ALIGNMENT;
     f->apertures = take(f, (size_t)f->shape.subapertures, sizeof *f->apertures, 1);

@@ -9,15 +9,17 @@ enum status polar_filter_check(const struct acquisition *a, const char *place)
     if (!(area->half_x > 0 && area->half_r > 0))
         return status_set(STATUS_UNSUPPORTED, "%s: the echoes name no target area", place);
     if (a->receivers > 1 || fabs(a->rx[0].x - a->tx[0].x) > a->sound_speed / a->fc / 1000)
-        return status_set(STATUS_UNSUPPORTED,
-                          "%s: %d receivers, the first %g m ahead of the transmitter; the polar-format filter needs one "
-                          "receiver at the transmitter",
-                          place, a->receivers, a->rx[0].x - a->tx[0].x);
+        return status_set(
+            STATUS_UNSUPPORTED,
+            "%s: %d receivers, the first %g m ahead of the transmitter; the polar-format filter needs one "
+            "receiver at the transmitter",
+            place, a->receivers, a->rx[0].x - a->tx[0].x);
     if (!acquisition_is_straight(a, NULL) || a->pings < 2)
-        return status_set(STATUS_UNSUPPORTED,
-                          "%s: %d pings on a track; the polar-format filter needs two or more on a uniform straight one "
-                          "along x, y = z = 0",
-                          place, a->pings);
+        return status_set(
+            STATUS_UNSUPPORTED,
+            "%s: %d pings on a track; the polar-format filter needs two or more on a uniform straight one "
+            "along x, y = z = 0",
+            place, a->pings);
     if (!(area->r - area->half_r > 0))
         return status_set(STATUS_UNSUPPORTED, "%s: the target area begins at r = %g m; more than 0 is needed", place,
                           area->r - area->half_r);

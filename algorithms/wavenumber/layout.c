@@ -11,11 +11,12 @@
 
 static const double pi = 3.14159265358979323846;
 
-static const double WIDEST_SINE = 0.98;  /* of the angles that are imaged: nearer to the track nothing is resolved in range */
-static const double LOBE = 0.443;        /* half a beam, in lambda/D, of echoes that do not say theirs */
-static const double PULSE_PERIODS = 8;   /* of 1/B, beside the rows, so that no pulse wraps around */
-static const double EVEN = 1e-12;        /* relative: columns that divide the period but for rounding */
-static const double SAME_ANGLE = 1e-9;   /* rad */
+static const double WIDEST_SINE =
+    0.98;                         /* of the angles that are imaged: nearer to the track nothing is resolved in range */
+static const double LOBE = 0.443; /* half a beam, in lambda/D, of echoes that do not say theirs */
+static const double PULSE_PERIODS = 8; /* of 1/B, beside the rows, so that no pulse wraps around */
+static const double EVEN = 1e-12;      /* relative: columns that divide the period but for rounding */
+static const double SAME_ANGLE = 1e-9; /* rad */
 static const int tap_counts[] = {4, 6, 8, 12, 16};
 
 static enum status unsupported(const struct wk *wk, const char *reason)
@@ -53,10 +54,11 @@ static enum status lay_track(struct wk *wk)
     const struct acquisition *a = wk->problem.acquisition;
     struct straight_track track;
     if (a->receivers > 1 || fabs(a->rx[0].x - a->tx[0].x) > a->sound_speed / a->fc / 1000)
-        return status_set(STATUS_UNSUPPORTED,
-                          "%s: %d receivers, the first %g m ahead of the transmitter; omega-k needs one receiver at the "
-                          "transmitter (several are imaged by rma_*)",
-                          wk->method.name, a->receivers, a->rx[0].x - a->tx[0].x);
+        return status_set(
+            STATUS_UNSUPPORTED,
+            "%s: %d receivers, the first %g m ahead of the transmitter; omega-k needs one receiver at the "
+            "transmitter (several are imaged by rma_*)",
+            wk->method.name, a->receivers, a->rx[0].x - a->tx[0].x);
     if (!acquisition_is_straight(a, &track))
         return unsupported(wk, "the track is not straight and uniform (tx, rx within lambda/1000 of even points on a "
                                "line along x, y = z = 0, one velocity, one t0)");
@@ -134,11 +136,12 @@ static enum status check_place(const struct wk *wk, struct place p, const double
     double cosine = sqrt(1 - fmax(seen[0] * seen[0], seen[1] * seen[1]));
     double stationary = wavelength_longest(wk) / (32 * pi * p.r * cosine);
     if (!(doppler <= 1.05))
-        return status_set(STATUS_UNSUPPORTED,
-                          "%s: condition doppler: the widest azimuth wavenumber in the beam, off its centroid, over what "
-                          "the pings sample, 1/(2 spacing), is %.3g; at most 1.05 is needed (cure: pings closer together, "
-                          "or a narrower beam)",
-                          wk->method.name, doppler);
+        return status_set(
+            STATUS_UNSUPPORTED,
+            "%s: condition doppler: the widest azimuth wavenumber in the beam, off its centroid, over what "
+            "the pings sample, 1/(2 spacing), is %.3g; at most 1.05 is needed (cure: pings closer together, "
+            "or a narrower beam)",
+            wk->method.name, doppler);
     if (!(stationary <= 0.01))
         return status_set(STATUS_UNSUPPORTED,
                           "%s: condition stationary: the first term that stationary phase drops, lambda/(32 pi r cos "
@@ -409,10 +412,10 @@ static enum status lay_steps(struct wk *wk)
         double window = (wk->range_length - wk->samples / 2.0 - wk->record_pad) / wk->fs * c / 2;
         double centre = (wk->t0 + wk->centre / wk->fs) * c / 2;
         if (!(first > centre - window && last * hypot(1, steepest) < centre + window))
-            return status_set(STATUS_UNSUPPORTED, "%s: rows from %g to %g m lie too far outside the record's %g to %g m",
-                              wk->method.name, patch->grid.r_first,
-                              patch->grid.r_first + (patch->grid.r_count - 1) * patch->grid.r_step, record[0],
-                              record[1]);
+            return status_set(STATUS_UNSUPPORTED,
+                              "%s: rows from %g to %g m lie too far outside the record's %g to %g m", wk->method.name,
+                              patch->grid.r_first, patch->grid.r_first + (patch->grid.r_count - 1) * patch->grid.r_step,
+                              record[0], record[1]);
         patch->length = rows < 1e8 ? fft_length_fast((long long)rows) : 0;
         double period = 2 * pi / wk->kx_step / g->x_step, whole = floor(period + 0.5);
         patch->folds = fabs(period - whole) <= EVEN * whole && whole >= g->x_count && whole <= INT_MAX

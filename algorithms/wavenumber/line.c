@@ -12,10 +12,10 @@ enum { SPAN = WK_SPAN };
 /* One thread at one line. */
 struct line {
     const struct wk *wk;
-    double kx;                /* rad/m, in the own axes */
-    double low, high;         /* Hz: F of the cells that are worked on */
-    real *values, *re, *im;   /* [row] complex; [band + 2 guard] each: the cells, zeros beside them */
-    real *wave, *stored;      /* [longest transform] complex; [rows][WK_TILE] complex */
+    double kx;              /* rad/m, in the own axes */
+    double low, high;       /* Hz: F of the cells that are worked on */
+    real *values, *re, *im; /* [row] complex; [band + 2 guard] each: the cells, zeros beside them */
+    real *wave, *stored;    /* [longest transform] complex; [rows][WK_TILE] complex */
     double *seconds, mark;
 };
 
@@ -69,8 +69,8 @@ static void cells_read(struct line *l, int index)
 
 /* Cells k0 to k0 + n - 1 from azimuth bins `first` on, whose weights come from the kernel's table. */
 static inline __attribute__((always_inline)) void rotate_run(const struct wk *wk, int taps, long long first, int k0,
-                                                            int n, const int *restrict interval,
-                                                            const real *restrict u, real *restrict out)
+                                                             int n, const int *restrict interval,
+                                                             const real *restrict u, real *restrict out)
 {
     const int length = wk->azimuth_length;
     const real *kernel = wk->azimuth_kernel.values;
@@ -174,7 +174,8 @@ static void ky_places(const struct line *l, const struct wk_patch *patch, long l
     const double sine = sin(wk->angle), cosine = cos(wk->angle), bin = wk->fs / wk->range_length, fc = wk->fc;
     const double step = 2 * M_PI / (patch->length * patch->own.r_step), r = patch->own.r_first / (2 * M_PI);
     const double t_centre = wk->t0 + wk->centre / wk->fs, carrier = (double)patch->bin_carrier * step;
-    const double to_first = WK_GUARD - wk->band_first, least = WK_GUARD, most = WK_GUARD + wk->band - 1, from = (double)j0;
+    const double to_first = WK_GUARD - wk->band_first, least = WK_GUARD, most = WK_GUARD + wk->band - 1,
+                 from = (double)j0;
 #pragma omp simd
     for (int i = 0; i < n; i++) {
         double ky0 = (from + i) * step, h = scale * (l->kx * cosine + ky0 * sine);

@@ -50,8 +50,8 @@ static bool kernel_fill(struct wk *wk, struct wk_kernel *kernel)
     real *values = kernel->values = take(wk, (size_t)kernel->taps * (WK_INTERVALS + 2), sizeof(real), 1);
     for (int t = 0; values && t < kernel->taps; t++)
         for (int i = 0; i < WK_INTERVALS + 2; i++)
-            *values++ = (real)kaiser_value(kernel->taps, kernel->shape,
-                                           (double)i / WK_INTERVALS - (1 - kernel->taps / 2 + t));
+            *values++ =
+                (real)kaiser_value(kernel->taps, kernel->shape, (double)i / WK_INTERVALS - (1 - kernel->taps / 2 + t));
     return kernel->values;
 }
 
@@ -70,9 +70,9 @@ static bool weights_fill(struct wk *wk)
     for (int i = 0; i < WK_WEIGHTS + 2; i++)
         range[i] = (real)weight_at(&wk->range_kernel, 0.5 * i / WK_WEIGHTS, 0.5 / WK_OVERSAMPLING);
     for (int n = 0; n < wk->pings; n++)
-        azimuth[n] = wk->angle != 0 ? (real)weight_at(&wk->azimuth_kernel, (double)(n - wk->middle) / wk->azimuth_length,
-                                                      0.45)
-                                    : 1;
+        azimuth[n] = wk->angle != 0
+                         ? (real)weight_at(&wk->azimuth_kernel, (double)(n - wk->middle) / wk->azimuth_length, 0.45)
+                         : 1;
     return true;
 }
 

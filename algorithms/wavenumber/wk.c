@@ -62,14 +62,13 @@ static void count_work(struct wk *wk)
         double rows = patch->own.r_count, columns = patch->own.x_count;
         work->flops += stolt_cells(wk, patch) * (7.0 * wk->taps + 10) + lines * fft_flops(patch->length);
         work->flops += rows
-                       * (lines * 8 + columns * 8
-                          + (patch->folds ? 1 : 2) * fft_flops(patch->columns) + (patch->folds ? 0 : 6 * patch->columns));
+                       * (lines * 8 + columns * 8 + (patch->folds ? 1 : 2) * fft_flops(patch->columns)
+                          + (patch->folds ? 0 : 6 * patch->columns));
         if (patch->resampled)
             work->flops += (double)patch->grid.r_count * patch->grid.x_count * (4.0 * wk->taps * wk->taps + 10);
     }
     const bool turned = wk->method.rotates && wk->angle == 0, unfiltered = wk->method.filters && !wk->filter;
-    snprintf(work->engine, sizeof work->engine, "%s",
-             wk->angle != 0 ? "rotated" : wk_unfold_names[wk->options.unfold]);
+    snprintf(work->engine, sizeof work->engine, "%s", wk->angle != 0 ? "rotated" : wk_unfold_names[wk->options.unfold]);
     snprintf(work->skipped, sizeof work->skipped, "%s%s%s", turned ? "rotation (no squint)" : "",
              turned && unfiltered ? "; " : "", unfiltered ? "filter (no target area)" : "");
 }

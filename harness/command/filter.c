@@ -141,7 +141,8 @@ enum status command_filter(const struct task *task)
         status = task->echoes ? echo_file_read(task->echoes, &recorded, &echoes)
                               : scene_load(task->names[0], SCENE_DIRECTORY, &scene);
     if (status == STATUS_OK)
-        status = chain_open(task->echoes ? &recorded : &scene.acquisition, task->spec_count ? task->specs : NULL, &chain);
+        status =
+            chain_open(task->echoes ? &recorded : &scene.acquisition, task->spec_count ? task->specs : NULL, &chain);
     if (status == STATUS_OK && !task->echoes)
         status = scene_simulate(&scene, &echoes);
     if (status == STATUS_OK) {

@@ -109,7 +109,8 @@ static enum status check_area(const struct reading *reading)
     static const char *const names[] = {"x", "r", "half_x", "half_r"};
     for (size_t k = 0; reading->area && k < sizeof names / sizeof *names; k++) {
         if (!key_member(reading->area, names[k])) {
-            return refuse(reading, reading->area, "area", names[k], "a number: the target area is x, r, half_x, half_r");
+            return refuse(reading, reading->area, "area", names[k],
+                          "a number: the target area is x, r, half_x, half_r");
         }
     }
     return STATUS_OK;
@@ -154,8 +155,8 @@ enum status keys_check(const struct reading *reading)
         return refuse(reading, reading->array, "array", "pitch", "a number other than 0 m with %d receivers",
                       a->receivers);
     }
-    enum status (*const checks[])(const struct reading *) = {check_beam, check_pulse, check_sizes, check_places,
-                                                             check_area, check_image_kind};
+    enum status (*const checks[])(const struct reading *) = {check_beam,   check_pulse, check_sizes,
+                                                             check_places, check_area,  check_image_kind};
     enum status status = STATUS_OK;
     for (size_t i = 0; i < sizeof checks / sizeof *checks && status == STATUS_OK; i++) {
         status = checks[i](reading);

@@ -38,8 +38,8 @@ static enum status patches_around_targets(struct reading *reading)
         status =
             axis_around(reading, "half_x", target.x, around.half_x_m, grid->x_step, &grid->x_first, &grid->x_count);
         if (status == STATUS_OK) {
-            status = axis_around(reading, "half_r", target.y, around.half_r_m, grid->r_step, &grid->r_first,
-                                 &grid->r_count);
+            status =
+                axis_around(reading, "half_r", target.y, around.half_r_m, grid->r_step, &grid->r_first, &grid->r_count);
         }
     }
     return status;

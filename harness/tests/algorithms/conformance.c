@@ -21,7 +21,8 @@ static struct problem problem_of(const struct scene *scene, enum precision preci
 
 /* ---- the algorithm ---- */
 static const struct algorithm *current; /* what the tests run through */
-static const struct setting *usual;     /* a scene that it must image: raw echoes, of a monostatic sonar where it needs one */
+static const struct setting
+    *usual; /* a scene that it must image: raw echoes, of a monostatic sonar where it needs one */
 
 #define REFUSE(setting, format, ...) fail_msg("%s, %s: " format, current->name, setting, __VA_ARGS__)
 
@@ -364,8 +365,8 @@ static void schedules(void **state)
                 if (k + n == 0)
                     first = again;
                 else if (!same_bits(&first, &again))
-                    REFUSE(usual->name, "other bits by execute number %d on %d threads than on one, in %s",
-                           n + 1, omp_get_max_threads(), precision_name(problem.precision));
+                    REFUSE(usual->name, "other bits by execute number %d on %d threads than on one, in %s", n + 1,
+                           omp_get_max_threads(), precision_name(problem.precision));
                 if (k + n > 0)
                     image_free(&again);
             }

@@ -53,8 +53,8 @@ void scene_sq18(const struct squint_sonar *sonar, double squint, struct scene *s
 
 void scene_pf05(struct scene *scene)
 {
-    static const double places[][2] = {{0, 30},    {-3, 24},   {2.5, 33},   {4.6, 37}, {-6.2, 30},
-                                       {5.6, 23},  {-5.9, 37}, {6.4, 34},   {5.6, 39}};
+    static const double places[][2] = {{0, 30},   {-3, 24},   {2.5, 33}, {4.6, 37}, {-6.2, 30},
+                                       {5.6, 23}, {-5.9, 37}, {6.4, 34}, {5.6, 39}};
     scene_make(&sonar_pf05, 0, scene);
     scene->acquisition.area = (struct target_area){0, 30, 5, 10};
     scene->target_count = scene->point_count = 9;
@@ -111,7 +111,8 @@ double complex echo_spectrum(const struct scene *scene, const struct echoes *ech
     return sum * spectrum_sum(a) / a->samples;
 }
 
-static double complex exact_pixel(const struct scene *scene, const double complex *spectra, double gate, struct vector p)
+static double complex exact_pixel(const struct scene *scene, const double complex *spectra, double gate,
+                                  struct vector p)
 {
     const struct acquisition *a = &scene->acquisition;
     const int n = a->samples, half = last_bin(a);

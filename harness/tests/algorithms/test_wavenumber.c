@@ -83,7 +83,8 @@ static double complex rotated_cell(struct wk *wk, const struct rotated_number *n
     wk->kx_first = number->kx0;
     wk->lines = 1;
     double complex sum = 0;
-    for (int base = 0; base < patch->length; base += patch->own.r_count) { /* as many rows at a time as there is room for */
+    for (int base = 0; base < patch->length;
+         base += patch->own.r_count) { /* as many rows at a time as there is room for */
         patch->own.r_first = base * patch->own.r_step;
         wk_line_double_baseline(wk, 0, 0, seconds);
         for (int i = 0; i < patch->own.r_count && base + i < patch->length; i++)
@@ -340,9 +341,9 @@ static void refusals(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(spectra), cmocka_unit_test(exact_images), cmocka_unit_test(rotated_spectrum),
-        cmocka_unit_test(squints), cmocka_unit_test(ways),         cmocka_unit_test(motion),
-        cmocka_unit_test(reversed), cmocka_unit_test(sizes),       cmocka_unit_test(refusals),
+        cmocka_unit_test(spectra),  cmocka_unit_test(exact_images), cmocka_unit_test(rotated_spectrum),
+        cmocka_unit_test(squints),  cmocka_unit_test(ways),         cmocka_unit_test(motion),
+        cmocka_unit_test(reversed), cmocka_unit_test(sizes),        cmocka_unit_test(refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
