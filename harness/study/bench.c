@@ -13,6 +13,7 @@
 #include "study/bench.h"
 #include "study/bench_algorithms.h"
 #include "study/bench_rma.h"
+#include "study/bench_wk.h"
 #include "data/echo_data.h"
 #include "data/folder.h"
 #include "show/plot.h"
@@ -237,7 +238,7 @@ static enum status bench_bp(const char *directory)
 }
 
 /* Each measures into files of its own in the folder. */
-static enum status (*const parts[])(const char *directory) = {bench_bp, bench_rma};
+static enum status (*const parts[])(const char *directory) = {bench_bp, bench_rma, bench_wk};
 
 static enum status specs_check(const char *const *specs, int count)
 {

@@ -17,14 +17,14 @@
 #include "measure/spec.h"
 #include "measure/imaging.h"
 #include "measure/timing.h"
+#include "study/fft_seconds.h"
 
 enum {
     BLOCKS = 8,
     RECEIVERS = 48,
     AZIMUTH = 3840,
-    RANGE = 4096,     /* 80 pings of 48 receivers at full rate */
-    BINS = RANGE / 2, /* the pulse's band */
-    TRANSFORM_RUNS = 5
+    RANGE = 4096,    /* 80 pings of 48 receivers at full rate */
+    BINS = RANGE / 2 /* the pulse's band */
 };
 
 /* What a stage is counted as; a name that is not here comes before the phases. */
@@ -64,33 +64,6 @@ static enum status image_seconds(const char *text, const struct problem *problem
     image_free(&image);
     spec_free(&spec);
     return status;
-}
-
-/* FFTW's time for one forward and one inverse transform of AZIMUTH x RANGE in place, planned by measurement. */
-static enum status transform_seconds(int threads, double *seconds)
-{
-    const size_t bytes = (size_t)AZIMUTH * RANGE * sizeof(fftwf_complex);
-    fftwf_complex *data = fftwf_malloc(bytes);
-    if (!data || !fftwf_init_threads()) {
-        fftwf_free(data);
-        return status_set(STATUS_FAILED, "no memory or no threads for a transform of %d x %d", AZIMUTH, RANGE);
-    }
-    fftwf_plan_with_nthreads(threads);
-    fftwf_plan forward = fftwf_plan_dft_2d(AZIMUTH, RANGE, data, data, FFTW_FORWARD, FFTW_MEASURE);
-    fftwf_plan inverse = fftwf_plan_dft_2d(AZIMUTH, RANGE, data, data, FFTW_BACKWARD, FFTW_MEASURE);
-    fftwf_plan_with_nthreads(1);
-    memset(data, 0, bytes);
-    *seconds = INFINITY;
-    for (int k = 0; k < TRANSFORM_RUNS; k++) {
-        double begin = seconds_now();
-        fftwf_execute(forward);
-        fftwf_execute(inverse);
-        *seconds = fmin(*seconds, seconds_now() - begin);
-    }
-    fftwf_destroy_plan(forward);
-    fftwf_destroy_plan(inverse);
-    fftwf_free(data);
-    return STATUS_OK;
 }
 
 /* What libm takes for nothing but the sine and the cosine of as many cells as one range block has in the pulse's
@@ -135,7 +108,7 @@ static enum status measure(const struct problem *problem, const struct echoes *e
     const double one_phase = stages_seconds(&one.stages, phase_stages);
     const double libm_phase = stages_seconds(&libm.stages, phase_stages);
     double fft = 0, cells[2];
-    status = transform_seconds(threads, &fft);
+    status = fft_seconds(AZIMUTH, RANGE, threads, &fft);
     if (status != STATUS_OK)
         return status;
     sincos_seconds(cells);

@@ -19,7 +19,7 @@ const struct setting settings[SETTINGS] = {
     {"pixels on the track", 8, 6, 0.04, 2.5, 30e3, 0.5, 0, false, false, 0.3, 0},
     {"fs = B", 8, 6, 0.04, 2.5, 15e3, 30, 29.75, false, false, 0.7, 0},
     {"curved track in space", 8, 6, 0.04, 2.5, 30e3, 30, 29.75, false, false, 0.15, TRAIT_ANY_TRACK},
-    {"monostatic", 48, 1, 0, 2.5, 30e3, 30, 29.75, true, false, 0.15, 0},
+    {"monostatic", 48, 1, 0, 2.5, 30e3, 30, 29.75, true, false, 0.18, 0},
     {"aperture limit", 8, 6, 0.04, 2.5, 30e3, 30, 29.75, false, false, 0.15, TRAIT_APERTURE_LIMIT},
 };
 /* A track that bends across and in depth by many wavelengths, on which the array turns as well; velocity and time of the

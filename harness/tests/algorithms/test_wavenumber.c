@@ -328,7 +328,7 @@ static void refusals(void **state)
     elsewhere.x_first -= 40;
     refuses(&scene.acquisition, &elsewhere, "no ping sees");
     elsewhere = patches[0];
-    elsewhere.angle_rad = radians(80); /* turned about the origin: off the beam */
+    elsewhere.angle_rad = radians(-40); /* turned about the origin: off the beam */
     refuses(&scene.acquisition, &elsewhere, "no ping sees");
     elsewhere.angle_rad = 0;
     elsewhere.r_first = -0.1;

@@ -1,0 +1,103 @@
+/* Omega-k in `bench` (bench_wk.h): float, all threads, everything in one run. */
+#include "study/bench_wk.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "data/echo_data.h"
+#include "data/paths.h"
+#include "data/text_file.h"
+#include "measure/timing.h"
+#include "scene/scene.h"
+#include "scene/simulate.h"
+#include "study/fft_seconds.h"
+
+enum { AZIMUTH = 3840, RANGE = 4096 };
+
+/* Median seconds of a SPEC on a problem. */
+static enum status spec_seconds(const char *text, const struct problem *problem, const struct echoes *echoes,
+                                double *seconds)
+{
+    struct spec spec;
+    struct image image = {0};
+    struct timing timing;
+    enum status status = spec_parse(text, &spec);
+    if (status != STATUS_OK)
+        return status;
+    status = timing_measure(&spec, problem, echoes, echoes, &image, &timing);
+    if (status == STATUS_OK)
+        *seconds = timing.run_s;
+    image_free(&image);
+    spec_free(&spec);
+    return status;
+}
+
+struct bench_case {
+    const char *scene, *spec, *meaning;
+};
+
+/* In one run, one scene after the other: what a squint costs each of them. */
+static const struct bench_case cases[] = {
+    {"sq18/full_00", "wk_classic", "broadside, 3840 columns of 4096 samples"},
+    {"sq18/full_20", "wk_squint", "20 degrees, axes turned"},
+    {"sq18/full_20", "wk_classic:unfold=support", "20 degrees, the support unfolded"},
+    {"sq18/full_20", "wk_classic:unfold=baseband", "20 degrees, zeros after basebanding"},
+    {"sq18/full_20", "wk_classic:unfold=stuff", "20 degrees, zeros to the full band"},
+};
+
+static enum status case_measure(const struct bench_case *c, double transform, FILE *file)
+{
+    struct scene scene;
+    struct echoes recorded, echoes;
+    double seconds = 0;
+    enum status status = scene_load(c->scene, SCENE_DIRECTORY, &scene);
+    if (status != STATUS_OK)
+        return status;
+    status = scene_simulate(&scene, &recorded);
+    if (status == STATUS_OK) {
+        status = echoes_convert(&recorded, PRECISION_FLOAT, &echoes);
+        echoes_free(&recorded);
+    }
+    if (status == STATUS_OK) {
+        const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
+        status = spec_seconds(c->spec, &problem, &echoes, &seconds);
+        echoes_free(&echoes);
+    }
+    scene_free(&scene);
+    if (status == STATUS_OK) {
+        fprintf(file, "%s,%s,float,run,s,%.6g\n%s,%s,float,run_ratio,1,%.6g\n", c->scene, c->spec, seconds, c->scene,
+                c->spec, seconds / transform);
+        printf("%9.4g s %7.3g x  %-28s %s\n", seconds, seconds / transform, c->spec, c->meaning);
+        fflush(stdout);
+    }
+    return status;
+}
+
+enum status bench_wk(const char *directory)
+{
+    char path[4096];
+    struct text_file file;
+    double transform = 0;
+    snprintf(path, sizeof path, "%s/bench_wk.csv", directory);
+    enum status status = text_file_open(path, &file);
+    if (status != STATUS_OK)
+        return status;
+    const int threads = omp_get_max_threads();
+    status = fft_seconds(AZIMUTH, RANGE, threads, &transform);
+    if (status == STATUS_OK) {
+        fprintf(file.stream, "# sasbench bench_wk 1\n# threads: %d\nscene,algorithm,precision,quantity,unit,value\n",
+                threads);
+        fprintf(file.stream, "sq18/full_00,fftw,float,fft2,s,%.6g\n", transform);
+        printf("\nOmega-k at %d x %d, float, %d threads, in units of FFTW's forward and inverse transform, %.4g s\n",
+               AZIMUTH, RANGE, threads, transform);
+    }
+    for (size_t k = 0; status == STATUS_OK && k < sizeof cases / sizeof *cases; k++)
+        status = case_measure(&cases[k], transform, file.stream);
+    status = text_file_close(&file, status);
+    if (status == STATUS_OK)
+        printf("Results: %s\n", path);
+    return status;
+}
