@@ -221,33 +221,29 @@ static bool requirements(const struct problem *problem, struct condition *list, 
                                           SEVERITY_REFUSE,
                                           "the lowest frequency fc - B/2 (Hz)",
                                           "a higher carrier or a narrower band"};
-    list[(*count)++] = (struct condition){"uniform_track",
-                                          acquisition_is_straight(a, track),
-                                          0,
-                                          true,
-                                          SEVERITY_REFUSE,
-                                          "whether the track is straight and uniform (tx, rx within lambda/1000 of "
-                                          "even points on a line along x, y = z = "
-                                          "0, one velocity, one t0)",
-                                          "back projection"};
-    list[(*count)++] = (struct condition){"pings",
-                                          a->pings,
-                                          1,
-                                          true,
-                                          SEVERITY_REFUSE,
-                                          "the number of pings, of which a single ping has no azimuth spectrum,",
-                                          "back projection"};
-    list[(*count)++] = (struct condition){"whole_aperture",
-                                          fmax(0, 1 - a->aperture_limit),
-                                          0,
-                                          false,
-                                          SEVERITY_REFUSE,
-                                          "what the scene's aperture limit takes off the sine 1, where range migration "
-                                          "cannot choose pings pixel by pixel,",
-                                          "back projection, or a scene without aperture_limit"};
+    list[(*count)++] =
+        (struct condition){"uniform_track",
+                           acquisition_is_straight(a, track),
+                           0,
+                           true,
+                           SEVERITY_REFUSE,
+                           "a straight uniform track (1: tx and rx within lambda/1000 of even points on a "
+                           "line along x, y = z = 0, one velocity, one t0; 0: not so)",
+                           "back projection"};
     list[(*count)++] = (struct condition){
-        "in_front",     nearest, 0, true, SEVERITY_REFUSE, "the first row r (m), where range migration needs r > 0,",
-        "rows at r > 0"};
+        "pings",          a->pings, 1, true, SEVERITY_REFUSE, "the number of pings (one has no azimuth spectrum)",
+        "back projection"};
+    list[(*count)++] =
+        (struct condition){"whole_aperture",
+                           a->aperture_limit,
+                           nextafter(1, 0),
+                           true,
+                           SEVERITY_REFUSE,
+                           "the scene's aperture_limit (a sine; range migration cannot choose pings pixel "
+                           "by pixel)",
+                           "back projection, or a scene without aperture_limit"};
+    list[(*count)++] = (struct condition){
+        "in_front", nearest, 0, true, SEVERITY_REFUSE, "the range r of the nearest row (m)", "rows at r > 0"};
     for (; first < list + *count; first++)
         if (!condition_holds(first))
             return false;
