@@ -182,8 +182,9 @@ static double formula_at(const struct rma_view *view, double r, double low, doub
 static struct condition formula(const struct rma_view *view)
 {
     bool exact = view->method->spectrum == spectrum_exact || !view->converts;
+    double off = exact ? 0 : worst_row(view, formula_at);
     return (struct condition){view->method->law,
-                              exact ? 0 : worst_row(view, formula_at),
+                              isnan(off) ? INFINITY : off, /* the formula ends inside the beam */
                               LAW_LIMIT,
                               false,
                               SEVERITY_WARN,
@@ -264,7 +265,7 @@ static int prediction_conditions(const struct rma_view *view, const struct strai
         named = named || !condition_holds(&causes[k]);
         all[count++] = causes[k];
     }
-    if (condition_holds(&error) || error.severity == SEVERITY_WARN || !named)
+    if (error.severity == SEVERITY_WARN || !named || isnan(error.value))
         all[count++] = error;
     return count;
 }
@@ -277,11 +278,16 @@ static bool along_track(const struct problem *problem, struct condition *all, in
     for (int k = 0; k < problem->patch_count; k++)
         turned = fmax(turned, fabs(problem->patches[k].angle_rad) * 180 / pi);
     if (squint > 0)
-        all[(*count)++] = (struct condition){"squint", squint, 0, false, SEVERITY_REFUSE, "the beam's squint (degrees)",
-                                             "wk_classic, wk_squint"};
-    if (turned > 0)
         all[(*count)++] = (struct condition){
-            "axes", turned, 0, false, SEVERITY_REFUSE, "the angle of the image's axes (degrees)", "axes along the track"};
+            "squint", squint, 0, false, SEVERITY_REFUSE, "the beam's squint (degrees)", "wk_classic, wk_squint"};
+    if (turned > 0)
+        all[(*count)++] = (struct condition){"axes",
+                                             turned,
+                                             0,
+                                             false,
+                                             SEVERITY_REFUSE,
+                                             "the angle of the image's axes (degrees)",
+                                             "axes along the track"};
     return squint == 0 && turned == 0;
 }
 

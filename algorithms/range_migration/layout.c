@@ -51,7 +51,7 @@ static enum status lay_track(struct rma *rma)
     const struct acquisition *a = rma->problem.acquisition;
     struct condition list[CONDITIONS_MAX];
     int count = rma_conditions(&rma->problem, &rma->method, list, CONDITIONS_MAX);
-    if (count > 0 && isnan(list[count - 1].value))
+    if (strcmp(list[count - 1].name, "predicted_error") == 0 && isnan(list[count - 1].value))
         return status_set(STATUS_FAILED, "%s: no memory to predict the image's error", rma->method.name);
     enum status status = conditions_check(rma->method.name, list, count);
     if (status == STATUS_OK)

@@ -36,6 +36,8 @@ static const struct setup setups[] = {
      "doppler", 0},
     {"receiver 104 wavelengths astern", 15e3, -1.04, 0.08, 0.005, 4, 0, 0.1, 0, 1, 81, 33, OPEN, "rma_pca", "pca_law",
      0},
+    {"rows nearer than the array is long, where the formula ends inside the beam", 15e3, 0.04, 0.08, 0.8, 0.66, 0, 0.16,
+     0, 40, 21, 33, OPEN, "rma_lbf", "spa_amplitude", 0},
     {"columns that no ping sees", 15e3, 0.04, 0.08, 0.16, 20, 5, 0.3, 5, 8, 9, 33, CUT, "rma_lbf", "predicted_error",
      0},
 };

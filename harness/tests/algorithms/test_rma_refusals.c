@@ -17,7 +17,7 @@ static void refusals(void **state)
         double limit, bend;
     } cases[] = {
         {"straight", {0, 0.02, 3, 40, 0.1, 3}, 8, INFINITY, 0.1},
-        {"single ping", {0, 0.02, 3, 40, 0.1, 3}, 1, INFINITY, 0},
+        {"number of pings", {0, 0.02, 3, 40, 0.1, 3}, 1, INFINITY, 0},
         {"aperture_limit", {0, 0.02, 3, 40, 0.1, 3}, 8, 0.05, 0},
         {"range r of the nearest row", {0, 0.02, 3, 0, 0.1, 3}, 8, INFINITY, 0},
         {"squint", {0, 5, 9, 40, 0.1, 3}, 8, INFINITY, 0},
