@@ -14,7 +14,7 @@ find algorithms harness -name '*.[ch]' | sort | xargs awk '
                 "harness/command harness/tests " \
                 "harness/tests/algorithms harness/tests/scene harness/tests/measure harness/tests/show " \
                 "harness/tests/study harness/tests/stability harness/tests/gate harness/tests/papers " \
-                "harness/tests/command harness/tests/fuzz"
+                "harness/tests/command harness/tests/fuzz harness/tests/digits"
         count = split(order, folder, " ")
         for (k = 1; k <= count; k++)
             rank[folder[k]] = k
