@@ -7,7 +7,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#define FC_LEAST 1e-6 /* of fs: turns and samples then stay within a float's range of each other */
+#define FC_LEAST         1e-6 /* of fs: turns and samples then stay within a float's range of each other */
+#define SOUND_SPEED_MOST 1e9  /* m/s, as in scene files: more than that of light; its square must be finite */
 
 enum status acquisition_allocate(struct acquisition *acquisition)
 {
@@ -100,6 +101,10 @@ static enum status check_scalars(const struct acquisition *a, const char *place)
             return status_set(STATUS_INVALID, "%s: %s is %g%s; a finite number %s 0 is needed", place, scalars[i].name,
                               value, scalars[i].unit, scalars[i].may_be_zero ? ">=" : ">");
         }
+    }
+    if (!(a->sound_speed <= SOUND_SPEED_MOST)) {
+        return status_set(STATUS_INVALID, "%s: sound_speed is %g m/s; at most %g m/s is accepted", place,
+                          a->sound_speed, SOUND_SPEED_MOST);
     }
     if (!(a->fs >= a->bandwidth)) {
         return status_set(STATUS_INVALID, "%s: bandwidth is %.15g Hz; at most fs = %.15g Hz is accepted", place,

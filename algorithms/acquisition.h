@@ -20,7 +20,7 @@ struct target_area {
 /* Owner: whoever made it (a scene or an echo file), freed with acquisition_free. Plans only read it and may keep the
    pointer until they are destroyed. All arrays are ping-major. */
 struct acquisition {
-    double sound_speed;          /* c, m/s, > 0 */
+    double sound_speed;          /* c, m/s, > 0, <= 1e9 */
     double fc;                   /* carrier frequency, Hz, >= 1e-6 fs; echo phase is exp(-j 2 pi fc tau) */
     double fs;                   /* sampling rate of the complex baseband, Hz, >= bandwidth */
     double bandwidth;            /* B, Hz, > 0 */

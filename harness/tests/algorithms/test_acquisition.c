@@ -61,6 +61,7 @@ static void each_broken_promise_is_refused(void **state)
         {&a.sound_speed, NAN, "sound_speed is"},
         {&a.sound_speed, INFINITY, "sound_speed is inf"},
         {&a.sound_speed, 1.5, "velocity of ping 1"},
+        {&a.sound_speed, 3.5e192, "at most 1e+09 m/s is accepted"}, /* its square is infinite */
         {&a.fc, -1, "fc is -1"},
         {&a.fc, NAN, "fc is"},
         {&a.fc, 1e-320, "wavelength"},
