@@ -31,6 +31,7 @@ const struct algorithm wk_classic = {
     .reference = "SQ18 section 1, [3], [4]",
     .options_size = sizeof(struct wk_options),
     .params = params,
+    .conditions = wk_conditions,
     .plan = plan,
     .execute = wk_execute,
     .work = wk_work,

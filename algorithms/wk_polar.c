@@ -31,6 +31,7 @@ const struct algorithm wk_polar = {
     .reference = "PF05 Eqs. (5) to (16), corrected",
     .options_size = sizeof(struct wk_options),
     .params = params,
+    .conditions = wk_conditions,
     .plan = plan,
     .execute = wk_execute,
     .work = wk_work,

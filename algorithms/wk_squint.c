@@ -28,6 +28,7 @@ const struct algorithm wk_squint = {
     .reference = "SQ18 Eqs. (3) to (13), corrected",
     .options_size = sizeof(struct wk_options),
     .params = params,
+    .conditions = wk_conditions,
     .plan = plan,
     .execute = wk_execute,
     .work = wk_work,

@@ -206,15 +206,17 @@ static struct condition predicted_error(const struct rma_view *view)
                               "farther away"};
 }
 
-/* What all else takes for granted; false where one of them does not hold. */
-static bool requirements(const struct problem *problem, struct condition *list, int *count,
-                         struct straight_track *track)
+bool azimuth_requirements(const struct problem *problem, struct condition *list, int *count,
+                          struct straight_track *track)
 {
     const struct acquisition *a = problem->acquisition;
     const struct condition *first = list + *count;
     double nearest = INFINITY;
     for (int k = 0; k < problem->patch_count; k++)
-        nearest = fmin(nearest, problem->patches[k].r_first);
+        for (int corner = 0; corner < 4; corner++) {
+            const struct grid *g = &problem->patches[k];
+            nearest = fmin(nearest, grid_point(g, corner / 2 * (g->r_count - 1), corner % 2 * (g->x_count - 1)).y);
+        }
     list[(*count)++] = (struct condition){"above_dc",
                                           a->fc - a->bandwidth / 2,
                                           0,
@@ -234,17 +236,16 @@ static bool requirements(const struct problem *problem, struct condition *list, 
     list[(*count)++] = (struct condition){
         "pings",          a->pings, 1, true, SEVERITY_REFUSE, "the number of pings (one has no azimuth spectrum)",
         "back projection"};
-    list[(*count)++] =
-        (struct condition){"whole_aperture",
-                           a->aperture_limit,
-                           nextafter(1, 0),
-                           true,
-                           SEVERITY_REFUSE,
-                           "the scene's aperture_limit (a sine; range migration cannot choose pings pixel "
-                           "by pixel)",
-                           "back projection, or a scene without aperture_limit"};
+    list[(*count)++] = (struct condition){"whole_aperture",
+                                          a->aperture_limit,
+                                          nextafter(1, 0),
+                                          true,
+                                          SEVERITY_REFUSE,
+                                          "the scene's aperture_limit (a sine; an azimuth transform cannot choose "
+                                          "pings pixel by pixel)",
+                                          "back projection, or a scene without aperture_limit"};
     list[(*count)++] = (struct condition){
-        "in_front", nearest, 0, true, SEVERITY_REFUSE, "the range r of the nearest row (m)", "rows at r > 0"};
+        "in_front", nearest, 0, true, SEVERITY_REFUSE, "the range r of the nearest pixel (m)", "pixels at r > 0"};
     for (; first < list + *count; first++)
         if (!condition_holds(first))
             return false;
@@ -297,7 +298,8 @@ int rma_conditions(const struct problem *problem, const struct rma_method *metho
     struct condition all[CONDITIONS_MAX];
     int count = conditions_general(problem, all, CONDITIONS_MAX);
     all[0].limit = SLOWEST;
-    if (along_track(problem, all, &count) && requirements(problem, all, &count, &track) && condition_holds(&all[0])) {
+    if (along_track(problem, all, &count) && azimuth_requirements(problem, all, &count, &track)
+        && condition_holds(&all[0])) {
         struct rma_view view = rma_view_of(problem, method, &track);
         all[count++] = stationary(&view);
         if (condition_holds(&all[count - 1]))

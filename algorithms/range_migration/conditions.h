@@ -25,6 +25,11 @@ struct rma_view rma_view_of(const struct problem *problem, const struct rma_meth
    False where there are none. */
 bool rma_view_aperture(const struct rma_view *view, const struct grid *patch, double r, double *low, double *high);
 
+/* Append to list what every image by azimuth transforms takes for granted (above_dc, uniform_track, pings, whole_aperture,
+   in_front), and fill *track. False where one of them does not hold. */
+bool azimuth_requirements(const struct problem *problem, struct condition *list, int *count,
+                          struct straight_track *track);
+
 /* The conditions of range migration by a method, conditions_general among them. What may cause a large error (spa_amplitude, doppler,
    the formula's law) refuses only where the predicted error is too large, and then stands for it; without such a cause
    predicted_error itself refuses. Its value is NAN without memory. */

@@ -19,11 +19,6 @@ static const double EVEN = 1e-12;      /* relative: columns that divide the peri
 static const double SAME_ANGLE = 1e-9; /* rad */
 static const int tap_counts[] = {4, 6, 8, 12, 16};
 
-static enum status unsupported(const struct wk *wk, const char *reason)
-{
-    return status_set(STATUS_UNSUPPORTED, "%s: %s", wk->method.name, reason);
-}
-
 static double wavelength_longest(const struct wk *wk)
 {
     const struct acquisition *a = wk->problem.acquisition;
@@ -53,25 +48,7 @@ static enum status lay_track(struct wk *wk)
 {
     const struct acquisition *a = wk->problem.acquisition;
     struct straight_track track;
-    if (a->receivers > 1 || fabs(a->rx[0].x - a->tx[0].x) > a->sound_speed / a->fc / 1000)
-        return status_set(
-            STATUS_UNSUPPORTED,
-            "%s: %d receivers, the first %g m ahead of the transmitter; omega-k needs one receiver at the "
-            "transmitter (several are imaged by rma_*)",
-            wk->method.name, a->receivers, a->rx[0].x - a->tx[0].x);
-    if (!acquisition_is_straight(a, &track))
-        return unsupported(wk, "the track is not straight and uniform (tx, rx within lambda/1000 of even points on a "
-                               "line along x, y = z = 0, one velocity, one t0)");
-    if (a->pings < 2)
-        return unsupported(wk, "a single ping has no azimuth spectrum");
-    if (a->aperture_limit < 1)
-        return unsupported(wk, "the scene has an aperture limit, and omega-k cannot choose pings pixel by pixel");
-    if (!(a->fc - a->bandwidth / 2 > 0))
-        return status_set(STATUS_UNSUPPORTED, "%s: the lowest frequency fc - B/2 is %g Hz; more than 0 is needed",
-                          wk->method.name, a->fc - a->bandwidth / 2);
-    if (!(1 - fabs(track.speed) / a->sound_speed > 0.1))
-        return status_set(STATUS_UNSUPPORTED, "%s: the speed is %g m/s; less than 0.9 of sound's is needed",
-                          wk->method.name, track.speed);
+    acquisition_is_straight(a, &track); /* as wk_conditions holds */
     wk->sound_speed = a->sound_speed;
     wk->speed = track.speed;
     wk->fc = a->fc;
@@ -199,7 +176,7 @@ static enum status lay_range(struct wk *wk)
     double length = WK_OVERSAMPLING * (wk->samples + 2 * wk->record_pad + WK_GUARD);
     wk->range_length = length < INT_MAX / 64 ? fft_length_fast((long long)length) : 0;
     if (wk->range_length == 0)
-        return unsupported(wk, "the range transform is too long");
+        return status_set(STATUS_UNSUPPORTED, "%s: the range transform is too long", wk->method.name);
     double half = fmin(ceil(band.half_hz / wk->fs * wk->range_length), (wk->range_length - 1) / 2);
     double lowest = (wk->fc - wk->fs / 2 > 0 ? wk->fs / 2 : wk->fc * (1 - 1e-6)) / wk->fs * wk->range_length;
     wk->band_first = -(int)fmin(half, floor(lowest)); /* F > 0 */

@@ -76,8 +76,13 @@ static void count_work(struct wk *wk)
 enum status wk_plan(const struct problem *problem, const struct wk_method *method, const struct wk_options *options,
                     void **plan)
 {
-    struct wk *wk = calloc(1, sizeof *wk);
+    struct condition conditions[CONDITIONS_MAX];
     *plan = NULL;
+    enum status status =
+        conditions_check(method->name, conditions, wk_conditions(problem, options, conditions, CONDITIONS_MAX));
+    if (status != STATUS_OK)
+        return status;
+    struct wk *wk = calloc(1, sizeof *wk);
     if (!wk)
         return status_set(STATUS_FAILED, "no memory for %s", method->name);
     wk->problem = *problem;
@@ -85,7 +90,7 @@ enum status wk_plan(const struct problem *problem, const struct wk_method *metho
     wk->options = *options;
     wk->threads = omp_get_max_threads();
     wk->work.bytes = sizeof *wk + (double)problem->patch_count * sizeof *wk->patches;
-    enum status status = wk_layout(wk);
+    status = wk_layout(wk);
     if (status == STATUS_OK)
         status = transform(wk)->plan(wk);
     if (status != STATUS_OK) {

@@ -59,6 +59,7 @@ struct wk_method {
 /* The callbacks of struct algorithm, for a method. `options` is only used during the call. */
 enum status wk_plan(const struct problem *problem, const struct wk_method *method, const struct wk_options *options,
                     void **plan);
+int wk_conditions(const struct problem *problem, const void *options, struct condition *list, int room);
 enum status wk_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
 struct work wk_work(const void *plan);
 void wk_destroy(void *plan);

@@ -313,17 +313,17 @@ static void refusals(void **state)
     refuses(&a, patches, "a squint of 89 degrees");
     a = scene.acquisition;
     a.aperture_limit = 0.1;
-    refuses(&a, patches, "aperture limit");
+    refuses(&a, patches, "condition whole_aperture");
     a = scene.acquisition;
     a.pings = 1;
-    refuses(&a, patches, "single ping");
+    refuses(&a, patches, "condition pings");
     a = scene.acquisition;
     a.echo_sine = 0.2; /* pings 0.04 m apart sample 0.0625 */
     refuses(&a, patches, "condition doppler");
     a = scene.acquisition;
     a.receivers = 2;
     a.pings = 128;
-    refuses(&a, patches, "one receiver at the transmitter");
+    refuses(&a, patches, "condition one_receiver");
     struct grid elsewhere = patches[0];
     elsewhere.x_first -= 40;
     refuses(&scene.acquisition, &elsewhere, "no ping sees");
@@ -332,7 +332,7 @@ static void refusals(void **state)
     refuses(&scene.acquisition, &elsewhere, "no ping sees");
     elsewhere.angle_rad = 0;
     elsewhere.r_first = -0.1;
-    refuses(&scene.acquisition, &elsewhere, "r > 0");
+    refuses(&scene.acquisition, &elsewhere, "condition in_front");
     elsewhere = (struct grid){100 * tan(radians(20)), 0.04, 3, 100, 0.04, 3, 0};
     refuses(&scene.acquisition, &elsewhere, "outside the record");
     squint_scene_free(&scene);
