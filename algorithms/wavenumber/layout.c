@@ -19,6 +19,17 @@ static const double EVEN = 1e-12;      /* relative: columns that divide the peri
 static const double SAME_ANGLE = 1e-9; /* rad */
 static const int tap_counts[] = {4, 6, 8, 12, 16};
 
+/* Whole numbers of bins and cells: what is whole but for rounding, in any of its modes, counts as whole. */
+static double whole_below(double x)
+{
+    return floor(x + 1e-9);
+}
+
+static double whole_above(double x)
+{
+    return ceil(x - 1e-9);
+}
+
 static double wavelength_longest(const struct wk *wk)
 {
     const struct acquisition *a = wk->problem.acquisition;
@@ -177,7 +188,7 @@ static enum status lay_range(struct wk *wk)
     wk->range_length = length < INT_MAX / 64 ? fft_length_fast((long long)length) : 0;
     if (wk->range_length == 0)
         return status_set(STATUS_UNSUPPORTED, "%s: the range transform is too long", wk->method.name);
-    double half = fmin(ceil(band.half_hz / wk->fs * wk->range_length), (wk->range_length - 1) / 2);
+    double half = fmin(whole_above(band.half_hz / wk->fs * wk->range_length), (wk->range_length - 1) / 2);
     double lowest = (wk->fc - wk->fs / 2 > 0 ? wk->fs / 2 : wk->fc * (1 - 1e-6)) / wk->fs * wk->range_length;
     wk->band_first = -(int)fmin(half, floor(lowest)); /* F > 0 */
     wk->band = (int)half - wk->band_first + 1;
@@ -248,7 +259,7 @@ static enum status too_long(const struct wk *wk, double period)
 static enum status lay_unfolded(struct wk *wk)
 {
     double half = pi / wk->spacing, low = INFINITY, high = -INFINITY, period = own_period(wk) / wk->spacing + 1;
-    int length = period < 1e8 ? fft_length((long long)ceil(fmax(period, wk->options.pad * wk->pings))) : 0;
+    int length = period < 1e8 ? fft_length((long long)whole_above(fmax(period, wk->options.pad * wk->pings))) : 0;
     if (length == 0)
         return too_long(wk, period * wk->spacing);
     for (int end = 0; end < 2; end++) {
@@ -259,8 +270,8 @@ static enum status lay_unfolded(struct wk *wk)
     wk->kx_step = 2 * pi / (length * wk->spacing);
     wk->stuffed = 1;
     if (wk->options.unfold == WK_SUPPORT) {
-        wk->line_first = (int)floor(low / wk->kx_step);
-        wk->lines = (int)floor(high / wk->kx_step) - wk->line_first;
+        wk->line_first = (int)whole_below(low / wk->kx_step);
+        wk->lines = (int)whole_below(high / wk->kx_step) - wk->line_first;
         wk->skips = true;
     } else {
         double reach = fmax(high, -low), slack = 1e-9 * half;
@@ -284,8 +295,8 @@ static enum status lay_unfolded(struct wk *wk)
 static enum status lay_rotated(struct wk *wk)
 {
     double half = pi / wk->spacing, low = INFINITY, high = -INFINITY, period = own_period(wk);
-    double padded = ceil(wk->options.pad * wk->pings);
-    int length = period / wk->spacing < 1e8 ? fft_length((long long)ceil(period / wk->spacing) + 1) : 0;
+    double padded = whole_above(wk->options.pad * wk->pings);
+    int length = period / wk->spacing < 1e8 ? fft_length((long long)whole_above(period / wk->spacing) + 1) : 0;
     wk->azimuth_length = padded < INT_MAX / 8 ? fft_length((long long)padded) : 0;
     if (length == 0 || wk->azimuth_length == 0)
         return too_long(wk, fmax(period, padded * wk->spacing));
@@ -297,8 +308,8 @@ static enum status lay_rotated(struct wk *wk)
     }
     wk->stuffed = 1;
     wk->kx_step = 2 * pi / (length * wk->spacing);
-    wk->line_first = (int)floor(low / wk->kx_step);
-    wk->lines = (int)ceil(high / wk->kx_step) - wk->line_first + 1;
+    wk->line_first = (int)whole_below(low / wk->kx_step);
+    wk->lines = (int)whole_above(high / wk->kx_step) - wk->line_first + 1;
     wk->kx_first = wk->line_first * wk->kx_step;
     wk->skips = true;
     return STATUS_OK;
@@ -345,7 +356,7 @@ static enum status resampled_axis(const struct wk *wk, double span, double *firs
 {
     double extent = *step;
     *step = 2 * pi / (WK_OVERSAMPLING * span);
-    double beside = wk->taps / 2 + 1, points = ceil(extent / *step) + 2 * beside + 1;
+    double beside = wk->taps / 2 + 1, points = whole_above(extent / *step) + 2 * beside + 1;
     if (!(points < 1e8))
         return status_set(STATUS_UNSUPPORTED, "%s: %g m every %g m are too many places to resample from",
                           wk->method.name, extent, *step);
@@ -385,7 +396,8 @@ static enum status lay_steps(struct wk *wk)
             g->r_step = bin;
         }
         double first = g->r_first, last = first + (g->r_count - 1) * g->r_step;
-        double extent = fmax(last - from, to - first) + 2 * pulse, rows = fmax(ceil(extent / g->r_step), g->r_count);
+        double extent = fmax(last - from, to - first) + 2 * pulse,
+               rows = fmax(whole_above(extent / g->r_step), g->r_count);
         double window = (wk->range_length - wk->samples / 2.0 - wk->record_pad) / wk->fs * c / 2;
         double centre = (wk->t0 + wk->centre / wk->fs) * c / 2;
         if (!(first > centre - window && last * hypot(1, steepest) < centre + window))
@@ -402,7 +414,7 @@ static enum status lay_steps(struct wk *wk)
             return status_set(STATUS_UNSUPPORTED, "%s: rows %g m apart over %g m are too many to transform",
                               wk->method.name, g->r_step, extent);
         if (patch->resampled)
-            patch->bin_carrier = (long long)floor((low + high) / 2 / (2 * pi / (patch->length * g->r_step)));
+            patch->bin_carrier = (long long)whole_below((low + high) / 2 / (2 * pi / (patch->length * g->r_step)));
         patch->row = wk->rows;
         wk->rows += (size_t)g->r_count;
     }
