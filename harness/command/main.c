@@ -236,6 +236,8 @@ static enum status command_find(const char *name, const struct command **found)
         size_t used = strlen(names);
         snprintf(names + used, sizeof names - used, "%s, ", commands[k].name);
     }
+    if (strcmp(name, "test") == 0)
+        return status_set(STATUS_INVALID, "'test' is a command of the script ./sasbench: ./sasbench test [NAME ...]");
     return status_set(STATUS_INVALID, "'%s' is not a command; accepted: %stest, --help, --version", name, names);
 }
 

@@ -235,7 +235,7 @@ static enum status claims_report(const char *directory, const struct selection *
 static void lines_keep(const struct selection *selection, struct reproduced *lines, int *count)
 {
     int kept = 0;
-    bool whole[TABLES_MAX];
+    bool whole[TABLES_MAX] = {false};
     for (int k = 0; paper_tables[k].id; k++) {
         whole[k] = true;
         for (int n = 0; n < *count; n++)

@@ -73,7 +73,7 @@
    WHAT THE LOOPS RELY ON. They check nothing but BP_SPREAD; this code sees to it:
 
        whole ratio, even pings   raster_make, ping_beside: to 1e-7 of a cycle and of a sample, else unsupported
-       zeros around the pings    plan_lengths: a lead of 64 bytes, the widest vector, and as much behind the pings;
+       zeros around the pings    plan_slab: a lead of 64 bytes, the widest vector, and as much behind the pings;
                                  invariant_execute clears the slab, and scatter writes pings only
        samples in the record     inside_record proves it for the whole row, else confine or keep checks entries;
                                  taps beyond the record's ends read the guard rows of the slab, which are zeros
@@ -81,8 +81,8 @@
                                  plan_patch: a row of sums has room for BP_LANES_MOST values behind its columns
        BP_SPREAD                 residues_together: groups are so small that, by steepness(), the samples of one shift lie
                                  at most BP_SPREAD apart; join_many asserts it, as it would write beyond its table else
-       capacity                  plan_lengths: the largest group, BP_TOGETHER residues with all shifts, always fits
-       int indices               raster_make, plan_lengths: larger tables and slabs are unsupported
+       capacity                  plan_patch: the largest group, BP_TOGETHER residues with all shifts, always fits
+       int indices               raster_make, plan_slab: larger tables and slabs are unsupported
        same bits                 sum_rows: one thread sums a row, in an order that does not depend on the threads */
 #ifndef SASBENCH_BACKPROJECTION_INVARIANT_ROW_H
 #define SASBENCH_BACKPROJECTION_INVARIANT_ROW_H

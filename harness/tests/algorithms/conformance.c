@@ -11,6 +11,7 @@
 #include "data/csv.h"
 #include "measure/metrics.h"
 #include "scene/simulate.h"
+#include "tests/algorithms/conformance_params.h"
 #include "tests/algorithms/conformance_scenes.h"
 #include "tests/allocations.h"
 
@@ -380,29 +381,6 @@ static void schedules(void **state)
     free_scene(&scene);
 }
 
-/* Parameters are declared by PARAM and PARAM_NAMED, and say of themselves what is true. */
-static void check_param(const struct param *p)
-{
-    size_t size = p->type == PARAM_REAL ? sizeof(double) : sizeof(int);
-    if (p->size != size || p->offset % size != 0 || p->offset + size > current->options_size)
-        REFUSE(p->name, "a field of %zu bytes at %zu of %zu cannot hold its type; declare it by PARAM or PARAM_NAMED",
-               p->size, p->offset, current->options_size);
-    if (!(p->initial >= p->min && p->initial <= p->max))
-        REFUSE(p->name, "the default is %g, must lie from %g to %g", p->initial, p->min, p->max);
-    if (!p->summary || !*p->summary || (p->type == PARAM_CHOICE) != (p->choices != NULL))
-        REFUSE(p->name, "%s", "needs a summary, and choices when it is one");
-    char sweep[128], *rest = sweep;
-    snprintf(sweep, sizeof sweep, "%s", p->sweep ? p->sweep : "");
-    for (char *value; (value = strtok_r(rest, " ", &rest));) {
-        char text[256];
-        struct spec spec;
-        snprintf(text, sizeof text, "%s:%s=%s", current->name, p->name, value);
-        if (spec_parse(text, &spec) != STATUS_OK)
-            REFUSE(p->name, "its sweep holds %s: %s", value, status_message());
-        spec_free(&spec);
-    }
-}
-
 static void description(void **state)
 {
     (void)state;
@@ -412,7 +390,7 @@ static void description(void **state)
         fail_msg("%s: summary and reference are \"%s\" and \"%s\", must say something", current->name, current->summary,
                  current->reference);
     for (const struct param *p = current->params; p && p->name; p++)
-        check_param(p);
+        conformance_check_param(current, p);
 }
 
 /* Its quality and work are on record, so that the gate can tell when they get worse. */

@@ -68,8 +68,10 @@ static void *planned_make(void *plan, void *to, size_t bytes)
         free(planned);                                                                                                 \
     }
 
+/* NOLINTBEGIN(readability-function-size): the parameters are those of FFTW. */
 FOREIGN(fftw, fftw_complex)
 FOREIGN(fftwf, fftwf_complex)
+/* NOLINTEND(readability-function-size) */
 
 /* The sanitizer's own strsep crashes at the end of a text (clang 19). */
 char *__wrap_strsep(char **text, const char *separators);
