@@ -205,7 +205,7 @@ static enum status phase(struct formula *formula, struct call *call, struct valu
     for (int k = 0; k < 15 && phase_formula(k); k++)
         formulas[k] = phase_formula(k);
     formula->by_scheme |= scheme_formula(formula->scheme, call->text[2], &meant);
-    strcpy(call->text[2], meant);
+    memmove(call->text[2], meant, strlen(meant) + 1); /* may be the same text */
     formula->measures = formula->phases = true;
     enum status status = word_check(formula, call, 0, setups);
     if (status == STATUS_OK)
