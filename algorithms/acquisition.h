@@ -33,8 +33,8 @@ struct acquisition {
     struct vector *velocity;     /* [pings] m/s: of the receivers during propagation; zero = stop-and-hop */
     double tx_length, rx_length; /* m: element lengths along the track; 0 = unknown */
     double echo_sine;            /* the echoes come from |sin theta_t| <= this; 0 = unknown, INFINITY = from anywhere */
-    double echo_squint;      /* rad: theta_t counts from the beam's axis, which points so far ahead of abeam (r > 0) */
-    bool echo_tapers;        /* and their amplitude falls as both elements' sinc does */
+    double echo_squint; /* rad: theta_t counts from the beam's axis, which points so far ahead of broadside (r > 0) */
+    bool echo_tapers;   /* and their amplitude falls as both elements' sinc does */
     double aperture_limit;   /* back projection sums pairs with |sin theta_t| <= this only; INFINITY = all */
     struct target_area area; /* what is to be seen; a filter may take off the echoes of the rest */
     bool compressed;         /* the samples are range compressed: a unit target peaks at 1 */

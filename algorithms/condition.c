@@ -12,7 +12,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* The beam of echoes that do not say theirs: where the transmitter's power is half of that abeam, in lambda/D. */
+/* The beam of echoes that do not say theirs: where the transmitter's power is half of that broadside, in lambda/D. */
 static const double LOBE = 0.443;
 
 bool condition_holds(const struct condition *condition)

@@ -1,8 +1,8 @@
 /* Range migration after reference range history. The method itself (LBF21 reference [22]) was not available; this
-   is a working definition: the abeam delay of each receiver, exact and for each range, less that of the reference
+   is a working definition: the broadside delay of each receiver, exact and for each range, less that of the reference
    receiver M/2, corrected together with the PCA phase of the reference receiver (spectrum.h).
 
-   Error: that of PCA, as both take targets to be abeam; less only where d^4/r^3 counts. */
+   Error: that of PCA, as both take targets to be broadside; less only where d^4/r^3 counts. */
 #include "range_migration/conditions.h"
 
 static const struct param params[] = {

@@ -8,7 +8,7 @@
 
 enum { LANES = RMA_ALIGNMENT / sizeof(real) }; /* real parts and imaginary parts of a row take turns */
 
-struct work_place {
+struct workspace {
     const struct rma *rma;
     const struct rma_swath *swath;
     char *scratch;
@@ -17,12 +17,12 @@ struct work_place {
     int q;
 };
 
-static inline void *buffer(const struct work_place *w, enum rma_buffer which)
+static inline void *buffer(const struct workspace *w, enum rma_buffer which)
 {
     return w->scratch + w->rma->scratch_at[which];
 }
 
-static inline void stage_end(struct work_place *w, enum rma_stage stage)
+static inline void stage_end(struct workspace *w, enum rma_stage stage)
 {
     double now = seconds_now();
     w->seconds[stage] += now - w->mark;
@@ -31,6 +31,6 @@ static inline void stage_end(struct work_place *w, enum rma_stage stage)
 
 /* The receivers' spectra at this wavenumber, corrected for each block and added up (or not yet): `sums` holds
    [needed][1 or receivers] rows. Bins that are evanescent hold anything. */
-void REAL_ISA_NAME(rma_convert)(struct work_place *w, real *sums);
+void REAL_ISA_NAME(rma_convert)(struct workspace *w, real *sums);
 
 #endif

@@ -94,7 +94,7 @@ static inline __attribute__((always_inline)) void group_apply(struct rows in, in
 }
 
 /* All receivers at bins [k, k + n) by recurrence. */
-static void apply_recurrence(const struct work_place *w, const struct rma_ramp *ramps, int k, int n, struct rows in,
+static void apply_recurrence(const struct workspace *w, const struct rma_ramp *ramps, int k, int n, struct rows in,
                              struct rows stored, real *sum)
 {
     const double *y = (const double *)buffer(w, RMA_ABSCISSAS) + k;
@@ -119,7 +119,7 @@ static void apply_recurrence(const struct work_place *w, const struct rma_ramp *
 }
 
 /* The same by the formula and libm for each cell: for uneven arrays, and to check the recurrence. */
-static void apply_libm(const struct work_place *w, double r, double less, int k, int n, struct rows in,
+static void apply_libm(const struct workspace *w, double r, double less, int k, int n, struct rows in,
                        struct rows stored, real *sum)
 {
     const struct rma *rma = w->rma;
@@ -155,7 +155,7 @@ struct correction {
 };
 
 /* Receivers at bins [k, k + n) times exp(j 2 pi correction). */
-static void apply(const struct work_place *w, struct correction correction, int k, int n, struct rows in,
+static void apply(const struct workspace *w, struct correction correction, int k, int n, struct rows in,
                   struct rows stored, real *sum)
 {
     if (sum)
@@ -166,7 +166,7 @@ static void apply(const struct work_place *w, struct correction correction, int 
         apply_libm(w, correction.r, correction.less, k, n, in, stored, sum);
 }
 
-void REAL_ISA_NAME(rma_convert)(struct work_place *w, real *sums)
+void REAL_ISA_NAME(rma_convert)(struct workspace *w, real *sums)
 {
     const struct rma *rma = w->rma;
     const struct rma_swath *swath = w->swath;

@@ -160,9 +160,9 @@ struct rma {
     int record_length; /* of its transform; 0: the echoes come compressed */
     double half_band;  /* Hz: half of what holds the compressed pulse */
     double loss;       /* energy of the compressed pulse outside it, relative */
-    int fade;          /* samples over which a cut fades, and as many between the fade and the rows */
+    int taper;         /* samples over which a cut tapers, and as many between the taper and the rows */
     void *filter;      /* complex [record_length]: conj(replica)/energy */
-    void *fades;       /* real [fade], rising */
+    void *tapers;      /* real [taper], rising */
     void *record_forward, *record_inverse;
 
     /* blocks: centre n of block_count at `block_from + n block_width` in r or 1/r */

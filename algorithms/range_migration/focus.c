@@ -7,7 +7,7 @@
 enum { SPAN = RMA_SPAN, RUN = 64 }; /* samples that a block takes or leaves together: places rise or fall along them */
 
 /* Bins that are evanescent, and those that only fill the last vector, read zero. */
-static void mask(const struct work_place *w, real *row)
+static void mask(const struct workspace *w, real *row)
 {
     const int begin = w->line.begin, band = w->swath->band, end = w->swath->row;
     for (int k = begin > 0 ? 0 : band; k < end; k = k + 1 == begin ? band : k + 1)
@@ -16,7 +16,7 @@ static void mask(const struct work_place *w, real *row)
 
 /* Where the samples from `centre` on lie: the block's number at its centre, fractions between; what lies beyond the
    swath's blocks belongs to the nearest. */
-static void places(const struct work_place *w, real *restrict place)
+static void places(const struct workspace *w, real *restrict place)
 {
     const struct rma *rma = w->rma;
     const struct rma_swath *swath = w->swath;
@@ -100,7 +100,7 @@ static void interleave(const real *restrict row, int begin, int end, real *restr
 }
 
 /* Range IFFT of a row of spectra, and what belongs to the block added to the cut; without places all of it. */
-static void add_block(const struct work_place *w, const real *row, int block, const real *place, real *cut)
+static void add_block(const struct workspace *w, const real *row, int block, const real *place, real *cut)
 {
     const struct rma_swath *swath = w->swath;
     const int length = swath->length, below = -swath->band_first;
@@ -131,7 +131,7 @@ static void add_block(const struct work_place *w, const real *row, int block, co
 
 /* The cut's spectrum in rising frequency, RMA_GUARD bins of the next period at either end: all real parts, then all
    imaginary ones. Its samples count from `centre`. */
-static void spectrum(const struct work_place *w, real *cut, real *re)
+static void spectrum(const struct workspace *w, real *cut, real *re)
 {
     const size_t length = (size_t)w->swath->stolt_length, low = length / 2; /* low: bins below fc */
     const real *scale = w->swath->apodization;
@@ -186,7 +186,7 @@ static inline __attribute__((always_inline)) void interpolate(const struct rma *
 
 /* Rows of a patch from K = j 2 pi/(length step): interpolation (LBF21 Eq. (16) for the exact K), bulk focusing at the
    first row, weight, IFFT. */
-static void focus_interpolated(struct work_place *w, const struct rma_patch *patch, const real *z, real *stored)
+static void focus_interpolated(struct workspace *w, const struct rma_patch *patch, const real *z, real *stored)
 {
     const struct rma *rma = w->rma;
     const struct rma_swath *swath = w->swath;
@@ -250,8 +250,7 @@ static void focus_interpolated(struct work_place *w, const struct rma_patch *pat
 
 /* The same without interpolation: every bin of the band at every row. `z` are vectors of the band's bins whose
    samples count from time `origin`. */
-static void focus_direct(struct work_place *w, const struct rma_patch *patch, const real *z, double origin,
-                         real *stored)
+static void focus_direct(struct workspace *w, const struct rma_patch *patch, const real *z, double origin, real *stored)
 {
     const struct rma *rma = w->rma;
     const struct rma_swath *swath = w->swath;
@@ -306,7 +305,7 @@ static void focus_direct(struct work_place *w, const struct rma_patch *patch, co
 }
 
 /* The blocks' spectra as one signal of samples from `centre` on. */
-static void reconstruct(struct work_place *w, real *sums, real *cut)
+static void reconstruct(struct workspace *w, real *sums, real *cut)
 {
     const struct rma_swath *swath = w->swath;
     const int summed = w->rma->options.sum == RMA_SUM_BEFORE ? 1 : w->rma->receivers;
@@ -322,7 +321,7 @@ static void reconstruct(struct work_place *w, real *sums, real *cut)
         }
 }
 
-static void column(struct work_place *w, real *stored)
+static void column(struct workspace *w, real *stored)
 {
     const struct rma *rma = w->rma;
     const struct rma_swath *swath = w->swath;
@@ -357,11 +356,11 @@ static void column(struct work_place *w, real *stored)
 void REAL_ISA_NAME(rma_column)(const struct rma *rma, const struct rma_swath *swath, int thread, int turn,
                                double seconds[RMA_STAGES])
 {
-    struct work_place w = {.rma = rma,
-                           .swath = swath,
-                           .seconds = seconds,
-                           .mark = seconds_now(),
-                           .scratch = (char *)rma->scratch + (size_t)thread * rma->scratch_bytes};
+    struct workspace w = {.rma = rma,
+                          .swath = swath,
+                          .seconds = seconds,
+                          .mark = seconds_now(),
+                          .scratch = (char *)rma->scratch + (size_t)thread * rma->scratch_bytes};
     real *stored = buffer(&w, RMA_STORED), *focused = rma->focused;
     memset(stored, 0, 2 * RMA_TILE * swath->rows * sizeof *stored);
     for (int n = 0; n < RMA_TILE && turn + n < swath->wavenumbers; n++) {

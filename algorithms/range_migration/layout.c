@@ -14,7 +14,7 @@
 static const double pi = 3.14159265358979323846;
 
 static const double BAND_LOSS = 4e-6;  /* of the compressed pulse's energy may lie outside the band */
-static const double FADE_PERIODS = 8;  /* of fs - B, or of B, in a cut's fade: what it smears stays beside the band */
+static const double TAPER_PERIODS = 8; /* of fs - B, or of B, in a cut's taper: what it smears stays beside the band */
 static const double PULSE_PERIODS = 8; /* of B: beside the rows, so that no pulse wraps around the cut */
 static const double EVEN = 1e-12;      /* relative: columns that divide the period but for rounding */
 static const int stolt_taps[] = {0, 4, 6, 8, 12, 16};
@@ -84,9 +84,9 @@ static enum status lay_band(struct rma *rma)
 {
     const struct acquisition *a = rma->problem.acquisition;
     /* No longer than an eighth of the record for a narrow band's sake; the whole record at fs = B. */
-    double band = fmax(a->bandwidth / a->fs, 8 * FADE_PERIODS / a->samples);
-    double share = fmax(fmin(1 - a->bandwidth / a->fs, band), FADE_PERIODS / a->samples);
-    rma->fade = (int)fmin(ceil(FADE_PERIODS / share), a->samples);
+    double band = fmax(a->bandwidth / a->fs, 8 * TAPER_PERIODS / a->samples);
+    double share = fmax(fmin(1 - a->bandwidth / a->fs, band), TAPER_PERIODS / a->samples);
+    rma->taper = (int)fmin(ceil(TAPER_PERIODS / share), a->samples);
     /* What was compressed elsewhere may have flanks beyond its bandwidth; twice the band holds them. Far beyond it there is
        nothing, and the phases' polynomials would have to span it. */
     rma->half_band = fmin(a->fs / 2, fmax(a->bandwidth, 32 * a->fs / a->samples)); /* a record's own ends are in it */
@@ -164,7 +164,7 @@ static enum status lay_patches(struct rma *rma)
         if (k > 0)
             delays_span(rma, swath->nearest, swath->farthest, &first, &end);
         delays_span(rma, patch->grid.r_first, patch->grid.r_first, &first, &last);
-        if (k == 0 || first - 2 * rma->fade > end + 2 * rma->fade) {
+        if (k == 0 || first - 2 * rma->taper > end + 2 * rma->taper) {
             swath++;
             rma->swath_count++;
             *swath = (struct rma_swath){.nearest = patch->grid.r_first, .farthest = -INFINITY, .patches = patch};
@@ -197,7 +197,7 @@ static enum status swath_azimuth(const struct rma *rma, struct rma_swath *swath)
                               rma->method.name, g->x_first, last, x_low - angle, x_high + angle);
         overhang = fmax(overhang, fmax(x_low - g->x_first, last - x_high));
     }
-    /* A receiver aside sees half its offset farther; what is less than a Fresnel zone fades like any edge. */
+    /* A receiver aside sees half its offset farther; what is less than a Fresnel zone tapers like any edge. */
     double zone = sqrt(rma->setting.sound_speed / rma->setting.fc * swath->farthest / 2);
     double extent = x_high - x_low + overhang + angle + fmax(0, rma->bounds.aside / 2 - zone);
     swath->period = fft_length((long long)fmin(1e9, fmax(ceil(extent / spacing) + 1, folds / spacing)));
@@ -211,11 +211,11 @@ static enum status swath_azimuth(const struct rma *rma, struct rma_swath *swath)
     return STATUS_OK;
 }
 
-/* Range: what the rows need of the record, the fades included, and zeros up to what the pulse at the first row and the
+/* Range: what the rows need of the record, the tapers included, and zeros up to what the pulse at the first row and the
    delays of the widest angle need beyond it. */
 static enum status swath_range(const struct rma *rma, struct rma_swath *swath)
 {
-    double first, last, c = rma->setting.sound_speed, end = rma->samples - 1, margin = 2 * rma->fade;
+    double first, last, c = rma->setting.sound_speed, end = rma->samples - 1, margin = 2 * rma->taper;
     delays_span(rma, swath->nearest, swath->farthest, &first, &last);
     double pulse = fmin(PULSE_PERIODS * rma->fs / rma->problem.acquisition->bandwidth, rma->samples);
     double before = fmax(0, -first), after = fmax(0, last - end);
@@ -236,11 +236,11 @@ static enum status swath_range(const struct rma *rma, struct rma_swath *swath)
     if (swath->length == 0 || swath->stolt_length == 0 || swath->stolt_length > INT_MAX / 64)
         return unsupported(rma, "the range transform is too long");
 
-    /* What the fades smear beyond the pulse's band belongs to it. */
+    /* What the tapers smear beyond the pulse's band belongs to it. */
     int lanes = RMA_ALIGNMENT / (rma->problem.precision == PRECISION_DOUBLE ? 8 : 4);
     double half = ceil(rma->half_band / rma->fs * swath->length);
     if (swath->begin > 0 || swath->end < rma->samples)
-        half += 2 * ceil((double)swath->length / rma->fade);
+        half += 2 * ceil((double)swath->length / rma->taper);
     swath->band_first = half < (swath->length - 1) / 2 ? -(int)half : -(swath->length / 2);
     swath->band = half < (swath->length - 1) / 2 ? 2 * (int)half + 1 : swath->length;
     swath->row = (swath->band + lanes - 1) / lanes * lanes;

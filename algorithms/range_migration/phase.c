@@ -26,7 +26,7 @@ struct rma_line rma_line(const struct rma *rma, const struct rma_swath *swath, i
     double c = s->sound_speed, beta = s->speed / c, b1 = (1 - beta) * (1 + beta);
     double period_m = swath->period * fabs(rma->spacing);
     struct rma_line line = {.nu = (q - swath->wavenumbers / 2) / period_m, .begin = swath->band};
-    /* What the exact spectrum ends at; the formulas know no speed there, and end at abeam's own 1 besides. */
+    /* What the exact spectrum ends at; the formulas know no speed there, and end at broadside's own 1 besides. */
     double edge = line.nu > 0 ? 1 + beta : 1 - beta;
     if (rma->method.spectrum != spectrum_exact)
         edge = fmax(edge, 1);

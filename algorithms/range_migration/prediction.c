@@ -38,7 +38,7 @@ enum {
 };
 static const double abscissas[FREQUENCIES] = {-0.7745966692414834, 0, 0.7745966692414834};
 static const double weights[FREQUENCIES] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
-static const double FRESNEL_ZONES = 6; /* beside the places asked for, over which the kernel fades */
+static const double FRESNEL_ZONES = 6; /* beside the places asked for, over which the kernel tapers */
 static const double SPARE = 1.1;       /* of the tables' period, so that fading ends do not overlap */
 static const double LOBES = 3;         /* of a beam that tapers are followed this far, in nulls */
 static const double NEAR = 4;          /* resolutions: what is near a target */
@@ -48,7 +48,7 @@ static const double DEEP = 0.05;       /* of their range: patches whose first an
 struct kernel {
     const struct rma_view *view;
     double r;              /* m */
-    double reach, margin;  /* m: the places asked for, on either side; over the margin beside them it fades */
+    double reach, margin;  /* m: the places asked for, on either side; over the margin beside them it tapers */
     int count;             /* wavenumbers: k nu_step, k = -count/2 ... count/2 */
     double nu_step;        /* cycles/m */
     int length;            /* of a table: places from -length/2 step on */
@@ -71,7 +71,7 @@ static int receiver_of(const struct rma_view *view, int k, int count)
 }
 
 /* Share of the kernel that is kept whose stationary point is u ahead of the pixel. */
-static double fade(const struct kernel *kernel, double u)
+static double taper(const struct kernel *kernel, double u)
 {
     double beyond = (fabs(u) - kernel->reach) / kernel->margin;
     return beyond <= 0.5 ? 1 : beyond < 1 ? 0.5 - 0.5 * cos(2 * pi * beyond) : 0;
@@ -92,7 +92,7 @@ static void kernel_transform(const struct kernel *kernel, double d, double frequ
         if (!(fabs(place) <= focused))
             continue;
         double phase = view->converts ? view->method->spectrum(setting, d, r, frequency, nu) : -r * monostatic;
-        double weight = f * sqrt(c * r / (2 * kappa * kappa * kappa)) * kernel->nu_step * fade(kernel, place - d / 2);
+        double weight = f * sqrt(c * r / (2 * kappa * kappa * kappa)) * kernel->nu_step * taper(kernel, place - d / 2);
         if (weight > 0 && isfinite(phase))
             kernel->wave[k < 0 ? kernel->length + k : k] =
                 (2 * abs(k) == kernel->count ? 0.5 : 1) * weight * cexp(I * (pi / 4 - phase));

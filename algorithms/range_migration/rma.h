@@ -1,4 +1,4 @@
-/* The engine that all range migrations share: multi-receiver echoes are coerced into monostatic ones, then focused
+/* The engine that all range migrations share: multi-receiver echoes are converted into monostatic ones, then focused
    by one monostatic range migration (LBF21 section IV).
 
    A method is a formula phi(d, r, F, nu) for the phase of one pair's two-dimensional spectrum (spectrum.h). Each
@@ -93,7 +93,7 @@ struct rma_method {
 
 /* How wide the engine focuses; what lies farther out does not exist, or is left out. */
 struct rma_bounds {
-    double sine;  /* of the widest angle off abeam that wavenumbers, beam and lowest frequency allow */
+    double sine;  /* of the widest angle off broadside that wavenumbers, beam and lowest frequency allow */
     double way;   /* m: the farthest that a ping is from a wanted column, along the track; INFINITY: no bound */
     double aside; /* m: greatest magnitude of an offset */
 };

@@ -31,7 +31,7 @@ spectrum_function spectrum_lbf7;
 /* Phase-centre approximation, LBF21 Eq. (6). */
 spectrum_function spectrum_pca;
 /* Reference range history. Wu's own paper was not available; this is a working definition: the PCA phase of a
-   reference receiver, plus each receiver's exact abeam delay less the reference receiver's. */
+   reference receiver, plus each receiver's exact broadside delay less the reference receiver's. */
 spectrum_function spectrum_wu;
 
 /* Exact for d = 0: the phase is -r times this (rad/m), b = v^2/c^2:

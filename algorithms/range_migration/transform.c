@@ -164,14 +164,14 @@ static enum status plan(struct rma *rma)
         rma->scratch_bytes = (strip / RMA_ALIGNMENT + 1) * RMA_ALIGNMENT;
     rma->scratch = take(rma, (size_t)rma->threads, rma->scratch_bytes, 1.0 / rma->threads);
     rma->focused = take(rma, focused, sizeof(complex_real), 1);
-    rma->fades = take(rma, (size_t)rma->fade, sizeof(real), 1);
+    rma->tapers = take(rma, (size_t)rma->taper, sizeof(real), 1);
     rma->kernel = take(rma, (RMA_INTERVALS + 2) * (size_t)rma->taps, sizeof(real), 1);
     rma->filter = take(rma, (size_t)rma->record_length, sizeof(complex_real), 1);
-    bool complete = rma->scratch && rma->focused && rma->fades && rma->kernel && rma->filter;
+    bool complete = rma->scratch && rma->focused && rma->tapers && rma->kernel && rma->filter;
     if (complete) {
-        real *fades = rma->fades;
-        for (int k = 0; k < rma->fade; k++)
-            fades[k] = (real)pow(sin(pi / 2 * (k + 0.5) / rma->fade), 2);
+        real *tapers = rma->tapers;
+        for (int k = 0; k < rma->taper; k++)
+            tapers[k] = (real)pow(sin(pi / 2 * (k + 0.5) / rma->taper), 2);
         kernel_fill(rma);
     }
     if (complete && rma->record_length > 0) {
@@ -216,7 +216,7 @@ static void destroy(struct rma *rma)
     plan_destroy(rma->record_forward);
     plan_destroy(rma->record_inverse);
     free(rma->filter);
-    free(rma->fades);
+    free(rma->tapers);
     free(rma->kernel);
     free(rma->focused);
     free(rma->scratch);
@@ -235,16 +235,16 @@ static inline void multiply(real *restrict a, const real *restrict b, int count)
 /* A swath's part of a compressed record, as the spectrum's bins of the band. */
 static void cut(const struct rma *rma, const struct rma_swath *swath, const real *record, real *row)
 {
-    const real *fades = rma->fades;
+    const real *tapers = rma->tapers;
     const int length = swath->length, count = swath->end - swath->begin, lead = swath->begin - swath->first;
     real *wave = scratch_of(rma, RMA_WAVE), *taken = wave + 2 * lead;
     memset(wave, 0, 2 * (size_t)lead * sizeof *wave);
     memcpy(taken, record + 2 * swath->begin, 2 * (size_t)count * sizeof *wave);
     memset(taken + 2 * count, 0, 2 * (size_t)(length - lead - count) * sizeof *wave);
-    for (int k = 0; k < rma->fade && k < count; k++)
+    for (int k = 0; k < rma->taper && k < count; k++)
         for (int part = 0; part < 2; part++) {
-            taken[2 * k + part] *= swath->begin > 0 ? fades[k] : 1;
-            taken[2 * (count - 1 - k) + part] *= swath->end < rma->samples ? fades[k] : 1;
+            taken[2 * k + part] *= swath->begin > 0 ? tapers[k] : 1;
+            taken[2 * (count - 1 - k) + part] *= swath->end < rma->samples ? tapers[k] : 1;
         }
     FFTW(execute_dft)(swath->range_forward, (complex_real *)wave, (complex_real *)wave);
     const int below = -swath->band_first;

@@ -66,7 +66,7 @@ struct wk {
     bool reversed;            /* the track runs towards -x: its last ping comes first */
     double squint, slope;     /* rad; the centroid is at Kx = slope K_R */
     double angle;             /* rad: of the own axes */
-    double sine[2], x_end[2]; /* of the angles off abeam that hold echoes; m from x_middle: the track's ends */
+    double sine[2], x_end[2]; /* of the angles off broadside that hold echoes; m from x_middle: the track's ends */
 
     /* range: bin k of the band is at fc + (band_first + k) fs/range_length; the sample `centre` is the origin */
     int range_length, centre;

@@ -39,7 +39,7 @@ struct polar_filter {
     FFTW(plan) range_forward, range_inverse, track_forward, track_inverse;
 };
 
-/* Sine of the angle off abeam under which the area's centre is seen from x. */
+/* Sine of the angle off broadside under which the area's centre is seen from x. */
 static double centre_sine(const struct acquisition *a, double x)
 {
     return (a->area.x - x) / hypot(a->area.x - x, a->area.r);

@@ -8,7 +8,7 @@
        and all steps back.
 
    PF05 prints Eqs. (7), (11) and (15) with errors: everything of (7) stands in the exponent, alpha is atan((X_c - x_s)/R_c),
-   and psi is counted from abeam. The plane wave misplaces a target: its azimuth is stretched by R/R_c about x_s. With
+   and psi is counted from broadside. The plane wave misplaces a target: its azimuth is stretched by R/R_c about x_s. With
    curvature=on the quadratic term is taken off for each range, exp(+j k_c u^2 (1/R - 1/rho)) in (u, t), and put back
    after the mask: one sub-aperture then does what the paper needs four for.
 

@@ -36,7 +36,7 @@ static double wavelength_longest(const struct wk *wk)
     return a->sound_speed / (a->fc - a->bandwidth / 2);
 }
 
-/* Sines of the angles off abeam between which a beam of `half` (sine, about its axis) sees, and pings sample. */
+/* Sines of the angles off broadside between which a beam of `half` (sine, about its axis) sees, and pings sample. */
 static void angles_limit(const struct wk *wk, double half, double sine[2])
 {
     double b = half < 1 ? asin(half) : pi, sampled = wavelength_longest(wk) / (4 * wk->spacing);
@@ -47,7 +47,7 @@ static void angles_limit(const struct wk *wk, double half, double sine[2])
 }
 
 /* Kx/K_R of the beam's axis. Motion while the pulse travels moves it by about v/c: left alone where that is little of what
-   the pings hold, so that a beam abeam needs no unfolding. */
+   the pings hold, so that a beam broadside needs no unfolding. */
 static double centroid_slope(const struct wk *wk)
 {
     const struct spectrum_setting setting = {wk->sound_speed, wk->speed, wk->fc, 0};
@@ -82,7 +82,7 @@ static enum status lay_track(struct wk *wk)
     angles_limit(wk, a->tx_length > 0 ? wavelength_longest(wk) / a->tx_length : INFINITY, wk->sine);
     if (!(wk->sine[1] > wk->sine[0]) || !(fabs(wk->slope) < WIDEST_SINE))
         return status_set(STATUS_UNSUPPORTED,
-                          "%s: a squint of %g degrees; omega-k needs the sine of the angle off abeam below %g",
+                          "%s: a squint of %g degrees; omega-k needs the sine of the angle off broadside below %g",
                           wk->method.name, wk->squint * 180 / pi, WIDEST_SINE);
     return STATUS_OK;
 }
@@ -165,7 +165,7 @@ static enum status check_patches(const struct wk *wk)
         if (!any)
             return status_set(STATUS_UNSUPPORTED,
                               "%s: no ping sees patch %d, whose middle lies %g m ahead of the track's at r = %g m: "
-                              "the beam reaches from %.4g to %.4g degrees off abeam",
+                              "the beam reaches from %.4g to %.4g degrees off broadside",
                               wk->method.name, n + 1, grid_place(wk, &wk->problem.patches[n], 4).x,
                               grid_place(wk, &wk->problem.patches[n], 4).r, asin(beam[0]) * 180 / pi,
                               asin(beam[1]) * 180 / pi);

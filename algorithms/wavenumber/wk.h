@@ -2,7 +2,7 @@
 
    The echo of a point at (x, r), seen from X, has the range spectrum exp(-j K_R R(X)), K_R = 4 pi F/c, and along the track
    the spectrum exp(-j (Kx x + Ky r)): an image is the inverse transform over (Kx, Ky), onto which the spectrum over
-   (Kx, K_R) is interpolated (Stolt). A beam that looks at an angle theta off abeam has its wavenumbers about K_R sin theta,
+   (Kx, K_R) is interpolated (Stolt). A beam that looks at an angle theta off broadside has its wavenumbers about K_R sin theta,
    which the pings alias. Two ways to put them in their place:
 
        unfolded   Kx is laid out as far as the beam's wavenumbers reach, and the alias that belongs to a cell is the one

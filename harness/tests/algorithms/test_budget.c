@@ -113,7 +113,7 @@ static void phase_below_limit(void **state)
     }
 }
 
-/* One ping over a line of pixels at distance `range` abeam, so short that its quintics err by less than 0.01 of the limit, but
+/* One ping over a line of pixels at distance `range` broadside, so short that its quintics err by less than 0.01 of the limit, but
    bent by up to a hundred cycles; records of ones. */
 static void bent_line(double range, double limit, double fc, struct acquisition *a, struct grid *grid,
                       struct echoes *echoes)

@@ -79,7 +79,7 @@ static void conditions(void **state)
         {"rma_lbf", "", 150e3, 15e3, 0.16, 0, 15, 100},
         {"rma_lbf", "lbf_law", 150e3, 15e3, 0.16, 0, 75, 100},
         {"rma_pca", "", 150e3, 15e3, 0.4, 0, 2.5, 100},
-        {"rma_pca", "pca_law", 150e3, 15e3, 0.16, 0, 75, 100}, /* abeam alone does not show it */
+        {"rma_pca", "pca_law", 150e3, 15e3, 0.16, 0, 75, 100}, /* broadside alone does not show it */
         {"rma_wu", "wu_law", 150e3, 15e3, 0.16, 0, 75, 100},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {

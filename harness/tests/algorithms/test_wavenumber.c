@@ -226,7 +226,7 @@ static void motion(void **state)
     }
 }
 
-/* A track sailed the other way gives the same image. */
+/* A track run the other way gives the same image. */
 static void reversed(void **state)
 {
     (void)state;

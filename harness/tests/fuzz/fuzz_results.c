@@ -16,7 +16,7 @@ int LLVMFuzzerInitialize(int *count, char ***arguments)
     (void)count;
     (void)arguments;
     nowhere = fopen("/dev/null", "w");
-    /* What is told of older files would fill the terminal; libFuzzer keeps a copy of standard error for itself only
+    /* What is reported of older files would fill the terminal; libFuzzer keeps a copy of standard error for itself only
        when asked (-close_fd_mask=2). */
     return nowhere ? 0 : -1;
 }

@@ -152,7 +152,7 @@ static void refusals_of_the_plan_are_told(void **state)
     scene_free(&scene);
 }
 
-/* Abeam and slow, the phase is 4 pi fc r/c: so is what it changes by. */
+/* Broadside and slow, the phase is 4 pi fc r/c: so is what it changes by. */
 static void sensitivities_are_those_of_the_delay(void **state)
 {
     (void)state;

@@ -129,7 +129,7 @@ static void check_rows(const char *status, const char *reason)
     results_free(&results);
 }
 
-/* Whatever ends the process, the other rows are measured, and the reason is told. The next run tries again. */
+/* Whatever ends the process, the other rows are measured, and the reason is reported. The next run tries again. */
 static void crashes_are_rows(void **state)
 {
     (void)state;
