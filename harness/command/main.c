@@ -88,7 +88,7 @@ static const struct {
     {'s', "-s, --scene SCENE     a path, or a name below scenes/ without .cfg"},
     {'e', "-e, --echoes FILE     recorded echoes in MATLAB format"},
     {'a', "-a, --algorithm SPEC  NAME or NAME:key=value,...; every algorithm takes precision=float|double"},
-    {'g', "-g, --grid GRID       xmin:xstep:xcount,rmin:rstep:rcount in metres"},
+    {'g', "-g, --grid GRID       xmin:xstep:xcount,rmin:rstep:rcount in metres; ,ANGLE in degrees: turned axes"},
     {'t', "-t, --threads N       OpenMP threads, 1 to 1024"},
     {'A', "    --at FILE.csv     points: columns d, r, F, f, fc, v, c"},
     {'B', "    --ab              run two programs side by side and compare their times"},

@@ -7,7 +7,8 @@
 #include "data/number.h"
 #include "scene/scene.h"
 
-#define BYTES_MAX 0x1p40 /* of a patch in double */
+#define BYTES_MAX      0x1p40 /* of a patch in double */
+#define ANGLE_MOST_DEG 89.9   /* as of a scene's image.angle */
 
 /* One "first:step:count"; returns where it ends, NULL if it is not one. */
 static const char *axis_parse(const char *text, double *first, double *step, int *count)
@@ -23,13 +24,19 @@ static const char *axis_parse(const char *text, double *first, double *step, int
 enum status grid_parse(const char *text, struct grid *grid)
 {
     const char *rest = axis_parse(text, &grid->x_first, &grid->x_step, &grid->x_count);
+    double degrees = 0;
     rest = rest && *rest == ',' ? axis_parse(rest + 1, &grid->r_first, &grid->r_step, &grid->r_count) : NULL;
-    if (!rest || *rest) {
+    if (rest && *rest == ',') {
+        rest = number_read(rest + 1, &degrees);
+    }
+    if (!rest || *rest || !(fabs(degrees) <= ANGLE_MOST_DEG)) {
         return status_set(STATUS_INVALID,
                           "grid '%.200s': must be xmin:xstep:xcount,rmin:rstep:rcount, lengths in m as "
-                          "plain decimal numbers and counts from 1 to %d",
-                          text, INT_MAX);
+                          "plain decimal numbers and counts from 1 to %d, and where axes are turned ,angle in degrees "
+                          "up to %g",
+                          text, INT_MAX, ANGLE_MOST_DEG);
     }
+    grid->angle_rad = degrees * M_PI / 180;
     return grid_check(grid, "grid");
 }
 

@@ -7,12 +7,13 @@
 #include "scene/matfile.h"
 #include "scene/matvar.h"
 
-enum image_variable { IMAGE, IMAGE_X, IMAGE_R, IMAGE_VARIABLES };
+enum image_variable { IMAGE, IMAGE_X, IMAGE_R, IMAGE_ANGLE, IMAGE_VARIABLES };
 
 static const struct wanted image_variables[IMAGE_VARIABLES] = {
     [IMAGE] = {"image", KIND_COMPLEX, false, "a complex array [R x X] (range x azimuth)"},
     [IMAGE_X] = {"x", KIND_REAL, false, "an evenly spaced, rising row [1 x X] in m"},
     [IMAGE_R] = {"r", KIND_REAL, false, "an evenly spaced, rising row [1 x R] in m"},
+    [IMAGE_ANGLE] = {"angle", KIND_SCALAR, true, "a scalar between -pi/2 and pi/2 in rad"},
 };
 
 static void write_axis(struct writer *writer, const char *name, double first, double step, int count)
@@ -59,6 +60,9 @@ enum status image_file_write(const char *path, const struct image *image, const 
                       image->precision, image->pixels[k], rows, columns);
         write_axis(&writer, patch_name("x", k, text, sizeof text), grid->x_first, grid->x_step, grid->x_count);
         write_axis(&writer, patch_name("r", k, text, sizeof text), grid->r_first, grid->r_step, grid->r_count);
+        if (grid->angle_rad != 0) {
+            write_reals(&writer, patch_name("angle", k, text, sizeof text), 1, 1, 1, &grid->angle_rad);
+        }
     }
     write_text(&writer, "algorithm", algorithm);
     write_text(&writer, "options", options);
@@ -101,6 +105,11 @@ static enum status image_fill(const char *path, const struct variable *v, struct
     if (status == STATUS_OK) {
         status = axis_read(path, &image_variables[IMAGE_R], &v[IMAGE_R], rows, &grid->r_first, &grid->r_step,
                            &grid->r_count);
+    }
+    grid->angle_rad = v[IMAGE_ANGLE].values ? creal(v[IMAGE_ANGLE].values[0]) : 0;
+    if (status == STATUS_OK && !(fabs(grid->angle_rad) < M_PI / 2)) {
+        status = status_set(STATUS_INVALID, "%s: variable `angle` is %g; %s is needed", path, grid->angle_rad,
+                            image_variables[IMAGE_ANGLE].accepted);
     }
     if (status != STATUS_OK) {
         return status;

@@ -26,6 +26,8 @@ enum echo_variable {
     BEAM_LIMIT,
     ECHO_SINE,
     ECHO_TAPERS,
+    ECHO_SQUINT,
+    AREA,
     ECHO_VARIABLES
 };
 
@@ -49,6 +51,8 @@ static const struct wanted echo_variables[ECHO_VARIABLES] = {
     [BEAM_LIMIT] = {"beam_limit", KIND_SCALAR, true, "a scalar in (0, 1]"},
     [ECHO_SINE] = {"echo_sine", KIND_SCALAR, true, "a scalar > 0, Inf where echoes come from everywhere"},
     [ECHO_TAPERS] = {"echo_tapers", KIND_SCALAR, true, "0 or 1"},
+    [ECHO_SQUINT] = {"echo_squint", KIND_SCALAR, true, "a scalar between -pi/2 and pi/2 in rad"},
+    [AREA] = {"area", KIND_REAL, true, "a real array [1 x 4] in m (x, r, half_x, half_r), the last two > 0,"},
 };
 _Static_assert((int)ECHO_VARIABLES <= (int)WANTED_MAX, "send_variables keeps a mark for each variable");
 
@@ -72,6 +76,7 @@ static enum status check_echo_shapes(const char *path, const struct variable *v)
     const struct variable *pulse = &v[PULSE];
     bool is_vector = (pulse->dims[0] == 1 || pulse->dims[1] == 1) && pulse->dims[2] == 1;
     bool pulse_fits = !pulse->values || (is_vector && variable_count(pulse) <= INT_MAX);
+    bool area_fits = !v[AREA].values || variable_has_shape(&v[AREA], 1, 4, 1) || variable_has_shape(&v[AREA], 4, 1, 1);
     const struct {
         enum echo_variable variable;
         bool fits;
@@ -82,6 +87,7 @@ static enum status check_echo_shapes(const char *path, const struct variable *v)
         {RX, variable_has_shape(&v[RX], 3, receivers, pings)},
         {VELOCITY, variable_has_shape(&v[VELOCITY], 3, 1, 1) || variable_has_shape(&v[VELOCITY], 3, pings, 1)},
         {PULSE, pulse_fits},
+        {AREA, area_fits},
     };
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
         const struct wanted *wanted = &echo_variables[shapes[i].variable];
@@ -90,6 +96,43 @@ static enum status check_echo_shapes(const char *path, const struct variable *v)
             return status_set(
                 STATUS_INVALID, "%s: variable `%s` is [%zu x %zu x %zu], samples [%zu x %zu x %zu]; %s is needed", path,
                 wanted->name, dims[0], dims[1], dims[2], samples->dims[0], receivers, pings, wanted->accepted);
+        }
+    }
+    return STATUS_OK;
+}
+
+static enum status check_echo_scalars(const char *path, const struct variable *v)
+{
+    const double compressed = scalar_or(&v[COMPRESSED], 0), limit = scalar_or(&v[BEAM_LIMIT], 1);
+    const double tapers = scalar_or(&v[ECHO_TAPERS], 0);
+    const struct {
+        enum echo_variable variable;
+        bool fits;
+    } scalars[] = {
+        {COMPRESSED, compressed == 0 || compressed == 1},
+        {BEAM_LIMIT, limit > 0 && limit <= 1},
+        {ECHO_SINE, scalar_or(&v[ECHO_SINE], 1) > 0},
+        {ECHO_TAPERS, tapers == 0 || tapers == 1},
+        {ECHO_SQUINT, fabs(scalar_or(&v[ECHO_SQUINT], 0)) < M_PI / 2},
+    };
+    for (size_t i = 0; i < sizeof scalars / sizeof *scalars; i++) {
+        const struct wanted *wanted = &echo_variables[scalars[i].variable];
+        if (!scalars[i].fits) {
+            return status_set(STATUS_INVALID, "%s: variable `%s` is %g; %s is needed", path, wanted->name,
+                              creal(v[scalars[i].variable].values[0]), wanted->accepted);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Of a fitting shape. */
+static enum status check_area(const char *path, const struct variable *v)
+{
+    for (size_t i = 0; v[AREA].values && i < 4; i++) {
+        double value = creal(v[AREA].values[i]);
+        if (!isfinite(value) || !(value > 0 || i < 2)) {
+            return status_set(STATUS_INVALID, "%s: variable `area` has %g at place %zu; %s is needed", path, value,
+                              i + 1, echo_variables[AREA].accepted);
         }
     }
     return STATUS_OK;
@@ -115,23 +158,9 @@ static enum status check_echo_values(const char *path, const struct variable *v)
         return status_set(STATUS_INVALID, "%s: variable `format` is \"%s\"; %s is needed", path, text,
                           echo_variables[FORMAT].accepted);
     }
-    double compressed = scalar_or(&v[COMPRESSED], 0), beam_limit = scalar_or(&v[BEAM_LIMIT], 1);
-    if (compressed != 0 && compressed != 1) {
-        return status_set(STATUS_INVALID, "%s: variable `compressed` is %g; %s is needed", path, compressed,
-                          echo_variables[COMPRESSED].accepted);
-    }
-    if (!(beam_limit > 0 && beam_limit <= 1)) {
-        return status_set(STATUS_INVALID, "%s: variable `beam_limit` is %g; %s is needed", path, beam_limit,
-                          echo_variables[BEAM_LIMIT].accepted);
-    }
-    double sine = scalar_or(&v[ECHO_SINE], 1), tapers = scalar_or(&v[ECHO_TAPERS], 0);
-    if (!(sine > 0)) {
-        return status_set(STATUS_INVALID, "%s: variable `echo_sine` is %g; %s is needed", path, sine,
-                          echo_variables[ECHO_SINE].accepted);
-    }
-    if (tapers != 0 && tapers != 1) {
-        return status_set(STATUS_INVALID, "%s: variable `echo_tapers` is %g; %s is needed", path, tapers,
-                          echo_variables[ECHO_TAPERS].accepted);
+    enum status status = check_echo_scalars(path, v);
+    if (status != STATUS_OK) {
+        return status;
     }
     size_t count = variable_count(samples);
     for (size_t i = 0; i < count; i++) {
@@ -196,6 +225,11 @@ static enum status acquisition_fill(const char *path, const struct variable *v, 
     a->aperture_limit = scalar_or(&v[BEAM_LIMIT], INFINITY);
     a->echo_sine = scalar_or(&v[ECHO_SINE], 0);
     a->echo_tapers = scalar_or(&v[ECHO_TAPERS], 0) == 1;
+    a->echo_squint = scalar_or(&v[ECHO_SQUINT], 0);
+    if (v[AREA].values) {
+        const double complex *area = v[AREA].values;
+        a->area = (struct target_area){creal(area[0]), creal(area[1]), creal(area[2]), creal(area[3])};
+    }
     a->compressed = scalar_or(&v[COMPRESSED], 0) == 1;
     a->pulse_length = v[PULSE].values ? (int)variable_count(&v[PULSE]) : 0;
     enum status status = acquisition_allocate(a);
@@ -229,6 +263,9 @@ enum status echo_file_read(const char *path, struct acquisition *acquisition, st
     status = check_echo_values(path, variables);
     if (status == STATUS_OK) {
         status = check_echo_shapes(path, variables);
+    }
+    if (status == STATUS_OK) {
+        status = check_area(path, variables);
     }
     if (status == STATUS_OK) {
         status = normalise_pulse(path, variables);
@@ -321,11 +358,15 @@ enum status echo_file_write(const char *path, const struct echoes *echoes, const
         {"beam_limit", a->aperture_limit, a->aperture_limit <= 1},
         {"echo_sine", a->echo_sine, a->echo_sine > 0},
         {"echo_tapers", a->echo_tapers, a->echo_sine > 0},
+        {"echo_squint", a->echo_squint, a->echo_squint != 0},
     };
     for (size_t i = 0; i < sizeof scalars / sizeof *scalars; i++) {
         if (scalars[i].is_written) {
             write_reals(&writer, scalars[i].name, 1, 1, 1, &scalars[i].value);
         }
+    }
+    if (a->area.half_x > 0) {
+        write_reals(&writer, "area", 1, 4, 1, &a->area.x);
     }
     size_t t0_count = is_constant(a->t0, sizeof *a->t0, a->pings) ? 1 : pings;
     size_t velocity_count = is_constant(a->velocity, sizeof *a->velocity, a->pings) ? 1 : pings;

@@ -16,12 +16,12 @@ enum status echo_file_write(const char *path, const struct echoes *echoes, const
 /* Can a file be made here? Asked before long work whose result goes there. Errors: STATUS_INVALID. */
 enum status matfile_place(const char *path);
 
-/* Write an image with x, r, algorithm, options and scene (texts). The second patch is image_2, x_2, r_2, and so on. Same
-   rules. */
+/* Write an image with x, r, angle (of turned axes), algorithm, options and scene (texts). The second patch is image_2, x_2, r_2,
+   and so on. Same rules. */
 enum status image_file_write(const char *path, const struct image *image, const char *algorithm, const char *options,
                              const char *scene);
 
-/* Read an image file's first patch back: *grid from x and r (uniform to 1e-6 of a step), pixels malloc'ed complex double
+/* Read an image file's first patch back: *grid from x, r (uniform to 1e-6 of a step) and angle, pixels malloc'ed complex double
    [r_count][x_count]. Errors: STATUS_INVALID. */
 enum status image_file_read(const char *path, struct grid *grid, double complex **pixels);
 

@@ -70,7 +70,8 @@ enum status scenes_tell_apart(struct scene *a, struct scene *b);
 enum status scene_names(const char *scene_directory, char ***names, int *count);
 void scene_names_free(char **names, int count);
 
-/* GRID as on the command line, "xmin:xstep:xcount,rmin:rstep:rcount" in metres. Errors: STATUS_INVALID. */
+/* GRID as on the command line, "xmin:xstep:xcount,rmin:rstep:rcount" in metres, with ",angle" in degrees where the axes are
+   turned as by a scene's image.angle. Errors: STATUS_INVALID. */
 enum status grid_parse(const char *text, struct grid *grid);
 /* Positive finite steps, counts >= 1, count products that fit; `place` begins the message. Errors: STATUS_INVALID. */
 enum status grid_check(const struct grid *grid, const char *place);

@@ -297,6 +297,25 @@ static void files_beyond_the_limit(void **state)
     }
 }
 
+/* Filtered echoes replace a file whole or not at all. */
+static void filtered_echoes_are_whole(void **state)
+{
+    (void)state;
+    static const char *const lines[] = {
+        "{ trap '' XFSZ; ulimit -f 8; exec \"$SASBENCH_PROGRAM\" filter gate/squint -o old.mat; }",
+        "\"$SASBENCH_PROGRAM\" filter gate/squint -a wk_polar:subapertures=99 -o old.mat",
+    };
+    support_write("old.mat", "old\n");
+    for (size_t k = 0; k < sizeof lines / sizeof *lines; k++) {
+        assert_shell(lines[k], 2);
+        assert_shell("test \"$(cat old.mat)\" = old", 0);
+        assert_nothing_temporary();
+    }
+    assert_shell("\"$SASBENCH_PROGRAM\" filter gate/squint -o old.mat", 0);
+    assert_shell("test $(stat -c %s old.mat) -gt 100000", 0);
+    assert_nothing_temporary();
+}
+
 int main(void)
 {
     if (setenv("ROOT", SASBENCH_ROOT, 1) != 0)
@@ -313,6 +332,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(standard_output_by_name, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(folder_names, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(files_beyond_the_limit, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(filtered_echoes_are_whole, folder_make, folder_remove),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

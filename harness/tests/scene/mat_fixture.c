@@ -81,6 +81,8 @@ struct acquisition make_acquisition(int samples, int receivers, int pings, bool 
                             .aperture_limit = 0.25,
                             .echo_sine = compressed ? INFINITY : 0.07,
                             .echo_tapers = !compressed,
+                            .echo_squint = compressed ? 0.3490658503988659 : 0,
+                            .area = compressed ? (struct target_area){1 / 3.0, 20, 1.5, 2} : (struct target_area){0},
                             .compressed = compressed,
                             .pulse_length = compressed ? 0 : 3};
     assert_ok(acquisition_allocate(&a));

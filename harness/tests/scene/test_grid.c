@@ -18,7 +18,9 @@ static void grid_texts(void **state)
     assert_true(grid.x_first == -0.016 && grid.x_step == 0.0001 && grid.x_count == 320);
     assert_true(grid.r_first == 0.03 && grid.r_step == 5e-5 && grid.r_count == 400);
     assert_int_equal(grid_parse("-20:0.2:201,-20:0.2:201", &grid), STATUS_OK);
-    assert_true(grid.r_first == -20);
+    assert_true(grid.r_first == -20 && grid.angle_rad == 0);
+    assert_int_equal(grid_parse("0:0.1:5,40:0.1:6,-20", &grid), STATUS_OK);
+    assert_true(grid.r_count == 6 && grid.angle_rad == -20 * M_PI / 180);
     const char *const bad[] = {
         "",
         "1",
@@ -43,6 +45,10 @@ static void grid_texts(void **state)
         "1e12:1:5,0:1:1",
         "1e9:1e-9:5,0:1:1",
         "0,1:1:2,3:4:5",
+        "0:1:2,3:4:5,90",
+        "0:1:2,3:4:5,nan",
+        "0:1:2,3:4:5,2 ",
+        "0:1:2,3:4:5,2,3",
     };
     for (size_t i = 0; i < COUNT_OF(bad); i++) {
         if (grid_parse(bad[i], &grid) != STATUS_INVALID) {

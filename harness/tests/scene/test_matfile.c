@@ -24,6 +24,11 @@ static void assert_same_echoes(const struct echoes *written, const struct echoes
         {a->aperture_limit, b->aperture_limit},
         {a->echo_sine, b->echo_sine},
         {a->echo_tapers, b->echo_tapers},
+        {a->echo_squint, b->echo_squint},
+        {a->area.x, b->area.x},
+        {a->area.r, b->area.r},
+        {a->area.half_x, b->area.half_x},
+        {a->area.half_r, b->area.half_r},
         {a->compressed, b->compressed},
         {a->pulse_length, b->pulse_length},
     };
@@ -95,7 +100,7 @@ static void images_come_back_as_matlab_has_them(void **state)
 {
     (void)state;
     const struct grid grids[] = {
-        {-1, 0.02, 3, 40, 0.5, 4}, {0.1, 1, 1, -2, 0.1, 6}, {0.1, 0.3, 5, 7, 1, 1}, {3, 1, 1, 4, 1, 1}};
+        {-1, 0.02, 3, 40, 0.5, 4, 0.3}, {0.1, 1, 1, -2, 0.1, 6}, {0.1, 0.3, 5, 7, 1, 1}, {3, 1, 1, 4, 1, 1}};
     for (int precision = PRECISION_FLOAT; precision <= PRECISION_DOUBLE; precision++) {
         struct image image;
         assert_ok(image_allocate(4, grids, (enum precision)precision, &image));
@@ -117,6 +122,7 @@ static void images_come_back_as_matlab_has_them(void **state)
             assert_int_equal(back.x_count, grid->x_count);
             assert_int_equal(back.r_count, grid->r_count);
             assert_true(back.x_first == grid->x_first && back.r_first == grid->r_first);
+            assert_true(back.angle_rad == grid->angle_rad);
             assert_true(fabs(back.x_step - grid->x_step) < 1e-12 || grid->x_count == 1);
             assert_true(fabs(back.r_step - grid->r_step) < 1e-12 || grid->r_count == 1);
             for (int i = 0; i < grid->r_count; i++) {
@@ -161,6 +167,7 @@ static void both_versions_are_read(void **state)
         assert_int_equal(a.pings, P);
         assert_true(a.t0[P - 1] == 0.1 && a.velocity[P - 1].z == 1e-3 * 3 && a.tx_length == 0.1);
         assert_true(a.rx_length == 0 && isinf(a.aperture_limit) && a.pulse_length == K);
+        assert_true(a.echo_squint == 0 && a.area.half_x == 0); /* as files have it that do not say */
         assert_true(a.rx[2 * M + 1].y == 1e-3 * (3 * (2 * M + 1) + 2));
         assert_true(((const double complex *)echoes.samples)[N * M * P - 1] == 1e-3 * (N * M * P) * (1 + I));
         acquisition_free(&a);

@@ -65,6 +65,12 @@ static const struct wrong {
     {"echo_sine", MAT_C_DOUBLE, 1, 1, 1, false, NAN, "`echo_sine` is nan"},
     {"echo_sine", MAT_C_DOUBLE, 2, 1, 1, false, 1, "`echo_sine` is [2 x 1 x 1]"},
     {"echo_tapers", MAT_C_DOUBLE, 1, 1, 1, false, 2, "`echo_tapers` is 2; 0 or 1"},
+    {"echo_squint", MAT_C_DOUBLE, 1, 1, 1, false, 20, "`echo_squint` is 20; a scalar between -pi/2 and pi/2 in rad"},
+    {"echo_squint", MAT_C_DOUBLE, 1, 1, 1, false, NAN, "`echo_squint` is nan"},
+    {"area", MAT_C_DOUBLE, 1, 3, 1, false, 1, "`area` is [1 x 3 x 1]"},
+    {"area", MAT_C_DOUBLE, 1, 4, 1, false, 0, "`area` has 0 at place 3; a real array [1 x 4] in m"},
+    {"area", MAT_C_DOUBLE, 4, 1, 1, false, INFINITY, "`area` has inf at place 1"},
+    {"area", MAT_C_DOUBLE, 1, 4, 1, true, 1, "`area` is complex"},
 };
 
 static void wrong_write(mat_t *mat, const struct wrong *wrong, double *values, char *text)
@@ -233,6 +239,7 @@ static void wrong_images_are_refused(void **state)
         {"x", 1, 3, 1, {0, 1, INFINITY}, "`x` has"},
         {"r", 2, 1, 1, {0, 1}, "`r` is [2 x 1 x 1] for 2 pixels"},
         {"image", 2, 1, 2, {0}, "`image` is [2 x 1 x 2]"},
+        {"angle", 1, 1, 1, {2}, "`angle` is 2; a scalar between"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const double x[] = {0, 0.1, 0.2}, r[] = {10, 10.1}, image[6] = {0};

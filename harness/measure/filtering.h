@@ -1,0 +1,44 @@
+/* The polar-format filter (wavenumber/filter.h) on echoes as they are recorded, and how much of each target it keeps. */
+#ifndef SASBENCH_MEASURE_FILTERING_H
+#define SASBENCH_MEASURE_FILTERING_H
+
+#include "measure/spec.h"
+#include "scene/scene.h"
+#include "wavenumber/filter.h"
+
+struct traces;
+
+/* Matched filter, then the target area, for the echoes of one acquisition. Made by filtering_open, released by
+   filtering_close. */
+struct filtering {
+    const struct acquisition *acquisition; /* borrowed, outlives it */
+    struct traces *traces;
+    struct polar_filter *filter;
+    struct polar_shape shape;
+};
+
+/* `spec` is one of wk_polar. Errors: STATUS_UNSUPPORTED as polar_filter_check, STATUS_FAILED without memory; there is nothing to
+   close then. */
+enum status filtering_open(const struct acquisition *acquisition, const struct spec *spec, struct filtering *filtering);
+void filtering_close(struct filtering *filtering);
+
+/* Both in place, on records [pings][samples]: as they were recorded to compressed ones, and these to filtered ones. */
+void filtering_compress(const struct filtering *filtering, double complex *records);
+void filtering_apply(const struct filtering *filtering, double complex *records);
+
+/* What the filter does to echoes: their energy behind it and the energy of what it changes, both over that ahead of it; NAN where
+   there are no echoes. */
+struct kept {
+    double kept_db, changed_db;
+};
+
+/* Compressed echoes, which are filtered in place. Errors: STATUS_FAILED without memory. */
+enum status filtering_measure(const struct filtering *filtering, double complex *records, struct kept *kept);
+/* Point target `index` of the scene by itself, for the filter is linear. Errors: as filtering_measure and scene_simulate. */
+enum status filtering_target(const struct filtering *filtering, const struct scene *scene, int index,
+                             struct kept *kept);
+
+/* Does a place lie in the target area? */
+bool area_holds(const struct target_area *area, double x_m, double r_m);
+
+#endif
