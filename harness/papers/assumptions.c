@@ -2,6 +2,9 @@
 #include "papers/assumptions.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "data/paths.h"
 #include "scene/simulate.h"
@@ -23,25 +26,31 @@ void assumptions_choose(const struct assumptions *assumptions)
     chosen = assumptions;
 }
 
-/* A target moves with the patch around it; those of one patch for many, and scatterers, stay. */
-static void target_move(struct scene *scene, int k, double r)
+/* A target moves with the patch around it, and the pixels that are compared with the patch; those of one patch for
+   many, and scatterers, stay. */
+static bool target_move(struct scene *scene, int k, double way)
 {
-    if (scene->patch_count != scene->point_count)
-        return;
-    scene->patches[k].r_first += r - scene->targets[k].r;
-    scene->targets[k].r = r;
+    if (scene->patch_count != scene->point_count || way == 0)
+        return false;
+    scene->patches[k].r_first += way;
+    if (scene->reference_count == scene->point_count)
+        scene->reference_patches[k].r_first += way;
+    scene->targets[k].r += way;
+    return true;
 }
 
-enum status assumed_scene_load(const char *name, struct scene *scene)
+/* Does it change anything? */
+static bool assume(struct scene *scene)
 {
-    enum status status = scene_load(name, SCENE_DIRECTORY, scene);
-    if (status != STATUS_OK || chosen == assumption_sets)
-        return status;
     struct acquisition *a = &scene->acquisition;
     const double old_bin = a->sound_speed / (2 * a->fs);
-    if (chosen->sound_speed > 0)
+    bool changed = false;
+    if (chosen->sound_speed > 0) {
+        changed |= a->sound_speed != chosen->sound_speed;
         a->sound_speed = chosen->sound_speed;
+    }
     if (chosen->limit > 0 && scene->beam.kind == BEAM_RECT) {
+        changed |= scene->beam.limit != chosen->limit || scene->beam.truncation != chosen->truncation;
         scene->beam.limit = chosen->limit;
         scene->beam.truncation = chosen->truncation;
     }
@@ -50,10 +59,51 @@ enum status assumed_scene_load(const char *name, struct scene *scene)
     for (int k = 0; k < scene->point_count; k++) {
         double r = scene->targets[k].r, bins = r / old_bin;
         bool on_bin = fabs(bins - floor(bins + 0.5)) < 1e-6;
-        if (on_bin && bin != old_bin)
-            r = floor(r / bin + 0.5) * bin;
-        target_move(scene, k, chosen->off_bins ? r + bin / 2 : r);
+        double place = on_bin && bin != old_bin ? floor(r / bin + 0.5) * bin : r;
+        changed |= target_move(scene, k, place - r + (chosen->off_bins ? bin / 2 : 0));
     }
+    return changed;
+}
+
+enum status assumed_scene_load(const char *name, struct scene *scene)
+{
+    enum status status = scene_load(name, SCENE_DIRECTORY, scene);
+    if (status != STATUS_OK || chosen == assumption_sets || !assume(scene))
+        return status;
+    const size_t size = strlen(scene->name) + strlen(chosen->name) + 2;
+    char *assumed = malloc(size);
+    if (!assumed) {
+        scene_free(scene);
+        return status_set(STATUS_FAILED, "no memory for the scene %s", name);
+    }
+    snprintf(assumed, size, "%s@%s", scene->name, chosen->name);
+    free(scene->name);
+    scene->name = assumed;
     scene->hash ^= (uint64_t)(chosen - assumption_sets) * 0x9e3779b97f4a7c15u;
     return STATUS_OK;
+}
+
+const char *assumed_scene_name(const char *name)
+{
+    static struct known {
+        const struct assumptions *assumptions;
+        char plain[80], assumed[80];
+    } known[512];
+    enum { KNOWN = sizeof known / sizeof *known };
+    struct scene scene;
+    int k = 0;
+    if (chosen == assumption_sets)
+        return name;
+    while (k < KNOWN - 1 && known[k].assumptions
+           && (known[k].assumptions != chosen || strcmp(known[k].plain, name) != 0))
+        k++;
+    if (known[k].assumptions == chosen && strcmp(known[k].plain, name) == 0)
+        return known[k].assumed;
+    if (assumed_scene_load(name, &scene) != STATUS_OK)
+        return name;
+    known[k].assumptions = chosen;
+    snprintf(known[k].plain, sizeof known[k].plain, "%s", name);
+    snprintf(known[k].assumed, sizeof known[k].assumed, "%s", scene.name);
+    scene_free(&scene);
+    return known[k].assumed;
 }

@@ -11,9 +11,7 @@
 #include "measure/imaging.h"
 #include "papers/measured.h"
 #include "papers/assumptions.h"
-
-static const char *const phase_files[] = {
-    [PHASE_SHORT] = "phase-lbf21__phase_short.csv", [PHASE_LONG] = "phase-lbf21__phase_long.csv"};
+#include "study/phase.h"
 
 static enum status results_read_if(const char *directory, const char *name, struct results *results)
 {
@@ -32,7 +30,7 @@ enum status measured_read(const char *directory, struct measured *measured)
     if (status == STATUS_OK)
         status = results_read_if(directory, "targets.csv", &measured->targets);
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {
-        snprintf(path, sizeof path, "%s/%s", directory, phase_files[k]);
+        phase_path(directory, assumed_scene_name(phase_setups[k]), ".csv", path, sizeof path);
         if (access(path, F_OK) == 0)
             status = csv_read(path, CSV_TAIL_KEEP, &measured->phase[k]);
     }
@@ -65,10 +63,11 @@ static const struct measurement *row_find(const struct measured *measured, const
 {
     struct spec spec;
     const struct measurement *row = NULL;
+    const char *assumed = assumed_scene_name(scene);
     *valid = spec_parse(spec_text, &spec) == STATUS_OK;
     for (int k = 0; *valid && k < measured->measurements.csv.row_count && !row; k++) {
         const struct measurement *m = &measured->measurements.measurements[k];
-        if (strcmp(m->scene, scene) == 0 && strcmp(m->algorithm, spec.algorithm->name) == 0
+        if (strcmp(m->scene, assumed) == 0 && strcmp(m->algorithm, spec.algorithm->name) == 0
             && strcmp(m->options, spec.text) == 0 && strcmp(m->precision, precision_name(spec.precision)) == 0)
             row = m;
     }
@@ -178,7 +177,7 @@ double measured_target(struct measured *measured, const char *scene, const char 
     double value = NAN;
     for (int k = 0; row && k < measured->targets.csv.row_count; k++) {
         const struct target_row *t = &measured->targets.target_rows[k];
-        if (t->target == target && strcmp(t->scene, scene) == 0 && strcmp(t->algorithm, row->algorithm) == 0
+        if (t->target == target && strcmp(t->scene, row->scene) == 0 && strcmp(t->algorithm, row->algorithm) == 0
             && strcmp(t->options, row->options) == 0 && strcmp(t->precision, row->precision) == 0
             && strcmp(t->axis, "azimuth") == 0 && strcmp(t->definition, definition) == 0)
             value = *(const double *)((const char *)t + offset);
@@ -197,7 +196,7 @@ double measured_phase(struct measured *measured, const struct phase_part *part)
     int error = csv_column(csv, name), range = csv_column(csv, "r_m"), nu = csv_column(csv, "nu_per_m");
     int receiver = csv_column(csv, "receiver");
     if (error < 0 || range < 0 || nu < 0 || receiver < 0)
-        return measured_missing(measured, "the phase study (%s) was not made", phase_files[part->setup]);
+        return measured_missing(measured, "the phase study of %s was not made", phase_setups[part->setup]);
     double nu_most = 0, largest = NAN, number, r, error_rad;
     for (int row = 0; row < csv->row_count; row++)
         if (csv_number(csv_cell(csv, row, nu), &number))
@@ -210,7 +209,7 @@ double measured_phase(struct measured *measured, const struct phase_part *part)
             largest = fmax(largest, fabs(error_rad));
     }
     return isfinite(largest) ? largest
-                             : measured_missing(measured, "%s: %s is undefined", phase_files[part->setup], name);
+                             : measured_missing(measured, "%s: %s is undefined", phase_setups[part->setup], name);
 }
 
 double published_value(struct measured *measured, const char *table, const char *target, const char *method,

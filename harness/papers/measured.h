@@ -5,6 +5,7 @@
 
 #include "data/published.h"
 #include "measure/results.h"
+#include "study/phase.h"
 
 /* What a plan counts, by scene and SPEC. */
 struct planned {
@@ -15,14 +16,13 @@ struct planned {
 /* A folder's measurements. What is asked of it and not there is NAN, and `missing` then says why. */
 struct measured {
     struct results measurements, targets; /* as results.h reads them; all zero when there is no file */
-    struct csv phase[2];                  /* of enum phase_setup, as the command `phase` writes them */
+    struct csv phase[PHASE_SETUPS];       /* as phase_study writes them */
     struct csv published;                 /* results/published.csv */
     struct planned planned[16];           /* work that was asked for */
     int planned_count;
     double load;       /* load average a processor while times were measured; 0: unknown */
     char missing[400]; /* the first value that was not there since it was last cleared */
 };
-enum phase_setup { PHASE_SHORT, PHASE_LONG };
 
 /* Files that are not there yet are no error. Errors: those of results_read and csv_read; free in any case. */
 enum status measured_read(const char *directory, struct measured *measured);

@@ -119,11 +119,12 @@ static bool phases_asked(const struct selection *selection)
     return asked;
 }
 
-/* Needs into a folder, which is made. */
+/* Needs into a folder, which is made, without times. */
 static enum status needs_measure(const char *directory, struct need *needs, int count)
 {
     struct batch batch = {0};
     enum status status = batch_open(directory, count, false, &batch);
+    batch.untimed = true;
     for (int k = 0; k < count && status == STATUS_OK; k++)
         if (needs[k].scene)
             status = scene_measure(&batch, needs + k, count - k);

@@ -132,7 +132,7 @@ static enum status measure(struct batch *batch, struct visit *visit, int index)
     if (crash)
         return add_crashed(batch, visit->session.scene, &visit->specs[index], crash);
     supervisor_enter(task);
-    outcome_measure(&visit->session, &visit->specs[index], true, &outcome);
+    outcome_measure(&visit->session, &visit->specs[index], !batch->untimed, &outcome);
     supervisor_leave();
     outcome.row.threads = batch->threads;
     visit->works[index] = outcome.work;

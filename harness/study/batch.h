@@ -11,6 +11,7 @@ struct batch {
     struct results_folder *results;
     int threads;
     bool details;   /* of every scene: draw images and slices, print FLOPs by formula */
+    bool untimed;   /* form each image once: rows have no times */
     bool failed;    /* a measurement failed */
     int undrawn;    /* pictures that could not be drawn */
     int done, rows; /* measurements, for the progress line */

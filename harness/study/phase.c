@@ -27,6 +27,8 @@ static const struct {
 };
 enum { FORMULAS = sizeof formulas / sizeof *formulas };
 
+const char *const phase_setups[] = {[PHASE_SHORT] = "lbf21/_phase_short", [PHASE_LONG] = "lbf21/_phase_long"};
+
 static const double ranges_m[] = {50, 135, 220, 300};
 enum { RANGES = 4, DOPPLERS = 201, FREQUENCIES = 3, RECEIVERS = 2 };
 
@@ -183,12 +185,31 @@ static enum status study_draw(const struct study *study, int receiver, const cha
     return plot_phase(path, PLOT_DIRECTORY, title, RANGES, panels, FORMULAS - 1, lines[0]);
 }
 
+void phase_path(const char *directory, const char *scene, const char *rest, char *path, size_t size)
+{
+    char name[256];
+    snprintf(name, sizeof name, "%s", scene);
+    for (char *p = name; *p; p++)
+        if (*p == '/')
+            *p = '_';
+    snprintf(path, size, "%s/phase-%s%s", directory, name, rest);
+}
+
+enum status phase_curves_write(const struct scene *scene, const char *directory)
+{
+    struct study study;
+    char path[4200];
+    phase_path(directory, scene->name, ".csv", path, sizeof path);
+    enum status status = study_begin(scene, &study);
+    return status == STATUS_OK ? study_write(&study, path) : status;
+}
+
 enum status phase_scene_study(const char *name, const char *directory, bool taken)
 {
     struct scene scene;
     struct study study;
     struct csv published;
-    char stem[4096], path[4200];
+    char path[4200], rest[40];
     int lock = -1;
     enum status status = scene_load(name, SCENE_DIRECTORY, &scene);
     if (status != STATUS_OK)
@@ -196,23 +217,19 @@ enum status phase_scene_study(const char *name, const char *directory, bool take
     status = published_read(&published);
     if (status == STATUS_OK)
         status = study_begin(&scene, &study);
-    int used = snprintf(stem, sizeof stem, "%s/phase-", directory);
-    snprintf(stem + used, sizeof stem - (size_t)used, "%s", scene.name);
-    for (char *p = stem + used; *p; p++)
-        if (*p == '/')
-            *p = '_';
     if (status == STATUS_OK)
         status = directory_make(directory);
     if (status == STATUS_OK && !taken)
         status = folder_take(directory, &lock);
     if (status == STATUS_OK) {
-        snprintf(path, sizeof path, "%s.csv", stem);
+        phase_path(directory, scene.name, ".csv", path, sizeof path);
         status = study_write(&study, path);
     }
     if (status == STATUS_OK)
         study_print(&study, &published);
     for (int i = 0; status == STATUS_OK && i < RECEIVERS && study.receiver[i] > (i ? 1 : 0); i++) {
-        snprintf(path, sizeof path, "%s-receiver%d.png", stem, study.receiver[i]);
+        snprintf(rest, sizeof rest, "-receiver%d.png", study.receiver[i]);
+        phase_path(directory, scene.name, rest, path, sizeof path);
         status = study_draw(&study, i, path);
     }
     folder_leave(lock);
@@ -313,9 +330,8 @@ const char *phase_formula(int k)
 
 enum status phase_study(const char *directory, bool taken)
 {
-    static const char *const setups[] = {"lbf21/_phase_short", "lbf21/_phase_long"};
     enum status status = STATUS_OK;
-    for (size_t k = 0; status == STATUS_OK && k < sizeof setups / sizeof *setups; k++)
-        status = phase_scene_study(setups[k], directory, taken);
+    for (int k = 0; status == STATUS_OK && k < PHASE_SETUPS; k++)
+        status = phase_scene_study(phase_setups[k], directory, taken);
     return status;
 }

@@ -4,10 +4,14 @@
 
 #include <stdbool.h>
 
-#include "status.h"
+#include "scene/scene.h"
 
 /* Name of formula k, of which the study's files have a column NAME_error_rad; NULL for k behind the last. */
 const char *phase_formula(int k);
+
+/* LBF21's two set-ups. */
+enum phase_setup { PHASE_SHORT, PHASE_LONG, PHASE_SETUPS };
+extern const char *const phase_setups[PHASE_SETUPS]; /* their scenes */
 
 /* LBF21's two set-ups: CSV files and pictures in the folder, the largest errors on standard output beside those that
    the paper prints. The caller has made the folder; `taken`: and holds it (folder.h). Errors: STATUS_INVALID for files
@@ -15,6 +19,11 @@ const char *phase_formula(int k);
 enum status phase_study(const char *directory, bool taken);
 /* The same for the array of one scene, by name or path; the folder is made. */
 enum status phase_scene_study(const char *scene, const char *directory, bool taken);
+
+/* The CSV file alone, of a scene that was loaded. Errors: as above; STATUS_UNSUPPORTED for a track that is not straight. */
+enum status phase_curves_write(const struct scene *scene, const char *directory);
+/* "DIR/phase-SCENE" and what follows it: the study's files. */
+void phase_path(const char *directory, const char *scene, const char *rest, char *path, size_t size);
 
 /* Every formula at the points of a CSV file (columns d, r, F, f, fc, v, c), as CSV on standard output. Errors:
    STATUS_INVALID naming file, line, column, value and what is accepted. */
