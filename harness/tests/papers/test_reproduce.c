@@ -272,12 +272,14 @@ static void times_are_scaled(void **state)
             planted_add("bp22/full_rows", spec, 1.25, "compress=0.25;focus=1");
         }
         planted_add("bp22/full_rows", SINC_8 "," PLAIN_BP, cases[n].sinc_s, cases[n].stages);
+        planted_add("bp22/full_rows", "bp_zeropad:factor=9," PLAIN_BP, 2, "compress=1;focus=1"); /* upsampled once */
         planted_add("lbf21/real_size_part", "rma_lbf:variant=printed,spacing=uniform,blend=off,blocks=16," PLAIN_RMA,
                     10, "compress=1;bulk=2;differential=3;reconstruct=2;stolt=2");
         static const char *const scenes[] = {"bp22/full", "bp22/full_limited"};
         for (int k = 0; k < 2; k++) {
             for (int l = 0; l < 3; l++)
-                planted_add(scenes[k], lines[l], 1, "");
+                planted_add(scenes[k], lines[l], 1, "compress=0.1;focus=0.9");
+            planted_add(scenes[k], "bp_zeropad:factor=9", 2, "compress=1.1;focus=0.9");
             planted_add(scenes[k], SINC_8, 3, "");
         }
         planted_end(&measured);

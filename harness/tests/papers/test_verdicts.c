@@ -166,7 +166,6 @@ static void claim_plant(const struct claim *claim)
                     assert_int_equal(results_folder_targets(rows, &row, 1), STATUS_OK);
             }
         struct measurement row = planted_row(claim->needs[k].scene, &spec);
-        row.stages = "compress=1;focus=0;bulk=0;differential=0;reconstruct=0";
         assert_int_equal(results_folder_add(rows, &row), STATUS_OK);
         spec_free(&spec);
     }
@@ -178,11 +177,15 @@ static void numbers_draw(struct measured *measured)
     struct results *images = &measured->measurements, *targets = &measured->targets;
     const double methods = pow(10, drawn(-4, 0.5)) * coin(), places = pow(10, drawn(-5, 0)) * coin();
     const double slowness = exp(drawn(-3, 5)), times = coin() ? 0.05 : 4;
+    static char stages[64][100];
+    assert_true(images->csv.row_count <= 64);
     for (int k = 0; k < images->csv.row_count; k++) {
         struct measurement *m = &images->measurements[k];
         m->error = 0.05 * exp(drawn(-5, 4));
         m->phase_rms_rad = 0.1 * exp(drawn(-3, 3));
         m->run_s = m->run_min_s = slowness * exp(times * drawn(-1, 1));
+        snprintf(stages[k], sizeof *stages, "compress=1;focus=%.9g;bulk=0;differential=0;reconstruct=0", m->run_s);
+        m->stages = stages[k];
         m->control_s = m->flops = m->flops_published = 1;
         m->width_m = 0.04 * exp(drawn(-1, 1));
         m->pslr_db = -14 + methods * drawn(-1, 1);
@@ -232,6 +235,10 @@ static void phases_draw(struct measured *measured)
     }
 }
 
+/* Slowest over fastest is 1 at least, and the least noise is above the 3.7 % that Table 4 calls almost the same: it can be
+   refuted or left open, and never holds. */
+static const char *const only_refuted = "bp22-4.2-8";
+
 /* Every claim that measurements decide holds by some and fails by others. */
 static void each_verdict_can_flip(void **state)
 {
@@ -242,18 +249,20 @@ static void each_verdict_can_flip(void **state)
     for (int k = 0; k < claims.count; k++) {
         const struct claim *claim = &claims.claims[k];
         struct measured measured;
-        bool seen[CLAIM_VERDICTS] = {false};
+        bool seen[CLAIM_VERDICTS] = {false}, refuted = strcmp(claim->id, only_refuted) == 0;
         int draws = 0;
         if (!judge_decides(claim->judge) || judge_identity(claim->judge))
             continue;
         generator = random_seed(1, (uint64_t)k);
         claim_plant(claim);
         planted_end(&measured);
-        for (; draws < DRAWS_MAX && !((seen[CLAIM_HOLDS] || seen[CLAIM_ASSUMED]) && seen[CLAIM_FAILS]); draws++) {
+        bool both = false;
+        for (; draws < DRAWS_MAX && !both; draws++) {
             numbers_draw(&measured);
             if (claim->phases)
                 phases_draw(&measured);
             seen[claim_judge(&claims, claim, SCHEME_PRINTED, &measured).verdict] = true;
+            both = seen[CLAIM_FAILS] && (refuted ? seen[CLAIM_UNDECIDED] : seen[CLAIM_HOLDS] || seen[CLAIM_ASSUMED]);
         }
         if (draws == DRAWS_MAX)
             fail_msg("%s never %s; %s", claim->id, seen[CLAIM_FAILS] ? "holds" : "fails",
