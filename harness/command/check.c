@@ -5,16 +5,22 @@
 #include <string.h>
 
 #include "command/task.h"
+#include "study/batch.h"
 
 enum status command_check(const struct task *task)
 {
-    struct scene scene;
+    struct scene *scene;
     char names[400] = "";
-    enum status status = scene_load(task->names[0], SCENE_DIRECTORY, &scene);
-    if (status != STATUS_OK)
+    int count = 0;
+    if (!task->name_count && !task->echoes)
+        return status_set(STATUS_INVALID, "check: a SCENE, or --echoes FILE.mat with --grid GRID, is missing");
+    enum status status = task_scenes("check", task, 0, NULL, &scene, &count);
+    if (status != STATUS_OK) {
+        scenes_free(scene, count);
         return status;
-    printf("%s\n", scene.name);
-    check_sensitivities_print(stdout, &scene);
+    }
+    printf("%s\n", scene->name);
+    check_sensitivities_print(stdout, scene);
     for (int k = 0; status == STATUS_OK && (task->spec_count > 0 ? k < task->spec_count : algorithms[k] != NULL); k++) {
         struct spec own = {0};
         bool refused = false;
@@ -22,7 +28,7 @@ enum status command_check(const struct task *task)
             status = spec_parse(algorithms[k]->name, &own);
         const struct spec *spec = task->spec_count > 0 ? &task->specs[k] : &own;
         if (status == STATUS_OK)
-            status = check_algorithm(stdout, &scene, spec, &refused);
+            status = check_algorithm(stdout, scene, spec, &refused);
         if (status == STATUS_OK && refused) {
             size_t used = strlen(names);
             snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", spec->algorithm->name);
@@ -30,7 +36,7 @@ enum status command_check(const struct task *task)
         spec_free(&own);
     }
     if (status == STATUS_OK && *names)
-        status = status_set(STATUS_FAILED, "check: %s cannot image %s", names, scene.name);
-    scene_free(&scene);
+        status = status_set(STATUS_FAILED, "check: %s cannot image %s", names, scene->name);
+    scenes_free(scene, count);
     return status;
 }

@@ -19,12 +19,12 @@ static void row_print(const char *target, const char *place, const struct kept *
         printf("%.2f,%.2f\n", kept->kept_db, kept->changed_db);
 }
 
-/* Each point target by itself, and all echoes, which are the only row of a file. */
+/* Each point target by itself, and all echoes, which are the only row where they are recorded. */
 static enum status table_print(const struct filtering *filtering, const struct scene *scene, const struct kept *all)
 {
     enum status status = STATUS_OK;
     printf("target,x_m,r_m,inside,kept_db,changed_db\n");
-    for (int k = 0; k < scene->point_count && status == STATUS_OK; k++) {
+    for (int k = 0; !scene->recorded && k < scene->point_count && status == STATUS_OK; k++) {
         const struct target *target = &scene->targets[k];
         char number[16], place[80];
         struct kept kept;
@@ -84,7 +84,7 @@ static enum status source_filter(const struct task *task, const struct spec *spe
     if (status != STATUS_OK)
         return status;
     if (!task->echoes)
-        status = scene_simulate(scene, echoes);
+        status = scene_echoes(scene, echoes);
     if (status == STATUS_OK)
         status = filtered_write(&filtering, echoes, task->output, task->echoes ? "filtered" : scene->description, &all);
     if (status == STATUS_OK) {

@@ -29,35 +29,17 @@ enum status command_simulate(const struct task *task)
         status = scene_load(task->names[0], SCENE_DIRECTORY, &scene);
     if (status != STATUS_OK)
         return status;
-    status = scene_simulate(&scene, &echoes);
+    if (scene.recorded)
+        status = status_set(STATUS_INVALID, "simulate: the echoes of %s are recorded, there is nothing to simulate",
+                            scene.name);
+    if (status == STATUS_OK)
+        status = scene_simulate(&scene, &echoes);
     if (status == STATUS_OK) {
         status = echo_file_write(task->output, &echoes, scene.description);
         echoes_free(&echoes);
     }
     scene_free(&scene);
     return status;
-}
-
-/* A scene, or the echoes of a file. */
-struct source {
-    struct scene scene;          /* zeroed with --echoes */
-    struct acquisition recorded; /* zeroed with --scene */
-    struct echoes echoes;        /* double; with --scene they are made when a plan is there */
-};
-
-static void source_free(struct source *source)
-{
-    echoes_free(&source->echoes);
-    acquisition_free(&source->recorded);
-    scene_free(&source->scene);
-}
-
-static enum status source_open(const struct task *task, struct source *source)
-{
-    *source = (struct source){0};
-    if (task->echoes)
-        return echo_file_read(task->echoes, &source->recorded, &source->echoes);
-    return scene_load(task->scene, SCENE_DIRECTORY, &source->scene);
 }
 
 static enum status execute(const struct spec *spec, struct imaging *imaging, const struct echoes *from,
@@ -77,17 +59,19 @@ static enum status execute(const struct spec *spec, struct imaging *imaging, con
 }
 
 /* The plan comes first: what cannot be imaged need not be simulated. */
-static enum status form_image(const struct spec *spec, const struct problem *problem, struct source *source,
-                              struct image *image)
+static enum status form_image(const struct spec *spec, const struct scene *scene, struct image *image)
 {
+    const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, spec->precision};
     struct imaging imaging;
-    enum status status = imaging_open(spec, problem, &imaging);
+    struct echoes simulated = {0}, recorded = {&scene->acquisition, PRECISION_DOUBLE, scene->recorded, 0};
+    enum status status = imaging_open(spec, &problem, &imaging);
     if (status != STATUS_OK)
         return status;
-    if (!source->echoes.samples)
-        status = scene_simulate(&source->scene, &source->echoes);
+    if (!scene->recorded)
+        status = scene_simulate(scene, &simulated);
     if (status == STATUS_OK)
-        status = execute(spec, &imaging, &source->echoes, image);
+        status = execute(spec, &imaging, scene->recorded ? &recorded : &simulated, image);
+    echoes_free(&simulated);
     imaging_close(&imaging);
     return status;
 }
@@ -96,42 +80,46 @@ static enum status check_usage(const struct task *task)
 {
     if (!task->scene == !task->echoes)
         return status_set(STATUS_INVALID, "image: exactly one of --scene SCENE and --echoes FILE.mat is needed");
-    if (task->echoes && !task->grid)
-        return status_set(STATUS_INVALID, "image: --echoes %s needs --grid xmin:xstep:xcount,rmin:rstep:rcount",
-                          task->echoes);
     if (task->spec_count != 1)
         return status_set(STATUS_INVALID, "image: %d --algorithm SPEC given, exactly one is needed", task->spec_count);
     return output_check("image", task->output);
 }
 
-enum status command_image(const struct task *task)
+/* With --grid the image of a scene is that one. */
+static enum status scene_open(const struct task *task, struct scene *scene)
 {
     struct grid grid;
-    struct source source;
+    if (task->echoes)
+        return echoes_scene("image", task, scene);
+    enum status status = task->grid ? grid_parse(task->grid, &grid) : STATUS_OK;
+    if (status == STATUS_OK)
+        status = scene_load(task->scene, SCENE_DIRECTORY, scene);
+    if (status != STATUS_OK || !task->grid)
+        return status;
+    scene->patches[0] = grid;
+    scene->patch_count = 1;
+    status = grid_meets_records(&scene->acquisition, 1, scene->patches, task->grid);
+    if (status != STATUS_OK)
+        scene_free(scene);
+    return status;
+}
+
+enum status command_image(const struct task *task)
+{
+    struct scene scene;
     struct image image;
     enum status status = check_usage(task);
-    if (status == STATUS_OK && task->grid)
-        status = grid_parse(task->grid, &grid);
+    if (status == STATUS_OK)
+        status = scene_open(task, &scene);
     if (status != STATUS_OK)
         return status;
-    status = source_open(task, &source);
+    const struct spec *spec = &task->specs[0];
+    status = form_image(spec, &scene, &image);
     if (status == STATUS_OK) {
-        const struct spec *spec = &task->specs[0];
-        const struct acquisition *acquisition = task->echoes ? &source.recorded : &source.scene.acquisition;
-        struct problem problem = {acquisition, source.scene.patch_count, source.scene.patches, spec->precision};
-        if (task->grid) {
-            problem.patch_count = 1;
-            problem.patches = &grid;
-            status = grid_meets_records(problem.acquisition, 1, &grid, task->grid);
-        }
-        if (status == STATUS_OK)
-            status = form_image(spec, &problem, &source, &image);
-        if (status == STATUS_OK) {
-            status = image_file_write(task->output, &image, spec->algorithm->name, spec->text,
-                                      task->scene ? source.scene.name : task->echoes);
-            image_free(&image);
-        }
+        status = image_file_write(task->output, &image, spec->algorithm->name, spec->text,
+                                  task->scene ? scene.name : task->echoes);
+        image_free(&image);
     }
-    source_free(&source);
+    scene_free(&scene);
     return status;
 }

@@ -42,7 +42,7 @@ enum status command_run(const struct task *task)
         status = load_specs(&all, &all_count);
     int spec_count = task->spec_count ? task->spec_count : all_count;
     if (status == STATUS_OK)
-        status = scenes_load("run", task->name_count, task->names, &scenes, &scene_count);
+        status = task_scenes("run", task, 0, NULL, &scenes, &scene_count);
     if (status == STATUS_OK)
         status = batch_open(task->output ? task->output : "results/latest", scene_count * spec_count, true, &batch);
     for (int k = 0; k < scene_count && status == STATUS_OK; k++)

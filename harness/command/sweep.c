@@ -58,8 +58,7 @@ enum status command_sweep(const struct task *task)
     struct batch batch = {0};
     enum status status = settings_load(task, &settings);
     if (status == STATUS_OK)
-        status = scenes_load("sweep", task->name_count ? task->name_count : default_count,
-                             task->name_count ? task->names : default_scenes, &scenes, &scene_count);
+        status = task_scenes("sweep", task, default_count, default_scenes, &scenes, &scene_count);
     if (status == STATUS_OK)
         status = batch_open(directory, scene_count * settings.count, false, &batch);
     for (int k = 0; k < scene_count && status == STATUS_OK; k++)

@@ -4,6 +4,7 @@
 
 #include "data/paths.h"
 #include "measure/spec.h"
+#include "scene/scene.h"
 
 /* The command line after parsing; texts are borrowed from argv. Unused fields are NULL or 0. */
 struct task {
@@ -17,6 +18,14 @@ struct task {
 
 /* -o of a command that writes a MATLAB file: it is given, its place exists, its extension says so. Errors: STATUS_INVALID. */
 enum status output_check(const char *command, const char *output);
+
+/* The scene of --echoes and --grid. Errors: STATUS_INVALID where one of the two is missing, and as scene_from_echoes; *scene
+   needs no scene_free then. */
+enum status echoes_scene(const char *command, const struct task *task, struct scene *scene);
+/* Scenes by name, those of `usual` (NULL: all that are not full size) where none is named, or that of --echoes; freed with
+   scenes_free even on failure. Errors: as scenes_load. */
+enum status task_scenes(const char *command, const struct task *task, int usual_count, const char *const *usual,
+                        struct scene **scenes, int *count);
 
 /* Each returns STATUS_OK, or a status with a message for main to print. */
 enum status command_list(const struct task *task);

@@ -76,7 +76,7 @@ static enum status scene_find(struct worker *worker, const char *name, struct wo
     }
     enum status status = scene_load(name, SCENE_DIRECTORY, &scene->scene);
     if (status == STATUS_OK) {
-        status = scene_simulate(&scene->scene, &scene->echoes[PRECISION_DOUBLE]);
+        status = scene_echoes(&scene->scene, &scene->echoes[PRECISION_DOUBLE]);
         if (status != STATUS_OK)
             scene_free(&scene->scene);
     }

@@ -45,7 +45,7 @@ static enum status form_reference(struct session *session)
 enum status session_open(const struct scene *scene, struct session *session)
 {
     *session = (struct session){.scene = scene};
-    enum status status = scene_simulate(scene, &session->echoes[PRECISION_DOUBLE]);
+    enum status status = scene_echoes(scene, &session->echoes[PRECISION_DOUBLE]);
     if (status == STATUS_OK)
         status = echoes_convert(&session->echoes[PRECISION_DOUBLE], PRECISION_FLOAT, &session->echoes[PRECISION_FLOAT]);
     /* Images of a session keep the power of two that its echoes were divided by: they are only compared with each other. */

@@ -102,7 +102,7 @@ enum status scene_fill(struct reading *reading, config_setting_t *root)
         status = keys_check(reading);
     }
     if (status == STATUS_OK) {
-        status = acquisition_fill(reading);
+        status = *reading->echoes ? recorded_fill(reading) : acquisition_fill(reading);
     }
     if (status == STATUS_OK) {
         status = targets_fill(reading);

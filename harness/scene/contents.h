@@ -8,6 +8,9 @@
    far and is freed with scene_free. Errors: STATUS_INVALID naming the key; STATUS_FAILED without memory. */
 enum status scene_fill(struct reading *reading, config_setting_t *root);
 
+/* Acquisition and samples of the file that `echoes` names. Errors: as echo_file_read, naming the key's place. */
+enum status recorded_fill(struct reading *reading);
+
 /* The scene's patches and those of its exact image; acquisition and targets come before. Errors: as scene_fill. */
 enum status image_fill(struct reading *reading);
 

@@ -141,9 +141,31 @@ static enum status check_image_kind(const struct reading *reading)
     return STATUS_OK;
 }
 
+/* What recorded echoes leave no room for. */
+static enum status check_recorded(const struct reading *reading)
+{
+    if (key_member(reading->root, "x_offset")) {
+        return refuse(reading, reading->root, "", "x_offset", LEFT_OUT);
+    }
+    if (reading->fields) {
+        return refuse(reading, reading->targets, "targets", "fields", LEFT_OUT);
+    }
+    for (int k = 0; reading->points && k < config_setting_length(reading->points); k++) {
+        const config_setting_t *point = config_setting_get_elem(reading->points, (unsigned)k);
+        if (config_setting_is_group(point) && key_member(point, "amplitude")) {
+            return refuse(reading, point, "targets.points", "amplitude", LEFT_OUT);
+        }
+    }
+    enum status status = check_area(reading);
+    return status == STATUS_OK ? check_image_kind(reading) : status;
+}
+
 enum status keys_check(const struct reading *reading)
 {
     const struct acquisition *a = &reading->scene.acquisition;
+    if (*reading->echoes) {
+        return check_recorded(reading);
+    }
     if (!(a->fs >= a->bandwidth)) {
         return refuse(reading, reading->sonar, "sonar", "fs", "at least sonar.bandwidth (%.10g Hz)", a->bandwidth);
     }

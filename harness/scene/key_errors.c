@@ -60,16 +60,28 @@ static void append_value(char *text, size_t size, const config_setting_t *settin
     }
 }
 
+/* The part of the text that a line is in. */
+static const struct text_piece *piece_find(const struct reading *reading, unsigned line)
+{
+    const struct text_piece *piece = reading->text.pieces + reading->text.piece_count - 1;
+    while (piece > reading->text.pieces && piece->first_line > (int)line) {
+        piece--;
+    }
+    return piece;
+}
+
+const char *line_path(const struct reading *reading, unsigned line)
+{
+    return line == 0 ? reading->path : piece_find(reading, line)->path;
+}
+
 void place_format(const struct reading *reading, unsigned line, char *text, size_t size)
 {
     if (line == 0) {
         snprintf(text, size, "%.300s", reading->path);
         return;
     }
-    const struct text_piece *piece = reading->text.pieces + reading->text.piece_count - 1;
-    while (piece > reading->text.pieces && piece->first_line > (int)line) {
-        piece--;
-    }
+    const struct text_piece *piece = piece_find(reading, line);
     snprintf(text, size, "%.300s:%d", piece->path, piece->line + (int)line - piece->first_line);
 }
 

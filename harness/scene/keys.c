@@ -21,19 +21,20 @@ const char *const truncation_names[] = {"none", "tx", "mid", "doppler", "sine", 
 static const struct key keys[] = {
     {"", "base", "", &GROUP, AT(reading, base), 0, 0, 0, NULL},
     {"", "description", "", &TEXT, AT(reading, description), 0, 0, 0, NULL},
+    {"", "echoes", "", &TEXT, AT(reading, echoes), 0, 0, 0, NULL},
     {"", "full_size", "", &BOOLEAN, AT(reading, scene.full_size), false, 0, 0, NULL},
     {"", "aperture_limit", "", &REAL, AT(reading, scene.acquisition.aperture_limit), INFINITY, ABOVE_0, 1, NULL},
     {"", "x_offset", "m", &LATER_REAL, AT(reading, x_offset_m), 0, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
-    {"", "sonar", "", &GROUP, AT(reading, sonar), REQUIRED, 0, 0, NULL},
-    {"", "pulse", "", &GROUP, AT(reading, pulse), REQUIRED, 0, 0, NULL},
-    {"", "array", "", &GROUP, AT(reading, array), REQUIRED, 0, 0, NULL},
-    {"", "track", "", &GROUP, AT(reading, track), REQUIRED, 0, 0, NULL},
-    {"", "record", "", &GROUP, AT(reading, record), REQUIRED, 0, 0, NULL},
+    {"", "sonar", "", &GROUP, AT(reading, sonar), 0, 0, 0, NULL},
+    {"", "pulse", "", &GROUP, AT(reading, pulse), 0, 0, 0, NULL},
+    {"", "array", "", &GROUP, AT(reading, array), 0, 0, 0, NULL},
+    {"", "track", "", &GROUP, AT(reading, track), 0, 0, 0, NULL},
+    {"", "record", "", &GROUP, AT(reading, record), 0, 0, 0, NULL},
     {"", "beam", "", &GROUP, AT(reading, beam), 0, 0, 0, NULL},
     {"", "area", "", &GROUP, AT(reading, area), 0, 0, 0, NULL},
     {"", "targets", "", &GROUP, AT(reading, targets), 0, 0, 0, NULL},
     {"", "noise", "", &GROUP, AT(reading, noise), 0, 0, 0, NULL},
-    {"", "image", "", &GROUP, AT(reading, image), REQUIRED, 0, 0, NULL},
+    {"", "image", "", &GROUP, AT(reading, image), 0, 0, 0, NULL},
     {"sonar", "sound_speed", "m/s", &REAL, AT(reading, scene.acquisition.sound_speed), 1500, ABOVE_0, 1e9, NULL},
     {"sonar", "fc", "Hz", &REAL, AT(reading, scene.acquisition.fc), REQUIRED, POSITIVE, NULL},
     {"sonar", "fs", "Hz", &REAL, AT(reading, scene.acquisition.fs), REQUIRED, POSITIVE, NULL},
@@ -105,7 +106,7 @@ config_setting_t *key_member(const config_setting_t *group, const char *name)
     return member;
 }
 
-static void hash_bytes(uint64_t *hash, const void *bytes, size_t count)
+void hash_add(uint64_t *hash, const void *bytes, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         *hash = (*hash ^ ((const unsigned char *)bytes)[i]) * FNV_PRIME;
@@ -154,9 +155,9 @@ enum status group_read(struct reading *reading, config_setting_t *setting, const
             return refuse(reading, setting, group, key->name, "%s", accepted);
         }
         if (key->type->bytes > 0 && (member || !key->type->later)) {
-            hash_bytes(&reading->scene.hash, key->group, strlen(key->group) + 1);
-            hash_bytes(&reading->scene.hash, key->name, strlen(key->name) + 1);
-            hash_bytes(&reading->scene.hash, field, key->type->bytes);
+            hash_add(&reading->scene.hash, key->group, strlen(key->group) + 1);
+            hash_add(&reading->scene.hash, key->name, strlen(key->name) + 1);
+            hash_add(&reading->scene.hash, field, key->type->bytes);
         }
     }
     return STATUS_OK;
@@ -166,23 +167,30 @@ enum status groups_read(struct reading *reading, config_setting_t *root)
 {
     const struct {
         const char *name;
-        config_setting_t **setting; /* filled by the first */
+        config_setting_t **setting;
+        bool simulated, needed; /* left out with `echoes`; without it there must be one */
     } groups[] = {
-        {"", &root},
-        {"sonar", &reading->sonar},
-        {"pulse", &reading->pulse},
-        {"array", &reading->array},
-        {"track", &reading->track},
-        {"record", &reading->record},
-        {"beam", &reading->beam},
-        {"area", &reading->area},
-        {"targets", &reading->targets},
-        {"noise", &reading->noise},
-        {"image", &reading->image},
+        {"sonar", &reading->sonar, true, true},   {"pulse", &reading->pulse, true, true},
+        {"array", &reading->array, true, true},   {"track", &reading->track, true, true},
+        {"record", &reading->record, true, true}, {"beam", &reading->beam, true, false},
+        {"area", &reading->area, false, false},   {"targets", &reading->targets, false, false},
+        {"noise", &reading->noise, true, false},  {"image", &reading->image, false, true},
     };
-    enum status status = STATUS_OK;
+    reading->root = root;
+    enum status status = group_read(reading, root, "", reading);
     for (size_t i = 0; i < sizeof groups / sizeof *groups && status == STATUS_OK; i++) {
-        status = group_read(reading, *groups[i].setting, groups[i].name, reading);
+        const bool left_out = *reading->echoes && groups[i].simulated, given = *groups[i].setting != NULL;
+        if (left_out && given) {
+            status = refuse(reading, root, "", groups[i].name, LEFT_OUT);
+        } else if (!left_out && !given && groups[i].needed) {
+            status = refuse(reading, root, "", groups[i].name, "%s%s", GROUP.accepts,
+                            groups[i].simulated ? ", or `echoes` name an echo file" : "");
+        }
+    }
+    for (size_t i = 0; i < sizeof groups / sizeof *groups && status == STATUS_OK; i++) {
+        if (!*reading->echoes || !groups[i].simulated) {
+            status = group_read(reading, *groups[i].setting, groups[i].name, reading);
+        }
     }
     return status;
 }

@@ -8,13 +8,17 @@
 #include "scene/text.h"
 
 #define SCATTERERS_MAX 10000000 /* of all fields */
+/* What is accepted of a key that an echo file stands for. */
+#define LEFT_OUT   "left out with `echoes`, whose file says it"
+#define HASH_BEGIN 14695981039346656037u /* FNV-1a */
 
 /* Groups are kept as libconfig settings until they are read in turn; NULL when the file leaves them out. */
 struct reading {
     const char *path; /* of the scene file */
     struct scene_text text;
     struct scene scene;
-    const char *description; /* belongs to libconfig */
+    const char *description, *echoes; /* belong to libconfig; echoes "": the scene is simulated */
+    config_setting_t *root;
     config_setting_t *base, *sonar, *pulse, *array, *track, *record, *beam, *area, *targets, *noise, *image;
     double first_offset_m, pitch_m;
     double speed_m_s, pri_s, spacing_m, x_first_m; /* spacing 0: that of speed and pri */
@@ -54,6 +58,9 @@ enum status groups_read(struct reading *reading, config_setting_t *root);
 /* A setting of a group, or of the nearest scene that the group's `base` holds; NULL if there is none. */
 config_setting_t *key_member(const config_setting_t *group, const char *name);
 
+/* Add bytes to a scene's hash. */
+void hash_add(uint64_t *hash, const void *bytes, size_t count);
+
 /* What the keys say about each other. Errors: STATUS_INVALID. */
 enum status keys_check(const struct reading *reading);
 
@@ -62,6 +69,8 @@ enum status keys_check(const struct reading *reading);
 enum status refuse(const struct reading *reading, const config_setting_t *group, const char *group_name,
                    const char *name, const char *format, ...) __attribute__((format(printf, 5, 6)));
 
+/* The file that a line of the scene's text is from. */
+const char *line_path(const struct reading *reading, unsigned line);
 /* "FILE:LINE" of a line of the scene's text as libconfig counts them; 0: "FILE", the scene's. */
 void place_format(const struct reading *reading, unsigned line, char *text, size_t size);
 

@@ -24,10 +24,12 @@ static char *name_below(const char *path, const char *directory)
 /* The last `parts` parts of a full path without extension. */
 static char *name_of(const char *full_path, int parts)
 {
-    const char *end = full_path + strlen(full_path), *begin = end;
+    const char *end = full_path + strlen(full_path), *begin = end, *last = strrchr(full_path, '.');
     for (; begin > full_path && (begin[-1] != '/' || --parts > 0);)
         begin--;
-    return strndup(begin, (size_t)(end - begin) - (scene_has_extension(begin) ? strlen(SCENE_EXTENSION) : 0));
+    if (last > begin && (strcmp(last, SCENE_EXTENSION) == 0 || strcmp(last, ECHO_EXTENSION) == 0))
+        end = last;
+    return strndup(begin, (size_t)(end - begin));
 }
 
 static bool has_controls(const char *text)

@@ -5,6 +5,7 @@
 #include "scene/scene.h"
 
 #define SCENE_EXTENSION ".cfg"
+#define ECHO_EXTENSION  ".mat"
 
 bool scene_has_extension(const char *path);
 

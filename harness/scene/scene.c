@@ -9,8 +9,6 @@
 #include "scene/contents.h"
 #include "scene/names.h"
 
-#define FNV_OFFSET 14695981039346656037u
-
 static enum status file_read(struct reading *reading, const char *scene_directory)
 {
     enum status status = scene_text_read(reading->path, scene_directory, &reading->text);
@@ -37,7 +35,12 @@ static enum status file_read(struct reading *reading, const char *scene_director
 
 enum status scene_load(const char *scene, const char *scene_directory, struct scene *out)
 {
+    const size_t length = strlen(scene);
     *out = (struct scene){0};
+    if (length > 4 && strcmp(scene + length - 4, ECHO_EXTENSION) == 0) {
+        return status_set(STATUS_INVALID,
+                          "%s: is no scene file; recorded echoes are named by --echoes FILE.mat --grid GRID", scene);
+    }
     char *path = malloc(strlen(scene) + strlen(scene_directory) + sizeof "/" SCENE_EXTENSION);
     if (!path) {
         return status_set(STATUS_FAILED, "%s: out of memory for the scene", scene);
@@ -47,7 +50,7 @@ enum status scene_load(const char *scene, const char *scene_directory, struct sc
     } else {
         sprintf(path, "%s/%s%s", scene_directory, scene, SCENE_EXTENSION);
     }
-    struct reading reading = {.path = path, .scene = {.hash = FNV_OFFSET}};
+    struct reading reading = {.path = path, .scene = {.hash = HASH_BEGIN}};
     enum status status = scene_names_fill(&reading.scene, path, scene_directory);
     if (status == STATUS_OK) {
         status = file_read(&reading, scene_directory);
@@ -64,6 +67,7 @@ enum status scene_load(const char *scene, const char *scene_directory, struct sc
 void scene_free(struct scene *scene)
 {
     acquisition_free(&scene->acquisition);
+    free(scene->recorded);
     free(scene->name);
     free(scene->path);
     free(scene->description);

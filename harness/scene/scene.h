@@ -1,4 +1,4 @@
-/* A scene: platform, sonar and targets, read from a libconfig file (every key: scenes/README.md). */
+/* A scene: platform, sonar and targets, read from a libconfig file (every key: scenes/README.md), or recorded echoes. */
 #ifndef SASBENCH_SCENE_SCENE_H
 #define SASBENCH_SCENE_SCENE_H
 
@@ -36,6 +36,8 @@ struct scene {
     char *description; /* one line, from the file */
     uint64_t hash;     /* FNV-1a of the content after @include: the same text measures the same thing */
     struct acquisition acquisition;
+    double complex *recorded;   /* [pings][receivers][samples] of an echo file; NULL: pulse, beam, targets and noise say
+                                   what is simulated */
     enum pulse_kind pulse_kind; /* flat: the echoes are compressed */
     double pulse_duration;      /* s; lfm and lfm_time */
     struct beam beam;
@@ -56,6 +58,9 @@ struct scene {
 /* SCENE is a path to a .cfg file, or a name below `scene_directory` without its extension.
    Errors: STATUS_INVALID, the message naming file, line, key, value and what is accepted. */
 enum status scene_load(const char *scene, const char *scene_directory, struct scene *out);
+/* The scene of an echo file alone, without targets, called by the file's name; its image is `grid`, which `place` names in
+   messages. Errors: as echo_file_read, and STATUS_INVALID where no pixel meets any record; nothing to free then. */
+enum status scene_from_echoes(const char *path, const struct grid *grid, const char *place, struct scene *out);
 void scene_free(struct scene *scene);
 /* Two files of one name, not both shipped, get as much of their folders in their names as tells them apart. Errors:
    STATUS_FAILED without memory. */

@@ -11,6 +11,9 @@
    STATUS_INVALID for numbers so extreme that an echo is not finite; nothing to free then. */
 enum status scene_simulate(const struct scene *scene, struct echoes *echoes);
 
+/* The scene's echoes, whether they are recorded (then a copy) or simulated as above. Same errors. */
+enum status scene_echoes(const struct scene *scene, struct echoes *echoes);
+
 /* The replica of an LFM pulse: exp(j pi (B/T)(t - T/2)^2), t = k/fs in [0, T): floor(T fs) samples, at least 1. */
 int pulse_length_lfm(double duration, double fs);
 void pulse_lfm(double bandwidth, double duration, double fs, int length, double complex *pulse);

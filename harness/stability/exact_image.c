@@ -36,6 +36,8 @@ static void add_turned(struct exact_sum *sum, long double re, long double im, lo
 
 const char *exact_ideal_excludes(const struct scene *scene)
 {
+    if (scene->recorded)
+        return "recorded echoes";
     if (scene->pulse_kind != PULSE_FLAT)
         return "raw echoes";
     if (scene->noise_std > 0)

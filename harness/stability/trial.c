@@ -43,7 +43,7 @@ static void echoes_make(struct trial *trial)
 {
     const struct acquisition *a = &trial->scene->acquisition;
     struct echoes echoes;
-    trial->note->status = scene_simulate(trial->scene, &echoes);
+    trial->note->status = scene_echoes(trial->scene, &echoes);
     if (trial->note->status == STATUS_OK) {
         memcpy(trial->samples, echoes.samples,
                (size_t)a->pings * (size_t)a->receivers * (size_t)a->samples * sizeof *trial->samples);

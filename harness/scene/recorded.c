@@ -1,0 +1,142 @@
+/* Scenes of recorded echoes: a scene file that names an echo file, or an echo file alone. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "data/echo_data.h"
+#include "scene/contents.h"
+#include "scene/matfile.h"
+#include "scene/names.h"
+#include "scene/simulate.h"
+
+/* Everything that the echo file says, so that the same content measures the same thing. */
+static void recording_hash(const struct scene *scene, uint64_t *hash)
+{
+    const struct acquisition *a = &scene->acquisition;
+    const size_t pings = (size_t)a->pings, records = pings * (size_t)a->receivers;
+    const struct {
+        const void *bytes;
+        size_t count;
+    } parts[] = {
+        {&a->sound_speed, sizeof a->sound_speed},
+        {&a->fc, sizeof a->fc},
+        {&a->fs, sizeof a->fs},
+        {&a->bandwidth, sizeof a->bandwidth},
+        {&a->samples, sizeof a->samples},
+        {&a->receivers, sizeof a->receivers},
+        {&a->pings, sizeof a->pings},
+        {a->t0, pings * sizeof *a->t0},
+        {a->tx, pings * sizeof *a->tx},
+        {a->rx, records * sizeof *a->rx},
+        {a->velocity, pings * sizeof *a->velocity},
+        {&a->tx_length, sizeof a->tx_length},
+        {&a->rx_length, sizeof a->rx_length},
+        {&a->echo_sine, sizeof a->echo_sine},
+        {&a->echo_squint, sizeof a->echo_squint},
+        {&a->echo_tapers, sizeof a->echo_tapers},
+        {&a->aperture_limit, sizeof a->aperture_limit},
+        {&a->area, sizeof a->area},
+        {&a->compressed, sizeof a->compressed},
+        {a->pulse, (size_t)a->pulse_length * sizeof *a->pulse},
+        {scene->recorded, records * (size_t)a->samples * sizeof *scene->recorded},
+    };
+    for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) {
+        hash_add(hash, parts[k].bytes, parts[k].count);
+    }
+}
+
+static enum status recording_read(const char *path, struct scene *scene)
+{
+    struct echoes echoes;
+    enum status status = echo_file_read(path, &scene->acquisition, &echoes);
+    if (status == STATUS_OK) {
+        scene->recorded = (double complex *)echoes.samples;
+    }
+    return status;
+}
+
+/* A name without a leading slash counts from the folder of the file that says it. */
+static char *path_from(const char *scene_path, const char *name)
+{
+    const char *slash = *name == '/' ? NULL : strrchr(scene_path, '/');
+    const size_t folder = slash ? (size_t)(slash - scene_path) + 1 : 0;
+    char *path = malloc(folder + strlen(name) + 1);
+    if (path) {
+        memcpy(path, scene_path, folder);
+        strcpy(path + folder, name);
+    }
+    return path;
+}
+
+enum status recorded_fill(struct reading *reading)
+{
+    struct scene *scene = &reading->scene;
+    const unsigned line = config_setting_source_line(key_member(reading->root, "echoes"));
+    const double aperture_limit = scene->acquisition.aperture_limit;
+    const struct target_area area = scene->acquisition.area;
+    char *path = path_from(line_path(reading, line), reading->echoes);
+    if (!path) {
+        return scene_out_of_memory(reading);
+    }
+    enum status status = recording_read(path, scene);
+    free(path);
+    if (status != STATUS_OK) {
+        char place[320], message[600];
+        snprintf(message, sizeof message, "%s", status_message());
+        place_format(reading, line, place, sizeof place);
+        return status_set(status, "%s: key 'echoes': %s", place, message);
+    }
+    if (isfinite(aperture_limit)) {
+        scene->acquisition.aperture_limit = aperture_limit;
+    }
+    if (reading->area) {
+        scene->acquisition.area = area;
+    }
+    recording_hash(scene, &scene->hash);
+    return STATUS_OK;
+}
+
+static enum status from_echoes(const char *path, const struct grid *grid, const char *place, struct scene *scene)
+{
+    enum status status = scene_names_fill(scene, path, "");
+    if (status == STATUS_OK) {
+        status = recording_read(path, scene);
+    }
+    if (status != STATUS_OK) {
+        return status;
+    }
+    recording_hash(scene, &scene->hash);
+    const double lengths[] = {grid->x_first, grid->x_step, grid->r_first, grid->r_step, grid->angle_rad};
+    const int counts[] = {grid->x_count, grid->r_count};
+    hash_add(&scene->hash, lengths, sizeof lengths);
+    hash_add(&scene->hash, counts, sizeof counts);
+    scene->description = strdup("recorded echoes");
+    scene->targets = calloc(1, sizeof *scene->targets);
+    scene->patches = malloc(sizeof *scene->patches);
+    if (!scene->description || !scene->targets || !scene->patches) {
+        return status_set(STATUS_FAILED, "%s: out of memory for the scene", path);
+    }
+    scene->patch_count = 1;
+    *scene->patches = *grid;
+    return grid_meets_records(&scene->acquisition, 1, grid, place);
+}
+
+enum status scene_from_echoes(const char *path, const struct grid *grid, const char *place, struct scene *out)
+{
+    *out = (struct scene){.hash = HASH_BEGIN};
+    enum status status = from_echoes(path, grid, place, out);
+    if (status != STATUS_OK) {
+        scene_free(out);
+    }
+    return status;
+}
+
+enum status scene_echoes(const struct scene *scene, struct echoes *echoes)
+{
+    if (!scene->recorded) {
+        return scene_simulate(scene, echoes);
+    }
+    const struct echoes recorded = {&scene->acquisition, PRECISION_DOUBLE, scene->recorded, 0};
+    return echoes_convert(&recorded, PRECISION_DOUBLE, echoes);
+}

@@ -1,0 +1,194 @@
+/* Recorded echoes are scenes: what is measured on simulated echoes is measured on the same echoes out of a file. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "data/csv.h"
+#include "scene/matfile.h"
+#include "tests/command/program.h"
+
+#define QUICK_IMAGE "image = { around_targets = { half_x = 0.6; half_r = 0.15; x_step = 0.02; r_step = 0.025; }; };\n"
+#define QUICK_POINT "targets = { points = ( { x = 0.0; r = 20.0; } ); };\n"
+
+static void csv_load(const char *name, struct csv *csv)
+{
+    if (csv_read(path_in(name), CSV_TAIL_KEEP, csv) != STATUS_OK)
+        fail_msg("%s", status_message());
+}
+
+static double number_of(const struct csv *csv, int row, const char *column)
+{
+    double value = NAN;
+    assert_true(csv_column(csv, column) >= 0);
+    assert_true(csv_number(csv_cell(csv, row, csv_column(csv, column)), &value));
+    return value;
+}
+
+static void assert_same_column(const struct csv *a, const struct csv *b, int row, const char *column)
+{
+    double first = number_of(a, row, column), second = number_of(b, row, column);
+    if (!(fabs(first - second) <= 1e-7 * fabs(first) + 1e-12))
+        fail_msg("row %d, %s: %g simulated, %g recorded", row + 1, column, first, second);
+}
+
+/* study/quick, and a scene that takes its echoes (good.mat) from their file. */
+static void file_measures_as_the_scene_does(void **state)
+{
+    (void)state;
+    static const char *const simulated[ARGUMENTS_MAX] = {"run", "study/quick", "-a", "bp_nearest", "-a", "rma_lbf",
+                                                         "-a",  "bp_sinc",     "-o", "simulated"};
+    static const char *const recorded[ARGUMENTS_MAX] = {"run", "sub/recorded.cfg", "-a", "bp_nearest", "-a", "rma_lbf",
+                                                        "-a",  "bp_sinc",          "-o", "recorded"};
+    static const char *const columns[] = {"flops",         "pairs",   "error",   "error_gain",
+                                          "phase_rms_rad", "width_m", "pslr_db", "islr_db"};
+    static const char *const target_columns[] = {"extent_m", "position_error_m", "phase_error_rad", "width_m"};
+    struct csv rows[2], targets[2];
+    assert_int_equal(system("mkdir -p \"$TMPDIR/sub\""), 0);
+    text_write("sub/recorded.cfg", "echoes = \"../good.mat\";\n" QUICK_POINT QUICK_IMAGE);
+    program_good(simulated);
+    program_good(recorded);
+    csv_load("simulated/measurements.csv", &rows[0]);
+    csv_load("recorded/measurements.csv", &rows[1]);
+    csv_load("simulated/targets.csv", &targets[0]);
+    csv_load("recorded/targets.csv", &targets[1]);
+    assert_int_equal(rows[1].row_count, 3);
+    assert_int_equal(targets[1].row_count, targets[0].row_count);
+    for (int row = 0; row < 3; row++) {
+        assert_string_equal(csv_cell(&rows[1], row, csv_column(&rows[1], "scene")), "recorded");
+        assert_string_equal(csv_cell(&rows[1], row, csv_column(&rows[1], "status")), "ok");
+        for (size_t k = 0; k < COUNT_OF(columns); k++)
+            assert_same_column(&rows[0], &rows[1], row, columns[k]);
+    }
+    for (int row = 0; row < targets[0].row_count; row++)
+        for (size_t k = 0; k < COUNT_OF(target_columns); k++)
+            assert_same_column(&targets[0], &targets[1], row, target_columns[k]);
+    for (int k = 0; k < 2; k++) {
+        csv_free(&rows[k]);
+        csv_free(&targets[k]);
+    }
+    assert_int_equal(access(path_in("recorded/recorded-slices.png"), F_OK), 0);
+}
+
+static void echoes_alone_are_a_scene(void **state)
+{
+    (void)state;
+    static const char *const run[ARGUMENTS_MAX] = {
+        "run", "--echoes", "good.mat", "--grid", "-0.6:0.02:61,19.85:0.025:13", "-a", "bp_sinc", "-o", "alone"};
+    static const char *const other[ARGUMENTS_MAX] = {
+        "run", "--echoes", "good.mat", "--grid", "-0.6:0.02:61,19.85:0.025:12", "-a", "bp_sinc", "-o", "alone"};
+    static const char *const check[ARGUMENTS_MAX] = {
+        "check", "--echoes", "good.mat", "--grid", "-0.6:0.02:61,19.85:0.025:13", "-a", "bp_sinc"};
+    struct csv first, again;
+    program_good(run);
+    csv_load("alone/measurements.csv", &first);
+    assert_int_equal(first.row_count, 1);
+    assert_string_equal(csv_cell(&first, 0, csv_column(&first, "scene")), "good");
+    assert_true(number_of(&first, 0, "error") < 0.1);
+    program_good(run); /* is there already */
+    csv_load("alone/measurements.csv", &again);
+    assert_string_equal(csv_cell(&again, 0, csv_column(&again, "run_s")),
+                        csv_cell(&first, 0, csv_column(&first, "run_s")));
+    csv_free(&again);
+    struct outcome outcome = program_run(other); /* another image is another scene */
+    assert_int_equal(outcome.status, 0);
+    assert_non_null(strstr(outcome.err, "the scene good has changed"));
+    outcome_free(&outcome);
+    char *text = program_output(check);
+    assert_non_null(strstr(text, "unambiguous"));
+    free(text);
+    csv_free(&first);
+}
+
+/* One sample is another: so is the scene. */
+static void content_tells_scenes_apart(void **state)
+{
+    (void)state;
+    const struct grid grid = {-0.6, 0.02, 61, 19.85, 0.025, 13, 0};
+    struct scene scene;
+    uint64_t hashes[3];
+    for (int k = 0; k < 3; k++) {
+        char path[700];
+        snprintf(path, sizeof path, "%s", path_in(k == 0 ? "good.mat" : "copy.mat"));
+        if (scene_from_echoes(path, &grid, "grid", &scene) != STATUS_OK)
+            fail_msg("%s", status_message());
+        hashes[k] = scene.hash;
+        const struct echoes echoes = {&scene.acquisition, PRECISION_DOUBLE, scene.recorded, 0};
+        scene.recorded[1000] += k * 1e-12;
+        assert_int_equal(echo_file_write(path_in("copy.mat"), &echoes, "another description"), STATUS_OK);
+        scene_free(&scene);
+        if (k == 1)
+            assert_true(hashes[0] == hashes[1]);
+    }
+    assert_true(hashes[1] != hashes[2]);
+}
+
+#define BAD                                                                                                            \
+    {                                                                                                                  \
+        "run", "bad.cfg", "-a", "bp_nearest", "-o", "bad"                                                              \
+    }
+
+static void mixtures_are_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *says[SAYS_MAX];
+    } scenes[] = {
+        {"sonar = { fc = 1e5; };", {"bad.cfg:2: key 'sonar' is a group", "left out with `echoes`"}},
+        {"track = { };", {"bad.cfg:2: key 'track' is a group", "left out with `echoes`"}},
+        {"noise = { std = 1; };", {"key 'noise' is a group", "left out with `echoes`"}},
+        {"x_offset = 1;", {"key 'x_offset' is 1", "left out with `echoes`"}},
+        {"targets = { fields = ( { x = [0, 1]; r = [19, 21]; count = 3; seed = 1; } ); };",
+         {"key 'targets.fields'", "left out with `echoes`"}},
+        {"targets = { points = ( { x = 0; r = 20; amplitude = 2; } ); };",
+         {"key 'targets.points[0].amplitude' is 2", "left out with `echoes`"}},
+    };
+    static const char *const wholes[][1 + SAYS_MAX] = {
+        {"\n\nechoes = \"none.mat\";\n" QUICK_POINT QUICK_IMAGE,
+         "bad.cfg:3: key 'echoes': ", "none.mat: cannot be read"},
+        {"echoes = \"\";\n" QUICK_POINT QUICK_IMAGE, "key 'sonar' is missing", "or `echoes` name an echo file"},
+        {"echoes = 3;\n" QUICK_POINT QUICK_IMAGE, "key 'echoes' is 3", "a text"},
+        {"echoes = \"good.mat\";\n", "key 'image' is missing", "a group"},
+        {"echoes = \"good.mat\";\nimage = { x = { first = 0; step = 1; count = 3; }; r = { first = 90; step = 1; count "
+         "= 2; "
+         "}; };",
+         "no pixel meets any record"},
+    };
+    static const struct refusal usages[] = {
+        {{"run", "--echoes", "good.mat", "-o", "r"}, {"run: --echoes good.mat needs --grid"}},
+        {{"run", "--grid", "0:1:1,20:1:1", "-o", "r"}, {"run: --grid 0:1:1,20:1:1 goes with --echoes"}},
+        {{"run", "study/quick", "--echoes", "good.mat", "--grid", "0:1:1,20:1:1", "-o", "r"},
+         {"'study/quick' is too much with --echoes good.mat"}},
+        {{"run", "good.mat", "-o", "r"}, {"good.mat: is no scene file", "--echoes FILE.mat --grid GRID"}},
+        {{"sweep", "--echoes", "none.mat", "--grid", "0:1:1,20:1:1", "-o", "r"}, {"none.mat: cannot be read"}},
+        {{"check"}, {"check: a SCENE, or --echoes FILE.mat with --grid GRID, is missing"}},
+        {{"simulate", "rec.cfg", "-o", "x.mat"}, {"the echoes of rec are recorded"}},
+    };
+    static const char *const arguments[ARGUMENTS_MAX] = BAD;
+    int failures = 0;
+    for (size_t k = 0; k < COUNT_OF(scenes); k++) {
+        char text[600];
+        snprintf(text, sizeof text, "echoes = \"good.mat\";\n%s\n%s", scenes[k].text, QUICK_IMAGE);
+        text_write("bad.cfg", text);
+        failures += !is_refused(arguments, scenes[k].says);
+    }
+    for (size_t k = 0; k < COUNT_OF(wholes); k++) {
+        text_write("bad.cfg", wholes[k][0]);
+        failures += !is_refused(arguments, wholes[k] + 1);
+    }
+    text_write("rec.cfg", "echoes = \"good.mat\";\n" QUICK_POINT QUICK_IMAGE);
+    assert_int_equal(failures, 0);
+    assert_all_refused(usages, COUNT_OF(usages));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(file_measures_as_the_scene_does),
+        cmocka_unit_test(echoes_alone_are_a_scene),
+        cmocka_unit_test(content_tells_scenes_apart),
+        cmocka_unit_test(mixtures_are_refused),
+    };
+    return cmocka_run_group_tests(tests, inputs_make, folder_remove);
+}
