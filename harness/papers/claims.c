@@ -162,20 +162,22 @@ static void evidence_begin(struct judgement *judgement, const struct formula *fo
         if (values.count > 1)
             text_append(judgement->evidence, size, " (median %.4g)", median(values.at, values.count));
     }
-    text_append(judgement->evidence, size, "; %s%s", judge_decides(claim->judge) ? "criterion: " : "",
+    text_append(judgement->evidence, size, "; %s: %s", judge_decides(claim->judge) ? "criterion" : "no criterion",
                 claim->criterion);
 }
 
-/* What was measured for a verdict: its settings and scenes, each named once. */
+/* What a verdict rests on: settings, scenes and printed tables, each named once. */
 struct basis {
-    char settings[900], scenes[900];
+    char settings[900], scenes[1200], tables[200];
 };
 
+/* A SPEC may go on behind a comma; one that ends has a blank behind it. */
 static bool named(const char *list, const char *text)
 {
     size_t length = strlen(text);
     for (const char *at = list; (at = strstr(at, text)); at += length)
-        if ((at == list || at[-1] == ' ') && strchr(", (", at[length]))
+        if ((at == list || at[-1] == ' ')
+            && (!at[length] || strncmp(at + length, ", ", 2) == 0 || strncmp(at + length, " (", 2) == 0))
             return true;
     return false;
 }
@@ -190,11 +192,14 @@ static void scene_describe(const char *name, char *text, size_t size)
         return;
     text_append(text, size, " (c %g m/s, beam %s", scene.acquisition.sound_speed,
                 scene.beam.kind == BEAM_RECT ? "rect" : "of both elements");
-    if (scene.beam.truncation != TRUNCATION_NONE)
+    if (scene.beam.truncation == TRUNCATION_NONE)
+        text_append(text, size, ", not cut");
+    else
         text_append(text, size, " cut by %s at %g",
-                    scene.beam.truncation == TRUNCATION_TX    ? "theta_t"
-                    : scene.beam.truncation == TRUNCATION_MID ? "the middle angle"
-                                                              : "Doppler",
+                    scene.beam.truncation == TRUNCATION_TX     ? "theta_t"
+                    : scene.beam.truncation == TRUNCATION_MID  ? "the middle angle"
+                    : scene.beam.truncation == TRUNCATION_SINE ? "sine"
+                                                               : "Doppler",
                     scene.beam.limit);
     text_append(text, size, ")");
     scene_free(&scene);
@@ -205,22 +210,46 @@ static const char *scene_described(const char *name)
 {
     static char names[32][80], texts[32][200];
     int k = 0;
-    while (k < 31 && *names[k] && strcmp(names[k], name) != 0)
+    while (k < 31 && *names[k] && strcmp(names[k], assumed_scene_name(name)) != 0)
         k++;
-    if (strcmp(names[k], name) != 0) {
-        snprintf(names[k], sizeof names[k], "%s", name);
+    if (strcmp(names[k], assumed_scene_name(name)) != 0) {
+        snprintf(names[k], sizeof names[k], "%s", assumed_scene_name(name));
         scene_describe(name, texts[k], sizeof texts[k]);
     }
     return texts[k];
 }
 
-static void basis_add(void *to, const char *scene, const char *spec)
+static void text_add(char *list, size_t size, const char *name, const char *text)
+{
+    if (!named(list, name))
+        text_append(list, size, "%s%s", *list ? ", " : "", text);
+}
+
+static void basis_use(void *to, enum use use, const char *text)
 {
     struct basis *basis = to;
-    if (!named(basis->settings, spec))
-        text_append(basis->settings, sizeof basis->settings, "%s%s", *basis->settings ? ", " : "", spec);
-    if (!named(basis->scenes, scene))
-        text_append(basis->scenes, sizeof basis->scenes, "%s%s", *basis->scenes ? ", " : "", scene_described(scene));
+    switch (use) {
+    case USE_SCENE: text_add(basis->scenes, sizeof basis->scenes, text, scene_described(text)); break;
+    case USE_SETTING: text_add(basis->settings, sizeof basis->settings, text, text); break;
+    case USE_TABLE: text_add(basis->tables, sizeof basis->tables, text, text); break;
+    }
+}
+
+static void basis_add(void *to, const char *scene, const char *spec)
+{
+    basis_use(to, USE_SCENE, scene);
+    basis_use(to, USE_SETTING, spec);
+}
+
+/* "; settings: ...; scenes: ...; printed numbers: ..." */
+static void basis_append(char *evidence, size_t size, const struct basis *basis)
+{
+    const struct {
+        const char *title, *list;
+    } parts[] = {{"settings", basis->settings}, {"scenes", basis->scenes}, {"printed numbers", basis->tables}};
+    for (int k = 0; k < 3; k++)
+        if (*parts[k].list)
+            text_append(evidence, size, "; %s: %s", parts[k].title, parts[k].list);
 }
 
 struct judgement claim_judge(const struct claims *claims, const struct claim *claim, enum scheme scheme,
@@ -233,6 +262,7 @@ struct judgement claim_judge(const struct claims *claims, const struct claim *cl
                               .path = claims->csv.path,
                               .line = claim->line,
                               .need = basis_add,
+                              .use = basis_use,
                               .to = &basis};
     struct judgement judgement = {.evidence = ""};
     *measured->missing = '\0';
@@ -241,13 +271,11 @@ struct judgement claim_judge(const struct claims *claims, const struct claim *cl
         evidence_begin(&judgement, &formula, claim);
         status = judges_read(&formula, "judge", claim->judge, &judgement);
     }
-    if (*basis.settings)
-        text_append(judgement.evidence, sizeof judgement.evidence, "; settings: %s; scenes: %s", basis.settings,
-                    basis.scenes);
-    if (status == STATUS_OK && !*measured->missing)
-        return judgement;
-    judgement.verdict = CLAIM_UNDECIDED;
-    snprintf(judgement.evidence, sizeof judgement.evidence, "%s",
-             status == STATUS_OK ? measured->missing : status_message());
+    if (status != STATUS_OK || *measured->missing) {
+        judgement.verdict = CLAIM_UNDECIDED;
+        snprintf(judgement.evidence, sizeof judgement.evidence, "%s; criterion: %s",
+                 status == STATUS_OK ? measured->missing : status_message(), claim->criterion);
+    }
+    basis_append(judgement.evidence, sizeof judgement.evidence, &basis);
     return judgement;
 }

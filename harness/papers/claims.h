@@ -36,8 +36,8 @@ enum status claims_read(const char *path, struct claims *claims);
 void claims_free(struct claims *claims);
 
 /* The verdict on a claim by one scheme. The evidence is one line: the numbers, the criterion, each comparison with its
-   threshold, the settings and the scenes with what these assume. Where a measurement is missing, failed or
-   unsupported: CLAIM_UNDECIDED with the reason. */
+   threshold, the settings, the scenes with what these assume, and the tables whose printed numbers are used. Where a
+   measurement is missing, failed or unsupported: CLAIM_UNDECIDED with the reason in place of numbers and comparisons. */
 struct judgement claim_judge(const struct claims *claims, const struct claim *claim, enum scheme scheme,
                              struct measured *measured);
 

@@ -7,7 +7,7 @@
 
 struct judgement {
     enum claim_verdict verdict;
-    char evidence[3000]; /* one line, with the numbers */
+    char evidence[4000]; /* one line, with the numbers */
 };
 
 /* Is it a cell with judges, or the word `undecided`? */

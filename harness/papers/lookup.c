@@ -94,6 +94,12 @@ static enum status measurement_need(struct formula *formula, struct call *call)
     return status;
 }
 
+static void used(struct formula *formula, enum use use, const char *text)
+{
+    if (formula->use)
+        formula->use(formula->to, use, text);
+}
+
 /* ---- the functions; without measurements their numbers are 1 ---- */
 
 /* FLOPs come from the plan. */
@@ -102,6 +108,8 @@ static enum status flops_metric(struct formula *formula, struct call *call, stru
     bool by_formula = call->metric->offset == offsetof(struct measurement, flops_published);
     enum status status = measurement_check(formula, call);
     *values = (struct values){1, {1}};
+    used(formula, USE_SCENE, call->text[0]);
+    used(formula, USE_SETTING, call->text[1]);
     if (status == STATUS_OK && formula->measured)
         values->at[0] = measured_flops(formula->measured, call->text[0], call->text[1], by_formula);
     return status;
@@ -191,6 +199,7 @@ static enum status published(struct formula *formula, struct call *call, struct 
 {
     values->count = published_values(formula->published, call->text[0], call->text[1], call->text[2], call->text[3],
                                      values->at, VALUES_MAX);
+    used(formula, USE_TABLE, call->text[0]);
     return values->count ? STATUS_OK
                          : formula_error(formula, call->at[0],
                                          "published.csv has no such number; table, target (or "
@@ -223,6 +232,11 @@ static enum status phase(struct formula *formula, struct call *call, struct valu
                                     range[0],
                                     range[1],
                                     share[1]};
+    char setting[160];
+    snprintf(setting, sizeof setting, "%.40s at %.40s m within %.40s of the Doppler band", call->text[2], call->text[3],
+             call->text[4]);
+    used(formula, USE_SCENE, phase_setups[part.setup]);
+    used(formula, USE_SETTING, setting);
     if (status == STATUS_OK && formula->measured)
         values->at[0] = measured_phase(formula->measured, &part);
     return status;
@@ -278,6 +292,7 @@ static enum status scene_number(struct formula *formula, struct call *call, stru
     enum status status = scene_check(formula, call, 0);
     if (status == STATUS_OK)
         status = word_check(formula, call, 1, names);
+    used(formula, USE_SCENE, call->text[0]);
     if (status != STATUS_OK || !formula->measured)
         return status;
     status = assumed_scene_load(call->text[0], &scene);

@@ -17,6 +17,10 @@ struct values {
     double at[VALUES_MAX];
 };
 
+/* What numbers rest on beside measurements: a scene, a setting (a formula of the phase study, a SPEC that is planned), a
+   table of published.csv. */
+enum use { USE_SCENE, USE_SETTING, USE_TABLE };
+
 /* Where the reading of a claim stands, and the names that it has defined. */
 enum { NAMES_MAX = 32 };
 struct formula {
@@ -27,6 +31,7 @@ struct formula {
     bool measures;             /* something measured was asked for */
     const struct csv *published;
     void (*need)(void *to, const char *scene, const char *spec); /* hears of each measurement; may be NULL */
+    void (*use)(void *to, enum use use, const char *text);       /* hears of what else is looked up; may be NULL */
     void *to;
     const char *path; /* for messages: file, line and column of the cell */
     int line;

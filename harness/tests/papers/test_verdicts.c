@@ -235,8 +235,8 @@ static void phases_draw(struct measured *measured)
     }
 }
 
-/* Slowest over fastest is 1 at least, and the least noise is above the 3.7 % that Table 4 calls almost the same: it can be
-   refuted or left open, and never holds. */
+/* Slowest over fastest is 1 at least, and the least noise is above the 3.7 % that Table 4 calls almost the same: this
+   can be refuted or left open, and never holds. */
 static const char *const only_refuted = "bp22-4.2-8";
 
 /* Every claim that measurements decide holds by some and fails by others. */
@@ -272,6 +272,51 @@ static void each_verdict_can_flip(void **state)
     claims_free(&claims);
 }
 
+static void contains(const struct claim *claim, const char *evidence, const char *text)
+{
+    if (!strstr(evidence, text))
+        fail_msg("%s: '%s' is not in its evidence: %s", claim->id, text, evidence);
+}
+
+/* The evidence of each claim says what was compared with what: numbers by name, criterion, answers, settings, scenes
+   with what these assume, printed tables. */
+static void evidence_is_whole(void **state)
+{
+    (void)state;
+    struct claims claims;
+    assert_int_equal(claims_read(CLAIMS_FILE, &claims), STATUS_OK);
+    for (int k = 0; k < claims.count; k++) {
+        const struct claim *claim = &claims.claims[k];
+        struct measured measured;
+        generator = random_seed(2, (uint64_t)k);
+        claim_plant(claim);
+        planted_end(&measured);
+        numbers_draw(&measured);
+        phases_draw(&measured);
+        for (enum scheme scheme = 0; scheme < (claim->by_scheme ? SCHEMES : 1); scheme++) {
+            const struct judgement found = claim_judge(&claims, claim, scheme, &measured);
+            char name[40];
+            assert_true(strlen(found.evidence) < sizeof found.evidence - 1);
+            snprintf(name, sizeof name, "%.*s= ", (int)strcspn(claim->arguments, "=") % 38, claim->arguments);
+            contains(claim, found.evidence, name);
+            contains(claim, found.evidence, claim->criterion);
+            if (judge_decides(claim->judge))
+                contains(claim, found.evidence,
+                         strstr(found.evidence, ": yes")  ? "; criterion: "
+                         : strstr(found.evidence, ": no") ? "; criterion: "
+                                                          : ": within the noise");
+            if (claim->need_count > 0 || claim->phases)
+                contains(claim, found.evidence, "; settings: ");
+            if (claim->need_count > 0 || claim->phases || strstr(claim->arguments, "scene("))
+                contains(claim, found.evidence, " (c 1500 m/s, beam ");
+            if (strstr(claim->arguments, " published(") || strstr(claim->arguments, "(published("))
+                contains(claim, found.evidence, "; printed numbers: ");
+        }
+        planted_clear(&measured);
+    }
+    claims_free(&claims);
+}
+
 #define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, folder_make, folder_remove)
 
 int main(void)
@@ -279,6 +324,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         IN_FOLDER(faults_change_verdicts),
         IN_FOLDER(each_verdict_can_flip),
+        IN_FOLDER(evidence_is_whole),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
