@@ -21,6 +21,8 @@ static void blocks_place(struct rma *rma, int count)
     rma->block_count = count;
     rma->block_width = (to - from) / (blend ? count - 1 : count);
     rma->block_from = from + (blend ? 0 : rma->block_width / 2);
+    if (from == to)
+        rma->block_width = from; /* of a single row: any does, but places are divided by it */
 }
 
 /* Is the error that the conversion at the blocks' centres leaves at their ends below the limit (LBF21 Eq. (13))? */
@@ -70,7 +72,7 @@ static double lone_block_error(struct rma *rma)
                 double nu = -frequency * spectrum_slope(&rma->setting, rma->offset[rma->extremes[m]], r, u);
                 double error = rma_correction(rma, rma->extremes[m], r, frequency, nu)
                                - rma_correction(rma, rma->extremes[m], r0, frequency, nu);
-                sum += isfinite(error) ? 4 * pi * pi * error * error : 0;
+                sum += isnan(error) ? 0 : 4 * pi * pi * error * error;
             }
         worst = fmax(worst, sqrt(sum / (2 * PLACES * FREQUENCIES)));
     }

@@ -91,7 +91,7 @@ static double worst_row(const struct rma_view *view, row_function *function)
         for (int end = 0; end < 2; end++) {
             double r = patch->r_first + end * (patch->r_count - 1) * patch->r_step;
             double value = rma_view_aperture(view, patch, r, &low, &high) ? function(view, r, low, high) : 0;
-            worst = value <= worst ? worst : value; /* a NaN is kept */
+            worst = isnan(worst) || isnan(value) ? NAN : fmax(worst, value);
         }
     }
     return worst;

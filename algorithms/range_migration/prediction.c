@@ -88,12 +88,14 @@ static void kernel_transform(const struct kernel *kernel, double d, double frequ
     memset(kernel->wave, 0, (size_t)kernel->length * sizeof *kernel->wave);
     for (int k = -kernel->count / 2; k <= kernel->count / 2; k++) {
         double nu = k * kernel->nu_step, monostatic = spectrum_monostatic(setting, frequency, nu);
+        if (isnan(monostatic))
+            continue; /* evanescent */
         double kappa = c * monostatic / (4 * pi), place = -r * (c * nu / 2 + f * beta) / kappa;
         if (!(fabs(place) <= focused))
             continue;
         double phase = view->converts ? view->method->spectrum(setting, d, r, frequency, nu) : -r * monostatic;
         double weight = f * sqrt(c * r / (2 * kappa * kappa * kappa)) * kernel->nu_step * taper(kernel, place - d / 2);
-        if (weight > 0 && isfinite(phase))
+        if (weight > 0 && !isnan(phase))
             kernel->wave[k < 0 ? kernel->length + k : k] =
                 (2 * abs(k) == kernel->count ? 0.5 : 1) * weight * cexp(I * (pi / 4 - phase));
     }

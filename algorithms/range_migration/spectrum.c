@@ -6,6 +6,12 @@
 
 static const double pi = 3.14159265358979323846;
 
+/* Evanescent cells raise no exception: they are no fault. */
+static double root_of(double square)
+{
+    return square > 0 ? sqrt(square) : NAN;
+}
+
 /* The exact delay (LBF21 Eq. (1)) and its first two derivatives, for the transmitter u metres ahead of the target: the
    way out, and the way back to a receiver that is b metres ahead of the target when the wave is there. Written so that
    nothing cancels, whatever the speed. */
@@ -37,9 +43,10 @@ double spectrum_slope(const struct spectrum_setting *setting, double d, double r
 double spectrum_exact(const struct spectrum_setting *setting, double d, double r, double frequency, double nu)
 {
     const double c = setting->sound_speed, beta = setting->speed / c, b1 = (1 - beta) * (1 + beta);
-    const double f = frequency / b1, along = c * nu / 2 + f * beta, s = sqrt((f - along) * (f + along));
-    if (!(r > 0 && s > 0))
+    const double f = frequency / b1, along = c * nu / 2 + f * beta, square = (f - along) * (f + along);
+    if (!(r > 0 && square > 0))
         return NAN;
+    const double s = sqrt(square);
     /* In units of the geometry, so that no square under- or overflows; a range below 1e-100 of the offset is none. */
     const double unit = fmax(r, fabs(d)), offset = d / unit, range = fmax(r / unit, 1e-100), cycles = frequency * unit;
     /* The delay is convex: its slope rises through -nu/F once. Newton's method from the closed form of d = 0, kept
@@ -77,7 +84,7 @@ static double lbf(const struct spectrum_setting *setting, double d, double r, do
 static double root(const struct spectrum_setting *setting, double frequency, double nu)
 {
     double half = setting->sound_speed * nu / 2;
-    return sqrt((frequency - half) * (frequency + half));
+    return root_of((frequency - half) * (frequency + half));
 }
 
 double spectrum_lbf_printed(const struct spectrum_setting *setting, double d, double r, double frequency, double nu)
@@ -116,5 +123,5 @@ double spectrum_monostatic(const struct spectrum_setting *setting, double freque
 {
     double c = setting->sound_speed, beta = setting->speed / c, f = frequency / ((1 - beta) * (1 + beta));
     double along = c * nu / 2 + f * beta;
-    return 4 * pi / c * sqrt((f - along) * (f + along));
+    return 4 * pi / c * root_of((f - along) * (f + along));
 }

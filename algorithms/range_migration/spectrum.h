@@ -7,7 +7,8 @@
 
        sin theta = c nu/(2F),   S = sqrt(F^2 - (c nu/2)^2) = F cos theta,   Delta = d + 2 r v/(c cos theta)
 
-   Cells with S^2 <= 0 are evanescent and give NAN (the exact spectra know their own bounds, below). */
+   Cells with S^2 <= 0 are evanescent and give NAN (the exact spectra know their own bounds, below), without raising
+   FE_INVALID. */
 #ifndef SASBENCH_RANGE_MIGRATION_SPECTRUM_H
 #define SASBENCH_RANGE_MIGRATION_SPECTRUM_H
 
