@@ -135,6 +135,8 @@ static enum status judge_pair(struct judging *judging, const struct row_key *key
     enum status status = describe(diff, key, &row);
     for (const struct metric *metric = judging->metrics; metric->name && status == STATUS_OK; metric++) {
         struct finding finding = row;
+        if (csv_column(&old->csv, metric->name) < 0 || csv_column(&new->csv, metric->name) < 0)
+            continue; /* files of another version */
         memcpy(&finding.before, old_row + metric->offset, sizeof finding.before);
         memcpy(&finding.after, new_row + metric->offset, sizeof finding.after);
         finding.class = metric->class;
@@ -219,6 +221,22 @@ static enum status note_side(struct diff *diff, const char *which, const char *p
                      machine ? machine : "");
 }
 
+/* Columns that only one of two versions of a file has. */
+static enum status note_versions(struct diff *diff, const struct diff_side sides[2], const struct metric *metrics_used)
+{
+    char names[300] = "";
+    for (const struct metric *metric = metrics_used; metric->name; metric++) {
+        const bool old = csv_column(&sides[0].results.csv, metric->name) >= 0;
+        const bool new = csv_column(&sides[1].results.csv, metric->name) >= 0;
+        const size_t used = strlen(names);
+        if (old != new)
+            snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", metric->name);
+    }
+    return *names ? diff_note(diff, "versions of the files differ: only one has %s, which %s not compared", names,
+                              strchr(names, ',') ? "are" : "is")
+                  : STATUS_OK;
+}
+
 static void finding_change(struct diff *diff, struct finding *finding)
 {
     diff->counts[finding->class][finding->verdict]--;
@@ -276,6 +294,11 @@ static enum status judge_files(struct diff *diff, const char *const paths[2], st
     judging.ratios = calloc((size_t)sides[0].results.csv.row_count + 1, sizeof *judging.ratios);
     if (!judging.ratios)
         return status_set(STATUS_FAILED, "no memory for %d rows", sides[0].results.csv.row_count);
+    status = note_versions(diff, sides, judging.metrics);
+    if (status != STATUS_OK) {
+        free(judging.ratios);
+        return status;
+    }
     diff->to_baseline |= !csv_comment(&sides[0].results.csv, "program");
     status = judge_sides(&judging, measurements);
     changes_find(diff, before, judging.metrics);

@@ -28,6 +28,9 @@ const struct metric metrics[] = {
     M_METRIC(width_m, "m", "-3 dB width", BETTER_LOWER, CLASS_QUALITY, 0, 0, 1e-4),
     M_METRIC(pslr_db, "dB", "PSLR", BETTER_LOWER, CLASS_QUALITY, 2e-3, 2e-3, 0),
     M_METRIC(islr_db, "dB", "ISLR", BETTER_LOWER, CLASS_QUALITY, 2e-3, 2e-3, 0),
+    M_METRIC(entropy, "1", "Entropy", BETTER_LOWER, CLASS_QUALITY, 0, 0, 1e-3),
+    M_METRIC(contrast, "1", "Contrast", BETTER_HIGHER, CLASS_QUALITY, 0, 0, 1e-3),
+    M_METRIC(peak_over_median, "1", "Peak over median", BETTER_HIGHER, CLASS_QUALITY, 0, 0, 1e-2),
     {.name = NULL},
 };
 
@@ -68,5 +71,10 @@ struct measurement measurement_empty(const char *scene, const char *algorithm, c
                                 .phase_rms_rad = NAN,
                                 .width_m = NAN,
                                 .pslr_db = NAN,
-                                .islr_db = NAN};
+                                .islr_db = NAN,
+                                .run_q1_s = NAN,
+                                .run_q3_s = NAN,
+                                .entropy = NAN,
+                                .contrast = NAN,
+                                .peak_over_median = NAN};
 }

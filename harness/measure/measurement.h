@@ -17,7 +17,9 @@ struct measurement {
     const char *stages; /* "compress=0.1;focus=0.9" */
     double flops_published, flops, pairs, bytes;
     double error, error_gain, phase_rms_rad;
-    double width_m, pslr_db, islr_db; /* null definition, azimuth, medians over the targets */
+    double width_m, pslr_db, islr_db;           /* null definition, azimuth, medians over the targets */
+    double run_q1_s, run_q3_s;                  /* quartiles of the runs; NAN for less than 4 */
+    double entropy, contrast, peak_over_median; /* metrics_sharpness; NAN where only a part was imaged */
 };
 
 /* One row of targets.csv. */

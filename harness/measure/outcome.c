@@ -121,11 +121,25 @@ static void work_fill(const struct session *session, const struct problem *probl
     row->bytes = work->bytes;
     row->engine = work->engine;
     double left_out = 1 - problem_pixels(problem) / problem_pixels(&whole);
-    if (left_out > 0)
+    if (left_out <= 0) {
+        const struct sharpness sharpness = metrics_sharpness(&outcome->image);
+        row->entropy = sharpness.entropy;
+        row->contrast = sharpness.contrast;
+        row->peak_over_median = sharpness.peak_over_median;
+    } else
         reason_add(outcome->skipped, sizeof outcome->skipped,
                    "%.3g %% of the pixels: only the patches around the targets are compared", 100 * left_out);
     if (*work->skipped)
         reason_add(outcome->skipped, sizeof outcome->skipped, "%s", work->skipped);
+}
+
+static void noise_tell(const struct timing *timing, char *text, size_t size)
+{
+    const double spread = timing_spread(timing);
+    *text = '\0';
+    if (spread > TIMING_NOISY)
+        snprintf(text, size, OUTCOME_WARNING "times scatter: the middle half of %d runs spans %.0f %% of the median",
+                 timing->runs, 100 * spread);
 }
 
 static enum status image_time(const struct session *session, const struct spec *spec, const struct problem *problem,
@@ -140,9 +154,12 @@ static enum status image_time(const struct session *session, const struct spec *
         row->plan_s = timing.plan_s;
         row->run_s = timing.run_s;
         row->run_min_s = timing.run_min_s;
+        row->run_q1_s = timing.run_q1_s;
+        row->run_q3_s = timing.run_q3_s;
         row->runs = timing.runs;
         row->control_s = timing.control_s;
         stages_format(&timing.stages, outcome->stages, sizeof outcome->stages);
+        noise_tell(&timing, outcome->noise, sizeof outcome->noise);
     }
     return status;
 }
@@ -179,6 +196,8 @@ void outcome_measure(const struct session *session, const struct spec *spec, boo
         work_fill(session, &problem, outcome);
         status = quality_fill(session, outcome);
         warnings_fill(spec, &problem, outcome);
+        if (*outcome->noise)
+            reason_add(outcome->reason, sizeof outcome->reason, "%s", outcome->noise);
     }
     if (status != STATUS_OK) {
         image_free(&outcome->image);

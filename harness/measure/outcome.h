@@ -15,7 +15,7 @@ struct outcome {
     struct work work;   /* of the plan */
     int target_count;   /* rows, several for each point target */
     struct target_row *targets;
-    char reason[512], skipped[400], stages[512];
+    char reason[512], skipped[400], stages[512], noise[120];
 };
 
 /* Measure a SPEC on a session's scene. What fails or is unsupported becomes a row with the reason, so that there is no

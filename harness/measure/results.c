@@ -33,10 +33,10 @@ static enum status results_parse(struct results *results, const struct row_kind 
     enum status status = STATUS_OK;
     for (int row = 0; row < csv->row_count && !status; row++) {
         void *out = rows + (size_t)row * size;
-        for (int k = 0; kind->columns[k].name && !status; k++) {
+        status = row_parse(csv, row, kind, out);
+        for (int k = 0; k < csv->column_count && !status; k++) {
             const struct column *column = &kind->columns[k];
-            status = cell_parse(csv, row, k, column, out);
-            if (!status && column->type == COLUMN_REAL && *csv_cell(csv, row, k)
+            if (column->type == COLUMN_REAL && *csv_cell(csv, row, k)
                 && !isfinite(*(double *)((char *)out + column->offset)))
                 status = status_set(STATUS_INVALID, "%s:%d: %s is '%s'; a finite number or nothing is needed",
                                     csv->path, csv->lines[row], column->name, csv_cell(csv, row, k));
@@ -55,12 +55,12 @@ enum status results_read(const char *path, struct results *results)
         return status;
     const char *first = results->csv.comment_count > 0 ? results->csv.comments[0] : "";
     int kind = 0;
-    while (kind < KINDS && strcmp(first, row_kinds[kind].format) != 0)
+    while (kind < KINDS && version_read(&results->csv, &row_kinds[kind]) == 0)
         kind++;
     if (kind == KINDS) {
-        status =
-            status_set(STATUS_INVALID, "%s:1: the first line is '%s%.60s'; '# %s' or '# %s' is needed", path,
-                       *first ? "# " : "", first, row_kinds[KIND_MEASUREMENTS].format, row_kinds[KIND_TARGETS].format);
+        status = status_set(STATUS_INVALID, "%s:1: the first line is '%s%.60s'; '# %s 1' to %d or '# %s 1' is needed",
+                            path, *first ? "# " : "", first, row_kinds[KIND_MEASUREMENTS].format,
+                            row_kinds[KIND_MEASUREMENTS].version, row_kinds[KIND_TARGETS].format);
     } else {
         results->targets = kind == KIND_TARGETS;
         status = header_check(&results->csv, &row_kinds[kind]);

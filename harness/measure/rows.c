@@ -7,22 +7,50 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "data/number.h"
+
 /* The braces are an initializer's. */
 /* clang-format off */
-#define M_TEXT(name) {#name, COLUMN_TEXT, offsetof(struct measurement, name)}
-#define M_INTEGER(name) {#name, COLUMN_INTEGER, offsetof(struct measurement, name)}
-#define M_REAL(name) {#name, COLUMN_REAL, offsetof(struct measurement, name)}
-#define T_TEXT(name) {#name, COLUMN_TEXT, offsetof(struct target_row, name)}
-#define T_INTEGER(name) {#name, COLUMN_INTEGER, offsetof(struct target_row, name)}
-#define T_REAL(name) {#name, COLUMN_REAL, offsetof(struct target_row, name)}
+#define M_TEXT(name) {#name, COLUMN_TEXT, offsetof(struct measurement, name), 1}
+#define M_INTEGER(name) {#name, COLUMN_INTEGER, offsetof(struct measurement, name), 1}
+#define M_REAL(name) {#name, COLUMN_REAL, offsetof(struct measurement, name), 1}
+#define M_REAL_SINCE(name, version) {#name, COLUMN_REAL, offsetof(struct measurement, name), version}
+#define T_TEXT(name) {#name, COLUMN_TEXT, offsetof(struct target_row, name), 1}
+#define T_INTEGER(name) {#name, COLUMN_INTEGER, offsetof(struct target_row, name), 1}
+#define T_REAL(name) {#name, COLUMN_REAL, offsetof(struct target_row, name), 1}
 /* clang-format on */
 
 static const struct column measurement_columns[] = {
-    M_TEXT(scene),           M_TEXT(algorithm),     M_TEXT(options), M_TEXT(precision), M_INTEGER(threads),
-    M_TEXT(engine),          M_TEXT(status),        M_TEXT(reason),  M_TEXT(skipped),   M_REAL(plan_s),
-    M_REAL(run_s),           M_REAL(run_min_s),     M_INTEGER(runs), M_REAL(control_s), M_TEXT(stages),
-    M_REAL(flops_published), M_REAL(flops),         M_REAL(pairs),   M_REAL(bytes),     M_REAL(error),
-    M_REAL(error_gain),      M_REAL(phase_rms_rad), M_REAL(width_m), M_REAL(pslr_db),   M_REAL(islr_db),
+    M_TEXT(scene),
+    M_TEXT(algorithm),
+    M_TEXT(options),
+    M_TEXT(precision),
+    M_INTEGER(threads),
+    M_TEXT(engine),
+    M_TEXT(status),
+    M_TEXT(reason),
+    M_TEXT(skipped),
+    M_REAL(plan_s),
+    M_REAL(run_s),
+    M_REAL(run_min_s),
+    M_INTEGER(runs),
+    M_REAL(control_s),
+    M_TEXT(stages),
+    M_REAL(flops_published),
+    M_REAL(flops),
+    M_REAL(pairs),
+    M_REAL(bytes),
+    M_REAL(error),
+    M_REAL(error_gain),
+    M_REAL(phase_rms_rad),
+    M_REAL(width_m),
+    M_REAL(pslr_db),
+    M_REAL(islr_db),
+    M_REAL_SINCE(run_q1_s, 2),
+    M_REAL_SINCE(run_q3_s, 2),
+    M_REAL_SINCE(entropy, 2),
+    M_REAL_SINCE(contrast, 2),
+    M_REAL_SINCE(peak_over_median, 2),
     {.name = NULL},
 };
 
@@ -33,8 +61,8 @@ static const struct column target_columns[] = {
 };
 
 const struct row_kind row_kinds[KINDS] = {
-    {"measurements.csv", "sasbench measurements 1", measurement_columns},
-    {"targets.csv", "sasbench targets 1", target_columns},
+    {"measurements.csv", "sasbench measurements", 2, measurement_columns},
+    {"targets.csv", "sasbench targets", 1, target_columns},
 };
 
 static const struct {
@@ -83,7 +111,7 @@ static void comment_write(FILE *file, const char *key, const char *name, const c
 void head_write(FILE *file, const struct row_kind *kind, const struct provenance *provenance, const char *note,
                 const struct scene_hash *scenes, int scene_count)
 {
-    fprintf(file, "# %s\n", kind->format);
+    fprintf(file, "# %s %d\n", kind->format, kind->version);
     for (size_t k = 0; provenance && k < sizeof notes / sizeof *notes; k++)
         comment_write(file, notes[k].key, "", (const char *)provenance + notes[k].offset);
     if (provenance)
@@ -102,10 +130,22 @@ void head_write(FILE *file, const struct row_kind *kind, const struct provenance
 
 /* --- Reading ------------------------------------------------------------------------------------------------- */
 
+int version_read(const struct csv *csv, const struct row_kind *kind)
+{
+    const char *first = csv->comment_count > 0 ? csv->comments[0] : "";
+    const size_t length = strlen(kind->format);
+    long long version;
+    if (strncmp(first, kind->format, length) != 0 || first[length] != ' ')
+        return 0;
+    const char *end = whole_read(first + length + 1, 1, kind->version, &version);
+    return end && !*end ? (int)version : 0;
+}
+
 enum status header_check(const struct csv *csv, const struct row_kind *kind)
 {
+    const int version = version_read(csv, kind);
     int count = 0;
-    while (kind->columns[count].name)
+    while (kind->columns[count].name && kind->columns[count].since <= version)
         count++;
     for (int k = 0; k < count || k < csv->column_count; k++) {
         const char *needed = k < count ? kind->columns[k].name : "no more";
@@ -119,7 +159,7 @@ enum status header_check(const struct csv *csv, const struct row_kind *kind)
     return STATUS_OK;
 }
 
-enum status cell_parse(const struct csv *csv, int row, int index, const struct column *column, void *out)
+static enum status cell_parse(const struct csv *csv, int row, int index, const struct column *column, void *out)
 {
     const char *cell = csv_cell(csv, row, index);
     void *field = (char *)out + column->offset;
@@ -137,6 +177,19 @@ enum status cell_parse(const struct csv *csv, int row, int index, const struct c
     else
         *(double *)field = value;
     return STATUS_OK;
+}
+
+enum status row_parse(const struct csv *csv, int row, const struct row_kind *kind, void *out)
+{
+    enum status status = STATUS_OK;
+    for (int k = 0; kind->columns[k].name && status == STATUS_OK; k++) {
+        const struct column *column = &kind->columns[k];
+        if (k < csv->column_count)
+            status = cell_parse(csv, row, k, column, out);
+        else /* columns are appended: an older version has none, and all of those are numbers */
+            *(double *)((char *)out + column->offset) = NAN;
+    }
+    return status;
 }
 
 void provenance_differs(const struct csv *csv, const struct provenance *provenance, char *text, size_t size)

@@ -12,6 +12,7 @@ struct column {
     const char *name; /* NULL ends the table */
     enum { COLUMN_TEXT, COLUMN_INTEGER, COLUMN_REAL } type;
     size_t offset;
+    int since; /* the version of the file that has it first; what is appended later is COLUMN_REAL */
 };
 
 /* Both tables begin with the columns that tell one measurement from another. */
@@ -21,7 +22,8 @@ enum { KIND_MEASUREMENTS, KIND_TARGETS, KINDS };
 
 /* One of the two files. */
 struct row_kind {
-    const char *file, *format; /* the format is the first line: by it we know a file as ours */
+    const char *file, *format; /* with the version the first line: by it we know a file as ours */
+    int version;
     const struct column *columns;
 };
 extern const struct row_kind row_kinds[KINDS];
@@ -31,10 +33,13 @@ void head_write(FILE *file, const struct row_kind *kind, const struct provenance
                 const struct scene_hash *scenes, int scene_count);
 void row_write(FILE *file, const struct column *columns, const void *row);
 
-/* Does a file's header line name the columns of its kind? Errors: STATUS_INVALID naming the first that differs. */
+/* The version of a file of this kind, from its first line; 0 for another kind, or a version that is not known yet. */
+int version_read(const struct csv *csv, const struct row_kind *kind);
+/* Does a file's header line name the columns of its kind and version? Errors: STATUS_INVALID naming the first that differs. */
 enum status header_check(const struct csv *csv, const struct row_kind *kind);
-/* One cell into its field. Errors: STATUS_INVALID naming file, line, column and value. */
-enum status cell_parse(const struct csv *csv, int row, int index, const struct column *column, void *out);
+/* One row into its struct; what the file's version does not have is empty. Errors: STATUS_INVALID naming file, line, column and
+   value. */
+enum status row_parse(const struct csv *csv, int row, const struct row_kind *kind, void *out);
 
 /* Why rows of a file are not gone on with by a program of this provenance; empty when they are. */
 void provenance_differs(const struct csv *csv, const struct provenance *provenance, char *text, size_t size);

@@ -28,6 +28,21 @@ double median(double *values, int count)
     return count % 2 ? values[count / 2] : (values[count / 2 - 1] + values[count / 2]) / 2;
 }
 
+double quantile(const double *sorted, int count, double share)
+{
+    if (count == 0)
+        return NAN;
+    const double place = share * (count - 1);
+    const int below = (int)floor(place);
+    return below + 1 < count ? sorted[below] + (place - below) * (sorted[below + 1] - sorted[below])
+                             : sorted[count - 1];
+}
+
+double timing_spread(const struct timing *timing)
+{
+    return (timing->run_q3_s - timing->run_q1_s) / timing->run_s;
+}
+
 static enum status run_once(struct imaging *imaging, const struct echoes *echoes, struct stages *stages,
                             double *seconds)
 {
@@ -59,6 +74,8 @@ static enum status repeat(struct imaging *imaging, const struct echoes *echoes, 
     timing->runs = runs;
     timing->run_s = median(sorted, runs);
     timing->run_min_s = sorted[0];
+    timing->run_q1_s = runs >= 4 ? quantile(sorted, runs, 0.25) : NAN;
+    timing->run_q3_s = runs >= 4 ? quantile(sorted, runs, 0.75) : NAN;
     int nearest = 0;
     for (int k = 1; k < runs; k++)
         if (fabs(seconds[k] - timing->run_s) < fabs(seconds[nearest] - timing->run_s))

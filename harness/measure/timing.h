@@ -5,11 +5,12 @@
 #include "measure/spec.h"
 
 struct timing {
-    double plan_s;           /* s, planning, once */
-    double run_s, run_min_s; /* s, median and minimum of the timed runs */
-    int runs;                /* timed runs; 1 when a run is so long that the first counts */
-    double control_s;        /* s, the scalar reference loop's time for all pairs of the problem, measured beside */
-    struct stages stages;    /* of the median run */
+    double plan_s;             /* s, planning, once */
+    double run_s, run_min_s;   /* s, median and minimum of the timed runs */
+    double run_q1_s, run_q3_s; /* s, quartiles; NAN for less than 4 runs */
+    int runs;                  /* timed runs; 1 when a run is so long that the first counts */
+    double control_s;          /* s, the scalar reference loop's time for all pairs of the problem, measured beside */
+    struct stages stages;      /* of the median run */
     struct work work;
 };
 
@@ -28,6 +29,12 @@ double timing_floor(void);
    changes. */
 void seconds_skip_waiting(void);
 
+/* The quartiles' distance over the median beyond which a time is told to be noisy. */
+#define TIMING_NOISY 0.1
+double timing_spread(const struct timing *timing); /* of these times; NAN for less than 4 runs */
+
 double median(double *values, int count); /* sorts the values; NAN when count is 0 */
+/* The value below which `share` of sorted values lie, linear between two; NAN when count is 0. */
+double quantile(const double *sorted, int count, double share);
 
 #endif

@@ -162,8 +162,25 @@ static const struct page_column measurement_columns[MEASUREMENT_COLUMNS] = {{"al
                                                                             {"PSLR (dB)", true},
                                                                             {"ISLR (dB)", true},
                                                                             {"engine, left out", false}};
+enum { LOBES_FIRST = 9 }; /* of width, PSLR and ISLR, in whose place scenes without targets show */
+static const struct page_column sharpness_columns[3] = {{"entropy", true}, {"contrast", true}, {"peak/median", true}};
 
-static void measurement_show(struct page *page, const struct measurement *row)
+/* Is nothing measured of any target? */
+static bool scene_is_blind(const struct folder *folder, const char *scene)
+{
+    bool sharpness = false;
+    for (int k = 0; k < folder->results.csv.row_count; k++) {
+        const struct measurement *row = &folder->results.measurements[k];
+        if (strcmp(row->scene, scene) != 0)
+            continue;
+        if (isfinite(row->pslr_db) || isfinite(row->width_m))
+            return false;
+        sharpness |= isfinite(row->entropy);
+    }
+    return sharpness;
+}
+
+static void measurement_show(struct page *page, const struct measurement *row, bool sharpness)
 {
     char spec[512], note[1200], texts[MEASUREMENT_COLUMNS][32] = {""};
     struct page_cell cells[MEASUREMENT_COLUMNS];
@@ -176,10 +193,18 @@ static void measurement_show(struct page *page, const struct measurement *row)
     const struct {
         double value;
         const char *format;
-    } numbers[] = {{1e-9 * row->flops, "%.3g"}, {1e-6 * row->bytes, "%.3g"},  {row->error, "%.2e"},
-                   {row->error_gain, "%.2e"},   {row->phase_rms_rad, "%.2e"}, {1e3 * row->width_m, "%.2f"},
-                   {row->pslr_db, "%.2f"},      {row->islr_db, "%.2f"}};
+    } numbers[] = {{1e-9 * row->flops, "%.3g"},
+                   {1e-6 * row->bytes, "%.3g"},
+                   {row->error, "%.2e"},
+                   {row->error_gain, "%.2e"},
+                   {row->phase_rms_rad, "%.2e"},
+                   {sharpness ? row->entropy : 1e3 * row->width_m, "%.2f"},
+                   {sharpness ? row->contrast : row->pslr_db, "%.2f"},
+                   {sharpness ? row->peak_over_median : row->islr_db, "%.2f"}};
     snprintf(texts[1], sizeof texts[1], "%s", cell_time(row->run_s).text);
+    if (isfinite(row->run_q1_s) && isfinite(row->run_q3_s))
+        snprintf(texts[1], sizeof texts[1], "%.12s (-%.1f, +%.1f %%)", cell_time(row->run_s).text,
+                 fmin(999, 100 * (1 - row->run_q1_s / row->run_s)), fmin(999, 100 * (row->run_q3_s / row->run_s - 1)));
     snprintf(texts[2], sizeof texts[2], "%s", cell_significant(row->control_s / row->run_s, "x").text);
     snprintf(texts[3], sizeof texts[3], "%s", cell_time(row->plan_s).text);
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
@@ -201,14 +226,20 @@ static void measurements_show(struct page *page, const struct folder *folder)
 {
     page_heading(page, 2, "measurements", "Measurements");
     page_paragraph(page, "Run time: median seconds from raw echoes to complex image; speed-up: against the scalar "
-                         "reference loop timed beside. Errors: relative L2 against the exact image. Width, PSLR and "
-                         "ISLR: medians over the targets, azimuth, main lobe from first minimum to first minimum.");
+                         "reference loop timed beside. In parentheses the quartiles of the runs. Errors: relative L2 "
+                         "against the exact image. Width, PSLR and ISLR: medians over the targets, azimuth, main lobe "
+                         "from first minimum to first minimum; without targets the image's sharpness.");
     for (int s = 0; s < folder->scene_count; s++) {
         page_heading(page, 3, NULL, folder->scenes[s]);
-        page_table_begin(page, MEASUREMENT_COLUMNS, measurement_columns, false);
+        const bool sharpness = scene_is_blind(folder, folder->scenes[s]);
+        struct page_column columns[MEASUREMENT_COLUMNS];
+        memcpy(columns, measurement_columns, sizeof columns);
+        if (sharpness)
+            memcpy(columns + LOBES_FIRST, sharpness_columns, sizeof sharpness_columns);
+        page_table_begin(page, MEASUREMENT_COLUMNS, columns, false);
         for (int row = 0; row < folder->results.csv.row_count; row++)
             if (strcmp(folder->results.measurements[row].scene, folder->scenes[s]) == 0)
-                measurement_show(page, &folder->results.measurements[row]);
+                measurement_show(page, &folder->results.measurements[row], sharpness);
         page_table_end(page);
     }
 }

@@ -3,18 +3,29 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
+#include "data/number.h"
 #include "data/shown_text.h"
 #include "measure/outcome.h"
 
-#define WIDTH      110
-#define SPEC_WIDTH 34
-/* Titles, units and values alike: algorithm, time, speed-up, rate, three errors, width, PSLR, ISLR. */
-#define LAYOUT "  %-34s %8s %8s %9s %7s %7s %7s %6s %6s %6s\n"
+enum { WIDTH_WIDE = 110, WIDTH_LEAST = 80 };
+/* Titles, units and values alike: algorithm, time, speed-up, rate, three errors, width, PSLR, ISLR; on a narrow terminal without
+   rate and gain. */
+#define LAYOUT_WIDE   "  %-34s %8s %8s %9s %7s %7s %7s %6s %6s %6s\n"
+#define LAYOUT_NARROW "  %-24s %7s %8s %7s %7s %6s %6s %6s\n"
 
-/* The scene whose heading stands above the last row: there is one terminal, and so one table. */
-static char last_scene[256];
+/* There is one terminal, and so one table. */
+static struct {
+    int width, spec_width;
+    char scene[256];   /* whose heading stands above the last row */
+    bool sharpness;    /* the last three columns are that: the scene has no targets */
+    char refusal[600]; /* the latest of the scene, without the algorithm's name, which is `refused` */
+    char refused[64];
+} table = {.width = WIDTH_WIDE, .spec_width = 34};
 
 struct cell cell_significant(double value, const char *unit)
 {
@@ -57,7 +68,7 @@ static struct cell cell_fixed(double value)
 /* Text broken at blanks, each line behind `indent` blanks; a word longer than a line is broken anywhere. */
 static void print_wrapped(FILE *stream, int indent, const char *text)
 {
-    int room = WIDTH - indent;
+    int room = table.width - indent;
     while (*text) {
         int length = (int)strcspn(text, "\n");
         if (length > room) {
@@ -72,19 +83,51 @@ static void print_wrapped(FILE *stream, int indent, const char *text)
     }
 }
 
+/* One line: texts in the order of LAYOUT_WIDE. */
+static void line_print(FILE *stream, const char *const texts[10])
+{
+    if (table.width >= WIDTH_WIDE)
+        fprintf(stream, LAYOUT_WIDE, texts[0], texts[1], texts[2], texts[3], texts[4], texts[5], texts[6], texts[7],
+                texts[8], texts[9]);
+    else
+        fprintf(stream, LAYOUT_NARROW, texts[0], texts[1], texts[2], texts[4], texts[6], texts[7], texts[8], texts[9]);
+}
+
+/* Columns of the terminal: what COLUMNS says, what the terminal says, or those of a wide table where there is none. */
+static int width_find(FILE *stream)
+{
+    const char *given = getenv("COLUMNS");
+    struct winsize size;
+    long long columns = 0;
+    if (given && whole_read(given, 1, 10000, &columns))
+        return columns < WIDTH_LEAST ? WIDTH_LEAST : (int)columns;
+    if (!isatty(fileno(stream)) || ioctl(fileno(stream), TIOCGWINSZ, &size) != 0 || size.ws_col == 0)
+        return WIDTH_WIDE;
+    return size.ws_col < WIDTH_LEAST ? WIDTH_LEAST : size.ws_col;
+}
+
 void table_header(FILE *stream)
 {
-    *last_scene = '\0';
+    *table.scene = '\0';
+    table.width = width_find(stream) < WIDTH_WIDE ? WIDTH_LEAST : WIDTH_WIDE;
+    table.spec_width = table.width == WIDTH_WIDE ? 34 : 24;
     fputs("time      median seconds from raw echoes to complex image\n"
-          "speed-up  against the scalar reference loop timed beside, which takes out the machine's momentary speed\n"
-          "rate      10^9 pixel-pulse pairs (Gp/s) or, where none are summed, operations (GF/s) a second\n"
-          "error     against the exact image, relative L2; +gain: after one best complex gain; phase: rms over the\n"
-          "          strong pixels\n"
-          "width     of the targets' main lobes at -3 dB, PSLR and ISLR of their azimuth slices (medians)\n\n",
+          "speed-up  against the scalar reference loop timed beside, which takes out the\n"
+          "          machine's momentary speed\n",
           stream);
-    fprintf(stream, LAYOUT, "algorithm", "time", "speed-up", "rate", "error", "+gain", "phase", "width", "PSLR",
-            "ISLR");
-    fprintf(stream, LAYOUT, "", "", "", "", "", "", "rad", "mm", "dB", "dB");
+    if (table.width == WIDTH_WIDE)
+        fputs("rate      10^9 pixel-pulse pairs (Gp/s) or, where none are summed, operations\n"
+              "          (GF/s) a second\n",
+              stream);
+    fprintf(stream,
+            "error     against the exact image, relative L2;%s phase: rms over\n"
+            "          the strong pixels\n"
+            "width     of the targets' main lobes at -3 dB, PSLR and ISLR of their azimuth\n"
+            "          slices (medians)\n\n",
+            table.width == WIDTH_WIDE ? " +gain: after one best gain;" : "");
+    line_print(stream, (const char *const[]){"algorithm", "time", "speed-up", "rate", "error", "+gain", "phase",
+                                             "width", "PSLR", "ISLR"});
+    line_print(stream, (const char *const[]){"", "", "", "", "", "", "rad", "mm", "dB", "dB"});
 }
 
 void measurement_spec(const struct measurement *row, char *text, size_t size)
@@ -94,50 +137,105 @@ void measurement_spec(const struct measurement *row, char *text, size_t size)
              *row->options && other_precision ? "," : "", other_precision ? "precision=double" : "");
 }
 
-void table_row(FILE *stream, const struct measurement *row)
+static void scene_begin(FILE *stream, const char *name)
 {
-    if (strcmp(last_scene, row->scene) != 0) {
-        char scene[WIDTH + 1];
-        snprintf(scene, sizeof scene, "%s", row->scene);
-        shown_make(scene);
-        fprintf(stream, "\n%s\n", scene);
-        snprintf(last_scene, sizeof last_scene, "%s", row->scene);
+    char scene[WIDTH_WIDE + 1];
+    snprintf(scene, sizeof scene, "%s", name);
+    shown_make(scene);
+    fprintf(stream, "\n%s\n", scene);
+    snprintf(table.scene, sizeof table.scene, "%s", name);
+    table.sharpness = false;
+    *table.refusal = '\0';
+}
+
+static void text_print(FILE *stream, const char *before, const char *text)
+{
+    char shown[1100];
+    snprintf(shown, sizeof shown, "%s%s", before, text);
+    shown_make(shown);
+    print_wrapped(stream, 4, shown);
+}
+
+static void ok_print(FILE *stream, const struct measurement *row, const char *spec)
+{
+    const bool own_line = strlen(spec) > (size_t)table.spec_width;
+    const bool sharpness = isnan(row->pslr_db) && isfinite(row->entropy);
+    struct cell last[3] = {cell_fixed(1e3 * row->width_m), cell_fixed(row->pslr_db), cell_fixed(row->islr_db)};
+    if (sharpness && !table.sharpness)
+        line_print(stream, (const char *const[]){"", "", "", "", "", "", "", "entro.", "contr.", "peak"});
+    table.sharpness |= sharpness;
+    if (sharpness) {
+        last[0] = cell_fixed(row->entropy);
+        last[1] = cell_significant(row->contrast, "");
+        last[2] = cell_significant(row->peak_over_median, "");
     }
-    char spec[512];
-    measurement_spec(row, spec, sizeof spec);
-    shown_make(spec);
-    bool ok = strcmp(row->status, "ok") == 0, own_line = !ok || strlen(spec) > SPEC_WIDTH;
     if (own_line)
         print_wrapped(stream, 2, spec);
-    if (ok) {
-        fprintf(stream, LAYOUT, own_line ? "" : spec, cell_time(row->run_s).text,
-                cell_significant(row->control_s / row->run_s, "x").text, cell_rate(row).text,
-                cell_error(row->error).text, cell_error(row->error_gain).text, cell_error(row->phase_rms_rad).text,
-                cell_fixed(1e3 * row->width_m).text, cell_fixed(row->pslr_db).text, cell_fixed(row->islr_db).text);
-        const char *warning = strstr(row->reason, OUTCOME_WARNING);
-        if (warning) {
-            char text[1024];
-            snprintf(text, sizeof text, "%s", warning);
-            shown_make(text);
-            print_wrapped(stream, 4, text);
-        }
+    line_print(stream,
+               (const char *const[]){own_line ? "" : spec, cell_time(row->run_s).text,
+                                     cell_significant(row->control_s / row->run_s, "x").text, cell_rate(row).text,
+                                     cell_error(row->error).text, cell_error(row->error_gain).text,
+                                     cell_error(row->phase_rms_rad).text, last[0].text, last[1].text, last[2].text});
+    const char *warning = strstr(row->reason, OUTCOME_WARNING);
+    if (warning)
+        text_print(stream, "", warning);
+}
+
+/* What several algorithms refuse for one reason is said once. */
+static void refusal_print(FILE *stream, const struct measurement *row, const char *spec)
+{
+    const size_t name = strlen(row->algorithm);
+    const char *reason = row->reason;
+    if (strncmp(reason, row->algorithm, name) == 0 && strncmp(reason + name, ": ", 2) == 0)
+        reason += name + 2;
+    if (*table.refusal && strcmp(table.refusal, reason) == 0) {
+        char text[700];
+        snprintf(text, sizeof text, "%-*s unsupported, as %s", table.spec_width, spec, table.refused);
+        print_wrapped(stream, 2, text);
+        return;
+    }
+    snprintf(table.refusal, sizeof table.refusal, "%s", reason);
+    snprintf(table.refused, sizeof table.refused, "%s", row->algorithm);
+    print_wrapped(stream, 2, spec);
+    text_print(stream, "unsupported: ", reason);
+}
+
+void table_row(FILE *stream, const struct measurement *row)
+{
+    char spec[512];
+    if (strcmp(table.scene, row->scene) != 0)
+        scene_begin(stream, row->scene);
+    measurement_spec(row, spec, sizeof spec);
+    shown_make(spec);
+    if (strcmp(row->status, "ok") == 0) {
+        ok_print(stream, row, spec);
+    } else if (strcmp(row->status, "unsupported") == 0) {
+        refusal_print(stream, row, spec);
     } else {
-        char text[1024];
-        snprintf(text, sizeof text, "%s: %s", row->status, row->reason);
-        shown_make(text);
-        print_wrapped(stream, 4, text);
+        print_wrapped(stream, 2, spec);
+        text_print(stream, "failed: ", row->reason);
     }
 }
 
 void table_works_header(FILE *stream)
 {
-    fprintf(stream, "  %-*s FLOPs counted, by the papers' formulas\n", SPEC_WIDTH, "");
+    if (table.width == WIDTH_WIDE)
+        fprintf(stream, "  %-*s FLOPs counted, by the papers' formulas\n", table.spec_width, "");
+    else
+        fputs("  FLOPs counted, by the papers' formulas\n", stream);
 }
 
 void table_work(FILE *stream, const char *spec, const struct work *work)
 {
-    fprintf(stream, "  %-*s %6.1e", SPEC_WIDTH, spec, work->flops);
+    char text[400];
+    int used = snprintf(text, sizeof text, "%.1e", work->flops);
     for (int k = 0; k < (int)(sizeof work->published / sizeof *work->published) && work->published[k].source; k++)
-        fprintf(stream, ", %.1e %s", work->published[k].flops, work->published[k].source);
-    fputs("\n", stream);
+        used += snprintf(text + used, sizeof text - (size_t)used, ", %.1e %.60s", work->published[k].flops,
+                         work->published[k].source);
+    if (table.width == WIDTH_WIDE) {
+        fprintf(stream, "  %-*s %s\n", table.spec_width, spec, text);
+    } else {
+        print_wrapped(stream, 2, spec);
+        print_wrapped(stream, 4, text);
+    }
 }

@@ -251,6 +251,36 @@ static void folders_are_compared_with_their_targets(void **state)
     diff_free(&diff);
 }
 
+/* A file of the first version beside one of the second: what both have is compared, and the rest is told. */
+static void versions_are_compared(void **state)
+{
+    (void)state;
+    static char second[4096], header[1024];
+    struct diff diff;
+    snprintf(header, sizeof header, "%.*s,run_q1_s,run_q3_s,entropy,contrast,peak_over_median\n",
+             (int)strlen(ROW_HEAD) - 1, ROW_HEAD);
+    snprintf(second, sizeof second, "# sasbench measurements 2\n# scene s: 0123\n%s%.*s,0.9,1.1,5,2,80\n", header,
+             (int)strlen(ROW) - 1, ROW);
+    for (int newer = 0; newer < 2; newer++) {
+        compare_texts(newer ? HEAD ROW : second, newer ? second : HEAD ROW, &diff);
+        assert_int_equal(diff_judge(&diff), STATUS_OK);
+        assert_null(find(&diff, "entropy"));
+        assert_non_null(find(&diff, "error"));
+        bool told = false;
+        for (int k = 0; k < diff.note_count; k++)
+            told |= strstr(diff.notes[k], "only one has entropy, contrast, peak_over_median") != NULL;
+        assert_true(told);
+        diff_free(&diff);
+    }
+    static char worse[4096];
+    snprintf(worse, sizeof worse, "# sasbench measurements 2\n# scene s: 0123\n%s%.*s,0.9,1.1,5.1,2,80\n", header,
+             (int)strlen(ROW) - 1, ROW);
+    compare_texts(second, worse, &diff);
+    assert_int_equal(find(&diff, "entropy")->verdict, VERDICT_WORSE);
+    assert_int_equal(find(&diff, "contrast")->verdict, VERDICT_SAME);
+    diff_free(&diff);
+}
+
 static void malformed_and_mixed_files_are_refused(void **state)
 {
     (void)state;
@@ -259,7 +289,7 @@ static void malformed_and_mixed_files_are_refused(void **state)
     } cases[] = {
         {"", {"new.csv:1", "# sasbench measurements 1"}},
         {"scene,algorithm\n", {"new.csv:1", "the first line is ''", "is needed"}},
-        {"# sasbench measurements 2\nscene\n", {"new.csv:1", "sasbench measurements 2", "is needed"}},
+        {"# sasbench measurements 3\nscene\n", {"new.csv:1", "sasbench measurements 3", "is needed"}},
         {"# sasbench measurements 1\nscene,algorithm,settings\n", {"new.csv", "'settings' as column 3", "'options'"}},
         {HEAD "s,a,\n", {"new.csv:4", "3 fields", "25"}},
         {HEAD ROW "\"s,a", {"new.csv:5", "never ends"}},
@@ -396,6 +426,7 @@ int main(void)
         IN_FOLDER(rounding_of_float_is_no_change_but_of_double),
         IN_FOLDER(rows_of_another_scene_content_are_not_compared),
         IN_FOLDER(folders_are_compared_with_their_targets),
+        IN_FOLDER(versions_are_compared),
         IN_FOLDER(malformed_and_mixed_files_are_refused),
         IN_FOLDER(many_rows),
         IN_FOLDER(shown_as_text_markdown_and_json),

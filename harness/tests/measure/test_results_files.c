@@ -32,15 +32,16 @@ static void test_foreign_files(void **state)
     check_refused("measurements.csv:1: not a file of ours");
     file_write(measurements_path, "w", "");
     check_refused("measurements.csv:1: not a file of ours");
-    file_write(measurements_path, "w", "# sasbench measurements 2\na\n");
+    file_write(measurements_path, "w", "# sasbench measurements 3\na\n");
     check_refused("measurements.csv:1: not a file of ours");
     file_write(measurements_path, "w", "# sasbench measurements 1\na,b\n1\n");
     check_refused("measurements.csv:3: 1 fields");
     file_write(measurements_path, "w",
-               "# sasbench measurements 1\n" PROVENANCE MEASUREMENT_HEADER "s,a,,float,2,,ok,,,1,1,1,x,,,,,,,,,,,,\n");
+               "# sasbench measurements 2\n" PROVENANCE MEASUREMENT_HEADER
+               "s,a,,float,2,,ok,,,1,1,1,x,,,,,,,,,,,,,,,,,\n");
     file_write(targets_path, "w", "# sasbench targets 1\n" PROVENANCE TARGET_HEADER);
     check_refused("measurements.csv:9: runs is 'x'");
-    file_write(measurements_path, "w", "# sasbench measurements 1\n" PROVENANCE "scene,algorithm\n");
+    file_write(measurements_path, "w", "# sasbench measurements 2\n" PROVENANCE "scene,algorithm\n");
     check_refused("measurements.csv: the header line");
     remove(measurements_path);
     results_folder_close(open_ok("c1", 2));
@@ -153,7 +154,7 @@ static void test_metric_table(void **state)
         if (strcmp(metric->name, "run_s") == 0)
             assert_close(value, 1.0 / 3, 0);
     }
-    assert_int_equal(count, 11);
+    assert_int_equal(count, 14);
 }
 
 static void test_table(void **state)
@@ -207,6 +208,51 @@ static void test_table(void **state)
     assert_int_equal(headings, 112);
 }
 
+/* At 80 columns; what is refused for one reason is told once; sharpness where there are no lobes. */
+static void test_narrow_table(void **state)
+{
+    (void)state;
+    static char text[8192];
+    FILE *stream = fmemopen(text, sizeof text, "w");
+    assert_non_null(stream);
+    struct measurement row = measurement_of("tank", "bp_sinc");
+    setenv("COLUMNS", "80", 1);
+    table_header(stream);
+    row.pslr_db = row.islr_db = row.width_m = NAN;
+    row.peak_over_median = 241.4;
+    table_row(stream, &row);
+    row.options = "";
+    row.status = "unsupported";
+    static const char *const refused[] = {"wk_classic", "wk_squint", "wk_polar"};
+    for (int k = 0; k < 3; k++) {
+        char reason[200];
+        row.algorithm = refused[k];
+        snprintf(reason, sizeof reason, "%s: condition one_receiver: the number of receivers is 8; at most 1 is needed",
+                 refused[k]);
+        row.reason = reason;
+        table_row(stream, &row);
+    }
+    row.scene = "another";
+    table_row(stream, &row);
+    table_works_header(stream);
+    table_work(
+        stream, "bp_sinc:taps=8,window=none",
+        &(struct work){.flops = 1e9, .published = {{"BP22 Eq. (11) + sinc load", 1e9}, {"LBF21 Eq. (23)", 1e9}}});
+    unsetenv("COLUMNS");
+    fclose(stream);
+    int said = 0, referred = 0;
+    assert_non_null(strstr(text, " entro. contr.   peak\n"));
+    assert_non_null(strstr(text, "   4.50      2    241\n"));
+    for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n")) {
+        if (strlen(line) > 80)
+            fail_msg("%zu columns: %s", strlen(line), line);
+        said += strstr(line, "condition one_receiver: ") != NULL;
+        referred += strstr(line, "unsupported, as wk_classic") != NULL;
+    }
+    assert_int_equal(said, 2); /* once a scene */
+    assert_int_equal(referred, 2);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -217,6 +263,7 @@ int main(void)
         cmocka_unit_test(test_provenance),
         cmocka_unit_test(test_metric_table),
         cmocka_unit_test(test_table),
+        cmocka_unit_test(test_narrow_table),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
