@@ -24,6 +24,7 @@ struct claim {
     struct need *needs; /* [need_count] the measurements that it asks for; owned */
 };
 
+enum { CLAIMS_MAX = 400 }; /* that are judged together */
 struct claims {
     struct csv csv;
     int count;

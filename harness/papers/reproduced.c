@@ -9,6 +9,7 @@
 
 #include "data/csv.h"
 #include "data/text_file.h"
+#include "papers/verdicts.h"
 
 enum { COLUMNS_MAX = 12 };
 
@@ -140,27 +141,6 @@ static void table_print(const struct paper_table *table, const struct reproduced
 
 /* ---- claims ---- */
 
-/* How many claims have each verdict. */
-struct verdict_counts {
-    int by_scheme[SCHEMES][CLAIM_VERDICTS], fails_by_formula;
-};
-
-static void verdict_counts_print(const struct verdict_counts *counts, int both)
-{
-    printf("\nVerdicts\n");
-    for (enum scheme scheme = 0; scheme < SCHEMES; scheme++) {
-        printf("  %-10s", scheme_names[scheme]);
-        for (int k = 0; k < CLAIM_VERDICTS; k++)
-            printf("%s %d %s", k ? "," : "", counts->by_scheme[scheme][k], claim_verdict_names[k]);
-        if (scheme == SCHEME_PRINTED)
-            printf(" (%d of those that do not hold by the papers' formulas and numbers alone)",
-                   counts->fails_by_formula);
-        else
-            printf(" (of the %d that depend on LBF21's scheme)", both);
-        printf(".\n");
-    }
-}
-
 static void claim_write(FILE *stream, const struct claim *claim, const struct judgement judgements[SCHEMES])
 {
     char evidence[2 * sizeof judgements->evidence + 40];
@@ -192,13 +172,31 @@ static void claim_print(const struct claim *claim, const struct judgement judgem
                claim_verdict_names[judgements[scheme].verdict], judgements[scheme].evidence);
 }
 
+/* Where all claims were asked for: how many have each verdict, as a page. */
+static enum status verdicts_page(const char *directory, const struct verdicts *verdicts,
+                                 const struct measured *measured)
+{
+    const struct csv *csv = &measured->measurements.csv;
+    const char *date = csv_comment(csv, "date"), *commit = csv_comment(csv, "commit"),
+               *machine = csv_comment(csv, "machine");
+    char path[4200], head[600];
+    for (int k = 0; k < verdicts->claims->count; k++)
+        if (!verdicts->judged[k])
+            return STATUS_OK;
+    snprintf(path, sizeof path, "%s/verdicts.md", directory);
+    snprintf(head, sizeof head, "%s, commit %s, %s, load %.2f a processor.", date ? date : "no date",
+             commit ? commit : "unknown", machine ? machine : "unknown machine", measured->load);
+    return verdicts_write(path, head, verdicts);
+}
+
 /* Into claims.csv: the claims asked for, which are printed, too, and those that the folder can decide already. */
 static enum status claims_report(const char *directory, const struct selection *selection, struct measured *measured)
 {
     char path[4200];
     struct text_file file;
-    struct verdict_counts counts = {0};
-    int both = 0, asked = 0;
+    static struct verdicts verdicts;
+    int asked = 0;
+    verdicts = (struct verdicts){.claims = selection->claims};
     snprintf(path, sizeof path, "%s/claims.csv", directory);
     enum status status = text_file_open(path, &file);
     if (status != STATUS_OK)
@@ -220,15 +218,13 @@ static enum status claims_report(const char *directory, const struct selection *
         if (!selection->asked[n])
             continue;
         claim_print(claim, judgements);
+        verdicts_add(&verdicts, n, judgements);
         asked++;
-        both += claim->by_scheme;
-        for (enum scheme scheme = 0; scheme < (claim->by_scheme ? SCHEMES : 1); scheme++)
-            counts.by_scheme[scheme][judgements[scheme].verdict]++;
-        counts.fails_by_formula += !claim->measures && judgements[0].verdict == CLAIM_FAILS;
     }
     if (asked)
-        verdict_counts_print(&counts, both);
-    return text_file_close(&file, STATUS_OK);
+        verdicts_print(stdout, &verdicts);
+    status = text_file_close(&file, STATUS_OK);
+    return status == STATUS_OK ? verdicts_page(directory, &verdicts, measured) : status;
 }
 
 /* Lines of tables that were not asked for stay if the folder has all of them. */
@@ -248,11 +244,24 @@ static void lines_keep(const struct selection *selection, struct reproduced *lin
     *count = kept;
 }
 
-/* A processor, over the last 15 minutes; 0 where it is not known. */
-static double load_average(void)
+/* A processor, over the last 15 minutes; 0 where it is not known. What was judged before with the same program keeps the
+   load of that time: times that were measured on a busy machine do not get better on a quiet one. */
+static double load_average(const char *directory, const struct measured *measured)
 {
-    double loads[3];
-    return getloadavg(loads, 3) == 3 ? loads[2] / (double)sysconf(_SC_NPROCESSORS_ONLN) : 0;
+    double loads[3], load = 0, before = 0;
+    char path[4200];
+    struct csv csv;
+    if (getloadavg(loads, 3) == 3)
+        load = loads[2] / (double)sysconf(_SC_NPROCESSORS_ONLN);
+    snprintf(path, sizeof path, "%s/claims.csv", directory);
+    if (access(path, R_OK) != 0 || csv_read(path, CSV_TAIL_KEEP, &csv) != STATUS_OK)
+        return load;
+    const char *program = csv_comment(&csv, "program"), *text = csv_comment(&csv, "load");
+    const char *ours = csv_comment(&measured->measurements.csv, "program");
+    if (program && ours && text && strcmp(program, ours) == 0) /* with another program all is measured again */
+        before = strtod(text, NULL);
+    csv_free(&csv);
+    return fmax(load, before);
 }
 
 enum status reproduced_report(const char *directory, const struct selection *selection)
@@ -261,7 +270,7 @@ enum status reproduced_report(const char *directory, const struct selection *sel
     struct reproduced *lines = NULL;
     int count = 0;
     enum status status = measured_read(directory, &measured);
-    measured.load = load_average();
+    measured.load = status == STATUS_OK ? load_average(directory, &measured) : 0;
     if (status == STATUS_OK)
         status = tables_evaluate(&measured, selection->tables, &lines, &count);
     if (status == STATUS_OK) {

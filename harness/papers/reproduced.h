@@ -4,7 +4,7 @@
 
 #include "papers/claims.h"
 
-enum { TABLES_MAX = 64, CLAIMS_MAX = 400 };
+enum { TABLES_MAX = 64 };
 
 /* What was asked for: tables by their place in paper_tables, claims by theirs in the list. */
 struct selection {
@@ -13,7 +13,8 @@ struct selection {
 };
 
 /* Print the tables and claims asked for; write reproduced.csv and claims.csv with these, and with what else the folder
-   holds all measurements of, so that nothing that was measured earlier is lost. Errors: those of measured_read, of
+   holds all measurements of, so that nothing that was measured earlier is lost. Where all claims were asked for,
+   verdicts.md counts and lists them. Errors: those of measured_read, of
    files that cannot be written, of memory. */
 enum status reproduced_report(const char *directory, const struct selection *selection);
 

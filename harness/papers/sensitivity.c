@@ -8,7 +8,7 @@
 #include "papers/assumptions.h"
 #include "study/phase.h"
 
-enum { NEEDS_MAX = 256, SETS_MAX = 12, CLAIMS_MAX = 400 };
+enum { NEEDS_MAX = 256, SETS_MAX = 12 };
 
 /* Of a scene, but of none of the full-size ones, which are for times. */
 static bool takes_part(const struct claim *claim)
@@ -18,7 +18,7 @@ static bool takes_part(const struct claim *claim)
            && !strstr(claim->arguments, "lbf21/real_size") && !strstr(claim->arguments, "time(");
 }
 
-struct verdicts {
+struct set_verdicts {
     enum claim_verdict of[SETS_MAX][CLAIMS_MAX][SCHEMES];
 };
 
@@ -63,7 +63,7 @@ static enum status set_judge(const char *directory, const struct claims *claims,
 
 /* ---- the table ---- */
 
-static bool flips(const struct verdicts *verdicts, int k, enum scheme scheme)
+static bool flips(const struct set_verdicts *verdicts, int k, enum scheme scheme)
 {
     bool flipped = false;
     for (int n = 1; assumption_sets[n].name; n++)
@@ -71,7 +71,7 @@ static bool flips(const struct verdicts *verdicts, int k, enum scheme scheme)
     return flipped;
 }
 
-static void row_write(FILE *stream, const struct claim *claim, enum scheme scheme, const struct verdicts *verdicts,
+static void row_write(FILE *stream, const struct claim *claim, enum scheme scheme, const struct set_verdicts *verdicts,
                       int k)
 {
     fprintf(stream, "| `%s`%s%s: %s | %s |", claim->id, claim->by_scheme ? ", " : "",
@@ -85,7 +85,7 @@ static void row_write(FILE *stream, const struct claim *claim, enum scheme schem
     fputc('\n', stream);
 }
 
-static void steady_write(FILE *stream, const struct claims *claims, const struct verdicts *verdicts)
+static void steady_write(FILE *stream, const struct claims *claims, const struct set_verdicts *verdicts)
 {
     for (enum claim_verdict verdict = 0; verdict < CLAIM_VERDICTS; verdict++) {
         int count = 0;
@@ -105,7 +105,7 @@ static void steady_write(FILE *stream, const struct claims *claims, const struct
 }
 
 /* How many verdicts take part, and how many of them flip. */
-static void flips_count(const struct claims *claims, const struct verdicts *verdicts, int *part, int *flipped)
+static void flips_count(const struct claims *claims, const struct set_verdicts *verdicts, int *part, int *flipped)
 {
     *part = *flipped = 0;
     for (int k = 0; k < claims->count; k++)
@@ -116,7 +116,7 @@ static void flips_count(const struct claims *claims, const struct verdicts *verd
             }
 }
 
-static enum status table_write(const char *directory, const struct claims *claims, const struct verdicts *verdicts)
+static enum status table_write(const char *directory, const struct claims *claims, const struct set_verdicts *verdicts)
 {
     char path[4200];
     struct text_file file;
@@ -151,7 +151,7 @@ static enum status table_write(const char *directory, const struct claims *claim
 enum status sensitivity_study(const char *directory, const struct claims *claims,
                               enum status (*measure)(const char *directory, struct need *needs, int count))
 {
-    static struct verdicts verdicts;
+    static struct set_verdicts verdicts;
     enum status status = STATUS_OK;
     char folder[4200];
     snprintf(folder, sizeof folder, "%s/sensitivity", directory);
