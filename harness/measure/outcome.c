@@ -77,7 +77,7 @@ static enum status quality_fill(const struct session *session, struct outcome *o
     else if (*error.reason)
         reason_add(reason, reason_size, "%s", error.reason);
     if (points == 0)
-        reason_add(reason, reason_size, "no point targets to measure lobes of");
+        reason_add(reason, reason_size, OUTCOME_NO_TARGETS);
     double *width = values, *pslr = values + points, *islr = values + 2 * points;
     for (int t = 0; t < points; t++) {
         struct slice_metrics azimuth;

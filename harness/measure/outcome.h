@@ -7,6 +7,9 @@
 /* Begins a warning in the reason of a row that is ok. */
 #define OUTCOME_WARNING "warning: "
 
+/* Stands in the reason of a row whose scene has no points to measure. */
+#define OUTCOME_NO_TARGETS "no point targets to measure lobes of"
+
 /* Made by outcome_measure, released by outcome_free. Texts of the rows point into it, the session and the SPEC: it is not
    copied. */
 struct outcome {

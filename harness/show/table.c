@@ -159,7 +159,7 @@ static void text_print(FILE *stream, const char *before, const char *text)
 static void ok_print(FILE *stream, const struct measurement *row, const char *spec)
 {
     const bool own_line = strlen(spec) > (size_t)table.spec_width;
-    const bool sharpness = isnan(row->pslr_db) && isfinite(row->entropy);
+    const bool sharpness = strstr(row->reason, OUTCOME_NO_TARGETS) && isfinite(row->entropy);
     struct cell last[3] = {cell_fixed(1e3 * row->width_m), cell_fixed(row->pslr_db), cell_fixed(row->islr_db)};
     if (sharpness && !table.sharpness)
         line_print(stream, (const char *const[]){"", "", "", "", "", "", "", "entro.", "contr.", "peak"});

@@ -75,6 +75,13 @@ double support_peak(const struct image *image)
     return peak;
 }
 
+bool support_recording(const char *file, char *path, size_t size)
+{
+    const char *directory = getenv("SASBENCH_DATA");
+    snprintf(path, size, "%s/%s", directory ? directory : SASBENCH_ROOT "/../shared/data", file);
+    return access(path, R_OK) == 0;
+}
+
 char folder[256];
 
 int folder_make(void **state)

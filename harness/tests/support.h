@@ -21,6 +21,10 @@ void support_pixel_set(struct image *image, int patch, int i, int j, double comp
 double support_difference(const struct image *a, const struct image *b);
 double support_peak(const struct image *image);
 
+/* The path of a file of recorded echoes, which are not ours to ship: SASBENCH_DATA names their folder. False where it is not
+   there. */
+bool support_recording(const char *file, char *path, size_t size);
+
 /* A folder of its own for every test: fixtures, and the path of a name in it (the last four stay valid). */
 extern char folder[256];
 int folder_make(void **state);

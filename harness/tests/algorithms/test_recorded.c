@@ -3,7 +3,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 #include "tests/support.h"
 
@@ -33,18 +32,10 @@ static const struct expected pins[] = {
 };
 static const struct expected gotcha[] = {{-20, 20, 14.0, -16.2, 0.1, 70}};
 
-/* The recordings are not ours to ship: SASBENCH_DATA names their folder. */
-static bool recording_find(const char *file, char *path, size_t size)
-{
-    const char *directory = getenv("SASBENCH_DATA");
-    snprintf(path, size, "%s/%s", directory ? directory : SASBENCH_ROOT "/../shared/data", file);
-    return access(path, R_OK) == 0;
-}
-
 static void recording_open(struct recording *recording)
 {
     char path[4096];
-    if (!recording_find(recording->file, path, sizeof path)) {
+    if (!support_recording(recording->file, path, sizeof path)) {
         print_message("%s is not there: set SASBENCH_DATA to the folder of the recordings\n", path);
         skip();
     }
@@ -183,7 +174,7 @@ int main(void)
     };
     char path[4096];
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    bool any =
-        recording_find("pins_in_water.mat", path, sizeof path) || recording_find("gotcha_4deg.mat", path, sizeof path);
+    bool any = support_recording("pins_in_water.mat", path, sizeof path)
+               || support_recording("gotcha_4deg.mat", path, sizeof path);
     return failed || any ? failed : 77; /* meson shows it as skipped */
 }

@@ -1,4 +1,5 @@
-/* Recorded echoes are scenes: what is measured on simulated echoes is measured on the same echoes out of a file. */
+/* Recorded echoes are scenes: what is measured on simulated echoes is measured on the same echoes out of a file. Two recorded sets
+   go through `run` where they are there, and are skipped where not. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -182,6 +183,83 @@ static void mixtures_are_refused(void **state)
     assert_all_refused(usages, COUNT_OF(usages));
 }
 
+/* What is recorded is not ours to ship: the folder SASBENCH_DATA. `error` and `peak` are measured, of the settings in their
+   order; peaks of the exact interpolators are those of an independent program. */
+enum { SETTINGS = 4 };
+static const struct recording {
+    const char *file, *targets, *image;
+    double position_m, error[SETTINGS], peak;
+} recordings[] = {
+    {"pins_in_water.mat",
+     "{ x = -0.0095; r = 0.0431; }, { x = 0.0107; r = 0.03815; }",
+     "x = { first = -0.016; step = 1e-4; count = 320; }; r = { first = 0.03; step = 5e-5; count = 400; };"
+     "reference = { half_x = 0.002; half_r = 0.001; };",
+     1e-4,
+     {9.1e-4, 3.4e-3, 2.4e-2, 2.4e-2},
+     241},
+    {"gotcha_4deg.mat",
+     "{ x = 14.0; r = -16.2; }",
+     "x = { first = -20.0; step = 0.2; count = 201; }; r = { first = -20.0; step = 0.2; count = 201; };"
+     "reference = { half_x = 4.0; half_r = 4.0; };",
+     0.2,
+     {2e-3, 2.3e-2, 0.26, 0.41},
+     85},
+};
+
+static void rows_check(const struct recording *recording, const struct csv *rows)
+{
+    assert_int_equal(rows->row_count, SETTINGS + 1);
+    assert_true(number_of(rows, 0, "error") < 1e-6); /* reference in float */
+    for (int k = 0; k < SETTINGS; k++) {
+        const char *algorithm = csv_cell(rows, k + 1, csv_column(rows, "algorithm"));
+        const double error = number_of(rows, k + 1, "error"), peak = number_of(rows, k + 1, "peak_over_median");
+        print_message("%s, %s: error %.3g, peak %.4g times the median\n", recording->file, algorithm, error, peak);
+        if (!(error <= 1.05 * recording->error[k]))
+            fail_msg("%s: error %g, at most %g is expected", algorithm, error, recording->error[k]);
+        if (k < 2 && !(fabs(peak - recording->peak) <= 0.01 * recording->peak))
+            fail_msg("%s: peak %g times the median, %g is expected", algorithm, peak, recording->peak);
+    }
+}
+
+static void recorded_sets_run(void **state)
+{
+    (void)state;
+    static const char *const run[ARGUMENTS_MAX] = {
+        "run", "set.cfg",    "-a", "reference", "-a", "bp_sinc:taps=16,window=kaiser",
+        "-a",  "bp_zeropad", "-a", "bp_linear", "-a", "bp_nearest",
+        "-o",  "set"};
+    int there = 0;
+    for (size_t n = 0; n < COUNT_OF(recordings); n++) {
+        const struct recording *recording = &recordings[n];
+        char path[4096], text[6000];
+        struct csv rows, targets;
+        if (!support_recording(recording->file, path, sizeof path)) {
+            print_message("%s is not there: set SASBENCH_DATA to the folder of the recordings\n", path);
+            continue;
+        }
+        there++;
+        snprintf(text, sizeof text, "echoes = \"%s\"; targets = { points = ( %s ); }; image = { %s };\n", path,
+                 recording->targets, recording->image);
+        text_write("set.cfg", text);
+        struct outcome outcome = program_run(run);
+        assert_int_equal(outcome.status, 0);
+        outcome_free(&outcome);
+        csv_load("set/measurements.csv", &rows);
+        csv_load("set/targets.csv", &targets);
+        rows_check(recording, &rows);
+        for (int row = 0; row < targets.row_count; row++) {
+            const double off = number_of(&targets, row, "position_error_m");
+            if (!(fabs(off) <= recording->position_m) && !isnan(off))
+                fail_msg("row %d of the targets is %g m off", row + 1, off);
+        }
+        assert_true(isfinite(number_of(&targets, 0, "position_error_m")));
+        csv_free(&rows);
+        csv_free(&targets);
+    }
+    if (there == 0)
+        skip();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -189,6 +267,7 @@ int main(void)
         cmocka_unit_test(echoes_alone_are_a_scene),
         cmocka_unit_test(content_tells_scenes_apart),
         cmocka_unit_test(mixtures_are_refused),
+        cmocka_unit_test(recorded_sets_run),
     };
     return cmocka_run_group_tests(tests, inputs_make, folder_remove);
 }

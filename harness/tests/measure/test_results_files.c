@@ -220,6 +220,7 @@ static void test_narrow_table(void **state)
     table_header(stream);
     row.pslr_db = row.islr_db = row.width_m = NAN;
     row.peak_over_median = 241.4;
+    row.reason = "no point targets to measure lobes of";
     table_row(stream, &row);
     row.options = "";
     row.status = "unsupported";
