@@ -1,4 +1,4 @@
-/* What BP22, ZP15 and LBF21 print: the list of their tables and figures, and their numbers, which stand in
+/* What BP22, ZP15, LBF21, SQ18 and PF05 print: the list of their tables and figures, and their numbers, which stand in
    results/published.csv and nowhere else. */
 #ifndef SASBENCH_DATA_PUBLISHED_H
 #define SASBENCH_DATA_PUBLISHED_H

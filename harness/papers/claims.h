@@ -1,4 +1,4 @@
-/* What BP22, ZP15 and LBF21 claim, sentence by sentence, and how our measurements judge it: results/claims.csv, a row a
+/* What BP22, ZP15, LBF21, SQ18 and PF05 claim, sentence by sentence, and how our measurements judge it: results/claims.csv, a row a
    claim, names what is compared (quantity.h) and by which judge (judges.h).
 
    What counts as agreement is the printed number with its last digit's rounding; where a sentence gives no number

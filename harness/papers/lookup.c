@@ -10,6 +10,7 @@
 #include "measure/spec.h"
 #include "papers/tables.h"
 #include "papers/assumptions.h"
+#include "papers/filtered.h"
 #include "study/phase.h"
 
 /* A call: its texts, where each stands, and the metric that the function's name means. */
@@ -127,6 +128,15 @@ static enum status image_metric(struct formula *formula, struct call *call, stru
     return status;
 }
 
+/* Targets counted from 1: one of them, or from the first to the last. */
+static enum status targets_check(const struct formula *formula, const struct call *call, int k, double range[2])
+{
+    enum status status = range_check(formula, call, k, 1, VALUES_MAX, range);
+    return status != STATUS_OK || (range[0] == floor(range[0]) && range[1] == floor(range[1]))
+               ? status
+               : formula_error(formula, call->at[k], "targets are counted by whole numbers");
+}
+
 static enum status target_metric(struct formula *formula, struct call *call, struct values *values)
 {
     static const char *const definitions[] = {"null", "3db", "pixel", NULL};
@@ -135,15 +145,56 @@ static enum status target_metric(struct formula *formula, struct call *call, str
     if (status == STATUS_OK)
         status = word_check(formula, call, 2, definitions);
     if (status == STATUS_OK)
-        status = range_check(formula, call, 3, 1, VALUES_MAX, range);
-    if (status == STATUS_OK && (range[0] != floor(range[0]) || range[1] != floor(range[1])))
-        status = formula_error(formula, call->at[3], "targets are counted by whole numbers");
+        status = targets_check(formula, call, 3, range);
     values->count = status == STATUS_OK ? (int)(range[1] - range[0]) + 1 : 0;
     for (int k = 0; k < values->count; k++)
         values->at[k] = !formula->measured
                             ? 1
                             : measured_target(formula->measured, call->text[0], call->text[1], (int)range[0] - 1 + k,
                                               call->text[2], call->metric->offset, call->metric->name);
+    return status;
+}
+
+/* A number that no image is needed for: named in the evidence, and nothing is measured for it. */
+static enum status unmeasured_check(struct formula *formula, struct call *call)
+{
+    enum status status = measurement_check(formula, call);
+    formula->measures = true;
+    if (status == STATUS_OK && formula->measured && formula->need)
+        formula->need(formula->to, call->text[0], call->text[1]);
+    return status;
+}
+
+static enum status planned(struct formula *formula, struct call *call, struct values *values)
+{
+    int number = 0;
+    enum status status = unmeasured_check(formula, call);
+    *values = (struct values){1, {1}};
+    if (status == STATUS_OK)
+        status = word_check(formula, call, 2, planned_names);
+    if (status != STATUS_OK || !formula->measured)
+        return status;
+    while (strcmp(planned_names[number], call->text[2]) != 0)
+        number++;
+    values->at[0] = planned_value(formula->measured, call->text[0], call->text[1], (enum scene_quantity)number);
+    return STATUS_OK;
+}
+
+static enum status filtered(struct formula *formula, struct call *call, struct values *values)
+{
+    static const char *const quantities[] = {"kept_db", "changed_db", NULL};
+    double range[2] = {1, 1};
+    enum status status = unmeasured_check(formula, call);
+    if (status == STATUS_OK)
+        status = word_check(formula, call, 2, quantities);
+    if (status == STATUS_OK)
+        status = targets_check(formula, call, 3, range);
+    values->count = status == STATUS_OK ? (int)(range[1] - range[0]) + 1 : 0;
+    for (int k = 0; k < values->count; k++)
+        values->at[k] = !formula->measured
+                            ? 1
+                            : filtered_value(formula->measured, call->text[0], call->text[1], (int)range[0] - 1 + k,
+                                             call->text[2][0] == 'c' ? QUANTITY_CHANGED_DB : QUANTITY_KEPT_DB);
     return status;
 }
 
@@ -320,6 +371,8 @@ static const struct lookup lookups[] = {
     {"published", 4, "table, target, method, quantity", published},
     {"phase", 5, "set-up, receiver, formula, ranges, share of the Doppler band", phase},
     {"scene", 2, "scene, number", scene_number},
+    {"planned", 3, "scene, SPEC, number", planned},
+    {"filtered", 4, "scene, SPEC, quantity, targets", filtered},
 };
 static const struct lookup image_lookup = {"", 2, "scene, SPEC", image_metric};
 static const struct lookup target_lookup = {"", 4, "scene, SPEC, definition, targets", target_metric};

@@ -13,6 +13,15 @@ struct planned {
     double counted, by_formula;
 };
 
+/* A number that needs no image, as it was worked out (filtered.h). */
+enum scene_quantity { QUANTITY_SIZE_FACTOR, QUANTITY_UPSAMPLING, QUANTITY_KEPT_DB, QUANTITY_CHANGED_DB };
+struct scene_number {
+    char scene[80], spec[160];
+    int target; /* from 0; -1: of the scene */
+    enum scene_quantity quantity;
+    double value;
+};
+
 /* A folder's measurements. What is asked of it and not there is NAN, and `missing` then says why. */
 struct measured {
     struct results measurements, targets; /* as results.h reads them; all zero when there is no file */
@@ -20,6 +29,8 @@ struct measured {
     struct csv published;                 /* results/published.csv */
     struct planned planned[16];           /* work that was asked for */
     int planned_count;
+    struct scene_number numbers[192]; /* that were asked for */
+    int number_count;
     double load;       /* load average a processor while times were measured; 0: unknown */
     char missing[400]; /* the first value that was not there since it was last cleared */
 };

@@ -17,6 +17,13 @@ static const struct place {
     {"lbf21_t3", "PT5", "lbf21/table3_far", 2},  {"lbf21_t3", "PT6", "lbf21/table3_far", 3},
     {"lbf21_t4", "PT7", "lbf21/table4_near", 0}, {"lbf21_t4", "PT8", "lbf21/table4_near", 1},
     {"lbf21_t4", "PT9", "lbf21/table4_far", 0},  {"lbf21_t4", "PT10", "lbf21/table4_far", 1},
+    {"pf05_t1", "S1", "pf05/nine", 0},           {"pf05_t1", "S2", "pf05/nine", 1},
+    {"pf05_t1", "S3", "pf05/nine", 2},           {"pf05_t1", "S4", "pf05/nine", 3},
+    {"pf05_f5", "S1", "pf05/nine", 0},           {"pf05_f5", "S2", "pf05/nine", 1},
+    {"pf05_f5", "S3", "pf05/nine", 2},           {"pf05_f5", "S4", "pf05/nine", 3},
+    {"sq18_f3a", "T1", "sq18/squint_20", 0},     {"sq18_f3a", "T2", "sq18/squint_20", 1},
+    {"sq18_f3a", "T3", "sq18/squint_20", 2},     {"sq18_f3a", "T4", "sq18/squint_20", 3},
+    {"sq18_f3a", "T5", "sq18/squint_20", 4},     {"sq18_f3b", "T1", "sq18/squint_20", 0},
 };
 
 /* Plain engines are timed on a part of the task, and each stage scaled to all of it: back projection on some rows, of
@@ -26,7 +33,7 @@ static const struct scaling bp22_rows = {50, "focus", 1}, lbf21_rows = {4096.0 /
 static const struct scaling lbf21_part = {36, "bulk differential reconstruct", 6};
 
 /* What the papers call a method, in the tables named. `kind` tells methods of a table apart that are measured in
-   different ways: back projection by zero padding (b) or sinc (s), range migration by LBF (l) or a formula (r). */
+   different ways: back projection by zero padding (b) or sinc (s), range migration by LBF (l) or a formula (r), omega-k (w). */
 static const struct method {
     const char *tables, *name;
     char kind;
@@ -58,6 +65,11 @@ static const struct method {
     {"lbf21_t5", "Wu", 'r', NULL, WU_16},
     {"lbf21_t5 lbf21_flops", "BP", 'b', NULL, ZEROPAD_8},
     {"lbf21_t5", "BP", 's', NULL, SINC_8},
+    {"pf05_t1", "omega-k", 'w', "pf05/inside", IDEAL},
+    {"pf05_f5", "no outside targets", 'w', "pf05/inside", IDEAL},
+    {"pf05_f5", "4 sub-apertures", 'w', NULL, POLAR_4},
+    {"pf05_f5", "2 sub-apertures", 'w', NULL, POLAR_2},
+    {"sq18_f3a sq18_f3b", "improved omega-k", 'w', NULL, TURNED},
 };
 
 /* How the methods of a table are measured. */
@@ -88,6 +100,10 @@ static const struct way {
     {"lbf21_t5", "lrb", FAST_TIMES, "lbf21/real_size", NULL, NULL, false},
     {"lbf21_t5", "s", FAST_SINC, "lbf21/real_size", NULL, NULL, false},
     {"lbf21_flops", "lrb", "by the plan", "lbf21/real_size", NULL, NULL, true},
+    {.table = "pf05_t1"},
+    {.table = "pf05_f5"},
+    {.table = "sq18_f3a"},
+    {.table = "sq18_f3b"},
 };
 enum { PLACES = sizeof places / sizeof *places, METHODS = sizeof methods / sizeof *methods };
 enum { WAYS = sizeof ways / sizeof *ways };

@@ -18,6 +18,10 @@
 #define PCA_1     "rma_pca:blocks=1"
 #define PCA_16    "rma_pca:blocks=16"
 #define WU_16     "rma_wu:blocks=16"
+#define TURNED    "wk_squint"
+#define IDEAL     "wk_classic" /* of echoes from inside the target area alone */
+#define POLAR_4   "wk_polar:subapertures=4"
+#define POLAR_2   "wk_polar:subapertures=2"
 
 /* Plain engines, which are what the papers compare: every delay evaluated; every cell's phase by libm and each
    receiver summed by itself. */

@@ -119,7 +119,7 @@ static void lines_of_target(struct lines *lines, int row, const struct paper_tab
         if (!source_is(&source, table, method))
             continue;
         int index = 0;
-        const char *scene = source.scene ? source.scene : source_place(table->id, target, &index);
+        const char *place = source_place(table->id, target, &index), *scene = source.scene ? source.scene : place;
         for (size_t k = 0; scene && k < sizeof kinds / sizeof *kinds; k++)
             if (strcmp(kinds[k].quantity, quantity) == 0) {
                 double ours = measured_target(measured, scene, source.spec, index, kinds[k].definition, kinds[k].offset,

@@ -17,7 +17,7 @@ static void all_claims_are_read(void **state)
     static const struct {
         const char *paper;
         int count;
-    } papers[] = {{"BP22", 39}, {"ZP15", 15}, {"LBF21", 74}};
+    } papers[] = {{"BP22", 39}, {"ZP15", 15}, {"LBF21", 74}, {"SQ18", 16}, {"PF05", 15}};
     struct claims claims;
     int row = 0;
     assert_int_equal(claims_read(CLAIMS_FILE, &claims), STATUS_OK);
@@ -29,7 +29,7 @@ static void all_claims_are_read(void **state)
     assert_int_equal(row, claims.count);
     for (int k = 0; k < claims.count; k++) /* what nothing measured can decide is marked so */
         assert_true(claims.claims[k].phases || !judge_decides(claims.claims[k].judge)
-                    || judge_identity(claims.claims[k].judge) == (claims.claims[k].need_count == 0));
+                    || judge_identity(claims.claims[k].judge) == !claims.claims[k].measures);
     claims_free(&claims);
 }
 
@@ -57,6 +57,11 @@ static const struct {
     /* functions */
     {"undecided", "x = eror(bp22/speckle, bp_nearest)", {"'eror'", "min", "published", "metric of measurements.csv"}},
     {"undecided", "x = target_error(bp22/speckle, bp_nearest)", {"'target_error'", "targets.csv"}},
+    {"undecided",
+     "x = planned(sq18/squint_20, wk_squint, size)",
+     {"'size' is not accepted", "size_factor, upsampling"}},
+    {"undecided", "x = filtered(pf05/nine, wk_polar, kept, 1)", {"'kept' is not accepted", "kept_db, changed_db"}},
+    {"undecided", "x = filtered(pf05/nine, wk_polar, kept_db, 0)", {"'0' is not accepted", "1 to 64"}},
     {"undecided", "x = max()", {"a number, a name, a function"}},
     {"undecided", "x = max(1 2)", {"an operator, ',' or ')'"}},
     {"undecided", "x = upsampling_rate(1, 2)", {"2 numbers", "upsampling_rate takes 3"}},

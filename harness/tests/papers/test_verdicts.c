@@ -171,6 +171,23 @@ static void claim_plant(const struct claim *claim)
     }
 }
 
+/* Sizes and energies as they are, which the first judgement works out, or drawn. */
+static void scene_numbers_draw(struct measured *measured)
+{
+    static double as_they_are[sizeof measured->numbers / sizeof *measured->numbers];
+    static int known;
+    const bool altered = coin();
+    for (known = measured->number_count ? known : 0; known < measured->number_count; known++)
+        as_they_are[known] = measured->numbers[known].value;
+    for (int k = 0; k < known; k++) {
+        struct scene_number *number = &measured->numbers[k];
+        number->value = !altered                                   ? as_they_are[k]
+                        : number->quantity == QUANTITY_UPSAMPLING  ? pow(2, floor(drawn(0, 3)))
+                        : number->quantity == QUANTITY_SIZE_FACTOR ? drawn(0.5, 8)
+                                                                   : drawn(-30, 0);
+    }
+}
+
 /* One draw: methods differ by much or little, and so do targets. */
 static void numbers_draw(struct measured *measured)
 {
@@ -178,6 +195,7 @@ static void numbers_draw(struct measured *measured)
     const double methods = pow(10, drawn(-4, 0.5)) * coin(), places = pow(10, drawn(-5, 0)) * coin();
     const double slowness = exp(drawn(-3, 5)), times = coin() ? 0.05 : 4;
     static char stages[64][100];
+    scene_numbers_draw(measured);
     assert_true(images->csv.row_count <= 64);
     for (int k = 0; k < images->csv.row_count; k++) {
         struct measurement *m = &images->measurements[k];
@@ -186,7 +204,9 @@ static void numbers_draw(struct measured *measured)
         m->run_s = m->run_min_s = slowness * exp(times * drawn(-1, 1));
         snprintf(stages[k], sizeof *stages, "compress=1;focus=%.9g;bulk=0;differential=0;reconstruct=0", m->run_s);
         m->stages = stages[k];
-        m->control_s = m->flops = m->flops_published = 1;
+        m->control_s = m->flops_published = 1;
+        m->flops = exp(drawn(-1, 1));
+        m->bytes = exp(drawn(-1, 1));
         m->width_m = 0.04 * exp(drawn(-1, 1));
         m->pslr_db = -14 + methods * drawn(-1, 1);
         m->islr_db = -10 + methods * drawn(-1, 1);
