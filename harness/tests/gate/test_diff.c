@@ -95,6 +95,7 @@ static void values_are_judged_by_the_metric_table(void **state)
         {"s,a,", "s,b,", "row", VERDICT_GONE},
         {"beta=8", "beta=9", "row", VERDICT_GONE},
         {",1,0.9,", ",1.6,1.5,", NULL, VERDICT_SAME}, /* two runs cannot tell less than a factor */
+        {",1,0.9,", ",1.98,1.8,", NULL, VERDICT_SAME},
         {",1,0.9,", ",2.2,1.9,", "run_s", VERDICT_WORSE},
         {",1,0.9,", ",2.2,1.0,", NULL, VERDICT_SAME},       /* the least time says otherwise */
         {",1,0.9,5,2,", ",3,2.7,5,6,", NULL, VERDICT_SAME}, /* a slower machine: the control took as much longer */
@@ -110,6 +111,9 @@ static void values_are_judged_by_the_metric_table(void **state)
         assert_non_null(at);
         snprintf(new, sizeof new, HEAD "%.*s%s%s", (int)(at - ROW), ROW, cases[k].after, at + strlen(cases[k].before));
         compare_texts(old, new, &diff);
+        for (int n = 0; n < diff.note_count; n++)
+            if (strstr(diff.notes[n], "a row alone is judged"))
+                assert_non_null(strstr(diff.notes[n], "beyond a factor of 2,"));
         const struct finding *changed = NULL;
         for (int n = diff.finding_count - 1; n >= 0; n--)
             if (diff.findings[n].verdict != VERDICT_SAME)

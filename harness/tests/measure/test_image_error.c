@@ -73,6 +73,26 @@ static void test_error_by_hand(void **state)
     image_free(&reference);
 }
 
+/* A tenth of the largest magnitude counts as strong, less does not. */
+static void test_strong_pixels(void **state)
+{
+    (void)state;
+    struct grid grid = {0, 0.02, 3, 10, 0.025, 1};
+    struct image image, reference;
+    support_image_make(&grid, 1, PRECISION_DOUBLE, &image);
+    support_image_make(&grid, 1, PRECISION_DOUBLE, &reference);
+    const double wanted[] = {10, 1, 0.999};
+    for (int j = 0; j < 3; j++) {
+        support_pixel_set(&reference, 0, 0, j, wanted[j]);
+        support_pixel_set(&image, 0, 0, j, wanted[j] * cexp(0.1 * j * I));
+    }
+    struct error_metrics e = metrics_error(&image, &reference);
+    assert_close(e.phase_rms_rad, sqrt(1 * 0.01 / 101), 1e-12);
+    assert_close(e.peak_ratio, cabs(0.999 * (cexp(0.2 * I) - 1)) / 10, 1e-12);
+    image_free(&image);
+    image_free(&reference);
+}
+
 /* The reference on parts of the image, found by their places; a float image against a double reference. */
 static void test_error_of_parts(void **state)
 {
@@ -98,8 +118,15 @@ static void test_error_of_parts(void **state)
     assert_true(isnan(metrics_error(&image, &reference).error));
     parts[1].x_first += 0.02 - 1e-4 * 0.02; /* sticks out by a column */
     assert_true(isnan(metrics_error(&image, &reference).error));
-    parts[1] = (struct grid){-1, 0.021, 10, 100, 0.025, 5};
-    assert_true(isnan(metrics_error(&image, &reference).error));
+    static const struct grid others[] = {
+        {-1, 0.021, 10, 100, 0.025, 5},         {-1, 0.02, 10, 100, 0.026, 5},
+        {-1, 0.02, 10, 100 + 2.5e-6, 0.025, 5}, {-1, 0.02, 10, 100 + 37 * 0.025, 0.025, 5},
+        {-1, 0.02, 10, 100 - 0.025, 0.025, 5},  {-1 - 0.02, 0.02, 10, 100, 0.025, 5},
+    }; /* other steps; between rows; out by a row or a column */
+    for (size_t k = 0; k < sizeof others / sizeof *others; k++) {
+        parts[1] = others[k];
+        assert_true(isnan(metrics_error(&image, &reference).error));
+    }
     image_free(&image);
     image_free(&reference);
 }
@@ -109,6 +136,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_error_of_a_gain),
         cmocka_unit_test(test_error_by_hand),
+        cmocka_unit_test(test_strong_pixels),
         cmocka_unit_test(test_error_of_parts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -104,6 +104,29 @@ static void meeting_agrees_with_trying_every_pixel(void **state)
     assert_in_range(met, 300, 1700);
 }
 
+/* A record of a millimetre, about the delay of one pixel at a time: that one is found, wherever it lies in the grid. */
+static void lone_pixels_are_found(void **state)
+{
+    (void)state;
+    struct acquisition a = {
+        .sound_speed = 1500, .fc = 1e5, .fs = 1.5e6, .bandwidth = 1e4, .samples = 2, .receivers = 1, .pings = 1};
+    const struct grid grid = {3.1, 0.4, 8, 2.3, 0.6, 7};
+    assert_int_equal(acquisition_allocate(&a), STATUS_OK);
+    for (int i = -1; i <= grid.r_count; i++) {
+        for (int j = -1; j <= grid.x_count; j++) {
+            const bool inside = i >= 0 && i < grid.r_count && j >= 0 && j < grid.x_count;
+            const double tau = delay_exact(a.tx[0], a.rx[0], a.velocity[0], grid_point(&grid, i, j), a.sound_speed);
+            a.t0[0] = tau - 0.5 / a.fs;
+            const bool expected = any_pixel_meets(&a, &grid);
+            assert_true(expected || !inside);
+            if (grid_meets_records(&a, 1, &grid, "lone") != (expected ? STATUS_OK : STATUS_INVALID)) {
+                fail_msg("row %d, column %d", i, j);
+            }
+        }
+    }
+    acquisition_free(&a);
+}
+
 /* Both ends of a record belong to it: the delay is 1 s exactly, sample 4 from the emission. */
 static void records_hold_their_ends(void **state)
 {
@@ -165,6 +188,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(grid_texts),
         cmocka_unit_test(records_hold_their_ends),
+        cmocka_unit_test(lone_pixels_are_found),
         cmocka_unit_test(meeting_agrees_with_trying_every_pixel),
         cmocka_unit_test_setup_teardown(odd_grids_meet_or_not, scene_folder_make, scene_folder_remove),
     };

@@ -65,6 +65,9 @@ static const struct refusal {
     {"pings = 6;", "pings = 6.5;", 5, "key 'track.pings' is 6.5,", "an integer from 1"},
     {"pings = 6;", "pings = 2147483647;", 5, "key 'track.pings' is 2147483647,",
      "such that 2147483647 pings x 4 receivers are at most 67108864 records"},
+    {"speed = 2.5; pri = 0.064; pings = 6; x_first = -0.32;",
+     "speed = 0; spacing = 1e11; pri = 0.064; pings = 12; x_first = 0.0;", 5, "key 'track.spacing' is 1e+11,",
+     "such that the last of 12 pings, at 1.1e+12 m, stays within"},
     {"receivers = 4;", "receivers = 1000000000;", 4, "key 'array.receivers' is 1000000000,",
      "such that 6 pings x 1000000000 receivers are at most 67108864 records"},
     {"samples = 256;", "samples = 1;", 6, "key 'record.samples' is 1,", "an integer from 2"},
@@ -158,6 +161,21 @@ static void malformed_scenes_are_refused(void **state)
     }
 }
 
+/* The last ping may lie as far out as a coordinate may. */
+static void bounds_are_accepted(void **state)
+{
+    (void)state;
+    static const char *const tracks[] = {"speed = 0; spacing = 1e11; pri = 0.064; pings = 11; x_first = 0.0;",
+                                         "speed = 10.0; pri = 1e10; pings = 11; x_first = 0.0;"};
+    for (size_t i = 0; i < COUNT_OF(tracks); i++) {
+        char *text = scene_varied("speed = 2.5; pri = 0.064; pings = 6; x_first = -0.32;", tracks[i]);
+        struct scene scene = scene_loaded(text);
+        assert_true(scene.acquisition.tx[10].x == 1e12);
+        scene_free(&scene);
+        free(text);
+    }
+}
+
 static void files_that_are_no_scenes_are_refused(void **state)
 {
     (void)state;
@@ -185,6 +203,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(malformed_scenes_are_refused, scene_folder_make, scene_folder_remove),
+        cmocka_unit_test_setup_teardown(bounds_are_accepted, scene_folder_make, scene_folder_remove),
         cmocka_unit_test_setup_teardown(files_that_are_no_scenes_are_refused, scene_folder_make, scene_folder_remove),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,84 @@
+/* Simulated echoes against closed forms: the weight of the beam, the noise. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "common/delay.h"
+#include "data/echo_data.h"
+#include "data/random.h"
+#include "scene/simulate.h"
+#include "tests/scene/scene_fixture.h"
+
+/* The echoes of base_text with `find` replaced, and noise of `std`. */
+static struct echoes echoes_of(const char *find, const char *replace, double std, struct scene *scene)
+{
+    struct echoes echoes;
+    char *text = scene_varied(find, replace);
+    *scene = scene_loaded(text);
+    scene->noise_std = std;
+    if (scene_simulate(scene, &echoes) != STATUS_OK)
+        fail_msg("%s", status_message());
+    free(text);
+    return echoes;
+}
+
+/* Sampled chirps: each is the weight of its pair times the chirp at n/fs - tau, and nothing elsewhere. */
+static void sampled_chirps_are_weighted(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct echoes echoes = echoes_of("\"lfm\"; duration = 2e-3; };", "\"lfm_time\"; duration = 2e-3; };", 0, &scene);
+    const struct acquisition *a = &scene.acquisition;
+    const double complex *samples = echoes.samples;
+    double least = 1, greatest = 0;
+    for (int k = 0; k < a->pings * a->receivers; k++) {
+        const int ping = k / a->receivers;
+        const struct vector p = {scene.targets[0].x, scene.targets[0].r, 0};
+        const double tau = delay_exact(a->tx[ping], a->rx[k], a->velocity[ping], p, a->sound_speed);
+        const double weight = beam_weight(&scene, ping, k % a->receivers, p, tau, a->fc);
+        least = fmin(least, weight);
+        greatest = fmax(greatest, weight);
+        for (int n = 0; n < a->samples; n++) {
+            const double t = a->t0[ping] + n / a->fs - tau, u = t - 1e-3;
+            const bool inside = t >= 0 && t < 2e-3;
+            const double complex wanted =
+                inside ? weight * cexp(2 * M_PI * I * (15e3 / (2 * 2e-3) * u * u - a->fc * tau)) : 0;
+            assert_close(cabs(samples[k * a->samples + n] - wanted), 0, 1e-9);
+        }
+    }
+    assert_true(least < 0.95 && greatest > 0.99); /* the beam does taper */
+    echoes_free(&echoes);
+    scene_free(&scene);
+}
+
+/* Noise is added, std times the numbers of the record's own stream. */
+static void noise_is_that_of_the_stream(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct echoes noisy = echoes_of("", "", 0.25, &scene), plain;
+    const struct acquisition *a = &scene.acquisition;
+    scene.noise_std = 0;
+    assert_int_equal(scene_simulate(&scene, &plain), STATUS_OK);
+    for (int k = 0; k < a->pings * a->receivers; k++) {
+        struct random random = random_seed(3, (uint64_t)k);
+        for (int n = 0; n < a->samples; n++) {
+            const int at = k * a->samples + n;
+            const double complex added =
+                ((const double complex *)noisy.samples)[at] - ((const double complex *)plain.samples)[at];
+            assert_close(cabs(added - 0.25 * random_normal(&random)), 0, 1e-12);
+        }
+    }
+    echoes_free(&noisy);
+    echoes_free(&plain);
+    scene_free(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(sampled_chirps_are_weighted, scene_folder_make, scene_folder_remove),
+        cmocka_unit_test_setup_teardown(noise_is_that_of_the_stream, scene_folder_make, scene_folder_remove),
+    };
+    return cmocka_run_group_tests_name("simulate", tests, NULL, NULL);
+}
