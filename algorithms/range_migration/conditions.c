@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "range_migration/delay.h"
 #include "range_migration/prediction.h"
 
 static const double pi = 3.14159265358979323846;
@@ -304,6 +305,8 @@ int rma_conditions(const struct problem *problem, const struct rma_method *metho
         all[count++] = stationary(&view);
         if (condition_holds(&all[count - 1]))
             count = prediction_conditions(&view, &track, all, count);
+        if (method->terms > 0)
+            count = delay_conditions(&view, all, count);
     }
     for (int k = 0; k < count && k < room; k++)
         list[k] = all[k];

@@ -35,6 +35,15 @@
                  an IFFT over the wavenumbers of a row, onto the grid's columns: one transform, or a convolution with a
                  chirp; times sqrt(r)
 
+   Delay compensation (delay.h) has other stages up to there, and rows of samples in place of bins:
+
+   compress      [pings][M][samples] -> [pings][M][row]
+                 each record through the matched filter, between zeros, mapped onto the swath's samples by taps
+   spread        as above, for each sample
+   receivers     RMA_TILE wavenumbers of [M][row] -> RMA_TILE x [stolt_length] samples from `centre` on
+                 turned by each receiver's offset, added up with the weights of each term, times the term's coefficient
+   stolt         begins with the FFT of reconstruct
+
    Shortcuts: a single receiver at the transmitter needs no bulk and no differential. With stolt=direct, focus sums each
    bin of the band at each row, without stolt and IFFT. If then one block is needed and sum=before, there is nothing to
    reconstruct either. */
@@ -44,6 +53,7 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "range_migration/delay.h"
 #include "range_migration/rma.h"
 
 enum {
@@ -55,7 +65,8 @@ enum {
     RMA_NODES = 4,        /* blocks that blend at one range: a cubic */
     RMA_GUARD = 16,       /* bins repeated beyond a spectrum's ends: the longest kernel */
     RMA_INTERVALS = 1024, /* of the Stolt kernel's table, linear inside each */
-    RMA_STEPS = 16        /* range rows between fresh phases of a direct sum */
+    RMA_STEPS = 16,       /* range rows between fresh phases of a direct sum */
+    RMA_RUN = 16          /* samples of a record that share the taps of their delay */
 };
 
 /* Scratch of a thread; all but the first two hold values of the plan's precision. The largest swath counts. */
@@ -71,6 +82,10 @@ enum rma_buffer {
     RMA_PARTS,     /* [most rows of a patch]: vectors of a direct sum's re and im */
     RMA_STORED,    /* complex [rows][RMA_TILE] */
     RMA_RECORD,    /* complex [record_length] */
+    RMA_PADDED,    /* complex [samples + 2 map guards]: delay compensation's */
+    RMA_TURNS,     /* real [RMA_TILE][receivers][2]: phasors of the receivers' offsets */
+    RMA_LINE,      /* double complex [terms][ranges]: U at one wavenumber */
+    RMA_EDGES,     /* complex [RMA_TILE][terms][row/LANES + 1]: U at the edges of vectors */
     RMA_BUFFERS
 };
 
@@ -107,6 +122,14 @@ struct rma_patch {
     void *focus_plan, *azimuth_forward, *azimuth_inverse; /* forward: chirp only */
 };
 
+/* Delay compensation of a swath: which samples of a record make up each of its own, by receiver and run of RMA_RUN. */
+struct rma_map {
+    int runs;
+    int *first; /* [receivers][runs]: the first tap's, for the run's first sample; INT_MIN: outside the record */
+    void *weights, *slopes; /* real [receivers][runs][taps]: at the run's middle, and over one sample */
+    void *phases;           /* complex [receivers][runs RMA_RUN]: carrier, and the cut's taper */
+};
+
 /* Patches whose echoes lie in one stretch of the records, migrated together and apart from all others. */
 struct rma_swath {
     double nearest, farthest; /* m: its rows */
@@ -133,7 +156,8 @@ struct rma_swath {
     int needed, *blocks; /* [needed] the blocks that are computed; part of the plan's */
     int reference;       /* index into them: the bulk correction is this block's */
 
-    void *data;        /* [period][receivers][row]: spectra, vectors of re and im in turn */
+    void *data; /* [period][receivers][row]: spectra, vectors of re and im in turn */
+    struct rma_map map;
     void *apodization; /* real [stolt_length]: 1/transform of the Stolt kernel, 1/length included */
     void *range_forward, *range_inverse, *stolt_forward, *azimuth_forward;
 };
@@ -170,6 +194,12 @@ struct rma {
     double block_from, block_width;
     int *block_list; /* the swaths' blocks */
 
+    bool delays; /* by delay compensation, without blocks */
+    struct delay_terms terms;
+    struct delay_taps map_taps;
+    int map_guard;   /* zeros beside a record */
+    void *map_basis; /* real [terms][receivers]: V */
+
     int taps;     /* of the Stolt interpolation; 0: direct sum */
     double shape; /* the Kaiser kernel's parameter */
     void *kernel; /* real [RMA_INTERVALS + 2][taps] */
@@ -197,6 +227,11 @@ static inline double rma_last_row(const struct grid *grid)
 {
     return grid->r_first + (grid->r_count - 1) * grid->r_step;
 }
+
+/* ---- rma.c ---- */
+
+/* Zeroed memory on the plan's account, `share` of it; NULL without memory. */
+void *rma_take(struct rma *rma, size_t count, size_t size, double share);
 
 /* ---- blocks.c ---- */
 
@@ -229,18 +264,34 @@ void rma_nodes(struct rma *rma); /* fills nodes and powers */
 /* Range of a block's centre, m. */
 double rma_block_range(const struct rma *rma, int block);
 
+/* ---- delay/plan.c ---- */
+
+/* The tables of swath->map. False without memory. */
+bool rma_map_plan_float(struct rma *rma, struct rma_swath *swath);
+bool rma_map_plan_double(struct rma *rma, struct rma_swath *swath);
+
+/* ---- delay/map.c ---- */
+
+/* A swath's row, complex [runs RMA_RUN], from a compressed record with its guards. */
+typedef void rma_map_function(const struct rma *rma, const struct rma_swath *swath, int receiver, const void *padded,
+                              void *row);
+rma_map_function rma_map_float_baseline, rma_map_double_baseline;
+rma_map_function rma_map_float_v3, rma_map_double_v3;
+rma_map_function rma_map_float_v4, rma_map_double_v4;
+
 /* ---- transform.c ---- */
 struct rma_transform {
     enum status (*plan)(struct rma *rma); /* memory, tables and FFT plans */
     void (*destroy)(struct rma *rma);     /* accepts what `plan` left unfinished */
-    void (*compress)(const struct rma *rma, const void *samples);
+    /* `map` is only called where the plan compensates delays. */
+    void (*compress)(const struct rma *rma, rma_map_function *map, const void *samples);
     void (*spread)(const struct rma *rma, const struct rma_swath *swath);
     void (*inverse)(const struct rma *rma, const struct rma_swath *swath, const struct rma_patch *patch, void *pixels);
 };
 extern const struct rma_transform rma_transform_float, rma_transform_double;
 
 /* ---- focus.c ---- */
-enum rma_stage { RMA_BULK, RMA_DIFFERENTIAL, RMA_RECONSTRUCT, RMA_STOLT, RMA_FOCUS, RMA_STAGES };
+enum rma_stage { RMA_RECEIVERS, RMA_BULK, RMA_DIFFERENTIAL, RMA_RECONSTRUCT, RMA_STOLT, RMA_FOCUS, RMA_STAGES };
 /* The wavenumbers whose turn it is from `turn` to turn + RMA_TILE - 1, all rows, into `focused`; seconds of each stage
    are added. */
 typedef void rma_column_function(const struct rma *rma, const struct rma_swath *swath, int thread, int turn,

@@ -321,16 +321,21 @@ static void reconstruct(struct workspace *w, real *sums, real *cut)
         }
 }
 
-static void column(struct workspace *w, real *stored)
+/* `n`: of the tile's wavenumbers. */
+static void column(struct workspace *w, int n, real *stored)
 {
     const struct rma *rma = w->rma;
     const struct rma_swath *swath = w->swath;
     real *sums = buffer(w, RMA_SUMS), *cut = buffer(w, RMA_CUT), *z = buffer(w, RMA_SPECTRUM);
     const bool direct = rma->taps == 0;
-    const bool from_sums = direct && swath->needed == 1 && rma->options.sum == RMA_SUM_BEFORE;
-    REAL_ISA_NAME(rma_convert)(w, sums);
+    const bool from_sums = direct && swath->needed == 1 && rma->options.sum == RMA_SUM_BEFORE && !rma->delays;
+    if (rma->delays)
+        cut += (size_t)n * 2 * (size_t)swath->stolt_length;
+    else
+        REAL_ISA_NAME(rma_convert)(w, sums);
     if (!from_sums) {
-        reconstruct(w, sums, cut);
+        if (!rma->delays)
+            reconstruct(w, sums, cut);
         spectrum(w, cut, z);
     }
     if (direct && !from_sums) { /* its transform is as long as the conversion's */
@@ -363,12 +368,20 @@ void REAL_ISA_NAME(rma_column)(const struct rma *rma, const struct rma_swath *sw
                           .scratch = (char *)rma->scratch + (size_t)thread * rma->scratch_bytes};
     real *stored = buffer(&w, RMA_STORED), *focused = rma->focused;
     memset(stored, 0, 2 * RMA_TILE * swath->rows * sizeof *stored);
-    for (int n = 0; n < RMA_TILE && turn + n < swath->wavenumbers; n++) {
-        w.q = rma_wavenumber(rma, swath, turn + n);
-        w.line = rma_line(rma, swath, w.q);
-        if (w.line.begin < swath->band)
-            column(&w, stored + 2 * n);
+    struct rma_line lines[RMA_TILE];
+    int q[RMA_TILE];
+    for (int n = 0; n < RMA_TILE; n++) {
+        q[n] = turn + n < swath->wavenumbers ? rma_wavenumber(rma, swath, turn + n) : -1;
+        lines[n] = q[n] >= 0 ? rma_line(rma, swath, q[n]) : (struct rma_line){.begin = swath->band};
     }
+    if (rma->delays)
+        REAL_ISA_NAME(rma_receivers)(&w, q, lines, buffer(&w, RMA_CUT));
+    for (int n = 0; n < RMA_TILE; n++)
+        if (lines[n].begin < swath->band) {
+            w.q = q[n];
+            w.line = lines[n];
+            column(&w, n, stored + 2 * n);
+        }
     for (size_t i = 0; i < swath->rows; i++, stored += 2 * RMA_TILE)
         memcpy(focused + 2 * (i * swath->columns + (size_t)turn), stored, 2 * RMA_TILE * sizeof *stored);
     stage_end(&w, RMA_FOCUS);

@@ -1,19 +1,17 @@
 /* What a range migration's scene needs (engine.h): the track, the blocks of the conversion, and the swaths with
    their cuts of the record and their transforms. All in double, nothing of it depends on the echoes. */
-#include <complex.h>
-#include <fftw3.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/delay.h"
 #include "common/fft_length.h"
+#include "common/pulse_band.h"
 #include "range_migration/conditions.h"
 #include "range_migration/engine.h"
 
 static const double pi = 3.14159265358979323846;
 
-static const double BAND_LOSS = 4e-6;  /* of the compressed pulse's energy may lie outside the band */
 static const double TAPER_PERIODS = 8; /* of fs - B, or of B, in a cut's taper: what it smears stays beside the band */
 static const double PULSE_PERIODS = 8; /* of B: beside the rows, so that no pulse wraps around the cut */
 static const double EVEN = 1e-12;      /* relative: columns that divide the period but for rounding */
@@ -51,8 +49,10 @@ static enum status lay_track(struct rma *rma)
     const struct acquisition *a = rma->problem.acquisition;
     struct condition list[CONDITIONS_MAX];
     int count = rma_conditions(&rma->problem, &rma->method, list, CONDITIONS_MAX);
-    if (strcmp(list[count - 1].name, "predicted_error") == 0 && isnan(list[count - 1].value))
-        return status_set(STATUS_FAILED, "%s: no memory to predict the image's error", rma->method.name);
+    for (int k = 0; k < count; k++)
+        if ((strcmp(list[k].name, "predicted_error") == 0 || strcmp(list[k].name, "delay_terms") == 0)
+            && isnan(list[k].value))
+            return status_set(STATUS_FAILED, "%s: no memory to predict the image's error", rma->method.name);
     enum status status = conditions_check(rma->method.name, list, count);
     if (status == STATUS_OK)
         status = lay_receivers(rma);
@@ -76,7 +76,15 @@ static enum status lay_track(struct rma *rma)
         rma->nearest = fmin(rma->nearest, rma->problem.patches[k].r_first);
         rma->farthest = fmax(rma->farthest, rma_last_row(&rma->problem.patches[k]));
     }
-    return STATUS_OK;
+    rma->delays = rma->method.terms > 0;
+    if (!rma->delays)
+        return STATUS_OK;
+    if (!delay_terms_make(&view, rma->method.terms, &rma->terms))
+        return status_set(STATUS_FAILED, "%s: no memory for %d receivers", rma->method.name, a->receivers);
+    rma->work.bytes += rma->terms.bytes;
+    status = delay_taps_make(a, rma->method.taps, &rma->map_taps);
+    rma->map_guard = RMA_RUN + rma->method.taps;
+    return status;
 }
 
 /* The bins that hold the compressed pulse; of echoes that come compressed already, twice the band. */
@@ -87,34 +95,12 @@ static enum status lay_band(struct rma *rma)
     double band = fmax(a->bandwidth / a->fs, 8 * TAPER_PERIODS / a->samples);
     double share = fmax(fmin(1 - a->bandwidth / a->fs, band), TAPER_PERIODS / a->samples);
     rma->taper = (int)fmin(ceil(TAPER_PERIODS / share), a->samples);
-    /* What was compressed elsewhere may have flanks beyond its bandwidth; twice the band holds them. Far beyond it there is
-       nothing, and the phases' polynomials would have to span it. */
-    rma->half_band = fmin(a->fs / 2, fmax(a->bandwidth, 32 * a->fs / a->samples)); /* a record's own ends are in it */
-    if (a->compressed)
-        return STATUS_OK;
-    int length = rma->record_length = fft_length_fast((long long)a->samples + a->pulse_length - 1);
-    double complex *work = length > 0 ? fftw_malloc((size_t)length * sizeof *work) : NULL;
-    if (!work)
-        return status_set(STATUS_FAILED, "no memory for the replica's spectrum");
-    memset(work, 0, (size_t)length * sizeof *work);
-    memcpy(work, a->pulse, (size_t)a->pulse_length * sizeof *work);
-    fftw_plan forward = fftw_plan_dft_1d(length, work, work, FFTW_FORWARD, FFTW_ESTIMATE);
-    fftw_execute(forward);
-    fftw_destroy_plan(forward);
-    double total = 0, outside = 0;
-    for (int k = 0; k < length; k++)
-        total += pow(cabs(work[k]), 4);
-    int half = (length - 1) / 2;
-    for (; half > a->bandwidth / 2 / a->fs * length; half--) {
-        double edge = pow(cabs(work[half]), 4) + pow(cabs(work[length - half]), 4);
-        if (outside + edge > BAND_LOSS * total)
-            break;
-        outside += edge;
-    }
-    fftw_free(work);
-    rma->loss = outside / total;
-    rma->half_band = half * a->fs / length;
-    return STATUS_OK;
+    struct pulse_band pulse;
+    rma->record_length = a->compressed ? 0 : fft_length_fast((long long)a->samples + a->pulse_length - 1);
+    enum status status = pulse_band_find(a, rma->record_length, &pulse);
+    rma->half_band = pulse.half_hz;
+    rma->loss = pulse.loss;
+    return status;
 }
 
 /* ---- swaths ---- */
@@ -244,6 +230,11 @@ static enum status swath_range(const struct rma *rma, struct rma_swath *swath)
     swath->band_first = half < (swath->length - 1) / 2 ? -(int)half : -(swath->length / 2);
     swath->band = half < (swath->length - 1) / 2 ? 2 * (int)half + 1 : swath->length;
     swath->row = (swath->band + lanes - 1) / lanes * lanes;
+    if (rma->delays) { /* samples instead of bins; rows a power of two apart would share a few sets of the cache */
+        swath->row = (swath->length + RMA_RUN - 1) / RMA_RUN * RMA_RUN;
+        swath->row += swath->row * lanes % 4096 == 0 ? lanes : 0;
+        swath->centre -= swath->centre % lanes;
+    }
     return STATUS_OK;
 }
 
@@ -295,7 +286,7 @@ static void lay_scratch(struct rma *rma)
     size_t most[RMA_BUFFERS] = {[RMA_RECORD] = 2 * (size_t)rma->record_length * real_bytes};
     for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
         size_t row = 2 * (size_t)s->row * real_bytes, stolt = (size_t)s->stolt_length, needed = (size_t)s->needed;
-        size_t longest = stolt, most_rows = 0;
+        size_t longest = stolt, most_rows = 0, terms = (size_t)rma->terms.terms;
         for (int k = 0; k < s->patch_count; k++) {
             size_t rows = (size_t)s->patches[k].grid.r_count, length = (size_t)s->patches[k].length;
             longest = length > longest ? length : longest;
@@ -307,11 +298,15 @@ static void lay_scratch(struct rma *rma)
             [RMA_CONVERTED] = receivers * 2 * RMA_SPAN * real_bytes,
             [RMA_SUMS] = needed * summed * row,
             [RMA_WAVE] = 2 * longest * real_bytes,
-            [RMA_CUT] = 2 * stolt * real_bytes,
+            [RMA_CUT] = 2 * stolt * real_bytes * (rma->delays ? RMA_TILE : 1),
             [RMA_PLACES] = (size_t)s->length * real_bytes,
             [RMA_SPECTRUM] = 2 * (stolt + 2 * RMA_GUARD) * real_bytes,
             [RMA_PARTS] = rma->taps == 0 ? most_rows * 2 * RMA_ALIGNMENT : 0,
             [RMA_STORED] = 2 * RMA_TILE * s->rows * real_bytes,
+            [RMA_PADDED] = rma->delays ? 2 * ((size_t)rma->samples + 2 * (size_t)rma->map_guard) * real_bytes : 0,
+            [RMA_TURNS] = rma->delays ? 2 * RMA_TILE * receivers * real_bytes : 0,
+            [RMA_LINE] = terms * (size_t)rma->terms.ranges * 2 * sizeof(double),
+            [RMA_EDGES] = RMA_TILE * terms * ((size_t)s->row * real_bytes / RMA_ALIGNMENT + 1) * 2 * real_bytes,
         };
         for (int k = 0; k < RMA_BUFFERS; k++)
             most[k] = bytes[k] > most[k] ? bytes[k] : most[k];

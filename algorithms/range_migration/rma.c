@@ -5,6 +5,7 @@
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "common/fft_length.h"
 #include "common/isa.h"
@@ -19,7 +20,8 @@ const char *const rma_phases_names[] = {"recurrence", "libm", NULL};
 static const double WORK_LIMIT = 1e11;                      /* operations: some twenty seconds */
 static const double MEMORY_LIMIT = 5e8, MEMORY_FACTOR = 50; /* bytes */
 
-static const char *const stage_names[RMA_STAGES] = {"bulk", "differential", "reconstruct", "stolt", "focus"};
+static const char *const stage_names[RMA_STAGES] = {"receivers",   "bulk",  "differential",
+                                                    "reconstruct", "stolt", "focus"};
 
 static rma_column_function *const column_functions[][2] = {
     [ISA_BASELINE] = {rma_column_float_baseline, rma_column_double_baseline},
@@ -28,6 +30,24 @@ static rma_column_function *const column_functions[][2] = {
     [ISA_V4] = {rma_column_float_v4, rma_column_double_v4},
 #endif
 };
+
+static rma_map_function *const map_functions[][2] = {
+    [ISA_BASELINE] = {rma_map_float_baseline, rma_map_double_baseline},
+#ifdef SASBENCH_X86_64
+    [ISA_V3] = {rma_map_float_v3, rma_map_double_v3},
+    [ISA_V4] = {rma_map_float_v4, rma_map_double_v4},
+#endif
+};
+
+void *rma_take(struct rma *rma, size_t count, size_t size, double share)
+{
+    size_t bytes = (count * size + RMA_ALIGNMENT - 1) / RMA_ALIGNMENT * RMA_ALIGNMENT;
+    void *memory = aligned_alloc(RMA_ALIGNMENT, bytes ? bytes : RMA_ALIGNMENT);
+    if (memory)
+        memset(memory, 0, bytes);
+    rma->work.bytes += share * (double)bytes;
+    return memory;
+}
 
 static const struct rma_transform *transform(const struct rma *rma)
 {
@@ -42,11 +62,15 @@ static double swath_flops(const struct rma *rma, const struct rma_swath *swath)
     const double phases = 3 * (2.0 * RMA_DEGREE + 30) / RMA_GROUP;
     const double sums = rma->options.sum == RMA_SUM_AFTER ? receivers : 1;
     const double weights = swath->needed * sums > 1 ? 10 * (rma->options.blend ? rma_nodes_blended(rma) : 1) : 0;
-    double flops = receivers * rma->pings * fft_flops(length) + receivers * band * fft_flops(swath->period)
-                   + q * receivers * band * (rma->converts ? applied + phases : 0) * swath->needed
-                   + q
-                         * (sums * (swath->needed * fft_flops(length) + weights * length)
-                            + fft_flops(swath->stolt_length) + 2 * length);
+    double flops = q * (fft_flops(swath->stolt_length) + 2 * length);
+    if (rma->delays)
+        flops +=
+            receivers * (rma->pings * length * (8.0 * rma->map_taps.taps + 10) + swath->row * fft_flops(swath->period))
+            + q * length * (receivers * (6 + 4.0 * rma->terms.terms) + 12 * rma->terms.terms);
+    else
+        flops += receivers * rma->pings * fft_flops(length) + receivers * band * fft_flops(swath->period)
+                 + q * receivers * band * (rma->converts ? applied + phases : 0) * swath->needed
+                 + q * sums * (swath->needed * fft_flops(length) + weights * length);
     for (int k = 0; k < swath->patch_count; k++) {
         const struct rma_patch *patch = &swath->patches[k];
         double rows = patch->grid.r_count,
@@ -70,6 +94,8 @@ static void count_published(struct rma *rma)
     double taps = rma->taps ? rma->taps : 8, range = method->range[0] * receivers + method->range[1];
     double azimuth = method->azimuth[0] * receivers + method->azimuth[1];
     double products = method->products[0] * receivers + method->products[1];
+    if (!method->source)
+        return;
     double paper =
         na * nr
         * (1.5 * range * log2(nr) + 1.5 * azimuth * log2(na) + products + method->interpolations * (2 * taps - 1));
@@ -101,19 +127,24 @@ static void count_work(struct rma *rma)
         needed += used && used[n];
     free(used);
     count_published(rma);
-    snprintf(work->engine, sizeof work->engine, "%d of %d blocks", needed, rma->block_count);
+    if (rma->delays)
+        snprintf(work->engine, sizeof work->engine, "%d terms, %d taps", rma->terms.terms, rma->map_taps.taps);
+    else
+        snprintf(work->engine, sizeof work->engine, "%d of %d blocks", needed, rma->block_count);
     const struct {
         bool happens;
         const char *format;
         double values[2];
     } notes[] = {
         {true, "azimuth correction: the monostatic phase is exact", {0}},
-        {!rma->converts, "; conversion: one receiver at the transmitter", {0}},
-        {rma->converts && !differential, "; differential preprocessing: one block", {0}},
+        {!rma->converts && !rma->delays, "; conversion: one receiver at the transmitter", {0}},
+        {rma->converts && !rma->delays && !differential, "; differential preprocessing: one block", {0}},
         {rma->taps == 0, "; Stolt interpolation: direct sum", {0}},
         {needed < rma->block_count, "; %.0f blocks without rows", {rma->block_count - needed, 0}},
         {taken < rma->samples, "; %.0f %% of each record", {100 * (1 - taken / rma->samples)}},
-        {bins < all, "; %.0f %% of the band: %.1g of the pulse's energy", {100 * (1 - bins / all), rma->loss}},
+        {bins < all && !rma->delays,
+         "; %.0f %% of the band: %.1g of the pulse's energy",
+         {100 * (1 - bins / all), rma->loss}},
     };
     size_t length = 0;
     for (size_t k = 0; k < sizeof notes / sizeof *notes; k++)
@@ -203,7 +234,7 @@ static void migrate(const struct rma *rma, const struct rma_swath *swath, struct
 enum status rma_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages)
 {
     struct rma *rma = plan;
-    transform(rma)->compress(rma, echoes->samples);
+    transform(rma)->compress(rma, map_functions[isa_choose()][rma->problem.precision], echoes->samples);
     stages_end(stages, "compress");
     for (const struct rma_swath *swath = rma->swaths; swath < rma->swaths + rma->swath_count; swath++) {
         transform(rma)->spread(rma, swath);
@@ -231,5 +262,6 @@ void rma_destroy(void *plan)
     free(rma->patches);
     free(rma->block_list);
     free(rma->offset);
+    delay_terms_free(&rma->terms);
     free(rma);
 }

@@ -125,3 +125,36 @@ double spectrum_monostatic(const struct spectrum_setting *setting, double freque
     double along = c * nu / 2 + f * beta;
     return 4 * pi / c * root_of((f - along) * (f + along));
 }
+
+/* 2 pi F beta: what the exact spectrum has beyond the one of d = 0 and the way of the phase centre. */
+static double bistatic(const struct spectrum_setting *setting, double d, double r, double frequency, double nu)
+{
+    double monostatic = r * spectrum_monostatic(setting, frequency, nu);
+    return -spectrum_exact(setting, d, r, frequency, nu) - monostatic + pi * nu * d;
+}
+
+double spectrum_abeam(const struct spectrum_setting *setting, double d, double r)
+{
+    return bistatic(setting, d, r, setting->fc, 0) / (2 * pi * setting->fc);
+}
+
+double spectrum_walk(const struct spectrum_setting *setting, double nu)
+{
+    double c = setting->sound_speed, beta = setting->speed / c, b1 = (1 - beta) * (1 + beta), f = setting->fc / b1;
+    double along = c * nu / 2 + f * beta, broadside = f * beta;
+    double slope = (f - along * beta) / sqrt((f - along) * (f + along));
+    return slope / ((f - broadside * beta) / sqrt((f - broadside) * (f + broadside)));
+}
+
+double spectrum_residual(const struct spectrum_setting *setting, double d, double r, double nu)
+{
+    double abeam = spectrum_abeam(setting, d, r * spectrum_walk(setting, nu));
+    return bistatic(setting, d, r, setting->fc, nu) - 2 * pi * setting->fc * abeam;
+}
+
+double spectrum_compensated(const struct spectrum_setting *setting, double d, double r, double frequency, double nu)
+{
+    double abeam = spectrum_abeam(setting, d, r * spectrum_walk(setting, nu));
+    return -(r * spectrum_monostatic(setting, frequency, nu) - pi * nu * d + 2 * pi * frequency * abeam
+             + spectrum_residual(setting, d, r, nu));
+}

@@ -35,6 +35,18 @@ spectrum_function spectrum_pca;
    reference receiver, plus each receiver's exact broadside delay less the reference receiver's. */
 spectrum_function spectrum_wu;
 
+/* Delay compensation (delay.h): of the exact spectrum, -phi = r K - pi nu d + 2 pi F beta(nu/F, r), it takes beta where
+   the target stands broadside, at the range where its echo arrives, and the rest at the carrier:
+
+       -phi = r K - pi nu d + 2 pi F abeam(d, r walk(nu)) + residual(d, r, nu). */
+spectrum_function spectrum_compensated;
+/* beta at nu = 0: by how much the echo of a receiver at offset d is later (s) than that of d = 0, r > 0. */
+double spectrum_abeam(const struct spectrum_setting *setting, double d, double r);
+/* dK/dF at fc, relative to nu = 0: what the walk multiplies ranges by. NAN where evanescent. */
+double spectrum_walk(const struct spectrum_setting *setting, double nu);
+/* Radians at fc. */
+double spectrum_residual(const struct spectrum_setting *setting, double d, double r, double nu);
+
 /* Exact for d = 0: the phase is -r times this (rad/m), b = v^2/c^2:
    (4 pi/c) sqrt((F/(1-b))^2 - (c nu/2 + F v/(c (1-b)))^2). NAN where evanescent. */
 double spectrum_monostatic(const struct spectrum_setting *setting, double frequency, double nu);

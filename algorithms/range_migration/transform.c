@@ -15,17 +15,6 @@ enum {
 };
 static const double pi = 3.14159265358979323846;
 
-/* Zeroed memory on the plan's account; failure shows as NULL. */
-static void *take(struct rma *rma, size_t count, size_t size, double share)
-{
-    size_t bytes = (count * size + RMA_ALIGNMENT - 1) / RMA_ALIGNMENT * RMA_ALIGNMENT;
-    void *memory = aligned_alloc(RMA_ALIGNMENT, bytes ? bytes : RMA_ALIGNMENT);
-    if (memory)
-        memset(memory, 0, bytes);
-    rma->work.bytes += share * (double)bytes;
-    return memory;
-}
-
 static real *scratch_of(const struct rma *rma, enum rma_buffer buffer)
 {
     char *scratch = (char *)rma->scratch + (size_t)omp_get_thread_num() * rma->scratch_bytes;
@@ -49,7 +38,7 @@ static bool filter_fill(struct rma *rma)
 {
     const struct acquisition *a = rma->problem.acquisition;
     complex_real *filter = rma->filter;
-    double complex *work = take(rma, (size_t)rma->record_length, sizeof *work, 0);
+    double complex *work = rma_take(rma, (size_t)rma->record_length, sizeof *work, 0);
     double energy = 0;
     if (!work)
         return false;
@@ -91,7 +80,7 @@ static void apodization_fill(const struct rma *rma, const struct rma_swath *swat
         double place = fmin(fabs((double)(j < length - length / 2 ? j : j - length) / length), 0.5 / RMA_OVERSAMPLING);
         double x = sqrt(fmax(shape * shape - pi * pi * taps * taps * place * place, 1e-12));
         double transform = taps ? taps * exp(-shape) * sinh(x) / x : 1;
-        apodization[j] = (real)(1 / (transform * swath->length));
+        apodization[j] = (real)(1 / (transform * (rma->delays ? 1 : swath->length)));
     }
 }
 
@@ -100,9 +89,9 @@ static void apodization_fill(const struct rma *rma, const struct rma_swath *swat
 static bool azimuth_fill(struct rma *rma, const struct rma_swath *swath, struct rma_patch *patch)
 {
     const int q_count = swath->wavenumbers, x_count = patch->grid.x_count, length = patch->columns;
-    complex_real *before = take(rma, (size_t)q_count, sizeof *before, 1);
-    complex_real *after = take(rma, (size_t)x_count, sizeof *after, 1);
-    complex_real *kernel = patch->folds ? NULL : take(rma, (size_t)length, sizeof *kernel, 1);
+    complex_real *before = rma_take(rma, (size_t)q_count, sizeof *before, 1);
+    complex_real *after = rma_take(rma, (size_t)x_count, sizeof *after, 1);
+    complex_real *kernel = patch->folds ? NULL : rma_take(rma, (size_t)length, sizeof *kernel, 1);
     complex_real *wave = (complex_real *)scratch_of(rma, 0);
     patch->before = before;
     patch->after = after;
@@ -131,9 +120,10 @@ static bool azimuth_fill(struct rma *rma, const struct rma_swath *swath, struct 
 static bool plan_swath(struct rma *rma, struct rma_swath *swath)
 {
     complex_real *wave = (complex_real *)scratch_of(rma, RMA_WAVE), *lines = rma->scratch;
-    swath->data = take(rma, (size_t)swath->period * (size_t)rma->receivers, 2 * (size_t)swath->row * sizeof(real), 1);
-    swath->apodization = take(rma, (size_t)swath->stolt_length, sizeof(real), 1);
-    if (!swath->data || !swath->apodization)
+    swath->data =
+        rma_take(rma, (size_t)swath->period * (size_t)rma->receivers, 2 * (size_t)swath->row * sizeof(real), 1);
+    swath->apodization = rma_take(rma, (size_t)swath->stolt_length, sizeof(real), 1);
+    if (!swath->data || !swath->apodization || (rma->delays && !REAL_NAME(rma_map_plan)(rma, swath)))
         return false;
     apodization_fill(rma, swath);
     swath->range_forward = plan_line(swath->length, wave, FFTW_FORWARD);
@@ -162,17 +152,24 @@ static enum status plan(struct rma *rma)
     strip *= sizeof(complex_real);
     if (rma->scratch_bytes < strip)
         rma->scratch_bytes = (strip / RMA_ALIGNMENT + 1) * RMA_ALIGNMENT;
-    rma->scratch = take(rma, (size_t)rma->threads, rma->scratch_bytes, 1.0 / rma->threads);
-    rma->focused = take(rma, focused, sizeof(complex_real), 1);
-    rma->tapers = take(rma, (size_t)rma->taper, sizeof(real), 1);
-    rma->kernel = take(rma, (RMA_INTERVALS + 2) * (size_t)rma->taps, sizeof(real), 1);
-    rma->filter = take(rma, (size_t)rma->record_length, sizeof(complex_real), 1);
+    rma->scratch = rma_take(rma, (size_t)rma->threads, rma->scratch_bytes, 1.0 / rma->threads);
+    rma->focused = rma_take(rma, focused, sizeof(complex_real), 1);
+    rma->tapers = rma_take(rma, (size_t)rma->taper, sizeof(real), 1);
+    rma->kernel = rma_take(rma, (RMA_INTERVALS + 2) * (size_t)rma->taps, sizeof(real), 1);
+    rma->filter = rma_take(rma, (size_t)rma->record_length, sizeof(complex_real), 1);
     bool complete = rma->scratch && rma->focused && rma->tapers && rma->kernel && rma->filter;
     if (complete) {
         real *tapers = rma->tapers;
         for (int k = 0; k < rma->taper; k++)
             tapers[k] = (real)pow(sin(pi / 2 * (k + 0.5) / rma->taper), 2);
         kernel_fill(rma);
+    }
+    if (complete && rma->delays) {
+        const size_t count = (size_t)rma->terms.terms * (size_t)rma->receivers;
+        real *basis = rma->map_basis = rma_take(rma, count, sizeof *basis, 1);
+        for (size_t k = 0; basis && k < count; k++)
+            basis[k] = (real)rma->terms.basis[k];
+        complete = basis != NULL;
     }
     if (complete && rma->record_length > 0) {
         complex_real *record = (complex_real *)scratch_of(rma, RMA_RECORD);
@@ -210,11 +207,16 @@ static void destroy(struct rma *rma)
         plan_destroy(swath->range_inverse);
         plan_destroy(swath->stolt_forward);
         plan_destroy(swath->azimuth_forward);
+        free(swath->map.first);
+        free(swath->map.weights);
+        free(swath->map.slopes);
+        free(swath->map.phases);
         free(swath->data);
         free(swath->apodization);
     }
     plan_destroy(rma->record_forward);
     plan_destroy(rma->record_inverse);
+    free(rma->map_basis);
     free(rma->filter);
     free(rma->tapers);
     free(rma->kernel);
@@ -253,12 +255,25 @@ static void cut(const struct rma *rma, const struct rma_swath *swath, const real
     memset(row + 2 * swath->band, 0, 2 * (size_t)(swath->row - swath->band) * sizeof *row);
 }
 
-/* Pulse compression by a linear correlation, then each swath's cut. */
-static void compress(const struct rma *rma, const void *samples)
+/* A compressed record between zeros. */
+static real *padded(const struct rma *rma, const real *record)
+{
+    const size_t guard = 2 * (size_t)rma->map_guard, n = 2 * (size_t)rma->samples;
+    real *out = scratch_of(rma, RMA_PADDED);
+    memset(out, 0, guard * sizeof *out);
+    memcpy(out + guard, record, n * sizeof *out);
+    memset(out + guard + n, 0, guard * sizeof *out);
+    return out;
+}
+
+/* Pulse compression by a linear correlation, then each swath's cut. Records of a receiver follow one another, so that the
+   tables of its map stay in the cache. */
+static void compress(const struct rma *rma, rma_map_function *map, const void *samples)
 {
     const size_t n = 2 * (size_t)rma->samples, length = 2 * (size_t)rma->record_length;
 #pragma omp parallel for schedule(static) num_threads(rma->threads)
-    for (int k = 0; k < rma->pings * rma->receivers; k++) {
+    for (int turn = 0; turn < rma->pings * rma->receivers; turn++) {
+        const int receiver = turn / rma->pings, k = turn % rma->pings * rma->receivers + receiver;
         const real *record = (const real *)samples + n * (size_t)k;
         if (length > 0) {
             real *wave = scratch_of(rma, RMA_RECORD);
@@ -269,8 +284,14 @@ static void compress(const struct rma *rma, const void *samples)
             FFTW(execute_dft)(rma->record_inverse, (complex_real *)wave, (complex_real *)wave);
             record = wave;
         }
-        for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++)
-            cut(rma, s, record, (real *)s->data + 2 * (size_t)s->row * (size_t)k);
+        const real *between = rma->delays ? padded(rma, record) : NULL;
+        for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
+            real *row = (real *)s->data + 2 * (size_t)s->row * (size_t)k;
+            if (rma->delays)
+                map(rma, s, receiver, between, row);
+            else
+                cut(rma, s, record, row);
+        }
     }
 }
 

@@ -9,7 +9,8 @@ find algorithms harness -name '*.[ch]' | sort | xargs awk '
         # A folder, and what it may include beside itself. What contributors read ("algorithm.h") lies in algorithms/
         # beside the algorithms, which nobody includes.
         order = "algorithms algorithms/common algorithms/backprojection algorithms/backprojection/general " \
-                "algorithms/backprojection/invariant algorithms/range_migration algorithms/wavenumber harness/data harness/scene " \
+                "algorithms/backprojection/invariant algorithms/range_migration " \
+                "algorithms/range_migration/delay algorithms/wavenumber harness/data harness/scene " \
                 "harness/measure harness/show harness/study harness/stability harness/gate harness/papers " \
                 "harness/command harness/tests " \
                 "harness/tests/algorithms harness/tests/scene harness/tests/measure harness/tests/show " \
@@ -23,6 +24,9 @@ find algorithms harness -name '*.[ch]' | sort | xargs awk '
         apart["algorithms/backprojection", "algorithms/range_migration"] = 1
         apart["algorithms/backprojection/general", "algorithms/range_migration"] = 1
         apart["algorithms/backprojection/invariant", "algorithms/range_migration"] = 1
+        apart["algorithms/backprojection", "algorithms/range_migration/delay"] = 1
+        apart["algorithms/backprojection/general", "algorithms/range_migration/delay"] = 1
+        apart["algorithms/backprojection/invariant", "algorithms/range_migration/delay"] = 1
         apart["algorithms/backprojection/general", "algorithms/wavenumber"] = 1
         apart["algorithms/backprojection/invariant", "algorithms/wavenumber"] = 1
     }

@@ -64,3 +64,16 @@ double swath_error(const char *spec, struct problem problem, const struct echoes
     image_free(&image);
     return error;
 }
+
+double patch_error(const struct image *image, const struct image *exact, int patch)
+{
+    const struct grid *g = &exact->patches[patch];
+    double difference = 0, norm = 0;
+    for (int i = 0; i < g->r_count; i++)
+        for (int j = 0; j < g->x_count; j++) {
+            double complex value = image_pixel(exact, patch, i, j);
+            difference += pow(cabs(image_pixel(image, patch, i, j) - value), 2);
+            norm += pow(cabs(value), 2);
+        }
+    return sqrt(difference / norm);
+}

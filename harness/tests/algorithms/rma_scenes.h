@@ -22,5 +22,7 @@ void add_targets(struct scene *scene, int count, const double *r);
 void form(const char *spec, struct problem problem, const struct echoes *echoes, struct image *image);
 /* Its error against an exact image, printed. */
 double swath_error(const char *spec, struct problem problem, const struct echoes *echoes, const struct image *exact);
+/* Complex relative L2 of one patch. */
+double patch_error(const struct image *image, const struct image *exact, int patch);
 
 #endif

@@ -1,0 +1,116 @@
+/* Fractional delays by taps of least squares (delay.h): of all weights those whose error over the compressed pulse's own energy
+   spectrum is least. */
+#include <complex.h>
+#include <fftw3.h>
+#include <math.h>
+#include <string.h>
+
+#include "common/fft_length.h"
+#include "range_migration/delay.h"
+
+static const double pi = 3.14159265358979323846;
+static const double FLOOR = 1e-7; /* of the energy lies evenly over all frequencies: weights stay small everywhere */
+
+enum { BINS = 512 };
+
+/* The compressed pulse's energy by frequency, bin k about (k + 1/2)/BINS - 1/2 of the sampling rate; their sum is 1. */
+static enum status spectrum_fill(const struct acquisition *a, double energy[BINS])
+{
+    const double half = a->bandwidth / 2 / a->fs;
+    double sum = 0;
+    memset(energy, 0, BINS * sizeof *energy);
+    if (a->compressed) {
+        for (int k = 0; k < BINS; k++) {
+            double low = (double)k / BINS - 0.5, high = low + 1.0 / BINS;
+            energy[k] = fmax(fmin(high, half) - fmax(low, -half), 0);
+        }
+    } else {
+        int length = fft_length_fast(fmax(2.0 * a->pulse_length, 2.0 * BINS));
+        double complex *work = length > 0 ? fftw_malloc((size_t)length * sizeof *work) : NULL;
+        if (!work)
+            return status_set(STATUS_FAILED, "no memory for the replica's spectrum");
+        memset(work, 0, (size_t)length * sizeof *work);
+        memcpy(work, a->pulse, (size_t)a->pulse_length * sizeof *work);
+        fftw_plan forward = fftw_plan_dft_1d(length, work, work, FFTW_FORWARD, FFTW_ESTIMATE);
+        fftw_execute(forward);
+        fftw_destroy_plan(forward);
+        for (int k = 0; k < length; k++) {
+            int bin = (int)(((k + length / 2) % length + 0.5) / length * BINS);
+            energy[bin < BINS ? bin : BINS - 1] += pow(cabs(work[k]), 4);
+        }
+        fftw_free(work);
+    }
+    for (int k = 0; k < BINS; k++)
+        sum += energy[k];
+    for (int k = 0; k < BINS; k++)
+        energy[k] = (1 - FLOOR) * energy[k] / sum + FLOOR / BINS;
+    return STATUS_OK;
+}
+
+/* Real part of the mean of exp(j 2 pi f x) over the energy, and its slope over x. The pulse's spectrum is taken as even. */
+static double correlation(const double energy[BINS], double x, double *slope)
+{
+    double value = 0;
+    *slope = 0;
+    for (int k = 0; k < BINS; k++) {
+        double w = 2 * pi * ((k + 0.5) / BINS - 0.5);
+        value += energy[k] * cos(w * x);
+        *slope -= energy[k] * w * sin(w * x);
+    }
+    return value;
+}
+
+/* Both triangles of Cholesky's factor. */
+static void solve(double factor[DELAY_TAPS][DELAY_TAPS], int taps, double *x)
+{
+    for (int j = 0; j < taps; j++) {
+        for (int k = 0; k < j; k++)
+            x[j] -= factor[j][k] * x[k];
+        x[j] /= factor[j][j];
+    }
+    for (int j = taps - 1; j >= 0; j--) {
+        for (int k = j + 1; k < taps; k++)
+            x[j] -= factor[k][j] * x[k];
+        x[j] /= factor[j][j];
+    }
+}
+
+enum status delay_taps_make(const struct acquisition *acquisition, int taps, struct delay_taps *made)
+{
+    double energy[BINS], between[DELAY_TAPS], factor[DELAY_TAPS][DELAY_TAPS], unused;
+    made->taps = taps;
+    enum status status = spectrum_fill(acquisition, energy);
+    if (status != STATUS_OK)
+        return status;
+    for (int k = 0; k < taps; k++)
+        between[k] = correlation(energy, k, &unused);
+    for (int j = 0; j < taps; j++)
+        for (int k = j; k < taps; k++) {
+            double value = between[k - j];
+            for (int n = 0; n < j; n++)
+                value -= factor[k][n] * factor[j][n];
+            factor[k][j] = k == j ? sqrt(value) : value / factor[j][j];
+        }
+    for (int i = 0; i <= DELAY_INTERVALS; i++) {
+        double *weights = made->weights[i], *slopes = made->slopes[i], aims[DELAY_TAPS], left = 1;
+        for (int k = 0; k < taps; k++)
+            aims[k] = weights[k] = correlation(energy, (double)i / DELAY_INTERVALS - (k + 1 - taps / 2), &slopes[k]);
+        solve(factor, taps, weights);
+        solve(factor, taps, slopes);
+        for (int k = 0; k < taps; k++)
+            left -= weights[k] * aims[k];
+        if (i == DELAY_INTERVALS / 2)
+            made->error = sqrt(fmax(left, 0));
+    }
+    return STATUS_OK;
+}
+
+void delay_taps_weights(const struct delay_taps *taps, double fraction, double *weights, double *slopes)
+{
+    double place = fraction * DELAY_INTERVALS;
+    int i = (int)fmin(place, DELAY_INTERVALS - 1);
+    for (int k = 0; k < taps->taps; k++) {
+        weights[k] = taps->weights[i][k] + (place - i) * (taps->weights[i + 1][k] - taps->weights[i][k]);
+        slopes[k] = taps->slopes[i][k] + (place - i) * (taps->slopes[i + 1][k] - taps->slopes[i][k]);
+    }
+}

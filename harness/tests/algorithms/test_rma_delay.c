@@ -1,0 +1,169 @@
+/* Range migration after delay compensation: its parts against what they stand for, and its images against exact ones over
+   a deep swath, wide and narrow, raw and compressed. */
+#include <complex.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "common/delay.h"
+#include "range_migration/delay.h"
+#include "scene/simulate.h"
+#include "tests/algorithms/rma_scenes.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* At the carrier the compensated spectrum is the exact one; at nu = 0 it is so for all frequencies. */
+static void spectrum(void **state)
+{
+    (void)state;
+    const struct spectrum_setting setting = {1500, 3, 150e3, 0};
+    for (int k = 0; k < 60; k++) {
+        double d = -0.5 + 0.1 * (k % 30), r = 20 + 7 * k, nu = (k % 7 - 3) * 4.1;
+        double exact = spectrum_exact(&setting, d, r, 150e3, nu);
+        assert_true(fabs(spectrum_compensated(&setting, d, r, 150e3, nu) - exact) < 1e-8);
+        exact = spectrum_exact(&setting, d, r, 137e3, 0);
+        assert_true(fabs(spectrum_compensated(&setting, d, r, 137e3, 0) - exact) < 1e-8);
+        /* The delay broadside, from the geometry alone: the target passes abeam while the pulse is under way. */
+        double u = (spectrum_exact(&setting, d, r, 150e3, 1e-3) - spectrum_exact(&setting, d, r, 150e3, -1e-3))
+                   / (-2 * pi * 2e-3);
+        struct vector tx = {u, 0, 0}, rx = {u + d, 0, 0}, velocity = {3, 0, 0}, target = {0, r, 0};
+        double late = delay_exact(tx, rx, velocity, target, 1500) - 2 * r / 1500 / sqrt(1 - 4e-6);
+        assert_true(fabs(spectrum_abeam(&setting, d, r) - late) < 1e-12);
+    }
+}
+
+/* Taps delay tones of the band by any fraction, of a flat and of a pulse's spectrum; fewer of them worse. */
+static void taps(void **state)
+{
+    (void)state;
+    struct delay_taps made;
+    struct acquisition a = {.compressed = true, .fs = 25e3, .bandwidth = 20e3};
+    double last = 1;
+    for (int count = 8; count <= 24; count += 8) {
+        double worst = 0, weights[DELAY_TAPS], slopes[DELAY_TAPS];
+        assert_int_equal(delay_taps_make(&a, count, &made), STATUS_OK);
+        for (int k = 0; k <= 33; k++) {
+            double sum = 0, fraction = k / 33.0;
+            delay_taps_weights(&made, fraction, weights, slopes);
+            for (int n = 0; n < 101; n++) { /* mean square over the band */
+                double w = 2 * pi * 0.4 * (n - 50) / 50.5;
+                double complex value = -cexp(I * w * fraction), slope = -I * w * cexp(I * w * fraction);
+                for (int t = 0; t < count; t++) {
+                    value += weights[t] * cexp(I * w * (t + 1 - count / 2));
+                    slope += slopes[t] * cexp(I * w * (t + 1 - count / 2));
+                }
+                sum += pow(cabs(value), 2) / 101;
+                assert_true(cabs(slope) < 30 * (made.error + 1e-4));
+            }
+            worst = fmax(worst, sqrt(sum));
+        }
+        print_message("    %d taps: %.2e, said %.2e\n", count, worst, made.error);
+        assert_true(worst < 1.02 * made.error && worst > 0.7 * made.error && made.error < last / 8);
+        last = made.error;
+    }
+    assert_true(last < 1.2e-4);
+}
+
+static void make_deep(int receivers, int pings, struct scene *scene)
+{
+    make_scene(&(struct rma_track){pings, receivers, 4640, 25e3, 1230 / 25e3, -0.5 * (pings - 1) * receivers * 0.02,
+                                   receivers * 0.02, 0.04},
+               scene);
+}
+
+/* What two terms leave of the phasors is small, and they are as told: a vector of ones and another, orthonormal. */
+static void terms(void **state)
+{
+    (void)state;
+    static const struct grid swath = {0, 0.1, 2, 40, 0.03, 4000};
+    struct scene scene;
+    struct straight_track track;
+    struct rma_method method = {.spectrum = spectrum_compensated};
+    make_deep(66, 20, &scene);
+    struct problem problem = {&scene.acquisition, 1, &swath, PRECISION_DOUBLE};
+    assert_true(acquisition_is_straight(&scene.acquisition, &track));
+    struct rma_view view = rma_view_of(&problem, &method, &track);
+    double left[DELAY_TERMS];
+    for (int count = 1; count <= DELAY_TERMS; count++) {
+        struct delay_terms made;
+        assert_true(delay_terms_make(&view, count, &made));
+        left[count - 1] = made.left;
+        double complex *line = malloc((size_t)(made.terms * made.ranges) * sizeof *line);
+        double worst = 0;
+        for (int k = 0; k < 40; k++) {
+            double nu = -9 + 0.45 * k, r = 41 + 2.7 * k;
+            delay_terms_line(&made, &view.setting, nu, line);
+            for (int m = 0; m < 66; m++) {
+                double complex sum = -cexp(I * spectrum_residual(&view.setting, 0.04 * m, r, nu));
+                for (int q = 0; q < made.terms; q++)
+                    sum += made.basis[q * 66 + m] * delay_terms_value(&made, line, q, r);
+                worst = fmax(worst, cabs(sum));
+            }
+        }
+        print_message("    %d terms leave %.1e; at most %.1e at any place\n", count, made.left, worst);
+        assert_true(worst < 20 * made.left + 1e-6);
+        for (int p = 0; p < made.terms; p++)
+            for (int q = 0; q <= p; q++) {
+                double product = -(p == q);
+                for (int m = 0; m < 66; m++)
+                    product += made.basis[p * 66 + m] * made.basis[q * 66 + m];
+                assert_true(fabs(product) < 1e-12);
+            }
+        free(line);
+        delay_terms_free(&made);
+    }
+    assert_true(left[0] < 0.02 && left[1] < left[0] / 20 && left[2] <= left[1]);
+    free_scene(&scene);
+}
+
+enum { TARGETS = 4 };
+static const double deep_targets[TARGETS] = {41.03, 57.31, 100.17, 170.4};
+
+/* 41 to 170 m in one swath, at fs = 1.25 B, patches of +-24 range cells: the exact spectrum's error, and little more. */
+static void deep_swath(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *spec;
+        double bounds[TARGETS];
+    } runs[] = {{"rma_delay:precision=double", {1.3e-3, 9e-4, 6.5e-4, 5e-4}},
+                {"rma_delay", {1.3e-3, 9e-4, 6.5e-4, 5e-4}},
+                {"rma_delay:taps=24", {1e-3, 6.5e-4, 3.5e-4, 2.5e-4}},
+                {"rma_delay:taps=24,terms=3", {1e-3, 6.5e-4, 3.5e-4, 2.5e-4}},
+                {"rma_delay:taps=24,stolt=direct,precision=double", {1e-3, 6.5e-4, 3.5e-4, 2.5e-4}},
+                {"rma_delay:terms=1", {1e-2, 4.5e-3, 1.1e-3, 5.5e-4}},
+                {"rma_numeric:blocks=100", {1e-3, 5.5e-4, 2.6e-4, 1.5e-4}}};
+    struct scene scene;
+    struct echoes echoes;
+    struct image exact, image;
+    struct grid patches[TARGETS];
+    make_deep(66, 20, &scene);
+    add_targets(&scene, TARGETS, deep_targets);
+    assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
+    for (int t = 0; t < TARGETS; t++)
+        patches[t] = (struct grid){scene.targets[t].x - 0.16, 0.02, 17, deep_targets[t] - 0.72, 0.03, 49};
+    struct problem problem = {&scene.acquisition, TARGETS, patches, PRECISION_DOUBLE};
+    form("reference:precision=double", problem, &echoes, &exact);
+    for (size_t k = 0; k < sizeof runs / sizeof *runs; k++) {
+        form(runs[k].spec, problem, &echoes, &image);
+        for (int t = 0; t < TARGETS; t++) {
+            double error = patch_error(&image, &exact, t);
+            print_message("    %-32s at %g m: %.2e\n", runs[k].spec, deep_targets[t], error);
+            assert_true(error <= runs[k].bounds[t]);
+        }
+        image_free(&image);
+    }
+    image_free(&exact);
+    echoes_free(&echoes);
+    free_scene(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(spectrum),
+        cmocka_unit_test(taps),
+        cmocka_unit_test(terms),
+        cmocka_unit_test(deep_swath),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
