@@ -162,6 +162,14 @@ struct rma_swath {
     void *range_forward, *range_inverse, *stolt_forward, *azimuth_forward;
 };
 
+/* Delay compensation of a plan. */
+struct rma_delay {
+    struct delay_terms terms;
+    struct delay_taps taps;
+    int guard;   /* zeros beside a record */
+    void *basis; /* real [terms][receivers]: V */
+};
+
 struct rma {
     struct problem problem;
     struct rma_method method;
@@ -194,11 +202,7 @@ struct rma {
     double block_from, block_width;
     int *block_list; /* the swaths' blocks */
 
-    bool delays; /* by delay compensation, without blocks */
-    struct delay_terms terms;
-    struct delay_taps map_taps;
-    int map_guard;   /* zeros beside a record */
-    void *map_basis; /* real [terms][receivers]: V */
+    struct rma_delay *delay; /* NULL: by blocks */
 
     int taps;     /* of the Stolt interpolation; 0: direct sum */
     double shape; /* the Kaiser kernel's parameter */

@@ -328,13 +328,13 @@ static void column(struct workspace *w, int n, real *stored)
     const struct rma_swath *swath = w->swath;
     real *sums = buffer(w, RMA_SUMS), *cut = buffer(w, RMA_CUT), *z = buffer(w, RMA_SPECTRUM);
     const bool direct = rma->taps == 0;
-    const bool from_sums = direct && swath->needed == 1 && rma->options.sum == RMA_SUM_BEFORE && !rma->delays;
-    if (rma->delays)
+    const bool from_sums = direct && swath->needed == 1 && rma->options.sum == RMA_SUM_BEFORE && !rma->delay;
+    if (rma->delay)
         cut += (size_t)n * 2 * (size_t)swath->stolt_length;
     else
         REAL_ISA_NAME(rma_convert)(w, sums);
     if (!from_sums) {
-        if (!rma->delays)
+        if (!rma->delay)
             reconstruct(w, sums, cut);
         spectrum(w, cut, z);
     }
@@ -374,7 +374,7 @@ void REAL_ISA_NAME(rma_column)(const struct rma *rma, const struct rma_swath *sw
         q[n] = turn + n < swath->wavenumbers ? rma_wavenumber(rma, swath, turn + n) : -1;
         lines[n] = q[n] >= 0 ? rma_line(rma, swath, q[n]) : (struct rma_line){.begin = swath->band};
     }
-    if (rma->delays)
+    if (rma->delay)
         REAL_ISA_NAME(rma_receivers)(&w, q, lines, buffer(&w, RMA_CUT));
     for (int n = 0; n < RMA_TILE; n++)
         if (lines[n].begin < swath->band) {

@@ -44,6 +44,16 @@ static enum status lay_receivers(struct rma *rma)
     return STATUS_OK;
 }
 
+static enum status lay_delay(struct rma *rma, const struct rma_view *view)
+{
+    struct rma_delay *delay = rma->delay = calloc(1, sizeof *delay);
+    if (!delay || !delay_terms_make(view, rma->method.terms, &delay->terms))
+        return status_set(STATUS_FAILED, "%s: no memory for %d receivers", rma->method.name, rma->receivers);
+    delay->guard = RMA_RUN + rma->method.taps;
+    rma->work.bytes += (double)sizeof *delay + delay->terms.bytes;
+    return delay_taps_make(rma->problem.acquisition, rma->method.taps, &delay->taps);
+}
+
 static enum status lay_track(struct rma *rma)
 {
     const struct acquisition *a = rma->problem.acquisition;
@@ -76,15 +86,7 @@ static enum status lay_track(struct rma *rma)
         rma->nearest = fmin(rma->nearest, rma->problem.patches[k].r_first);
         rma->farthest = fmax(rma->farthest, rma_last_row(&rma->problem.patches[k]));
     }
-    rma->delays = rma->method.terms > 0;
-    if (!rma->delays)
-        return STATUS_OK;
-    if (!delay_terms_make(&view, rma->method.terms, &rma->terms))
-        return status_set(STATUS_FAILED, "%s: no memory for %d receivers", rma->method.name, a->receivers);
-    rma->work.bytes += rma->terms.bytes;
-    status = delay_taps_make(a, rma->method.taps, &rma->map_taps);
-    rma->map_guard = RMA_RUN + rma->method.taps;
-    return status;
+    return rma->method.terms > 0 ? lay_delay(rma, &view) : STATUS_OK;
 }
 
 /* The bins that hold the compressed pulse; of echoes that come compressed already, twice the band. */
@@ -230,7 +232,7 @@ static enum status swath_range(const struct rma *rma, struct rma_swath *swath)
     swath->band_first = half < (swath->length - 1) / 2 ? -(int)half : -(swath->length / 2);
     swath->band = half < (swath->length - 1) / 2 ? 2 * (int)half + 1 : swath->length;
     swath->row = (swath->band + lanes - 1) / lanes * lanes;
-    if (rma->delays) { /* samples instead of bins; rows a power of two apart would share a few sets of the cache */
+    if (rma->delay) { /* samples instead of bins; rows a power of two apart would share a few sets of the cache */
         swath->row = (swath->length + RMA_RUN - 1) / RMA_RUN * RMA_RUN;
         swath->row += swath->row * lanes % 4096 == 0 ? lanes : 0;
         swath->centre -= swath->centre % lanes;
@@ -286,7 +288,7 @@ static void lay_scratch(struct rma *rma)
     size_t most[RMA_BUFFERS] = {[RMA_RECORD] = 2 * (size_t)rma->record_length * real_bytes};
     for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
         size_t row = 2 * (size_t)s->row * real_bytes, stolt = (size_t)s->stolt_length, needed = (size_t)s->needed;
-        size_t longest = stolt, most_rows = 0, terms = (size_t)rma->terms.terms;
+        size_t longest = stolt, most_rows = 0, terms = rma->delay ? (size_t)rma->delay->terms.terms : 0;
         for (int k = 0; k < s->patch_count; k++) {
             size_t rows = (size_t)s->patches[k].grid.r_count, length = (size_t)s->patches[k].length;
             longest = length > longest ? length : longest;
@@ -298,14 +300,14 @@ static void lay_scratch(struct rma *rma)
             [RMA_CONVERTED] = receivers * 2 * RMA_SPAN * real_bytes,
             [RMA_SUMS] = needed * summed * row,
             [RMA_WAVE] = 2 * longest * real_bytes,
-            [RMA_CUT] = 2 * stolt * real_bytes * (rma->delays ? RMA_TILE : 1),
+            [RMA_CUT] = 2 * stolt * real_bytes * (rma->delay ? RMA_TILE : 1),
             [RMA_PLACES] = (size_t)s->length * real_bytes,
             [RMA_SPECTRUM] = 2 * (stolt + 2 * RMA_GUARD) * real_bytes,
             [RMA_PARTS] = rma->taps == 0 ? most_rows * 2 * RMA_ALIGNMENT : 0,
             [RMA_STORED] = 2 * RMA_TILE * s->rows * real_bytes,
-            [RMA_PADDED] = rma->delays ? 2 * ((size_t)rma->samples + 2 * (size_t)rma->map_guard) * real_bytes : 0,
-            [RMA_TURNS] = rma->delays ? 2 * RMA_TILE * receivers * real_bytes : 0,
-            [RMA_LINE] = terms * (size_t)rma->terms.ranges * 2 * sizeof(double),
+            [RMA_PADDED] = rma->delay ? 2 * ((size_t)rma->samples + 2 * (size_t)rma->delay->guard) * real_bytes : 0,
+            [RMA_TURNS] = rma->delay ? 2 * RMA_TILE * receivers * real_bytes : 0,
+            [RMA_LINE] = rma->delay ? terms * (size_t)rma->delay->terms.ranges * 2 * sizeof(double) : 0,
             [RMA_EDGES] = RMA_TILE * terms * ((size_t)s->row * real_bytes / RMA_ALIGNMENT + 1) * 2 * real_bytes,
         };
         for (int k = 0; k < RMA_BUFFERS; k++)

@@ -63,10 +63,11 @@ static double swath_flops(const struct rma *rma, const struct rma_swath *swath)
     const double sums = rma->options.sum == RMA_SUM_AFTER ? receivers : 1;
     const double weights = swath->needed * sums > 1 ? 10 * (rma->options.blend ? rma_nodes_blended(rma) : 1) : 0;
     double flops = q * (fft_flops(swath->stolt_length) + 2 * length);
-    if (rma->delays)
+    if (rma->delay)
         flops +=
-            receivers * (rma->pings * length * (8.0 * rma->map_taps.taps + 10) + swath->row * fft_flops(swath->period))
-            + q * length * (receivers * (6 + 4.0 * rma->terms.terms) + 12 * rma->terms.terms);
+            receivers
+                * (rma->pings * length * (8.0 * rma->delay->taps.taps + 10) + swath->row * fft_flops(swath->period))
+            + q * length * (receivers * (6 + 4.0 * rma->delay->terms.terms) + 12 * rma->delay->terms.terms);
     else
         flops += receivers * rma->pings * fft_flops(length) + receivers * band * fft_flops(swath->period)
                  + q * receivers * band * (rma->converts ? applied + phases : 0) * swath->needed
@@ -127,8 +128,9 @@ static void count_work(struct rma *rma)
         needed += used && used[n];
     free(used);
     count_published(rma);
-    if (rma->delays)
-        snprintf(work->engine, sizeof work->engine, "%d terms, %d taps", rma->terms.terms, rma->map_taps.taps);
+    if (rma->delay)
+        snprintf(work->engine, sizeof work->engine, "%d terms, %d taps", rma->delay->terms.terms,
+                 rma->delay->taps.taps);
     else
         snprintf(work->engine, sizeof work->engine, "%d of %d blocks", needed, rma->block_count);
     const struct {
@@ -137,12 +139,12 @@ static void count_work(struct rma *rma)
         double values[2];
     } notes[] = {
         {true, "azimuth correction: the monostatic phase is exact", {0}},
-        {!rma->converts && !rma->delays, "; conversion: one receiver at the transmitter", {0}},
-        {rma->converts && !rma->delays && !differential, "; differential preprocessing: one block", {0}},
+        {!rma->converts && !rma->delay, "; conversion: one receiver at the transmitter", {0}},
+        {rma->converts && !rma->delay && !differential, "; differential preprocessing: one block", {0}},
         {rma->taps == 0, "; Stolt interpolation: direct sum", {0}},
         {needed < rma->block_count, "; %.0f blocks without rows", {rma->block_count - needed, 0}},
         {taken < rma->samples, "; %.0f %% of each record", {100 * (1 - taken / rma->samples)}},
-        {bins < all && !rma->delays,
+        {bins < all && !rma->delay,
          "; %.0f %% of the band: %.1g of the pulse's energy",
          {100 * (1 - bins / all), rma->loss}},
     };
@@ -262,6 +264,8 @@ void rma_destroy(void *plan)
     free(rma->patches);
     free(rma->block_list);
     free(rma->offset);
-    delay_terms_free(&rma->terms);
+    if (rma->delay)
+        delay_terms_free(&rma->delay->terms);
+    free(rma->delay);
     free(rma);
 }

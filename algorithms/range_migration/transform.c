@@ -80,7 +80,7 @@ static void apodization_fill(const struct rma *rma, const struct rma_swath *swat
         double place = fmin(fabs((double)(j < length - length / 2 ? j : j - length) / length), 0.5 / RMA_OVERSAMPLING);
         double x = sqrt(fmax(shape * shape - pi * pi * taps * taps * place * place, 1e-12));
         double transform = taps ? taps * exp(-shape) * sinh(x) / x : 1;
-        apodization[j] = (real)(1 / (transform * (rma->delays ? 1 : swath->length)));
+        apodization[j] = (real)(1 / (transform * (rma->delay ? 1 : swath->length)));
     }
 }
 
@@ -123,7 +123,7 @@ static bool plan_swath(struct rma *rma, struct rma_swath *swath)
     swath->data =
         rma_take(rma, (size_t)swath->period * (size_t)rma->receivers, 2 * (size_t)swath->row * sizeof(real), 1);
     swath->apodization = rma_take(rma, (size_t)swath->stolt_length, sizeof(real), 1);
-    if (!swath->data || !swath->apodization || (rma->delays && !REAL_NAME(rma_map_plan)(rma, swath)))
+    if (!swath->data || !swath->apodization || (rma->delay && !REAL_NAME(rma_map_plan)(rma, swath)))
         return false;
     apodization_fill(rma, swath);
     swath->range_forward = plan_line(swath->length, wave, FFTW_FORWARD);
@@ -164,11 +164,11 @@ static enum status plan(struct rma *rma)
             tapers[k] = (real)pow(sin(pi / 2 * (k + 0.5) / rma->taper), 2);
         kernel_fill(rma);
     }
-    if (complete && rma->delays) {
-        const size_t count = (size_t)rma->terms.terms * (size_t)rma->receivers;
-        real *basis = rma->map_basis = rma_take(rma, count, sizeof *basis, 1);
+    if (complete && rma->delay) {
+        const size_t count = (size_t)rma->delay->terms.terms * (size_t)rma->receivers;
+        real *basis = rma->delay->basis = rma_take(rma, count, sizeof *basis, 1);
         for (size_t k = 0; basis && k < count; k++)
-            basis[k] = (real)rma->terms.basis[k];
+            basis[k] = (real)rma->delay->terms.basis[k];
         complete = basis != NULL;
     }
     if (complete && rma->record_length > 0) {
@@ -216,7 +216,8 @@ static void destroy(struct rma *rma)
     }
     plan_destroy(rma->record_forward);
     plan_destroy(rma->record_inverse);
-    free(rma->map_basis);
+    if (rma->delay)
+        free(rma->delay->basis);
     free(rma->filter);
     free(rma->tapers);
     free(rma->kernel);
@@ -258,7 +259,7 @@ static void cut(const struct rma *rma, const struct rma_swath *swath, const real
 /* A compressed record between zeros. */
 static real *padded(const struct rma *rma, const real *record)
 {
-    const size_t guard = 2 * (size_t)rma->map_guard, n = 2 * (size_t)rma->samples;
+    const size_t guard = 2 * (size_t)rma->delay->guard, n = 2 * (size_t)rma->samples;
     real *out = scratch_of(rma, RMA_PADDED);
     memset(out, 0, guard * sizeof *out);
     memcpy(out + guard, record, n * sizeof *out);
@@ -284,10 +285,10 @@ static void compress(const struct rma *rma, rma_map_function *map, const void *s
             FFTW(execute_dft)(rma->record_inverse, (complex_real *)wave, (complex_real *)wave);
             record = wave;
         }
-        const real *between = rma->delays ? padded(rma, record) : NULL;
+        const real *between = rma->delay ? padded(rma, record) : NULL;
         for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
             real *row = (real *)s->data + 2 * (size_t)s->row * (size_t)k;
-            if (rma->delays)
+            if (rma->delay)
                 map(rma, s, receiver, between, row);
             else
                 cut(rma, s, record, row);

@@ -37,7 +37,7 @@ void REAL_ISA_NAME(rma_map)(const struct rma *rma, const struct rma_swath *swath
                             void *row)
 {
     const struct rma_map *map = &swath->map;
-    const size_t taps = (size_t)rma->map_taps.taps, from = (size_t)receiver * (size_t)map->runs;
+    const size_t taps = (size_t)rma->delay->taps.taps, from = (size_t)receiver * (size_t)map->runs;
     const real *weights = (const real *)map->weights + from * taps, *slopes = (const real *)map->slopes + from * taps;
     const real *phases = (const real *)map->phases + from * 2 * RMA_RUN;
     real *out = row;

@@ -51,15 +51,15 @@ static void run_fill(const struct rma *rma, const struct rma_swath *swath, int r
 {
     const struct rma_map *map = &swath->map;
     const size_t at = (size_t)receiver * (size_t)map->runs + (size_t)run;
-    const int taps = rma->map_taps.taps, from = swath->first + run * RMA_RUN;
+    const int taps = rma->delay->taps.taps, from = swath->first + run * RMA_RUN;
     double delays[RMA_RUN], weights[DELAY_TAPS], slopes[DELAY_TAPS];
     run_delays(rma, swath, receiver, run, delays);
     const double middle = (delays[RMA_RUN / 2 - 1] + delays[RMA_RUN / 2]) / 2 * rma->fs, whole = floor(middle);
     const double step = (delays[RMA_RUN - 1] - delays[0]) * rma->fs / (RMA_RUN - 1); /* samples a sample */
     const double first = from + whole + 1 - taps / 2;
-    bool inside = first >= -rma->map_guard && first + RMA_RUN + taps <= rma->samples + rma->map_guard;
-    map->first[at] = inside ? (int)first + rma->map_guard : INT_MIN;
-    delay_taps_weights(&rma->map_taps, middle - whole, weights, slopes);
+    bool inside = first >= -rma->delay->guard && first + RMA_RUN + taps <= rma->samples + rma->delay->guard;
+    map->first[at] = inside ? (int)first + rma->delay->guard : INT_MIN;
+    delay_taps_weights(&rma->delay->taps, middle - whole, weights, slopes);
     for (int k = 0; k < taps; k++) {
         ((real *)map->weights)[at * (size_t)taps + (size_t)k] = (real)weights[k];
         ((real *)map->slopes)[at * (size_t)taps + (size_t)k] = (real)(step * slopes[k]);
@@ -76,7 +76,7 @@ bool REAL_NAME(rma_map_plan)(struct rma *rma, struct rma_swath *swath)
 {
     struct rma_map *map = &swath->map;
     map->runs = (swath->length + RMA_RUN - 1) / RMA_RUN;
-    const size_t runs = (size_t)map->runs * (size_t)rma->receivers, taps = (size_t)rma->map_taps.taps;
+    const size_t runs = (size_t)map->runs * (size_t)rma->receivers, taps = (size_t)rma->delay->taps.taps;
     map->first = rma_take(rma, runs, sizeof *map->first, 1);
     map->weights = rma_take(rma, runs * taps, sizeof(real), 1);
     map->slopes = rma_take(rma, runs * taps, sizeof(real), 1);

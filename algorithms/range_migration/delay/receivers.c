@@ -43,11 +43,12 @@ static void edges_fill(const struct workspace *w, double nu, complex_real *edges
     double complex *line = buffer(w, RMA_LINE);
     const double c = rma->setting.sound_speed, beta = rma->setting.speed / c;
     const double to_range = c / 2 * sqrt((1 - beta) * (1 + beta)) / spectrum_walk(&rma->setting, nu);
-    delay_terms_line(&rma->terms, &rma->setting, nu, line);
-    for (int q = 0; q < rma->terms.terms; q++)
+    delay_terms_line(&rma->delay->terms, &rma->setting, nu, line);
+    for (int q = 0; q < rma->delay->terms.terms; q++)
         for (int e = 0; e < count; e++) {
             double tau = swath->t_first + (double)e * LANES / rma->fs;
-            double complex value = delay_terms_value(&rma->terms, line, q, fmax(tau * to_range, swath->nearest / 2));
+            double complex value =
+                delay_terms_value(&rma->delay->terms, line, q, fmax(tau * to_range, swath->nearest / 2));
             *edges++ = (complex_real)value;
         }
 }
@@ -67,7 +68,7 @@ static inline __attribute__((always_inline)) void samples_add(const struct group
         for (int n = 0; n < count; n++)
             for (int q = 0; q < terms; q++)
                 re[n][q] = im[n][q] = zero;
-        const real *basis = rma->map_basis;
+        const real *basis = rma->delay->basis;
         for (int m = 0; m < receivers; m++, x += row) {
             const vec xr = *(const vec *)x, xi = *(const vec *)(x + LANES);
             for (int n = 0; n < count; n++) {
@@ -137,7 +138,7 @@ void REAL_ISA_NAME(rma_receivers)(struct workspace *w, const int *q, const struc
         const int wraps = q[n] - swath->wavenumbers / 2;
         column[n] = ((rma->spacing < 0 ? -wraps : wraps) % period + period) % period;
         turns_fill(rma, lines[n].nu, turns + 2 * (size_t)n * (size_t)rma->receivers);
-        edges_fill(w, lines[n].nu, values + (size_t)n * (size_t)rma->terms.terms * (size_t)edges);
+        edges_fill(w, lines[n].nu, values + (size_t)n * (size_t)rma->delay->terms.terms * (size_t)edges);
     }
     for (int n = 0; n < RMA_TILE; n++) {
         if (column[n] < 0)
@@ -149,7 +150,7 @@ void REAL_ISA_NAME(rma_receivers)(struct workspace *w, const int *q, const struc
                 group.member[group.count++] = k;
                 column[k] = k > n ? -1 : column[k];
             }
-        switch (rma->terms.terms) {
+        switch (rma->delay->terms.terms) {
         case 1: group_add(&group, 1); break;
         case 2: group_add(&group, 2); break;
         default: group_add(&group, 3); break;
