@@ -1,40 +1,107 @@
-# An image in decibels below its peak, one panel a patch.
+# An image in decibels below its peak, one panel a patch, and beside or below each its difference to the exact image. Both axes
+# have one scale, unless that would leave less than a third of the panel: then the label says how many times one is stretched.
 #
-# Variables:  output   the PNG to write
-#             title    above the picture
-#             panels   array: a file for each patch, 4-byte floats as gnuplot's `binary matrix`: the number of
-#                      columns, the azimuth of each column (m), then for each row its range (m) and its values (dB)
+# Variables:  output   the picture to write, PNG or SVG
+#             title    above the picture; footer: below it
+#             panels   array: a file for each patch, 4-byte floats as gnuplot's `binary matrix`: the number of columns, the azimuth
+#                      of each column (m), then for each row its range (m) and its values (dB); for curves: blocks "place dB"
+#             shapes   array: "image", or "rows" or "columns" where each of the few is a curve; curves: how many
+#             x_low, x_high, r_low, r_high   arrays: edges of the patch (m); turned: whether its axes are not those of the track
+#             targets  array: files "x r name"; target_count: how many lie in the patch
+#             range_db shown below the peak
+#             has_differences, differences   files as `panels`; dB relative to the exact image's peak; difference_top: the largest
 #             plots    folder of style.gp (default "plots")
-# By hand:    gnuplot -e "output='a.png'; title='A'; array panels[1] = ['a.bin']" plots/image.gp
 
 if (!exists("plots")) plots = "plots"
-columns = |panels| == 1 ? 1 : |panels| <= 4 ? 2 : |panels| <= 6 ? 3 : 4
-rows = (|panels| + columns - 1)/columns
-width = |panels| == 1 ? 1200 : 160 + 550*columns
-height = |panels| == 1 ? 950 : 110 + 450*rows
+count = |panels|
+kinds = has_differences ? 2 : 1                         # rows of panels for each row of patches
+beside = count == 1
+columns = beside ? kinds : count < 4 ? count : 4
+rows = beside ? 1 : kinds*((count + columns - 1)/columns)
+panel_width = columns == 1 ? 900 : columns == 2 ? 560 : columns == 3 ? 420 : 340
+panel_height = columns == 1 ? 720 : rows == 1 ? 560 : 330
+between_x = beside ? 270 : 100                          # room for the colour bar of each panel, or for labels
+between_y = 85
+width = 130 + columns*panel_width + (columns - 1)*between_x + 150
+height = 75 + rows*panel_height + (rows - 1)*between_y + 95
 load plots."/style.gp"
 set output output
 
-# All lengths in pixels, from the left and from the bottom.
-set multiplot layout rows,columns title title font ",16" offset 0,-0.4 \
-    margins screen 130.0/width, screen 1 - 130.0/width, screen 75.0/height, screen 1 - 65.0/height \
-    spacing screen 135.0/width, screen 85.0/height
-set xlabel "azimuth x (m)"
-set ylabel "range r (m)"
-set cbrange [-60:0]
-set format cb "%g dB"
-set cbtics 10
-set colorbox user origin screen 1 - 100.0/width, screen 75.0/height size screen 22.0/width, screen 1 - 140.0/height
+sideways(place) = place/(1.0*width)
+upwards(place) = 1 - place/(1.0*height)                 # pixels from the top
+least(a, b) = a < b ? a : b
+
+set multiplot title title font ",16" offset 0,-0.4
+set label 1 footer at screen 0.5, screen 14.0/height center font ",10" textcolor "#606060"
 unset grid
-set autoscale xfix
-set autoscale yfix
-do for [k = 1:|panels|] {
-    stats panels[k] binary matrix using 1 name "x" nooutput
-    stats panels[k] binary matrix using 2 name "r" nooutput
-    set xtics tic_step(x_max - x_min)
-    set ytics tic_step(r_max - r_min)
-    plot panels[k] binary matrix with image notitle
-    unset colorbox                         # one for all
+do for [k = 1:count] {
+    do for [kind = 1:kinds] {
+        column_here = beside ? kind - 1 : (k - 1)%columns
+        row_here = beside ? 0 : kinds*((k - 1)/columns) + kind - 1
+        left = 130 + column_here*(panel_width + between_x)
+        top = 75 + row_here*(panel_height + between_y)
+        name = kind == 1 ? panels[k] : differences[k]
+        high_db = kind == 1 ? 0 : difference_top
+        low_db = high_db - range_db
+        extent_x = x_high[k] - x_low[k]
+        extent_r = r_high[k] - r_low[k]
+        # Pixels a metre, of each axis if it filled the panel.
+        scale_x = panel_width/extent_x
+        scale_r = panel_height/extent_r
+        metric = scale_x < 3*scale_r && scale_r < 3*scale_x
+        if (metric) { scale_x = least(scale_x, scale_r); scale_r = scale_x }
+        drawn_width = shapes[k] eq "image" ? extent_x*scale_x : panel_width
+        drawn_height = shapes[k] eq "image" ? extent_r*scale_r : panel_height
+        inset_x = (panel_width - drawn_width)/2
+        inset_r = (panel_height - drawn_height)/2
+        set lmargin at screen sideways(left + inset_x)
+        set rmargin at screen sideways(left + inset_x + drawn_width)
+        set tmargin at screen upwards(top + inset_r)
+        set bmargin at screen upwards(top + inset_r + drawn_height)
+        stretch_x = metric || scale_x <= scale_r ? "" : sprintf(", stretched %.2g times", scale_x/scale_r)
+        stretch_r = metric || scale_r <= scale_x ? "" : sprintf(", stretched %.2g times", scale_r/scale_x)
+        x_title = (turned[k] ? "turned azimuth x' (m)" : "azimuth x (m)")
+        r_title = (turned[k] ? "turned range r' (m)" : "range r (m)")
+        db_title = kind == 1 ? (beside ? "dB relative to the peak of this image" : "dB relative to the image's peak") : (beside ? "difference to reference, dB relative to its peak" : "difference, dB of reference's peak")
+        if (shapes[k] eq "image") {
+            set xlabel x_title.stretch_x offset 0,0.3
+            set ylabel (beside || column_here == 0 ? r_title.stretch_r : "")
+            set xrange [x_low[k]:x_high[k]]
+            set yrange [r_low[k]:r_high[k]]
+            set xtics tic_step(extent_x*panel_width/drawn_width/(columns > 2 ? 0.7 : 1))
+            set ytics tic_step(extent_r*panel_height/drawn_height)
+            set cbrange [low_db:high_db]
+            set format cb "%g"
+            set cbtics 10
+            if (beside || column_here == columns - 1 || k == count) {
+                set cblabel db_title font ",11"
+                set colorbox user origin sideways(left + panel_width - (beside ? inset_x : 0) + 18), screen upwards(top + panel_height) \
+                    size sideways(20), screen panel_height/(1.0*height)
+            } else { unset colorbox; unset cblabel }
+            if (target_count[k] > 0) {
+                plot name binary matrix with image notitle, \
+                    targets[k] using 1:2 with points pointtype 6 pointsize 2.2 linewidth 1.2 linecolor "#ffffff" notitle, \
+                    targets[k] using 1:2:3 with labels left offset 1.2,0.6 font ",11" textcolor "#ffffff" notitle
+            } else {
+                plot name binary matrix with image notitle
+            }
+        } else {
+            along_x = shapes[k] eq "rows"
+            set xlabel (along_x ? x_title : r_title) offset 0,0.3
+            set ylabel (kind == 1 ? "dB relative to the peak" : "difference to reference, dB of its peak")
+            set xrange [(along_x ? x_low[k] : r_low[k]):(along_x ? x_high[k] : r_high[k])]
+            set yrange [low_db:high_db + 3]
+            set xtics tic_step((along_x ? extent_x : extent_r)/(columns > 2 ? 0.7 : 1))
+            set ytics 10
+            set grid
+            first = along_x ? r_low[k] : x_low[k]
+            step = (along_x ? extent_r : extent_x)/curves[k]
+            plot for [c = 1:curves[k]] name index c - 1 using 1:2 with lines linetype c + 1 dashtype 1 \
+                title sprintf("%s = %g m", along_x ? "r" : "x", first + (c - 0.5)*step)
+            unset grid
+        }
+        unset label 1
+    }
 }
 unset multiplot
 unset output

@@ -1,24 +1,13 @@
 /* The commands `simulate` and `image`. */
-#include <stdlib.h>
-#include <string.h>
-#include <strings.h>
+#include <stdio.h>
 
 #include "data/echo_data.h"
 #include "measure/imaging.h"
 #include "scene/matfile.h"
 #include "scene/simulate.h"
+#include "show/plot.h"
+#include "show/table.h"
 #include "command/task.h"
-
-enum status output_check(const char *command, const char *output)
-{
-    const char *extension = output ? strrchr(output, '.') : NULL;
-    if (!output)
-        return status_set(STATUS_INVALID, "%s: -o FILE.mat is missing", command);
-    enum status status = matfile_place(output);
-    if (status == STATUS_OK && (!extension || strcasecmp(extension, ".mat") != 0))
-        status = status_set(STATUS_INVALID, "%s: -o %s is of no known kind; accepted: FILE.mat", command, output);
-    return status;
-}
 
 enum status command_simulate(const struct task *task)
 {
@@ -43,7 +32,7 @@ enum status command_simulate(const struct task *task)
 }
 
 static enum status execute(const struct spec *spec, struct imaging *imaging, const struct echoes *from,
-                           struct image *image)
+                           struct image *image, double *seconds)
 {
     struct echoes echoes;
     struct stages stages;
@@ -51,7 +40,9 @@ static enum status execute(const struct spec *spec, struct imaging *imaging, con
     if (status != STATUS_OK)
         return status;
     stages_begin(&stages);
+    const double begin = stages.mark;
     status = imaging_execute(imaging, &echoes, &stages);
+    *seconds = seconds_now() - begin;
     if (status == STATUS_OK)
         status = imaging_finish(imaging, &echoes, image);
     echoes_free(&echoes);
@@ -59,7 +50,7 @@ static enum status execute(const struct spec *spec, struct imaging *imaging, con
 }
 
 /* The plan comes first: what cannot be imaged need not be simulated. */
-static enum status form_image(const struct spec *spec, const struct scene *scene, struct image *image)
+static enum status form_image(const struct spec *spec, const struct scene *scene, struct image *image, double *seconds)
 {
     const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, spec->precision};
     struct imaging imaging;
@@ -70,7 +61,7 @@ static enum status form_image(const struct spec *spec, const struct scene *scene
     if (!scene->recorded)
         status = scene_simulate(scene, &simulated);
     if (status == STATUS_OK)
-        status = execute(spec, &imaging, scene->recorded ? &recorded : &simulated, image);
+        status = execute(spec, &imaging, scene->recorded ? &recorded : &simulated, image, seconds);
     echoes_free(&simulated);
     imaging_close(&imaging);
     return status;
@@ -82,7 +73,10 @@ static enum status check_usage(const struct task *task)
         return status_set(STATUS_INVALID, "image: exactly one of --scene SCENE and --echoes FILE.mat is needed");
     if (task->spec_count != 1)
         return status_set(STATUS_INVALID, "image: %d --algorithm SPEC given, exactly one is needed", task->spec_count);
-    return output_check("image", task->output);
+    if (task->range && !output_is_picture(task->output))
+        return status_set(STATUS_INVALID, "image: --range %s is of pictures; -o FILE.png or FILE.svg is needed",
+                          task->range);
+    return output_is_picture(task->output) ? picture_check("image", task->output) : output_check("image", task->output);
 }
 
 /* With --grid the image of a scene is that one. */
@@ -104,20 +98,39 @@ static enum status scene_open(const struct task *task, struct scene *scene)
     return status;
 }
 
+static enum status image_put(const struct task *task, const struct scene *scene, const struct image *image,
+                             double range_db)
+{
+    const struct spec *spec = &task->specs[0];
+    if (!output_is_picture(task->output))
+        return image_file_write(task->output, image, spec->algorithm->name, spec->text,
+                                task->scene ? scene->name : task->echoes);
+    char label[320], title[640];
+    picture_label(spec->algorithm->name, spec->text, precision_name(spec->precision), label, sizeof label);
+    snprintf(title, sizeof title, "%.300s: %s", scene->name, label);
+    return picture_draw(task->output, image, title, range_db, scene);
+}
+
 enum status command_image(const struct task *task)
 {
     struct scene scene;
     struct image image;
+    double range_db, seconds = 0;
     enum status status = check_usage(task);
+    if (status == STATUS_OK)
+        status = range_parse("image", task->range, &range_db);
     if (status == STATUS_OK)
         status = scene_open(task, &scene);
     if (status != STATUS_OK)
         return status;
-    const struct spec *spec = &task->specs[0];
-    status = form_image(spec, &scene, &image);
+    status = form_image(&task->specs[0], &scene, &image, &seconds);
     if (status == STATUS_OK) {
-        status = image_file_write(task->output, &image, spec->algorithm->name, spec->text,
-                                  task->scene ? scene.name : task->echoes);
+        status = image_put(task, &scene, &image, range_db);
+        if (status == STATUS_OK) {
+            printf("%s: %s of %s, %s\n", task->output, task->specs[0].algorithm->name, scene.name,
+                   cell_time(seconds).text);
+            image_describe(&image);
+        }
         image_free(&image);
     }
     scene_free(&scene);

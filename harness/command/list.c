@@ -1,7 +1,11 @@
 /* The commands `list` and `info`: what the algorithm tables say of themselves. */
 #include <stdio.h>
+#include <string.h>
+#include <strings.h>
 
 #include "command/task.h"
+#include "scene/matfile.h"
+#include "study/inspect.h"
 
 static const struct {
     enum trait trait;
@@ -52,10 +56,31 @@ static void accepted_format(const struct param *param, char *text, size_t size)
 
 #define LAYOUT "%-11s %-10s %-24s %-18s %s\n"
 
+static enum status file_info(const char *path)
+{
+    struct image_file file;
+    bool echoes;
+    enum status status = echo_file_is(path, &echoes);
+    if (status == STATUS_OK && echoes)
+        return inspect_echoes(path);
+    if (status == STATUS_OK)
+        status = image_file_open(path, &file);
+    if (status != STATUS_OK)
+        return status;
+    printf("%s: an image%s%s%s%s%s%s\n", path, *file.scene ? " of " : "", file.scene, *file.algorithm ? " by " : "",
+           file.algorithm, *file.options ? ":" : "", file.options);
+    image_describe(&file.image);
+    image_file_close(&file);
+    return STATUS_OK;
+}
+
 enum status command_info(const struct task *task)
 {
     const struct algorithm *algorithm = algorithm_find(task->names[0]);
+    const char *extension = strrchr(task->names[0], '.');
     struct spec spec;
+    if (extension && strcasecmp(extension, ".mat") == 0)
+        return file_info(task->names[0]);
     if (!algorithm) {
         enum status status = spec_parse(task->names[0], &spec); /* says what is accepted */
         if (status != STATUS_OK)

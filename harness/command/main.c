@@ -11,6 +11,7 @@
 
 #include "data/number.h"
 #include "data/shown_text.h"
+#include "data/suggestion.h"
 #include "data/supervisor.h"
 #include "command/task.h"
 #include "measure/provenance.h"
@@ -22,19 +23,25 @@ struct command {
     int names_least, names_most;
     enum status (*run)(const struct task *task);
     bool supervised; /* a crash ends one measurement, and the others go on */
+    bool hidden;     /* not for the terminal */
 };
 
 static const struct command commands[] = {
     {"list", "", "the algorithms, with summary, reference and traits", "", 0, 0, command_list, false},
-    {"info", "NAME", "one algorithm's parameters, with default, bounds and sweep", "", 1, 1, command_info, false},
+    {"info", "(NAME | FILE.mat)",
+     "one algorithm's parameters, with default, bounds and sweep; or what an echo or image file holds, with a grid to "
+     "begin with",
+     "", 1, 1, command_info, false},
     {"check", "(SCENE | --echoes FILE.mat --grid GRID) [--algorithm SPEC ...]",
      "the conditions of each algorithm on a scene, and its sensitivities, before any work; exit status 1 where an "
      "algorithm is "
      "refused",
      "aeg", 0, 1, command_check, false},
     {"simulate", "SCENE -o FILE.mat", "write a scene's echoes", "ot", 1, 1, command_simulate, false},
-    {"image", "(--scene SCENE | --echoes FILE.mat --grid GRID) --algorithm SPEC -o FILE.mat", "form one image",
-     "oseagt", 0, 0, command_image, false},
+    {"image", "(--scene SCENE | --echoes FILE.mat --grid GRID) --algorithm SPEC -o (FILE.mat | FILE.png) [--range DB]",
+     "form one image, as numbers or as a picture", "oseagtR", 0, 0, command_image, false},
+    {"show", "FILE.mat [-o FILE.png] [--range DB]", "a picture of an image file, beside it unless -o says where", "oR",
+     1, 1, command_show, false},
     {"filter", "(SCENE | --echoes FILE.mat) [--algorithm wk_polar:...] -o FILE.mat",
      "take off the echoes from outside a scene's target area; what each target keeps, as a table", "oeat", 0, 1,
      command_filter, false},
@@ -44,7 +51,7 @@ static const struct command commands[] = {
      "(OLD NEW | --ab OLD_BINARY NEW_BINARY [SCENE ...] [--algorithm SPEC ...]) [--markdown FILE] [--json FILE]",
      "what got worse between two results folders or CSV files; what got slower between two programs, run side by side",
      "aBMJ", 2, INT_MAX, command_compare, false},
-    {"measure", "", "the other end of `compare --ab`, which starts it", "", 0, 0, command_measure, false},
+    {"measure", "", "the other end of `compare --ab`, which starts it", "", 0, 0, command_measure, false, true},
     {"baseline", "[-o FILE.csv]", "measure quality and work of the gate's scenes anew, into results/baseline.csv", "ot",
      0, 0, command_baseline, false},
     {"reproduce", "[ID ...] [-o DIR]", "the papers' tables and claims beside ours", "ot", 0, INT_MAX, command_reproduce,
@@ -65,19 +72,13 @@ static const struct command commands[] = {
 };
 
 static const struct option long_options[] = {
-    {"output", required_argument, NULL, 'o'},
-    {"scene", required_argument, NULL, 's'},
-    {"echoes", required_argument, NULL, 'e'},
-    {"algorithm", required_argument, NULL, 'a'},
-    {"grid", required_argument, NULL, 'g'},
-    {"threads", required_argument, NULL, 't'},
-    {"at", required_argument, NULL, 'A'},
-    {"markdown", required_argument, NULL, 'M'},
-    {"json", required_argument, NULL, 'J'},
-    {"ab", no_argument, NULL, 'B'},
-    {"quick", no_argument, NULL, 'Q'},
-    {"help", no_argument, NULL, 'h'},
-    {NULL, 0, NULL, 0},
+    {"output", required_argument, NULL, 'o'}, {"scene", required_argument, NULL, 's'},
+    {"echoes", required_argument, NULL, 'e'}, {"algorithm", required_argument, NULL, 'a'},
+    {"grid", required_argument, NULL, 'g'},   {"threads", required_argument, NULL, 't'},
+    {"at", required_argument, NULL, 'A'},     {"markdown", required_argument, NULL, 'M'},
+    {"json", required_argument, NULL, 'J'},   {"range", required_argument, NULL, 'R'},
+    {"ab", no_argument, NULL, 'B'},           {"quick", no_argument, NULL, 'Q'},
+    {"help", no_argument, NULL, 'h'},         {NULL, 0, NULL, 0},
 };
 
 static const struct {
@@ -90,6 +91,7 @@ static const struct {
     {'a', "-a, --algorithm SPEC  NAME or NAME:key=value,...; every algorithm takes precision=float|double"},
     {'g', "-g, --grid GRID       xmin:xstep:xcount,rmin:rstep:rcount in metres; ,ANGLE in degrees: turned axes"},
     {'t', "-t, --threads N       OpenMP threads, 1 to 1024"},
+    {'R', "    --range DB        what a picture shows below its peak, 60 dB unless given"},
     {'A', "    --at FILE.csv     points: columns d, r, F, f, fc, v, c"},
     {'B', "    --ab              run two programs side by side and compare their times"},
     {'Q', "    --quick           one scene of each family, in two of the four rounding modes"},
@@ -103,8 +105,9 @@ static void help(void)
     printf("sasbench: imaging algorithms for multi-receiver synthetic aperture sonar, compared on identical "
            "echoes\n\nUsage: sasbench COMMAND [OPTIONS]\n\n");
     for (size_t k = 0; k < sizeof commands / sizeof *commands; k++)
-        printf("  %s%s%s\n        %s\n", commands[k].name, *commands[k].arguments ? " " : "", commands[k].arguments,
-               commands[k].summary);
+        if (!commands[k].hidden)
+            printf("  %s%s%s\n        %s\n", commands[k].name, *commands[k].arguments ? " " : "", commands[k].arguments,
+                   commands[k].summary);
     printf("  test\n        verify this build (of the ./sasbench script)\n  help COMMAND, COMMAND --help\n        one "
            "command with its options\n  --version\n        version, commit, compiler, libraries, instruction "
            "set\n\nOptions:\n");
@@ -135,14 +138,17 @@ static enum status threads_parse(const char *text)
 
 static enum status option_unknown(const struct command *command, const char *option, const char *fault)
 {
-    char accepted[160] = "";
+    char accepted[160] = "", meant[80];
+    struct suggestion suggestion = suggestion_begin(option + strspn(option, "-"));
     for (const struct option *o = long_options; o->name; o++)
         if (strchr(command->options, o->val)) {
+            suggestion_offer(&suggestion, o->name);
             size_t used = strlen(accepted);
             snprintf(accepted + used, sizeof accepted - used, "%s--%s", used ? ", " : "", o->name);
         }
-    return status_set(STATUS_INVALID, "%s: option '%s' %s; accepted: %s", command->name, option, fault,
-                      *accepted ? accepted : "none");
+    suggestion_text(&suggestion, meant, sizeof meant);
+    return status_set(STATUS_INVALID, "%s: option '%s' %s%s accepted: %s", command->name, option, fault,
+                      *meant ? meant : ";", *accepted ? accepted : "none");
 }
 
 static enum status spec_add(struct task *task, const char *text)
@@ -177,8 +183,9 @@ static enum status parse(const struct command *command, int argc, char **argv, s
     const struct {
         int letter;
         const char **field;
-    } texts[] = {{'o', &task->output}, {'s', &task->scene},    {'e', &task->echoes}, {'g', &task->grid},
-                 {'A', &task->at},     {'M', &task->markdown}, {'J', &task->json},   {'t', &threads}};
+    } texts[] = {{'o', &task->output}, {'s', &task->scene}, {'e', &task->echoes},
+                 {'g', &task->grid},   {'A', &task->at},    {'M', &task->markdown},
+                 {'J', &task->json},   {'t', &threads},     {'R', &task->range}};
     enum status status = STATUS_OK;
     opterr = 0;
     for (int letter;
@@ -227,18 +234,24 @@ static enum status parse(const struct command *command, int argc, char **argv, s
 
 static enum status command_find(const char *name, const struct command **found)
 {
-    char names[160] = "";
+    char names[300] = "", meant[80];
+    struct suggestion suggestion = suggestion_begin(name);
     for (size_t k = 0; k < sizeof commands / sizeof *commands; k++) {
         if (strcmp(commands[k].name, name) == 0) {
             *found = &commands[k];
             return STATUS_OK;
         }
+        if (commands[k].hidden)
+            continue;
         size_t used = strlen(names);
         snprintf(names + used, sizeof names - used, "%s, ", commands[k].name);
+        suggestion_offer(&suggestion, commands[k].name);
     }
+    suggestion_text(&suggestion, meant, sizeof meant);
     if (strcmp(name, "test") == 0)
         return status_set(STATUS_INVALID, "'test' is a command of the script ./sasbench: ./sasbench test [NAME ...]");
-    return status_set(STATUS_INVALID, "'%s' is not a command; accepted: %stest, --help, --version", name, names);
+    return status_set(STATUS_INVALID, "'%s' is not a command%s accepted: %stest, --help, --version", name,
+                      *meant ? meant : ";", names);
 }
 
 /* One line, whatever the arguments that it quotes hold. */

@@ -10,14 +10,23 @@
 struct task {
     const char *const *names; /* [name_count] what stands without an option: scenes, an algorithm */
     int name_count;
-    const char *output, *scene, *echoes, *grid, *at, *markdown, *json;
+    const char *output, *scene, *echoes, *grid, *at, *markdown, *json, *range;
     bool ab, quick;
     int spec_count;
     struct spec *specs; /* [spec_count] of --algorithm */
 };
 
-/* -o of a command that writes a MATLAB file: it is given, its place exists, its extension says so. Errors: STATUS_INVALID. */
+/* -o of a command that writes a MATLAB file, or a picture: its place exists, its extension says so. Errors: STATUS_INVALID. */
 enum status output_check(const char *command, const char *output);
+enum status picture_check(const char *command, const char *output);
+bool output_is_picture(const char *output); /* by its extension; NULL is none */
+/* --range: dB below the peak; NULL is the usual. Errors: STATUS_INVALID. */
+enum status range_parse(const char *command, const char *text, double *range_db);
+/* An image as a picture, the points of a scene (NULL: none) named in it. Errors: as plot_image. */
+enum status picture_draw(const char *path, const struct image *image, const char *title, double range_db,
+                         const struct scene *scene);
+/* Its extent and its peak, for the terminal. */
+void image_describe(const struct image *image);
 
 /* The scene of --echoes and --grid. Errors: STATUS_INVALID where one of the two is missing, and as scene_from_echoes; *scene
    needs no scene_free then. */
@@ -33,6 +42,7 @@ enum status command_info(const struct task *task);
 enum status command_simulate(const struct task *task);
 enum status command_image(const struct task *task);
 enum status command_filter(const struct task *task);
+enum status command_show(const struct task *task);
 enum status command_run(const struct task *task);
 enum status command_compare(const struct task *task);
 enum status command_measure(const struct task *task);

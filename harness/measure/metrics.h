@@ -62,4 +62,10 @@ struct sharpness {
 };
 struct sharpness metrics_sharpness(const struct image *image);
 
+/* The brightest pixel, in the track's axes; magnitude 0 where all are zero or not finite. */
+struct brightest {
+    double magnitude, x, r; /* m */
+};
+struct brightest metrics_brightest(const struct image *image);
+
 #endif

@@ -25,6 +25,21 @@ static void peak_visit(void *sums, double magnitude)
     *peak = fmax(*peak, magnitude);
 }
 
+struct brightest metrics_brightest(const struct image *image)
+{
+    struct brightest brightest = {0};
+    for (int p = 0; p < image->patch_count; p++)
+        for (int i = 0; i < image->patches[p].r_count; i++)
+            for (int j = 0; j < image->patches[p].x_count; j++) {
+                const double magnitude = cabs(image_pixel(image, p, i, j));
+                if (magnitude > brightest.magnitude && isfinite(magnitude)) {
+                    const struct vector place = grid_point(&image->patches[p], i, j);
+                    brightest = (struct brightest){magnitude, place.x, place.y};
+                }
+            }
+    return brightest;
+}
+
 struct moments {
     double count, power, power_squared, power_log; /* of the powers I, sums of I, I^2, I ln I */
 };

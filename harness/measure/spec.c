@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "data/number.h"
+#include "data/suggestion.h"
 
 /* Every algorithm takes `precision` beside its own table; it goes to spec.precision. */
 static const char *const precision_names[] = {[PRECISION_FLOAT] = "float", [PRECISION_DOUBLE] = "double", NULL};
@@ -182,10 +183,15 @@ static enum status spec_read(const char *place, char *copy, struct spec *spec)
     spec->algorithm = algorithm_find(copy);
     if (!spec->algorithm) {
         struct name_list accepted = {.length = 0};
-        for (int i = 0; algorithms[i]; i++)
+        struct suggestion suggestion = suggestion_begin(copy);
+        char meant[80];
+        for (int i = 0; algorithms[i]; i++) {
             name_list_add(&accepted, algorithms[i]->name);
-        return status_set(STATUS_INVALID, "SPEC '%.100s': unknown algorithm '%.100s'; accepted: %s", place, copy,
-                          accepted.text);
+            suggestion_offer(&suggestion, algorithms[i]->name);
+        }
+        suggestion_text(&suggestion, meant, sizeof meant);
+        return status_set(STATUS_INVALID, "SPEC '%.100s': unknown algorithm '%.100s'%s accepted: %s", place, copy,
+                          *meant ? meant : ";", accepted.text);
     }
     if (spec->algorithm->options_size > 0) {
         spec->options = calloc(1, spec->algorithm->options_size);

@@ -158,7 +158,11 @@ static void image_use(struct drawing *drawing, const struct session *session, co
     if (drawing->images) {
         picture_name(drawing, set->images, set->scenes[s].scene, set->methods[m].label, path, sizeof path);
         snprintf(title, sizeof title, "%s: %s, %s", set->title, scene->name, set->methods[m].label);
-        report(drawing, plot_image(path, PLOT_DIRECTORY, image, title));
+        report(drawing, plot_image(path, PLOT_DIRECTORY,
+                                   &(struct image_picture){.image = image,
+                                                           .title = title,
+                                                           .targets = scene->targets,
+                                                           .target_count = scene->point_count}));
     }
     for (int t = 0; t < set->scenes[s].targets && (drawing->slices || drawing->close); t++) {
         struct slice_line *line = &drawing->lines[first + t][m];

@@ -74,7 +74,7 @@ enum status image_file_write(const char *path, const struct image *image, const 
 static enum status axis_read(const char *path, const struct wanted *wanted, const struct variable *variable,
                              size_t expected, double *first, double *step, int *count)
 {
-    if (!variable_has_shape(variable, 1, expected, 1) || expected > INT_MAX) {
+    if (!variable_is_vector(variable) || variable_count(variable) != expected || expected > INT_MAX) {
         return status_set(STATUS_INVALID, "%s: variable `%s` is [%zu x %zu x %zu] for %zu pixels; %s is needed", path,
                           wanted->name, variable->dims[0], variable->dims[1], variable->dims[2], expected,
                           wanted->accepted);
@@ -93,23 +93,24 @@ static enum status axis_read(const char *path, const struct wanted *wanted, cons
     return STATUS_OK;
 }
 
-static enum status image_fill(const char *path, const struct variable *v, struct grid *grid, double complex **pixels)
+/* Pixels of a patch, malloc'ed complex double row by row, and its grid. `wanted` names its variables. */
+static enum status patch_fill(const char *path, const struct wanted *wanted, const struct variable *v,
+                              struct grid *grid, double complex **pixels)
 {
     size_t rows = v[IMAGE].dims[0], columns = v[IMAGE].dims[1];
     if (v[IMAGE].dims[2] != 1) {
-        return status_set(STATUS_INVALID, "%s: variable `image` is [%zu x %zu x %zu]; %s is needed", path, rows,
-                          columns, v[IMAGE].dims[2], image_variables[IMAGE].accepted);
+        return status_set(STATUS_INVALID, "%s: variable `%s` is [%zu x %zu x %zu]; %s is needed", path,
+                          wanted[IMAGE].name, rows, columns, v[IMAGE].dims[2], wanted[IMAGE].accepted);
     }
     enum status status =
-        axis_read(path, &image_variables[IMAGE_X], &v[IMAGE_X], columns, &grid->x_first, &grid->x_step, &grid->x_count);
+        axis_read(path, &wanted[IMAGE_X], &v[IMAGE_X], columns, &grid->x_first, &grid->x_step, &grid->x_count);
     if (status == STATUS_OK) {
-        status = axis_read(path, &image_variables[IMAGE_R], &v[IMAGE_R], rows, &grid->r_first, &grid->r_step,
-                           &grid->r_count);
+        status = axis_read(path, &wanted[IMAGE_R], &v[IMAGE_R], rows, &grid->r_first, &grid->r_step, &grid->r_count);
     }
     grid->angle_rad = v[IMAGE_ANGLE].values ? creal(v[IMAGE_ANGLE].values[0]) : 0;
     if (status == STATUS_OK && !(fabs(grid->angle_rad) < M_PI / 2)) {
-        status = status_set(STATUS_INVALID, "%s: variable `angle` is %g; %s is needed", path, grid->angle_rad,
-                            image_variables[IMAGE_ANGLE].accepted);
+        status = status_set(STATUS_INVALID, "%s: variable `%s` is %g; %s is needed", path, wanted[IMAGE_ANGLE].name,
+                            grid->angle_rad, wanted[IMAGE_ANGLE].accepted);
     }
     if (status != STATUS_OK) {
         return status;
@@ -132,8 +133,100 @@ enum status image_file_read(const char *path, struct grid *grid, double complex 
     struct variable variables[IMAGE_VARIABLES];
     enum status status = variables_read(path, image_variables, IMAGE_VARIABLES, variables);
     if (status == STATUS_OK) {
-        status = image_fill(path, variables, grid, pixels);
+        status = patch_fill(path, image_variables, variables, grid, pixels);
         variables_free(variables, IMAGE_VARIABLES);
     }
     return status;
+}
+
+/* The patch of this number, one more than there are so far; *more is false where the file has none. */
+static enum status patch_add(const char *path, struct image_file *file, bool *more)
+{
+    struct wanted wanted[IMAGE_VARIABLES];
+    struct variable variables[IMAGE_VARIABLES];
+    char names[IMAGE_VARIABLES][32];
+    const int patch = file->image.patch_count;
+    for (int k = 0; k < IMAGE_VARIABLES; k++) {
+        wanted[k] = image_variables[k];
+        wanted[k].name = patch_name(image_variables[k].name, patch, names[k], sizeof names[k]);
+        wanted[k].is_optional = k == IMAGE_ANGLE || (patch > 0 && k == IMAGE);
+    }
+    /* Whether there is a further patch is asked of the image alone: its axes are then needed. */
+    enum status status = patch == 0 ? STATUS_OK : variables_read(path, &wanted[IMAGE], 1, variables);
+    if (status == STATUS_OK && patch > 0) {
+        *more = variables[0].values != NULL;
+        variables_free(variables, 1);
+    }
+    if (status != STATUS_OK || !*more) {
+        return status;
+    }
+    status = variables_read(path, wanted, IMAGE_VARIABLES, variables);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    struct grid *patches = realloc(file->patches, ((size_t)patch + 1) * sizeof *patches);
+    void **pixels = realloc(file->image.pixels, ((size_t)patch + 1) * sizeof *pixels);
+    file->patches = patches ? patches : file->patches;
+    file->image.patches = file->patches;
+    file->image.pixels = pixels ? pixels : file->image.pixels;
+    if (!patches || !pixels) {
+        status = status_set(STATUS_FAILED, "%s: out of memory for %d patches", path, patch + 1);
+    }
+    double complex *values = NULL;
+    if (status == STATUS_OK) {
+        status = patch_fill(path, wanted, variables, &patches[patch], &values);
+    }
+    if (status == STATUS_OK) {
+        pixels[patch] = values;
+        file->image.patch_count++;
+    }
+    variables_free(variables, IMAGE_VARIABLES);
+    return status;
+}
+
+/* The texts that a file says of itself, as far as it does; other than plain signs become '?'. */
+static enum status texts_read(const char *path, struct image_file *file)
+{
+    static const struct wanted wanted[] = {{"algorithm", KIND_TEXT, true, "a text"},
+                                           {"options", KIND_TEXT, true, "a text"},
+                                           {"scene", KIND_TEXT, true, "a text"}};
+    char *const texts[] = {file->algorithm, file->options, file->scene};
+    struct variable variables[3];
+    enum status status = variables_read(path, wanted, 3, variables);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    for (int k = 0; k < 3; k++) {
+        const size_t count = variables[k].values ? variable_count(&variables[k]) : 0;
+        for (size_t i = 0; i < count && i < sizeof file->scene - 1; i++) {
+            const double code = creal(variables[k].values[i]);
+            texts[k][i] = code >= ' ' && code <= '~' ? (char)code : '?';
+        }
+    }
+    variables_free(variables, 3);
+    return STATUS_OK;
+}
+
+enum status image_file_open(const char *path, struct image_file *file)
+{
+    *file = (struct image_file){.image.precision = PRECISION_DOUBLE};
+    bool more = true;
+    enum status status = STATUS_OK;
+    while (status == STATUS_OK && more) {
+        status = patch_add(path, file, &more);
+    }
+    if (status == STATUS_OK) {
+        status = texts_read(path, file);
+    }
+    if (status != STATUS_OK) {
+        image_file_close(file);
+    }
+    return status;
+}
+
+void image_file_close(struct image_file *file)
+{
+    image_free(&file->image);
+    free(file->patches);
+    *file = (struct image_file){0};
 }

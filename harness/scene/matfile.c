@@ -283,6 +283,19 @@ enum status echo_file_read(const char *path, struct acquisition *acquisition, st
     return status;
 }
 
+enum status echo_file_is(const char *path, bool *is)
+{
+    struct wanted format = echo_variables[FORMAT];
+    struct variable variable;
+    format.is_optional = true;
+    enum status status = variables_read(path, &format, 1, &variable);
+    *is = status == STATUS_OK && variable.values;
+    if (status == STATUS_OK) {
+        variables_free(&variable, 1);
+    }
+    return status;
+}
+
 /* Do all pings have the first one's `size` bytes? */
 static bool is_constant(const void *values, size_t size, int pings)
 {

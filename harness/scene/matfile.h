@@ -25,4 +25,17 @@ enum status image_file_write(const char *path, const struct image *image, const 
    [r_count][x_count]. Errors: STATUS_INVALID. */
 enum status image_file_read(const char *path, struct grid *grid, double complex **pixels);
 
+/* All patches of an image file, and what it says of itself (texts may be empty). Errors: as image_file_read; nothing to close
+   then. */
+struct image_file {
+    struct image image; /* double */
+    struct grid *patches;
+    char algorithm[200], options[200], scene[200];
+};
+enum status image_file_open(const char *path, struct image_file *file);
+void image_file_close(struct image_file *file);
+
+/* Is it an echo file, by its variable `format`? Errors: as variables_read. */
+enum status echo_file_is(const char *path, bool *is);
+
 #endif

@@ -63,6 +63,11 @@ bool variable_has_shape(const struct variable *variable, size_t rows, size_t col
     return variable->dims[0] == rows && variable->dims[1] == columns && variable->dims[2] == pages;
 }
 
+bool variable_is_vector(const struct variable *variable)
+{
+    return (variable->dims[0] == 1 || variable->dims[1] == 1) && variable->dims[2] == 1;
+}
+
 int mat5_count(const char *path)
 {
     unsigned char header[128];

@@ -31,6 +31,7 @@ struct variable {
 enum status variables_read(const char *path, const struct wanted *wanted, int count, struct variable *variables);
 void variables_free(struct variable *variables, int count);
 size_t variable_count(const struct variable *variable);
+bool variable_is_vector(const struct variable *variable); /* a row or a column */
 bool variable_has_shape(const struct variable *variable, size_t rows, size_t columns, size_t pages);
 
 /* Keep libmatio from printing: what matters is in the status message. */

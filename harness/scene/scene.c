@@ -5,7 +5,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
+#include "data/suggestion.h"
 #include "scene/contents.h"
 #include "scene/names.h"
 
@@ -33,6 +35,26 @@ static enum status file_read(struct reading *reading, const char *scene_director
     return status;
 }
 
+/* A name below the scenes that is none: what was meant, if one is near. */
+static enum status unknown_name(const char *scene, const char *path, const char *scene_directory)
+{
+    struct suggestion suggestion = suggestion_begin(scene);
+    char **names = NULL, meant[80];
+    int count = 0;
+    enum status status = scene_names(scene_directory, &names, &count);
+    for (int k = 0; k < count; k++) {
+        suggestion_offer(&suggestion, names[k]);
+    }
+    suggestion_text(&suggestion, meant, sizeof meant);
+    scene_names_free(names, count);
+    return status == STATUS_OK && *meant
+               ? status_set(STATUS_INVALID,
+                            "%.300s: there is no such scene%s The path of a .cfg file, or the name of a "
+                            "shipped scene without .cfg, is accepted",
+                            path, meant)
+               : STATUS_OK;
+}
+
 enum status scene_load(const char *scene, const char *scene_directory, struct scene *out)
 {
     const size_t length = strlen(scene);
@@ -52,6 +74,9 @@ enum status scene_load(const char *scene, const char *scene_directory, struct sc
     }
     struct reading reading = {.path = path, .scene = {.hash = HASH_BEGIN}};
     enum status status = scene_names_fill(&reading.scene, path, scene_directory);
+    if (status == STATUS_OK && !scene_has_extension(scene) && access(path, F_OK) != 0) {
+        status = unknown_name(scene, path, scene_directory);
+    }
     if (status == STATUS_OK) {
         status = file_read(&reading, scene_directory);
     }

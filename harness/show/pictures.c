@@ -36,10 +36,11 @@ static void tell(struct pictures *pictures, enum status status)
     pictures->undrawn++;
 }
 
-enum status pictures_begin(const char *directory, const struct scene *scene, int spec_count, struct pictures *pictures)
+enum status pictures_begin(const char *directory, const char *footer, const struct scene *scene,
+                           const struct image *exact, int spec_count, struct pictures *pictures)
 {
     char path[4096];
-    *pictures = (struct pictures){directory, scene, spec_count, NULL, 0};
+    *pictures = (struct pictures){directory, footer, scene, exact, spec_count, NULL, 0};
     pictures->lines = calloc((size_t)scene->point_count * (size_t)spec_count + 1, sizeof *pictures->lines);
     if (!pictures->lines)
         return status_set(STATUS_FAILED, "%s: no memory for slices", scene->name);
@@ -59,6 +60,13 @@ void pictures_free(struct pictures *pictures)
     *pictures = (struct pictures){0};
 }
 
+/* The exact image where it has all pixels of the picture; NULL otherwise, and for the exact image itself. */
+static const struct image *pictures_exact(const struct pictures *pictures, const struct image *image)
+{
+    const struct image *exact = pictures->exact;
+    return exact->patch_count == image->patch_count && pictures->scene->reference_count == 0 ? exact : NULL;
+}
+
 void pictures_add(struct pictures *pictures, int index, const char *label, const struct image *image)
 {
     const struct scene *scene = pictures->scene;
@@ -66,7 +74,13 @@ void pictures_add(struct pictures *pictures, int index, const char *label, const
     path_make(pictures->directory, scene->name, label, path, sizeof path);
     unlink(path);
     snprintf(title, sizeof title, "%s: %s", scene->name, label);
-    tell(pictures, plot_image(path, PLOT_DIRECTORY, image, title));
+    const struct image_picture picture = {.image = image,
+                                          .reference = pictures_exact(pictures, image),
+                                          .title = title,
+                                          .footer = pictures->footer,
+                                          .targets = scene->targets,
+                                          .target_count = scene->point_count};
+    tell(pictures, plot_image(path, PLOT_DIRECTORY, &picture));
     for (int t = 0; t < scene->point_count; t++) {
         struct slice_line *line = &pictures->lines[t * pictures->spec_count + index];
         line->label = strdup(label);

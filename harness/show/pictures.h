@@ -7,8 +7,9 @@
 #include "show/plot.h"
 
 struct pictures {
-    const char *directory; /* borrowed, like the scene */
+    const char *directory, *footer; /* borrowed, like scene and exact image; footer: where they are from */
     const struct scene *scene;
+    const struct image *exact; /* without patches: there is none */
     int spec_count;
     struct slice_line *lines; /* [point_count][spec_count]; without a label: no image */
     int undrawn;              /* pictures that could not be drawn */
@@ -18,7 +19,8 @@ struct pictures {
 bool picture_exists(const char *directory, const char *scene, const char *label);
 
 /* Errors: STATUS_FAILED without memory. pictures_free accepts a zeroed struct. */
-enum status pictures_begin(const char *directory, const struct scene *scene, int spec_count, struct pictures *pictures);
+enum status pictures_begin(const char *directory, const char *footer, const struct scene *scene,
+                           const struct image *exact, int spec_count, struct pictures *pictures);
 /* Draw one algorithm's image (DIR/SCENE-LABEL.png) and keep its slices. index: 0 to spec_count - 1. */
 void pictures_add(struct pictures *pictures, int index, const char *label, const struct image *image);
 /* Draw the azimuth slices of all images added (DIR/SCENE-slices.png), one panel a target. */

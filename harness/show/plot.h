@@ -4,10 +4,19 @@
 
 #include "scene/scene.h"
 
-/* Image in decibels below its peak (0 to -60), all patches, into `path` (PNG). Large images are reduced by taking the
-   largest magnitude of each block. Errors of all pictures: STATUS_FAILED, when gnuplot is missing, fails (with what it
+/* An image in decibels below its peak, all patches, into `path` (PNG or SVG), and its difference to another beside it. Large images
+   are reduced by taking the largest magnitude of each block. Errors of all pictures: STATUS_FAILED, when gnuplot is missing, fails (with what it
    printed), leaves a picture without its end or does not end by itself; what stood at `path` is then left as it was. */
-enum status plot_image(const char *path, const char *plots_directory, const struct image *image, const char *title);
+#define IMAGE_RANGE_DB 60
+struct image_picture {
+    const struct image *image;
+    const struct image *reference; /* the exact image on the same patches; NULL: no difference is drawn */
+    const char *title, *footer;    /* footer: where the image is from; may be NULL */
+    double range_db;               /* shown below the peak; 0: IMAGE_RANGE_DB */
+    const struct target *targets;  /* [target_count] that are named in it */
+    int target_count;
+};
+enum status plot_image(const char *path, const char *plots_directory, const struct image_picture *picture);
 
 /* Seconds that gnuplot may take for a picture. After one that took longer nothing is drawn. */
 extern double plot_seconds_most;

@@ -59,7 +59,8 @@ static enum status visit_open(const struct batch *batch, const struct scene *sce
     if (!visit->works)
         status = status_set(STATUS_FAILED, "%s: no memory for %d algorithms", scene->name, spec_count);
     if (status == STATUS_OK && batch->details)
-        status = pictures_begin(batch->directory, scene, spec_count, &visit->pictures);
+        status = pictures_begin(batch->directory, batch->footer, scene, &visit->session.reference, spec_count,
+                                &visit->pictures);
     if (status != STATUS_OK)
         visit_close(visit);
     return status;
@@ -267,6 +268,7 @@ enum status batch_open(const char *directory, int rows, bool details, struct bat
     struct provenance provenance;
     *batch = (struct batch){.directory = directory, .threads = omp_get_max_threads(), .details = details, .rows = rows};
     provenance_fill(&provenance, batch->threads);
+    snprintf(batch->footer, sizeof batch->footer, "sasbench %s, %s", provenance.commit, provenance.date);
     enum status status = results_folder_open(directory, &provenance, &batch->results);
     if (status == STATUS_OK)
         table_header(stdout);

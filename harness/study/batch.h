@@ -8,6 +8,7 @@
 
 struct batch {
     const char *directory; /* borrowed */
+    char footer[160];      /* of its pictures */
     struct results_folder *results;
     int threads;
     bool details;   /* of every scene: draw images and slices, print FLOPs by formula */

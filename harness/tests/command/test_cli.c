@@ -27,6 +27,7 @@ static void help_list_and_info_tell_everything(void **state)
         char *text = program_output(helps[k]);
         for (size_t n = 0; n < COUNT_OF(commands); n++)
             assert_holds(text, commands[n]);
+        assert_null(strstr(text, "\n  measure\n")); /* which compare --ab starts */
         free(text);
     }
     static const char *const of_run[][ARGUMENTS_MAX] = {{"run", "--help"}, {"help", "run"}, {"run", "x", "-h"}};

@@ -102,6 +102,52 @@ static void echoes_alone_are_a_scene(void **state)
     csv_free(&first);
 }
 
+static void assert_holds(const char *text, const char *part)
+{
+    if (!strstr(text, part))
+        fail_msg("no '%s' in: %s", part, text);
+}
+
+/* What `info` proposes is imaged, drawn, shown again and told. */
+static void files_are_told_and_shown(void **state)
+{
+    (void)state;
+    static const char *const info[ARGUMENTS_MAX] = {"info", "good.mat"};
+    char *told = program_output(info), grid[200];
+    assert_holds(told, "good.mat: echoes, raw");
+    assert_holds(told, "256 (fast time) x 8 (receivers) x 18 (pings)");
+    assert_holds(told, "fc 150000 Hz, bandwidth 15000 Hz, fs 30000 Hz");
+    assert_holds(told, "ranges of 18 to 24.375 m");
+    assert_holds(told, "uniform and straight, 0.16 m from ping to ping");
+    const char *proposed = strstr(told, "--grid=");
+    assert_non_null(proposed);
+    snprintf(grid, sizeof grid, "%.*s", (int)strcspn(proposed, "\n"), proposed);
+    free(told);
+    const char *const image[ARGUMENTS_MAX] = {"image", "--echoes", "good.mat", grid, "-a", "bp_sinc", "-o", "seen.mat"};
+    static const char *const show[ARGUMENTS_MAX] = {"show", "seen.mat", "--range", "40"};
+    static const char *const about[ARGUMENTS_MAX] = {"info", "seen.mat"};
+    static const char *const drawn[ARGUMENTS_MAX] = {"image",   "--scene", "study/quick", "-a",
+                                                     "bp_sinc", "-o",      "seen.svg"};
+    char *line = program_output(image);
+    assert_holds(line, "seen.mat: bp_sinc of good, ");
+    const char *peak = strstr(line, "peak ");
+    double x, r;
+    assert_non_null(peak);
+    assert_int_equal(sscanf(peak, "peak %*f at (%lf, %lf) m", &x, &r), 2);
+    assert_true(fabs(x) < 0.05 && fabs(r - 20) < 0.05); /* the target at (0, 20) m */
+    free(line);
+    line = program_output(show);
+    assert_holds(line, "seen.png: good.mat: bp_sinc:taps=8,window=none");
+    free(line);
+    line = program_output(about);
+    assert_holds(line, "seen.mat: an image of good.mat by bp_sinc:taps=8,window=none");
+    assert_non_null(strstr(line, "peak "));
+    free(line);
+    program_good(drawn);
+    assert_int_equal(access(path_in("seen.png"), F_OK), 0);
+    assert_int_equal(access(path_in("seen.svg"), F_OK), 0);
+}
+
 /* One sample is another: so is the scene. */
 static void content_tells_scenes_apart(void **state)
 {
@@ -265,6 +311,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(file_measures_as_the_scene_does),
         cmocka_unit_test(echoes_alone_are_a_scene),
+        cmocka_unit_test(files_are_told_and_shown),
         cmocka_unit_test(content_tells_scenes_apart),
         cmocka_unit_test(mixtures_are_refused),
         cmocka_unit_test(recorded_sets_run),

@@ -237,7 +237,7 @@ static void wrong_images_are_refused(void **state)
         {"x", 1, 3, 1, {2, 1, 0}, "`x` has 2 at place 1"},
         {"x", 1, 3, 1, {0, NAN, 2}, "`x` has nan at place 2"},
         {"x", 1, 3, 1, {0, 1, INFINITY}, "`x` has"},
-        {"r", 2, 1, 1, {0, 1}, "`r` is [2 x 1 x 1] for 2 pixels"},
+        {"r", 3, 1, 1, {0, 1, 2}, "`r` is [3 x 1 x 1] for 2 pixels"},
         {"image", 2, 1, 2, {0}, "`image` is [2 x 1 x 2]"},
         {"angle", 1, 1, 1, {2}, "`angle` is 2; a scalar between"},
     };

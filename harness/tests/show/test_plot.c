@@ -84,11 +84,12 @@ static void image_is_drawn(void **state)
     assert_int_equal(image_allocate(3, patches, PRECISION_FLOAT, &image), STATUS_OK);
     char path[4096];
     path_in(path, "it's.png");
-    assert_drawn(plot_image(path, real_plots, &image, "all zero, 'quoted' \"twice\"\n\\n $x"));
+    assert_drawn(plot_image(path, real_plots,
+                            &(struct image_picture){.image = &image, .title = "all zero, 'quoted' \"twice\"\n\\n $x"}));
     assert_png("it's.png");
     ((float complex *)image.pixels[0])[77] = 3;
     ((float complex *)image.pixels[1])[0] = NAN;
-    assert_drawn(plot_image(path, real_plots, &image, "with NAN"));
+    assert_drawn(plot_image(path, real_plots, &(struct image_picture){.image = &image, .title = "with NAN"}));
     assert_png("it's.png");
     image_free(&image);
     assert_nothing_left();
@@ -101,14 +102,16 @@ static void image_data_are_right(void **state)
     text_to_file("image.gp", "set print output\n"
                              "print title\n"
                              "print |panels|\n"
-                             "stats panels[1] binary matrix using 1 name 'x' nooutput\n"
-                             "stats panels[1] binary matrix using 2 name 'r' nooutput\n"
+                             "stats panels[1] binary matrix using 1 name 'sx' nooutput\n"
+                             "stats panels[1] binary matrix using 2 name 'sr' nooutput\n"
                              "stats panels[1] binary matrix using 3 name 'v' nooutput\n"
-                             "print sprintf('%d %.3f %.3f %.3f %.3f', v_records, x_min, x_max, r_min, r_max)\n"
+                             "print sprintf('%d %.3f %.3f %.3f %.3f', v_records, sx_min, sx_max, sr_min, sr_max)\n"
                              "stats panels[1] binary matrix using ($3 > -50) name 'n' nooutput\n"
-                             "stats panels[1] binary matrix using ($3 > -50 ? $1 : 0) name 'x' nooutput\n"
-                             "stats panels[1] binary matrix using ($3 > -50 ? $2 : 0) name 'r' nooutput\n"
-                             "print sprintf('%d %.3f %.3f %.2f', n_sum, x_max, r_max, v_max)\n"
+                             "stats panels[1] binary matrix using ($3 > -50 ? $1 : 0) name 'sx' nooutput\n"
+                             "stats panels[1] binary matrix using ($3 > -50 ? $2 : 0) name 'sr' nooutput\n"
+                             "print sprintf('%d %.3f %.3f %.2f', n_sum, sx_max, sr_max, v_max)\n"
+                             "print sprintf('%s %g %g %g %g', shapes[1], x_low[1], x_high[1], r_low[1], r_high[1])\n"
+                             "print has_differences, range_db, target_count[1]\n"
                              "print '</svg>'\n");
     /* 2700 columns make blocks of 3; the brightest pixel of all is in a patch that is not shown. */
     struct grid patches[9];
@@ -121,12 +124,57 @@ static void image_data_are_right(void **state)
     ((double complex *)image.pixels[8])[0] = 50;
     char path[4096], text[400];
     path_in(path, "variables.svg");
-    assert_drawn(plot_image(path, folder, &image, "it's\ta_title"));
+    assert_drawn(plot_image(path, folder, &(struct image_picture){.image = &image, .title = "it's\ta_title"}));
     file_to_text("variables.svg", text, sizeof text);
     assert_string_equal(text, "it's a_title (1 pixel not finite) (first 8 of 9 patches)\n8\n"
                               "2700 1.000 2698.000 10.000 11.000\n"
-                              "1 301.000 11.000 -20.00\n</svg>\n");
+                              "1 301.000 11.000 -20.00\nimage -0.5 2699.5 9.75 11.25\n0 60 0\n</svg>\n");
     image_free(&image);
+    assert_nothing_left();
+}
+
+/* The difference to the exact image, relative to its peak; thin patches as curves; the targets that a patch holds. */
+static void differences_curves_and_targets(void **state)
+{
+    (void)state;
+    text_to_file("image.gp", "set print output\n"
+                             "print shapes[1], ' ', shapes[2], ' ', shapes[3], curves[1], curves[2], curves[3]\n"
+                             "print has_differences, range_db, difference_top\n"
+                             "stats differences[1] index 0 using 2 name 'd' nooutput\n"
+                             "print sprintf('%.2f', d_max)\n"
+                             "stats panels[2] index 1 using 1:2 name 'c' nooutput\n"
+                             "print sprintf('%.2f %.2f', c_pos_max_y, c_max_y)\n"
+                             "print target_count[1], target_count[2], target_count[3], ' ', footer\n"
+                             "plot targets[3] using (t = strcol(3), $1):(u = $2)\n"
+                             "print t, ' ', u\n"
+                             "print '</svg>'\n");
+    const struct grid patches[3] = {{0, 1, 20, 10, 1, 1, 0}, {0, 1, 2, 10, 1, 30, 0}, {0, 1, 5, 100, 1, 5, 0}};
+    const struct target targets[] = {{50, 50, 1}, {2, 102, 1}};
+    struct image image, exact;
+    assert_int_equal(image_allocate(3, patches, PRECISION_DOUBLE, &image), STATUS_OK);
+    assert_int_equal(image_allocate(3, patches, PRECISION_DOUBLE, &exact), STATUS_OK);
+    ((double complex *)exact.pixels[0])[7] = 10;
+    ((double complex *)image.pixels[0])[7] = 10 + 0.5 * I;
+    ((double complex *)image.pixels[1])[2 * 11 + 1] = 1; /* second column, at 21 m */
+    char path[4096], text[400];
+    path_in(path, "variables.svg");
+    const struct image_picture picture = {.image = &image,
+                                          .reference = &exact,
+                                          .title = "a",
+                                          .footer = "from here",
+                                          .range_db = 40,
+                                          .targets = targets,
+                                          .target_count = 2};
+    assert_drawn(plot_image(path, folder, &picture));
+    file_to_text("variables.svg", text, sizeof text);
+    /* 1 of 10: the difference in the second patch is the largest, -20 dB; that in the first 0.5 of 10. */
+    assert_string_equal(
+        text, "rows   columns   image 1 2 0\n1 40 -20\n-26.02\n21.00 -20.01\n0 0 1   from here\nT2   102.0\n</svg>\n");
+    path_in(path, "all.png");
+    assert_drawn(plot_image(path, real_plots, &picture));
+    assert_png("all.png");
+    image_free(&image);
+    image_free(&exact);
     assert_nothing_left();
 }
 
@@ -189,14 +237,15 @@ static void failures_are_told(void **state)
     char path[4096];
 
     path_in(path, "no/such/folder.png");
-    assert_int_equal(plot_image(path, real_plots, &image, "a"), STATUS_FAILED);
+    assert_int_equal(plot_image(path, real_plots, &(struct image_picture){.image = &image, .title = "a"}),
+                     STATUS_FAILED);
     assert_non_null(strstr(status_message(), "no/such/folder.png"));
 
     /* A failing script leaves the old picture alone. */
     text_to_file("image.gp", "set print output; print 'half'; nonsense here\n");
     text_to_file("old.png", "old");
     path_in(path, "old.png");
-    assert_int_equal(plot_image(path, folder, &image, "a"), STATUS_FAILED);
+    assert_int_equal(plot_image(path, folder, &(struct image_picture){.image = &image, .title = "a"}), STATUS_FAILED);
     assert_non_null(strstr(status_message(), "old.png"));
     assert_non_null(strstr(status_message(), "nonsense"));
     char text[10];
@@ -205,7 +254,7 @@ static void failures_are_told(void **state)
 
     char *paths = strdup(getenv("PATH"));
     setenv("PATH", folder, 1);
-    enum status status = plot_image(path, real_plots, &image, "a");
+    enum status status = plot_image(path, real_plots, &(struct image_picture){.image = &image, .title = "a"});
     setenv("PATH", paths, 1);
     free(paths);
     assert_int_equal(status, STATUS_FAILED);
@@ -237,7 +286,8 @@ static void cut_pictures_are_told(void **state)
         text_to_file("image.gp", cuts[k].script);
         text_to_file(cuts[k].name, "old");
         path_in(path, cuts[k].name);
-        assert_int_equal(plot_image(path, folder, &image, "a"), cuts[k].whole ? STATUS_OK : STATUS_FAILED);
+        assert_int_equal(plot_image(path, folder, &(struct image_picture){.image = &image, .title = "a"}),
+                         cuts[k].whole ? STATUS_OK : STATUS_FAILED);
         file_to_text(cuts[k].name, text, sizeof text);
         assert_string_equal(text, cuts[k].whole ? "<svg>all of it to its end</svg>\n\n\n" : "old");
         if (!cuts[k].whole) {
@@ -260,10 +310,11 @@ static void hanging_gnuplot_is_stopped(void **state)
     text_to_file("image.gp", "pause 1000\n");
     path_in(path, "a.png");
     plot_seconds_most = 0.2;
-    assert_int_equal(plot_image(path, folder, &image, "a"), STATUS_FAILED);
+    assert_int_equal(plot_image(path, folder, &(struct image_picture){.image = &image, .title = "a"}), STATUS_FAILED);
     assert_non_null(strstr(status_message(), "did not end within 0.2 s"));
     plot_seconds_most = 60;
-    assert_int_equal(plot_image(path, real_plots, &image, "a"), STATUS_FAILED);
+    assert_int_equal(plot_image(path, real_plots, &(struct image_picture){.image = &image, .title = "a"}),
+                     STATUS_FAILED);
     assert_non_null(strstr(status_message(), "did not end on a picture before"));
     image_free(&image);
     assert_nothing_left();
@@ -274,6 +325,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(image_is_drawn),
         cmocka_unit_test(image_data_are_right),
+        cmocka_unit_test(differences_curves_and_targets),
         cmocka_unit_test(slices_are_drawn),
         cmocka_unit_test(slice_data_are_right),
         cmocka_unit_test(failures_are_told),

@@ -1,0 +1,92 @@
+/* What -o and --range of commands accept, pictures, and what is said of an image. */
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+#include "command/task.h"
+#include "data/number.h"
+#include "measure/metrics.h"
+#include "measure/provenance.h"
+#include "scene/matfile.h"
+#include "show/plot.h"
+
+static bool has_extension(const char *path, const char *extension)
+{
+    const char *found = path ? strrchr(path, '.') : NULL;
+    return found && strcasecmp(found, extension) == 0;
+}
+
+bool output_is_picture(const char *path)
+{
+    return has_extension(path, ".png") || has_extension(path, ".svg");
+}
+
+enum status output_check(const char *command, const char *output)
+{
+    if (!output)
+        return status_set(STATUS_INVALID, "%s: -o FILE.mat is missing", command);
+    enum status status = matfile_place(output);
+    if (status == STATUS_OK && !has_extension(output, ".mat"))
+        status = status_set(STATUS_INVALID, "%s: -o %s is of no known kind; accepted: FILE.mat%s", command, output,
+                            strcmp(command, "image") == 0 ? ", FILE.png, FILE.svg" : "");
+    return status;
+}
+
+enum status picture_check(const char *command, const char *output)
+{
+    enum status status = matfile_place(output);
+    if (status == STATUS_OK && !output_is_picture(output))
+        status =
+            status_set(STATUS_INVALID, "%s: -o %s is of no known kind; accepted: FILE.png, FILE.svg", command, output);
+    return status;
+}
+
+enum status range_parse(const char *command, const char *text, double *range_db)
+{
+    const char *end = text ? number_read(text, range_db) : "";
+    if (!text)
+        *range_db = IMAGE_RANGE_DB;
+    if (!end || *end || !(*range_db >= 1 && *range_db <= 400))
+        return status_set(STATUS_INVALID, "%s: --range is '%s', must be a number of dB from 1 to 400", command, text);
+    return STATUS_OK;
+}
+
+enum status picture_draw(const char *path, const struct image *image, const char *title, double range_db,
+                         const struct scene *scene)
+{
+    struct provenance provenance;
+    char footer[160];
+    provenance_fill(&provenance, omp_get_max_threads());
+    snprintf(footer, sizeof footer, "sasbench %s, %s", provenance.commit, provenance.date);
+    const struct image_picture picture = {.image = image,
+                                          .title = title,
+                                          .footer = footer,
+                                          .range_db = range_db,
+                                          .targets = scene ? scene->targets : NULL,
+                                          .target_count = scene ? scene->point_count : 0};
+    return plot_image(path, PLOT_DIRECTORY, &picture);
+}
+
+void image_describe(const struct image *image)
+{
+    const struct brightest brightest = metrics_brightest(image);
+    const struct sharpness sharpness = metrics_sharpness(image);
+    for (int p = 0; p < image->patch_count && p < 8; p++) {
+        const struct grid *g = &image->patches[p];
+        printf("  %d x %d pixels, x %g to %g m, r %g to %g m%s\n", g->x_count, g->r_count, g->x_first,
+               g->x_first + (g->x_count - 1) * g->x_step, g->r_first, g->r_first + (g->r_count - 1) * g->r_step,
+               g->angle_rad != 0 ? " (turned axes)" : "");
+    }
+    if (image->patch_count > 8)
+        printf("  and %d patches more\n", image->patch_count - 8);
+    if (!(brightest.magnitude > 0)) {
+        printf("  all pixels are zero\n");
+        return;
+    }
+    printf("  peak %.4g at (%g, %g) m", brightest.magnitude, brightest.x, brightest.r);
+    if (isfinite(sharpness.peak_over_median))
+        printf(", %.4g times the median", sharpness.peak_over_median);
+    printf("\n");
+}

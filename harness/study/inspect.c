@@ -1,0 +1,202 @@
+/* What an echo file holds (inspect.h). */
+#include "study/inspect.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "condition.h"
+#include "data/echo_data.h"
+#include "scene/matfile.h"
+
+enum { PIXELS_MOST = 1000 };
+static const double pi = 3.14159265358979323846;
+
+static double distance(struct vector a, struct vector b)
+{
+    return sqrt(pow(a.x - b.x, 2) + pow(a.y - b.y, 2) + pow(a.z - b.z, 2));
+}
+
+/* Ranges that every record holds whole echoes of: of the monostatic delay. False where they share none. */
+static bool ranges_find(const struct acquisition *a, double *nearest, double *farthest)
+{
+    *nearest = 0;
+    *farthest = INFINITY;
+    for (int p = 0; p < a->pings; p++) {
+        const double last = a->t0[p] + (a->samples - 1 - a->pulse_length) / a->fs;
+        *nearest = fmax(*nearest, a->sound_speed * a->t0[p] / 2);
+        *farthest = fmin(*farthest, a->sound_speed * last / 2);
+    }
+    return *farthest > *nearest;
+}
+
+/* Numbers as one writes them: two digits of a step. */
+static double rounded(double value)
+{
+    const double unit = pow(10, floor(log10(value)) - 1);
+    return floor(value / unit) * unit;
+}
+
+static void axis_make(double low, double high, double resolution, double *first, double *step, int *count, bool *cut)
+{
+    *step = rounded(resolution / 2);
+    double pixels = floor((high - low) / *step) + 1;
+    *cut |= pixels > PIXELS_MOST;
+    *count = (int)fmin(fmax(pixels, 1), PIXELS_MOST);
+    const double middle = (low + high) / 2;
+    *first = round((middle - (*count - 1) / 2.0 * *step) / *step) * *step;
+}
+
+/* Azimuth resolution: half the element, or what the aperture, as long as the track or the beam lets it be, resolves at a range. */
+static double azimuth_resolution(const struct acquisition *a, double range)
+{
+    const double wavelength = a->sound_speed / a->fc;
+    double length = 0, sine = condition_beam_sine(a);
+    for (int p = 0; p < a->pings; p++)
+        length = fmax(length, distance(a->tx[p], a->tx[0]));
+    for (int m = 0; m < a->receivers; m++)
+        length = fmax(length, distance(a->rx[m], a->tx[0]) / 2);
+    const double half_angle = fmin(atan2(length / 2, range), asin(fmin(sine, 1)));
+    return half_angle > 0 ? fmax(wavelength / 4, wavelength / (4 * sin(half_angle))) : wavelength;
+}
+
+bool inspect_grid(const struct acquisition *a, struct grid *grid, bool *cut)
+{
+    struct straight_track track;
+    double nearest, farthest, x_low, x_high, r_low, r_high;
+    const double range_resolution = a->sound_speed / (2 * a->bandwidth);
+    *cut = false;
+    *grid = (struct grid){0};
+    if (!ranges_find(a, &nearest, &farthest))
+        return false;
+    const double middle = (nearest + farthest) / 2;
+    double resolution_x = azimuth_resolution(a, middle), resolution_r = range_resolution;
+    const struct vector origin = {0, 0, 0};
+    bool around_origin = true; /* every ping sees it, and looks down at it from afar */
+    for (int p = 0; p < a->pings; p++) {
+        const double range = distance(a->tx[p], origin);
+        around_origin &= range > nearest && range < farthest && hypot(a->tx[p].y, a->tx[p].z) > 0.1 * range;
+    }
+    if (acquisition_is_straight(a, &track)) {
+        const double last = track.x_first + (a->pings - 1) * track.spacing;
+        x_low = fmin(track.x_first, last) + condition_offset(a, 0) / 2;
+        x_high = fmax(track.x_first, last) + condition_offset(a, 2) / 2;
+        r_low = fmax(nearest, range_resolution);
+        r_high = farthest;
+    } else if (around_origin) {
+        const double half = (farthest - nearest) / 4;
+        x_low = r_low = -half;
+        x_high = r_high = half;
+        resolution_x = resolution_r = fmax(resolution_x, range_resolution);
+    } else {
+        x_low = INFINITY;
+        x_high = -INFINITY;
+        for (int p = 0; p < a->pings; p++) {
+            x_low = fmin(x_low, a->tx[p].x);
+            x_high = fmax(x_high, a->tx[p].x);
+        }
+        r_low = fmax(nearest, range_resolution);
+        r_high = farthest;
+    }
+    axis_make(x_low, x_high, resolution_x, &grid->x_first, &grid->x_step, &grid->x_count, cut);
+    axis_make(r_low, r_high, resolution_r, &grid->r_first, &grid->r_step, &grid->r_count, cut);
+    return grid_check(grid, "grid") == STATUS_OK && grid_meets_records(a, 1, grid, "grid") == STATUS_OK;
+}
+
+static void samples_print(const struct acquisition *a, const double complex *samples)
+{
+    const size_t count = (size_t)a->samples * (size_t)a->receivers * (size_t)a->pings;
+    double largest = 0, energy = 0, imaginary = 0;
+    size_t silent = 0;
+    for (size_t n = 0; n < count; n++) {
+        const double re = creal(samples[n]), im = cimag(samples[n]);
+        largest = fmax(largest, hypot(re, im));
+        imaginary = fmax(imaginary, fabs(im));
+    }
+    for (size_t n = 0; n < count && largest > 0; n++) {
+        const double share = cabs(samples[n]) / largest;
+        energy += share * share;
+        silent += share == 0;
+    }
+    printf("samples      %d (fast time) x %d (receivers) x %d (pings), largest %.4g, rms %.4g", a->samples,
+           a->receivers, a->pings, largest, largest * sqrt(energy / (double)count));
+    if (silent > 0)
+        printf(", %.3g %% are zero", 100.0 * (double)silent / (double)count);
+    printf("\n");
+    if (!(imaginary > 0) && largest > 0)
+        printf("             NO IMAGINARY PART: is this passband? Complex baseband is needed (docs/baseband.md)\n");
+}
+
+static void track_print(const struct acquisition *a)
+{
+    struct straight_track track;
+    const struct vector *first = &a->tx[0], *last = &a->tx[a->pings - 1], *v = &a->velocity[0];
+    const bool straight = acquisition_is_straight(a, &track);
+    printf("track        from (%g, %g, %g) to (%g, %g, %g) m; ", first->x, first->y, first->z, last->x, last->y,
+           last->z);
+    if (straight && a->pings > 1)
+        printf("uniform and straight, %g m from ping to ping\n", track.spacing);
+    else
+        printf("%s\n", straight ? "one ping" : "no uniform straight track with receivers at constant offsets: back projection only");
+    if (v->x == 0 && v->y == 0 && v->z == 0)
+        printf("velocity     0: stop-and-hop\n");
+    else
+        printf("velocity     (%g, %g, %g) m/s\n", v->x, v->y, v->z);
+    printf("receivers    %g to %g m ahead of the transmitter (first ping)\n", condition_offset(a, 0),
+           condition_offset(a, 2));
+}
+
+static void beam_print(const struct acquisition *a)
+{
+    printf("beam        ");
+    if (a->tx_length > 0)
+        printf(" transmitter %g m long", a->tx_length);
+    if (a->rx_length > 0)
+        printf("%s receivers %g m long", a->tx_length > 0 ? "," : "", a->rx_length);
+    if (!(a->tx_length > 0) && !(a->rx_length > 0))
+        printf(" element lengths are not given");
+    if (a->echo_squint != 0)
+        printf(", squint %g degrees", a->echo_squint * 180 / pi);
+    if (isfinite(a->aperture_limit))
+        printf(", aperture limit %g", a->aperture_limit);
+    printf("\n");
+}
+
+static void grid_print(const struct acquisition *a)
+{
+    struct grid grid;
+    bool cut;
+    if (!inspect_grid(a, &grid, &cut)) {
+        printf("grid         none suits this geometry by itself; name the places that you know\n");
+        return;
+    }
+    printf("grid to try  --grid=%.6g:%g:%d,%.6g:%g:%d\n", grid.x_first, grid.x_step, grid.x_count, grid.r_first,
+           grid.r_step, grid.r_count);
+    if (cut)
+        printf("             (the middle of what was recorded: at most %d pixels along each axis)\n", PIXELS_MOST);
+}
+
+enum status inspect_echoes(const char *path)
+{
+    struct acquisition a;
+    struct echoes echoes;
+    enum status status = echo_file_read(path, &a, &echoes);
+    if (status != STATUS_OK)
+        return status;
+    const double end = a.t0[0] + (a.samples - 1) / a.fs;
+    printf("%s: echoes, %s\n", path, a.compressed ? "range compressed" : "raw");
+    samples_print(&a, echoes.samples);
+    printf("sonar        fc %g Hz, bandwidth %g Hz, fs %g Hz, sound speed %g m/s\n", a.fc, a.bandwidth, a.fs,
+           a.sound_speed);
+    printf("             wavelength %.4g m, range resolution c/2B %.4g m\n", a.sound_speed / a.fc,
+           a.sound_speed / (2 * a.bandwidth));
+    if (!a.compressed)
+        printf("pulse        %d samples, %.4g s\n", a.pulse_length, a.pulse_length / a.fs);
+    printf("record       %.6g to %.6g s after emission: ranges of %.6g to %.6g m\n", a.t0[0], end,
+           a.sound_speed * a.t0[0] / 2, a.sound_speed * end / 2);
+    track_print(&a);
+    beam_print(&a);
+    grid_print(&a);
+    echoes_free(&echoes);
+    acquisition_free(&a);
+    return STATUS_OK;
+}
