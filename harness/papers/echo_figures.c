@@ -44,7 +44,7 @@ static enum status records_draw(const struct acquisition *a, const double comple
     for (int n = 0; n < a->samples; n++)
         for (int p = 0; p < a->pings; p++)
             pixels[(size_t)n * (size_t)a->pings + (size_t)p] = records[(size_t)p * (size_t)a->samples + (size_t)n];
-    if (plot_image(path, PLOT_DIRECTORY, &image, title) != STATUS_OK) {
+    if (plot_image(path, PLOT_DIRECTORY, &(struct image_picture){.image = &image, .title = title}) != STATUS_OK) {
         fprintf(stderr, "sasbench: %s\n", status_message());
         ++*undrawn;
     }

@@ -136,7 +136,8 @@ static void track_print(const struct acquisition *a)
     if (straight && a->pings > 1)
         printf("uniform and straight, %g m from ping to ping\n", track.spacing);
     else
-        printf("%s\n", straight ? "one ping" : "no uniform straight track with receivers at constant offsets: back projection only");
+        printf("%s\n", straight ? "one ping"
+                                : "no uniform straight track with receivers at constant offsets: back projection only");
     if (v->x == 0 && v->y == 0 && v->z == 0)
         printf("velocity     0: stop-and-hop\n");
     else
