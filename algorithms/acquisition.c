@@ -268,34 +268,40 @@ static struct straight_track fit_even_spacing(const struct acquisition *a)
     return track;
 }
 
-static bool is_within(struct vector v, double tolerance)
+static double largest_component(struct vector v)
 {
-    return fabs(v.x) <= tolerance && fabs(v.y) <= tolerance && fabs(v.z) <= tolerance;
+    return fmax(fabs(v.x), fmax(fabs(v.y), fabs(v.z)));
 }
 
-bool acquisition_is_straight(const struct acquisition *acquisition, struct straight_track *track)
+double acquisition_unevenness(const struct acquisition *acquisition, struct straight_track *track)
 {
     const struct acquisition *a = acquisition;
-    double tolerance = a->sound_speed / a->fc / 1000;
-    struct straight_track fit = fit_even_spacing(a);
-    if (a->pings > 1 && !(fabs(fit.spacing) * (a->pings - 1) > tolerance)) {
-        return false; /* standing still: the spacing is nothing but rounding */
+    const struct straight_track fit = *track = fit_even_spacing(a);
+    double off = 0;
+    if (a->pings > 1 && !(fabs(fit.spacing) * (a->pings - 1) > a->sound_speed / a->fc * ACQUISITION_UNEVEN_MOST)) {
+        return INFINITY; /* standing still: the spacing is nothing but rounding */
     }
     for (int p = 0; p < a->pings; p++) {
         struct vector place = {fit.x_first + p * fit.spacing, 0, 0};
         struct vector drift = vector_difference(a->velocity[p], (struct vector){fit.speed, 0, 0});
-        if (!is_within(vector_difference(a->tx[p], place), tolerance)
-            || !is_within(drift, tolerance / largest_delay(a, p))
-            || !(fabs(a->t0[p] - a->t0[0]) * a->sound_speed <= tolerance)) {
-            return false;
-        }
+        off = fmax(off, largest_component(vector_difference(a->tx[p], place)));
+        off = fmax(off, largest_component(drift) * largest_delay(a, p));
+        off = fmax(off, fabs(a->t0[p] - a->t0[0]) * a->sound_speed);
         const struct vector *rx = a->rx + (size_t)p * (size_t)a->receivers;
         for (int m = 0; m < a->receivers; m++) {
             struct vector receiver = {place.x + (a->rx[m].x - a->tx[0].x), 0, 0};
-            if (!is_within(vector_difference(rx[m], receiver), tolerance)) {
-                return false;
-            }
+            off = fmax(off, largest_component(vector_difference(rx[m], receiver)));
         }
+    }
+    return off;
+}
+
+bool acquisition_is_straight(const struct acquisition *acquisition, struct straight_track *track)
+{
+    struct straight_track fit;
+    if (!(acquisition_unevenness(acquisition, &fit)
+          <= acquisition->sound_speed / acquisition->fc * ACQUISITION_UNEVEN_MOST)) {
+        return false;
     }
     if (track) {
         *track = fit;

@@ -66,6 +66,13 @@ struct straight_track {
     double speed;            /* m/s along +x, of the receivers during propagation */
 };
 
+/* Wavelengths: how far off such a track still counts as one. */
+#define ACQUISITION_UNEVEN_MOST 1e-3
+
+/* m: how far transmitters, receivers, starts of record (times the sound speed) and velocities (times the longest delay) lie
+   off the uniform straight track nearest to them, *track; INFINITY where all pings are in one place. */
+double acquisition_unevenness(const struct acquisition *acquisition, struct straight_track *track);
+
 /* True when the track is uniform and straight; fills *track (may be NULL). */
 bool acquisition_is_straight(const struct acquisition *acquisition, struct straight_track *track);
 

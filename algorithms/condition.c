@@ -81,43 +81,50 @@ int algorithm_conditions(const struct algorithm *algorithm, const struct problem
 
 /* ---- delays ---- */
 
-/* What the pixels ask of the records, worst over the corners of the patches and some pings that see them. */
+/* What the pixels ask of the records, worst over some places of the patches and some pings that see them. */
 struct extent {
     double delay;  /* s: the longest that lies in a record */
     double places; /* samples: the largest magnitude of a sample coordinate */
-    double slope;  /* s/m: the steepest along the track */
+    double slope;  /* s/m: the steepest along the track, less that on the beam's axis */
 };
 
-/* The first and the last ping that see (x, r), and the nearest one. */
-static void pings_seeing(const struct acquisition *a, double x, double r, int pings[3])
+/* m: how far ping p stands from where it would see a place on its beam's axis; beyond the axis it is negative. Seen are
+   places within the beam's sine of their distance. */
+static double off_axis(const struct acquisition *a, int p, struct vector place, double *distance)
 {
-    double sine = condition_beam_sine(a), nearest = INFINITY;
+    double u = a->tx[p].x - place.x, across2 = pow(a->tx[p].y - place.y, 2) + pow(a->tx[p].z, 2);
+    *distance = sqrt(u * u + across2);
+    return a->echo_squint != 0 ? u * cos(a->echo_squint) + sqrt(across2) * sin(a->echo_squint) : u;
+}
+
+/* The first and the last ping that see a place, and the one nearest to seeing it on the axis; -1: none does. */
+static void pings_seeing(const struct acquisition *a, struct vector place, int pings[3])
+{
+    double sine = condition_beam_sine(a), nearest = INFINITY, range;
     pings[0] = pings[1] = pings[2] = -1;
     for (int p = 0; p < a->pings; p++) {
-        double u = a->tx[p].x - x, range = sqrt(u * u + pow(a->tx[p].y - r, 2) + pow(a->tx[p].z, 2));
-        if (!(fabs(u) <= sine * range))
+        double off = fabs(off_axis(a, p, place, &range));
+        if (!(off <= sine * range))
             continue;
         pings[0] = pings[0] < 0 ? p : pings[0];
         pings[1] = p;
-        pings[2] = fabs(u) < nearest ? p : pings[2];
-        nearest = fmin(nearest, fabs(u));
+        pings[2] = off < nearest ? p : pings[2];
+        nearest = fmin(nearest, off);
     }
 }
 
-static void extent_add(const struct acquisition *a, double x, double r, struct extent *extent)
+static void extent_add_pings(const struct acquisition *a, struct vector p, const int pings[3], struct extent *extent)
 {
-    int pings[3];
-    pings_seeing(a, x, r, pings);
+    const double step = a->sound_speed / a->fc / 100, axis = -2 * sin(a->echo_squint) / a->sound_speed;
     for (int n = 0; n < 6; n++) {
-        int p = pings[n / 2], m = n % 2 ? a->receivers - 1 : 0;
-        if (p < 0)
+        int ping = pings[n / 2], m = n % 2 ? a->receivers - 1 : 0;
+        if (ping < 0)
             continue;
-        struct vector tx = a->tx[p], rx = a->rx[(size_t)p * (size_t)a->receivers + (size_t)m], v = a->velocity[p];
-        double step = a->sound_speed / a->fc / 100;
-        double delay = delay_exact(tx, rx, v, (struct vector){x, r, 0}, a->sound_speed);
-        double ahead = delay_exact(tx, rx, v, (struct vector){x - step, r, 0}, a->sound_speed);
-        double place = (delay - a->t0[p]) * a->fs;
-        extent->slope = fmax(extent->slope, fabs(ahead - delay) / step);
+        struct vector tx = a->tx[ping], rx = a->rx[(size_t)ping * (size_t)a->receivers + (size_t)m];
+        double delay = delay_exact(tx, rx, a->velocity[ping], p, a->sound_speed);
+        double ahead = delay_exact(tx, rx, a->velocity[ping], (struct vector){p.x - step, p.y, p.z}, a->sound_speed);
+        double place = (delay - a->t0[ping]) * a->fs;
+        extent->slope = fmax(extent->slope, fabs((ahead - delay) / step - axis));
         if (place >= 0 && place <= a->samples - 1) {
             extent->delay = fmax(extent->delay, delay);
             extent->places = fmax(extent->places, place);
@@ -125,15 +132,49 @@ static void extent_add(const struct acquisition *a, double x, double r, struct e
     }
 }
 
+/* The place of row i that lies nearest to the axis of ping p's beam. */
+static struct vector row_on_axis(const struct acquisition *a, int p, const struct grid *g, double i)
+{
+    double first = 0, last = g->x_count - 1, range;
+    const double begin = off_axis(a, p, grid_point(g, i, first), &range);
+    const double end = off_axis(a, p, grid_point(g, i, last), &range);
+    if ((begin < 0) == (end < 0))
+        return grid_point(g, i, fabs(begin) < fabs(end) ? first : last);
+    for (int k = 0; k < 50; k++) {
+        double middle = (first + last) / 2;
+        *((off_axis(a, p, grid_point(g, i, middle), &range) < 0) == (begin < 0) ? &first : &last) = middle;
+    }
+    return grid_point(g, i, first);
+}
+
+/* A patch whose corners and middle no ping sees: the axis of each ping on its first, middle and last row. */
+static void extent_search(const struct acquisition *a, const struct grid *g, struct extent *extent)
+{
+    for (int p = 0; p < a->pings; p++)
+        for (int n = 0; n < 3; n++) {
+            double range;
+            const struct vector place = row_on_axis(a, p, g, n / 2.0 * (g->r_count - 1));
+            if (fabs(off_axis(a, p, place, &range)) <= condition_beam_sine(a) * range)
+                extent_add_pings(a, place, (const int[3]){p, -1, -1}, extent);
+        }
+}
+
 static struct extent extent_of(const struct problem *problem)
 {
     struct extent extent = {0, 0, 0};
     for (int k = 0; k < problem->patch_count; k++) {
         const struct grid *g = &problem->patches[k];
-        for (int n = 0; n < 4; n++) {
-            const struct vector p = grid_point(g, n / 2 * (g->r_count - 1), n % 2 * (g->x_count - 1));
-            extent_add(problem->acquisition, p.x, p.y, &extent);
+        bool seen = false;
+        for (int n = 0; n < 5; n++) { /* the corners, and the middle */
+            double u = n < 4 ? n % 2 : 0.5, w = n < 4 ? n / 2 : 0.5;
+            const struct vector place = grid_point(g, w * (g->r_count - 1), u * (g->x_count - 1));
+            int pings[3];
+            pings_seeing(problem->acquisition, place, pings);
+            extent_add_pings(problem->acquisition, place, pings, &extent);
+            seen = seen || pings[0] >= 0;
         }
+        if (!seen)
+            extent_search(problem->acquisition, g, &extent);
     }
     return extent;
 }
@@ -195,12 +236,11 @@ struct condition condition_ghost(const struct acquisition *a, double spacing)
                               "pings half the array's length apart"};
 }
 
-int conditions_sampled(const struct problem *problem, const void *options, struct condition *list, int room)
+int conditions_sampled(const struct problem *problem, struct condition *list, int room)
 {
     const struct acquisition *a = problem->acquisition;
     struct straight_track track;
     int count = conditions_general(problem, list, room);
-    (void)options;
     add(list, room, &count,
         (struct condition){"above_dc", a->fc - a->bandwidth / 2, 0, true, SEVERITY_WARN,
                            "the lowest frequency fc - B/2 (Hz)", "a higher carrier or a narrower band"});

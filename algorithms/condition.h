@@ -38,7 +38,7 @@ enum status conditions_check(const char *name, const struct condition *list, int
    return their number. */
 int conditions_general(const struct problem *problem, struct condition *list, int room);
 /* Those, and what the places of pings and receivers, sampled in azimuth, make of any image: what back projections have. */
-int conditions_sampled(const struct problem *problem, const void *options, struct condition *list, int room);
+int conditions_sampled(const struct problem *problem, struct condition *list, int room);
 
 /* The ghosts of a straight track of several receivers, `spacing` m from ping to ping. */
 struct condition condition_ghost(const struct acquisition *acquisition, double spacing);

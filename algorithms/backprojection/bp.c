@@ -109,6 +109,16 @@ static void count_work(struct bp *bp, const struct interpolator *in)
 const char *const bp_engine_names[] = {"auto", "general", "invariant", NULL};
 const char *const bp_exact_names[] = {"false", "true", NULL};
 
+int bp_conditions(const struct problem *problem, const void *options, struct condition *list, int room)
+{
+    const struct bp_options *given = options;
+    int count = conditions_sampled(problem, list, room);
+    if (count < room)
+        list[count++] =
+            invariant_condition(problem, given->engine == BP_ENGINE_INVARIANT ? SEVERITY_REFUSE : SEVERITY_INFORM);
+    return count;
+}
+
 /* Tables pay where they serve several columns of a residue: measured, from two ping spacings of image on. */
 static bool tables_pay(const struct bp *bp)
 {

@@ -50,6 +50,8 @@ enum status bp_plan(const struct problem *problem, const struct interpolator *in
 enum status bp_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
 struct work bp_work(const void *plan);
 void bp_destroy(void *plan);
+/* conditions_sampled and `invariance`, which refuses where the invariant engine is asked for. */
+int bp_conditions(const struct problem *problem, const void *options, struct condition *list, int room);
 
 /* sinc(z) w(z) with w a Kaiser window of parameter beta over |z| <= taps/2 (beta = 0: no window):
    I0(beta sqrt(1 - (2z/taps)^2))/I0(beta), at the distances of `taps` taps -taps/2+1 .. taps/2 from floor(q). */

@@ -36,6 +36,9 @@ struct bp_engine {
 extern const struct bp_engine bp_general;   /* any track: delays of runs of range rows */
 extern const struct bp_engine bp_invariant; /* uniform straight track on the pixel raster: tables of delays */
 
+/* What the second one needs of a problem. */
+struct condition invariant_condition(const struct problem *problem, enum severity severity);
+
 static inline size_t real_size(enum precision precision)
 {
     return precision == PRECISION_DOUBLE ? sizeof(double) : sizeof(float);

@@ -227,12 +227,12 @@ bool azimuth_requirements(const struct problem *problem, struct condition *list,
                                           "a higher carrier or a narrower band"};
     list[(*count)++] =
         (struct condition){"uniform_track",
-                           acquisition_is_straight(a, track),
-                           0,
-                           true,
+                           acquisition_unevenness(a, track) * a->fc / a->sound_speed,
+                           ACQUISITION_UNEVEN_MOST,
+                           false,
                            SEVERITY_REFUSE,
-                           "a straight uniform track (1: tx and rx within lambda/1000 of even points on a "
-                           "line along x, y = z = 0, one velocity, one t0; 0: not so)",
+                           "how far pings, receivers and starts of record lie off a uniform straight track along x "
+                           "(wavelengths)",
                            "back projection"};
     list[(*count)++] = (struct condition){
         "pings",          a->pings, 1, true, SEVERITY_REFUSE, "the number of pings (one has no azimuth spectrum)",

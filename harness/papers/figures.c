@@ -9,6 +9,7 @@
 
 #include "data/echo_data.h"
 #include "data/paths.h"
+#include "data/text_file.h"
 #include "measure/metrics.h"
 #include "measure/session.h"
 #include "papers/echo_figures.h"
@@ -19,9 +20,11 @@ enum { SCENES_MAX = 6, METHODS_MAX = 5, PANELS_MAX = 6 };
 
 /* Figures of the same images. A method's SPEC NULL is the exact image, which stands for the papers' back projection. */
 struct figures {
-    const char *images, *slices, *close; /* ids; NULL: there is none. close: the slices near the peak */
+    const char *layout;                  /* ids; NULL: there is none. Where the targets lie */
+    const char *images, *slices, *close; /* close: the slices near the peak */
     double close_m;                      /* to either side */
     const char *title;
+    int first; /* the papers' number of the first target of a layout */
     struct {
         const char *scene;
         int targets; /* how many of its targets, the first ones, are the papers' */
@@ -35,25 +38,31 @@ struct figures {
 #define CORRECTED(options) "rma_lbf:" options
 
 static const struct figures sets[] = {
-    {"bp22_f8",
+    {NULL,
+     "bp22_f8",
      "bp22_f9",
      "bp22_f10",
      0.1,
      "BP22 Figs 8 to 10",
+     0,
      {{"bp22/table3", 6}},
      {{"nearest", NEAREST}, {"linear, beta 2", LINEAR_2}, {"linear, beta 8", LINEAR_8}, {"sinc", SINC_8}}},
-    {"zp15_f3",
+    {NULL,
+     "zp15_f3",
      "zp15_f4",
      "zp15_f4_close",
      0.1,
      "ZP15 Figs 3 and 4",
+     0,
      {{"zp15/target", 1}},
      {{"no interpolation", NEAREST}, {"truncated sinc", SINC_8}, {"zero padding", ZEROPAD_8}}},
     {NULL,
+     NULL,
      "lbf21_f11",
      "lbf21_f12",
      0.05,
      "LBF21 Figs 11 and 12: sub-blocks of 30, 18, 12, 11.4, 9.6, 2.7 m",
+     0,
      {{"lbf21/blocks_30_0", 1},
       {"lbf21/blocks_18_0", 1},
       {"lbf21/blocks_12_0", 1},
@@ -63,42 +72,43 @@ static const struct figures sets[] = {
      {{"LBF, as printed", "rma_lbf:variant=printed,blend=off,blocks=1,spacing=uniform"},
       {"PCA", PCA_16},
       {"BP", NULL}}},
-    {"lbf21_f14",
+    {"lbf21_f13",
+     "lbf21_f14",
      "lbf21_f15",
      NULL,
      0,
-     "LBF21 Figs 14 and 15",
+     "LBF21 Figs 13 to 15",
+     1,
      {{"lbf21/table3_near", 2}, {"lbf21/table3_far", 4}},
      {{"LBF, as printed", PRINTED("blocks=16")},
       {"LBF, corrected", CORRECTED("blocks=16")},
       {"PCA", PCA_16},
       {"BP", NULL}}},
-    {"lbf21_f17",
+    {"lbf21_f16",
+     "lbf21_f17",
      "lbf21_f18",
      NULL,
      0,
-     "LBF21 Figs 17 and 18",
+     "LBF21 Figs 16 to 18",
+     7,
      {{"lbf21/table4_near", 2}, {"lbf21/table4_far", 2}},
      {{"LBF, as printed", PRINTED("blocks=16")},
       {"LBF, corrected", CORRECTED("blocks=16")},
       {"PCA", PCA_16},
       {"Wu", WU_16},
       {"BP", NULL}}},
-    {"pf05_f5",
-     NULL,
-     NULL,
-     0,
-     "PF05 Figs 5D to 5F",
-     {{"pf05/picture", 0}, {"pf05/picture_inside", 0}},
-     {{"4 sub-apertures", POLAR_4}, {"2 sub-apertures", POLAR_2}, {"no filter", IDEAL}}},
-    {"sq18_f3a", NULL, NULL, 0, "SQ18 Fig. 3(a)", {{"sq18/picture", 0}}, {{"improved omega-k", TURNED}}},
-    {"sq18_f3b",
-     NULL,
-     NULL,
-     0,
-     "SQ18 Fig. 3(b)",
-     {{"sq18/squint_20", 0}, {"sq18/squint_00", 0}},
-     {{"improved omega-k", TURNED}, {"BP", NULL}}},
+    {.images = "pf05_f5",
+     .title = "PF05 Figs 5D to 5F",
+     .scenes = {{"pf05/picture", 0}, {"pf05/picture_inside", 0}},
+     .methods = {{"4 sub-apertures", POLAR_4}, {"2 sub-apertures", POLAR_2}, {"no filter", IDEAL}}},
+    {.images = "sq18_f3a",
+     .title = "SQ18 Fig. 3(a)",
+     .scenes = {{"sq18/picture", 0}},
+     .methods = {{"improved omega-k", TURNED}}},
+    {.images = "sq18_f3b",
+     .title = "SQ18 Fig. 3(b)",
+     .scenes = {{"sq18/squint_20", 0}, {"sq18/squint_00", 0}},
+     .methods = {{"improved omega-k", TURNED}, {"BP", NULL}}},
 };
 enum { SETS = sizeof sets / sizeof *sets };
 
@@ -263,16 +273,50 @@ static enum status set_draw(struct drawing *drawing)
     return status;
 }
 
+/* The targets of all of a set's scenes as figure-ID.csv, and drawn. */
+static enum status layout_draw(struct drawing *drawing)
+{
+    const struct figures *set = drawing->set;
+    char picture[4200], csv[4200];
+    struct text_file file;
+    int number = set->first;
+    picture_name(drawing, set->layout, NULL, NULL, picture, sizeof picture);
+    snprintf(csv, sizeof csv, "%.*scsv", (int)strlen(picture) - 3, picture);
+    enum status status = text_file_open(csv, &file);
+    if (status != STATUS_OK)
+        return status;
+    fputs("target,x_m,r_m,added\n", file.stream);
+    for (int s = 0; s < SCENES_MAX && set->scenes[s].scene && status == STATUS_OK; s++) {
+        struct scene scene;
+        status = scene_load(set->scenes[s].scene, SCENE_DIRECTORY, &scene);
+        for (int t = 0; t < scene.point_count && status == STATUS_OK; t++) {
+            bool added = t >= set->scenes[s].targets;
+            char name[16] = "";
+            if (!added)
+                snprintf(name, sizeof name, "PT%d", number++);
+            fprintf(file.stream, "%s,%.9g,%.9g,%d\n", name, scene.targets[t].x, scene.targets[t].r, added);
+        }
+        if (status == STATUS_OK)
+            scene_free(&scene);
+    }
+    status = text_file_close(&file, status);
+    if (status == STATUS_OK)
+        report(drawing, plot_csv(picture, PLOT_DIRECTORY, "layout.gp", csv));
+    return status;
+}
+
 enum status figures_draw(const char *directory, bool (*asked)(const void *of, const char *id), const void *of,
                          int *undrawn)
 {
     enum status status = STATUS_OK;
     for (int k = 0; k < SETS && status == STATUS_OK; k++) {
         struct drawing drawing = {.set = &sets[k], .directory = directory, .undrawn = undrawn};
+        if (wanted(&drawing, sets[k].layout, sets[k].layout && asked(of, sets[k].layout), false))
+            status = layout_draw(&drawing);
         drawing.images = wanted(&drawing, sets[k].images, sets[k].images && asked(of, sets[k].images), true);
         drawing.slices = wanted(&drawing, sets[k].slices, sets[k].slices && asked(of, sets[k].slices), false);
         drawing.close = wanted(&drawing, sets[k].close, sets[k].close && asked(of, sets[k].close), false);
-        if (drawing.images || drawing.slices || drawing.close)
+        if (status == STATUS_OK && (drawing.images || drawing.slices || drawing.close))
             status = set_draw(&drawing);
     }
     if (status == STATUS_OK && asked(of, ECHO_FIGURES))

@@ -176,10 +176,7 @@ static void name_find(const char *message, char *name, size_t size)
     } forms[] = {{"condition ", ":"}, {"key '", "'"}, {": ", ":;("}};
     static const struct {
         const char *phrase, *name;
-    } phrases[] = {{"engine=invariant", "invariance"},
-                   {"leave a phase error", "phase_digits"},
-                   {"a single ping", "pings"},
-                   {"needs r > 0", "r > 0"}};
+    } phrases[] = {{"leave a phase error", "phase_digits"}, {"a single ping", "pings"}, {"needs r > 0", "r > 0"}};
     for (size_t k = 0; k < sizeof phrases / sizeof *phrases; k++)
         if (strstr(message, phrases[k].phrase)) {
             snprintf(name, size, "%s", phrases[k].name);

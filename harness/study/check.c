@@ -25,15 +25,14 @@ static int targets_conditions(const struct scene *scene, enum precision precisio
         return 0;
     int count = 0;
     if (precision == PRECISION_FLOAT)
-        list[count++] =
-            (struct condition){"float_range",
-                               fabs(log2(greatest)),
-                               100,
-                               false,
-                               SEVERITY_INFORM,
-                               "the binary exponent of the strongest echo, beyond which a power of two scales "
-                               "the samples,",
-                               "nothing: the scaling is exact"};
+        list[count++] = (struct condition){
+            "float_range",
+            fmax(greatest, 1 / greatest),
+            0x1p100,
+            false,
+            SEVERITY_INFORM,
+            "the strongest echo's amplitude, or 1 over it; beyond, a power of two scales the samples",
+            "nothing: the scaling is exact"};
     list[count++] = (struct condition){"dynamic",
                                        20 * log10(greatest / least),
                                        20 * log10(digits / sqrt(pairs)),

@@ -27,13 +27,11 @@ static int round_up(int value, int multiple)
     return (value + multiple - 1) / multiple * multiple;
 }
 
-/* s: by how much ideal delays may differ from real ones: 1e-7 of a cycle, which bounds the phase by 1e-6 rad, and of a sample. */
-static double tolerance(const struct acquisition *a)
-{
-    return 1e-7 / fmax(a->fc, a->fs);
-}
+/* Cycles of the carrier, or samples where these are shorter: by how much ideal delays may differ from real ones. It bounds
+   the phase by 1e-6 rad. */
+static const double DRIFT_MOST = 1e-7;
 
-/* The patch on the track's raster. The grid's and the pings' places must agree over the whole track. */
+/* The patch on the track's raster. */
 static enum status raster_make(const struct bp *bp, const struct straight_track *track, const struct grid *grid,
                                struct bp_raster *raster)
 {
@@ -42,11 +40,6 @@ static enum status raster_make(const struct bp *bp, const struct straight_track 
     double ratio = floor(steps + 0.5);
     if (a->pings == 1) /* every column is a residue of its own */
         ratio = grid->x_count;
-    else if (!(ratio >= 1 && ratio <= INT_MAX)
-             || !(fabs(spacing - ratio * grid->x_step) * (a->pings + grid->x_count / ratio)
-                  < a->sound_speed * tolerance(a)))
-        return status_set(STATUS_UNSUPPORTED, "the ping spacing %g m is %.9g azimuth steps, must be a whole number",
-                          spacing, steps);
     if (!(grid->x_count + ratio + a->pings < INT_MAX / 2))
         return status_set(STATUS_UNSUPPORTED, "%d columns, of which %.0f are a ping spacing, are too many to index",
                           grid->x_count, ratio);
@@ -80,22 +73,51 @@ static double ping_beside(const struct acquisition *a, const struct straight_tra
     return off;
 }
 
+/* By how many metres the columns of a grid leave the raster of the pings over the whole track. */
+static double columns_beside(const struct acquisition *a, const struct straight_track *track, const struct grid *grid)
+{
+    double spacing = fabs(track->spacing), ratio = floor(spacing / grid->x_step + 0.5);
+    if (a->pings == 1)
+        return 0;
+    if (!(ratio >= 1 && ratio <= INT_MAX) || grid->angle_rad != 0)
+        return INFINITY;
+    return fabs(spacing - ratio * grid->x_step) * (a->pings + grid->x_count / ratio);
+}
+
+struct condition invariant_condition(const struct problem *problem, enum severity severity)
+{
+    const struct acquisition *a = problem->acquisition;
+    struct straight_track track;
+    double off = INFINITY;
+    if (acquisition_is_straight(a, &track)) {
+        off = 0;
+        for (int p = 0; p < a->pings; p++)
+            off = fmax(off, ping_beside(a, &track, p));
+        for (int k = 0; k < problem->patch_count; k++)
+            off = fmax(off, columns_beside(a, &track, &problem->patches[k]));
+    }
+    return (struct condition){
+        "invariance",
+        off * fmax(a->fc, a->fs) / a->sound_speed,
+        DRIFT_MOST,
+        false,
+        severity,
+        "how far columns and pings drift apart over the track (cycles of the carrier, or samples)",
+        "a uniform straight track whose ping spacing is a whole number of azimuth steps"};
+}
+
 enum status invariant_applicable(const struct bp *bp)
 {
     const struct acquisition *a = bp->problem.acquisition;
+    const struct condition condition = invariant_condition(&bp->problem, SEVERITY_REFUSE);
     struct straight_track track;
     struct bp_raster raster;
+    char text[400];
     if (bp->table.taps > 1 && bp->table.upsample > 1)
         return status_set(STATUS_UNSUPPORTED, "a kernel over upsampled records has no tables");
-    if (!acquisition_is_straight(a, &track))
-        return status_set(STATUS_UNSUPPORTED, "the track is not uniform and straight");
-    for (int p = 0; p < a->pings; p++) {
-        double off = ping_beside(a, &track, p);
-        if (!(off < a->sound_speed * tolerance(a)))
-            return status_set(STATUS_UNSUPPORTED,
-                              "ping %d, its start of record or its velocity is %.3g m off a uniform "
-                              "straight track, must be below %.3g m",
-                              p + 1, off, a->sound_speed * tolerance(a));
+    if (!condition_holds(&condition) || !acquisition_is_straight(a, &track)) {
+        condition_message(&condition, text, sizeof text);
+        return status_set(STATUS_UNSUPPORTED, "%s", text);
     }
     for (int k = 0; k < bp->problem.patch_count; k++) {
         enum status status = raster_make(bp, &track, &bp->problem.patches[k], &raster);

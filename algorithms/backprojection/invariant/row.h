@@ -72,7 +72,7 @@
 
    WHAT THE LOOPS RELY ON. They check nothing but BP_SPREAD; this code sees to it:
 
-       whole ratio, even pings   raster_make, ping_beside: to 1e-7 of a cycle and of a sample, else unsupported
+       whole ratio, even pings   invariant_condition: to 1e-7 of a cycle and of a sample, else unsupported
        zeros around the pings    plan_slab: a lead of 64 bytes, the widest vector, and as much behind the pings;
                                  invariant_execute clears the slab, and scatter writes pings only
        samples in the record     inside_record proves it for the whole row, else confine or keep checks entries;

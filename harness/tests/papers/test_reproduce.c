@@ -21,15 +21,16 @@ static void all_printed_numbers_are_there(void **state)
         const char *table;
         int rows, numbers; /* ZP15's figures and some of LBF21's come without numbers */
     } wanted[] = {
-        {"bp22_t1", 4, 4},    {"bp22_t3", 48, 48},     {"bp22_t4", 4, 4},     {"bp22_eq20", 1, 1},
-        {"bp22_f8", 0, 0},    {"bp22_f9", 0, 0},       {"bp22_f10", 0, 0},    {"zp15_f3", 6, 0},
-        {"zp15_f4", 9, 0},    {"zp15_f4_close", 0, 0}, {"lbf21_t2", 16, 16},  {"lbf21_t3", 36, 36},
-        {"lbf21_t4", 36, 36}, {"lbf21_t5", 5, 3},      {"lbf21_flops", 4, 4}, {"lbf21_f2", 1, 1},
-        {"lbf21_f3", 1, 1},   {"lbf21_f4", 1, 0},      {"lbf21_f5", 1, 1},    {"lbf21_f6", 2, 2},
-        {"lbf21_f7", 1, 1},   {"lbf21_f8", 1, 1},      {"lbf21_f9", 1, 1},    {"lbf21_f11", 0, 0},
-        {"lbf21_f12", 0, 0},  {"lbf21_f14", 0, 0},     {"lbf21_f15", 0, 0},   {"lbf21_f17", 0, 0},
-        {"lbf21_f18", 0, 0},  {"pf05_t1", 4, 4},       {"pf05_f5", 36, 0},    {"pf05_f5_echoes", 0, 0},
-        {"sq18_f3a", 5, 0},   {"sq18_f3b", 3, 0},      {"claims", 22, 22},
+        {"bp22_t1", 4, 4},    {"bp22_t3", 48, 48},      {"bp22_t4", 4, 4},     {"bp22_eq20", 1, 1},
+        {"bp22_f8", 0, 0},    {"bp22_f9", 0, 0},        {"bp22_f10", 0, 0},    {"zp15_f3", 6, 0},
+        {"zp15_f4", 9, 0},    {"zp15_f4_close", 0, 0},  {"lbf21_t2", 16, 16},  {"lbf21_t3", 36, 36},
+        {"lbf21_t4", 36, 36}, {"lbf21_t5", 5, 3},       {"lbf21_flops", 4, 4}, {"lbf21_f2", 1, 1},
+        {"lbf21_f3", 1, 1},   {"lbf21_f4", 1, 0},       {"lbf21_f5", 1, 1},    {"lbf21_f6", 2, 2},
+        {"lbf21_f7", 1, 1},   {"lbf21_f8", 1, 1},       {"lbf21_f9", 1, 1},    {"lbf21_f11", 0, 0},
+        {"lbf21_f12", 0, 0},  {"lbf21_f13", 0, 0},      {"lbf21_f14", 0, 0},   {"lbf21_f15", 0, 0},
+        {"lbf21_f16", 0, 0},  {"lbf21_f17", 0, 0},      {"lbf21_f18", 0, 0},   {"pf05_t1", 4, 4},
+        {"pf05_f5", 36, 0},   {"pf05_f5_echoes", 0, 0}, {"sq18_f3a", 5, 0},    {"sq18_f3b", 3, 0},
+        {"claims", 22, 22},
     };
     struct measured measured;
     assert_int_equal(measured_read(folder, &measured), STATUS_OK);
@@ -378,6 +379,18 @@ static void load_is_kept(void **state)
     free(text);
 }
 
+/* The papers' targets by their names, and those that our scenes add. */
+static void layouts_are_drawn(void **state)
+{
+    (void)state;
+    const char *const names[] = {"lbf21_f16"};
+    assert_int_equal(command_reproduce(&(struct task){.names = names, .name_count = 1, .output = folder}), STATUS_OK);
+    assert_string_equal(text_read("figure-lbf21_f16.csv"), "target,x_m,r_m,added\nPT7,14,50,0\nPT8,16,80,0\n,15,65,1\n"
+                                                           ",13.5,95,1\nPT9,14,225,0\nPT10,16,260,0\n,15,245,1\n"
+                                                           ",13.5,270,1\n");
+    assert_int_equal(access(path_of("figure-lbf21_f16.png"), F_OK), 0);
+}
+
 /* A finished measurement is not made again, and what is said comes from it. */
 static void finished_measurements_are_kept(void **state)
 {
@@ -428,6 +441,7 @@ int main(void)
         IN_FOLDER(unknown_table_is_refused),
         IN_FOLDER(finished_measurements_are_kept),
         IN_FOLDER(load_is_kept),
+        IN_FOLDER(layouts_are_drawn),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

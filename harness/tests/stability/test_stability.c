@@ -269,7 +269,7 @@ static void conditions_are_named(void **state)
     } cases[] = {
         {"rma_lbf: condition lbf_law: the formula's phase error is 2; at most 0.1 is needed", "lbf_law"},
         {"/a/b.cfg:7: key 'track.speed' is 1500.0, must be below", "track.speed"},
-        {"engine=invariant: the ping spacing is no whole number of steps", "invariance"},
+        {"engine=invariant: condition invariance: how far columns drift is 2; at most 1e-07 is needed", "invariance"},
         {"rma_lbf: a single ping has no azimuth spectrum", "pings"},
         {"a.cfg: delays of up to 9 s at fc = 1 Hz (ping 1) leave a phase error of 3 rad", "phase_digits"},
         {"rma_lbf: something else (why)", "something else "},

@@ -9,7 +9,7 @@
 
 /* study/quick, compressed, by parts that the tests vary. */
 struct parts {
-    const char *sonar, *array, *track, *record, *limit, *targets, *image;
+    const char *sonar, *array, *track, *record, *limit, *beam, *targets, *image;
 };
 static const struct parts plain = {
     "fc = 150e3; bandwidth = 15e3; fs = 30e3;",
@@ -17,6 +17,7 @@ static const struct parts plain = {
     "speed = 2.5; pri = 0.064; pings = 18; x_first = -1.52;",
     "first_sample = 0; samples = 4000;",
     "",
+    "kind = \"rect\"; truncation = \"tx\"; limit = 0.443;",
     "{ x = 0.0; r = 20.0; }",
     "x = { first = -0.6; step = 0.02; count = 61; }; r = { first = 19.9; step = 0.025; count = 9; };",
 };
@@ -28,9 +29,9 @@ static struct scene scene_of(const struct parts *varied)
 #define PART(field) (varied->field ? varied->field : plain.field)
     snprintf(text, sizeof text,
              "sonar = { %s };\npulse = { kind = \"flat\"; };\narray = { tx_length = 0.08; rx_length = 0.04; %s };\n"
-             "track = { %s };\nrecord = { %s };\nbeam = { kind = \"rect\"; truncation = \"tx\"; limit = 0.443; };\n%s\n"
+             "track = { %s };\nrecord = { %s };\n%s\nbeam = { %s };\n"
              "targets = { points = ( %s ); };\nimage = { %s };\n",
-             PART(sonar), PART(array), PART(track), PART(record), PART(limit), PART(targets), PART(image));
+             PART(sonar), PART(array), PART(track), PART(record), PART(limit), PART(beam), PART(targets), PART(image));
     support_write("scene.cfg", text);
     if (scene_load(path_of("scene.cfg"), SASBENCH_ROOT "/scenes", &scene) != STATUS_OK)
         fail_msg("%s", status_message());
@@ -114,6 +115,33 @@ static const struct {
      "REFUSED",
      "predicted_error",
      {.image = "x = { first = 5.0; step = 0.02; count = 11; }; r = { first = 20.0; step = 0.1; count = 1; };"}},
+    {"rma_numeric",
+     "REFUSED",
+     "squint",
+     {.beam = "kind = \"rect\"; truncation = \"tx\"; limit = 0.443; squint = 5.0;"}},
+    {"rma_numeric",
+     "REFUSED",
+     "axes",
+     {.image = "angle = 1.0; x = { first = -0.6; step = 0.02; count = 61; };"
+               "r = { first = 19.9; step = 0.025; count = 9; };"}},
+    {"bp_nearest:engine=invariant",
+     "REFUSED",
+     "invariance",
+     {.image = "x = { first = -0.6; step = 0.021; count = 61; }; r = { first = 19.9; step = 0.025; count = 9; };"}},
+    {"bp_nearest",
+     "note",
+     "invariance",
+     {.image = "x = { first = -0.6; step = 0.021; count = 61; }; r = { first = 19.9; step = 0.025; count = 9; };"}},
+    {"wk_classic",
+     "",
+     "",
+     {.array = "receivers = 1;",
+      .track = "speed = 1.0; pri = 0.04; pings = 72; x_first = -1.4;",
+      .record = "first_sample = 0; samples = 1600;"}},
+    {"wk_classic",
+     "REFUSED",
+     "monostatic",
+     {.array = "receivers = 1; first_offset = 0.04;", .track = "speed = 2.5; pri = 0.03; pings = 40; x_first = -1.4;"}},
     {"bp_sinc", "warns", "dynamic", {.targets = "{ x = 0.0; r = 20.0; }, { x = 0.1; r = 20.0; amplitude = 1e-8; }"}},
     {"bp_sinc", "note", "float_range", {.targets = "{ x = 0.0; r = 20.0; amplitude = 1e-44; }"}},
 };
@@ -135,6 +163,54 @@ static void exactly_the_violated_condition_is_named(void **state)
         scene_free(&scene);
     }
     assert_int_equal(failures, 0);
+}
+
+/* The value of a condition's line. */
+static double value_of(const char *printed, const char *name)
+{
+    char line[60];
+    double value = NAN;
+    snprintf(line, sizeof line, "holds    %s ", name);
+    const char *found = strstr(printed, line);
+    if (found)
+        sscanf(found + strlen(line), "%lf", &value);
+    return value;
+}
+
+/* Delays are those that pings see, wherever in the patch and the beam that is: 20 m ahead or abeam, all rows at 20 m. */
+static void delays_are_those_of_what_is_seen(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *what;
+        struct parts parts;
+        double range, doppler; /* m, and F |dtau/dx| 2 spacing/M with spacing/M = 0.02 m */
+    } views[] = {
+        {"plain", {0}, 20, 2 * 0.443 / 0.08 * 1.05 * 2 * 0.02},
+        {"pings that see a part of the patch without its corners and middle",
+         {.track = "speed = 2.5; pri = 0.064; pings = 2; x_first = 11.3;",
+          .image = "x = { first = -60.0; step = 0.5; count = 242; }; r = { first = 20.0; step = 0.025; count = 1; };"},
+         20,
+         0},
+        {"squint of 30 degrees",
+         {.beam = "kind = \"rect\"; truncation = \"tx\"; limit = 0.443; squint = 30.0;",
+          .track = "speed = 0.0; spacing = 0.16; pri = 0.064; pings = 18; x_first = -12.9;"},
+         20.1 / 0.837, /* 33.2 degrees off broadside */
+         2 * 0.443 / 0.08 * 1.05 * 2 * 0.02 * 0.866},
+    };
+    for (size_t k = 0; k < sizeof views / sizeof *views; k++) {
+        struct scene scene = scene_of(&views[k].parts);
+        bool refused;
+        char *printed = checked(&scene, "bp_nearest", &refused);
+        const double phase = 8 * M_PI * 150e3 * 2 * views[k].range / 1500 * 0x1p-53;
+        const double digits = value_of(printed, "phase_digits"), doppler = value_of(printed, "doppler");
+        if (!is_close(digits / phase, 1, 0.02)
+            || (views[k].doppler > 0 && !is_close(doppler / views[k].doppler, 1, 0.15)))
+            fail_msg("%s: phase_digits %g, not %g; doppler %g, not %g", views[k].what, digits, phase, doppler,
+                     views[k].doppler);
+        free(printed);
+        scene_free(&scene);
+    }
 }
 
 /* What no condition knows, the plan does: columns that no wavenumber of the track reaches. */
@@ -176,6 +252,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(exactly_the_violated_condition_is_named, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(delays_are_those_of_what_is_seen, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(refusals_of_the_plan_are_told, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(sensitivities_are_those_of_the_delay, folder_make, folder_remove),
     };
