@@ -51,7 +51,7 @@ static double minimum_find(const double *power, int count, int peak, int way)
         if (power[k] < power[lowest])
             lowest = k;
     double value;
-    return k >= 0 && k < count && lowest > 0 && lowest < count - 1 ? parabola_extremum(power, lowest, &value) : NAN;
+    return k >= 0 && k < count ? parabola_extremum(power, lowest, &value) : NAN;
 }
 
 /* Where the power first falls to `level` on the way from sample `peak`; NAN if it does not. */

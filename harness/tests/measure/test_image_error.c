@@ -119,9 +119,9 @@ static void test_error_of_parts(void **state)
     parts[1].x_first += 0.02 - 1e-4 * 0.02; /* sticks out by a column */
     assert_true(isnan(metrics_error(&image, &reference).error));
     static const struct grid others[] = {
-        {-1, 0.021, 10, 100, 0.025, 5},         {-1, 0.02, 10, 100, 0.026, 5},
-        {-1, 0.02, 10, 100 + 2.5e-6, 0.025, 5}, {-1, 0.02, 10, 100 + 37 * 0.025, 0.025, 5},
-        {-1, 0.02, 10, 100 - 0.025, 0.025, 5},  {-1 - 0.02, 0.02, 10, 100, 0.025, 5},
+        {-0.98, 0.021, 10, 100.025, 0.025, 5},    {-0.98, 0.02, 10, 100.025, 0.026, 5},
+        {-0.98, 0.02, 10, 100.0250025, 0.025, 5}, {-0.98, 0.02, 10, 100 + 37 * 0.025, 0.025, 5},
+        {-0.98, 0.02, 10, 100 - 0.025, 0.025, 5}, {-1.02, 0.02, 10, 100.025, 0.025, 5},
     }; /* other steps; between rows; out by a row or a column */
     for (size_t k = 0; k < sizeof others / sizeof *others; k++) {
         parts[1] = others[k];

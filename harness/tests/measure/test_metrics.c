@@ -208,6 +208,40 @@ static void test_lobes_cut(void **state)
     for (int k = 0; k < SAMPLES; k++)
         power[k] = k + 1;
     check_undefined(measure(), "at its end");
+    for (int k = 0; k < SAMPLES; k++)
+        power[k] = SAMPLES - k;
+    check_undefined(metrics_of_power(power + MIDDLE, 100, 0, 1e-3, 0), "at its end");
+    for (int side = -1; side <= 1; side += 2) { /* a neighbour so near that the power between is above half */
+        memset(power, 0, sizeof power);
+        lobe_add(0, 1, 0.05);
+        lobe_add(side * 0.055, 0.95, 0.05);
+        check_undefined(measure(), "does not fall to half");
+    }
+    memset(power, 0, sizeof power);
+    lobe_add(0, 1, 1); /* of the sidelobes at +-1.43 m, only the left one is seen, in part */
+    m = metrics_of_power(power + MIDDLE - 1200, 2301, -1.2, 1e-3, 0);
+    assert_true(isnan(m.pslr_db[DEFINITION_NULL]));
+    assert_non_null(strstr(m.reason, "sidelobe is cut by the slice's end at -1.2 m"));
+}
+
+/* The main lobe of five pixels, and one at least to either side of it. */
+static void test_pixels_cut(void **state)
+{
+    (void)state;
+    static const struct {
+        int left, right; /* pixels beside the target's */
+        bool defined;
+    } cases[] = {{3, 3, true}, {2, 10, false}, {10, 2, false}, {3, 10, true}};
+    const int pixel = 40; /* samples */
+    memset(power, 0, sizeof power);
+    lobe_add(0, 1, 0.05);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const int first = MIDDLE - cases[k].left * pixel, last = MIDDLE + cases[k].right * pixel;
+        struct slice_metrics m =
+            metrics_of_power(power + first, last - first + 1, (first - MIDDLE) * 1e-3, 1e-3, pixel * 1e-3);
+        assert_int_equal(!isnan(m.islr_db[DEFINITION_PIXEL]), cases[k].defined);
+        assert_int_equal(strstr(m.reason, "no main lobe of 5 pixels") == NULL, cases[k].defined);
+    }
 }
 
 static void test_nothing_to_measure(void **state)
@@ -392,6 +426,7 @@ int main(void)
         cmocka_unit_test(test_sinc),
         cmocka_unit_test(test_several_peaks),
         cmocka_unit_test(test_lobes_cut),
+        cmocka_unit_test(test_pixels_cut),
         cmocka_unit_test(test_nothing_to_measure),
         cmocka_unit_test(test_undefined_slices),
         cmocka_unit_test(test_best_patch),
