@@ -60,8 +60,6 @@ static void cone_roots(const struct cone *cone, const struct pixel_line *line, d
 /* Add pixels [begin, end), which lie behind those there are. Only rounding can make a third span: it joins the second. */
 static int span_add(struct pair_span spans[2], int count, int begin, int end)
 {
-    if (begin >= end)
-        return count;
     if (count == 2 || (count == 1 && spans[0].end == begin)) {
         spans[count - 1].end = end;
         return count;
@@ -143,8 +141,6 @@ int record_spans(const struct acquisition *a, int ping, int receiver, const stru
     const double last = a->samples - 1;
     int begin = within.begin, end = within.end, count = 0;
     int low = begin, high = end - 1; /* the lowest q: where the slope turns */
-    if (begin >= end)
-        return 0;
     if (end - begin > 1 && profile_q(&profile, begin + 1) >= profile_q(&profile, begin))
         high = begin;
     else if (end - begin > 1 && profile_q(&profile, end - 2) >= profile_q(&profile, end - 1))

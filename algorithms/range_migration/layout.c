@@ -6,11 +6,10 @@
 
 #include "common/delay.h"
 #include "common/fft_length.h"
+#include "common/kaiser.h"
 #include "common/pulse_band.h"
 #include "range_migration/conditions.h"
 #include "range_migration/engine.h"
-
-static const double pi = 3.14159265358979323846;
 
 static const double TAPER_PERIODS = 8; /* of fs - B, or of B, in a cut's taper: what it smears stays beside the band */
 static const double PULSE_PERIODS = 8; /* of B: beside the rows, so that no pulse wraps around the cut */
@@ -266,8 +265,7 @@ static enum status lay_swaths(struct rma *rma)
     static enum status (*const steps[])(const struct rma *, struct rma_swath *) = {swath_azimuth, swath_range,
                                                                                    swath_patches};
     rma->taps = stolt_taps[rma->options.stolt];
-    double support = rma->taps * (1 - 0.5 / RMA_OVERSAMPLING); /* the parameter of least error for this support */
-    rma->shape = pi * sqrt(fmax(support * support - 0.8, 1));
+    rma->shape = kaiser_shape(rma->taps, RMA_OVERSAMPLING);
     rma->block_list = malloc((size_t)rma->block_count * (size_t)rma->swath_count * sizeof *rma->block_list);
     if (!rma->block_list)
         return status_set(STATUS_FAILED, "no memory for %d blocks", rma->block_count);

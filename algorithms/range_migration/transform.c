@@ -4,8 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/bessel.h"
-#include "common/fft_length.h"
+#include "common/kaiser.h"
 #include "common/real.h"
 #include "range_migration/engine.h"
 
@@ -60,13 +59,9 @@ static void kernel_fill(const struct rma *rma)
 {
     real *kernel = rma->kernel;
     int taps = rma->taps;
-    double shape = rma->shape;
     for (int i = 0; taps && i < RMA_INTERVALS + 2; i++)
-        for (int k = 0; k < taps; k++) {
-            double z = 2 * ((double)i / RMA_INTERVALS - (1 - taps / 2 + k)) / taps, inside = sqrt(fmax(1 - z * z, 0));
-            kernel[i * taps + k] =
-                (real)(fabs(z) <= 1 ? bessel_i0_scaled(shape * inside) * exp(shape * (inside - 1)) : 0);
-        }
+        for (int k = 0; k < taps; k++)
+            kernel[i * taps + k] = (real)kaiser_value(taps, rma->shape, (double)i / RMA_INTERVALS - (1 - taps / 2 + k));
 }
 
 /* What samples are multiplied by so that the kernel neither weights nor blurs them, 1 over its transform; held where
@@ -75,11 +70,9 @@ static void apodization_fill(const struct rma *rma, const struct rma_swath *swat
 {
     real *apodization = swath->apodization;
     int taps = rma->taps, length = swath->stolt_length;
-    double shape = rma->shape;
     for (int j = 0; j < length; j++) {
         double place = fmin(fabs((double)(j < length - length / 2 ? j : j - length) / length), 0.5 / RMA_OVERSAMPLING);
-        double x = sqrt(fmax(shape * shape - pi * pi * taps * taps * place * place, 1e-12));
-        double transform = taps ? taps * exp(-shape) * sinh(x) / x : 1;
+        double transform = taps ? kaiser_transform(taps, rma->shape, place) : 1;
         apodization[j] = (real)(1 / (transform * (rma->delay ? 1 : swath->length)));
     }
 }
