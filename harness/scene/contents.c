@@ -28,19 +28,13 @@ static enum status acquisition_fill(struct reading *reading)
     }
     for (int p = 0; p < a->pings; p++) {
         a->t0[p] = reading->first_sample / a->fs + reading->time_offset_s;
-        a->tx[p].x = reading->x_first_m + reading->x_offset_m
-                     + (reading->spacing_m != 0 ? p * reading->spacing_m : p * reading->speed_m_s * reading->pri_s);
-        a->velocity[p].x = reading->speed_m_s;
-        for (int m = 0; m < a->receivers; m++) {
-            a->rx[(size_t)p * (size_t)a->receivers + (size_t)m].x =
-                a->tx[p].x + reading->first_offset_m + m * reading->pitch_m;
-        }
     }
     a->echo_squint = reading->squint_deg * M_PI / 180;
     a->area.x += a->area.half_x > 0 ? reading->x_offset_m : 0;
     a->echo_sine = beam_sine(scene);
     a->echo_tapers = scene->beam.kind == BEAM_TXRX;
-    return acquisition_check(a, reading->path);
+    status = track_fill(reading);
+    return status == STATUS_OK ? acquisition_check(a, reading->path) : status;
 }
 
 /* Uniform positions and complex normal amplitudes with E|a|^2 = 1. The order of the draws (x, r, amplitude) is part
@@ -98,6 +92,9 @@ static enum status targets_fill(struct reading *reading)
 enum status scene_fill(struct reading *reading, config_setting_t *root)
 {
     enum status status = groups_read(reading, root);
+    if (status == STATUS_OK && !*reading->echoes) {
+        status = track_read(reading);
+    }
     if (status == STATUS_OK) {
         status = keys_check(reading);
     }

@@ -75,6 +75,9 @@ static enum status check_sizes(const struct reading *reading)
 /* Pings and receivers must stay where coordinates may be. */
 static enum status check_places(const struct reading *reading)
 {
+    if (reading->poses) {
+        return STATUS_OK; /* measured, and checked as they were read */
+    }
     const struct acquisition *a = &reading->scene.acquisition;
     double last_offset = reading->first_offset_m + (a->receivers - 1) * reading->pitch_m;
     double spacing = reading->spacing_m != 0 ? reading->spacing_m : reading->speed_m_s * reading->pri_s;

@@ -134,6 +134,7 @@ const struct type LATER_REAL = {"a number", read_real, sizeof(double), true};
 const struct type INTEGER = {"an integer", read_integer, sizeof(int), false};
 const struct type SEED = {"an integer", read_seed, sizeof(uint64_t), false};
 const struct type BOOLEAN = {"true or false", read_boolean, sizeof(bool), false};
+const struct type LATER_BOOLEAN = {"true or false", read_boolean, sizeof(bool), true};
 const struct type CHOICE = {"one of", read_choice, sizeof(int), false};
 const struct type TEXT = {"a text of one line", read_text, 0, false};
 const struct type SPAN = {"[min, max] with min <= max, each", read_span, 2 * sizeof(double), false};

@@ -27,7 +27,8 @@ struct type {
     bool later;   /* a type of keys that scenes did not have at first: only where one is given does it enter the hash */
 };
 
-extern const struct type REAL, LATER_REAL, INTEGER, SEED, BOOLEAN, CHOICE, TEXT, SPAN, AMPLITUDE, LEVEL, GROUP, LIST;
+extern const struct type REAL, LATER_REAL, INTEGER, SEED, BOOLEAN, LATER_BOOLEAN, CHOICE, TEXT, SPAN, AMPLITUDE, LEVEL,
+    GROUP, LIST;
 
 /* What a key accepts, in words, at the end of a text. */
 void key_accepted_append(char *text, size_t size, const struct key *key);

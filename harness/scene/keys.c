@@ -11,6 +11,7 @@
 
 static const char *const pulse_names[] = {"lfm", "lfm_time", "flat", NULL};            /* enum pulse_kind */
 static const char *const beam_names[] = {"rect", "txrx", NULL};                        /* enum beam_kind */
+static const char *const motion_names[] = {"sway", "surge", "heave", "yaw", NULL};     /* enum motion_axis */
 const char *const truncation_names[] = {"none", "tx", "mid", "doppler", "sine", NULL}; /* enum truncation_kind */
 
 #define ANY             -DBL_MAX, DBL_MAX
@@ -46,11 +47,20 @@ static const struct key keys[] = {
     {"array", "receivers", "", &INTEGER, AT(reading, scene.acquisition.receivers), REQUIRED, 1, INT_MAX, NULL},
     {"array", "first_offset", "m", &REAL, AT(reading, first_offset_m), 0, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
     {"array", "pitch", "m", &REAL, AT(reading, pitch_m), 0, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
-    {"track", "speed", "m/s", &REAL, AT(reading, speed_m_s), REQUIRED, ANY, NULL},
+    {"track", "speed", "m/s", &REAL, AT(reading, speed_m_s), 0, ANY, NULL},
     {"track", "pri", "s", &REAL, AT(reading, pri_s), REQUIRED, POSITIVE, NULL},
     {"track", "spacing", "m", &LATER_REAL, AT(reading, spacing_m), 0, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
-    {"track", "pings", "", &INTEGER, AT(reading, scene.acquisition.pings), REQUIRED, 1, INT_MAX, NULL},
+    {"track", "pings", "", &INTEGER, AT(reading, scene.acquisition.pings), 0, 1, INT_MAX, NULL},
     {"track", "x_first", "m", &REAL, AT(reading, x_first_m), 0, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
+    {"track", "file", "", &TEXT, AT(reading, track_file), 0, 0, 0, NULL},
+    {"track", "errors", "", &LIST, AT(reading, motion), 0, 0, 0, NULL},
+    {"track", "errors_known", "", &LATER_BOOLEAN, AT(reading, errors_known), false, 0, 0, NULL},
+    {"track.errors", "axis", "", &CHOICE, AT(motion_keys, axis), 0, 0, 0, motion_names},
+    {"track.errors", "amplitude", "m, or degrees of yaw", &REAL, AT(motion_keys, amplitude), 0, -1e6, 1e6, NULL},
+    {"track.errors", "period", "s", &REAL, AT(motion_keys, period_s), 0, POSITIVE, NULL},
+    {"track.errors", "phase", "degrees", &REAL, AT(motion_keys, phase_deg), 0, -360, 360, NULL},
+    {"track.errors", "walk", "m, or degrees of yaw", &REAL, AT(motion_keys, walk), 0, ABOVE_0, 1e6, NULL},
+    {"track.errors", "seed", "", &SEED, AT(motion_keys, seed), 0, 0, SEED_MAX, NULL},
     {"record", "first_sample", "", &INTEGER, AT(reading, first_sample), REQUIRED, INT_MIN, INT_MAX, NULL},
     {"record", "time_offset", "s", &LATER_REAL, AT(reading, time_offset_s), 0, ANY, NULL},
     {"record", "samples", "", &INTEGER, AT(reading, scene.acquisition.samples), REQUIRED, 2, INT_MAX, NULL},

@@ -19,6 +19,10 @@ struct reading {
     struct scene scene;
     const char *description, *echoes; /* belong to libconfig; echoes "": the scene is simulated */
     config_setting_t *root;
+    const char *track_file; /* belongs to libconfig; "": the track is even */
+    config_setting_t *motion;
+    bool errors_known, measured_velocity;
+    struct pose *poses; /* [pings] malloc'ed; NULL until they are made */
     config_setting_t *base, *sonar, *pulse, *array, *track, *record, *beam, *area, *targets, *noise, *image;
     double first_offset_m, pitch_m;
     double speed_m_s, pri_s, spacing_m, x_first_m; /* spacing 0: that of speed and pri */
@@ -28,6 +32,18 @@ struct reading {
     double time_offset_s; /* added to the time of each record's first sample */
     config_setting_t *points, *fields;
     config_setting_t *x, *r, *reference, *around_targets, *patches;
+};
+
+/* Where the platform is at a ping. */
+struct pose {
+    struct vector tx, velocity; /* m, m/s */
+    double yaw;                 /* rad, of the receivers about the transmitter, towards +r */
+};
+
+struct motion_keys {
+    int axis; /* index of motion_names */
+    double amplitude, period_s, phase_deg, walk;
+    uint64_t seed;
 };
 
 struct scatter_field {

@@ -56,14 +56,14 @@ static enum status recording_read(const char *path, struct scene *scene)
     return status;
 }
 
-/* A name without a leading slash counts from the folder of the file that says it. */
-static char *path_from(const char *scene_path, const char *name)
+char *path_beside(const struct reading *reading, const config_setting_t *setting, const char *name)
 {
-    const char *slash = *name == '/' ? NULL : strrchr(scene_path, '/');
-    const size_t folder = slash ? (size_t)(slash - scene_path) + 1 : 0;
+    const char *from = line_path(reading, config_setting_source_line(setting));
+    const char *slash = *name == '/' ? NULL : strrchr(from, '/');
+    const size_t folder = slash ? (size_t)(slash - from) + 1 : 0;
     char *path = malloc(folder + strlen(name) + 1);
     if (path) {
-        memcpy(path, scene_path, folder);
+        memcpy(path, from, folder);
         strcpy(path + folder, name);
     }
     return path;
@@ -72,10 +72,10 @@ static char *path_from(const char *scene_path, const char *name)
 enum status recorded_fill(struct reading *reading)
 {
     struct scene *scene = &reading->scene;
-    const unsigned line = config_setting_source_line(key_member(reading->root, "echoes"));
+    const config_setting_t *setting = key_member(reading->root, "echoes");
     const double aperture_limit = scene->acquisition.aperture_limit;
     const struct target_area area = scene->acquisition.area;
-    char *path = path_from(line_path(reading, line), reading->echoes);
+    char *path = path_beside(reading, setting, reading->echoes);
     if (!path) {
         return scene_out_of_memory(reading);
     }
@@ -84,7 +84,7 @@ enum status recorded_fill(struct reading *reading)
     if (status != STATUS_OK) {
         char place[320], message[600];
         snprintf(message, sizeof message, "%s", status_message());
-        place_format(reading, line, place, sizeof place);
+        place_format(reading, config_setting_source_line(setting), place, sizeof place);
         return status_set(status, "%s: key 'echoes': %s", place, message);
     }
     if (isfinite(aperture_limit)) {

@@ -31,6 +31,7 @@ static enum status file_read(struct reading *reading, const char *scene_director
                             place, config_error_text(&config));
     }
     config_destroy(&config);
+    free(reading->poses);
     scene_text_free(&reading->text);
     return status;
 }
@@ -93,6 +94,10 @@ void scene_free(struct scene *scene)
 {
     acquisition_free(&scene->acquisition);
     free(scene->recorded);
+    if (scene->flown) {
+        acquisition_free(scene->flown);
+        free(scene->flown);
+    }
     free(scene->name);
     free(scene->path);
     free(scene->description);

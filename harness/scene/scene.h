@@ -36,6 +36,8 @@ struct scene {
     char *description; /* one line, from the file */
     uint64_t hash;     /* FNV-1a of the content after @include: the same text measures the same thing */
     struct acquisition acquisition;
+    struct acquisition
+        *flown; /* where the platform truly was; NULL: where `acquisition`, which the imager knows, says */
     double complex *recorded;   /* [pings][receivers][samples] of an echo file; NULL: pulse, beam, targets and noise say
                                    what is simulated */
     enum pulse_kind pulse_kind; /* flat: the echoes are compressed */

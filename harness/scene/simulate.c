@@ -275,6 +275,14 @@ static int amplitude_exponent(const struct scene *scene)
 
 enum status scene_simulate(const struct scene *scene, struct echoes *echoes)
 {
+    if (scene->flown) {
+        struct scene moved = *scene;
+        moved.acquisition = *scene->flown;
+        moved.flown = NULL;
+        enum status simulated = scene_simulate(&moved, echoes);
+        echoes->acquisition = &scene->acquisition;
+        return simulated;
+    }
     const struct acquisition *a = &scene->acquisition;
     struct replica replica;
     enum status status = check_memory(scene);

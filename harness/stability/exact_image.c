@@ -38,6 +38,8 @@ const char *exact_ideal_excludes(const struct scene *scene)
 {
     if (scene->recorded)
         return "recorded echoes";
+    if (scene->flown)
+        return "motion that the imager does not know";
     if (scene->pulse_kind != PULSE_FLAT)
         return "raw echoes";
     if (scene->noise_std > 0)
