@@ -12,6 +12,7 @@
 #include "range_migration/engine.h"
 
 static const double TAPER_PERIODS = 8; /* of fs - B, or of B, in a cut's taper: what it smears stays beside the band */
+static const double OUTSIDE_MOST = 2;  /* of the record's length: rows outside it */
 static const double PULSE_PERIODS = 8; /* of B: beside the rows, so that no pulse wraps around the cut */
 static const double EVEN = 1e-12;      /* relative: columns that divide the period but for rounding */
 static const int stolt_taps[] = {0, 4, 6, 8, 12, 16};
@@ -205,13 +206,18 @@ static enum status swath_range(const struct rma *rma, struct rma_swath *swath)
     double first, last, c = rma->setting.sound_speed, end = rma->samples - 1, margin = 2 * rma->taper;
     delays_span(rma, swath->nearest, swath->farthest, &first, &last);
     double pulse = fmin(PULSE_PERIODS * rma->fs / rma->problem.acquisition->bandwidth, rma->samples);
-    double before = fmax(0, -first), after = fmax(0, last - end);
-    if (!(before + after <= 2.0 * rma->samples))
-        return status_set(STATUS_UNSUPPORTED, "%s: rows from %g to %g m lie too far outside the record's %g to %g m",
+    double before = fmax(0, -first), after = fmax(0, (2 * swath->farthest / c - rma->t0) * rma->fs - end);
+    if (!(before + after <= OUTSIDE_MOST * rma->samples))
+        return status_set(STATUS_UNSUPPORTED,
+                          "%s: condition in_record: how far rows from %g to %g m lie outside the record's %g to %g m, "
+                          "over its length, is %.3g; at most %g is needed (cure: longer records, or rows nearer to "
+                          "them)",
                           rma->method.name, swath->nearest, swath->farthest, c * rma->t0 / 2,
-                          c * (rma->t0 + end / rma->fs) / 2);
+                          c * (rma->t0 + end / rma->fs) / 2, (before + after) / rma->samples, OUTSIDE_MOST);
     double from = floor(fmin(first - pulse, fmax(first - margin, 0)));
     double to = ceil(fmax(last + pulse, fmin(last + margin, end)));
+    if (!(to - from < INT_MAX / 64))
+        return unsupported(rma, "the range transform is too long");
     swath->first = (int)from;
     swath->begin = (int)fmin(fmax(from, 0), end);
     swath->end = (int)fmin(fmax(to, 0), end) + 1;

@@ -228,6 +228,24 @@ static void refusals_of_the_plan_are_told(void **state)
     scene_free(&scene);
 }
 
+/* Rows of which the record holds the nearest. */
+static void rows_beyond_the_record_are_refused(void **state)
+{
+    (void)state;
+    struct scene scene = scene_of(&(struct parts){
+        .record = "first_sample = 240; samples = 40;",
+        .image = "x = { first = -0.1; step = 0.02; count = 11; }; r = { first = 6.5; step = 0.1; count = 35; };"});
+    bool refused;
+    char *printed = checked(&scene, "rma_numeric", &refused);
+    if (!refused
+        || !strstr(printed,
+                   "condition in_record: how far rows from 6.5 to 9.9 m lie outside the record's 6 to 6.975 m"))
+        fputs(printed, stderr);
+    assert_true(refused && strstr(printed, "is 2.92; at most 2 is needed"));
+    free(printed);
+    scene_free(&scene);
+}
+
 /* Broadside and slow, the phase is 4 pi fc r/c: so is what it changes by. */
 static void sensitivities_are_those_of_the_delay(void **state)
 {
@@ -254,6 +272,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(exactly_the_violated_condition_is_named, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(delays_are_those_of_what_is_seen, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(refusals_of_the_plan_are_told, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(rows_beyond_the_record_are_refused, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(sensitivities_are_those_of_the_delay, folder_make, folder_remove),
     };
     return cmocka_run_group_tests_name("check", tests, NULL, NULL);
