@@ -245,6 +245,17 @@ struct vector acquisition_heading(const struct acquisition *acquisition, int pin
     return (struct vector){heading.x / length, heading.y / length, heading.z / length};
 }
 
+struct vector acquisition_normal(const struct acquisition *acquisition, int ping)
+{
+    const struct vector heading = acquisition_heading(acquisition, ping);
+    const double squint = acquisition->echo_squint;
+    if (squint == 0) {
+        return heading;
+    }
+    const double way = heading.x < 0 ? -1 : 1;
+    return vector_turn((struct vector){way * heading.x, way * heading.y, way * heading.z}, cos(squint), -sin(squint));
+}
+
 /* The evenly spaced points nearest to the transmitters in x: the line through both ends, plus the least-squares line
    of what is left, so that an exactly even track keeps its full precision. */
 static struct straight_track fit_even_spacing(const struct acquisition *a)

@@ -56,8 +56,12 @@ enum status acquisition_check(const struct acquisition *acquisition, const char 
 enum status acquisition_turn(const struct acquisition *acquisition, double angle, struct acquisition *out);
 
 /* Unit vector along the track at ping p: the difference of the neighbouring transmitter positions; the velocity's
-   direction for a single ping; +x where both vanish. theta_t is measured from the plane normal to it. */
+   direction for a single ping; +x where both vanish. */
 struct vector acquisition_heading(const struct acquisition *acquisition, int ping);
+
+/* Unit vector normal to the plane that theta_t of ping p counts from: the heading, turned by the squint where the beam has one,
+   so that the plane holds the beam's axis (r > 0). A squint points towards +x whichever way the track runs. */
+struct vector acquisition_normal(const struct acquisition *acquisition, int ping);
 
 /* A uniform straight track: tx(p).x = x_first + p spacing, rx(p, m).x - tx(p).x = offset(m), y = z = 0, one velocity
    (speed, 0, 0) and one t0, all within lambda/1000 (offset(m) is read from the first ping). */

@@ -14,6 +14,7 @@ static const double pi = 3.14159265358979323846;
 
 /* The beam of echoes that do not say theirs: where the transmitter's power is half of that broadside, in lambda/D. */
 static const double LOBE = 0.443;
+static const double LOBES = 3; /* of a beam that tapers are followed this far, in nulls */
 
 bool condition_holds(const struct condition *condition)
 {
@@ -26,15 +27,28 @@ void condition_message(const struct condition *condition, char *text, size_t siz
              condition->value, condition->at_least ? "more than" : "at most", condition->limit, condition->cure);
 }
 
+/* The number of the first that refuses; count if none does. */
+static int first_refusal(const struct condition *list, int count)
+{
+    int k = 0;
+    while (k < count && (list[k].severity != SEVERITY_REFUSE || condition_holds(&list[k])))
+        k++;
+    return k;
+}
+
+bool conditions_accept(const struct condition *list, int count)
+{
+    return first_refusal(list, count) == count;
+}
+
 enum status conditions_check(const char *name, const struct condition *list, int count)
 {
     char text[400];
-    for (int k = 0; k < count; k++)
-        if (list[k].severity == SEVERITY_REFUSE && !condition_holds(&list[k])) {
-            condition_message(&list[k], text, sizeof text);
-            return status_set(STATUS_UNSUPPORTED, "%s: %s", name, text);
-        }
-    return STATUS_OK;
+    int k = first_refusal(list, count);
+    if (k == count)
+        return STATUS_OK;
+    condition_message(&list[k], text, sizeof text);
+    return status_set(STATUS_UNSUPPORTED, "%s: %s", name, text);
 }
 
 double condition_sinc(double z)
@@ -60,6 +74,20 @@ double condition_beam_sine(const struct acquisition *a)
     if (!(a->echo_sine > 0) && a->tx_length > 0)
         sine = LOBE * a->sound_speed / a->fc / a->tx_length;
     return a->echo_tapers ? fmin(sine, quarter_sine(a)) : sine;
+}
+
+double condition_seen_sine(const struct acquisition *a)
+{
+    return a->echo_tapers ? fmin(a->echo_sine, LOBES * a->sound_speed / a->fc / a->tx_length) : condition_beam_sine(a);
+}
+
+double condition_amplitude(const struct acquisition *a, double r, double u)
+{
+    double along = u * cos(a->echo_squint) + r * sin(a->echo_squint), sine = along / hypot(u, r);
+    double turns = sine * a->fc / a->sound_speed;
+    if (!(fabs(sine) <= condition_seen_sine(a)))
+        return 0;
+    return a->echo_tapers ? condition_sinc(a->tx_length * turns) * condition_sinc(a->rx_length * turns) : 1;
 }
 
 double condition_offset(const struct acquisition *a, int n)

@@ -31,6 +31,8 @@ enum { CONDITIONS_MAX = 24 }; /* of one algorithm */
 bool condition_holds(const struct condition *condition);
 /* "condition NAME: MEANING is VALUE; at most LIMIT is needed (cure: CURE)". */
 void condition_message(const struct condition *condition, char *text, size_t size);
+/* Does none of `list` refuse? */
+bool conditions_accept(const struct condition *list, int count);
 /* STATUS_UNSUPPORTED with the message of the first of `list` that refuses and does not hold; `name` is the algorithm's. */
 enum status conditions_check(const char *name, const struct condition *list, int count);
 
@@ -48,6 +50,11 @@ double condition_offset(const struct acquisition *acquisition, int n);
 /* |sin theta_t| up to which the echoes count: their stated truncation, where both elements' amplitude falls to a quarter, or the
    half-power beam of a transmitter of known length; INFINITY where nothing is known. */
 double condition_beam_sine(const struct acquisition *acquisition);
+/* |sin theta_t| up to which anything is seen at all: condition_beam_sine, but three nulls of a beam that tapers. */
+double condition_seen_sine(const struct acquisition *acquisition);
+/* Amplitude of the echo of a unit target r m beside a straight track along x, the transmitter u m ahead of it: 1 inside the
+   beam, or both elements' sinc where the echoes taper; 0 where it is not seen. */
+double condition_amplitude(const struct acquisition *acquisition, double r, double u);
 /* sin(pi z)/(pi z) */
 double condition_sinc(double z);
 

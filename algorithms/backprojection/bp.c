@@ -169,39 +169,6 @@ static enum status engine_plan(struct bp *bp, const struct bp_options *options)
     return status;
 }
 
-/* Where grids are turned, everything else is turned back instead: delays and angles stay what they are. */
-static enum status turn_back(struct bp *bp)
-{
-    const int count = bp->problem.patch_count;
-    const double angle = bp->problem.patches[0].angle_rad;
-    bool turned = false;
-    for (int k = 0; k < count; k++) {
-        if (bp->problem.patches[k].angle_rad != angle)
-            return status_set(STATUS_UNSUPPORTED, "patches lie in different axes, turned by %g and %g rad", angle,
-                              bp->problem.patches[k].angle_rad);
-        turned = angle != 0;
-    }
-    if (!turned)
-        return STATUS_OK;
-    bp->patches = malloc((size_t)count * sizeof *bp->patches);
-    enum status status = bp->patches ? acquisition_turn(bp->problem.acquisition, angle, &bp->turned)
-                                     : status_set(STATUS_FAILED, "no memory for %d patches", count);
-    for (int k = 0; status == STATUS_OK && k < count; k++) {
-        bp->patches[k] = bp->problem.patches[k];
-        bp->patches[k].angle_rad = 0;
-    }
-    if (status == STATUS_OK) {
-        bp->problem.acquisition = &bp->turned;
-        bp->problem.patches = bp->patches;
-        const struct acquisition *a = &bp->turned;
-        size_t vectors = (size_t)a->pings * (2 + (size_t)a->receivers) * sizeof *a->tx;
-        bp->work.bytes +=
-            (double)(sizeof *bp - offsetof(struct bp, turned) + (size_t)count * sizeof *bp->patches + vectors
-                     + (size_t)a->pings * sizeof *a->t0 + (size_t)a->pulse_length * sizeof *a->pulse);
-    }
-    return status;
-}
-
 enum status bp_plan(const struct problem *problem, const struct interpolator *interpolator, const void *options,
                     void **plan)
 {
@@ -216,7 +183,7 @@ enum status bp_plan(const struct problem *problem, const struct interpolator *in
     bp->problem = *problem;
     bp->medium = (struct bp_medium){a->sound_speed, a->fc, a->fs, a->samples, 0};
     bp->work.bytes = offsetof(struct bp, turned); /* the rest is for turned grids alone, counted there */
-    enum status status = turn_back(bp);
+    enum status status = problem_turn_back(&bp->problem, &bp->turned, &bp->work.bytes);
     if (status == STATUS_OK)
         status = tabulate(bp, interpolator, options);
     if (status == STATUS_OK)
@@ -261,7 +228,6 @@ void bp_destroy(void *plan)
         return;
     engine_discard(bp);
     free(bp->weights);
-    free(bp->patches);
-    acquisition_free(&bp->turned);
+    turned_free(&bp->turned);
     free(bp);
 }

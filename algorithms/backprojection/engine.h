@@ -6,6 +6,7 @@
 #include "backprojection/reading.h"
 #include "common/isa.h"
 #include "backprojection/traces.h"
+#include "backprojection/turned.h"
 
 struct bp {
     struct problem problem;
@@ -17,9 +18,7 @@ struct bp {
     const struct bp_engine *engine;
     void *state; /* the engine's own */
     struct work work;
-    struct acquisition
-        turned;           /* seen from the axes of turned grids, whose pixels then lie in rows and columns; else zero */
-    struct grid *patches; /* those grids, not turned; else NULL */
+    struct turned_problem turned; /* what `problem` points to where grids are turned */
 };
 
 /* One way of doing the sums. */

@@ -23,15 +23,15 @@ struct vector line_pixel(const struct pixel_line *line, int i)
     return (struct vector){line->x_first + i * line->x_step, line->r_first + i * line->r_step, 0};
 }
 
-/* The double cone |sin theta_t| <= limit about the heading, its apex the transmitter at emission. */
+/* The double cone |sin theta_t| <= limit about a normal, its apex the transmitter at emission. */
 struct cone {
-    struct vector tx, heading;
+    struct vector tx, normal;
     double limit;
 };
 
 static bool inside_cone(const struct cone *cone, const struct pixel_line *line, int i)
 {
-    const struct vector p = line_pixel(line, i), tx = cone->tx, h = cone->heading;
+    const struct vector p = line_pixel(line, i), tx = cone->tx, h = cone->normal;
     double dx = p.x - tx.x, dy = p.y - tx.y, dz = p.z - tx.z;
     double distance = sqrt(dx * dx + dy * dy + dz * dz);
     return fabs(dx * h.x + dy * h.y + dz * h.z) <= cone->limit * distance
@@ -43,7 +43,7 @@ static bool inside_cone(const struct cone *cone, const struct pixel_line *line, 
 static void cone_roots(const struct cone *cone, const struct pixel_line *line, double root[2])
 {
     const bool along_x = line->x_step > 0;
-    const struct vector tx = cone->tx, h = cone->heading;
+    const struct vector tx = cone->tx, h = cone->normal;
     const double dx = line->x_first - tx.x, dy = line->r_first - tx.y, across = along_x ? dy : dx;
     const double slope = along_x ? h.x : h.y, along = across * (along_x ? h.y : h.x) - tx.z * h.z;
     const double step = along_x ? line->x_step : line->r_step, foot = -(along_x ? dx : dy) / step;
@@ -182,7 +182,7 @@ double pairs_count(const struct problem *problem)
             struct pixel_line line = grid_line(grid, along_x, n);
             for (int p = 0; p < a->pings; p++) {
                 struct pair_span aperture[2], record[2];
-                int count = pair_spans(a, p, acquisition_heading(a, p), &line, aperture);
+                int count = pair_spans(a, p, acquisition_normal(a, p), &line, aperture);
                 for (int m = 0; m < a->receivers; m++)
                     for (int s = 0; s < count; s++) {
                         int parts = record_spans(a, p, m, &line, aperture[s], record);

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "range_migration/delay.h"
+#include "range_migration/ghosts.h"
 #include "range_migration/prediction.h"
 
 static const double pi = 3.14159265358979323846;
@@ -21,6 +22,14 @@ static double offset_at(const struct rma_view *view, int n)
     return condition_offset(view->problem->acquisition, n);
 }
 
+double rma_widest_sine(const struct acquisition *a)
+{
+    double lowest = fmax(a->fc - a->bandwidth / 2, 1e-9 * a->fc);
+    if (!(a->tx_length > 0))
+        return WIDEST_SINE;
+    return fmin(WIDEST_SINE, fmax(a->sound_speed / lowest / a->tx_length, a->echo_tapers ? 0 : a->echo_sine));
+}
+
 static struct rma_bounds bounds_of(const struct rma_view *view)
 {
     struct rma_bounds bounds = {0};
@@ -29,10 +38,8 @@ static struct rma_bounds bounds_of(const struct rma_view *view)
     double lowest = fmax(a->fc - a->bandwidth / 2, 1e-9 * a->fc), farthest = 0;
     bounds.aside = fmax(fabs(offset_at(view, 0)), fabs(offset_at(view, 2)));
     /* nu of the full rate, as an angle at the lowest frequency of the pulse. */
-    bounds.sine = fmin(WIDEST_SINE, a->sound_speed * a->receivers / view->spacing / 4 / lowest);
-    if (a->tx_length > 0)
-        bounds.sine =
-            fmin(bounds.sine, fmax(a->sound_speed / lowest / a->tx_length, a->echo_tapers ? 0 : a->echo_sine));
+    bounds.sine = a->sound_speed * a->receivers / view->spacing / 4 / lowest;
+    bounds.sine = fmin(bounds.sine, rma_widest_sine(a));
     for (int k = 0; k < view->problem->patch_count; k++) {
         const struct grid *g = &view->problem->patches[k];
         double last = g->x_first + (g->x_count - 1) * g->x_step;
@@ -237,14 +244,16 @@ bool azimuth_requirements(const struct problem *problem, struct condition *list,
     list[(*count)++] = (struct condition){
         "pings",          a->pings, 1, true, SEVERITY_REFUSE, "the number of pings (one has no azimuth spectrum)",
         "back projection"};
+    /* A limit at the edge of the echoes' own beam leaves out nothing but pairs without an echo of the pixel. */
+    double whole = fmin(1, a->echo_sine > 0 ? a->echo_sine : 1);
     list[(*count)++] = (struct condition){"whole_aperture",
                                           a->aperture_limit,
-                                          nextafter(1, 0),
+                                          nextafter(whole, 0),
                                           true,
                                           SEVERITY_REFUSE,
                                           "the scene's aperture_limit (a sine; an azimuth transform cannot choose "
                                           "pings pixel by pixel)",
-                                          "back projection, or a scene without aperture_limit"};
+                                          "back projection, or a limit that the echoes' beam lies within"};
     list[(*count)++] = (struct condition){
         "in_front", nearest, 0, true, SEVERITY_REFUSE, "the range r of the nearest pixel (m)", "pixels at r > 0"};
     for (; first < list + *count; first++)
@@ -307,6 +316,8 @@ int rma_conditions(const struct problem *problem, const struct rma_method *metho
             count = prediction_conditions(&view, &track, all, count);
         if (method->terms > 0)
             count = delay_conditions(&view, all, count);
+        if (conditions_accept(all, count))
+            all[count++] = ghosts_condition(problem, &track);
     }
     for (int k = 0; k < count && k < room; k++)
         list[k] = all[k];

@@ -21,6 +21,10 @@ struct rma_view {
 struct rma_view rma_view_of(const struct problem *problem, const struct rma_method *method,
                             const struct straight_track *track);
 
+/* |sin theta_t|, off the beam's axis, up to which azimuth transforms follow echoes: the transmitter's first null at the lowest
+   frequency, or the stated end of echoes that do not taper. */
+double rma_widest_sine(const struct acquisition *acquisition);
+
 /* The transmitter's places that echo a row at range r of a patch, from its columns: [*low, *high] m ahead of the pixel.
    False where there are none. */
 bool rma_view_aperture(const struct rma_view *view, const struct grid *patch, double r, double *low, double *high);

@@ -40,7 +40,6 @@ static const double abscissas[FREQUENCIES] = {-0.7745966692414834, 0, 0.77459666
 static const double weights[FREQUENCIES] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
 static const double FRESNEL_ZONES = 6; /* beside the places asked for, over which the kernel tapers */
 static const double SPARE = 1.1;       /* of the tables' period, so that fading ends do not overlap */
-static const double LOBES = 3;         /* of a beam that tapers are followed this far, in nulls */
 static const double NEAR = 4;          /* resolutions: what is near a target */
 static const double DEEP = 0.05;       /* of their range: patches whose first and last row are looked at both */
 
@@ -171,23 +170,6 @@ static const double complex *kernel_error(const struct kernel *kernel, double d,
     return &kernel->error[((size_t)table * (size_t)kernel->length + (size_t)place) * FREQUENCIES];
 }
 
-/* |sin theta_t| up to which anything is seen. */
-static double seen_sine(const struct rma_view *view)
-{
-    const struct acquisition *a = view->problem->acquisition;
-    return a->echo_tapers ? fmin(a->echo_sine, LOBES * a->sound_speed / a->fc / a->tx_length) : view->beam_sine;
-}
-
-/* Amplitude of the echo of a target at range r, the transmitter u ahead of it. */
-static double amplitude(const struct rma_view *view, double r, double u)
-{
-    const struct acquisition *a = view->problem->acquisition;
-    double sine = u / hypot(u, r), turns = sine * a->fc / a->sound_speed;
-    if (!(fabs(sine) <= seen_sine(view)))
-        return 0;
-    return a->echo_tapers ? condition_sinc(a->tx_length * turns) * condition_sinc(a->rx_length * turns) : 1;
-}
-
 /* Energies of an image and of its error. */
 struct energies {
     double image, error;
@@ -207,7 +189,9 @@ static void pixel_add(const struct kernel *kernel, const struct target *target, 
     const int receivers = a->receivers < RECEIVERS ? a->receivers : RECEIVERS;
     double complex image = 0, errors[FREQUENCIES] = {0};
     for (int p = target->first; p < target->first + target->count; p += target->every) {
-        double u = a->tx[p].x - target->x, at = a->tx[p].x - x, seen = amplitude(view, kernel->r, u);
+        double u = a->tx[p].x - target->x, at = a->tx[p].x - x, seen = condition_amplitude(a, kernel->r, u);
+        /* What back projection leaves out, range migration images all the same: its whole kernel is error. */
+        bool summed = !(fabs(at) > a->aperture_limit * hypot(at, kernel->r));
         for (int k = 0; k < receivers && seen != 0; k++) {
             double d = offset_of(view, receiver_of(view, k, receivers));
             const double complex *error = kernel_error(kernel, d, at);
@@ -218,9 +202,9 @@ static void pixel_add(const struct kernel *kernel, const struct target *target, 
             double cycles = a->fc * late;
             double complex pair =
                 seen * condition_sinc(a->bandwidth * late) * cexp(2 * I * pi * (cycles - floor(cycles)));
-            image += pair;
+            image += summed ? pair : 0;
             for (int n = 0; n < FREQUENCIES; n++)
-                errors[n] += pair * error[n];
+                errors[n] += pair * (summed ? error[n] : error[n] + 1);
         }
     }
     energies->image += weight * creal(image * conj(image));
@@ -236,7 +220,7 @@ static void slice_add(const struct kernel *kernel, const struct grid *patch, dou
     const double width = (patch->x_count - 1) * patch->x_step, wavelength = a->sound_speed / a->fc;
     struct target target = {x, 0, 0, 1};
     for (int p = a->pings - 1; p >= 0; p--)
-        if (amplitude(view, kernel->r, a->tx[p].x - x) != 0) {
+        if (condition_amplitude(a, kernel->r, a->tx[p].x - x) != 0) {
             target.count = target.count > 0 ? target.count + target.first - p : 1;
             target.first = p;
         }
@@ -247,7 +231,7 @@ static void slice_add(const struct kernel *kernel, const struct grid *patch, dou
         pixel_add(kernel, &target, x, 1, energies);
         return;
     }
-    double resolution = fmax(wavelength / (4 * fmin(seen_sine(view), 1)),
+    double resolution = fmax(wavelength / (4 * fmin(condition_seen_sine(view->problem->acquisition), 1)),
                              wavelength * kernel->r / 2 / (view->x_high - view->x_low + view->spacing));
     double near = fmin(NEAR * resolution, width), near_step = 2 * near / (COLUMNS - 1), step = width / (COLUMNS - 1);
     for (int k = 0; k < COLUMNS; k++) {
@@ -263,7 +247,7 @@ static void slice_add(const struct kernel *kernel, const struct grid *patch, dou
 /* One row of a patch: error over image, negative where no ping sees anything, NAN without memory. */
 static double row_error(const struct rma_view *view, const struct grid *patch, double r)
 {
-    double width = (patch->x_count - 1) * patch->x_step, sine = seen_sine(view);
+    double width = (patch->x_count - 1) * patch->x_step, sine = condition_seen_sine(view->problem->acquisition);
     double reach = fmax(patch->x_first + width - view->x_low, view->x_high - patch->x_first);
     struct kernel kernel;
     struct energies energies = {0, 0};

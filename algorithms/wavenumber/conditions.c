@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "range_migration/conditions.h"
+#include "range_migration/ghosts.h"
 #include "wavenumber/wk.h"
 
 static const double SLOWEST = 0.1; /* of 1 - |v|/c, as in range migration */
@@ -29,7 +30,8 @@ int wk_conditions(const struct problem *problem, const void *options, struct con
                                       SEVERITY_REFUSE,
                                       "how far the receiver is from the transmitter along the track (wavelengths)",
                                       "range migration (rma_*), which takes that into account"};
-    azimuth_requirements(problem, all, &count, &track);
+    if (azimuth_requirements(problem, all, &count, &track) && conditions_accept(all, count))
+        all[count++] = ghosts_condition(problem, &track);
     for (int k = 0; k < count && k < room; k++)
         list[k] = all[k];
     return count < room ? count : room;

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "backprojection/pairs.h"
+#include "backprojection/turned.h"
 #include "common/clock.h"
 #include "measure/imaging.h"
 #include "measure/scalar_loop.h"
@@ -89,23 +90,31 @@ enum status timing_measure(const struct spec *spec, const struct problem *proble
 {
     double control[4];
     struct imaging imaging;
+    struct problem back = *problem; /* the control knows rows and columns along x and r only */
+    struct turned_problem turned;
     *timing = (struct timing){0};
     *image = (struct image){0};
     enum status status = imaging_open(spec, problem, &imaging);
     if (status != STATUS_OK)
         return status;
-    timing->plan_s = imaging.plan_s;
-    timing->work = imaging.algorithm->work(imaging.plan);
-    control[0] = control_seconds_per_pair(problem, control_echoes);
-    control[1] = control_seconds_per_pair(problem, control_echoes);
-    status = repeat(&imaging, echoes, timing);
+    status = problem_turn_back(&back, &turned, NULL);
+    if (status == STATUS_OK) {
+        timing->plan_s = imaging.plan_s;
+        timing->work = imaging.algorithm->work(imaging.plan);
+        control[0] = control_seconds_per_pair(&back, control_echoes);
+        control[1] = control_seconds_per_pair(&back, control_echoes);
+        status = repeat(&imaging, echoes, timing);
+    }
     if (status == STATUS_OK)
         status = imaging_finish(&imaging, echoes, image);
     imaging_close(&imaging);
-    control[2] = control_seconds_per_pair(problem, control_echoes);
-    control[3] = control_seconds_per_pair(problem, control_echoes);
-    double pairs = timing->work.pairs > 0 ? timing->work.pairs : pairs_count(problem);
-    timing->control_s = median(control, 4) * pairs;
+    if (status == STATUS_OK) {
+        control[2] = control_seconds_per_pair(&back, control_echoes);
+        control[3] = control_seconds_per_pair(&back, control_echoes);
+        double pairs = timing->work.pairs > 0 ? timing->work.pairs : pairs_count(&back);
+        timing->control_s = median(control, 4) * pairs;
+    }
+    turned_free(&turned);
     return status;
 }
 

@@ -104,9 +104,9 @@ long double exact_beam(const struct scene *scene, const struct exact_pair *pair,
                                          : sinc(elements * sine_out) * sinc(a->rx_length * wavenumber * sine_back);
 }
 
-long double exact_sine(const struct exact_pair *pair, struct exact_point p, struct vector heading)
+long double exact_sine(const struct exact_pair *pair, struct exact_point p, struct vector normal)
 {
     const struct exact_point out = difference(pair->tx, p);
     const long double distance = length(out);
-    return distance > 0.0L ? fabsl(dot(out, point_of(heading))) / distance : 0.0L;
+    return distance > 0.0L ? fabsl(dot(out, point_of(normal))) / distance : 0.0L;
 }

@@ -35,7 +35,7 @@ long double exact_delay(const struct exact_pair *pair, struct exact_point p, lon
 long double exact_beam(const struct scene *scene, const struct exact_pair *pair, struct exact_point p,
                        long double delay);
 
-/* |sin theta_t| of p off the plane across `heading`. */
-long double exact_sine(const struct exact_pair *pair, struct exact_point p, struct vector heading);
+/* |sin theta_t| of p off the plane across `normal`. */
+long double exact_sine(const struct exact_pair *pair, struct exact_point p, struct vector normal);
 
 #endif

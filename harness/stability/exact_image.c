@@ -96,7 +96,7 @@ static struct bounds bounds_of(const struct acquisition *a, const struct exact_p
 
 static bool inside_aperture(const struct acquisition *a, const struct exact_pair *pair, int ping, struct exact_point p)
 {
-    return !(a->aperture_limit < 1) || exact_sine(pair, p, acquisition_heading(a, ping)) <= a->aperture_limit;
+    return !(a->aperture_limit < 1) || exact_sine(pair, p, acquisition_normal(a, ping)) <= a->aperture_limit;
 }
 
 /* Add a pair's echoes to a pixel. */

@@ -20,7 +20,7 @@ enum {
 
 struct general {
     bp_sum_function *sum;
-    struct vector *heading; /* [pings] */
+    struct vector *normal;  /* [pings] acquisition_normal */
     struct ping_box *boxes; /* [pings] */
     int batch;              /* rows */
     void *rows;             /* [batch][2 shape.length] real: re, then im; one value more may be read */
@@ -54,7 +54,7 @@ static void general_destroy(void *state)
     free(general->sums);
     free(general->along_x);
     free(general->boxes);
-    free(general->heading);
+    free(general->normal);
     free(general->interleaved);
     free(general->rows);
     free(general);
@@ -99,17 +99,17 @@ static enum status general_plan(struct bp *bp)
     general->batch = (int)fmin(pairs, fmax(BATCH_LEAST, (double)(BATCH_BYTES / row_bytes)));
     general->rows = aligned_alloc(64, ((size_t)general->batch * row_bytes + size + 63) / 64 * 64);
     general->interleaved = malloc((size_t)omp_get_max_threads() * row_bytes);
-    general->heading = calloc((size_t)a->pings, sizeof *general->heading);
+    general->normal = calloc((size_t)a->pings, sizeof *general->normal);
     general->boxes = calloc((size_t)a->pings, sizeof *general->boxes);
     general->patch_count = problem->patch_count;
     general->along_x = calloc((size_t)problem->patch_count, sizeof *general->along_x);
     general->sums = calloc((size_t)problem->patch_count, sizeof *general->sums);
-    if (!general->rows || !general->interleaved || !general->heading || !general->boxes || !general->along_x
+    if (!general->rows || !general->interleaved || !general->normal || !general->boxes || !general->along_x
         || !general->sums)
         return status_set(STATUS_FAILED, "no memory for %d records of %d values", general->batch, bp->shape.length);
     const double quintics = budget_quintics(bp->medium.phase_limit, problem->precision);
     for (int p = 0; p < a->pings; p++) {
-        general->heading[p] = acquisition_heading(a, p);
+        general->normal[p] = acquisition_normal(a, p);
         general->boxes[p] = ping_box_make(a, p, problem->patch_count, problem->patches, quintics);
     }
     for (int k = 0; k < problem->patch_count; k++) {
@@ -122,7 +122,7 @@ static enum status general_plan(struct bp *bp)
             return status_set(STATUS_FAILED, "no memory for the sums of %zu pixels", pixels);
     }
     bp->work.bytes += sizeof *general + (general->batch + 1.0) * (double)row_bytes
-                      + (double)a->pings * (double)(sizeof *general->heading + sizeof *general->boxes)
+                      + (double)a->pings * (double)(sizeof *general->normal + sizeof *general->boxes)
                       + problem_pixels(problem) * 2 * (double)size;
     return STATUS_OK;
 }
@@ -168,7 +168,7 @@ static void sum_line(const struct bp *bp, int k, int number, size_t first, int c
         if (end - index < (size_t)ping.receivers)
             ping.receivers = (int)(end - index);
         struct pair_span aperture[2], record[2];
-        int spans = pair_spans(a, p, general->heading[p], &line, aperture);
+        int spans = pair_spans(a, p, general->normal[p], &line, aperture);
         for (int s = 0; s < spans; s++) {
             if (inside_record(bp, p, &line, aperture[s])) {
                 sum_span(bp, &general->boxes[p], &ping, &line, aperture[s], re, im);

@@ -29,7 +29,7 @@ static void scene_make(const struct squint_sonar *sonar, double squint, struct s
                               .tx_length = sonar->length,
                               .rx_length = sonar->length,
                               .echo_squint = squint,
-                              .aperture_limit = INFINITY,
+                              .aperture_limit = 1500 / sonar->fc / (4 * 0.04), /* sampled: no grating lobes */
                               .compressed = true};
     assert_int_equal(acquisition_allocate(a), STATUS_OK);
     for (int p = 0; p < a->pings; p++) {

@@ -6,6 +6,7 @@
 #include <time.h>
 
 #include "backprojection/pairs.h"
+#include "backprojection/turned.h"
 #include "data/random.h"
 #include "tests/support.h"
 
@@ -108,6 +109,40 @@ static void spans_hold_oblique_cones(void **state)
     assert_true(parts[0] > 100 && parts[1] > 100 && parts[2] > 100);
 }
 
+/* Tracks either way, squinted beams, turned grids: pairs are those within the limit of the beam's axis. */
+static void limits_count_from_the_axis(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 300; seed++) {
+        struct random random = random_seed(seed, 7);
+        struct acquisition a;
+        make(&a, 9, 2, 4000, (seed % 2 ? 0.5 : -0.5), 2);
+        a.echo_squint = seed % 3 ? 2 * random_uniform(&random) - 1 : 0;
+        a.aperture_limit = 0.02 + 0.5 * random_uniform(&random);
+        const struct grid grid = {20 * random_uniform(&random) - 10,
+                                  0.3,
+                                  23,
+                                  5 + 10 * random_uniform(&random),
+                                  0.2,
+                                  11,
+                                  seed % 5 ? 0.8 * random_uniform(&random) - 0.4 : 0};
+        struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+        struct turned_problem turned;
+        double expected = 0;
+        for (int n = 0; n < 9 * 23 * 11; n++) {
+            struct vector p = grid_point(&grid, n / 9 / 23, n / 9 % 23);
+            expected += fabs(sin(atan2(p.x - a.tx[n % 9].x, p.y) - a.echo_squint)) <= a.aperture_limit ? 2 : 0;
+        }
+        assert_int_equal(problem_turn_back(&problem, &turned, NULL), STATUS_OK);
+        assert_true(problem.patches[0].angle_rad == 0);
+        double pairs = pairs_count(&problem);
+        if (pairs != expected)
+            fail_msg("seed %d: %g pairs, %g expected", (int)seed, pairs, expected);
+        turned_free(&turned);
+        acquisition_free(&a);
+    }
+}
+
 /* Pixels on the transmitters, in coordinates that double holds exactly or does not: both engines sum the same pairs. */
 static void engines_agree_on_the_track(void **state)
 {
@@ -170,9 +205,8 @@ static void plans_do_not_count(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(spans_hold_the_cone),
-        cmocka_unit_test(spans_hold_oblique_cones),
-        cmocka_unit_test(engines_agree_on_the_track),
+        cmocka_unit_test(spans_hold_the_cone),        cmocka_unit_test(spans_hold_oblique_cones),
+        cmocka_unit_test(limits_count_from_the_axis), cmocka_unit_test(engines_agree_on_the_track),
         cmocka_unit_test(plans_do_not_count),
     };
     return cmocka_run_group_tests_name("pairs", tests, NULL, NULL);

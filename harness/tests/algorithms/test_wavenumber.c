@@ -312,13 +312,14 @@ static void refusals(void **state)
     a.echo_squint = radians(89);
     refuses(&a, patches, "a squint of 89 degrees");
     a = scene.acquisition;
-    a.aperture_limit = 0.1;
+    a.aperture_limit = 0.01; /* the beam ends at 0.025 */
     refuses(&a, patches, "condition whole_aperture");
     a = scene.acquisition;
     a.pings = 1;
     refuses(&a, patches, "condition pings");
     a = scene.acquisition;
     a.echo_sine = 0.2; /* pings 0.04 m apart sample 0.0625 */
+    a.aperture_limit = INFINITY;
     refuses(&a, patches, "condition doppler");
     a = scene.acquisition;
     a.receivers = 2;

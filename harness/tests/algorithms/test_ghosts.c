@@ -1,0 +1,119 @@
+/* Grating lobes: a lone receiver whose pings are far apart, and targets so far from each other that back projection sees one in
+   the image of the other. Transforms image such scenes only with an aperture limit within the sampled wavenumbers. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "range_migration/ghosts.h"
+#include "tests/support.h"
+
+/* Pings 0.04 m apart at 1 cm wavelength sample sines up to 0.0625; the beam ends at 0.025, the element's first null is at 0.0536
+   at the lowest frequency. */
+static const double LIMIT = 0.0535714;
+
+static void load(double apart, double limit, double squint, struct scene *scene)
+{
+    char text[1500];
+    const double c = cos(squint * M_PI / 180), s = sin(squint * M_PI / 180), r = 30;
+    snprintf(
+        text, sizeof text,
+        "sonar = { fc = 150e3; bandwidth = 20e3; fs = 25e3; };\npulse = { kind = \"flat\"; };\n"
+        "array = { tx_length = 0.2; rx_length = 0.2; receivers = 1; };\n"
+        "track = { speed = 0.0; pri = 0.1; spacing = 0.04; pings = 220; x_first = -4.4; };\n"
+        "record = { first_sample = 700; samples = 600; };\naperture_limit = %.17g;\n"
+        "beam = { kind = \"rect\"; truncation = \"tx\"; limit = 0.5; squint = %.17g; };\n"
+        "targets = { points = ( { x = %.17g; r = %.17g; }, { x = %.17g; r = %.17g; } ); };\n"
+        "image = { angle = %.17g; around_targets = { half_x = 0.4; half_r = 0.2; x_step = 0.04; r_step = 0.02; }; };\n",
+        limit, squint, -apart * c + r * s, apart * s + r * c, apart * c + r * s, -apart * s + r * c, squint);
+    support_write("scene.cfg", text);
+    if (scene_load(path_of("scene.cfg"), SASBENCH_ROOT "/scenes", scene) != STATUS_OK)
+        fail_msg("%s", status_message());
+}
+
+/* Error of a SPEC's image, or -1 where grating_lobes refuses. */
+static double error_of(const char *spec, const struct scene *scene)
+{
+    const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, PRECISION_DOUBLE};
+    struct echoes echoes;
+    struct image exact, image;
+    double error = -1;
+    support_echoes(scene, &echoes);
+    if (support_image(spec, problem, &echoes, &image) == STATUS_OK) {
+        assert_int_equal(support_image("reference:precision=double", problem, &echoes, &exact), STATUS_OK);
+        error = support_difference(&image, &exact);
+        image_free(&image);
+        image_free(&exact);
+    } else if (!strstr(status_message(), "condition grating_lobes:")) {
+        fail_msg("%s: %s", spec, status_message());
+    }
+    echoes_free(&echoes);
+    return error;
+}
+
+static double ghosts_of(const struct scene *scene)
+{
+    const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, PRECISION_DOUBLE};
+    struct straight_track track;
+    assert_true(acquisition_is_straight(&scene->acquisition, &track));
+    return ghosts_condition(&problem, &track).value;
+}
+
+/* Relative L2 of what the limit takes off the exact image. */
+static double measured(double apart, double squint)
+{
+    struct scene scene, limited;
+    struct echoes echoes;
+    struct image with, without;
+    load(apart, 1, squint, &scene);
+    load(apart, LIMIT, squint, &limited);
+    const struct problem all = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE};
+    const struct problem sampled = {&limited.acquisition, limited.patch_count, limited.patches, PRECISION_DOUBLE};
+    support_echoes(&scene, &echoes);
+    assert_int_equal(support_image("reference:precision=double", all, &echoes, &with), STATUS_OK);
+    assert_int_equal(support_image("reference:precision=double", sampled, &echoes, &without), STATUS_OK);
+    double difference = support_difference(&without, &with);
+    image_free(&with);
+    image_free(&without);
+    echoes_free(&echoes);
+    scene_free(&scene);
+    scene_free(&limited);
+    return difference;
+}
+
+static void refused_or_right(void **state)
+{
+    (void)state;
+    static const char *const specs[] = {"rma_numeric", "wk_classic:pad=2", "wk_squint:pad=2"};
+    static const double aparts[] = {0.5, 1, 2, 3}, squints[] = {0, 15, -30};
+    int refused = 0, accepted = 0;
+    for (int n = 0; n < 4 * 3; n++) {
+        const double apart = aparts[n % 4], squint = squints[n / 4], ghosts = measured(apart, squint);
+        struct scene scene, limited;
+        load(apart, 1, squint, &scene);
+        load(apart, LIMIT, squint, &limited);
+        double value = ghosts_of(&scene);
+        print_message("%g m apart, squint %g: ghosts %.3f, predicted %.3f\n", apart, squint, ghosts, value);
+        if (!(value >= ghosts / 1.5 && value <= 4 * ghosts + 0.02) || !(ghosts_of(&limited) < 5e-3))
+            fail_msg("ghosts of %g, predicted %g; %g with the limit", ghosts, value, ghosts_of(&limited));
+        for (int k = squint != 0; k < 3; k++) {
+            double error = error_of(specs[k], &scene), within = error_of(specs[k], &limited);
+            print_message("    %s: %.4f, %.4f\n", specs[k], error, within);
+            refused += error < 0;
+            accepted += error >= 0;
+            if ((error < 0) != (value > 0.1) || error > 0.12
+                || !(within >= 0 && within < (ghosts < 0.1 ? ghosts + 6e-3 : 1e-2)))
+                fail_msg("%s: error %g, %g with the limit; ghosts %g", specs[k], error, within, value);
+        }
+        scene_free(&scene);
+        scene_free(&limited);
+    }
+    assert_true(refused > 5 && accepted > 5); /* both do occur */
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(refused_or_right, folder_make, folder_remove),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
