@@ -138,8 +138,8 @@ static void noise_tell(const struct timing *timing, char *text, size_t size)
     const double spread = timing_spread(timing);
     *text = '\0';
     if (spread > TIMING_NOISY)
-        snprintf(text, size, OUTCOME_WARNING "times scatter: the middle half of %d runs spans %.0f %% of the median",
-                 timing->runs, 100 * spread);
+        snprintf(text, size, OUTCOME_NOISE ": the middle half of %d runs spans %.0f %% of the median", timing->runs,
+                 100 * spread);
 }
 
 static enum status image_time(const struct session *session, const struct spec *spec, const struct problem *problem,

@@ -7,6 +7,9 @@
 /* Begins a warning in the reason of a row that is ok. */
 #define OUTCOME_WARNING "warning: "
 
+/* The warning of a noisy time, the last of a reason. */
+#define OUTCOME_NOISE OUTCOME_WARNING "times scatter"
+
 /* Stands in the reason of a row whose scene has no points to measure. */
 #define OUTCOME_NO_TARGETS "no point targets to measure lobes of"
 

@@ -61,6 +61,33 @@ static double scalar_or(const struct variable *variable, double missing)
     return variable->values ? creal(variable->values[0]) : missing;
 }
 
+/* Shapes that are meant otherwise and can only be meant so: one receiver without its dimension, which MATLAB and SciPy leave out
+   or squeeze away, and coordinates in rows [P x 3]. */
+static enum status shapes_read(struct variable *v)
+{
+    size_t *samples = v[SAMPLES].dims, *rx = v[RX].dims;
+    const size_t second = samples[1];
+    const bool tx_of_pings =
+        (v[TX].dims[0] == 3 && v[TX].dims[1] == second) || (v[TX].dims[1] == 3 && v[TX].dims[0] == second);
+    if (samples[2] == 1 && second > 1 && tx_of_pings && variable_count(&v[RX]) == 3 * second) {
+        samples[1] = 1;
+        samples[2] = second;
+    }
+    const size_t pings = samples[2];
+    enum status status = STATUS_OK;
+    for (int k = 0; k < 3 && status == STATUS_OK; k++) {
+        struct variable *turned = &v[k == 0 ? TX : k == 1 ? VELOCITY : RX];
+        const bool in_rows = turned->dims[1] == 3 && turned->dims[0] != 3 && turned->dims[2] == 1
+                             && (turned->dims[0] == pings || turned->dims[0] == 1) && (k < 2 || samples[1] == 1);
+        status = in_rows ? variable_transpose(turned) : STATUS_OK;
+    }
+    if (samples[1] == 1 && rx[0] == 3 && rx[1] == pings && rx[2] == 1) {
+        rx[1] = 1;
+        rx[2] = pings;
+    }
+    return status;
+}
+
 static enum status check_echo_shapes(const char *path, const struct variable *v)
 {
     const struct variable *samples = &v[SAMPLES];
@@ -261,6 +288,9 @@ enum status echo_file_read(const char *path, struct acquisition *acquisition, st
         return status;
     }
     status = check_echo_values(path, variables);
+    if (status == STATUS_OK) {
+        status = shapes_read(variables);
+    }
     if (status == STATUS_OK) {
         status = check_echo_shapes(path, variables);
     }

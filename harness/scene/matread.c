@@ -53,21 +53,6 @@ void matio_silence(void)
     Mat_LogInitFunc("sasbench", discard_log);
 }
 
-size_t variable_count(const struct variable *variable)
-{
-    return size_product(variable->dims[0], variable->dims[1], variable->dims[2], 1);
-}
-
-bool variable_has_shape(const struct variable *variable, size_t rows, size_t columns, size_t pages)
-{
-    return variable->dims[0] == rows && variable->dims[1] == columns && variable->dims[2] == pages;
-}
-
-bool variable_is_vector(const struct variable *variable)
-{
-    return (variable->dims[0] == 1 || variable->dims[1] == 1) && variable->dims[2] == 1;
-}
-
 int mat5_count(const char *path)
 {
     unsigned char header[128];
@@ -274,18 +259,45 @@ static enum status send_variable(const char *path, const struct wanted *wanted, 
     return STATUS_OK;
 }
 
+/* What a file that is no MATLAB file of these versions probably is, and how to write one that is. */
+static const char *other_format(const char *path)
+{
+    static const struct {
+        const char *begin, *text;
+    } formats[] = {
+        {"# Created by Octave", ": it is in Octave's text format; save -v7 FILE.mat writes MATLAB's"},
+        {"Octave-1-", ": it is in Octave's binary format; save -v7 FILE.mat writes MATLAB's"},
+        {"\x93NUMPY", ": it is a NumPy array; scipy.io.savemat writes MATLAB files"},
+        {"PK", ": it is a zip archive (NumPy's .npz?); scipy.io.savemat writes MATLAB files"},
+        {"\x89HDF", ": it is HDF5 without MATLAB's head; save -v7.3 (MATLAB) or save -v7 (Octave) writes it"},
+    };
+    char begin[32] = "";
+    FILE *file = fopen(path, "rb");
+    if (file) {
+        begin[fread(begin, 1, sizeof begin - 1, file)] = '\0';
+        fclose(file);
+    }
+    for (size_t k = 0; k < sizeof formats / sizeof *formats; k++) {
+        if (strncmp(begin, formats[k].begin, strlen(formats[k].begin)) == 0) {
+            return formats[k].text;
+        }
+    }
+    return "; save -v7 writes one (MATLAB, Octave), and scipy.io.savemat";
+}
+
 static enum status send_variables(const char *path, const struct wanted *wanted, int count, size_t file_size,
                                   int descriptor)
 {
     matio_silence();
     mat_t *mat = Mat_Open(path, MAT_ACC_RDONLY);
     if (!mat || Mat_GetVersion(mat) == MAT_FT_MAT4) {
-        return status_set(STATUS_INVALID, "%s: is not a MATLAB file of version 5 or 7.3", path);
+        return status_set(STATUS_INVALID, "%s: is not a MATLAB file of version 5 or 7.3%s", path, other_format(path));
     }
     if (Mat_GetVersion(mat) == MAT_FT_MAT5 && mat5_count(path) < 0) {
         return status_set(STATUS_INVALID, "%s: is cut short or damaged; a whole MATLAB file is needed", path);
     }
     bool sent[WANTED_MAX] = {false};
+    char inside[64] = ""; /* the first struct, in which the variables may be */
     enum status status = STATUS_OK;
     matvar_t *matvar;
     while (status == STATUS_OK && (matvar = Mat_VarReadNextInfo(mat))) {
@@ -295,7 +307,19 @@ static enum status send_variables(const char *path, const struct wanted *wanted,
                 sent[i] = true;
             }
         }
+        if (matvar->class_type == MAT_C_STRUCT && matvar->name && !*inside) {
+            snprintf(inside, sizeof inside, "%.60s", matvar->name);
+        }
         Mat_VarFree(matvar);
+    }
+    for (int i = 0; i < count && status == STATUS_OK && *inside; i++) {
+        if (!sent[i] && !wanted[i].is_optional) {
+            status = status_set(
+                STATUS_INVALID,
+                "%s: variable `%s` is missing; %s is needed. The file holds a struct `%s`: its fields must be "
+                "variables of their own (MATLAB: save('-v7', FILE, '-struct', '%s'); SciPy: savemat(FILE, %s))",
+                path, wanted[i].name, wanted[i].accepted, inside, inside, inside);
+        }
     }
     return status;
 }
@@ -373,39 +397,6 @@ static enum status receive_variables(const char *path, int count, struct variabl
                       path);
 }
 
-void variables_free(struct variable *variables, int count)
-{
-    for (int i = 0; i < count; i++) {
-        free(variables[i].values);
-    }
-}
-
-/* What the table of wanted variables says of them: there, real, a scalar. */
-static enum status check_variables(const char *path, const struct wanted *wanted, int count,
-                                   const struct variable *variables)
-{
-    for (int i = 0; i < count; i++) {
-        const struct variable *variable = &variables[i];
-        if (!variable->values) {
-            if (!wanted[i].is_optional) {
-                return status_set(STATUS_INVALID, "%s: variable `%s` is missing; %s is needed", path, wanted[i].name,
-                                  wanted[i].accepted);
-            }
-            continue;
-        }
-        if (variable->is_complex && wanted[i].kind != KIND_COMPLEX) {
-            return status_set(STATUS_INVALID, "%s: variable `%s` is complex; %s is needed", path, wanted[i].name,
-                              wanted[i].accepted);
-        }
-        if (wanted[i].kind == KIND_SCALAR && variable_count(variable) != 1) {
-            return status_set(STATUS_INVALID, "%s: variable `%s` is [%zu x %zu x %zu]; %s is needed", path,
-                              wanted[i].name, variable->dims[0], variable->dims[1], variable->dims[2],
-                              wanted[i].accepted);
-        }
-    }
-    return STATUS_OK;
-}
-
 enum status variables_read(const char *path, const struct wanted *wanted, int count, struct variable *variables)
 {
     for (int i = 0; i < count; i++) {
@@ -442,7 +433,7 @@ enum status variables_read(const char *path, const struct wanted *wanted, int co
     while (waitpid(child, NULL, 0) < 0 && errno == EINTR) {
     }
     if (status == STATUS_OK) {
-        status = check_variables(path, wanted, count, variables);
+        status = variables_check(path, wanted, count, variables);
     }
     if (status != STATUS_OK) {
         variables_free(variables, count);

@@ -30,6 +30,10 @@ struct variable {
    for every file that is not whole or lacks one; STATUS_FAILED without memory. */
 enum status variables_read(const char *path, const struct wanted *wanted, int count, struct variable *variables);
 void variables_free(struct variable *variables, int count);
+/* What the table of wanted variables says of them: there, real, a scalar. Errors: STATUS_INVALID. */
+enum status variables_check(const char *path, const struct wanted *wanted, int count, const struct variable *variables);
+/* [rows x columns] to [columns x rows]. Errors: STATUS_FAILED without memory. */
+enum status variable_transpose(struct variable *variable);
 size_t variable_count(const struct variable *variable);
 bool variable_is_vector(const struct variable *variable); /* a row or a column */
 bool variable_has_shape(const struct variable *variable, size_t rows, size_t columns, size_t pages);

@@ -111,7 +111,8 @@ void table_header(FILE *stream)
     *table.scene = '\0';
     table.width = width_find(stream) < WIDTH_WIDE ? WIDTH_LEAST : WIDTH_WIDE;
     table.spec_width = table.width == WIDTH_WIDE ? 34 : 24;
-    fputs("time      median seconds from raw echoes to complex image\n"
+    fputs("time      median seconds from raw echoes to complex image; with ~ the middle\n"
+          "          half of the runs spans more than 10 % of it\n"
           "speed-up  against the scalar reference loop timed beside, which takes out the\n"
           "          machine's momentary speed\n",
           stream);
@@ -156,6 +157,17 @@ static void text_print(FILE *stream, const char *before, const char *text)
     print_wrapped(stream, 4, shown);
 }
 
+/* All but that of a noisy time, which has its mark. */
+static void warnings_print(FILE *stream, const char *reason)
+{
+    const char *warning = strstr(reason, OUTCOME_WARNING), *noise = strstr(reason, OUTCOME_NOISE);
+    if (!warning || warning == noise)
+        return;
+    char text[1024];
+    snprintf(text, sizeof text, "%.*s", noise ? (int)(noise - warning) - 2 : (int)sizeof text - 1, warning);
+    text_print(stream, "", text);
+}
+
 static void ok_print(FILE *stream, const struct measurement *row, const char *spec)
 {
     const bool own_line = strlen(spec) > (size_t)table.spec_width;
@@ -169,16 +181,16 @@ static void ok_print(FILE *stream, const struct measurement *row, const char *sp
         last[1] = cell_significant(row->contrast, "");
         last[2] = cell_significant(row->peak_over_median, "");
     }
+    struct cell time = cell_time(row->run_s);
+    if (strstr(row->reason, OUTCOME_NOISE))
+        strcat(time.text, "~");
     if (own_line)
         print_wrapped(stream, 2, spec);
-    line_print(stream,
-               (const char *const[]){own_line ? "" : spec, cell_time(row->run_s).text,
-                                     cell_significant(row->control_s / row->run_s, "x").text, cell_rate(row).text,
-                                     cell_error(row->error).text, cell_error(row->error_gain).text,
-                                     cell_error(row->phase_rms_rad).text, last[0].text, last[1].text, last[2].text});
-    const char *warning = strstr(row->reason, OUTCOME_WARNING);
-    if (warning)
-        text_print(stream, "", warning);
+    line_print(stream, (const char *const[]){
+                           own_line ? "" : spec, time.text, cell_significant(row->control_s / row->run_s, "x").text,
+                           cell_rate(row).text, cell_error(row->error).text, cell_error(row->error_gain).text,
+                           cell_error(row->phase_rms_rad).text, last[0].text, last[1].text, last[2].text});
+    warnings_print(stream, row->reason);
 }
 
 /* What several algorithms refuse for one reason is said once. */

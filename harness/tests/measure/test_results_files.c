@@ -220,7 +220,9 @@ static void test_narrow_table(void **state)
     table_header(stream);
     row.pslr_db = row.islr_db = row.width_m = NAN;
     row.peak_over_median = 241.4;
-    row.reason = "no point targets to measure lobes of";
+    row.reason =
+        "no point targets to measure lobes of; warning: condition ghost: spacing is 2, limit 1; warning: times "
+        "scatter: the middle half of 5 runs spans 30 % of the median";
     table_row(stream, &row);
     row.options = "";
     row.status = "unsupported";
@@ -242,6 +244,9 @@ static void test_narrow_table(void **state)
     unsetenv("COLUMNS");
     fclose(stream);
     int said = 0, referred = 0;
+    assert_non_null(strstr(text, " 333 ms~ "));
+    assert_non_null(strstr(text, "    warning: condition ghost: spacing is 2, limit 1\n"));
+    assert_null(strstr(text, "times scatter"));
     assert_non_null(strstr(text, " entro. contr.   peak\n"));
     assert_non_null(strstr(text, "   4.50      2    241\n"));
     for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n")) {

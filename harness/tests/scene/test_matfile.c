@@ -313,6 +313,55 @@ static void recorded_files_are_read(void **state)
     }
 }
 
+/* Shapes that MATLAB, Octave and SciPy leave when one dimension is 1, and coordinates in rows, are what they can only be. */
+static void unambiguous_shapes_are_taken(void **state)
+{
+    (void)state;
+    enum { SAMPLES = 6, PINGS = 4 };
+    double samples[SAMPLES * PINGS], tx[3 * PINGS], rx[3 * PINGS];
+    static const double velocity[] = {1.5, 0, 0}, scalars[] = {1, 30e3, 100e3, 20e3, 1500, 0.01};
+    static const char *const names[] = {"compressed", "fs", "fc", "bandwidth", "sound_speed", "t0"};
+    for (int k = 0; k < SAMPLES * PINGS; k++)
+        samples[k] = k + 1;
+    for (int in_rows = 0; in_rows < 2; in_rows++) {
+        struct acquisition a;
+        struct echoes echoes;
+        for (int p = 0; p < PINGS; p++)
+            for (int c = 0; c < 3; c++) {
+                const int at = in_rows ? c * PINGS + p : 3 * p + c; /* MATLAB's order */
+                tx[at] = c == 0 ? 0.1 * p : c;
+                rx[at] = c == 0 ? 0.1 * p + 0.03 : c;
+            }
+        const size_t rows = in_rows ? PINGS : 3, columns = in_rows ? 3 : PINGS;
+        mat_t *mat = Mat_CreateVer(path, NULL, MAT_FT_MAT5);
+        variable_add(mat, &(struct mat_values){"format", MAT_C_CHAR, MAT_T_UTF8, {1, 12, 1}, "sas-echoes 1", NULL},
+                     true);
+        for (int k = 0; k < 6; k++)
+            variable_add(mat, &(struct mat_values){names[k], MAT_C_DOUBLE, MAT_T_DOUBLE, {1, 1, 1}, &scalars[k], NULL},
+                         true);
+        variable_add(mat,
+                     &(struct mat_values){"samples", MAT_C_DOUBLE, MAT_T_DOUBLE, {SAMPLES, PINGS, 1}, samples, samples},
+                     true);
+        variable_add(mat, &(struct mat_values){"tx", MAT_C_DOUBLE, MAT_T_DOUBLE, {rows, columns, 1}, tx, NULL}, true);
+        variable_add(mat, &(struct mat_values){"rx", MAT_C_DOUBLE, MAT_T_DOUBLE, {rows, columns, 1}, rx, NULL}, true);
+        variable_add(mat,
+                     &(struct mat_values){
+                         "velocity", MAT_C_DOUBLE, MAT_T_DOUBLE, {in_rows ? 1 : 3, in_rows ? 3 : 1, 1}, velocity, NULL},
+                     true);
+        Mat_Close(mat);
+        assert_ok(echo_file_read(path, &a, &echoes));
+        assert_true(a.samples == SAMPLES && a.receivers == 1 && a.pings == PINGS);
+        for (int p = 0; p < PINGS; p++) {
+            assert_true(a.tx[p].x == 0.1 * p && a.tx[p].y == 1 && a.tx[p].z == 2);
+            assert_true(a.rx[p].x == 0.1 * p + 0.03 && a.rx[p].y == 1 && a.rx[p].z == 2);
+            assert_true(a.velocity[p].x == 1.5 && a.velocity[p].y == 0);
+            assert_true(creal(((const double complex *)echoes.samples)[SAMPLES * p + 2]) == SAMPLES * p + 3);
+        }
+        echoes_free(&echoes);
+        acquisition_free(&a);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -324,6 +373,7 @@ int main(void)
         cmocka_unit_test(extreme_pulses_are_brought_to_one),
         cmocka_unit_test(unknown_variables_are_ignored),
         cmocka_unit_test(recorded_files_are_read),
+        cmocka_unit_test(unambiguous_shapes_are_taken),
     };
     return cmocka_run_group_tests(tests, directory_make, directory_remove);
 }

@@ -143,6 +143,39 @@ static void other_files_are_refused(void **state)
     assert_echoes_invalid("is not a MATLAB file of version 5 or 7.3");
 }
 
+/* Files of other programs are called by their names, and how to write a right one is said. */
+static void other_formats_are_named(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *bytes, *says;
+    } files[] = {
+        {"# Created by Octave 8.4.0\n# name: samples\n", "Octave's text format; save -v7"},
+        {"Octave-1-L\0", "Octave's binary format; save -v7"},
+        {"\x93NUMPY\x01", "a NumPy array; scipy.io.savemat"},
+        {"PK\x03\x04 and more", "a zip archive (NumPy's .npz?); scipy.io.savemat"},
+        {"samples,1,2,3\n", "; save -v7 writes one (MATLAB, Octave)"},
+    };
+    for (size_t k = 0; k < sizeof files / sizeof *files; k++) {
+        bytes_write(files[k].bytes, strlen(files[k].bytes));
+        assert_echoes_invalid(files[k].says);
+    }
+    /* All variables within a struct. */
+    size_t dims[2] = {1, 1};
+    const char *fields[] = {"samples", NULL};
+    double value = 1;
+    mat_t *mat = Mat_CreateVer(path, NULL, MAT_FT_MAT5);
+    matvar_t *matvar = Mat_VarCreateStruct2("sonar", 2, dims, fields);
+    Mat_VarSetStructFieldByName(matvar, "samples", 0,
+                                Mat_VarCreate("samples", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dims, &value, 0));
+    Mat_VarWrite(mat, matvar, MAT_COMPRESSION_NONE);
+    Mat_VarFree(matvar);
+    Mat_Close(mat);
+    assert_echoes_invalid("`format` is missing");
+    assert_echoes_invalid("holds a struct `sonar`");
+    assert_echoes_invalid("'-struct', 'sonar'");
+}
+
 static void absurd_sizes_are_refused(void **state)
 {
     (void)state;
@@ -327,9 +360,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_wrong_variable_is_refused), cmocka_unit_test(other_files_are_refused),
-        cmocka_unit_test(absurd_sizes_are_refused),       cmocka_unit_test(truncated_files_are_refused),
-        cmocka_unit_test(damaged_files_do_no_harm),       cmocka_unit_test(wrong_images_are_refused),
-        cmocka_unit_test(unwritable_places_are_refused),  cmocka_unit_test(full_disk_is_noticed),
+        cmocka_unit_test(other_formats_are_named),        cmocka_unit_test(absurd_sizes_are_refused),
+        cmocka_unit_test(truncated_files_are_refused),    cmocka_unit_test(damaged_files_do_no_harm),
+        cmocka_unit_test(wrong_images_are_refused),       cmocka_unit_test(unwritable_places_are_refused),
+        cmocka_unit_test(full_disk_is_noticed),
     };
     return cmocka_run_group_tests(tests, directory_make, directory_remove);
 }

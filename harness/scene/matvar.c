@@ -1,0 +1,71 @@
+/* Variables of MATLAB files once they are read (matvar.h). */
+#include "scene/matvar.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+size_t variable_count(const struct variable *variable)
+{
+    return size_product(variable->dims[0], variable->dims[1], variable->dims[2], 1);
+}
+
+bool variable_has_shape(const struct variable *variable, size_t rows, size_t columns, size_t pages)
+{
+    return variable->dims[0] == rows && variable->dims[1] == columns && variable->dims[2] == pages;
+}
+
+bool variable_is_vector(const struct variable *variable)
+{
+    return (variable->dims[0] == 1 || variable->dims[1] == 1) && variable->dims[2] == 1;
+}
+
+void variables_free(struct variable *variables, int count)
+{
+    for (int i = 0; i < count; i++) {
+        free(variables[i].values);
+    }
+}
+
+enum status variables_check(const char *path, const struct wanted *wanted, int count, const struct variable *variables)
+{
+    for (int i = 0; i < count; i++) {
+        const struct variable *variable = &variables[i];
+        if (!variable->values) {
+            if (!wanted[i].is_optional) {
+                return status_set(STATUS_INVALID, "%s: variable `%s` is missing; %s is needed", path, wanted[i].name,
+                                  wanted[i].accepted);
+            }
+            continue;
+        }
+        if (variable->is_complex && wanted[i].kind != KIND_COMPLEX) {
+            return status_set(STATUS_INVALID, "%s: variable `%s` is complex; %s is needed", path, wanted[i].name,
+                              wanted[i].accepted);
+        }
+        if (wanted[i].kind == KIND_SCALAR && variable_count(variable) != 1) {
+            return status_set(STATUS_INVALID, "%s: variable `%s` is [%zu x %zu x %zu]; %s is needed", path,
+                              wanted[i].name, variable->dims[0], variable->dims[1], variable->dims[2],
+                              wanted[i].accepted);
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status variable_transpose(struct variable *variable)
+{
+    const size_t rows = variable->dims[0], columns = variable->dims[1],
+                 bytes = rows * columns * sizeof *variable->values;
+    double complex *turned = aligned_alloc(64, (bytes + 63) / 64 * 64);
+    if (!turned) {
+        return status_set(STATUS_FAILED, "out of memory for a variable of %zu bytes", bytes);
+    }
+    for (size_t i = 0; i < rows; i++) {
+        for (size_t j = 0; j < columns; j++) {
+            turned[i * columns + j] = variable->values[j * rows + i];
+        }
+    }
+    free(variable->values);
+    variable->values = turned;
+    variable->dims[0] = columns;
+    variable->dims[1] = rows;
+    return STATUS_OK;
+}
