@@ -83,13 +83,13 @@ static enum status tabulate(struct bp *bp, const struct interpolator *in, const 
 /* The counted and the published work, but for the pairs. BP22 Eq. (11) has N_a records, N_r samples and N_a N_r pixels, every
    pixel summed over every record; here the pixels are counted as they are. LBF21 Eq. (23) lacks the sum over records and
    contradicts it. Its interpolation factor, and BP22's points beta between two samples, follow from how a method reads
-   records. */
+   records. The inverse FFT of zero padding is as long as the record that it makes. */
 static void count_work(struct bp *bp, const struct interpolator *in)
 {
     const struct acquisition *a = bp->problem.acquisition;
     struct work *work = &bp->work;
     double na = (double)a->pings * a->receivers, nr = a->samples, pixels = problem_pixels(&bp->problem);
-    double all = na * pixels, transforms = 2 * na * fft_flops(nr) + 6 * na * nr;
+    double all = na * pixels, transforms = na * (fft_flops(nr) + fft_flops(in->upsample * nr) + 6 * nr);
     work->flops = na * bp->shape.flops;
     if (in->in_papers) {
         const bool kernel = in->steps == 0; /* each value is summed over one */

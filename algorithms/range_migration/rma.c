@@ -54,14 +54,13 @@ static const struct rma_transform *transform(const struct rma *rma)
     return rma->problem.precision == PRECISION_DOUBLE ? &rma_transform_double : &rma_transform_float;
 }
 
-/* One swath's share of the counted FLOPs. */
+/* One swath's share of the counted FLOPs, by the rule of back projection: what is done to samples and pixels, 8 for a
+   product that is added to a sum; phases, recurrences, places and weights are not counted. */
 static double swath_flops(const struct rma *rma, const struct rma_swath *swath)
 {
     const double receivers = rma->receivers, band = swath->band, q = swath->wavenumbers, length = swath->length;
-    const double applied = 20; /* a receiver's cell: product, sum, and two recurrences */
-    const double phases = 3 * (2.0 * RMA_DEGREE + 30) / RMA_GROUP;
     const double sums = rma->options.sum == RMA_SUM_AFTER ? receivers : 1;
-    const double weights = swath->needed * sums > 1 ? 10 * (rma->options.blend ? rma_nodes_blended(rma) : 1) : 0;
+    const double weights = swath->needed * sums > 1 ? 4 * (rma->options.blend ? rma_nodes_blended(rma) : 1) : 0;
     double flops = q * (fft_flops(swath->stolt_length) + 2 * length);
     if (rma->delay)
         flops +=
@@ -70,13 +69,13 @@ static double swath_flops(const struct rma *rma, const struct rma_swath *swath)
             + q * length * (receivers * (6 + 4.0 * rma->delay->terms.terms) + 12 * rma->delay->terms.terms);
     else
         flops += receivers * rma->pings * fft_flops(length) + receivers * band * fft_flops(swath->period)
-                 + q * receivers * band * (rma->converts ? applied + phases : 0) * swath->needed
+                 + q * receivers * band * (rma->converts ? 8 : 0) * swath->needed
                  + q * sums * (swath->needed * fft_flops(length) + weights * length);
     for (int k = 0; k < swath->patch_count; k++) {
         const struct rma_patch *patch = &swath->patches[k];
         double rows = patch->grid.r_count,
                points = patch->length * patch->step * 2 * rma->fs / rma->setting.sound_speed;
-        flops += q * (rma->taps ? points * (7.0 * rma->taps + 60) + fft_flops(patch->length) : rows * band * 14);
+        flops += q * (rma->taps ? points * (4.0 * rma->taps + 8) + fft_flops(patch->length) : rows * band * 8);
         flops +=
             rows
             * (patch->folds ? fft_flops(patch->columns) + 2 * q : 2 * fft_flops(patch->columns) + 6 * patch->columns);

@@ -56,16 +56,16 @@ static void count_work(struct wk *wk)
     if (wk->angle != 0 || wk->kx_base != 0)
         work->flops += pings * band * 6;
     if (wk->angle != 0)
-        work->flops += lines * band * (7.0 * wk->taps);
+        work->flops += lines * band * (4.0 * wk->taps);
     for (int k = 0; k < wk->patch_count; k++) {
         const struct wk_patch *patch = &wk->patches[k];
         double rows = patch->own.r_count, columns = patch->own.x_count;
-        work->flops += stolt_cells(wk, patch) * (7.0 * wk->taps + 10) + lines * fft_flops(patch->length);
+        work->flops += stolt_cells(wk, patch) * (4.0 * wk->taps + 8) + lines * fft_flops(patch->length);
         work->flops += rows
                        * (lines * 8 + columns * 8 + (patch->folds ? 1 : 2) * fft_flops(patch->columns)
                           + (patch->folds ? 0 : 6 * patch->columns));
         if (patch->resampled)
-            work->flops += (double)patch->grid.r_count * patch->grid.x_count * (4.0 * wk->taps * wk->taps + 10);
+            work->flops += (double)patch->grid.r_count * patch->grid.x_count * 4.0 * wk->taps * wk->taps;
     }
     const bool turned = wk->method.rotates && wk->angle == 0, unfiltered = wk->method.filters && !wk->filter;
     snprintf(work->engine, sizeof work->engine, "%s", wk->angle != 0 ? "rotated" : wk_unfold_names[wk->options.unfold]);

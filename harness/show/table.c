@@ -111,8 +111,8 @@ void table_header(FILE *stream)
     *table.scene = '\0';
     table.width = width_find(stream) < WIDTH_WIDE ? WIDTH_LEAST : WIDTH_WIDE;
     table.spec_width = table.width == WIDTH_WIDE ? 34 : 24;
-    fputs("time      median seconds from raw echoes to complex image; with ~ the middle\n"
-          "          half of the runs spans more than 10 % of it\n"
+    fputs("time      median seconds from the echoes in memory to the complex image; with ~\n"
+          "          the middle half of the runs spans more than 10 % of it\n"
           "speed-up  against the scalar reference loop timed beside, which takes out the\n"
           "          machine's momentary speed\n",
           stream);
@@ -138,12 +138,12 @@ void measurement_spec(const struct measurement *row, char *text, size_t size)
              *row->options && other_precision ? "," : "", other_precision ? "precision=double" : "");
 }
 
-static void scene_begin(FILE *stream, const char *name)
+void table_scene(FILE *stream, const char *name, const char *what)
 {
     char scene[WIDTH_WIDE + 1];
     snprintf(scene, sizeof scene, "%s", name);
     shown_make(scene);
-    fprintf(stream, "\n%s\n", scene);
+    fprintf(stream, "\n%s%s%s\n", scene, *what ? ": " : "", what);
     snprintf(table.scene, sizeof table.scene, "%s", name);
     table.sharpness = false;
     *table.refusal = '\0';
@@ -216,7 +216,7 @@ void table_row(FILE *stream, const struct measurement *row)
 {
     char spec[512];
     if (strcmp(table.scene, row->scene) != 0)
-        scene_begin(stream, row->scene);
+        table_scene(stream, row->scene, "");
     measurement_spec(row, spec, sizeof spec);
     shown_make(spec);
     if (strcmp(row->status, "ok") == 0) {

@@ -9,6 +9,8 @@
 
 /* What the columns mean and their names. The next row begins with its scene's heading. */
 void table_header(FILE *stream);
+/* A scene's heading line, and what it images. */
+void table_scene(FILE *stream, const char *name, const char *what);
 /* One measurement, the sharpness in place of lobes where the scene has no targets; a heading line whenever the scene is another than the row's before. Undefined values are "-". */
 void table_row(FILE *stream, const struct measurement *row);
 

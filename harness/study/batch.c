@@ -223,6 +223,25 @@ static bool pictures_missing(const struct batch *batch, const struct scene *scen
            || (images > 0 && scene->point_count > 0 && !picture_exists(batch->directory, scene->name, NULL));
 }
 
+/* A patch costs back projection little and range migration as much as the whole swath: the heading says which it is. */
+static void heading_print(const struct scene *scene)
+{
+    const struct acquisition *a = &scene->acquisition;
+    double pixels = 0, imaged_m = 0, recorded_m = a->samples * a->sound_speed / (2 * a->fs);
+    char what[160], size[60];
+    for (int k = 0; k < scene->patch_count; k++) {
+        pixels += (double)scene->patches[k].r_count * scene->patches[k].x_count;
+        imaged_m += scene->patches[k].r_count * scene->patches[k].r_step;
+    }
+    if (scene->patch_count == 1)
+        snprintf(size, sizeof size, "%d x %d pixels", scene->patches[0].x_count, scene->patches[0].r_count);
+    else
+        snprintf(size, sizeof size, "%.0f pixels in %d patches", pixels, scene->patch_count);
+    snprintf(what, sizeof what, "%s, %.2g %% of the recorded ranges, %s echoes", size,
+             100 * fmin(imaged_m / recorded_m, 1), a->compressed ? "compressed" : "raw");
+    table_scene(stdout, scene->name, what);
+}
+
 enum status batch_scene(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs)
 {
     struct visit visit;
@@ -231,6 +250,8 @@ enum status batch_scene(struct batch *batch, const struct scene *scene, int spec
     for (int k = 0; k < spec_count; k++)
         missing += !batch_find(batch, scene, &specs[k]);
     const bool visited = missing > 0 || pictures_missing(batch, scene, spec_count, specs);
+    if (status == STATUS_OK)
+        heading_print(scene);
     if (status == STATUS_OK && visited) {
         progress(batch, scene->name, "echoes and exact image");
         if (visit_open(batch, scene, spec_count, specs, &visit) != STATUS_OK) {

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/fft_length.h"
 #include "backprojection/bp.h"
 #include "common/delay.h"
 #include "backprojection/pairs.h"
@@ -162,10 +163,35 @@ static void own_interpolator_claims_nothing(void **state)
     acquisition_free(&a);
 }
 
+/* The inverse FFT of zero padding is as long as the record that it makes. */
+static void zero_padding_counts_its_transform(void **state)
+{
+    (void)state;
+    struct acquisition a;
+    struct grid grid;
+    struct echoes echoes;
+    double published[2];
+    random_case(1, &a, &grid, &echoes);
+    struct problem problem = {&a, 1, &grid, PRECISION_FLOAT};
+    const struct bp_options options = {.phase_limit = 1e-4};
+    for (int n = 0; n < 2; n++) {
+        const struct interpolator nearest = {.upsample = n ? 8 : 1, .steps = 1, .taps = 1, .in_papers = true};
+        void *plan;
+        assert_int_equal(bp_plan(&problem, &nearest, &options, &plan), STATUS_OK);
+        published[n] = bp_work(plan).published[0].flops;
+        bp_destroy(plan);
+    }
+    double longer = fft_flops(8.0 * a.samples) - fft_flops(a.samples);
+    assert_close(published[1] - published[0], (double)a.pings * a.receivers * longer, 1e-6 * published[0]);
+    echoes_free(&echoes);
+    acquisition_free(&a);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(naive_sums),
+        cmocka_unit_test(zero_padding_counts_its_transform),
         cmocka_unit_test(own_interpolator_claims_nothing),
     };
     return cmocka_run_group_tests_name("bp", tests, NULL, NULL);
