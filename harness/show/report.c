@@ -225,10 +225,11 @@ static void measurement_show(struct page *page, const struct measurement *row, b
 static void measurements_show(struct page *page, const struct folder *folder)
 {
     page_heading(page, 2, "measurements", "Measurements");
-    page_paragraph(page, "Run time: median seconds from the echoes in memory to the complex image; speed-up: against the scalar "
-                         "reference loop timed beside. In parentheses the quartiles of the runs. Errors: relative L2 "
-                         "against the exact image. Width, PSLR and ISLR: medians over the targets, azimuth, main lobe "
-                         "from first minimum to first minimum; without targets the image's sharpness.");
+    page_paragraph(
+        page, "Run time: median seconds from the echoes in memory to the complex image; speed-up: against the scalar "
+              "reference loop timed beside. In parentheses the quartiles of the runs. Errors: relative L2 "
+              "against the exact image. Width, PSLR and ISLR: medians over the targets, azimuth, main lobe "
+              "from first minimum to first minimum; without targets the image's sharpness.");
     for (int s = 0; s < folder->scene_count; s++) {
         page_heading(page, 3, NULL, folder->scenes[s]);
         const bool sharpness = scene_is_blind(folder, folder->scenes[s]);
