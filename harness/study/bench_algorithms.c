@@ -28,6 +28,7 @@ static const struct candidate {
 } candidates[] = {
     {"bp22/full_limited", 64, false}, /* back projection */
     {"lbf21/real_size", 0, false},    /* range migration */
+    {"sq18/full_20", 0, false},       /* omega-k */
     {"sweep/speckle", 0, true},
 };
 enum { CANDIDATES = sizeof candidates / sizeof *candidates };

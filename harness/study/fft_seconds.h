@@ -4,8 +4,15 @@
 
 #include "status.h"
 
-/* One forward and one inverse transform of rows x columns in place, float, planned by measurement, best of five. Errors:
-   STATUS_FAILED without memory or threads. */
-enum status fft_seconds(int rows, int columns, int threads, double *seconds);
+/* s, best of five. Which is faster depends on the machine's caches. */
+struct fft_seconds {
+    double plan;   /* by one two-dimensional plan */
+    double strips; /* rows by themselves, columns by strips that are copied to and fro */
+    double best;   /* the less of both */
+};
+
+/* One forward and one inverse transform of rows x columns in place, float, planned by measurement. Errors: STATUS_FAILED without
+   memory or threads. */
+enum status fft_seconds(int rows, int columns, int threads, struct fft_seconds *seconds);
 
 #endif
