@@ -3,9 +3,130 @@
 
 #include "range_migration/conditions.h"
 #include "range_migration/ghosts.h"
-#include "wavenumber/wk.h"
+#include "range_migration/spectrum.h"
+#include "wavenumber/engine.h"
 
+static const double pi = 3.14159265358979323846;
 static const double SLOWEST = 0.1; /* of 1 - |v|/c, as in range migration */
+static const double LOBE = 0.443;  /* half a beam, in lambda/D, of echoes that do not say theirs */
+
+double wk_centroid_slope(const struct acquisition *a, const struct straight_track *track)
+{
+    const struct spectrum_setting setting = {a->sound_speed, track->speed, a->fc, 0};
+    double still = sin(a->echo_squint),
+           moving = -spectrum_slope(&setting, 0, 1, -tan(a->echo_squint)) * a->sound_speed / 2;
+    return fabs(moving - still) * 4 * fabs(track->spacing) * a->fc / a->sound_speed > 0.1 ? moving : still;
+}
+
+/* What the pings see of the patches. */
+struct view {
+    const struct acquisition *acquisition;
+    double spacing, slope;
+    double x_end[2]; /* m: of the track */
+    double sine[2];  /* of the angles off broadside between which the beam sees */
+};
+
+static struct view view_of(const struct acquisition *a, const struct straight_track *track)
+{
+    const double last = track->x_first + (a->pings - 1) * track->spacing;
+    double half = a->echo_sine > 0 ? a->echo_sine : INFINITY;
+    if (!(a->echo_sine > 0) && a->tx_length > 0)
+        half = LOBE * a->sound_speed / a->fc / a->tx_length;
+    const double b = half < 1 ? asin(half) : pi, low = a->echo_squint - b, high = a->echo_squint + b;
+    return (struct view){.acquisition = a,
+                         .spacing = fabs(track->spacing),
+                         .slope = wk_centroid_slope(a, track),
+                         .x_end = {fmin(track->x_first, last), fmax(track->x_first, last)},
+                         .sine = {fmax(-WK_WIDEST_SINE, low > -pi / 2 ? sin(low) : -1),
+                                  fmin(WK_WIDEST_SINE, high < pi / 2 ? sin(high) : 1)}};
+}
+
+/* Sines of the angles under which pings see a place: false if none does. */
+static bool place_seen(const struct view *view, struct vector p, double seen[2])
+{
+    for (int k = 0; k < 2; k++)
+        seen[k] = (p.x - view->x_end[1 - k]) / hypot(p.x - view->x_end[1 - k], p.y);
+    seen[0] = fmax(seen[0], view->sine[0]);
+    seen[1] = fmin(seen[1], view->sine[1]);
+    return seen[0] <= seen[1];
+}
+
+/* Worst over the corners and the middle of each patch, as far as they are seen. */
+struct worst {
+    double doppler, stationary;
+    int unseen; /* patches of which no ping sees any of these places */
+};
+
+/* A NaN is kept. */
+static double larger(double worst, double value)
+{
+    return value <= worst ? worst : value;
+}
+
+static struct worst patches_see(const struct view *view, const struct problem *problem)
+{
+    const struct acquisition *a = view->acquisition;
+    const double wavelength = a->sound_speed / (a->fc - a->bandwidth / 2);
+    struct worst worst = {0, 0, 0};
+    for (int n = 0; n < problem->patch_count; n++) {
+        const struct grid *g = &problem->patches[n];
+        bool any = false;
+        for (int k = 0; k < 5; k++) {
+            double u = k == 4 ? 0.5 : k % 2, w = k == 4 ? 0.5 : k / 2, seen[2];
+            struct vector p = grid_point(g, w * (g->r_count - 1), u * (g->x_count - 1));
+            if (!place_seen(view, p, seen))
+                continue;
+            any = true;
+            double steepest = fmax(fabs(seen[0] - view->slope), fabs(seen[1] - view->slope));
+            double cosine = sqrt(1 - fmax(seen[0] * seen[0], seen[1] * seen[1]));
+            worst.doppler =
+                larger(worst.doppler, (a->fc + a->bandwidth / 2) / a->sound_speed * 4 * view->spacing * steepest);
+            worst.stationary = larger(worst.stationary, wavelength / (32 * pi * p.y * cosine));
+        }
+        worst.unseen += !any;
+    }
+    return worst;
+}
+
+/* What the beam and the patches make of it. A beam that looks too far along the track has the first condition only. */
+static void beam_conditions(const struct problem *problem, const struct straight_track *track, struct condition *all,
+                            int *count)
+{
+    const struct view view = view_of(problem->acquisition, track);
+    all[(*count)++] = (struct condition){"squint",
+                                         asin(fmin(fabs(view.slope), 1)) * 180 / pi,
+                                         asin(WK_WIDEST_SINE) * 180 / pi,
+                                         false,
+                                         SEVERITY_REFUSE,
+                                         "the angle of the beam's axis off broadside (degrees)",
+                                         "back projection, or a beam nearer to broadside"};
+    if (!condition_holds(&all[*count - 1]))
+        return;
+    const struct worst worst = patches_see(&view, problem);
+    all[(*count)++] = (struct condition){"in_beam",
+                                         worst.unseen,
+                                         0,
+                                         false,
+                                         SEVERITY_REFUSE,
+                                         "the number of patches that no ping sees",
+                                         "patches where the beam looks, in axes turned as it is"};
+    all[(*count)++] =
+        (struct condition){"doppler",
+                           worst.doppler,
+                           1.05,
+                           false,
+                           SEVERITY_REFUSE,
+                           "the widest azimuth wavenumber in the beam, off its centroid, over what the pings sample, "
+                           "1/(2 spacing),",
+                           "pings closer together, or a narrower beam"};
+    all[(*count)++] = (struct condition){"stationary",
+                                         worst.stationary,
+                                         0.01,
+                                         false,
+                                         SEVERITY_REFUSE,
+                                         "the first term that stationary phase drops, lambda/(32 pi r cos theta),",
+                                         "rows farther away, or a higher frequency"};
+}
 
 int wk_conditions(const struct problem *problem, const void *options, struct condition *list, int room)
 {
@@ -30,8 +151,11 @@ int wk_conditions(const struct problem *problem, const void *options, struct con
                                       SEVERITY_REFUSE,
                                       "how far the receiver is from the transmitter along the track (wavelengths)",
                                       "range migration (rma_*), which takes that into account"};
-    if (azimuth_requirements(problem, all, &count, &track) && conditions_accept(all, count))
-        all[count++] = ghosts_condition(problem, &track);
+    if (azimuth_requirements(problem, all, &count, &track) && conditions_accept(all, count)) {
+        beam_conditions(problem, &track, all, &count);
+        if (conditions_accept(all, count))
+            all[count++] = ghosts_condition(problem, &track);
+    }
     for (int k = 0; k < count && k < room; k++)
         list[k] = all[k];
     return count < room ? count : room;

@@ -28,7 +28,8 @@ enum {
     WK_SPAN = 256,       /* bins that go through the interpolations together, in the cache */
     WK_TILE = 8          /* neighbouring lines whose rows are stored together */
 };
-#define WK_OVERSAMPLING 1.5 /* of the record by the range transform, and of an image that is resampled */
+#define WK_WIDEST_SINE  0.98 /* of the angles that are imaged: nearer to the track nothing is resolved in range */
+#define WK_OVERSAMPLING 1.5  /* of the record by the range transform, and of an image that is resampled */
 
 /* A kernel, tap after tap: values[tap][interval], real [taps][WK_INTERVALS + 2]. */
 struct wk_kernel {
@@ -118,6 +119,11 @@ static inline double wk_ky(const struct wk *wk, double frequency, double kx0)
     double root = f * f * (beta * beta * sine * sine + b1) - b1 * kx0 * (2 * f * beta * cosine + b1 * kx0);
     return root > 0 ? (sqrt(root) - f * beta * sine) / b1 : NAN;
 }
+
+/* ---- conditions.c ---- */
+/* Kx/K_R of the beam's axis. Motion while the pulse travels moves it by about v/c: left alone where that is little of what the
+   pings hold, so that a beam broadside needs no unfolding. */
+double wk_centroid_slope(const struct acquisition *acquisition, const struct straight_track *track);
 
 /* ---- layout.c ---- */
 enum status wk_layout(struct wk *wk);

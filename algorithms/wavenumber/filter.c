@@ -157,11 +157,13 @@ enum status REAL_NAME(polar_filter_plan)(const struct acquisition *a, const stru
             if (upsampling_for(f, f->shape.subapertures) == 1)
                 break;
     if (f->shape.subapertures > most)
-        status = status_set(STATUS_UNSUPPORTED, "polar-format filter: %d sub-apertures of %d pings; at most %d",
+        status = status_set(STATUS_UNSUPPORTED,
+                            "polar-format filter: condition subapertures: %d sub-apertures of %d pings; at most %d",
                             f->shape.subapertures, a->pings, most);
     if (status == STATUS_OK && !((up = upsampling_for(f, f->shape.subapertures)) <= UPSAMPLING_MOST))
         status = status_set(STATUS_UNSUPPORTED,
-                            "polar-format filter: %d sub-apertures need %g times upsampling; at most %d (cure: more "
+                            "polar-format filter: condition upsampling: %d sub-apertures need %g times upsampling; at "
+                            "most %d (cure: more "
                             "sub-apertures)",
                             f->shape.subapertures, up, UPSAMPLING_MOST);
     f->up = f->shape.upsampling = (int)up;

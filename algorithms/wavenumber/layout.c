@@ -6,14 +6,10 @@
 #include "common/fft_length.h"
 #include "common/kaiser.h"
 #include "common/pulse_band.h"
-#include "range_migration/spectrum.h"
 #include "wavenumber/engine.h"
 
 static const double pi = 3.14159265358979323846;
 
-static const double WIDEST_SINE =
-    0.98;                         /* of the angles that are imaged: nearer to the track nothing is resolved in range */
-static const double LOBE = 0.443; /* half a beam, in lambda/D, of echoes that do not say theirs */
 static const double PULSE_PERIODS = 8; /* of 1/B, beside the rows, so that no pulse wraps around */
 static const double EVEN = 1e-12;      /* relative: columns that divide the period but for rounding */
 static const double SAME_ANGLE = 1e-9; /* rad */
@@ -42,17 +38,8 @@ static void angles_limit(const struct wk *wk, double half, double sine[2])
     double b = half < 1 ? asin(half) : pi, sampled = wavelength_longest(wk) / (4 * wk->spacing);
     double low = wk->squint - b > -pi / 2 ? sin(wk->squint - b) : -1;
     double high = wk->squint + b < pi / 2 ? sin(wk->squint + b) : 1;
-    sine[0] = fmax(fmax(low, wk->slope - sampled), -WIDEST_SINE);
-    sine[1] = fmin(fmin(high, wk->slope + sampled), WIDEST_SINE);
-}
-
-/* Kx/K_R of the beam's axis. Motion while the pulse travels moves it by about v/c: left alone where that is little of what
-   the pings hold, so that a beam broadside needs no unfolding. */
-static double centroid_slope(const struct wk *wk)
-{
-    const struct spectrum_setting setting = {wk->sound_speed, wk->speed, wk->fc, 0};
-    double still = sin(wk->squint), moving = -spectrum_slope(&setting, 0, 1, -tan(wk->squint)) * wk->sound_speed / 2;
-    return fabs(moving - still) * 4 * wk->spacing * wk->fc / wk->sound_speed > 0.1 ? moving : still;
+    sine[0] = fmax(fmax(low, wk->slope - sampled), -WK_WIDEST_SINE);
+    sine[1] = fmin(fmin(high, wk->slope + sampled), WK_WIDEST_SINE);
 }
 
 static enum status lay_track(struct wk *wk)
@@ -72,7 +59,7 @@ static enum status lay_track(struct wk *wk)
     wk->spacing = fabs(track.spacing);
     wk->reversed = track.spacing < 0;
     wk->squint = a->echo_squint;
-    wk->slope = centroid_slope(wk);
+    wk->slope = wk_centroid_slope(a, &track);
     double first = track.x_first + (wk->reversed ? (a->pings - 1) * track.spacing : 0);
     wk->x_middle = first + wk->middle * wk->spacing;
     wk->x_end[0] = first - wk->x_middle;
@@ -80,10 +67,6 @@ static enum status lay_track(struct wk *wk)
     wk->angle = wk->method.rotates ? wk->squint : 0;
     /* Echoes reach out to the element's first null. */
     angles_limit(wk, a->tx_length > 0 ? wavelength_longest(wk) / a->tx_length : INFINITY, wk->sine);
-    if (!(wk->sine[1] > wk->sine[0]) || !(fabs(wk->slope) < WIDEST_SINE))
-        return status_set(STATUS_UNSUPPORTED,
-                          "%s: a squint of %g degrees; omega-k needs the sine of the angle off broadside below %g",
-                          wk->method.name, wk->squint * 180 / pi, WIDEST_SINE);
     return STATUS_OK;
 }
 
@@ -93,84 +76,16 @@ struct place {
     double x, r; /* m, in the track's axes, from x_middle */
 };
 
-/* Corner k of a grid (0 to 3), or its middle (4). */
+/* Corner k of a grid, 0 to 3. */
 static struct place grid_place(const struct wk *wk, const struct grid *g, int k)
 {
-    double u = k == 4 ? 0.5 : k % 2, w = k == 4 ? 0.5 : k / 2;
-    struct vector p = grid_point(g, w * (g->r_count - 1), u * (g->x_count - 1));
+    struct vector p = grid_point(g, k / 2 * (g->r_count - 1), k % 2 * (g->x_count - 1));
     return (struct place){p.x - wk->x_middle, p.y};
 }
 
 static struct place place_turned(struct place p, double angle)
 {
     return (struct place){p.x * cos(angle) - p.r * sin(angle), p.x * sin(angle) + p.r * cos(angle)};
-}
-
-/* Sines of the angles under which pings see a place within `sine`: false if there are none. */
-static bool place_seen(const struct wk *wk, struct place p, const double sine[2], double seen[2])
-{
-    for (int k = 0; k < 2; k++)
-        seen[k] = (p.x - wk->x_end[1 - k]) / hypot(p.x - wk->x_end[1 - k], p.r);
-    seen[0] = fmax(seen[0], sine[0]);
-    seen[1] = fmin(seen[1], sine[1]);
-    return seen[0] <= seen[1];
-}
-
-static enum status check_place(const struct wk *wk, struct place p, const double seen[2])
-{
-    const struct acquisition *a = wk->problem.acquisition;
-    double steepest = fmax(fabs(seen[0] - wk->slope), fabs(seen[1] - wk->slope));
-    double doppler = (a->fc + a->bandwidth / 2) / a->sound_speed * 4 * wk->spacing * steepest;
-    double cosine = sqrt(1 - fmax(seen[0] * seen[0], seen[1] * seen[1]));
-    double stationary = wavelength_longest(wk) / (32 * pi * p.r * cosine);
-    if (!(doppler <= 1.05))
-        return status_set(
-            STATUS_UNSUPPORTED,
-            "%s: condition doppler: the widest azimuth wavenumber in the beam, off its centroid, over what "
-            "the pings sample, 1/(2 spacing), is %.3g; at most 1.05 is needed (cure: pings closer together, "
-            "or a narrower beam)",
-            wk->method.name, doppler);
-    if (!(stationary <= 0.01))
-        return status_set(STATUS_UNSUPPORTED,
-                          "%s: condition stationary: the first term that stationary phase drops, lambda/(32 pi r cos "
-                          "theta), is %.3g; at most 0.01 is needed (cure: rows farther away, or a higher frequency)",
-                          wk->method.name, stationary);
-    return STATUS_OK;
-}
-
-static enum status check_patches(const struct wk *wk)
-{
-    const struct acquisition *a = wk->problem.acquisition;
-    double half = a->echo_sine > 0 ? a->echo_sine : INFINITY, beam[2], sampled[2] = {-WIDEST_SINE, WIDEST_SINE};
-    if (!(a->echo_sine > 0) && a->tx_length > 0)
-        half = LOBE * a->sound_speed / a->fc / a->tx_length;
-    double b = half < 1 ? asin(half) : pi;
-    beam[0] = fmax(sampled[0], wk->squint - b > -pi / 2 ? sin(wk->squint - b) : -1);
-    beam[1] = fmin(sampled[1], wk->squint + b < pi / 2 ? sin(wk->squint + b) : 1);
-    for (int n = 0; n < wk->problem.patch_count; n++) {
-        bool any = false;
-        for (int k = 0; k < 5; k++) {
-            struct place p = grid_place(wk, &wk->problem.patches[n], k);
-            double seen[2];
-            if (!(p.r > 0))
-                return status_set(STATUS_UNSUPPORTED, "%s: a pixel lies at r = %g m; omega-k needs r > 0",
-                                  wk->method.name, p.r);
-            if (!place_seen(wk, p, beam, seen))
-                continue;
-            any = true;
-            enum status status = check_place(wk, p, seen);
-            if (status != STATUS_OK)
-                return status;
-        }
-        if (!any)
-            return status_set(STATUS_UNSUPPORTED,
-                              "%s: no ping sees patch %d, whose middle lies %g m ahead of the track's at r = %g m: "
-                              "the beam reaches from %.4g to %.4g degrees off broadside",
-                              wk->method.name, n + 1, grid_place(wk, &wk->problem.patches[n], 4).x,
-                              grid_place(wk, &wk->problem.patches[n], 4).r, asin(beam[0]) * 180 / pi,
-                              asin(beam[1]) * 180 / pi);
-    }
-    return STATUS_OK;
 }
 
 /* ---- range ---- */
@@ -402,9 +317,11 @@ static enum status lay_steps(struct wk *wk)
         double centre = (wk->t0 + wk->centre / wk->fs) * c / 2;
         if (!(first > centre - window && last * hypot(1, steepest) < centre + window))
             return status_set(STATUS_UNSUPPORTED,
-                              "%s: rows from %g to %g m lie too far outside the record's %g to %g m", wk->method.name,
-                              patch->grid.r_first, patch->grid.r_first + (patch->grid.r_count - 1) * patch->grid.r_step,
-                              record[0], record[1]);
+                              "%s: condition in_record: rows from %g to %g m lie too far outside the record's %g to %g "
+                              "m (cure: rows within it)",
+                              wk->method.name, patch->grid.r_first,
+                              patch->grid.r_first + (patch->grid.r_count - 1) * patch->grid.r_step, record[0],
+                              record[1]);
         patch->length = rows < 1e8 ? fft_length_fast((long long)rows) : 0;
         double period = 2 * pi / wk->kx_step / g->x_step, whole = floor(period + 0.5);
         patch->folds = fabs(period - whole) <= EVEN * whole && whole >= g->x_count && whole <= INT_MAX
@@ -428,8 +345,6 @@ enum status wk_layout(struct wk *wk)
     wk->taps = tap_counts[wk->options.taps];
     for (size_t k = 0; status == STATUS_OK && k < sizeof steps / sizeof *steps; k++)
         status = steps[k](wk);
-    if (status == STATUS_OK)
-        status = check_patches(wk);
     if (status == STATUS_OK)
         status = wk->angle != 0 ? lay_rotated(wk) : lay_unfolded(wk);
     if (status == STATUS_OK)

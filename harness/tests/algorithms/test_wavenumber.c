@@ -310,7 +310,7 @@ static void refusals(void **state)
     patches_around(&scene, 0, 0.04, 7, patches);
     struct acquisition a = scene.acquisition;
     a.echo_squint = radians(89);
-    refuses(&a, patches, "a squint of 89 degrees");
+    refuses(&a, patches, "condition squint: the angle of the beam's axis off broadside (degrees) is 89; at most 78.5");
     a = scene.acquisition;
     a.aperture_limit = 0.01; /* the beam ends at 0.025 */
     refuses(&a, patches, "condition whole_aperture");
@@ -327,15 +327,17 @@ static void refusals(void **state)
     refuses(&a, patches, "condition one_receiver");
     struct grid elsewhere = patches[0];
     elsewhere.x_first -= 40;
-    refuses(&scene.acquisition, &elsewhere, "no ping sees");
+    refuses(&scene.acquisition, &elsewhere,
+            "condition in_beam: the number of patches that no ping sees is 1; at most 0");
     elsewhere = patches[0];
     elsewhere.angle_rad = radians(-40); /* turned about the origin: off the beam */
-    refuses(&scene.acquisition, &elsewhere, "no ping sees");
+    refuses(&scene.acquisition, &elsewhere,
+            "condition in_beam: the number of patches that no ping sees is 1; at most 0");
     elsewhere.angle_rad = 0;
     elsewhere.r_first = -0.1;
     refuses(&scene.acquisition, &elsewhere, "condition in_front");
     elsewhere = (struct grid){100 * tan(radians(20)), 0.04, 3, 100, 0.04, 3, 0};
-    refuses(&scene.acquisition, &elsewhere, "outside the record");
+    refuses(&scene.acquisition, &elsewhere, "condition in_record");
     squint_scene_free(&scene);
 }
 
