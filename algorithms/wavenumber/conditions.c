@@ -117,14 +117,14 @@ static void beam_conditions(const struct problem *problem, const struct straight
                            false,
                            SEVERITY_REFUSE,
                            "the widest azimuth wavenumber in the beam, off its centroid, over what the pings sample, "
-                           "1/(2 spacing),",
+                           "1/(2 spacing)",
                            "pings closer together, or a narrower beam"};
     all[(*count)++] = (struct condition){"stationary",
                                          worst.stationary,
                                          0.01,
                                          false,
                                          SEVERITY_REFUSE,
-                                         "the first term that stationary phase drops, lambda/(32 pi r cos theta),",
+                                         "the first term that stationary phase drops, lambda/(32 pi r cos theta)",
                                          "rows farther away, or a higher frequency"};
 }
 
