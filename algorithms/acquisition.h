@@ -47,8 +47,8 @@ struct acquisition {
 enum status acquisition_allocate(struct acquisition *acquisition);
 void acquisition_free(struct acquisition *acquisition);
 
-/* Check every promise made above (ranges, finite numbers, |velocity| < c, phase precise enough: 8 pi fc tau eps <= 1e-3).
-   `place` (a file name) begins the message. Errors: STATUS_INVALID. */
+/* Check every promise made above (ranges, finite numbers, |velocity| < c, phase precise enough: 8 pi fc tau eps <=
+   1e-3). `place` (a file name) begins the message. Errors: STATUS_INVALID. */
 enum status acquisition_check(const struct acquisition *acquisition, const char *place);
 
 /* A copy, to be freed, as it is seen from axes turned by `angle` (rad) about the origin: x' = x cos - y sin,
@@ -59,8 +59,8 @@ enum status acquisition_turn(const struct acquisition *acquisition, double angle
    direction for a single ping; +x where both vanish. */
 struct vector acquisition_heading(const struct acquisition *acquisition, int ping);
 
-/* Unit vector normal to the plane that theta_t of ping p counts from: the heading, turned by the squint where the beam has one,
-   so that the plane holds the beam's axis (r > 0). A squint points towards +x whichever way the track runs. */
+/* Unit vector normal to the plane that theta_t of ping p counts from: the heading, turned by the squint where the beam
+   has one, so that the plane holds the beam's axis (r > 0). A squint points towards +x whichever way the track runs. */
 struct vector acquisition_normal(const struct acquisition *acquisition, int ping);
 
 /* A uniform straight track: tx(p).x = x_first + p spacing, rx(p, m).x - tx(p).x = offset(m), y = z = 0, one velocity
@@ -73,8 +73,8 @@ struct straight_track {
 /* Wavelengths: how far off such a track still counts as one. */
 #define ACQUISITION_UNEVEN_MOST 1e-3
 
-/* m: how far transmitters, receivers, starts of record (times the sound speed) and velocities (times the longest delay) lie
-   off the uniform straight track nearest to them, *track; INFINITY where all pings are in one place. */
+/* m: how far transmitters, receivers, starts of record (times the sound speed) and velocities (times the longest delay)
+   lie off the uniform straight track nearest to them, *track; INFINITY where all pings are in one place. */
 double acquisition_unevenness(const struct acquisition *acquisition, struct straight_track *track);
 
 /* True when the track is uniform and straight; fills *track (may be NULL). */

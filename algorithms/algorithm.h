@@ -22,9 +22,9 @@
 
 enum precision { PRECISION_FLOAT, PRECISION_DOUBLE };
 
-/* Pixel (i, j), range row i and azimuth column j, lies at x' = x_first + j x_step, r' = r_first + i r_step, z = 0, in axes
-   turned by angle_rad about the origin:  x = x' cos + r' sin,  r = -x' sin + r' cos  (SQ18's rotated image; 0: the track's
-   axes). */
+/* Pixel (i, j), range row i and azimuth column j, lies at x' = x_first + j x_step, r' = r_first + i r_step, z = 0, in
+   axes turned by angle_rad about the origin:  x = x' cos + r' sin,  r = -x' sin + r' cos  (SQ18's rotated image; 0: the
+   track's axes). */
 struct grid {
     double x_first, x_step; /* m, x_step > 0 */
     int x_count;            /* >= 1 */
@@ -93,8 +93,8 @@ struct work {
 
 enum param_type { PARAM_INTEGER, PARAM_REAL, PARAM_CHOICE };
 
-/* One setting: parsing, bounds, `info`, the CSV's options column and the sweep all come from this row. Name, type and place
-   come from the field by PARAM or PARAM_NAMED. */
+/* One setting: parsing, bounds, `info`, the CSV's options column and the sweep all come from this row. Name, type and
+   place come from the field by PARAM or PARAM_NAMED. */
 struct param {
     const char *name, *summary; /* name NULL ends the table */
     enum param_type type;       /* the field is an int (integer, choice: index) or a double (real) */
@@ -106,8 +106,8 @@ struct param {
 };
 
 /* A row begins with  {PARAM(struct options, taps), .summary = ...  for a number, an int or a double, or with
-   {PARAM_NAMED(struct options, window, windows), ...  for a choice among names, an int. A field of another type does not
-   compile. */
+   {PARAM_NAMED(struct options, window, windows), ...  for a choice among names, an int. A field of another type does
+   not compile. */
 #define PARAM(options, field)                                                                                          \
     PARAM_PLACE(options, field), .type = _Generic(((options *)NULL)->field, int : PARAM_INTEGER, double : PARAM_REAL)
 #define PARAM_NAMED(options, field, names)                                                                             \
@@ -128,8 +128,8 @@ struct algorithm {
     size_t options_size;                    /* of the options struct; 0 without params */
     const struct param *params;             /* NULL-terminated; NULL without options */
 
-    /* Fill list[room] with what the problem must fulfil, and return the number; known before any work, and the same that
-       plan refuses by. NULL: conditions_general. */
+    /* Fill list[room] with what the problem must fulfil, and return the number; known before any work, and the same
+       that plan refuses by. NULL: conditions_general. */
     int (*conditions)(const struct problem *problem, const void *options, struct condition *list, int room);
     /* Make a plan in *plan. Errors: STATUS_UNSUPPORTED with the reason, STATUS_FAILED; *plan is then NULL. */
     enum status (*plan)(const struct problem *problem, const void *options, void **plan);

@@ -3,8 +3,8 @@
    i + f = Q/(beta+1). The grid is absolute, t = n/(fs (beta+1)).
 
    Cost: the upsampled record is never stored; the rounded fraction selects one of beta+1 pairs of weights. Error: the
-   grid's phase pi B/(2 fs (beta+1)) falls with beta, linear interpolation's own loss at high frequencies does not: a floor
-   at beta about 4, about 0.07 (point) and 0.09 (speckle, median of ten draws) at fs = 2B, falling as (B/fs)^2. */
+   grid's phase pi B/(2 fs (beta+1)) falls with beta, linear interpolation's own loss at high frequencies does not: a
+   floor at beta about 4, about 0.07 (point) and 0.09 (speckle, median of ten draws) at fs = 2B, falling as (B/fs)^2. */
 #include "backprojection/bp.h"
 
 struct options {

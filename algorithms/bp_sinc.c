@@ -1,8 +1,8 @@
 /* Truncated-sinc back projection, BP22's "traditional BP" (kernel length 8, rectangular) and ZP15's "truncated
    interpolation":  s(q) = sum of s[floor(q) + k] sinc(q - floor(q) - k) w(.),  k = -taps/2+1 .. taps/2.
 
-   Cost: 4 taps + 8 FLOPs a pair. Error at fs = 2B, 8 taps: 2.4e-3 for a point, 0.04 for speckle (median of ten draws; the
-   rectangular kernel's ripple); a Kaiser window (beta = 5) on the same taps is 40 to 50 times more accurate. */
+   Cost: 4 taps + 8 FLOPs a pair. Error at fs = 2B, 8 taps: 2.4e-3 for a point, 0.04 for speckle (median of ten draws;
+   the rectangular kernel's ripple); a Kaiser window (beta = 5) on the same taps is 40 to 50 times more accurate. */
 #include "backprojection/bp.h"
 
 enum window { WINDOW_NONE, WINDOW_KAISER };

@@ -10,8 +10,6 @@
 #include "algorithm.h"
 #include "common/delay.h"
 
-static const double pi = 3.14159265358979323846;
-
 /* The beam of echoes that do not say theirs: where the transmitter's power is half of that broadside, in lambda/D. */
 static const double LOBE = 0.443;
 static const double LOBES = 3; /* of a beam that tapers are followed this far, in nulls */
@@ -53,7 +51,7 @@ enum status conditions_check(const char *name, const struct condition *list, int
 
 double condition_sinc(double z)
 {
-    return fabs(z) < 1e-9 ? 1 : sin(pi * z) / (pi * z);
+    return fabs(z) < 1e-9 ? 1 : sin(M_PI * z) / (M_PI * z);
 }
 
 /* Where the echoes' amplitude, by both elements' sinc, falls to a quarter. */
@@ -236,7 +234,7 @@ int conditions_general(const struct problem *problem, struct condition *list, in
         (struct condition){"sampled", a->bandwidth / a->fs, 1, false, SEVERITY_REFUSE, "bandwidth over sampling rate",
                            "a higher sampling rate"});
     add(list, room, &count,
-        (struct condition){"phase_digits", 8 * pi * a->fc * extent.delay * DBL_EPSILON / 2, 1e-3, false,
+        (struct condition){"phase_digits", 8 * M_PI * a->fc * extent.delay * DBL_EPSILON / 2, 1e-3, false,
                            SEVERITY_REFUSE, "the phase's rounding in double, 8 pi fc tau 2^-53 (rad)",
                            "shorter delays or a lower carrier"});
     add(list, room, &count,

@@ -1,5 +1,5 @@
-/* What a scene must fulfil for an algorithm to image it rightly: conditions by name, each with its value and its limit, known
-   before any work. */
+/* What a scene must fulfil for an algorithm to image it rightly: conditions by name, each with its value and its limit,
+   known before any work. */
 #ifndef SASBENCH_CONDITION_H
 #define SASBENCH_CONDITION_H
 
@@ -33,13 +33,15 @@ bool condition_holds(const struct condition *condition);
 void condition_message(const struct condition *condition, char *text, size_t size);
 /* Does none of `list` refuse? */
 bool conditions_accept(const struct condition *list, int count);
-/* STATUS_UNSUPPORTED with the message of the first of `list` that refuses and does not hold; `name` is the algorithm's. */
+/* STATUS_UNSUPPORTED with the message of the first of `list` that refuses and does not hold; `name` is the
+   algorithm's. */
 enum status conditions_check(const char *name, const struct condition *list, int count);
 
 /* Fill list[room] with the conditions that all algorithms have, in the order of their names in docs/conditions.md, and
    return their number. */
 int conditions_general(const struct problem *problem, struct condition *list, int room);
-/* Those, and what the places of pings and receivers, sampled in azimuth, make of any image: what back projections have. */
+/* Those, and what the places of pings and receivers, sampled in azimuth, make of any image: what back projections
+   have. */
 int conditions_sampled(const struct problem *problem, struct condition *list, int room);
 
 /* The ghosts of a straight track of several receivers, `spacing` m from ping to ping. */
@@ -47,13 +49,13 @@ struct condition condition_ghost(const struct acquisition *acquisition, double s
 
 /* Offset of the receiver that is n/2 of the way from the least to the greatest, m along the track; n = 0, 1, 2. */
 double condition_offset(const struct acquisition *acquisition, int n);
-/* |sin theta_t| up to which the echoes count: their stated truncation, where both elements' amplitude falls to a quarter, or the
-   half-power beam of a transmitter of known length; INFINITY where nothing is known. */
+/* |sin theta_t| up to which the echoes count: their stated truncation, where both elements' amplitude falls to a
+   quarter, or the half-power beam of a transmitter of known length; INFINITY where nothing is known. */
 double condition_beam_sine(const struct acquisition *acquisition);
 /* |sin theta_t| up to which anything is seen at all: condition_beam_sine, but three nulls of a beam that tapers. */
 double condition_seen_sine(const struct acquisition *acquisition);
-/* Amplitude of the echo of a unit target r m beside a straight track along x, the transmitter u m ahead of it: 1 inside the
-   beam, or both elements' sinc where the echoes taper; 0 where it is not seen. */
+/* Amplitude of the echo of a unit target r m beside a straight track along x, the transmitter u m ahead of it: 1 inside
+   the beam, or both elements' sinc where the echoes taper; 0 where it is not seen. */
 double condition_amplitude(const struct acquisition *acquisition, double r, double u);
 /* sin(pi z)/(pi z) */
 double condition_sinc(double z);

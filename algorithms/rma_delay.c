@@ -1,9 +1,10 @@
-/* Range migration after delay compensation: no formula for the bistatic spectrum and no range blocks. Each receiver's echo
-   is delayed, by range, to what a monostatic sonar would have recorded broadside; what is left is of low rank over the
-   receivers and undone at each azimuth wavenumber (range_migration/delay.h).
+/* Range migration after delay compensation: no formula for the bistatic spectrum and no range blocks. Each receiver's
+   echo is delayed, by range, to what a monostatic sonar would have recorded broadside; what is left is of low rank over
+   the receivers and undone at each azimuth wavenumber (range_migration/delay.h).
 
-   Cost: a receiver, wavenumber and sample 6 + 4 terms FLOPs, whatever the depth of the swath. Error: the exact spectrum's own,
-   and what the terms leave: 1e-3 from 57 m on. It grows with (array/range)^2, the square of the beam, and B/fc. */
+   Cost: a receiver, wavenumber and sample 6 + 4 terms FLOPs, whatever the depth of the swath. Error: the exact
+   spectrum's own, and what the terms leave: 1e-3 from 57 m on. It grows with (array/range)^2, the square of the beam,
+   and B/fc. */
 #include "range_migration/conditions.h"
 
 struct delay_options {

@@ -80,10 +80,10 @@ static enum status tabulate(struct bp *bp, const struct interpolator *in, const 
     return complete ? STATUS_OK : status_set(STATUS_FAILED, "no memory for interpolation weights");
 }
 
-/* The counted and the published work, but for the pairs. BP22 Eq. (11) has N_a records, N_r samples and N_a N_r pixels, every
-   pixel summed over every record; here the pixels are counted as they are. LBF21 Eq. (23) lacks the sum over records and
-   contradicts it. Its interpolation factor, and BP22's points beta between two samples, follow from how a method reads
-   records. The inverse FFT of zero padding is as long as the record that it makes. */
+/* The counted and the published work, but for the pairs. BP22 Eq. (11) has N_a records, N_r samples and N_a N_r pixels,
+   every pixel summed over every record; here the pixels are counted as they are. LBF21 Eq. (23) lacks the sum over
+   records and contradicts it. Its interpolation factor, and BP22's points beta between two samples, follow from how a
+   method reads records. The inverse FFT of zero padding is as long as the record that it makes. */
 static void count_work(struct bp *bp, const struct interpolator *in)
 {
     const struct acquisition *a = bp->problem.acquisition;

@@ -2,17 +2,17 @@
 
        image(x, r) = sum over pings and receivers of  s_pm(tau) exp(+j 2 pi fc tau),   tau = delay_exact(...)
 
-   (BP22 Eqs. (5), (9) with the absolute phase; ZP15 Eqs. (6), (7)), for any track in space. A pair counts while tau lies
-   inside the record and |sin theta_t| inside the aperture limit. The methods differ only in how s_pm is read between
-   its samples, which is what a struct interpolator says. */
+   (BP22 Eqs. (5), (9) with the absolute phase; ZP15 Eqs. (6), (7)), for any track in space. A pair counts while tau
+   lies inside the record and |sin theta_t| inside the aperture limit. The methods differ only in how s_pm is read
+   between its samples, which is what a struct interpolator says. */
 #ifndef SASBENCH_BACKPROJECTION_BP_H
 #define SASBENCH_BACKPROJECTION_BP_H
 
 #include "algorithm.h"
 
 /* The value at sample coordinate q = (tau - t0) fs upsample is  sum over k < taps of
-   w[k] s[floor(q) + first + k],  w = weights(fraction of q). Taps beyond the record's ends read zero (with upsample > 1:
-   the band-limited signal's own continuation). */
+   w[k] s[floor(q) + first + k],  w = weights(fraction of q). Taps beyond the record's ends read zero (with upsample >
+   1: the band-limited signal's own continuation). */
 struct interpolator {
     int upsample;    /* records are upsampled by zero padding (exactly) by this factor first; >= 1 */
     int steps;       /* > 0: q is rounded to the nearest multiple of 1/steps first, at most 4096; 0: it is not */
@@ -43,8 +43,8 @@ extern const char *const bp_engine_names[], *const bp_exact_names[];
             .initial = 1e-4, .min = 1e-8, .max = 0.1, .terse = true                                                    \
     }
 
-/* The callbacks of struct algorithm, for an interpolator. `options` begins with a struct bp_options and is only used during the
-   call. Errors: STATUS_UNSUPPORTED when the engine asked for cannot do the problem, with the reason. */
+/* The callbacks of struct algorithm, for an interpolator. `options` begins with a struct bp_options and is only used
+   during the call. Errors: STATUS_UNSUPPORTED when the engine asked for cannot do the problem, with the reason. */
 enum status bp_plan(const struct problem *problem, const struct interpolator *interpolator, const void *options,
                     void **plan);
 enum status bp_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);

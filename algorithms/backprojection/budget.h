@@ -1,5 +1,5 @@
-/* The error budget of the general engine: all that its fast path may add to the phase of a pair, in one place. Other paths
-   evaluate every delay: exact=true, pixels too near the array, blocks that reach out of the record.
+/* The error budget of the general engine: all that its fast path may add to the phase of a pair, in one place. Other
+   paths evaluate every delay: exact=true, pixels too near the array, blocks that reach out of the record.
 
    `phase_limit` L (rad, 1e-4 by default) bounds what stands in for delays. All errors of the fast path:
 

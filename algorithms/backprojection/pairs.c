@@ -38,8 +38,9 @@ static bool inside_cone(const struct cone *cone, const struct pixel_line *line, 
            || distance <= apex_slack(fabs(p.x) + fabs(p.y), fabs(tx.x) + fabs(tx.y) + fabs(tx.z));
 }
 
-/* Where the line meets the cone, in pixels, the lesser first; NaN where it does not. Counted from the point nearest to the apex,
-   where |along + slope s| = limit sqrt(s^2 + across^2) is a quadratic whose discriminant needs no difference of large terms. */
+/* Where the line meets the cone, in pixels, the lesser first; NaN where it does not. Counted from the point nearest to
+   the apex, where |along + slope s| = limit sqrt(s^2 + across^2) is a quadratic whose discriminant needs no difference
+   of large terms. */
 static void cone_roots(const struct cone *cone, const struct pixel_line *line, double root[2])
 {
     const bool along_x = line->x_step > 0;
@@ -57,7 +58,8 @@ static void cone_roots(const struct cone *cone, const struct pixel_line *line, d
     root[1] = foot + fmax(first, second) / step;
 }
 
-/* Add pixels [begin, end), which lie behind those there are. Only rounding can make a third span: it joins the second. */
+/* Add pixels [begin, end), which lie behind those there are. Only rounding can make a third span: it joins the
+   second. */
 static int span_add(struct pair_span spans[2], int count, int begin, int end)
 {
     if (count == 2 || (count == 1 && spans[0].end == begin)) {

@@ -30,14 +30,14 @@ static inline double apex_slack(double pixel, double transmitter)
     return 4 * DBL_EPSILON * (pixel + transmitter);
 }
 
-/* Pixels of the line with |sin theta_t| <= aperture_limit, theta_t from the transmitter at emission to the pixel, off the
-   plane normal to `normal` (acquisition_normal of the ping). Fills at most two spans, in rising order; returns their
-   count. */
+/* Pixels of the line with |sin theta_t| <= aperture_limit, theta_t from the transmitter at emission to the pixel, off
+   the plane normal to `normal` (acquisition_normal of the ping). Fills at most two spans, in rising order; returns
+   their count. */
 int pair_spans(const struct acquisition *acquisition, int ping, struct vector normal, const struct pixel_line *line,
                struct pair_span spans[2]);
 
-/* Pixels of `within`, which holds one at least, whose delay lies inside the record of one receiver: at most two spans, in rising order; returns
-   their count. */
+/* Pixels of `within`, which holds one at least, whose delay lies inside the record of one receiver: at most two spans,
+   in rising order; returns their count. */
 int record_spans(const struct acquisition *acquisition, int ping, int receiver, const struct pixel_line *line,
                  struct pair_span within, struct pair_span spans[2]);
 

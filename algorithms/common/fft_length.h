@@ -4,8 +4,8 @@
 /* The smallest length >= n whose prime factors FFTW handles best (2, 3, 5, 7); 0 when it exceeds INT_MAX. */
 int fft_length(long long n);
 
-/* The smallest length >= n whose odd part (of 3 and 5) is at most four times its power of two: seldom 10 % longer, up to
-   three times faster where FFTW plans by estimate. 0 when it exceeds INT_MAX. */
+/* The smallest length >= n whose odd part (of 3 and 5) is at most four times its power of two: seldom 10 % longer, up
+   to three times faster where FFTW plans by estimate. 0 when it exceeds INT_MAX. */
 int fft_length_fast(long long n);
 
 /* FLOPs of one complex transform, 5 n log2 n: the count that both papers and FFTW's own benchmark use. */

@@ -4,12 +4,10 @@
 
 #include "common/bessel.h"
 
-static const double pi = 3.14159265358979323846;
-
 double kaiser_shape(int taps, double oversampling)
 {
     double support = taps * (1 - 0.5 / oversampling);
-    return pi * sqrt(fmax(support * support - 0.8, 1));
+    return M_PI * sqrt(fmax(support * support - 0.8, 1));
 }
 
 double kaiser_value(int taps, double shape, double distance)
@@ -20,6 +18,6 @@ double kaiser_value(int taps, double shape, double distance)
 
 double kaiser_transform(int taps, double shape, double place)
 {
-    double x = sqrt(fmax(shape * shape - pi * pi * taps * taps * place * place, 1e-12));
+    double x = sqrt(fmax(shape * shape - M_PI * M_PI * taps * taps * place * place, 1e-12));
     return taps * exp(-shape) * sinh(x) / x;
 }

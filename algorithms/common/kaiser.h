@@ -1,5 +1,5 @@
-/* The Kaiser-Bessel kernel of Stolt interpolations: values of a spectrum between its bins, from `taps` bins. What it does to
-   the samples, a smooth weight, is taken off beforehand (kaiser_transform). */
+/* The Kaiser-Bessel kernel of Stolt interpolations: values of a spectrum between its bins, from `taps` bins. What it
+   does to the samples, a smooth weight, is taken off beforehand (kaiser_transform). */
 #ifndef SASBENCH_COMMON_KAISER_H
 #define SASBENCH_COMMON_KAISER_H
 

@@ -4,9 +4,9 @@
 
 #include "status.h"
 
-/* STATUS_FAILED when `bytes` more are not to be had by this process (its limit on address space, or what the machine has
-   free): "no memory for WHAT: 12.3 GB are needed, 4.5 GB are free". Small needs are not looked at. FFTW ends the program
-   when it finds no memory for a plan, and the system may end it when it takes more than there is. */
+/* STATUS_FAILED when `bytes` more are not to be had by this process (its limit on address space, or what the machine
+   has free): "no memory for WHAT: 12.3 GB are needed, 4.5 GB are free". Small needs are not looked at. FFTW ends the
+   program when it finds no memory for a plan, and the system may end it when it takes more than there is. */
 enum status memory_check(double bytes, const char *what);
 
 #endif

@@ -4,8 +4,8 @@
 
 #include "algorithm.h"
 
-/* FLOP/s of independent multiply-adds in registers (2 FLOPs a lane), on `threads` threads, with the instruction set that
-   the engines use; the best of several measurements of some 20 ms. On a machine without fused multiply-adds: of
+/* FLOP/s of independent multiply-adds in registers (2 FLOPs a lane), on `threads` threads, with the instruction set
+   that the engines use; the best of several measurements of some 20 ms. On a machine without fused multiply-adds: of
    separate ones. */
 double peak_flops(enum precision precision, int threads);
 

@@ -1,4 +1,5 @@
-/* Multiply-adds without memory (peak.h): enough independent chains to hide their latency, few enough for the registers. */
+/* Multiply-adds without memory (peak.h): enough independent chains to hide their latency, few enough for the
+   registers. */
 #include "common/lanes.h"
 #include "common/peak.h"
 

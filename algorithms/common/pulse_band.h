@@ -9,8 +9,8 @@ struct pulse_band {
     double loss;    /* energy of the compressed pulse outside it, relative */
 };
 
-/* Of raw echoes: the replica's band but for 4e-6 of the compressed energy. Of compressed echoes: twice the bandwidth, since
-   what was compressed elsewhere may have flanks, and at least 32 bins of the record, whose own ends are in it.
+/* Of raw echoes: the replica's band but for 4e-6 of the compressed energy. Of compressed echoes: twice the bandwidth,
+   since what was compressed elsewhere may have flanks, and at least 32 bins of the record, whose own ends are in it.
    Errors: STATUS_FAILED without memory. */
 enum status pulse_band_find(const struct acquisition *acquisition, int transform_length, struct pulse_band *band);
 

@@ -3,8 +3,6 @@
 
 #include "range_migration/engine.h"
 
-static const double pi = 3.14159265358979323846;
-
 static const double WIDEST_SINE = 0.95; /* of the aperture where neither sampling nor element length bounds it */
 
 static double block_place(const struct rma *rma, double r)
@@ -47,15 +45,15 @@ static bool blocks_suffice(struct rma *rma, int count)
                 double frequency = a->fc + (k / 2 % 3 - 1) * a->bandwidth / 2, at = (k / 6 - 1) * nu;
                 double error = rma_correction(rma, rma->extremes[k % 2], r1, frequency, at)
                                - rma_correction(rma, rma->extremes[k % 2], r0, frequency, at);
-                if (!(2 * pi * fabs(error) <= rma->options.limit))
+                if (!(2 * M_PI * fabs(error) <= rma->options.limit))
                     return false;
             }
         }
     return true;
 }
 
-/* A single block has none to blend with: root mean square over the beam, at the farther of the ends, of the phase that its
-   centre's conversion leaves. */
+/* A single block has none to blend with: root mean square over the beam, at the farther of the ends, of the phase that
+   its centre's conversion leaves. */
 static double lone_block_error(struct rma *rma)
 {
     enum { PLACES = 16, FREQUENCIES = 3 };
@@ -72,7 +70,7 @@ static double lone_block_error(struct rma *rma)
                 double nu = -frequency * spectrum_slope(&rma->setting, rma->offset[rma->extremes[m]], r, u);
                 double error = rma_correction(rma, rma->extremes[m], r, frequency, nu)
                                - rma_correction(rma, rma->extremes[m], r0, frequency, nu);
-                sum += isnan(error) ? 0 : 4 * pi * pi * error * error;
+                sum += isnan(error) ? 0 : 4 * M_PI * M_PI * error * error;
             }
         worst = fmax(worst, sqrt(sum / (2 * PLACES * FREQUENCIES)));
     }
@@ -98,7 +96,7 @@ enum status rma_blocks_lay(struct rma *rma)
             int middle = (count + too_few) / 2;
             *(blocks_suffice(rma, middle) ? &count : &too_few) = middle;
         }
-        if (count == 1 && !(lone_block_error(rma) <= rma->options.limit / (4 * pi)))
+        if (count == 1 && !(lone_block_error(rma) <= rma->options.limit / (4 * M_PI)))
             count = RMA_NODES;
     }
     blocks_place(rma, count);

@@ -33,12 +33,12 @@ static inline void stage_end(struct workspace *w, enum rma_stage stage)
    [needed][1 or receivers] rows. Bins that are evanescent hold anything. */
 void REAL_ISA_NAME(rma_convert)(struct workspace *w, real *sums);
 
-/* By delay compensation: monostatic echoes of the tile's wavenumbers q (negative: none), each in its own of RMA_TILE `cuts`,
-   complex [stolt_length], samples from `centre` on and then those before it at the end. */
+/* By delay compensation: monostatic echoes of the tile's wavenumbers q (negative: none), each in its own of RMA_TILE
+   `cuts`, complex [stolt_length], samples from `centre` on and then those before it at the end. */
 void REAL_ISA_NAME(rma_receivers)(struct workspace *w, const int *q, const struct rma_line *lines, real *cuts);
 
-/* By delay compensation: monostatic echoes of the tile's wavenumbers q (negative: none), each in its own of RMA_TILE `cuts`,
-   complex [stolt_length], samples from `centre` on and then those before it at the end. */
+/* By delay compensation: monostatic echoes of the tile's wavenumbers q (negative: none), each in its own of RMA_TILE
+   `cuts`, complex [stolt_length], samples from `centre` on and then those before it at the end. */
 void REAL_ISA_NAME(rma_receivers)(struct workspace *w, const int *q, const struct rma_line *lines, real *cuts);
 
 #endif

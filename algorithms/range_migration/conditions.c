@@ -8,8 +8,6 @@
 #include "range_migration/ghosts.h"
 #include "range_migration/prediction.h"
 
-static const double pi = 3.14159265358979323846;
-
 static const double SLOWEST = 0.1; /* 1 - |v|/c that spectra need */
 static const double ERROR_LIMIT = 0.1;
 static const double LAW_LIMIT = 0.1;    /* rad: an image is as wrong as its phases */
@@ -109,7 +107,7 @@ static double stationary_at(const struct rma_view *view, double r, double low, d
 {
     const struct acquisition *a = view->problem->acquisition;
     double wavelength = a->sound_speed / (a->fc - a->bandwidth / 2), u = fmax(fabs(low), fabs(high));
-    return wavelength / (32 * pi * r) * hypot(1, u / r);
+    return wavelength / (32 * M_PI * r) * hypot(1, u / r);
 }
 
 static struct condition stationary(const struct rma_view *view)
@@ -175,7 +173,7 @@ static double formula_at(const struct rma_view *view, double r, double low, doub
                 double d = offset_at(view, m), u = low + (k + 0.5) / PLACES * (high - low);
                 double frequency = a->fc + (n - 1) * a->bandwidth / 2;
                 double nu = -frequency * spectrum_slope(&view->setting, d, r, u);
-                double exact = -2 * pi * (frequency * spectrum_delay(&view->setting, d, r, u) + nu * u);
+                double exact = -2 * M_PI * (frequency * spectrum_delay(&view->setting, d, r, u) + nu * u);
                 double error = view->method->spectrum(&view->setting, d, r, frequency, nu) - exact;
                 double sine = u / hypot(u, r) * frequency / a->sound_speed;
                 double weight = a->echo_tapers
@@ -281,13 +279,14 @@ static int prediction_conditions(const struct rma_view *view, const struct strai
     return count;
 }
 
-/* What range migration cannot image at all: wavenumbers about another centre than 0, and other axes than the track's. */
+/* What range migration cannot image at all: wavenumbers about another centre than 0, and other axes than the
+   track's. */
 static bool along_track(const struct problem *problem, struct condition *all, int *count)
 {
-    const double squint = fabs(problem->acquisition->echo_squint) * 180 / pi;
+    const double squint = fabs(problem->acquisition->echo_squint) * 180 / M_PI;
     double turned = 0;
     for (int k = 0; k < problem->patch_count; k++)
-        turned = fmax(turned, fabs(problem->patches[k].angle_rad) * 180 / pi);
+        turned = fmax(turned, fabs(problem->patches[k].angle_rad) * 180 / M_PI);
     if (squint > 0)
         all[(*count)++] = (struct condition){
             "squint", squint, 0, false, SEVERITY_REFUSE, "the beam's squint (degrees)", "wk_classic, wk_squint"};

@@ -21,22 +21,22 @@ struct rma_view {
 struct rma_view rma_view_of(const struct problem *problem, const struct rma_method *method,
                             const struct straight_track *track);
 
-/* |sin theta_t|, off the beam's axis, up to which azimuth transforms follow echoes: the transmitter's first null at the lowest
-   frequency, or the stated end of echoes that do not taper. */
+/* |sin theta_t|, off the beam's axis, up to which azimuth transforms follow echoes: the transmitter's first null at the
+   lowest frequency, or the stated end of echoes that do not taper. */
 double rma_widest_sine(const struct acquisition *acquisition);
 
 /* The transmitter's places that echo a row at range r of a patch, from its columns: [*low, *high] m ahead of the pixel.
    False where there are none. */
 bool rma_view_aperture(const struct rma_view *view, const struct grid *patch, double r, double *low, double *high);
 
-/* Append to list what every image by azimuth transforms takes for granted (above_dc, uniform_track, pings, whole_aperture,
-   in_front), and fill *track. False where one of them does not hold. */
+/* Append to list what every image by azimuth transforms takes for granted (above_dc, uniform_track, pings,
+   whole_aperture, in_front), and fill *track. False where one of them does not hold. */
 bool azimuth_requirements(const struct problem *problem, struct condition *list, int *count,
                           struct straight_track *track);
 
-/* The conditions of range migration by a method, conditions_general among them. What may cause a large error (spa_amplitude, doppler,
-   the formula's law) refuses only where the predicted error is too large, and then stands for it; without such a cause
-   predicted_error itself refuses. Its value is NAN without memory. */
+/* The conditions of range migration by a method, conditions_general among them. What may cause a large error
+   (spa_amplitude, doppler, the formula's law) refuses only where the predicted error is too large, and then stands for
+   it; without such a cause predicted_error itself refuses. Its value is NAN without memory. */
 int rma_conditions(const struct problem *problem, const struct rma_method *method, struct condition *list, int room);
 
 #endif

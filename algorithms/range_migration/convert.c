@@ -1,5 +1,5 @@
-/* Range migration's conversion at one azimuth wavenumber: receivers' spectra in, monostatic ones of each block out (bulk
-   and differential of rma.h). Compiled once for each precision and instruction set (BP_ISA names it).
+/* Range migration's conversion at one azimuth wavenumber: receivers' spectra in, monostatic ones of each block out
+   (bulk and differential of rma.h). Compiled once for each precision and instruction set (BP_ISA names it).
 
    The corrections of a group of receivers are quadratic in the receiver's number, so that a cell costs two complex
    products a receiver and three sines and cosines a group; frequencies lie side by side in vectors. */

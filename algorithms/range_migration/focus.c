@@ -1,5 +1,5 @@
-/* Range migration at one azimuth wavenumber after the conversion: blocks put together, Stolt interpolation, bulk focusing
-   (reconstruct to focus of rma.h). Compiled once for each precision and instruction set (BP_ISA names it). */
+/* Range migration at one azimuth wavenumber after the conversion: blocks put together, Stolt interpolation, bulk
+   focusing (reconstruct to focus of rma.h). Compiled once for each precision and instruction set (BP_ISA names it). */
 #include <string.h>
 
 #include "range_migration/column.h"
@@ -35,7 +35,8 @@ static void places(const struct workspace *w, real *restrict place)
     }
 }
 
-/* Where a block counts, by place, and with which weight: a polynomial in the way from its centre, lowest power first. */
+/* Where a block counts, by place, and with which weight: a polynomial in the way from its centre, lowest power
+   first. */
 struct piece {
     real from, to, weight[RMA_NODES];
 };

@@ -2,20 +2,19 @@
 
        sum over receivers and pings of  a sinc(B dtau) exp(j 2 pi fc dtau),
 
-   dtau the difference of the delays of pixel and target, a the beam's amplitude at the target. The pings are those that see
-   the target, and that a transform images at the target (else the condition doppler says so) but not at the pixel, where
-   their wavenumber lies beyond the sampled band |fc dtau/du - centroid| <= M/(2 spacing) or beyond the element's first
-   null; or the other way round, those that the aperture limit keeps from back projection alone. In range a ghost is as narrow
-   as the pulse: on each of some columns of a patch, the rows are found where a ping's delay is the target's, and its energy
-   is summed over those. The target's own energy is that of a response as wide as 1/band in azimuth and c/2B in range. */
+   dtau the difference of the delays of pixel and target, a the beam's amplitude at the target. The pings are those that
+   see the target, and that a transform images at the target (else the condition doppler says so) but not at the pixel,
+   where their wavenumber lies beyond the sampled band |fc dtau/du - centroid| <= M/(2 spacing) or beyond the element's
+   first null; or the other way round, those that the aperture limit keeps from back projection alone. In range a ghost
+   is as narrow as the pulse: on each of some columns of a patch, the rows are found where a ping's delay is the
+   target's, and its energy is summed over those. The target's own energy is that of a response as wide as 1/band in
+   azimuth and c/2B in range. */
 #include "range_migration/ghosts.h"
 
 #include <complex.h>
 #include <math.h>
 
 #include "range_migration/conditions.h"
-
-static const double pi = 3.14159265358979323846;
 
 enum {
     PATCHES = 8,   /* of an image, at most */
@@ -90,7 +89,8 @@ static bool pings_of(const struct ghosts *ghosts, struct vector target, int *fir
     return *first >= 0;
 }
 
-/* Could pings first ... last make ghosts anywhere in the patch? Wavenumbers are monotone in the ping and over the patch. */
+/* Could pings first ... last make ghosts anywhere in the patch? Wavenumbers are monotone in the ping and over the
+   patch. */
 static bool reaches(const struct ghosts *ghosts, int first, int last, const struct grid *patch)
 {
     const double limit = ghosts->acquisition->aperture_limit;
@@ -134,7 +134,7 @@ static double pixel_energy(const struct ghosts *ghosts, const struct source *sou
         double seen = condition_amplitude(a, source->place.y, ahead(ghosts, p, source->place));
         for (int m = 0; m < a->receivers; m++) {
             double late = delay(ghosts, p, m, pixel) - delay(ghosts, p, m, source->place), cycles = a->fc * late;
-            sum += seen * condition_sinc(a->bandwidth * late) * cexp(2 * I * pi * (cycles - floor(cycles)));
+            sum += seen * condition_sinc(a->bandwidth * late) * cexp(2 * I * M_PI * (cycles - floor(cycles)));
         }
     }
     return creal(sum * conj(sum));

@@ -165,8 +165,8 @@ static enum status lay_patches(struct rma *rma)
     return STATUS_OK;
 }
 
-/* Azimuth: the full rate of M receivers (LBF21 Eq. (10)), with zeros after the pings, since the period wraps around: what
-   is focused beyond either end of the track, as far as the widest angle sees, must not reach a wanted column. */
+/* Azimuth: the full rate of M receivers (LBF21 Eq. (10)), with zeros after the pings, since the period wraps around:
+   what is focused beyond either end of the track, as far as the widest angle sees, must not reach a wanted column. */
 static enum status swath_azimuth(const struct rma *rma, struct rma_swath *swath)
 {
     double spacing = fabs(rma->spacing),

@@ -4,8 +4,6 @@
 
 #include "range_migration/engine.h"
 
-static const double pi = 3.14159265358979323846;
-
 static const double GRAZING = 1.005;    /* cells this near to evanescence (cos theta < 0.1) are left out too */
 static const double SAME_CURVE = 1e-10; /* cycles: rounding, not another curvature */
 
@@ -17,7 +15,7 @@ double rma_frequency(const struct rma *rma, const struct rma_swath *swath, int b
 double rma_correction(const struct rma *rma, int receiver, double r, double frequency, double nu)
 {
     double phase = rma->method.spectrum(&rma->setting, rma->offset[receiver], r, frequency, nu);
-    return -(phase + r * spectrum_monostatic(&rma->setting, frequency, nu)) / (2 * pi);
+    return -(phase + r * spectrum_monostatic(&rma->setting, frequency, nu)) / (2 * M_PI);
 }
 
 struct rma_line rma_line(const struct rma *rma, const struct rma_swath *swath, int q)
@@ -94,7 +92,7 @@ void rma_nodes(struct rma *rma)
 {
     enum { NODES = RMA_DEGREE + 1 };
     for (int n = 0; n < NODES; n++)
-        rma->nodes[n] = cos(pi * (2 * n + 1) / (2 * NODES));
+        rma->nodes[n] = cos(M_PI * (2 * n + 1) / (2 * NODES));
     for (int n = 0; n < NODES; n++) {
         double c[NODES] = {1}, scale = 1;
         int degree = 0;

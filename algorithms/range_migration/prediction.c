@@ -24,8 +24,6 @@
 
 #include "common/fft_length.h"
 
-static const double pi = 3.14159265358979323846;
-
 enum {
     TARGETS = 3,      /* on a row */
     COLUMNS = 17,     /* of a slice: evenly over the patch, and as many near the target */
@@ -73,7 +71,7 @@ static int receiver_of(const struct rma_view *view, int k, int count)
 static double taper(const struct kernel *kernel, double u)
 {
     double beyond = (fabs(u) - kernel->reach) / kernel->margin;
-    return beyond <= 0.5 ? 1 : beyond < 1 ? 0.5 - 0.5 * cos(2 * pi * beyond) : 0;
+    return beyond <= 0.5 ? 1 : beyond < 1 ? 0.5 - 0.5 * cos(2 * M_PI * beyond) : 0;
 }
 
 /* h of a receiver at offset d and one frequency, into `wave`, place 0 first. */
@@ -89,14 +87,14 @@ static void kernel_transform(const struct kernel *kernel, double d, double frequ
         double nu = k * kernel->nu_step, monostatic = spectrum_monostatic(setting, frequency, nu);
         if (isnan(monostatic))
             continue; /* evanescent */
-        double kappa = c * monostatic / (4 * pi), place = -r * (c * nu / 2 + f * beta) / kappa;
+        double kappa = c * monostatic / (4 * M_PI), place = -r * (c * nu / 2 + f * beta) / kappa;
         if (!(fabs(place) <= focused))
             continue;
         double phase = view->converts ? view->method->spectrum(setting, d, r, frequency, nu) : -r * monostatic;
         double weight = f * sqrt(c * r / (2 * kappa * kappa * kappa)) * kernel->nu_step * taper(kernel, place - d / 2);
         if (weight > 0 && !isnan(phase))
             kernel->wave[k < 0 ? kernel->length + k : k] =
-                (2 * abs(k) == kernel->count ? 0.5 : 1) * weight * cexp(I * (pi / 4 - phase));
+                (2 * abs(k) == kernel->count ? 0.5 : 1) * weight * cexp(I * (M_PI / 4 - phase));
     }
     fftw_execute(kernel->transform);
 }
@@ -111,7 +109,7 @@ static void kernel_fill(const struct kernel *kernel, double d, double complex *e
             int place = i - kernel->length / 2;
             double cycles = frequency * spectrum_delay(&kernel->view->setting, d, kernel->r, place * kernel->step);
             double complex h = kernel->wave[place < 0 ? kernel->length + place : place];
-            error[i * FREQUENCIES + n] = h * cexp(-2 * I * pi * (cycles - floor(cycles))) - 1;
+            error[i * FREQUENCIES + n] = h * cexp(-2 * I * M_PI * (cycles - floor(cycles))) - 1;
         }
     }
 }
@@ -201,7 +199,7 @@ static void pixel_add(const struct kernel *kernel, const struct target *target, 
                 spectrum_delay(&view->setting, d, kernel->r, at) - spectrum_delay(&view->setting, d, kernel->r, u);
             double cycles = a->fc * late;
             double complex pair =
-                seen * condition_sinc(a->bandwidth * late) * cexp(2 * I * pi * (cycles - floor(cycles)));
+                seen * condition_sinc(a->bandwidth * late) * cexp(2 * I * M_PI * (cycles - floor(cycles)));
             image += summed ? pair : 0;
             for (int n = 0; n < FREQUENCIES; n++)
                 errors[n] += pair * (summed ? error[n] : error[n] + 1);

@@ -99,8 +99,8 @@ struct rma_bounds {
     double aside; /* m: greatest magnitude of an offset */
 };
 
-/* How far ahead or behind a target at range r the transmitter can be, m: by angle, or by the track's own extent and some
-   Fresnel zones beyond it. */
+/* How far ahead or behind a target at range r the transmitter can be, m: by angle, or by the track's own extent and
+   some Fresnel zones beyond it. */
 double rma_reach(const struct acquisition *acquisition, const struct rma_bounds *bounds, double r);
 
 /* The callbacks of struct algorithm, for a method. `options` is only used during the call. */

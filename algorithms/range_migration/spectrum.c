@@ -4,8 +4,6 @@
 #include <math.h>
 #include <stdbool.h>
 
-static const double pi = 3.14159265358979323846;
-
 /* Evanescent cells raise no exception: they are no fault. */
 static double root_of(double square)
 {
@@ -59,7 +57,7 @@ double spectrum_exact(const struct spectrum_setting *setting, double d, double r
         *(excess > 0 ? &high : &low) = u;
         const double left = cycles * excess * excess / h.curvature / 2; /* what the next step would add, at most */
         if (left <= rounding || cycles * fabs(excess) * (high - low) <= rounding)
-            return -2 * pi * (cycles * (h.delay + nu / frequency * u) - (left <= rounding ? left : 0));
+            return -2 * M_PI * (cycles * (h.delay + nu / frequency * u) - (left <= rounding ? left : 0));
         const double farthest = excess > 0 ? fmax(low, u - reach) : fmin(high, u + reach);
         const bool within = excess > 0 ? newton >= farthest && newton < high : newton <= farthest && newton > low;
         reach *= 2;
@@ -76,8 +74,8 @@ static double lbf(const struct spectrum_setting *setting, double d, double r, do
                   double cubed)
 {
     double c = setting->sound_speed, v = setting->speed, delta = d + 2 * r * v / (c * cosine);
-    double psi = -2 * pi * v * nu * r / (c * cosine) + 4 * pi / c * r * s;
-    double psi_i = -2 * pi * nu * d + pi / c * delta * delta * cubed / r;
+    double psi = -2 * M_PI * v * nu * r / (c * cosine) + 4 * M_PI / c * r * s;
+    double psi_i = -2 * M_PI * nu * d + M_PI / c * delta * delta * cubed / r;
     return -(psi + psi_i / 2);
 }
 
@@ -116,26 +114,26 @@ double spectrum_wu(const struct spectrum_setting *setting, double d, double r, d
     double delay = history_at(setting, d, r, -d / 2 - shift).delay;
     double reference = history_at(setting, d0, r, -d0 / 2 - shift).delay;
     double pca = spectrum_pca(setting, d0, r, frequency, nu);
-    return pca + pi * nu * (d - d0) - 2 * pi * frequency * (delay - reference);
+    return pca + M_PI * nu * (d - d0) - 2 * M_PI * frequency * (delay - reference);
 }
 
 double spectrum_monostatic(const struct spectrum_setting *setting, double frequency, double nu)
 {
     double c = setting->sound_speed, beta = setting->speed / c, f = frequency / ((1 - beta) * (1 + beta));
     double along = c * nu / 2 + f * beta;
-    return 4 * pi / c * root_of((f - along) * (f + along));
+    return 4 * M_PI / c * root_of((f - along) * (f + along));
 }
 
 /* 2 pi F beta: what the exact spectrum has beyond the one of d = 0 and the way of the phase centre. */
 static double bistatic(const struct spectrum_setting *setting, double d, double r, double frequency, double nu)
 {
     double monostatic = r * spectrum_monostatic(setting, frequency, nu);
-    return -spectrum_exact(setting, d, r, frequency, nu) - monostatic + pi * nu * d;
+    return -spectrum_exact(setting, d, r, frequency, nu) - monostatic + M_PI * nu * d;
 }
 
 double spectrum_abeam(const struct spectrum_setting *setting, double d, double r)
 {
-    return bistatic(setting, d, r, setting->fc, 0) / (2 * pi * setting->fc);
+    return bistatic(setting, d, r, setting->fc, 0) / (2 * M_PI * setting->fc);
 }
 
 double spectrum_walk(const struct spectrum_setting *setting, double nu)
@@ -149,12 +147,12 @@ double spectrum_walk(const struct spectrum_setting *setting, double nu)
 double spectrum_residual(const struct spectrum_setting *setting, double d, double r, double nu)
 {
     double abeam = spectrum_abeam(setting, d, r * spectrum_walk(setting, nu));
-    return bistatic(setting, d, r, setting->fc, nu) - 2 * pi * setting->fc * abeam;
+    return bistatic(setting, d, r, setting->fc, nu) - 2 * M_PI * setting->fc * abeam;
 }
 
 double spectrum_compensated(const struct spectrum_setting *setting, double d, double r, double frequency, double nu)
 {
     double abeam = spectrum_abeam(setting, d, r * spectrum_walk(setting, nu));
-    return -(r * spectrum_monostatic(setting, frequency, nu) - pi * nu * d + 2 * pi * frequency * abeam
+    return -(r * spectrum_monostatic(setting, frequency, nu) - M_PI * nu * d + 2 * M_PI * frequency * abeam
              + spectrum_residual(setting, d, r, nu));
 }

@@ -22,7 +22,8 @@ typedef double spectrum_function(const struct spectrum_setting *setting, double 
                                  double nu);
 
 /* Stationary phase on the exact delay (LBF21 Eqs. (8), (9)), the stationary point found to rounding for any speed below
-   sound and any r > 0. Its spectrum lies where  -1/(1 - v/c) < sin theta < 1/(1 + v/c);  NAN elsewhere, and for r <= 0. */
+   sound and any r > 0. Its spectrum lies where  -1/(1 - v/c) < sin theta < 1/(1 + v/c);  NAN elsewhere, and for r <=
+   0. */
 spectrum_function spectrum_exact;
 /* Loffeld's formula, -(psi + psi_i/2), LBF21 Eqs. (3) to (5). `printed` takes theta at fc, as the paper does, which
    is the whole error that it reports for its first receiver; `corrected` takes it at F. */

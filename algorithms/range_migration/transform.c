@@ -12,7 +12,6 @@ enum {
     LANES = RMA_ALIGNMENT / sizeof(real),
     BLOCKS = 4 /* vectors of bins that go through the azimuth FFT together */
 };
-static const double pi = 3.14159265358979323846;
 
 static real *scratch_of(const struct rma *rma, enum rma_buffer buffer)
 {
@@ -22,7 +21,7 @@ static real *scratch_of(const struct rma *rma, enum rma_buffer buffer)
 
 static complex_real rotor(double cycles)
 {
-    double angle = 2 * pi * (cycles - floor(cycles + 0.5));
+    double angle = 2 * M_PI * (cycles - floor(cycles + 0.5));
     return (real)cos(angle) + (real)sin(angle) * (complex_real)I;
 }
 
@@ -154,7 +153,7 @@ static enum status plan(struct rma *rma)
     if (complete) {
         real *tapers = rma->tapers;
         for (int k = 0; k < rma->taper; k++)
-            tapers[k] = (real)pow(sin(pi / 2 * (k + 0.5) / rma->taper), 2);
+            tapers[k] = (real)pow(sin(M_PI / 2 * (k + 0.5) / rma->taper), 2);
         kernel_fill(rma);
     }
     if (complete && rma->delay) {
@@ -260,8 +259,8 @@ static real *padded(const struct rma *rma, const real *record)
     return out;
 }
 
-/* Pulse compression by a linear correlation, then each swath's cut. Records of a receiver follow one another, so that the
-   tables of its map stay in the cache. */
+/* Pulse compression by a linear correlation, then each swath's cut. Records of a receiver follow one another, so that
+   the tables of its map stay in the cache. */
 static void compress(const struct rma *rma, rma_map_function *map, const void *samples)
 {
     const size_t n = 2 * (size_t)rma->samples, length = 2 * (size_t)rma->record_length;

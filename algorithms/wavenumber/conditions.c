@@ -6,7 +6,6 @@
 #include "range_migration/spectrum.h"
 #include "wavenumber/engine.h"
 
-static const double pi = 3.14159265358979323846;
 static const double SLOWEST = 0.1; /* of 1 - |v|/c, as in range migration */
 static const double LOBE = 0.443;  /* half a beam, in lambda/D, of echoes that do not say theirs */
 
@@ -32,13 +31,13 @@ static struct view view_of(const struct acquisition *a, const struct straight_tr
     double half = a->echo_sine > 0 ? a->echo_sine : INFINITY;
     if (!(a->echo_sine > 0) && a->tx_length > 0)
         half = LOBE * a->sound_speed / a->fc / a->tx_length;
-    const double b = half < 1 ? asin(half) : pi, low = a->echo_squint - b, high = a->echo_squint + b;
+    const double b = half < 1 ? asin(half) : M_PI, low = a->echo_squint - b, high = a->echo_squint + b;
     return (struct view){.acquisition = a,
                          .spacing = fabs(track->spacing),
                          .slope = wk_centroid_slope(a, track),
                          .x_end = {fmin(track->x_first, last), fmax(track->x_first, last)},
-                         .sine = {fmax(-WK_WIDEST_SINE, low > -pi / 2 ? sin(low) : -1),
-                                  fmin(WK_WIDEST_SINE, high < pi / 2 ? sin(high) : 1)}};
+                         .sine = {fmax(-WK_WIDEST_SINE, low > -M_PI / 2 ? sin(low) : -1),
+                                  fmin(WK_WIDEST_SINE, high < M_PI / 2 ? sin(high) : 1)}};
 }
 
 /* Sines of the angles under which pings see a place: false if none does. */
@@ -81,7 +80,7 @@ static struct worst patches_see(const struct view *view, const struct problem *p
             double cosine = sqrt(1 - fmax(seen[0] * seen[0], seen[1] * seen[1]));
             worst.doppler =
                 larger(worst.doppler, (a->fc + a->bandwidth / 2) / a->sound_speed * 4 * view->spacing * steepest);
-            worst.stationary = larger(worst.stationary, wavelength / (32 * pi * p.y * cosine));
+            worst.stationary = larger(worst.stationary, wavelength / (32 * M_PI * p.y * cosine));
         }
         worst.unseen += !any;
     }
@@ -94,8 +93,8 @@ static void beam_conditions(const struct problem *problem, const struct straight
 {
     const struct view view = view_of(problem->acquisition, track);
     all[(*count)++] = (struct condition){"squint",
-                                         asin(fmin(fabs(view.slope), 1)) * 180 / pi,
-                                         asin(WK_WIDEST_SINE) * 180 / pi,
+                                         asin(fmin(fabs(view.slope), 1)) * 180 / M_PI,
+                                         asin(WK_WIDEST_SINE) * 180 / M_PI,
                                          false,
                                          SEVERITY_REFUSE,
                                          "the angle of the beam's axis off broadside (degrees)",

@@ -1,10 +1,10 @@
 /* The plan of an omega-k imager (wk.h). layout.c lays it out, transform.c transforms along range and azimuth (for each
    precision), line.c works on one azimuth wavenumber (for each precision and instruction set), wk.c puts them in order.
-   Pointers without a type hold values of the plan's precision; all are complex unless said otherwise, the last dimension is
-   contiguous.
+   Pointers without a type hold values of the plan's precision; all are complex unless said otherwise, the last
+   dimension is contiguous.
 
-   Positions of an image are taken in the plan's own axes, turned by `angle` (0 where they are the track's) about the track's
-   middle ping at x = x_middle, r = 0:  x' = (x - x_middle) cos - r sin,  r' = (x - x_middle) sin + r cos.
+   Positions of an image are taken in the plan's own axes, turned by `angle` (0 where they are the track's) about the
+   track's middle ping at x = x_middle, r = 0:  x' = (x - x_middle) cos - r sin,  r' = (x - x_middle) sin + r cos.
 
        range     [pings][samples] -> [pings][band], the middle sample and the middle ping being the origins
        azimuth   [pings][band] -> [azimuth_length][band], in place
@@ -121,8 +121,8 @@ static inline double wk_ky(const struct wk *wk, double frequency, double kx0)
 }
 
 /* ---- conditions.c ---- */
-/* Kx/K_R of the beam's axis. Motion while the pulse travels moves it by about v/c: left alone where that is little of what the
-   pings hold, so that a beam broadside needs no unfolding. */
+/* Kx/K_R of the beam's axis. Motion while the pulse travels moves it by about v/c: left alone where that is little of
+   what the pings hold, so that a beam broadside needs no unfolding. */
 double wk_centroid_slope(const struct acquisition *acquisition, const struct straight_track *track);
 
 /* ---- layout.c ---- */

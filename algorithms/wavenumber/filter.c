@@ -15,7 +15,6 @@ enum {
     STRIP = 128 / sizeof(complex_real), /* samples that go through an azimuth FFT together: two lines of the cache */
     UPSAMPLING_MOST = 64
 };
-static const double pi = 3.14159265358979323846;
 
 /* One sub-aperture, in rows of the upsampled field. */
 struct aperture {
@@ -58,7 +57,7 @@ static double upsampling_for(const struct polar_filter *f, int count)
         double x0 = a->tx[0].x + first * f->spacing, x1 = a->tx[0].x + last * f->spacing;
         widest = fmax(widest, fabs(centre_sine(a, x0) - centre_sine(a, x1)));
     }
-    double factor = 1, needed = 2 * f->kc * (beam + widest) * fabs(f->spacing) / (2 * pi);
+    double factor = 1, needed = 2 * f->kc * (beam + widest) * fabs(f->spacing) / (2 * M_PI);
     while (factor < needed)
         factor *= 2;
     return factor;
@@ -144,7 +143,7 @@ enum status REAL_NAME(polar_filter_plan)(const struct acquisition *a, const stru
     *f = (struct polar_filter){.acquisition = a,
                                .curvature = setting->curvature,
                                .spacing = track.spacing,
-                               .kc = 2 * pi * a->fc / a->sound_speed,
+                               .kc = 2 * M_PI * a->fc / a->sound_speed,
                                .slope = sin(a->echo_squint),
                                .pings = a->pings,
                                .samples = a->samples,
@@ -211,8 +210,8 @@ static complex_real *scratch_of(const struct polar_filter *f)
     return f->scratch + (size_t)omp_get_thread_num() * f->scratch_length;
 }
 
-/* The centre's delay at a row taken off (sign 1: sample 0 is then at that delay) or put back (-1): bins in the transform's
-   order, whose samples begin at t0, times exp(sign j 2 pi (fc delay + f (delay - t0))) and `scale`. */
+/* The centre's delay at a row taken off (sign 1: sample 0 is then at that delay) or put back (-1): bins in the
+   transform's order, whose samples begin at t0, times exp(sign j 2 pi (fc delay + f (delay - t0))) and `scale`. */
 static void shift(const struct polar_filter *f, real *bins, int row, double sign, real scale)
 {
     const struct acquisition *a = f->acquisition;
@@ -239,7 +238,8 @@ static inline double range_at(const struct polar_filter *f, const struct apertur
 /* The wavefronts' curvature of one row: exp(sign j k_c u^2 (1/R - 1/rho)). */
 static void curve(const struct polar_filter *f, const struct aperture *p, int row, double sign, real *samples)
 {
-    const double u = f->acquisition->tx[0].x + row * f->spacing / f->up - p->x, scale = sign * f->kc * u * u / (2 * pi);
+    const double u = f->acquisition->tx[0].x + row * f->spacing / f->up - p->x,
+                 scale = sign * f->kc * u * u / (2 * M_PI);
     for (int k = 0; k < f->length; k++) {
         double r = range_at(f, p, k), cycles = r > 0 ? scale * (1 / r - 1 / p->rho) : 0;
         real c, s, re = samples[2 * k], im = samples[2 * k + 1];
@@ -301,7 +301,7 @@ static void mask_strip(const struct polar_filter *f, const struct aperture *p, i
     memset(wave + count * STRIP, 0, ((size_t)p->length - count) * STRIP * sizeof *wave);
     FFTW(execute_dft)(p->forward, wave, wave);
     /* sin psi is known but for whole periods: it lies about the beam's axis. */
-    const double period = 2 * pi * f->up / fabs(f->spacing) / (2 * f->kc), step = period / p->length;
+    const double period = 2 * M_PI * f->up / fabs(f->spacing) / (2 * f->kc), step = period / p->length;
     for (int q = 0; q < p->length; q++) {
         double sine = (f->spacing < 0 ? -q : q) * step + p->sine - f->slope;
         sine += f->slope - period * floor(sine / period + 0.5);

@@ -8,8 +8,6 @@
 #include "common/pulse_band.h"
 #include "wavenumber/engine.h"
 
-static const double pi = 3.14159265358979323846;
-
 static const double PULSE_PERIODS = 8; /* of 1/B, beside the rows, so that no pulse wraps around */
 static const double EVEN = 1e-12;      /* relative: columns that divide the period but for rounding */
 static const double SAME_ANGLE = 1e-9; /* rad */
@@ -35,9 +33,9 @@ static double wavelength_longest(const struct wk *wk)
 /* Sines of the angles off broadside between which a beam of `half` (sine, about its axis) sees, and pings sample. */
 static void angles_limit(const struct wk *wk, double half, double sine[2])
 {
-    double b = half < 1 ? asin(half) : pi, sampled = wavelength_longest(wk) / (4 * wk->spacing);
-    double low = wk->squint - b > -pi / 2 ? sin(wk->squint - b) : -1;
-    double high = wk->squint + b < pi / 2 ? sin(wk->squint + b) : 1;
+    double b = half < 1 ? asin(half) : M_PI, sampled = wavelength_longest(wk) / (4 * wk->spacing);
+    double low = wk->squint - b > -M_PI / 2 ? sin(wk->squint - b) : -1;
+    double high = wk->squint + b < M_PI / 2 ? sin(wk->squint + b) : 1;
     sine[0] = fmax(fmax(low, wk->slope - sampled), -WK_WIDEST_SINE);
     sine[1] = fmin(fmin(high, wk->slope + sampled), WK_WIDEST_SINE);
 }
@@ -173,16 +171,16 @@ static enum status too_long(const struct wk *wk, double period)
 /* Lines over all of Kx that the pings hold: the centroid +- pi/spacing at each frequency. */
 static enum status lay_unfolded(struct wk *wk)
 {
-    double half = pi / wk->spacing, low = INFINITY, high = -INFINITY, period = own_period(wk) / wk->spacing + 1;
+    double half = M_PI / wk->spacing, low = INFINITY, high = -INFINITY, period = own_period(wk) / wk->spacing + 1;
     int length = period < 1e8 ? fft_length((long long)whole_above(fmax(period, wk->options.pad * wk->pings))) : 0;
     if (length == 0)
         return too_long(wk, period * wk->spacing);
     for (int end = 0; end < 2; end++) {
-        double centroid = wk->slope * 4 * pi * pulse_edge(wk, end) / wk->sound_speed;
+        double centroid = wk->slope * 4 * M_PI * pulse_edge(wk, end) / wk->sound_speed;
         low = fmin(low, centroid - half);
         high = fmax(high, centroid + half);
     }
-    wk->kx_step = 2 * pi / (length * wk->spacing);
+    wk->kx_step = 2 * M_PI / (length * wk->spacing);
     wk->stuffed = 1;
     if (wk->options.unfold == WK_SUPPORT) {
         wk->line_first = (int)whole_below(low / wk->kx_step);
@@ -205,24 +203,24 @@ static enum status lay_unfolded(struct wk *wk)
     return STATUS_OK;
 }
 
-/* Lines over Kx0 as far as |Kx - K_R slope| <= pi/spacing reaches, at the edges of the band; their spacing needs only to
-   tell the image's own period, the azimuth transform is padded for the interpolation. */
+/* Lines over Kx0 as far as |Kx - K_R slope| <= pi/spacing reaches, at the edges of the band; their spacing needs only
+   to tell the image's own period, the azimuth transform is padded for the interpolation. */
 static enum status lay_rotated(struct wk *wk)
 {
-    double half = pi / wk->spacing, low = INFINITY, high = -INFINITY, period = own_period(wk);
+    double half = M_PI / wk->spacing, low = INFINITY, high = -INFINITY, period = own_period(wk);
     double padded = whole_above(wk->options.pad * wk->pings);
     int length = period / wk->spacing < 1e8 ? fft_length((long long)whole_above(period / wk->spacing) + 1) : 0;
     wk->azimuth_length = padded < INT_MAX / 8 ? fft_length((long long)padded) : 0;
     if (length == 0 || wk->azimuth_length == 0)
         return too_long(wk, fmax(period, padded * wk->spacing));
     for (int k = 0; k < 4; k++) {
-        double kr = 4 * pi * pulse_edge(wk, k % 2) / wk->sound_speed, kx = kr * wk->slope + (k / 2 ? half : -half);
+        double kr = 4 * M_PI * pulse_edge(wk, k % 2) / wk->sound_speed, kx = kr * wk->slope + (k / 2 ? half : -half);
         double ky = sqrt(fmax(kr * kr - kx * kx, 0)), kx0 = kx * cos(wk->angle) - ky * sin(wk->angle);
         low = fmin(low, kx0);
         high = fmax(high, kx0);
     }
     wk->stuffed = 1;
-    wk->kx_step = 2 * pi / (length * wk->spacing);
+    wk->kx_step = 2 * M_PI / (length * wk->spacing);
     wk->line_first = (int)whole_below(low / wk->kx_step);
     wk->lines = (int)whole_above(high / wk->kx_step) - wk->line_first + 1;
     wk->kx_first = wk->line_first * wk->kx_step;
@@ -232,8 +230,8 @@ static enum status lay_rotated(struct wk *wk)
 
 /* ---- patches ---- */
 
-/* What is focused for a patch: the same pixels where its axes are the plan's; a grid around it that samples the spectrum
-   WK_OVERSAMPLING times where they are not. Steps of the latter need the lines: see lay_steps. */
+/* What is focused for a patch: the same pixels where its axes are the plan's; a grid around it that samples the
+   spectrum WK_OVERSAMPLING times where they are not. Steps of the latter need the lines: see lay_steps. */
 static enum status lay_patches(struct wk *wk)
 {
     wk->patch_count = wk->problem.patch_count;
@@ -270,7 +268,7 @@ static enum status lay_patches(struct wk *wk)
 static enum status resampled_axis(const struct wk *wk, double span, double *first, double *step, int *count)
 {
     double extent = *step;
-    *step = 2 * pi / (WK_OVERSAMPLING * span);
+    *step = 2 * M_PI / (WK_OVERSAMPLING * span);
     double beside = wk->taps / 2 + 1, points = whole_above(extent / *step) + 2 * beside + 1;
     if (!(points < 1e8))
         return status_set(STATUS_UNSUPPORTED, "%s: %g m every %g m are too many places to resample from",
@@ -323,7 +321,7 @@ static enum status lay_steps(struct wk *wk)
                               patch->grid.r_first + (patch->grid.r_count - 1) * patch->grid.r_step, record[0],
                               record[1]);
         patch->length = rows < 1e8 ? fft_length_fast((long long)rows) : 0;
-        double period = 2 * pi / wk->kx_step / g->x_step, whole = floor(period + 0.5);
+        double period = 2 * M_PI / wk->kx_step / g->x_step, whole = floor(period + 0.5);
         patch->folds = fabs(period - whole) <= EVEN * whole && whole >= g->x_count && whole <= INT_MAX
                        && fft_length((long long)whole) == whole;
         patch->columns = patch->folds ? (int)whole : fft_length_fast((long long)wk->lines + g->x_count - 1);
@@ -331,7 +329,7 @@ static enum status lay_steps(struct wk *wk)
             return status_set(STATUS_UNSUPPORTED, "%s: rows %g m apart over %g m are too many to transform",
                               wk->method.name, g->r_step, extent);
         if (patch->resampled)
-            patch->bin_carrier = (long long)whole_below((low + high) / 2 / (2 * pi / (patch->length * g->r_step)));
+            patch->bin_carrier = (long long)whole_below((low + high) / 2 / (2 * M_PI / (patch->length * g->r_step)));
         patch->row = wk->rows;
         wk->rows += (size_t)g->r_count;
     }

@@ -1,6 +1,6 @@
-/* Omega-k at one azimuth wavenumber: the cells of its line, read or interpolated along azimuth, then along range onto Ky, then
-   focused onto the rows (rotate, stolt and focus of wk.h). Compiled once for each precision and instruction set (BP_ISA
-   names it). */
+/* Omega-k at one azimuth wavenumber: the cells of its line, read or interpolated along azimuth, then along range onto
+   Ky, then focused onto the rows (rotate, stolt and focus of wk.h). Compiled once for each precision and instruction
+   set (BP_ISA names it). */
 #include <stdint.h>
 #include <string.h>
 

@@ -15,7 +15,6 @@ enum {
     STRIP = 128 / sizeof(complex_real), /* bins that go through the azimuth FFT together: two lines of the cache */
     TAPS_MOST = 16
 };
-static const double pi = 3.14159265358979323846;
 
 /* Zeroed memory on the plan's account; failure shows as NULL. */
 static void *take(struct wk *wk, size_t count, size_t size, double share)
@@ -35,7 +34,7 @@ static real *scratch_of(const struct wk *wk)
 
 static complex_real rotor(double cycles)
 {
-    double angle = 2 * pi * (cycles - floor(cycles + 0.5));
+    double angle = 2 * M_PI * (cycles - floor(cycles + 0.5));
     return (real)cos(angle) + (real)sin(angle) * (complex_real)I;
 }
 
@@ -76,8 +75,8 @@ static bool weights_fill(struct wk *wk)
     return true;
 }
 
-/* The azimuth sum over lines kx = kx_first + i kx_step onto columns x = x0 + j dx: one transform where 2 pi/(kx_step dx) is
-   its length, or a convolution (chirp z),  2 i j = i^2 + j^2 - (j - i)^2. */
+/* The azimuth sum over lines kx = kx_first + i kx_step onto columns x = x0 + j dx: one transform where 2 pi/(kx_step
+   dx) is its length, or a convolution (chirp z),  2 i j = i^2 + j^2 - (j - i)^2. */
 static bool azimuth_fill(struct wk *wk, struct wk_patch *patch)
 {
     const struct grid *g = &patch->own;
@@ -88,7 +87,7 @@ static bool azimuth_fill(struct wk *wk, struct wk_patch *patch)
     patch->azimuth_inverse = plan_line(length, wk->scratch, FFTW_BACKWARD);
     if (!before || !after || !patch->azimuth_inverse)
         return false;
-    const double first = (wk->kx_first - patch->kx_carrier) / (2 * pi), step = wk->kx_step / (2 * pi);
+    const double first = (wk->kx_first - patch->kx_carrier) / (2 * M_PI), step = wk->kx_step / (2 * M_PI);
     const double turn = patch->folds ? 1.0 / length : step * g->x_step, square = patch->folds ? 0 : 0.5 * turn;
     const double place = step * g->x_step, place_first = first * g->x_step;
     for (int i = 0; i < wk->lines; i++) {
@@ -250,7 +249,7 @@ static void range_record(const struct wk *wk, int n, const real *record, real *w
         wave[to + 1] = record[2 * i + 1] * weight;
     }
     FFTW(execute_dft)(wk->range_forward, (complex_real *)wave, (complex_real *)wave);
-    const double bin = wk->fs / length, base = wk->kx_base * x / (2 * pi);
+    const double bin = wk->fs / length, base = wk->kx_base * x / (2 * M_PI);
     const int below = -wk->band_first;
     memcpy(row, wave + 2 * (length - below), 2 * (size_t)below * sizeof *row);
     memcpy(row + 2 * below, wave, 2 * (size_t)(wk->band - below) * sizeof *row);
@@ -396,7 +395,7 @@ static void resample(const struct wk *wk, const struct wk_patch *patch, void *pi
 {
     const struct grid *g = &patch->grid, *own = &patch->own;
     const double cosine = cos(wk->angle), sine = sin(wk->angle);
-    const double ky = (double)patch->bin_carrier / (patch->length * own->r_step), kx = patch->kx_carrier / (2 * pi);
+    const double ky = (double)patch->bin_carrier / (patch->length * own->r_step), kx = patch->kx_carrier / (2 * M_PI);
 #pragma omp parallel for schedule(static) num_threads(wk->threads)
     for (int i = 0; i < g->r_count; i++) {
         real *out = (real *)pixels + 2 * (size_t)g->x_count * (size_t)i;

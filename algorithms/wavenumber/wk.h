@@ -1,17 +1,18 @@
-/* Omega-k imaging of monostatic echoes, broadside or squinted (SQ18), with or without the polar-format filter ahead (PF05).
+/* Omega-k imaging of monostatic echoes, broadside or squinted (SQ18), with or without the polar-format filter ahead
+   (PF05).
 
-   The echo of a point at (x, r), seen from X, has the range spectrum exp(-j K_R R(X)), K_R = 4 pi F/c, and along the track
-   the spectrum exp(-j (Kx x + Ky r)): an image is the inverse transform over (Kx, Ky), onto which the spectrum over
-   (Kx, K_R) is interpolated (Stolt). A beam that looks at an angle theta off broadside has its wavenumbers about K_R sin theta,
-   which the pings alias. Two ways to put them in their place:
+   The echo of a point at (x, r), seen from X, has the range spectrum exp(-j K_R R(X)), K_R = 4 pi F/c, and along the
+   track the spectrum exp(-j (Kx x + Ky r)): an image is the inverse transform over (Kx, Ky), onto which the spectrum
+   over (Kx, K_R) is interpolated (Stolt). A beam that looks at an angle theta off broadside has its wavenumbers about
+   K_R sin theta, which the pings alias. Two ways to put them in their place:
 
        unfolded   Kx is laid out as far as the beam's wavenumbers reach, and the alias that belongs to a cell is the one
                   nearest to K_R sin theta; axes are the track's. wk_classic.
        rotated    the centroid is taken off, S(K_R, X) exp(-j K_R sin theta X), so that wavenumbers lie about zero; axes
                   are turned by theta (SQ18 Eqs. (6) to (9)):
                       Kx0 = Kx cos theta - Ky sin theta,  Ky0 = Kx sin theta + Ky cos theta,  K_R^2 = Kx0^2 + Ky0^2.
-                  Interpolated along azimuth first, from Kx - K_R sin theta to Kx0 (SQ18 Eq. (12)), and then along range.
-                  wk_squint.
+                  Interpolated along azimuth first, from Kx - K_R sin theta to Kx0 (SQ18 Eq. (12)), and then along
+                  range. wk_squint.
 
    SQ18 prints exp(+j K_R R) in Eq. (2), with which Eq. (3) would double the centroid; the phase is -K_R R.
    Both are exact for a platform that moves on while the pulse travels: at the speed v, b = v^2/c^2, it is

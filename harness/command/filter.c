@@ -1,4 +1,5 @@
-/* The command `filter`: the polar-format spatial filter, echoes to echoes, with a table of what it does to each target. */
+/* The command `filter`: the polar-format spatial filter, echoes to echoes, with a table of what it does to each
+   target. */
 #include <complex.h>
 #include <math.h>
 #include <stdio.h>

@@ -16,7 +16,8 @@ struct task {
     struct spec *specs; /* [spec_count] of --algorithm */
 };
 
-/* -o of a command that writes a MATLAB file, or a picture: its place exists, its extension says so. Errors: STATUS_INVALID. */
+/* -o of a command that writes a MATLAB file, or a picture: its place exists, its extension says so. Errors:
+   STATUS_INVALID. */
 enum status output_check(const char *command, const char *output);
 enum status picture_check(const char *command, const char *output);
 bool output_is_picture(const char *output); /* by its extension; NULL is none */
@@ -28,11 +29,11 @@ enum status picture_draw(const char *path, const struct image *image, const char
 /* Its extent and its peak, for the terminal. */
 void image_describe(const struct image *image);
 
-/* The scene of --echoes and --grid. Errors: STATUS_INVALID where one of the two is missing, and as scene_from_echoes; *scene
-   needs no scene_free then. */
+/* The scene of --echoes and --grid. Errors: STATUS_INVALID where one of the two is missing, and as scene_from_echoes;
+   *scene needs no scene_free then. */
 enum status echoes_scene(const char *command, const struct task *task, struct scene *scene);
-/* Scenes by name, those of `usual` (NULL: all that are not full size) where none is named, or that of --echoes; freed with
-   scenes_free even on failure. Errors: as scenes_load. */
+/* Scenes by name, those of `usual` (NULL: all that are not full size) where none is named, or that of --echoes; freed
+   with scenes_free even on failure. Errors: as scenes_load. */
 enum status task_scenes(const char *command, const struct task *task, int usual_count, const char *const *usual,
                         struct scene **scenes, int *count);
 

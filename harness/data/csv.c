@@ -1,4 +1,5 @@
-/* CSV files after RFC 4180, without line ends in fields: a reader that holds the whole file in memory, and the writer of single fields. */
+/* CSV files after RFC 4180, without line ends in fields: a reader that holds the whole file in memory, and the writer
+   of single fields. */
 #include "data/csv.h"
 
 #include <errno.h>
@@ -155,7 +156,8 @@ static bool is_control(const char *at)
     return (first > 0 && first < ' ') || first == 0x7f || (first == 0xc2 && second >= 0x80 && second < 0xa0);
 }
 
-/* Texts go to terminals, web pages and gnuplot, where control characters are commands: none are accepted but line ends. */
+/* Texts go to terminals, web pages and gnuplot, where control characters are commands: none are accepted but line
+   ends. */
 static enum status controls_refuse(const char *path, const char *text)
 {
     int line = 1;

@@ -1,4 +1,5 @@
-/* CSV files after RFC 4180 but without line ends in fields, with `# key: value` comment lines between the rows: the one reader and the one writer. */
+/* CSV files after RFC 4180 but without line ends in fields, with `# key: value` comment lines between the rows: the one
+   reader and the one writer. */
 #ifndef SASBENCH_DATA_CSV_H
 #define SASBENCH_DATA_CSV_H
 
@@ -25,8 +26,8 @@ struct csv {
 enum csv_tail { CSV_TAIL_KEEP, CSV_TAIL_DROP };
 
 /* Errors: STATUS_INVALID naming file and line (not readable, above 256 MiB, broken quoting, a row whose fields do not
-   match the header), and the column of a control character, which are not accepted but as line ends; STATUS_FAILED without memory. *csv is then zeroed. A comment line begins with '#'. A byte order
-   mark is skipped. */
+   match the header), and the column of a control character, which are not accepted but as line ends; STATUS_FAILED
+   without memory. *csv is then zeroed. A comment line begins with '#'. A byte order mark is skipped. */
 enum status csv_read(const char *path, enum csv_tail tail, struct csv *csv);
 void csv_free(struct csv *csv);
 
@@ -39,8 +40,8 @@ const char *csv_comment(const struct csv *csv, const char *key);
 /* A number as the files hold it: empty is NAN. False for anything that is not a number from end to end. */
 bool csv_number(const char *cell, double *value);
 
-/* One field, quoted where RFC 4180 (or a leading '#') asks for it, control characters as '?'. NULL is written as an empty
-   field. */
+/* One field, quoted where RFC 4180 (or a leading '#') asks for it, control characters as '?'. NULL is written as an
+   empty field. */
 void csv_write_text(FILE *file, const char *text);
 /* %.9g; NAN is an empty field. */
 void csv_write_number(FILE *file, double value);

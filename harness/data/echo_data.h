@@ -14,16 +14,16 @@ size_t size_product(size_t a, size_t b, size_t c, size_t d);
 /* Allocate zeroed samples for an acquisition, owned by the caller (free(): the samples pointer is malloc'ed and
    64-byte aligned). Errors: STATUS_FAILED without memory. */
 enum status echoes_allocate(const struct acquisition *acquisition, enum precision precision, struct echoes *echoes);
-/* A copy in the other precision, same ownership. Samples whose largest lies near the ends of the precision's range, where
-   sums overflow and small parts are lost, are divided by a power of two, exactly: to->exponent. */
+/* A copy in the other precision, same ownership. Samples whose largest lies near the ends of the precision's range,
+   where sums overflow and small parts are lost, are divided by a power of two, exactly: to->exponent. */
 enum status echoes_convert(const struct echoes *from, enum precision precision, struct echoes *to);
 void echoes_free(struct echoes *echoes);
 
 /* Allocate a zeroed image over `patches` (kept by pointer, not copied). Errors: STATUS_FAILED without memory. */
 enum status image_allocate(int patch_count, const struct grid *patches, enum precision precision, struct image *image);
 enum status image_convert(const struct image *from, enum precision precision, struct image *to);
-/* Multiply an image by 2^exponent, exactly: what execute made of echoes with that exponent. Unless the exponent is 0 the
-   image is double afterwards, for float may not hold it. Errors: STATUS_FAILED without memory. */
+/* Multiply an image by 2^exponent, exactly: what execute made of echoes with that exponent. Unless the exponent is 0
+   the image is double afterwards, for float may not hold it. Errors: STATUS_FAILED without memory. */
 enum status image_scale(struct image *image, int exponent);
 void image_free(struct image *image);
 

@@ -1,5 +1,5 @@
-/* The one reader of numbers on the command line (number.h). strtod also takes blanks, hexadecimal, "inf" and "nan", and a
-   comma for the point where the locale has one. */
+/* The one reader of numbers on the command line (number.h). strtod also takes blanks, hexadecimal, "inf" and "nan", and
+   a comma for the point where the locale has one. */
 #include "data/number.h"
 
 #include <errno.h>

@@ -43,8 +43,8 @@ void shown_write(FILE *stream, const char *text)
     }
 }
 
-/* What a sign of ASCII becomes; NULL: it stays. Links are made of bare addresses, too, and neither a backslash nor an entity
-   keeps @NAME from calling that person, or #1 from leading somewhere: a blank without width does. */
+/* What a sign of ASCII becomes; NULL: it stays. Links are made of bare addresses, too, and neither a backslash nor an
+   entity keeps @NAME from calling that person, or #1 from leading somewhere: a blank without width does. */
 static const char *markdown_escape(const char *start, const char *at)
 {
     static const struct {

@@ -1,5 +1,5 @@
-/* Texts that came from files, made fit to be shown: a terminal obeys control characters, and the page of a CI turns names into
-   links, pictures and mentions. */
+/* Texts that came from files, made fit to be shown: a terminal obeys control characters, and the page of a CI turns
+   names into links, pictures and mentions. */
 #ifndef SASBENCH_DATA_SHOWN_TEXT_H
 #define SASBENCH_DATA_SHOWN_TEXT_H
 

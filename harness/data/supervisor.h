@@ -2,9 +2,9 @@
 #ifndef SASBENCH_DATA_SUPERVISOR_H
 #define SASBENCH_DATA_SUPERVISOR_H
 
-/* Go on in a child process, before any thread is started. The parent waits. When a signal (also the system's for want of memory)
-   or an exit ends the child amid a task, it starts another, which begins again from here and finds that task among the
-   crashed ones; otherwise the parent ends as the child did. Where no process can be started, the work is done
+/* Go on in a child process, before any thread is started. The parent waits. When a signal (also the system's for want
+   of memory) or an exit ends the child amid a task, it starts another, which begins again from here and finds that task
+   among the crashed ones; otherwise the parent ends as the child did. Where no process can be started, the work is done
    unsupervised. */
 void supervisor_begin(void);
 

@@ -1,5 +1,6 @@
-/* What is on its way to its place: files and folders made beside it, under names of one pattern that no user gives. They
-   go when a signal ends the program, and what a killed one left is swept away by the next that works in the folder. */
+/* What is on its way to its place: files and folders made beside it, under names of one pattern that no user gives.
+   They go when a signal ends the program, and what a killed one left is swept away by the next that works in the
+   folder. */
 #ifndef SASBENCH_DATA_TEMPORARY_H
 #define SASBENCH_DATA_TEMPORARY_H
 
@@ -7,8 +8,8 @@
 #include <stdbool.h>
 #include <sys/types.h>
 
-/* An empty file open for writing, or an empty folder, beside `path`; `made` is its own path. -1 or false: errno says why.
-   Each is followed by temporary_moved or temporary_remove. */
+/* An empty file open for writing, or an empty folder, beside `path`; `made` is its own path. -1 or false: errno says
+   why. Each is followed by temporary_moved or temporary_remove. */
 int temporary_file(const char *path, char made[PATH_MAX]);
 bool temporary_folder(const char *path, char made[PATH_MAX]);
 /* A file that will be made inside such a folder. */

@@ -18,8 +18,8 @@ static void text_file_free(struct text_file *file)
     *file = (struct text_file){0};
 }
 
-/* The standard stream that `info` is, by whatever name it was given (/dev/stdout, a file that it is led into), or -1: to
-   replace it would part it from what else is printed there. */
+/* The standard stream that `info` is, by whatever name it was given (/dev/stdout, a file that it is led into), or -1:
+   to replace it would part it from what else is printed there. */
 static int standard_stream(const struct stat *info)
 {
     struct stat stream;

@@ -15,10 +15,11 @@ struct text_file {
 /* The path itself, or what a symbolic link stands for; the link stays. Freed by the caller; NULL: errno says why. */
 char *place_follow(const char *path);
 
-/* Begin a file beside `path`. Errors: STATUS_INVALID naming it when it cannot be written; nothing is then left to close. */
+/* Begin a file beside `path`. Errors: STATUS_INVALID naming it when it cannot be written; nothing is then left to
+   close. */
 enum status text_file_open(const char *path, struct text_file *file);
-/* Put the file in its place when `status` is OK, and drop it otherwise. Returns `status`, or STATUS_FAILED when it could
-   not be written to its end. */
+/* Put the file in its place when `status` is OK, and drop it otherwise. Returns `status`, or STATUS_FAILED when it
+   could not be written to its end. */
 enum status text_file_close(struct text_file *file, enum status status);
 
 #endif

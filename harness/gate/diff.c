@@ -28,8 +28,8 @@ static enum verdict judge(const struct metric *metric, double before, double aft
     return improved && metric->better != BETTER_NONE ? VERDICT_BETTER : VERDICT_WORSE;
 }
 
-/* How much longer NEW takes, each side divided by the scalar reference loop measured beside it: of the median and the least
-   time, the ratio nearer to 1. What load does to a few runs seldom moves both. NAN when it cannot be reported. */
+/* How much longer NEW takes, each side divided by the scalar reference loop measured beside it: of the median and the
+   least time, the ratio nearer to 1. What load does to a few runs seldom moves both. NAN when it cannot be reported. */
 static double time_ratio(const struct measurement *old, const struct measurement *new)
 {
     double control = old->control_s / new->control_s, ratio = new->run_s / old->run_s *control;

@@ -46,15 +46,15 @@ struct diff {
 };
 
 /* A value of quality or work that is better by more than CHANGED_SLACKS slacks (of work, which has none: by more than
-   CHANGED_WORK), a metric that is better in CHANGED_ROWS rows or more, and a row that was refused and is not any more are
-   VERDICT_CHANGED instead of VERDICT_BETTER. */
+   CHANGED_WORK), a metric that is better in CHANGED_ROWS rows or more, and a row that was refused and is not any more
+   are VERDICT_CHANGED instead of VERDICT_BETTER. */
 enum { CHANGED_SLACKS = 10, CHANGED_ROWS = 5 };
 #define CHANGED_WORK 0.01
 
-/* Judge two results folders or CSV files (a folder and a file: the folder's file of that kind). A row is matched by scene
-   (and its content), algorithm, options and precision, and in targets.csv by target, axis and definition. Errors:
-   STATUS_INVALID as results_read, for different kinds of files, and for a row given twice; STATUS_FAILED without memory.
-   *diff is to be freed in any case. */
+/* Judge two results folders or CSV files (a folder and a file: the folder's file of that kind). A row is matched by
+   scene (and its content), algorithm, options and precision, and in targets.csv by target, axis and definition. Errors:
+   STATUS_INVALID as results_read, for different kinds of files, and for a row given twice; STATUS_FAILED without
+   memory. *diff is to be freed in any case. */
 enum status diff_results(const char *old, const char *new, struct diff *diff);
 
 /* For those who find: add a finding (copied, and counted), a remark, and a text that lives as long as the struct (NULL
@@ -71,8 +71,9 @@ void diff_free(struct diff *diff);
 void diff_print(const struct diff *diff, FILE *stream);
 /* The same for a comment of a CI, as Markdown; at most 100 findings, the worst first. Errors: of text_file. */
 enum status diff_markdown(const struct diff *diff, const char *path);
-/* What trackers of benchmarks read (github-action-benchmark's customSmallerIsBetter): [{"name", "unit", "value", "range"}]
-   of every defined value of NEW that is better when it is smaller; range is the slack. Errors: of text_file. */
+/* What trackers of benchmarks read (github-action-benchmark's customSmallerIsBetter): [{"name", "unit", "value",
+   "range"}] of every defined value of NEW that is better when it is smaller; range is the slack. Errors: of
+   text_file. */
 enum status diff_json(const struct diff *diff, const char *path);
 
 #endif

@@ -28,8 +28,8 @@ struct diff_side {
     bool *closed;  /* [row_count] by row: nothing more to say of what belongs to this row */
 };
 
-/* The file's rows with their keys. Errors: as results_read; STATUS_INVALID naming both lines of a row that is given twice;
-   STATUS_FAILED without memory. *side is to be closed in any case. */
+/* The file's rows with their keys. Errors: as results_read; STATUS_INVALID naming both lines of a row that is given
+   twice; STATUS_FAILED without memory. *side is to be closed in any case. */
 enum status side_open(const char *path, struct diff_side *side);
 void side_close(struct diff_side *side); /* accepts a zeroed struct */
 

@@ -1,4 +1,5 @@
-/* The polar-format filter (wavenumber/filter.h) on echoes as they are recorded, and how much of each target it keeps. */
+/* The polar-format filter (wavenumber/filter.h) on echoes as they are recorded, and how much of each target it
+   keeps. */
 #ifndef SASBENCH_MEASURE_FILTERING_H
 #define SASBENCH_MEASURE_FILTERING_H
 
@@ -17,8 +18,8 @@ struct filtering {
     struct polar_shape shape;
 };
 
-/* `spec` is one of wk_polar. Errors: STATUS_UNSUPPORTED as polar_filter_check, STATUS_FAILED without memory; there is nothing to
-   close then. */
+/* `spec` is one of wk_polar. Errors: STATUS_UNSUPPORTED as polar_filter_check, STATUS_FAILED without memory; there is
+   nothing to close then. */
 enum status filtering_open(const struct acquisition *acquisition, const struct spec *spec, struct filtering *filtering);
 void filtering_close(struct filtering *filtering);
 
@@ -26,15 +27,16 @@ void filtering_close(struct filtering *filtering);
 void filtering_compress(const struct filtering *filtering, double complex *records);
 void filtering_apply(const struct filtering *filtering, double complex *records);
 
-/* What the filter does to echoes: their energy behind it and the energy of what it changes, both over that ahead of it; NAN where
-   there are no echoes. */
+/* What the filter does to echoes: their energy behind it and the energy of what it changes, both over that ahead of it;
+   NAN where there are no echoes. */
 struct kept {
     double kept_db, changed_db;
 };
 
 /* Compressed echoes, which are filtered in place. Errors: STATUS_FAILED without memory. */
 enum status filtering_measure(const struct filtering *filtering, double complex *records, struct kept *kept);
-/* Point target `index` of the scene by itself, for the filter is linear. Errors: as filtering_measure and scene_simulate. */
+/* Point target `index` of the scene by itself, for the filter is linear. Errors: as filtering_measure and
+   scene_simulate. */
 enum status filtering_target(const struct filtering *filtering, const struct scene *scene, int index,
                              struct kept *kept);
 

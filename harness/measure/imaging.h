@@ -12,17 +12,17 @@ struct imaging {
     struct image image; /* of the problem's patches and precision */
 };
 
-/* Allocate the image, then plan. Spec, problem's patches and acquisition outlive the imaging. Errors: STATUS_FAILED when the
-   image does not fit into memory, with the figure and before anything is planned; what plan returns. Nothing to close
-   then. */
+/* Allocate the image, then plan. Spec, problem's patches and acquisition outlive the imaging. Errors: STATUS_FAILED
+   when the image does not fit into memory, with the figure and before anything is planned; what plan returns. Nothing
+   to close then. */
 enum status imaging_open(const struct spec *spec, const struct problem *problem, struct imaging *imaging);
 
 /* Execute once, and nothing else: what is timed. Errors: what execute returns. */
 enum status imaging_execute(struct imaging *imaging, const struct echoes *echoes, struct stages *stages);
 
-/* The finished image: checked, scaled by the echoes' exponent, handed over to the caller, who frees it with image_free; the
-   imaging has none from then on. Errors: STATUS_FAILED when a pixel is not finite or memory is missing, STATUS_INVALID when
-   the scaled image is beyond the range of double; *image is then empty. */
+/* The finished image: checked, scaled by the echoes' exponent, handed over to the caller, who frees it with image_free;
+   the imaging has none from then on. Errors: STATUS_FAILED when a pixel is not finite or memory is missing,
+   STATUS_INVALID when the scaled image is beyond the range of double; *image is then empty. */
 enum status imaging_finish(struct imaging *imaging, const struct echoes *echoes, struct image *image);
 
 void imaging_close(struct imaging *imaging);

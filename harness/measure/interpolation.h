@@ -11,8 +11,8 @@
 enum { TAPS_HALF = 24 };      /* samples to either side */
 #define RASTER_TOLERANCE 1e-6 /* of a step: nearer counts as on the raster */
 
-/* How far from the raster, in steps, still counts as on it: coordinates far from 0 are rounded, which may be much of a fine
-   step. A quarter of a step is never on the raster. */
+/* How far from the raster, in steps, still counts as on it: coordinates far from 0 are rounded, which may be much of a
+   fine step. A quarter of a step is never on the raster. */
 double raster_tolerance(double largest_m, double step);
 
 /* Weights of the samples base - TAPS_HALF + 1 .. base + TAPS_HALF for a place `fraction` of a step, in [0, 1), past
@@ -28,8 +28,8 @@ struct place {
 };
 struct place place_find(const struct image *image, double x, double r);
 
-/* The image along one axis through a place, without the carrier's turn between the rows: `count` columns from `first` on at
-   the place's fractional row, or all rows at its fractional column ([r_count]). */
+/* The image along one axis through a place, without the carrier's turn between the rows: `count` columns from `first`
+   on at the place's fractional row, or all rows at its fractional column ([r_count]). */
 void columns_interpolate(const struct image *image, const struct acquisition *acquisition, const struct place *place,
                          int first, int count, double complex *samples);
 void rows_interpolate(const struct image *image, const struct acquisition *acquisition, const struct place *place,

@@ -42,8 +42,8 @@ static double parabola_extremum(const double *power, int k, double *value)
 }
 
 /* First minimum on the way from sample `peak` in direction `way` (+-1), as a fractional index; NAN if the slice ends
-   before the power rises again. Where samples lie so close that the power hardly changes between them, it goes up and down by
-   the error of the interpolation: less than RISE is none. */
+   before the power rises again. Where samples lie so close that the power hardly changes between them, it goes up and
+   down by the error of the interpolation: less than RISE is none. */
 static double minimum_find(const double *power, int count, int peak, int way)
 {
     int lowest = peak, k = peak + way;

@@ -13,8 +13,8 @@
 #define M_METRIC(...) METRIC(measurement, __VA_ARGS__)
 #define T_METRIC(...) METRIC(target_row, __VA_ARGS__)
 
-/* Slacks of quality are about a hundred times what compilers and instruction sets make of the same source: rounding, 1e-8
-   of an error (results/README.md). Work is exact. Two runs at different times can only tell a factor in time;
+/* Slacks of quality are about a hundred times what compilers and instruction sets make of the same source: rounding,
+   1e-8 of an error (results/README.md). Work is exact. Two runs at different times can only tell a factor in time;
    `compare --ab` tells per cents. */
 const struct metric metrics[] = {
     M_METRIC(run_s, "s", "Run time", BETTER_LOWER, CLASS_TIME, 0, 0, 1),

@@ -49,12 +49,13 @@ struct error_metrics {
 };
 
 /* Over all pixels of all patches of `reference` (double), which are looked up in `image` at the same places: image
-   patches are equal to, or contain, the reference patches on the same raster. All NAN, with the reason, when they do not, the
-   reference is all zero or a pixel of the image is not finite; the phase, when a strong pixel of the image is zero. */
+   patches are equal to, or contain, the reference patches on the same raster. All NAN, with the reason, when they do
+   not, the reference is all zero or a pixel of the image is not finite; the phase, when a strong pixel of the image is
+   zero. */
 struct error_metrics metrics_error(const struct image *image, const struct image *reference);
 
-/* How sharp an image is, over all of its pixels, without knowing what it shows. I is a pixel's power. NAN where the image is zero or not
-   finite, the last also where more than half of the pixels are zero. */
+/* How sharp an image is, over all of its pixels, without knowing what it shows. I is a pixel's power. NAN where the
+   image is zero or not finite, the last also where more than half of the pixels are zero. */
 struct sharpness {
     double entropy;          /* -sum q ln q, q = I/sum I: 0 for one bright pixel, ln of their number for even ones */
     double contrast;         /* standard deviation of I over its mean */

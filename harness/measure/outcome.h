@@ -13,8 +13,8 @@
 /* Stands in the reason of a row whose scene has no points to measure. */
 #define OUTCOME_NO_TARGETS "no point targets to measure lobes of"
 
-/* Made by outcome_measure, released by outcome_free. Texts of the rows point into it, the session and the SPEC: it is not
-   copied. */
+/* Made by outcome_measure, released by outcome_free. Texts of the rows point into it, the session and the SPEC: it is
+   not copied. */
 struct outcome {
     struct measurement row;
     struct image image; /* finished; empty unless the row's status is ok */

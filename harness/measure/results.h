@@ -14,16 +14,16 @@ struct scene_hash {
     uint64_t hash;
 };
 
-/* A finished file, measurements.csv, targets.csv or a baseline, in memory; freed with results_free, which accepts a zeroed
-   struct. Texts of the rows belong to the csv. */
+/* A finished file, measurements.csv, targets.csv or a baseline, in memory; freed with results_free, which accepts a
+   zeroed struct. Texts of the rows belong to the csv. */
 struct results {
     struct csv csv;
     bool targets;                     /* which of the two it is */
     struct measurement *measurements; /* [csv.row_count], or NULL */
     struct target_row *target_rows;   /* [csv.row_count], or NULL */
 };
-/* Errors: STATUS_INVALID naming file, line, column and value: not a file of ours or of another version, other columns, a
-   number that is none or not finite, a status that is none. */
+/* Errors: STATUS_INVALID naming file, line, column and value: not a file of ours or of another version, other columns,
+   a number that is none or not finite, a status that is none. */
 enum status results_read(const char *path, struct results *results);
 void results_free(struct results *results);
 /* A whole measurements file without provenance, the same on every machine. `note` is one line that says what it is and

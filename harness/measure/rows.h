@@ -1,4 +1,5 @@
-/* Rows on disk: the columns of both files, their header, and how one row is written and read. Used within measure/ only. */
+/* Rows on disk: the columns of both files, their header, and how one row is written and read. Used within measure/
+   only. */
 #ifndef SASBENCH_MEASURE_ROWS_H
 #define SASBENCH_MEASURE_ROWS_H
 
@@ -35,10 +36,11 @@ void row_write(FILE *file, const struct column *columns, const void *row);
 
 /* The version of a file of this kind, from its first line; 0 for another kind, or a version that is not known yet. */
 int version_read(const struct csv *csv, const struct row_kind *kind);
-/* Does a file's header line name the columns of its kind and version? Errors: STATUS_INVALID naming the first that differs. */
+/* Does a file's header line name the columns of its kind and version? Errors: STATUS_INVALID naming the first that
+   differs. */
 enum status header_check(const struct csv *csv, const struct row_kind *kind);
-/* One row into its struct; what the file's version does not have is empty. Errors: STATUS_INVALID naming file, line, column and
-   value. */
+/* One row into its struct; what the file's version does not have is empty. Errors: STATUS_INVALID naming file, line,
+   column and value. */
 enum status row_parse(const struct csv *csv, int row, const struct row_kind *kind, void *out);
 
 /* Why rows of a file are not gone on with by a program of this provenance; empty when they are. */

@@ -1,4 +1,5 @@
-/* The scalar reference loop (scalar_loop.h). It must stay as it is: every speed-up that was ever quoted is relative to it. */
+/* The scalar reference loop (scalar_loop.h). It must stay as it is: every speed-up that was ever quoted is relative to
+   it. */
 #include "measure/scalar_loop.h"
 
 #include <complex.h>

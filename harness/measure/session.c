@@ -48,7 +48,8 @@ enum status session_open(const struct scene *scene, struct session *session)
     enum status status = scene_echoes(scene, &session->echoes[PRECISION_DOUBLE]);
     if (status == STATUS_OK)
         status = echoes_convert(&session->echoes[PRECISION_DOUBLE], PRECISION_FLOAT, &session->echoes[PRECISION_FLOAT]);
-    /* Images of a session keep the power of two that its echoes were divided by: they are only compared with each other. */
+    /* Images of a session keep the power of two that its echoes were divided by: they are only compared with each
+       other. */
     const int exponent = session->echoes[PRECISION_DOUBLE].exponent;
     session->echoes[PRECISION_DOUBLE].exponent = 0;
     session->echoes[PRECISION_FLOAT].exponent -= exponent;

@@ -14,8 +14,9 @@ struct session {
     char no_reference[512];    /* why there is none: refused, or no memory; else empty */
 };
 
-/* Make the echoes (scene_echoes) and form the exact image; where there can be none, images are measured without their errors. Errors:
-   STATUS_FAILED for memory or the simulation, STATUS_INVALID as scene_simulate; *session then needs no close. */
+/* Make the echoes (scene_echoes) and form the exact image; where there can be none, images are measured without their
+   errors. Errors: STATUS_FAILED for memory or the simulation, STATUS_INVALID as scene_simulate; *session then needs no
+   close. */
 enum status session_open(const struct scene *scene, struct session *session);
 void session_close(struct session *session);
 

@@ -22,7 +22,8 @@ struct line {
     double step_m, target; /* the target as a sample coordinate */
 };
 
-/* Share of the line's energy in the outer 5 % of its band, where a well sampled image has none. Negative without memory. */
+/* Share of the line's energy in the outer 5 % of its band, where a well sampled image has none. Negative without
+   memory. */
 static double edge_energy(const struct line *line)
 {
     const int n = line->count;
@@ -77,7 +78,8 @@ static double *line_refine(const struct line *line, int fine, int half_count)
     return power;
 }
 
-/* The line through a target that its slice is refined from; without samples, and with the reason, when there is none. */
+/* The line through a target that its slice is refined from; without samples, and with the reason, when there is
+   none. */
 static struct line line_extract(const struct image *image, const struct acquisition *acquisition,
                                 const struct target *target, enum axis axis, char *reason, size_t size)
 {

@@ -154,7 +154,8 @@ static enum status setting_read(const char *place, char *setting, struct spec *s
     return STATUS_OK;
 }
 
-/* Every param in the order of the table, whether it was given or not; terse ones only when they differ from the default. */
+/* Every param in the order of the table, whether it was given or not; terse ones only when they differ from the
+   default. */
 static enum status text_build(struct spec *spec)
 {
     size_t length = 0;

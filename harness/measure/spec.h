@@ -18,8 +18,8 @@ struct spec {
 enum status spec_parse(const char *text, struct spec *spec);
 void spec_free(struct spec *spec);
 
-/* A copy; the same with one more setting. Errors: STATUS_FAILED without memory; as spec_parse, also when the key was given
-   before. The copy is then zeroed. */
+/* A copy; the same with one more setting. Errors: STATUS_FAILED without memory; as spec_parse, also when the key was
+   given before. The copy is then zeroed. */
 enum status spec_copy(const struct spec *spec, struct spec *copy);
 enum status spec_vary(const struct spec *spec, const char *key, const char *value, struct spec *varied);
 /* Was the key named in the SPEC? */

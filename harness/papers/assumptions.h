@@ -14,11 +14,12 @@ struct assumptions {
 };
 extern const struct assumptions assumption_sets[]; /* name NULL ends */
 
-/* Load a shipped scene under the assumptions that were chosen last; they are nominal at first. Where they change it, its
-   name becomes NAME@ASSUMPTIONS ("bp22/table3@c_1450") and its hash another. Errors: as scene_load, and STATUS_FAILED
-   without memory. */
+/* Load a shipped scene under the assumptions that were chosen last; they are nominal at first. Where they change it,
+   its name becomes NAME@ASSUMPTIONS ("bp22/table3@c_1450") and its hash another. Errors: as scene_load, and
+   STATUS_FAILED without memory. */
 enum status assumed_scene_load(const char *name, struct scene *scene);
-/* The name that a scene has under them: its own where they change nothing, or where it cannot be loaded. It stays valid. */
+/* The name that a scene has under them: its own where they change nothing, or where it cannot be loaded. It stays
+   valid. */
 const char *assumed_scene_name(const char *name);
 void assumptions_choose(const struct assumptions *assumptions);
 

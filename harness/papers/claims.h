@@ -1,5 +1,5 @@
-/* What BP22, ZP15, LBF21, SQ18 and PF05 claim, sentence by sentence, and how our measurements judge it: results/claims.csv, a row a
-   claim, names what is compared (quantity.h) and by which judge (judges.h).
+/* What BP22, ZP15, LBF21, SQ18 and PF05 claim, sentence by sentence, and how our measurements judge it:
+   results/claims.csv, a row a claim, names what is compared (quantity.h) and by which judge (judges.h).
 
    What counts as agreement is the printed number with its last digit's rounding; where a sentence gives no number
    ("slightly", "far less") the criterion says what was taken. */
@@ -38,7 +38,8 @@ void claims_free(struct claims *claims);
 
 /* The verdict on a claim by one scheme. The evidence is one line: the numbers, the criterion, each comparison with its
    threshold, the settings, the scenes with what these assume, and the tables whose printed numbers are used. Where a
-   measurement is missing, failed or unsupported: CLAIM_UNDECIDED with the reason in place of numbers and comparisons. */
+   measurement is missing, failed or unsupported: CLAIM_UNDECIDED with the reason in place of numbers and
+   comparisons. */
 struct judgement claim_judge(const struct claims *claims, const struct claim *claim, enum scheme scheme,
                              struct measured *measured);
 

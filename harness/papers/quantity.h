@@ -17,8 +17,8 @@ struct values {
     double at[VALUES_MAX];
 };
 
-/* What numbers rest on beside measurements: a scene, a setting (a formula of the phase study, a SPEC that is planned), a
-   table of published.csv. */
+/* What numbers rest on beside measurements: a scene, a setting (a formula of the phase study, a SPEC that is planned),
+   a table of published.csv. */
 enum use { USE_SCENE, USE_SETTING, USE_TABLE };
 
 /* Where the reading of a claim stands, and the names that it has defined. */

@@ -33,7 +33,8 @@ static const struct scaling bp22_rows = {50, "focus", 1}, lbf21_rows = {4096.0 /
 static const struct scaling lbf21_part = {36, "bulk differential reconstruct", 6};
 
 /* What the papers call a method, in the tables named. `kind` tells methods of a table apart that are measured in
-   different ways: back projection by zero padding (b) or sinc (s), range migration by LBF (l) or a formula (r), omega-k (w). */
+   different ways: back projection by zero padding (b) or sinc (s), range migration by LBF (l) or a formula (r), omega-k
+   (w). */
 static const struct method {
     const char *tables, *name;
     char kind;

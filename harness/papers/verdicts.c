@@ -15,8 +15,8 @@ void verdicts_add(struct verdicts *verdicts, int claim, const struct judgement j
         judgements[0].verdict == CLAIM_UNDECIDED && strstr(judgements[0].evidence, ": within the noise");
 }
 
-/* Of one paper (NULL: all) by one scheme; the corrected one counts only claims that name a scheme. Returns how many there
-   are. */
+/* Of one paper (NULL: all) by one scheme; the corrected one counts only claims that name a scheme. Returns how many
+   there are. */
 static int count(const struct verdicts *verdicts, const char *paper, enum scheme scheme, int counts[CLAIM_VERDICTS])
 {
     int total = 0;
@@ -31,7 +31,8 @@ static int count(const struct verdicts *verdicts, const char *paper, enum scheme
     return total;
 }
 
-/* "N of those that do not hold by ... alone; N of those that cannot be decided are times within the noise of their run." */
+/* "N of those that do not hold by ... alone; N of those that cannot be decided are times within the noise of their
+   run." */
 static void reasons_write(FILE *stream, const struct verdicts *verdicts)
 {
     int by_formula = 0, noisy = 0;

@@ -61,8 +61,8 @@ static double scalar_or(const struct variable *variable, double missing)
     return variable->values ? creal(variable->values[0]) : missing;
 }
 
-/* Shapes that are meant otherwise and can only be meant so: one receiver without its dimension, which MATLAB and SciPy leave out
-   or squeeze away, and coordinates in rows [P x 3]. */
+/* Shapes that are meant otherwise and can only be meant so: one receiver without its dimension, which MATLAB and SciPy
+   leave out or squeeze away, and coordinates in rows [P x 3]. */
 static enum status shapes_read(struct variable *v)
 {
     size_t *samples = v[SAMPLES].dims, *rx = v[RX].dims;
@@ -202,8 +202,8 @@ static enum status check_echo_values(const char *path, const struct variable *v)
     return STATUS_OK;
 }
 
-/* Compression divides by the pulse's energy. A pulse so small or large that squares of it leave the precision is brought
-   to 1 by a power of two, and the samples by the same, which leaves the compressed echoes as they are. */
+/* Compression divides by the pulse's energy. A pulse so small or large that squares of it leave the precision is
+   brought to 1 by a power of two, and the samples by the same, which leaves the compressed echoes as they are. */
 static enum status normalise_pulse(const char *path, const struct variable *v)
 {
     const struct variable *const both[] = {&v[PULSE], &v[SAMPLES]};

@@ -5,7 +5,8 @@
 #include "data/echo_data.h"
 
 /* Read an echo file. *acquisition and *echoes (double, samples pointing to that acquisition) are the caller's:
-   acquisition_free, echoes_free. Of a pulse beyond 2^+-20 both pulse and samples are divided by its power of two. Errors: STATUS_INVALID, naming file, variable, value and what is accepted. */
+   acquisition_free, echoes_free. Of a pulse beyond 2^+-20 both pulse and samples are divided by its power of two.
+   Errors: STATUS_INVALID, naming file, variable, value and what is accepted. */
 enum status echo_file_read(const char *path, struct acquisition *acquisition, struct echoes *echoes);
 
 /* Write one: v5, or v7.3 where v5 cannot hold a variable (2 GiB). Written beside `path` and renamed when whole, so
@@ -16,17 +17,17 @@ enum status echo_file_write(const char *path, const struct echoes *echoes, const
 /* Can a file be made here? Asked before long work whose result goes there. Errors: STATUS_INVALID. */
 enum status matfile_place(const char *path);
 
-/* Write an image with x, r, angle (of turned axes), algorithm, options and scene (texts). The second patch is image_2, x_2, r_2,
-   and so on. Same rules. */
+/* Write an image with x, r, angle (of turned axes), algorithm, options and scene (texts). The second patch is image_2,
+   x_2, r_2, and so on. Same rules. */
 enum status image_file_write(const char *path, const struct image *image, const char *algorithm, const char *options,
                              const char *scene);
 
-/* Read an image file's first patch back: *grid from x, r (uniform to 1e-6 of a step) and angle, pixels malloc'ed complex double
-   [r_count][x_count]. Errors: STATUS_INVALID. */
+/* Read an image file's first patch back: *grid from x, r (uniform to 1e-6 of a step) and angle, pixels malloc'ed
+   complex double [r_count][x_count]. Errors: STATUS_INVALID. */
 enum status image_file_read(const char *path, struct grid *grid, double complex **pixels);
 
-/* All patches of an image file, and what it says of itself (texts may be empty). Errors: as image_file_read; nothing to close
-   then. */
+/* All patches of an image file, and what it says of itself (texts may be empty). Errors: as image_file_read; nothing to
+   close then. */
 struct image_file {
     struct image image; /* double */
     struct grid *patches;

@@ -1,5 +1,5 @@
-/* Scene files: the text is put together in text.c, its keys are read in keys.c, the scene is made in contents.c. All keys:
-   scenes/README.md. */
+/* Scene files: the text is put together in text.c, its keys are read in keys.c, the scene is made in contents.c. All
+   keys: scenes/README.md. */
 #include "scene/scene.h"
 
 #include <stdio.h>

@@ -1,4 +1,5 @@
-/* A scene: platform, sonar and targets, read from a libconfig file (every key: scenes/README.md), or recorded echoes. */
+/* A scene: platform, sonar and targets, read from a libconfig file (every key: scenes/README.md), or recorded
+   echoes. */
 #ifndef SASBENCH_SCENE_SCENE_H
 #define SASBENCH_SCENE_SCENE_H
 
@@ -60,8 +61,8 @@ struct scene {
 /* SCENE is a path to a .cfg file, or a name below `scene_directory` without its extension.
    Errors: STATUS_INVALID, the message naming file, line, key, value and what is accepted. */
 enum status scene_load(const char *scene, const char *scene_directory, struct scene *out);
-/* The scene of an echo file alone, without targets, called by the file's name; its image is `grid`, which `place` names in
-   messages. Errors: as echo_file_read, and STATUS_INVALID where no pixel meets any record; nothing to free then. */
+/* The scene of an echo file alone, without targets, called by the file's name; its image is `grid`, which `place` names
+   in messages. Errors: as echo_file_read, and STATUS_INVALID where no pixel meets any record; nothing to free then. */
 enum status scene_from_echoes(const char *path, const struct grid *grid, const char *place, struct scene *out);
 void scene_free(struct scene *scene);
 /* Two files of one name, not both shipped, get as much of their folders in their names as tells them apart. Errors:
@@ -77,8 +78,8 @@ enum status scenes_tell_apart(struct scene *a, struct scene *b);
 enum status scene_names(const char *scene_directory, char ***names, int *count);
 void scene_names_free(char **names, int count);
 
-/* GRID as on the command line, "xmin:xstep:xcount,rmin:rstep:rcount" in metres, with ",angle" in degrees where the axes are
-   turned as by a scene's image.angle. Errors: STATUS_INVALID. */
+/* GRID as on the command line, "xmin:xstep:xcount,rmin:rstep:rcount" in metres, with ",angle" in degrees where the axes
+   are turned as by a scene's image.angle. Errors: STATUS_INVALID. */
 enum status grid_parse(const char *text, struct grid *grid);
 /* Positive finite steps, counts >= 1, count products that fit; `place` begins the message. Errors: STATUS_INVALID. */
 enum status grid_check(const struct grid *grid, const char *place);

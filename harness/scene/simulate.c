@@ -37,14 +37,14 @@ static double sinc(double z)
     return fabs(z) < 1e-9 ? 1 : sin(M_PI * z) / (M_PI * z);
 }
 
-/* Sines of the angles off the beam's axis, which lies in the plane across the track but for its squint: of the transmitter at emission, of the receiver at reception, and
-   at the bistatic midpoint of the two. */
+/* Sines of the angles off the beam's axis, which lies in the plane across the track but for its squint: of the
+   transmitter at emission, of the receiver at reception, and at the bistatic midpoint of the two. */
 struct angles {
     double tx, rx, mid;
 };
 
-/* A point at the element itself lies in no direction: it is seen as on the axis, sine 0. `along` counts from the point to the
-   element, backwards. */
+/* A point at the element itself lies in no direction: it is seen as on the axis, sine 0. `along` counts from the point
+   to the element, backwards. */
 static double sine(const struct acquisition *a, double along, double across)
 {
     double distance = hypot(along, across);
@@ -258,8 +258,8 @@ static bool is_finite(const double complex *record, int samples)
     return sum == 0;
 }
 
-/* The power of two by which the echoes are divided: 0 unless the largest amplitude lies so far out that sums of echoes, or
-   squares of the image, could leave double. */
+/* The power of two by which the echoes are divided: 0 unless the largest amplitude lies so far out that sums of echoes,
+   or squares of the image, could leave double. */
 static int amplitude_exponent(const struct scene *scene)
 {
     double largest = scene->noise_std;

@@ -1,4 +1,5 @@
-/* Where the platform was at each ping: evenly along x, or as measured, with motion errors that the imager knows of or not. */
+/* Where the platform was at each ping: evenly along x, or as measured, with motion errors that the imager knows of or
+   not. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -4,9 +4,10 @@
 
 #include "scene/scene.h"
 
-/* An image in decibels below its peak, all patches, into `path` (PNG or SVG), and its difference to another beside it. Large images
-   are reduced by taking the largest magnitude of each block. Errors of all pictures: STATUS_FAILED, when gnuplot is missing, fails (with what it
-   printed), leaves a picture without its end or does not end by itself; what stood at `path` is then left as it was. */
+/* An image in decibels below its peak, all patches, into `path` (PNG or SVG), and its difference to another beside it.
+   Large images are reduced by taking the largest magnitude of each block. Errors of all pictures: STATUS_FAILED, when
+   gnuplot is missing, fails (with what it printed), leaves a picture without its end or does not end by itself; what
+   stood at `path` is then left as it was. */
 #define IMAGE_RANGE_DB 60
 struct image_picture {
     const struct image *image;

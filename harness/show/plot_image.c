@@ -1,5 +1,5 @@
-/* An image in decibels, and beside it its difference to the exact one (plot.h). A patch of one or two rows or columns is drawn as
-   curves. */
+/* An image in decibels, and beside it its difference to the exact one (plot.h). A patch of one or two rows or columns
+   is drawn as curves. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -15,13 +15,13 @@ struct setting setting_read(const char *options);
    alone is rate 1. NAN where nothing is upsampled. */
 double setting_rate(const char *algorithm, const struct setting *setting);
 
-/* Whether a row is a point: measured, with time and error, and its image is not only a part of the scene's (exact ones).
-   most_pairs: of any row of the scene. */
+/* Whether a row is a point: measured, with time and error, and its image is not only a part of the scene's (exact
+   ones). most_pairs: of any row of the scene. */
 bool row_is_point(const struct measurement *row, double most_pairs);
 double scene_most_pairs(const struct results *results, const char *scene);
 
-/* The Pareto front: the points of which no other has both less or equal cost and less or equal error. Of equal points the
-   first stays. Their indices go to front [count], cost ascending; returns how many. Values that are not > 0 are no
+/* The Pareto front: the points of which no other has both less or equal cost and less or equal error. Of equal points
+   the first stays. Their indices go to front [count], cost ascending; returns how many. Values that are not > 0 are no
    points. */
 int pareto_front_find(int count, const double *cost, const double *error, int *front);
 

@@ -1,5 +1,6 @@
-/* A picture in the making: data files and a short preamble of variables go to a temporary folder beside the picture, then one of
-   the scripts in plots/ draws them. The picture is drawn there, too, and renamed when whole. Used within show/ only. */
+/* A picture in the making: data files and a short preamble of variables go to a temporary folder beside the picture,
+   then one of the scripts in plots/ draws them. The picture is drawn there, too, and renamed when whole. Used within
+   show/ only. */
 #ifndef SASBENCH_SHOW_PLOT_SCRIPT_H
 #define SASBENCH_SHOW_PLOT_SCRIPT_H
 

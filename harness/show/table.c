@@ -13,8 +13,8 @@
 #include "measure/outcome.h"
 
 enum { WIDTH_WIDE = 110, WIDTH_LEAST = 80 };
-/* Titles, units and values alike: algorithm, time, speed-up, rate, three errors, width, PSLR, ISLR; on a narrow terminal without
-   rate and gain. */
+/* Titles, units and values alike: algorithm, time, speed-up, rate, three errors, width, PSLR, ISLR; on a narrow
+   terminal without rate and gain. */
 #define LAYOUT_WIDE   "  %-34s %8s %8s %9s %7s %7s %7s %6s %6s %6s\n"
 #define LAYOUT_NARROW "  %-24s %7s %8s %7s %7s %6s %6s %6s\n"
 

@@ -1,5 +1,5 @@
-/* The terminal's table of measurements: one line a row, grouped by scene; 110 columns wide, or 80 on a narrower terminal (or where
-   the environment variable COLUMNS says so), without rate and gain. */
+/* The terminal's table of measurements: one line a row, grouped by scene; 110 columns wide, or 80 on a narrower
+   terminal (or where the environment variable COLUMNS says so), without rate and gain. */
 #ifndef SASBENCH_SHOW_TABLE_H
 #define SASBENCH_SHOW_TABLE_H
 
@@ -11,7 +11,8 @@
 void table_header(FILE *stream);
 /* A scene's heading line, and what it images. */
 void table_scene(FILE *stream, const char *name, const char *what);
-/* One measurement, the sharpness in place of lobes where the scene has no targets; a heading line whenever the scene is another than the row's before. Undefined values are "-". */
+/* One measurement, the sharpness in place of lobes where the scene has no targets; a heading line whenever the scene is
+   another than the row's before. Undefined values are "-". */
 void table_row(FILE *stream, const struct measurement *row);
 
 /* A number with its unit as the table shows it. */

@@ -167,8 +167,8 @@ static void flaws_judge(struct stability_verdict *verdict)
         fail(verdict, "digits");
 }
 
-/* The name of a condition in a message: "condition NAME:", "key 'NAME'", a phrase that stands for one, or else what follows the
-   place, as it is. */
+/* The name of a condition in a message: "condition NAME:", "key 'NAME'", a phrase that stands for one, or else what
+   follows the place, as it is. */
 static void name_find(const char *message, char *name, size_t size)
 {
     static const struct {

@@ -91,7 +91,8 @@ static struct measurement failed_row(const struct batch *batch, const struct sce
     return row;
 }
 
-/* A scene whose echoes cannot be made has a failed row for every algorithm that is missing, and the next one goes on. */
+/* A scene whose echoes cannot be made has a failed row for every algorithm that is missing, and the next one goes
+   on. */
 static enum status fail_scene(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs)
 {
     char reason[512];
@@ -182,8 +183,8 @@ const struct measurement *batch_find(const struct batch *batch, const struct sce
                                precision_name(spec->precision));
 }
 
-/* A row that an earlier run finished is not timed again; its image is, for the overlaid slices. What cannot be drawn now is
-   reported and stops nothing. */
+/* A row that an earlier run finished is not timed again; its image is, for the overlaid slices. What cannot be drawn
+   now is reported and stops nothing. */
 static void redraw(struct visit *visit, int index, const struct measurement *row)
 {
     struct image image = {0};

@@ -22,8 +22,8 @@ struct batch {
    rows: how many measurements will be asked for. Errors: as results_folder_open; *batch is then safe to close. */
 enum status batch_open(const char *directory, int rows, bool details, struct batch *batch);
 
-/* Measure one scene with every spec: echoes and exact image once, then a row in the CSVs and on the terminal for each spec
-   as it is done. Rows that are there already are only printed, unless a picture of the scene is missing, which an
+/* Measure one scene with every spec: echoes and exact image once, then a row in the CSVs and on the terminal for each
+   spec as it is done. Rows that are there already are only printed, unless a picture of the scene is missing, which an
    earlier run was cut ahead of: then its pictures are drawn. What fails or is unsupported becomes a row, and so does a
    scene whose echoes cannot be made; errors: STATUS_FAILED for a record that cannot be written. */
 enum status batch_scene(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs);
@@ -31,12 +31,12 @@ enum status batch_scene(struct batch *batch, const struct scene *scene, int spec
 /* The finished row, or NULL; belongs to the record, valid until batch_close. */
 const struct measurement *batch_find(const struct batch *batch, const struct scene *scene, const struct spec *spec);
 
-/* Close the folder. Returns `status`, or STATUS_FAILED when that is OK but a measurement failed or a picture could not be
-   drawn. */
+/* Close the folder. Returns `status`, or STATUS_FAILED when that is OK but a measurement failed or a picture could not
+   be drawn. */
 enum status batch_close(struct batch *batch, enum status status);
 
-/* Scenes by name or path, or with given_count 0 all shipped ones that are not full_size, in *scenes [*count]: all are read
-   before the first one runs, so that a fault in the last is known at once. `command` begins a message. Errors: as
+/* Scenes by name or path, or with given_count 0 all shipped ones that are not full_size, in *scenes [*count]: all are
+   read before the first one runs, so that a fault in the last is known at once. `command` begins a message. Errors: as
    scene_load, and STATUS_INVALID for a scene named twice; what was read must still be freed with scenes_free. */
 enum status scenes_load(const char *command, int given_count, const char *const *given, struct scene **scenes,
                         int *count);

@@ -1,6 +1,7 @@
-/* The command `bench`: how near the engines come to the machine's limits at the papers' sizes. Everything is a ratio of one
-   run: against the processor's multiply-add peak, and against the scalar reference loop. Each line is measured in several rounds, a
-   minute and more apart, since what else the machine does lasts for seconds to minutes; printed are medians of the rounds. */
+/* The command `bench`: how near the engines come to the machine's limits at the papers' sizes. Everything is a ratio of
+   one run: against the processor's multiply-add peak, and against the scalar reference loop. Each line is measured in
+   several rounds, a minute and more apart, since what else the machine does lasts for seconds to minutes; printed are
+   medians of the rounds. */
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>

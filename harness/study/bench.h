@@ -4,8 +4,8 @@
 
 #include "status.h"
 
-/* Measure everything into CSV files and a picture in the folder, which is made; or, where SPECs [count] are given, these
-   algorithms alone (bench_algorithms.h). Errors: as bench_algorithms; STATUS_INVALID for a folder that
+/* Measure everything into CSV files and a picture in the folder, which is made; or, where SPECs [count] are given,
+   these algorithms alone (bench_algorithms.h). Errors: as bench_algorithms; STATUS_INVALID for a folder that
    cannot be written or belongs to another program, STATUS_FAILED for memory or a measurement that fails. */
 enum status bench_run(const char *directory, const char *const *specs, int count);
 

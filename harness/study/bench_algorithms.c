@@ -1,5 +1,5 @@
-/* `bench NAME`: any algorithm of the list, at the first of the papers' sizes that it takes. As in bench.c, everything is a
-   ratio of one run, and printed are medians of several rounds. */
+/* `bench NAME`: any algorithm of the list, at the first of the papers' sizes that it takes. As in bench.c, everything
+   is a ratio of one run, and printed are medians of several rounds. */
 #include "study/bench_algorithms.h"
 
 #include <math.h>

@@ -1,4 +1,5 @@
-/* Omega-k in `bench`: at 3840 x 4096 broadside against FFTW's own transforms, and the ways to image a squint side by side. */
+/* Omega-k in `bench`: at 3840 x 4096 broadside against FFTW's own transforms, and the ways to image a squint side by
+   side. */
 #ifndef SASBENCH_STUDY_BENCH_WK_H
 #define SASBENCH_STUDY_BENCH_WK_H
 

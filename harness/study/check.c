@@ -6,8 +6,6 @@
 #include "common/delay.h"
 #include "measure/session.h"
 
-static const double pi = 3.14159265358979323846;
-
 /* ---- conditions that only the scene's own targets tell ---- */
 
 /* Two of them: amplitudes, and how far apart they lie. */
@@ -90,7 +88,7 @@ static double phase_of(const struct scene *scene, int ping, int receiver, struct
     tx.y -= off[POSITION];
     p.y *= 1 + off[RANGE];
     v.x *= 1 + off[SPEED];
-    return 2 * pi * a->fc * (1 + off[CARRIER]) * delay_exact(tx, rx, v, p, a->sound_speed * (1 + off[SOUND_SPEED]));
+    return 2 * M_PI * a->fc * (1 + off[CARRIER]) * delay_exact(tx, rx, v, p, a->sound_speed * (1 + off[SOUND_SPEED]));
 }
 
 /* The middle of the outermost pixels. */
@@ -142,7 +140,7 @@ void check_sensitivities(const struct scene *scene, struct sensitivity list[SENS
                                        .kappa = phase / changes[q].size,
                                        .phase = phase,
                                        .spread = least <= greatest ? greatest - least : 0,
-                                       .shift_m = fabs(shared) * a->sound_speed / (4 * pi * a->fc)};
+                                       .shift_m = fabs(shared) * a->sound_speed / (4 * M_PI * a->fc)};
     }
 }
 

@@ -1,5 +1,5 @@
-/* What can be said of a scene before any work: the conditions of each algorithm, and how sensitive the image is to what is
-   known of sound speed, carrier, range, speed and positions. */
+/* What can be said of a scene before any work: the conditions of each algorithm, and how sensitive the image is to what
+   is known of sound speed, carrier, range, speed and positions. */
 #ifndef SASBENCH_STUDY_CHECK_H
 #define SASBENCH_STUDY_CHECK_H
 
@@ -8,8 +8,8 @@
 #include "measure/spec.h"
 #include "scene/scene.h"
 
-/* Print the conditions of one SPEC on a scene, those that hold too, and whether its plan can be made. *refused is set where it
-   cannot. Errors: STATUS_FAILED without memory. */
+/* Print the conditions of one SPEC on a scene, those that hold too, and whether its plan can be made. *refused is set
+   where it cannot. Errors: STATUS_FAILED without memory. */
 enum status check_algorithm(FILE *stream, const struct scene *scene, const struct spec *spec, bool *refused);
 
 /* What a small error of one quantity does to a pair of ping and receiver. */

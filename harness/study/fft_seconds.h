@@ -11,8 +11,8 @@ struct fft_seconds {
     double best;   /* the less of both */
 };
 
-/* One forward and one inverse transform of rows x columns in place, float, planned by measurement. Errors: STATUS_FAILED without
-   memory or threads. */
+/* One forward and one inverse transform of rows x columns in place, float, planned by measurement. Errors:
+   STATUS_FAILED without memory or threads. */
 enum status fft_seconds(int rows, int columns, int threads, struct fft_seconds *seconds);
 
 #endif

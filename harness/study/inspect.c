@@ -9,7 +9,6 @@
 #include "scene/matfile.h"
 
 enum { PIXELS_MOST = 1000 };
-static const double pi = 3.14159265358979323846;
 
 static double distance(struct vector a, struct vector b)
 {
@@ -46,7 +45,8 @@ static void axis_make(double low, double high, double resolution, double *first,
     *first = round((middle - (*count - 1) / 2.0 * *step) / *step) * *step;
 }
 
-/* Azimuth resolution: half the element, or what the aperture, as long as the track or the beam lets it be, resolves at a range. */
+/* Azimuth resolution: half the element, or what the aperture, as long as the track or the beam lets it be, resolves at
+   a range. */
 static double azimuth_resolution(const struct acquisition *a, double range)
 {
     const double wavelength = a->sound_speed / a->fc;
@@ -156,7 +156,7 @@ static void beam_print(const struct acquisition *a)
     if (!(a->tx_length > 0) && !(a->rx_length > 0))
         printf(" element lengths are not given");
     if (a->echo_squint != 0)
-        printf(", squint %g degrees", a->echo_squint * 180 / pi);
+        printf(", squint %g degrees", a->echo_squint * 180 / M_PI);
     if (isfinite(a->aperture_limit))
         printf(", aperture limit %g", a->aperture_limit);
     printf("\n");

@@ -20,7 +20,8 @@ enum status phase_study(const char *directory, bool taken);
 /* The same for the array of one scene, by name or path; the folder is made. */
 enum status phase_scene_study(const char *scene, const char *directory, bool taken);
 
-/* The CSV file alone, of a scene that was loaded. Errors: as above; STATUS_UNSUPPORTED for a track that is not straight. */
+/* The CSV file alone, of a scene that was loaded. Errors: as above; STATUS_UNSUPPORTED for a track that is not
+   straight. */
 enum status phase_curves_write(const struct scene *scene, const char *directory);
 /* "DIR/phase-SCENE" and what follows it: the study's files. */
 void phase_path(const char *directory, const char *scene, const char *rest, char *path, size_t size);

@@ -11,8 +11,8 @@ struct allocations {
     int refused;                /* calls that got NULL */
 };
 
-/* Count from zero until allocations_end. `refuse`: the number of the one call, from 0, that allocates and gets NULL; -1: none
-   does. */
+/* Count from zero until allocations_end. `refuse`: the number of the one call, from 0, that allocates and gets NULL;
+   -1: none does. */
 void allocations_begin(int refuse);
 struct allocations allocations_now(void);
 struct allocations allocations_end(void);

@@ -1,5 +1,5 @@
-/* cmocka, with an assertion on numbers that a NaN never passes: cmocka's assert_float_equal takes NaN for equal to anything
-   and rounds to float, so that it may not be used here. */
+/* cmocka, with an assertion on numbers that a NaN never passes: cmocka's assert_float_equal takes NaN for equal to
+   anything and rounds to float, so that it may not be used here. */
 #ifndef SASBENCH_TEST_ASSERTIONS_H
 #define SASBENCH_TEST_ASSERTIONS_H
 

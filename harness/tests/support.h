@@ -12,7 +12,8 @@
 void support_scene(const char *name, struct scene *scene);
 /* Its echoes in double. */
 void support_echoes(const struct scene *scene, struct echoes *echoes);
-/* Image a problem by SPEC (the SPEC's precision replaces the problem's) from double echoes. *image is allocated here. */
+/* Image a problem by SPEC (the SPEC's precision replaces the problem's) from double echoes. *image is allocated
+   here. */
 enum status support_image(const char *spec, struct problem problem, const struct echoes *echoes, struct image *image);
 /* A zeroed image; one of its pixels, whatever the precision. */
 void support_image_make(const struct grid *patches, int count, enum precision precision, struct image *image);
@@ -21,8 +22,8 @@ void support_pixel_set(struct image *image, int patch, int i, int j, double comp
 double support_difference(const struct image *a, const struct image *b);
 double support_peak(const struct image *image);
 
-/* The path of a file of recorded echoes, which are not ours to ship: SASBENCH_DATA names their folder. False where it is not
-   there. */
+/* The path of a file of recorded echoes, which are not ours to ship: SASBENCH_DATA names their folder. False where it
+   is not there. */
 bool support_recording(const char *file, char *path, size_t size);
 
 /* A folder of its own for every test: fixtures, and the path of a name in it (the last four stay valid). */

@@ -2,10 +2,10 @@
 
    Along a line, the two-way path L = c tau of a resting sonar is a sum of two distances sqrt(d^2 + s^2), whose sixth
    derivatives stay below 45/rho^5 each, rho the least distance (Gegenbauer: 6!/16). The receivers' motion, B = V/c,
-   makes the second leg a norm of an argument that is itself curved; Faa di Bruno's formula with the bounds of the norm's
-   derivatives gives at most 90 F/rho^5 together, F = ((1 + B)/(1 - B))^4. Interpolation at the six Chebyshev points
-   of a block of half length h errs by at most max|L^(6)| h^6/(6! 2^5) = F h^6/(256 rho^5), and the phase by 2 pi fc/c
-   times that: h = (256 rho^5 limit c/(2 pi fc F))^(1/6) keeps it below `limit`, and the error falls as h^6. */
+   makes the second leg a norm of an argument that is itself curved; Faa di Bruno's formula with the bounds of the
+   norm's derivatives gives at most 90 F/rho^5 together, F = ((1 + B)/(1 - B))^4. Interpolation at the six Chebyshev
+   points of a block of half length h errs by at most max|L^(6)| h^6/(6! 2^5) = F h^6/(256 rho^5), and the phase by 2 pi
+   fc/c times that: h = (256 rho^5 limit c/(2 pi fc F))^(1/6) keeps it below `limit`, and the error falls as h^6. */
 #include "backprojection/general/blocks.h"
 
 #include <math.h>
@@ -76,8 +76,8 @@ struct ping_box ping_box_make(const struct acquisition *a, int ping, int patch_c
     return box;
 }
 
-/* The longest block from `begin` on, in pixels: all, as is usual; or from the distance at its beginning, then from the distance of all that it
-   would hold, which any part of it keeps. */
+/* The longest block from `begin` on, in pixels: all, as is usual; or from the distance at its beginning, then from the
+   distance of all that it would hold, which any part of it keeps. */
 static int block_longest(const struct ping_box *box, const struct pixel_line *line, int begin, int end)
 {
     double step = line->x_step > 0 ? line->x_step : line->r_step, whole = (end - begin - 1) * step;

@@ -1,12 +1,12 @@
-/* Runs of pixels take values from records, nearest samples, between two on a line or by a kernel of many taps, which are
-   fixed by their phase and added to the sums. Copies of samples are the limit: those of neighbouring pixels are loaded
-   together where they lie near each other. This file is compiled once for each precision and instruction set (BP_ISA
-   names it). */
+/* Runs of pixels take values from records, nearest samples, between two on a line or by a kernel of many taps, which
+   are fixed by their phase and added to the sums. Copies of samples are the limit: those of neighbouring pixels are
+   loaded together where they lie near each other. This file is compiled once for each precision and instruction set
+   (BP_ISA names it). */
 #include "backprojection/general/run.h"
 #include "common/phasor.h"
 
-/* Each one instruction. PICK: each four floats of a vector permuted by the low two bits of an index. REPEAT: four floats from
-   memory as each four of a vector. SECONDS: the second of each four. QUADS: fours side by side. */
+/* Each one instruction. PICK: each four floats of a vector permuted by the low two bits of an index. REPEAT: four
+   floats from memory as each four of a vector. SECONDS: the second of each four. QUADS: fours side by side. */
 #if WINDOWS
 #include <immintrin.h>
 #if VECTOR_BYTES == 64
@@ -64,8 +64,9 @@ INLINE vector_real pick(bool line, vector_real windows, vector_int place, const 
     return value;
 }
 
-/* The same out of windows that are loaded whole: from the predecessor of a middle pixel's sample on, where the others read
-   that sample or a neighbour of it. The last value is only a line's next one; else it may lie one past the row's end. */
+/* The same out of windows that are loaded whole: from the predecessor of a middle pixel's sample on, where the others
+   read that sample or a neighbour of it. The last value is only a line's next one; else it may lie one past the row's
+   end. */
 INLINE void take_windows(bool line, enum loading loading, const real *row, size_t row_length, const struct run *run,
                          int i, vector_real *x, vector_real *y)
 {
@@ -179,8 +180,8 @@ INLINE void add_all(enum loading loading, const struct receiver_group *group, st
         add_group(false, loading, group, runs, count, re, im);
 }
 
-/* Many weights, from a table of steps or from cubics in the fraction; the record's parts lie apart. `taps` is a constant
-   where this is inlined, so that the loops over it unroll. */
+/* Many weights, from a table of steps or from cubics in the fraction; the record's parts lie apart. `taps` is a
+   constant where this is inlined, so that the loops over it unroll. */
 INLINE void add_taps(const struct bp_table *table, int taps, const real *row_re, const real *row_im, int count,
                      const struct run *run, real *re, real *im)
 {

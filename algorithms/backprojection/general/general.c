@@ -1,7 +1,7 @@
 /* Back projection for any track: records are compressed in batches that stay in the cache; each line of pixels, along
    azimuth or range, is summed by one thread, pairs in order, so that the bits do not depend on the number of threads.
-   Delays are exact at six points of a block of pixels and quintics between them (general/blocks.c); with exact=true, and near the
-   array, every delay is evaluated. */
+   Delays are exact at six points of a block of pixels and quintics between them (general/blocks.c); with exact=true,
+   and near the array, every delay is evaluated. */
 #include <limits.h>
 #include <math.h>
 #include <omp.h>

@@ -1,9 +1,9 @@
-/* What the general engine's inner files share: runs of pixels. runs.c makes them from a block's delays, gather.c adds what
-   they take from the records to the sums. budget.h has the error budget.
+/* What the general engine's inner files share: runs of pixels. runs.c makes them from a block's delays, gather.c adds
+   what they take from the records to the sums. budget.h has the error budget.
 
    A RUN OF PIXELS. A line of pixels is cut into blocks (blocks.c). In each block the delay to a receiver is a quintic
-   through six exact delays at Chebyshev points (x). A block is cut into runs of at most RUN_PIXELS pixels. A run is worked on
-   by vectors of LANES pixels, for GROUP_RECEIVERS receivers at a time:
+   through six exact delays at Chebyshev points (x). A block is cut into runs of at most RUN_PIXELS pixels. A run is
+   worked on by vectors of LANES pixels, for GROUP_RECEIVERS receivers at a time:
 
        pixels      begin                             middle                              end
        block       |x---------x---------------x-----------------x---------------x---------x|
@@ -48,7 +48,7 @@
    then worth 2^(n-52), and the mantissa's lower bits are the number in two's complement:
 
        added      = 1.5 times   last bit   high word, 20 bits        low word, 32 bits
-       FIXED_19   2^33          2^-19      more of the whole part    13 bits of whole part, sign included; 19 of fraction
+       FIXED_19   2^33          2^-19      more of the whole part    13 bits of whole part with sign; 19 of fraction
        FIXED_32   2^20          2^-32      whole part                32 bits of fraction
 
    Where the index comes from, by the way of reading (enum bp_reading):
@@ -68,8 +68,8 @@
 #include "backprojection/general/sum.h"
 #include "common/lanes.h"
 
-/* Are there vectors of float with instructions that no compiler makes of portable code: windows of four values are permuted as
-   one, vectors rounded as one? */
+/* Are there vectors of float with instructions that no compiler makes of portable code: windows of four values are
+   permuted as one, vectors rounded as one? */
 #if defined __AVX__ && !REAL_DOUBLE
 #define WINDOWS 1
 #else
@@ -122,12 +122,13 @@ struct receiver_group {
     real *re, *im; /* sums of the line's pixel 0 */
 };
 
-/* Add a group to the pixels of a block, by quintics through its delays at the block's Chebyshev points, tau [node][receiver]. */
+/* Add a group to the pixels of a block, by quintics through its delays at the block's Chebyshev points, tau
+   [node][receiver]. */
 #define BP_RUNS REAL_ISA_NAME(bp_runs)
 void BP_RUNS(const struct receiver_group *group, const struct bp_block *block, double (*tau)[GROUP_RECEIVERS]);
 
-/* Add one run of each of the group's records to `count` pixels, re[0] the first one's. Changes what the runs hold behind
-   them. */
+/* Add one run of each of the group's records to `count` pixels, re[0] the first one's. Changes what the runs hold
+   behind them. */
 #define BP_GATHER REAL_ISA_NAME(bp_gather)
 void BP_GATHER(const struct receiver_group *group, enum loading loading, int count, struct run *runs, real *re,
                real *im);
@@ -148,8 +149,8 @@ INLINE vector_real *at(const real *values)
     return (vector_real *)values;
 }
 
-/* PART: the order of pixels in the parts of a vector, from which one shuffle takes the low halves of all (EVEN) or the high
-   ones (ODD) as they come. ALL: all pixels in order. */
+/* PART: the order of pixels in the parts of a vector, from which one shuffle takes the low halves of all (EVEN) or the
+   high ones (ODD) as they come. ALL: all pixels in order. */
 #if REAL_DOUBLE
 #define ALL(v) PART(v, 0)
 #if VECTOR_BYTES == 64

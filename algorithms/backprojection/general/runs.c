@@ -1,13 +1,15 @@
-/* The quintics of a block of pixels, and from them its runs (run.h): positions in the records and phases, which gather.c takes
-   up. Delay and phase are double, reduced to a fraction of a cycle before they become `real`; where lines bend little, only
-   their straight part is. This file is compiled once for each precision and instruction set (BP_ISA names it). */
+/* The quintics of a block of pixels, and from them its runs (run.h): positions in the records and phases, which
+   gather.c takes up. Delay and phase are double, reduced to a fraction of a cycle before they become `real`; where
+   lines bend little, only their straight part is. This file is compiled once for each precision and instruction set
+   (BP_ISA names it). */
 #include <math.h>
 #include <string.h>
 
 #include "backprojection/budget.h"
 #include "backprojection/general/run.h"
 
-/* Vectors of float rounded to whole ones, and to the nearest integers; whole ones as integers. Whatever the rounding mode. */
+/* Vectors of float rounded to whole ones, and to the nearest integers; whole ones as integers. Whatever the rounding
+   mode. */
 #if WINDOWS
 #include <immintrin.h>
 #if VECTOR_BYTES == 64
@@ -31,9 +33,9 @@ enum { FLAT_LEAST = 64 };   /* pixels of a run below which single precision does
 typedef unsigned long long vector_long __attribute__((vector_size(VECTOR_BYTES)));
 typedef unsigned vector_unsigned __attribute__((vector_size(LANES * sizeof(int)), aligned(sizeof(int)), may_alias));
 
-/* The quintics of a group of receivers through their delays at a block's Chebyshev points, [node][receiver]: points of the
-   grid against pixels from the block's middle, c [power][receiver]; even and odd part are quadratics in the square, by
-   divided differences. Without the scale's shift. *slope, *bend: bounds on their first and second derivatives. */
+/* The quintics of a group of receivers through their delays at a block's Chebyshev points, [node][receiver]: points of
+   the grid against pixels from the block's middle, c [power][receiver]; even and odd part are quadratics in the square,
+   by divided differences. Without the scale's shift. *slope, *bend: bounds on their first and second derivatives. */
 INLINE void quintics(double (*tau)[GROUP_RECEIVERS], const struct scale *scale, double half,
                      double (*c)[GROUP_RECEIVERS], double *slope, double *bend)
 {
@@ -70,9 +72,9 @@ INLINE void quintics(double (*tau)[GROUP_RECEIVERS], const struct scale *scale, 
     }
 }
 
-/* Points of a run of pixels from `first` pixels past the block's middle on, as fixed-point numbers (run.h). Bits are cut off,
-   which is floor: rounding, and with it the rounding mode, decides on the last of them only. Fills whole vectors, up to
-   LANES - 1 pixels more than `count`. `reading` is a constant where this is inlined. */
+/* Points of a run of pixels from `first` pixels past the block's middle on, as fixed-point numbers (run.h). Bits are
+   cut off, which is floor: rounding, and with it the rounding mode, decides on the last of them only. Fills whole
+   vectors, up to LANES - 1 pixels more than `count`. `reading` is a constant where this is inlined. */
 #define LANE(n) n
 #define LOW(v)  (vector_int) __builtin_shufflevector((vector_bits)v[0], (vector_bits)v[PARTS - 1], EVEN)
 #define HIGH(v) (vector_int) __builtin_shufflevector((vector_bits)v[0], (vector_bits)v[PARTS - 1], ODD)
@@ -124,8 +126,8 @@ INLINE void points(double (*quintic)[GROUP_RECEIVERS], int g, const struct scale
 }
 
 #if WINDOWS
-/* A group's quintics about a run's middle, [power][receiver]: points and cycles along a line, and their bend away from it in
-   cycles. */
+/* A group's quintics about a run's middle, [power][receiver]: points and cycles along a line, and their bend away from
+   it in cycles. */
 struct flat {
     double point[2][GROUP_RECEIVERS], cycles[2][GROUP_RECEIVERS];
     real bend[NODES - 2][GROUP_RECEIVERS];
@@ -149,8 +151,8 @@ INLINE void flatten(double (*quintic)[GROUP_RECEIVERS], const struct scale *scal
     }
 }
 
-/* The same as points() for a run that bends little: the line's cycles are a fixed-point number that is counted on, the bend is a
-   float. Points are floats that are counted from the run's middle. */
+/* The same as points() for a run that bends little: the line's cycles are a fixed-point number that is counted on, the
+   bend is a float. Points are floats that are counted from the run's middle. */
 INLINE void points_flat(const struct flat *flat, int g, const struct scale *scale, int count, bool line, int steps,
                         struct run *run)
 {

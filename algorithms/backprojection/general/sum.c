@@ -1,6 +1,6 @@
-/* The inner sums of the general engine over one line of pixels: exact delays, of each pixel or at the Chebyshev points of
-   blocks, whose runs are made in runs.c. Short loops over arrays in the first-level cache, so that many pixels are in
-   flight at once. This file is compiled once for each precision and instruction set (BP_ISA names it). */
+/* The inner sums of the general engine over one line of pixels: exact delays, of each pixel or at the Chebyshev points
+   of blocks, whose runs are made in runs.c. Short loops over arrays in the first-level cache, so that many pixels are
+   in flight at once. This file is compiled once for each precision and instruction set (BP_ISA names it). */
 #include "backprojection/general/sum.h"
 
 #include <math.h>
@@ -48,7 +48,8 @@ static struct motion motion_make(const struct bp_medium *medium, const struct bp
     return (struct motion){v, e, 1 / e, v.x * v.x + v.y * v.y + v.z * v.z <= BP_SLOW * c * (BP_SLOW * c)};
 }
 
-/* The delay (delay.h), in seconds, to the receiver that is (x, y, z) from the place when the echo leaves it, after `leg`. */
+/* The delay (delay.h), in seconds, to the receiver that is (x, y, z) from the place when the echo leaves it, after
+   `leg`. */
 INLINE double leg_back(bool slow, const struct motion *motion, double leg, double x, double y, double z)
 {
     double p = x * motion->v.x + y * motion->v.y + z * motion->v.z, n = x * x + y * y + z * z;
@@ -137,8 +138,8 @@ static void sum_exact(const struct line_sum *sum, const struct bp_ping *ping, in
     }
 }
 
-/* A line reads few values of each record and comes back to the next line much later: have them fetched together. False where
-   a delay is not one of the record, which ends at `last`: then no quintic through it may become an index. */
+/* A line reads few values of each record and comes back to the next line much later: have them fetched together. False
+   where a delay is not one of the record, which ends at `last`: then no quintic through it may become an index. */
 INLINE bool prefetch(const struct receiver_group *group, double (*tau)[GROUP_RECEIVERS], double last)
 {
     const struct scale *scale = group->scale;

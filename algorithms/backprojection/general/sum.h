@@ -1,6 +1,6 @@
 /* The inner sums of the general engine: one line of pixels over one ping. sum.c, runs.c and gather.c are
-   built for each precision and instruction set; general.c chooses one build at run time. run.h has the drawing of a run of
-   pixels, budget.h the error budget. */
+   built for each precision and instruction set; general.c chooses one build at run time. run.h has the drawing of a run
+   of pixels, budget.h the error budget. */
 #ifndef SASBENCH_BACKPROJECTION_GENERAL_SUM_H
 #define SASBENCH_BACKPROJECTION_GENERAL_SUM_H
 

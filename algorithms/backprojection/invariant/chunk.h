@@ -1,4 +1,5 @@
-/* What tables.c, sums.c and row.c share: a chunk of a row, tabulated by one, summed by the next. row.h has the picture. */
+/* What tables.c, sums.c and row.c share: a chunk of a row, tabulated by one, summed by the next. row.h has the
+   picture. */
 #ifndef SASBENCH_BACKPROJECTION_INVARIANT_CHUNK_H
 #define SASBENCH_BACKPROJECTION_INVARIANT_CHUNK_H
 
@@ -42,8 +43,8 @@ struct chunk {
 #define TABLES_BEGIN REAL_ISA_NAME(bp_tables_begin)
 struct row_tables TABLES_BEGIN(const struct bp_row *row);
 
-/* Tabulate samples and weights of a chunk's groups for the receiver that is `offset` metres ahead of the transmitter; sets
-   chunk->entries and chunk->shift. */
+/* Tabulate samples and weights of a chunk's groups for the receiver that is `offset` metres ahead of the transmitter;
+   sets chunk->entries and chunk->shift. */
 #define TABLES_MAKE REAL_ISA_NAME(bp_tables_make)
 void TABLES_MAKE(const struct row_tables *tables, double offset, struct chunk *chunk);
 

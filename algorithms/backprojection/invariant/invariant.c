@@ -1,7 +1,7 @@
-/* Back projection on a uniform straight track whose ping spacing is a whole number of azimuth steps: the geometry repeats
-   itself from ping to ping, so that tables of one row serve all its columns (invariant/row.h). Traces are laid out with pings
-   contiguous, some receivers at a time; each image row is summed by one thread in a fixed order. Cost: 8 FLOPs a pair
-   (nearest), tables of ratio x shifts entries for each row and receiver. */
+/* Back projection on a uniform straight track whose ping spacing is a whole number of azimuth steps: the geometry
+   repeats itself from ping to ping, so that tables of one row serve all its columns (invariant/row.h). Traces are laid
+   out with pings contiguous, some receivers at a time; each image row is summed by one thread in a fixed order. Cost: 8
+   FLOPs a pair (nearest), tables of ratio x shifts entries for each row and receiver. */
 #include <omp.h>
 #include <string.h>
 
@@ -12,8 +12,8 @@ enum {
     ROWS_SUMMED = 4   /* image rows of one task */
 };
 
-/* Scatter a tile of compressed pings, complex [count][length], into the slab: pings contiguous. In blocks of rows, so that
-   each cache line of the slab is filled while it is near. */
+/* Scatter a tile of compressed pings, complex [count][length], into the slab: pings contiguous. In blocks of rows, so
+   that each cache line of the slab is filled while it is near. */
 #define SCATTER(real)                                                                                                  \
     do {                                                                                                               \
         const real *from = (const real *)tile;                                                                         \

@@ -1,5 +1,5 @@
-/* The plan of the translation-invariant engine: the conditions under which the geometry repeats itself from ping to ping, the
-   sizes of slab and tables, and their memory. */
+/* The plan of the translation-invariant engine: the conditions under which the geometry repeats itself from ping to
+   ping, the sizes of slab and tables, and their memory. */
 #include "backprojection/invariant/plan.h"
 
 #include <limits.h>
@@ -27,8 +27,8 @@ static int round_up(int value, int multiple)
     return (value + multiple - 1) / multiple * multiple;
 }
 
-/* Cycles of the carrier, or samples where these are shorter: by how much ideal delays may differ from real ones. It bounds
-   the phase by 1e-6 rad. */
+/* Cycles of the carrier, or samples where these are shorter: by how much ideal delays may differ from real ones. It
+   bounds the phase by 1e-6 rad. */
 static const double DRIFT_MOST = 1e-7;
 
 /* The patch on the track's raster. */
@@ -165,8 +165,8 @@ static double samples_read(const struct bp *bp, const struct bp_raster *raster, 
     return samples + bp->table.taps;
 }
 
-/* The most samples by which the delay changes over one azimuth step, of any pair inside the aperture or one ping spacing
-   outside it: those of the row nearest to the track. */
+/* The most samples by which the delay changes over one azimuth step, of any pair inside the aperture or one ping
+   spacing outside it: those of the row nearest to the track. */
 static double steepness(const struct bp *bp, const struct bp_raster *raster, const struct grid *grid)
 {
     const struct invariant *in = bp->state;
@@ -180,8 +180,8 @@ static double steepness(const struct bp *bp, const struct bp_raster *raster, con
     return (sine / c + (v + c * back) / e * (1 + v / c * sine)) * grid->x_step * bp->medium.fs;
 }
 
-/* Neighbouring residues that are summed together. Of up to two taps, two where they mostly read the same samples; of more
-   taps, as many as keep their samples within BP_SPREAD, rounding included. */
+/* Neighbouring residues that are summed together. Of up to two taps, two where they mostly read the same samples; of
+   more taps, as many as keep their samples within BP_SPREAD, rounding included. */
 static int residues_together(const struct bp *bp, double steepness)
 {
     if (bp->table.upsample > 1)
@@ -191,13 +191,13 @@ static int residues_together(const struct bp *bp, double steepness)
     return (int)fmin(BP_TOGETHER, 1 + floor((BP_SPREAD - 1) / steepness));
 }
 
-/* Rows and receivers of the slab, of which a row of the image reads `read` samples at the most, and the passes that keep it
-   small however much the traces are upsampled. */
+/* Rows and receivers of the slab, of which a row of the image reads `read` samples at the most, and the passes that
+   keep it small however much the traces are upsampled. */
 static void plan_slab(struct bp *bp, double read)
 {
     struct invariant *in = bp->state;
-    /* Vectors of columns are read that have a ping, and so up to their width less one before the first ping and behind the
-       last. Room is made for the widest vectors, so that a plan needs the same memory on every machine. */
+    /* Vectors of columns are read that have a ping, and so up to their width less one before the first ping and behind
+       the last. Room is made for the widest vectors, so that a plan needs the same memory on every machine. */
     const int lead = BP_LANES_MOST * (int)sizeof(float) / (int)real_size(bp->problem.precision);
     const int ping_stride = round_up(bp->problem.acquisition->pings + 2 * lead, 8);
     int upsample = bp->table.upsample, samples = bp->shape.samples;

@@ -1,5 +1,5 @@
-/* One image row of the translation-invariant engine (row.h): receivers, and chunks of groups whose tables fit the scratch.
-   This file is compiled once for each precision and instruction set (BP_ISA names it). */
+/* One image row of the translation-invariant engine (row.h): receivers, and chunks of groups whose tables fit the
+   scratch. This file is compiled once for each precision and instruction set (BP_ISA names it). */
 #include "backprojection/invariant/chunk.h"
 
 #define BP_ROW REAL_ISA_NAME(bp_row)

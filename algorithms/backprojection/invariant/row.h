@@ -12,8 +12,8 @@
 
        image[rho + ratio j] += w(s) trace[sample(s)][ping j + s]   for all j with 0 <= j + s < pings
 
-   For one shift this is a constant times contiguous pings: no gather, no trigonometry, 4 multiply-adds a pair. It is exact:
-   the same pairs, samples and weights as the general engine with exact=true, in another order.
+   For one shift this is a constant times contiguous pings: no gather, no trigonometry, 4 multiply-adds a pair. It is
+   exact: the same pairs, samples and weights as the general engine with exact=true, in another order.
 
    PINGS BY COLUMNS. One residue with 8 columns, 5 pings, and the block of columns j = 2 to 5 in brackets. The numbers
    are the pings p = j + s that each shift brings to the columns. All pairs form a parallelogram. An aperture limit
@@ -57,9 +57,9 @@
                      group of residues                                       sum_block
                        shift, tap, vector of columns                         sum_one, sum_two, sum_taps
 
-   Loads of the traces are the limit, half of which cross a cache line. Neighbouring residues mostly read the same samples:
-   they are summed together and share the loads. Tables and sums take turns, so that both stay in the cache. Up to two
-   taps, and single residues of more taps, keep the sums of a block in registers over all shifts of a region.
+   Loads of the traces are the limit, half of which cross a cache line. Neighbouring residues mostly read the same
+   samples: they are summed together and share the loads. Tables and sums take turns, so that both stay in the cache. Up
+   to two taps, and single residues of more taps, keep the sums of a block in registers over all shifts of a region.
 
    THE TABLES. An entry is one shift of one residue. A group's entries are ordered by shift and then residue, and are
    padded to whole vectors. Made once for a row and the receivers of the slab (TABLES_BEGIN): seconds on the way out
@@ -79,8 +79,9 @@
                                  taps beyond the record's ends read the guard rows of the slab, which are zeros
        whole vectors             group_places, keep: entries of the padding hold valid values and are not summed;
                                  plan_patch: a row of sums has room for BP_LANES_MOST values behind its columns
-       BP_SPREAD                 residues_together: groups are so small that, by steepness(), the samples of one shift lie
-                                 at most BP_SPREAD apart; join_many asserts it, as it would write beyond its table else
+       BP_SPREAD                 residues_together: groups are so small that, by steepness(), the samples of one shift
+                                 lie at most BP_SPREAD apart; join_many asserts it, as it would write beyond its
+                                 table else
        capacity                  plan_patch: the largest group, BP_TOGETHER residues with all shifts, always fits
        int indices               raster_make, plan_slab: larger tables and slabs are unsupported
        same bits                 sum_rows: one thread sums a row, in an order that does not depend on the threads */
@@ -93,17 +94,17 @@
 #include "backprojection/pairs.h"
 #include "backprojection/reading.h"
 
-/* A block of columns is 1 to BP_BLOCK_VECTORS vectors of 16 bytes (baseline), 32 (v3) or 64 (v4); a row of sums has room
-   for BP_LANES_MOST values beyond its last column. */
+/* A block of columns is 1 to BP_BLOCK_VECTORS vectors of 16 bytes (baseline), 32 (v3) or 64 (v4); a row of sums has
+   room for BP_LANES_MOST values beyond its last column. */
 enum { BP_BLOCK_VECTORS = 3, BP_LANES_MOST = 16 };
 
-/* At most BP_TOGETHER residues are summed together; their samples of one shift lie at most BP_SPREAD apart where a value
-   has more than two taps. */
+/* At most BP_TOGETHER residues are summed together; their samples of one shift lie at most BP_SPREAD apart where a
+   value has more than two taps. */
 enum { BP_TOGETHER = 6, BP_SPREAD = 4 };
 
 /* Compressed traces of some receivers, pings contiguous: value (receiver g, row i, ping p) at
-   [g receiver_stride + i ping_stride + lead + p]. Row i is the trace's sample i - guard; upsampled traces keep step_count
-   of their `upsample` fine steps a sample, from step_first on: fine sample f is in row
+   [g receiver_stride + i ping_stride + lead + p]. Row i is the trace's sample i - guard; upsampled traces keep
+   step_count of their `upsample` fine steps a sample, from step_first on: fine sample f is in row
    (f / upsample) step_count + f % upsample - step_first. */
 struct bp_slab {
     const void *re, *im; /* real; 0 in the lead and as far behind the last ping */
@@ -139,9 +140,9 @@ struct bp_row_group {
     int from, to; /* of these, what is inside the present receiver's record: shifts counted from `begin` */
 };
 
-/* Scratch of one thread. Entries of a row: of all residues = min(ratio, columns), each BP_ENTRIES(pings + residue_columns)
-   at the most; of one receiver and as many groups as fit into `capacity` >= BP_TOGETHER BP_ENTRIES(pings +
-   residue_columns). */
+/* Scratch of one thread. Entries of a row: of all residues = min(ratio, columns), each BP_ENTRIES(pings +
+   residue_columns) at the most; of one receiver and as many groups as fit into `capacity` >= BP_TOGETHER
+   BP_ENTRIES(pings + residue_columns). */
 struct bp_row_scratch {
     struct bp_row_group *groups; /* [residues + 1], the last for its `first` */
     double *leg;                 /* [row's entries] s, from the transmitter */

@@ -85,8 +85,9 @@ INLINE void sum_two(int width, int taps, int stride, const struct part *part, co
     }
 }
 
-/* Some residues, many samples with real weights, whose sum is rotated. rows[i] >= taps samples serve all residues of the
-   group; a residue's weights are 0 for those that are not its own. Registers hold the block's sums of one residue, not of more. */
+/* Some residues, many samples with real weights, whose sum is rotated. rows[i] >= taps samples serve all residues of
+   the group; a residue's weights are 0 for those that are not its own. Registers hold the block's sums of one residue,
+   not of more. */
 INLINE void sum_taps(int residues, int width, int taps, int stride, const struct part *part, const real *sr,
                      const real *si)
 {
@@ -146,8 +147,8 @@ static int find(const int *shift, int count, int bound)
     return low;
 }
 
-/* A block of `width` vectors of columns from j on. Works on copies: else all that a chunk and its scratch point to is read
-   anew after each store of a sum. */
+/* A block of `width` vectors of columns from j on. Works on copies: else all that a chunk and its scratch point to is
+   read anew after each store of a sum. */
 INLINE void sum_block(int residues, int width, int taps, const struct chunk *shared, int j)
 {
     const struct chunk own_chunk = *shared, *chunk = &own_chunk;
@@ -186,8 +187,8 @@ INLINE void sum_block(int residues, int width, int taps, const struct chunk *sha
     }
 }
 
-/* The shipped kernels unroll, any other length works as well. Functions of their own: the compiler runs out of registers
-   where it inlines several. */
+/* The shipped kernels unroll, any other length works as well. Functions of their own: the compiler runs out of
+   registers where it inlines several. */
 #define BLOCK(name, taps, residues, width)                                                                             \
     static __attribute__((noinline)) void name##_##residues##_##width(const struct chunk *chunk, int j)                \
     {                                                                                                                  \
@@ -233,9 +234,9 @@ INLINE void sum_shifts(block_function *block, struct chunk *chunk, int least, in
         block(chunk, j);
 }
 
-/* All columns, in blocks as wide as each other. Vector v of one has pings for the shifts [FIRST(v), END(v)). Where the lead is as
-   wide as a block, a shift that has pings for some of its vectors is summed for all, for the others zeros; else for
-   those only that have some. */
+/* All columns, in blocks as wide as each other. Vector v of one has pings for the shifts [FIRST(v), END(v)). Where the
+   lead is as wide as a block, a shift that has pings for some of its vectors is summed for all, for the others zeros;
+   else for those only that have some. */
 static void sum_columns(const struct kernel *kernel, struct chunk *chunk)
 {
     const int columns = chunk->raster->residue_columns, pings = chunk->raster->pings;
@@ -290,7 +291,8 @@ INLINE void sum_entry(const struct chunk *chunk, int taps, int residue, int entr
     }
 }
 
-/* In pairs of residues, one or two taps: each second entry whose samples are not the first one's is summed by itself. */
+/* In pairs of residues, one or two taps: each second entry whose samples are not the first one's is summed by
+   itself. */
 INLINE void sum_apart(const struct chunk *chunk, int taps)
 {
     const struct bp_row_scratch *scratch = chunk->scratch;

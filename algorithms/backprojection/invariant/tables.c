@@ -1,5 +1,5 @@
-/* The tables of the translation-invariant engine (row.h): which shifts of which residues an image row sums, where they read
-   the slab, and their weights; in whole vectors. This file is compiled once for each precision and instruction set
+/* The tables of the translation-invariant engine (row.h): which shifts of which residues an image row sums, where they
+   read the slab, and their weights; in whole vectors. This file is compiled once for each precision and instruction set
    (BP_ISA names it). */
 #include <assert.h>
 #include <math.h>
@@ -53,8 +53,8 @@ struct shifts {
     int begin, end;
 };
 
-/* A group's entries, by shift and then residue, padded to whole vectors by the last. Those outside their residue's aperture
-   have gate 0, all others 1. */
+/* A group's entries, by shift and then residue, padded to whole vectors by the last. Those outside their residue's
+   aperture have gate 0, all others 1. */
 static void group_places(const struct bp_row *row, const struct bp_row_group *group, const struct shifts *inside)
 {
     const struct bp_raster *raster = row->raster;
@@ -91,8 +91,8 @@ static struct delay_terms delay_terms_make(const struct bp_row *row)
     return (struct delay_terms){v, c * c, r * r, e * r * r, 1 / e, fabs(v) <= BP_SLOW * c};
 }
 
-/* Are all delays of a row inside the record, by the least and the longest there could be? `furthest` and `offset`: largest
-   distances along the track between ping and pixel and between transmitter and receiver. */
+/* Are all delays of a row inside the record, by the least and the longest there could be? `furthest` and `offset`:
+   largest distances along the track between ping and pixel and between transmitter and receiver. */
 static bool inside_record(const struct bp_row *row, const struct delay_terms *terms, double offset, double furthest)
 {
     const struct bp_medium *medium = row->medium;
@@ -195,8 +195,8 @@ INLINE void nearest_step(double q, int steps, int *sample, int *step)
     *step = next ? 0 : near;
 }
 
-/* Of a group's entries, from `first` of the chunk on, those outside the record weigh nothing, and read its nearest sample;
-   shifts before the first and after the last that has an entry inside are left out. */
+/* Of a group's entries, from `first` of the chunk on, those outside the record weigh nothing, and read its nearest
+   sample; shifts before the first and after the last that has an entry inside are left out. */
 static void confine(const struct chunk *chunk, struct bp_row_group *group, int first)
 {
     double *restrict q = chunk->scratch->q + first;

@@ -5,8 +5,6 @@
 #include "common/real.h"
 #include "range_migration/engine.h"
 
-static const double pi = 3.14159265358979323846;
-
 enum { NODES = 4 };                                /* of a cubic over a run */
 static const double nodes[NODES] = {0, 5, 10, 15}; /* samples */
 static const double NEAREST = 0.5;                 /* of the nearest row: no delay is computed for less */
@@ -66,7 +64,7 @@ static void run_fill(const struct rma *rma, const struct rma_swath *swath, int r
     }
     complex_real *phases = (complex_real *)map->phases + at * RMA_RUN;
     for (int n = 0; n < RMA_RUN; n++) {
-        double cycles = rma->setting.fc * delays[n], angle = 2 * pi * (cycles - floor(cycles + 0.5));
+        double cycles = rma->setting.fc * delays[n], angle = 2 * M_PI * (cycles - floor(cycles + 0.5));
         double weight = fade(rma, swath, from + n);
         phases[n] = (real)(weight * cos(angle)) + (real)(weight * sin(angle)) * (complex_real)I;
     }

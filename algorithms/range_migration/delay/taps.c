@@ -1,5 +1,5 @@
-/* Fractional delays by taps of least squares (delay.h): of all weights those whose error over the compressed pulse's own energy
-   spectrum is least. */
+/* Fractional delays by taps of least squares (delay.h): of all weights those whose error over the compressed pulse's
+   own energy spectrum is least. */
 #include <complex.h>
 #include <fftw3.h>
 #include <math.h>
@@ -8,7 +8,6 @@
 #include "common/fft_length.h"
 #include "range_migration/delay.h"
 
-static const double pi = 3.14159265358979323846;
 static const double FLOOR = 1e-7; /* of the energy lies evenly over all frequencies: weights stay small everywhere */
 
 enum { BINS = 512 };
@@ -47,13 +46,14 @@ static enum status spectrum_fill(const struct acquisition *a, double energy[BINS
     return STATUS_OK;
 }
 
-/* Real part of the mean of exp(j 2 pi f x) over the energy, and its slope over x. The pulse's spectrum is taken as even. */
+/* Real part of the mean of exp(j 2 pi f x) over the energy, and its slope over x. The pulse's spectrum is taken as
+   even. */
 static double correlation(const double energy[BINS], double x, double *slope)
 {
     double value = 0;
     *slope = 0;
     for (int k = 0; k < BINS; k++) {
-        double w = 2 * pi * ((k + 0.5) / BINS - 0.5);
+        double w = 2 * M_PI * ((k + 0.5) / BINS - 0.5);
         value += energy[k] * cos(w * x);
         *slope -= energy[k] * w * sin(w * x);
     }

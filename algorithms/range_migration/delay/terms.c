@@ -5,8 +5,6 @@
 
 #include "range_migration/delay.h"
 
-static const double pi = 3.14159265358979323846;
-
 enum {
     ANGLES = 65, /* of the table; the residual is smooth: cubics between them leave 1e-6 rad */
     RANGES = 33,
@@ -49,7 +47,7 @@ static bool offsets_make(const struct rma_view *view, struct offsets *offsets)
     }
     for (int k = 0; k < offsets->count; k++)
         offsets->at[k] =
-            offsets->count > 1 ? (low + high) / 2 - (high - low) / 2 * cos(pi * (k + 0.5) / offsets->count) : low;
+            offsets->count > 1 ? (low + high) / 2 - (high - low) / 2 * cos(M_PI * (k + 0.5) / offsets->count) : low;
     for (int m = 0; m < a->receivers; m++)
         for (int k = 0; k < offsets->count; k++) {
             double *weight = &offsets->weights[m * offsets->count + k];

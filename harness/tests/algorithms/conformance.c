@@ -72,7 +72,8 @@ static void check_work(const char *setting, const struct problem *problem, const
         REFUSE(setting, "work.pairs is %.9g, must be 0 or what pairs_count counts, %.9g", work.pairs, pairs);
     if (!(work.flops > 0) || !isfinite(work.flops) || !(work.flops >= 8 * work.pairs))
         REFUSE(setting, "work.flops is %.3g, must be above 0 and at least 8 a pair, %.3g", work.flops, 8 * work.pairs);
-    /* Not twice the work of summing every sample for each pair and transforming each record: ours claim .001 to .8 of that. */
+    /* Not twice the work of summing every sample for each pair and transforming each record: ours claim .001 to .8 of
+       that. */
     const struct acquisition *a = problem->acquisition;
     const double samples = a->samples + a->pulse_length, records = (double)a->pings * a->receivers;
     const double most = 2 * (pairs * 8 * samples + records * 5 * samples * log2(samples));

@@ -22,8 +22,8 @@ const struct setting settings[SETTINGS] = {
     {"monostatic", 48, 1, 0, 2.5, 30e3, 30, 29.75, true, false, 0.18, 0},
     {"aperture limit", 8, 6, 0.04, 2.5, 30e3, 30, 29.75, false, false, 0.15, TRAIT_APERTURE_LIMIT},
 };
-/* A track that bends across and in depth by many wavelengths, on which the array turns as well; velocity and time of the
-   first sample change from ping to ping. */
+/* A track that bends across and in depth by many wavelengths, on which the array turns as well; velocity and time of
+   the first sample change from ping to ping. */
 static void bend(struct acquisition *a)
 {
     for (int p = 0; p < a->pings; p++) {

@@ -8,8 +8,6 @@
 #include "common/delay.h"
 #include "scene/simulate.h"
 
-static const double pi = 3.14159265358979323846;
-
 const struct squint_sonar sonar_sq18 = {150e3, 25e3, 20e3, 0.2, -5.12, 1024, 988, 256, 0},
                           sonar_pf05 = {100e3, 12.5e3, 10e3, 0.16, -6.86, 640, 180, 344, 0};
 
@@ -82,7 +80,7 @@ void patches_around(const struct scene *scene, double angle, double step, int ha
 /* exp(j 2 pi cycles) */
 static double complex turned(double cycles)
 {
-    return cexp(2 * pi * I * (cycles - floor(cycles)));
+    return cexp(2 * M_PI * I * (cycles - floor(cycles)));
 }
 
 /* The last bin of a record in the band. */

@@ -1,4 +1,5 @@
-/* The scenes of SQ18 and PF05 as the tests of omega-k use them: monostatic, stop and hop, hard-edged beam, flat spectrum. */
+/* The scenes of SQ18 and PF05 as the tests of omega-k use them: monostatic, stop and hop, hard-edged beam, flat
+   spectrum. */
 #ifndef SASBENCH_TEST_SQUINT_SCENES_H
 #define SASBENCH_TEST_SQUINT_SCENES_H
 
@@ -26,7 +27,8 @@ double spectrum_sum(const struct acquisition *acquisition);
 /* S(X of the ping, f) = sum of a exp(-j K_R R) over the targets in the beam, from the simulated echoes. */
 double complex echo_spectrum(const struct scene *scene, const struct echoes *echoes, int ping, double f_hz);
 
-/* The exact image, compressed echoes at exact delays and bins at +-B/2 for a whole one: pings with |sin phi - sin squint| <= gate only. */
+/* The exact image, compressed echoes at exact delays and bins at +-B/2 for a whole one: pings with |sin phi - sin
+   squint| <= gate only. */
 void exact_image(const struct scene *scene, const struct echoes *echoes, double gate, struct image *image);
 
 #endif

@@ -18,7 +18,8 @@ static double uniform(struct random *random, double low, double high)
     return low + (high - low) * random_uniform(random);
 }
 
-/* A wobbling track and a grid near it; every third one is straight, records are short enough to be left by some pairs. */
+/* A wobbling track and a grid near it; every third one is straight, records are short enough to be left by some
+   pairs. */
 static void random_case(uint64_t seed, struct acquisition *a, struct grid *grid, struct echoes *echoes)
 {
     struct random random = random_seed(seed, 0);

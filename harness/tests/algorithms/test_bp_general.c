@@ -1,5 +1,5 @@
-/* The general engine's fast path, quintics in place of delays, against the exact path: images of odd scenes, threads and
-   instruction sets. test_budget.c measures its phase. */
+/* The general engine's fast path, quintics in place of delays, against the exact path: images of odd scenes, threads
+   and instruction sets. test_budget.c measures its phase. */
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
@@ -83,8 +83,8 @@ static const struct {
 };
 enum { METHODS = sizeof methods / sizeof *methods };
 
-/* By how many samples the engine's positions may err: its points are multiples of 2^-19, and in single precision where lines
-   bend little. */
+/* By how many samples the engine's positions may err: its points are multiples of 2^-19, and in single precision where
+   lines bend little. */
 static double position_error(const struct acquisition *a, enum precision precision, double limit)
 {
     return limit * a->fs / (2 * M_PI * a->fc) + (precision == PRECISION_DOUBLE ? 0x1p-19 : 0x1p-17);
@@ -134,9 +134,9 @@ static struct comparison compare(const struct image *fast, const struct image *e
     return c;
 }
 
-/* Every method, both precisions: the fast image lies within the phase limit of the exact one. Noise is the hardest echo: a
-   sample that a tie lets go to its neighbour changes by more than itself, so the pixels that have near ties stand
-   apart; they are as rare as the limit makes them and differ by no more than the values that may be exchanged. */
+/* Every method, both precisions: the fast image lies within the phase limit of the exact one. Noise is the hardest
+   echo: a sample that a tie lets go to its neighbour changes by more than itself, so the pixels that have near ties
+   stand apart; they are as rare as the limit makes them and differ by no more than the values that may be exchanged. */
 static void fast_near_exact(void **state)
 {
     (void)state;
@@ -187,9 +187,9 @@ static void fast_near_exact(void **state)
     }
 }
 
-/* The functions for a machine without AVX and without fused multiply-adds, and those with AVX2 on a machine that has more,
-   show the same images, on either path and in the invariant engine; in float but for what the general engine's fast path may
-   err by (backprojection/budget.h). */
+/* The functions for a machine without AVX and without fused multiply-adds, and those with AVX2 on a machine that has
+   more, show the same images, on either path and in the invariant engine; in float but for what the general engine's
+   fast path may err by (backprojection/budget.h). */
 static void instruction_sets_agree(void **state)
 {
     (void)state;
@@ -227,7 +227,8 @@ static void instruction_sets_agree(void **state)
     assert_true(worst[0] < 1e-6 && worst_fast < 0.15 * 1e-4 + 2e-6 && worst[1] < 1e-10);
 }
 
-/* Carriers so low that no scene may have them, down to where turns underflow: still no index but those of the record. */
+/* Carriers so low that no scene may have them, down to where turns underflow: still no index but those of the
+   record. */
 static void no_carrier_leaves_the_record(void **state)
 {
     (void)state;
@@ -262,7 +263,8 @@ static void weights_linear(const void *options, double fraction, double *w)
     w[1] = fraction;
 }
 
-/* Positions are fixed-point numbers: as many steps as they have room for are rounded to as exactly, more are refused. */
+/* Positions are fixed-point numbers: as many steps as they have room for are rounded to as exactly, more are
+   refused. */
 static void steps_fit_their_bits(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* The invariant engine against the exact path: odd grids and tracks, rows on both sides of the track, when it is taken. */
+/* The invariant engine against the exact path: odd grids and tracks, rows on both sides of the track, when it is
+   taken. */
 #include <math.h>
 #include <omp.h>
 #include <signal.h>
@@ -137,8 +138,8 @@ static void long_records_take_several_passes(void **state)
     }
 }
 
-/* Rows on both sides of the track, where the delay is steepest between the first row and the last: a sample in two columns
-   there, and none at either end. */
+/* Rows on both sides of the track, where the delay is steepest between the first row and the last: a sample in two
+   columns there, and none at either end. */
 static const struct crossing {
     int pings, receivers, ratio, columns, rows, samples;
     double step, first_offset, r_first, r_step, speed, limit, t0;
@@ -214,8 +215,8 @@ static void weights_flat(const void *options, double fraction, double *w)
         w[t] = 1 + fraction;
 }
 
-/* Residues are summed together whose samples of one shift fit the table of weights; a plan that took more of them, where the
-   delay is steep, would end the program and not write beyond the table. */
+/* Residues are summed together whose samples of one shift fit the table of weights; a plan that took more of them,
+   where the delay is steep, would end the program and not write beyond the table. */
 static void spread_is_asserted(void **state)
 {
     (void)state;
@@ -277,7 +278,8 @@ static const char *engine_of(const char *text, const struct problem *problem)
     return work.engine;
 }
 
-/* Tables serve all pings alike: what jitters by more than they may err takes the general engine, be it t0 or a velocity. */
+/* Tables serve all pings alike: what jitters by more than they may err takes the general engine, be it t0 or a
+   velocity. */
 static void jitter_takes_the_general_engine(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* The error budget of the general engine (backprojection/budget.h): the phase of random geometries, and the part of single
-   precision alone. */
+/* The error budget of the general engine (backprojection/budget.h): the phase of random geometries, and the part of
+   single precision alone. */
 #include <math.h>
 #include <stdio.h>
 
@@ -22,8 +22,8 @@ static struct vector vector_random(struct random *random, double size)
     return v;
 }
 
-/* One ping and one receiver near a line of pixels, at any scale from centimetres to kilometres; records of ones that hold
-   every delay, so that each pixel of a nearest-sample image is the pair's phase factor. */
+/* One ping and one receiver near a line of pixels, at any scale from centimetres to kilometres; records of ones that
+   hold every delay, so that each pixel of a nearest-sample image is the pair's phase factor. */
 static void random_pair(uint64_t seed, struct acquisition *a, struct grid *grid, struct echoes *echoes)
 {
     static const double machs[] = {0, 1e-3, 0.05, 0.3};
@@ -69,8 +69,8 @@ static double share_of_quintics(const struct acquisition *a, const struct grid *
     return pixels / line.count;
 }
 
-/* The phase errs by less than the limit, for any geometry and limit, and comes near it: the bound is no idle one. In single
-   precision sums and phase factors add to it (bends_keep_their_share). */
+/* The phase errs by less than the limit, for any geometry and limit, and comes near it: the bound is no idle one. In
+   single precision sums and phase factors add to it (bends_keep_their_share). */
 static void phase_below_limit(void **state)
 {
     (void)state;
@@ -113,8 +113,8 @@ static void phase_below_limit(void **state)
     }
 }
 
-/* One ping over a line of pixels at distance `range` broadside, so short that its quintics err by less than 0.01 of the limit, but
-   bent by up to a hundred cycles; records of ones. */
+/* One ping over a line of pixels at distance `range` broadside, so short that its quintics err by less than 0.01 of the
+   limit, but bent by up to a hundred cycles; records of ones. */
 static void bent_line(double range, double limit, double fc, struct acquisition *a, struct grid *grid,
                       struct echoes *echoes)
 {

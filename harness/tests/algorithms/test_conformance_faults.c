@@ -1,5 +1,6 @@
-/* The conformance checks catch what they are there for: nearest-neighbour back projection with one fault at a time must fail
-   them, by name. Each faulty algorithm runs in a program of its own, this one with the fault's name as argument. */
+/* The conformance checks catch what they are there for: nearest-neighbour back projection with one fault at a time must
+   fail them, by name. Each faulty algorithm runs in a program of its own, this one with the fault's name as
+   argument. */
 #include <fftw3.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* Delays, images and the check of grids at any speed below the sound's: against the same in more digits, and within bounds of
-   work. */
+/* Delays, images and the check of grids at any speed below the sound's: against the same in more digits, and within
+   bounds of work. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -15,7 +15,8 @@ static double uniform(struct random *random, double low, double high)
     return low + (high - low) * random_uniform(random);
 }
 
-/* Along the track, solved by halving: c tau - |tx - p| - |rx + v tau - p| rises with tau. In more digits, no closed form. */
+/* Along the track, solved by halving: c tau - |tx - p| - |rx + v tau - p| rises with tau. In more digits, no closed
+   form. */
 static long double delay_halving(double tx, double rx, double v, double x, double r, double c)
 {
     long double low = 0, high = 1, leg = sqrtl(((long double)tx - x) * ((long double)tx - x) + (long double)r * r);
@@ -164,8 +165,8 @@ static void grids_meet_records_at_speed(void **state)
     assert_in_range(met, 100, 1300);
 }
 
-/* v/c = 1 - 1e-6, 1280 pairs, 160000 pixels, none of which meets a record: known at once. And a record of two samples that the
-   pixels step over everywhere costs the pixels along a curve, not all. */
+/* v/c = 1 - 1e-6, 1280 pairs, 160000 pixels, none of which meets a record: known at once. And a record of two samples
+   that the pixels step over everywhere costs the pixels along a curve, not all. */
 static void meeting_is_bounded(void **state)
 {
     (void)state;

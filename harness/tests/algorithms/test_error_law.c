@@ -1,5 +1,6 @@
 /* The error laws of the interpolators at fs = 2B (FORMULAS of the project, README "Error laws"): a point off the range
-   bins, and the median over ten seeds of a speckle scene, each within a factor 1.5 of the independently measured value. */
+   bins, and the median over ten seeds of a speckle scene, each within a factor 1.5 of the independently measured
+   value. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,8 +13,8 @@
 #include "tests/support.h"
 
 /* Point errors: the independently measured values, within a factor 1.5; `point_gain` 0 where none is stated. Speckle:
-   the published values are one draw of scatterers and lie above the median of draws throughout (by 1.27 in the middle of
-   the rows, by up to 1.9), so the medians measured over 60 seeds stand here, and the published draw beside them. */
+   the published values are one draw of scatterers and lie above the median of draws throughout (by 1.27 in the middle
+   of the rows, by up to 1.9), so the medians measured over 60 seeds stand here, and the published draw beside them. */
 static const struct {
     const char *spec;
     double point, point_gain, speckle, draw;

@@ -1,5 +1,6 @@
-/* No plan and no image raises a floating-point exception that tells of a number lost: invalid, division by zero, overflow.
-   Each stays visible as NaN or infinity unless something masks it, and what masks it today may not tomorrow. */
+/* No plan and no image raises a floating-point exception that tells of a number lost: invalid, division by zero,
+   overflow. Each stays visible as NaN or infinity unless something masks it, and what masks it today may not
+   tomorrow. */
 #include <fenv.h>
 #include <omp.h>
 #include <stdio.h>

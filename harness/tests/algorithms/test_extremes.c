@@ -71,7 +71,8 @@ static void target_on_the_element_is_seen_from_broadside(void **state)
     struct echoes echoes;
     struct image image;
     struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE};
-    /* On the transmitter the receiver, 0.04 m ahead, has its fourth null; on a receiver, at 4 nulls of its own, likewise. */
+    /* On the transmitter the receiver, 0.04 m ahead, has its fourth null; on a receiver, at 4 nulls of its own,
+       likewise. */
     assert_close(beam_weight(&scene, 4, 0, scene.acquisition.tx[4], 0, 150e3), 0, 1e-9);
     assert_close(beam_weight(&scene, 4, 0, scene.acquisition.rx[4 * 8], 0, 150e3), 0, 1e-9);
     support_echoes(&scene, &echoes);
@@ -328,7 +329,8 @@ static void all_pings_and_receivers_are_bounded(void **state)
     assert_says(status_message(), "key 'track.pri' is 1e+12");
 }
 
-/* --- The scalar reference loop ------------------------------------------------------------------------------------------- */
+/* --- The scalar reference loop
+   ------------------------------------------------------------------------------------------- */
 
 /* A pair costs what it costs, however many others lie outside the record. */
 static void control_counts_what_it_sums(void **state)

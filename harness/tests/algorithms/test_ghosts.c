@@ -1,5 +1,6 @@
-/* Grating lobes: a lone receiver whose pings are far apart, and targets so far from each other that back projection sees one in
-   the image of the other. Transforms image such scenes only with an aperture limit within the sampled wavenumbers. */
+/* Grating lobes: a lone receiver whose pings are far apart, and targets so far from each other that back projection
+   sees one in the image of the other. Transforms image such scenes only with an aperture limit within the sampled
+   wavenumbers. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -7,8 +8,8 @@
 #include "range_migration/ghosts.h"
 #include "tests/support.h"
 
-/* Pings 0.04 m apart at 1 cm wavelength sample sines up to 0.0625; the beam ends at 0.025, the element's first null is at 0.0536
-   at the lowest frequency. */
+/* Pings 0.04 m apart at 1 cm wavelength sample sines up to 0.0625; the beam ends at 0.025, the element's first null is
+   at 0.0536 at the lowest frequency. */
 static const double LIMIT = 0.0535714;
 
 static void load(double apart, double limit, double squint, struct scene *scene)

@@ -1,5 +1,5 @@
-/* Which pairs an image sums, where rounding would decide: pixels on the cone of the aperture limit, on the transmitter, on the
-   track; who counts them and when. */
+/* Which pairs an image sums, where rounding would decide: pixels on the cone of the aperture limit, on the transmitter,
+   on the track; who counts them and when. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,8 +30,8 @@ static void make(struct acquisition *a, int pings, int receivers, int samples, d
     }
 }
 
-/* Grids and pings in binary fractions, so that whole triangles lie exactly on the cone: every pixel is in a span exactly where the
-   definition says so. */
+/* Grids and pings in binary fractions, so that whole triangles lie exactly on the cone: every pixel is in a span
+   exactly where the definition says so. */
 static void spans_hold_the_cone(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* Range migration on scenes that nobody chose for it: images within the error that was predicted, or refused by name. */
+/* Range migration on scenes that nobody chose for it: images within the error that was predicted, or refused by
+   name. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -14,7 +14,7 @@
 #include "tests/algorithms/rma_numbers.h"
 #include "tests/algorithms/rma_scenes.h"
 
-static const double pi = 3.14159265358979323846, speed = RMA_SPEED, pri = 0.44;
+static const double speed = RMA_SPEED, pri = 0.44;
 
 /* ---- the five scenes of the independent implementation ---- */
 
@@ -27,7 +27,7 @@ static void compress_lfm(const struct rma_numbers *n, struct scene *scene, struc
     double complex *replica = fftw_malloc((size_t)count * sizeof *replica), *s = (double complex *)echoes->samples;
     for (int k = 0; k < count; k++) {
         double t = (k < (count + 1) / 2 ? k : k - count) / a->fs;
-        replica[k] = fabs(t) <= duration / 2 ? cexp(I * pi * rate * t * t) : 0;
+        replica[k] = fabs(t) <= duration / 2 ? cexp(I * M_PI * rate * t * t) : 0;
     }
     fftw_plan transform = fftw_plan_dft_1d(count, replica, replica, FFTW_FORWARD, FFTW_ESTIMATE);
     fftw_execute(transform);
@@ -48,7 +48,8 @@ static void compress_lfm(const struct rma_numbers *n, struct scene *scene, struc
             for (int k = 0; k < count; k++) {
                 double u = a->t0[0] + k / a->fs - tau;
                 if (fabs(u) <= duration / 2)
-                    record[k] += weight * scene->targets[t].amplitude * cexp(I * pi * (rate * u * u - 2 * a->fc * tau));
+                    record[k] +=
+                        weight * scene->targets[t].amplitude * cexp(I * M_PI * (rate * u * u - 2 * a->fc * tau));
             }
         }
         fftw_execute(forward);
@@ -260,8 +261,8 @@ static void recurrences(void **state)
 }
 
 /* 40 to 300 m in 40 blocks equally spaced in 1/r: 2 % from 80 to 280 m; and in as many as Eq. (13) asks for at pi/4,
-   where the phases inside a block differ so much that the blend's own error shows. More blocks converge. The array is as
-   long as LBF21's, its elements are twice as long to save time. */
+   where the phases inside a block differ so much that the blend's own error shows. More blocks converge. The array is
+   as long as LBF21's, its elements are twice as long to save time. */
 static void long_swath(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Range migration after delay compensation: its parts against what they stand for, and its images against exact ones over
-   a deep swath, wide and narrow, raw and compressed. */
+/* Range migration after delay compensation: its parts against what they stand for, and its images against exact ones
+   over a deep swath, wide and narrow, raw and compressed. */
 #include <complex.h>
 #include <math.h>
 #include <stdlib.h>
@@ -8,8 +8,6 @@
 #include "range_migration/delay.h"
 #include "scene/simulate.h"
 #include "tests/algorithms/rma_scenes.h"
-
-static const double pi = 3.14159265358979323846;
 
 /* At the carrier the compensated spectrum is the exact one; at nu = 0 it is so for all frequencies. */
 static void spectrum(void **state)
@@ -24,7 +22,7 @@ static void spectrum(void **state)
         assert_true(fabs(spectrum_compensated(&setting, d, r, 137e3, 0) - exact) < 1e-8);
         /* The delay broadside, from the geometry alone: the target passes abeam while the pulse is under way. */
         double u = (spectrum_exact(&setting, d, r, 150e3, 1e-3) - spectrum_exact(&setting, d, r, 150e3, -1e-3))
-                   / (-2 * pi * 2e-3);
+                   / (-2 * M_PI * 2e-3);
         struct vector tx = {u, 0, 0}, rx = {u + d, 0, 0}, velocity = {3, 0, 0}, target = {0, r, 0};
         double late = delay_exact(tx, rx, velocity, target, 1500) - 2 * r / 1500 / sqrt(1 - 4e-6);
         assert_true(fabs(spectrum_abeam(&setting, d, r) - late) < 1e-12);
@@ -45,7 +43,7 @@ static void taps(void **state)
             double sum = 0, fraction = k / 33.0;
             delay_taps_weights(&made, fraction, weights, slopes);
             for (int n = 0; n < 101; n++) { /* mean square over the band */
-                double w = 2 * pi * 0.4 * (n - 50) / 50.5;
+                double w = 2 * M_PI * 0.4 * (n - 50) / 50.5;
                 double complex value = -cexp(I * w * fraction), slope = -I * w * cexp(I * w * fraction);
                 for (int t = 0; t < count; t++) {
                     value += weights[t] * cexp(I * w * (t + 1 - count / 2));
@@ -118,7 +116,8 @@ static void terms(void **state)
 enum { TARGETS = 4 };
 static const double deep_targets[TARGETS] = {41.03, 57.31, 100.17, 170.4};
 
-/* 41 to 170 m in one swath, at fs = 1.25 B, patches of +-24 range cells: the exact spectrum's error, and little more. */
+/* 41 to 170 m in one swath, at fs = 1.25 B, patches of +-24 range cells: the exact spectrum's error, and little
+   more. */
 static void deep_swath(void **state)
 {
     (void)state;

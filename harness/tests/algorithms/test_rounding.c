@@ -1,5 +1,6 @@
-/* Images in all four rounding modes. The nearest samples are the same ones, but for what rounding itself does, and so are the
-   bits for any number of threads. Threads take over the mode when they are started: each mode has a process of its own. */
+/* Images in all four rounding modes. The nearest samples are the same ones, but for what rounding itself does, and so
+   are the bits for any number of threads. Threads take over the mode when they are started: each mode has a process of
+   its own. */
 #include <fenv.h>
 #include <math.h>
 #include <omp.h>
@@ -17,8 +18,8 @@ enum { PINGS = 9, RECEIVERS = 3, SAMPLES = 500, COLUMNS = 331, ROWS = 11, PIXELS
 static const int modes[] = {FE_TONEAREST, FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
 static const char *const isas[] = {"baseline", "v3", "v4"}; /* where the machine has less, the most that it has */
 
-/* The largest difference from the image in the usual mode. In single precision a position within 2^-17 of a tie takes the other
-   sample, and on a line of nine steps one within 2^-19 the other step, in either: a few of 10^5 pairs. */
+/* The largest difference from the image in the usual mode. In single precision a position within 2^-17 of a tie takes
+   the other sample, and on a line of nine steps one within 2^-19 the other step, in either: a few of 10^5 pairs. */
 static const struct {
     const char *spec;
     double most[2]; /* by enum precision */
@@ -59,7 +60,8 @@ static void make_echoes(struct acquisition *a, struct echoes *echoes)
         ((double complex *)echoes->samples)[n] = random_normal(&random);
 }
 
-/* All images in one mode; the child's end of the pipe. Returns what the process ends with: 0, or a code that says why not. */
+/* All images in one mode; the child's end of the pipe. Returns what the process ends with: 0, or a code that says why
+   not. */
 static int form_images(int mode, FILE *out)
 {
     struct acquisition a;

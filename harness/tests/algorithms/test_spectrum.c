@@ -89,8 +89,8 @@ static void exactness(void **state)
     }
 }
 
-/* Where Newton's step alone went astray: near the array, and as the speed nears that of sound. Beyond the spectrum's ends
-   there is none; up to them the closed form of d = 0 is met. */
+/* Where Newton's step alone went astray: near the array, and as the speed nears that of sound. Beyond the spectrum's
+   ends there is none; up to them the closed form of d = 0 is met. */
 static void hard_cases(void **state)
 {
     (void)state;

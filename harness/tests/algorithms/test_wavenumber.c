@@ -1,4 +1,5 @@
-/* Omega-k imaging, broadside and squinted (SQ18), against numbers of an independent implementation and against exact images. */
+/* Omega-k imaging, broadside and squinted (SQ18), against numbers of an independent implementation and against exact
+   images. */
 #include "tests/algorithms/squint_numbers.h"
 #include "tests/algorithms/squint_scenes.h"
 
@@ -10,12 +11,11 @@
 #include "scene/simulate.h"
 #include "wavenumber/engine.h"
 
-static const double pi = 3.14159265358979323846;
 static const double SPACING_M = 0.04;
 
 static double radians(double degrees)
 {
-    return degrees * pi / 180;
+    return degrees * M_PI / 180;
 }
 
 /* The scenes' own echoes: the simulator's squinted beam, delays and phases. */
@@ -73,13 +73,13 @@ static void exact_images(void **state)
     squint_scene_free(&scene);
 }
 
-/* A plan's line at kx0, focused onto as many rows from r' = 0 as its range transform has, holds its Stolt-interpolated cells: their transform at ky0,
-   the weight taken off. */
+/* A plan's line at kx0, focused onto as many rows from r' = 0 as its range transform has, holds its Stolt-interpolated
+   cells: their transform at ky0, the weight taken off. */
 static double complex rotated_cell(struct wk *wk, const struct rotated_number *number)
 {
     struct wk_patch *patch = &wk->patches[0];
-    double seconds[WK_STAGES], bin = round(number->ky0 * patch->length * patch->grid.r_step / (2 * pi));
-    patch->own.r_step = 2 * pi * bin / (patch->length * number->ky0);
+    double seconds[WK_STAGES], bin = round(number->ky0 * patch->length * patch->grid.r_step / (2 * M_PI));
+    patch->own.r_step = 2 * M_PI * bin / (patch->length * number->ky0);
     wk->kx_first = number->kx0;
     wk->lines = 1;
     double complex sum = 0;
@@ -89,12 +89,12 @@ static double complex rotated_cell(struct wk *wk, const struct rotated_number *n
         wk_line_double_baseline(wk, 0, 0, seconds);
         for (int i = 0; i < patch->own.r_count && base + i < patch->length; i++)
             sum += ((double complex *)wk->focused)[(size_t)i * wk->line_stride]
-                   * cexp(-2 * pi * I * fmod((base + i) * bin / patch->length, 1));
+                   * cexp(-2 * M_PI * I * fmod((base + i) * bin / patch->length, 1));
     }
     double kappa = sqrt(number->k_r * number->k_r - number->kx * number->kx);
-    double weight = sqrt(2 * pi / kappa) * wk->sound_speed / (4 * pi) * 2 * pi
+    double weight = sqrt(2 * M_PI / kappa) * wk->sound_speed / (4 * M_PI) * 2 * M_PI
                     / (patch->length * patch->own.r_step * wk->fs) * patch->length;
-    return sum / weight * cexp(-I * (pi / 4 + number->kx * wk->x_middle));
+    return sum / weight * cexp(-I * (M_PI / 4 + number->kx * wk->x_middle));
 }
 
 static void rotated_spectrum(void **state)
@@ -170,8 +170,8 @@ static void free_imaged(struct imaged *imaged)
     squint_scene_free(&imaged->scene);
 }
 
-/* At each of SQ18's angles, in turned axes: within 0.3 % with 8 taps and the azimuth padded twice. What the padding is for shows
-   at 45 degrees. */
+/* At each of SQ18's angles, in turned axes: within 0.3 % with 8 taps and the azimuth padded twice. What the padding is
+   for shows at 45 degrees. */
 static void squints(void **state)
 {
     (void)state;

@@ -70,8 +70,8 @@ static void energies_as_published(void **state)
     }
 }
 
-/* One sub-aperture with the wavefronts' curvature taken off does what the paper needs four for: at least 20 dB off the five
-   targets outside, and 2 % off the one at the edge, which it loses without. */
+/* One sub-aperture with the wavefronts' curvature taken off does what the paper needs four for: at least 20 dB off the
+   five targets outside, and 2 % off the one at the edge, which it loses without. */
 static void curvature(void **state)
 {
     (void)state;
@@ -88,7 +88,8 @@ static void curvature(void **state)
     assert_true(energy[EDGE] < 0.02);
 }
 
-/* A target area around everything leaves the echoes as they are; float is as good as it can be; threads change no bit. */
+/* A target area around everything leaves the echoes as they are; float is as good as it can be; threads change no
+   bit. */
 static void harmless(void **state)
 {
     (void)state;

@@ -44,8 +44,8 @@ struct refusal {
     {                                                                                                                  \
         "image", "--grid", "0:0.1:5,20:0.1:5", "-a", "bp_nearest", "-o", "x.mat", "--echoes", file                     \
     }
-/* Whether the program exits with status 2 and one line of error that holds every text of `says`, prints nothing else, and
-   writes nothing; prints what is wrong otherwise. */
+/* Whether the program exits with status 2 and one line of error that holds every text of `says`, prints nothing else,
+   and writes nothing; prints what is wrong otherwise. */
 bool is_refused(const char *const *arguments, const char *const *says);
 void assert_all_refused(const struct refusal *refusals, size_t count);
 

@@ -1,5 +1,5 @@
-/* The program among faults of its surroundings: other programs in its folder, signals, full disks, closed streams, links.
-   Its path is in the environment variable SASBENCH_PROGRAM. */
+/* The program among faults of its surroundings: other programs in its folder, signals, full disks, closed streams,
+   links. Its path is in the environment variable SASBENCH_PROGRAM. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -104,8 +104,8 @@ static void programs_at_once_lose_no_row(void **state)
     assert_int_equal(rows_of("r/targets.csv"), 5 * done);
 }
 
-/* The slices come after the last row: a run that is cut between the two draws them when it is taken up again. Nothing is
-   measured anew then. */
+/* The slices come after the last row: a run that is cut between the two draws them when it is taken up again. Nothing
+   is measured anew then. */
 static void cut_run_draws_its_pictures(void **state)
 {
     (void)state;
@@ -119,8 +119,8 @@ static void cut_run_draws_its_pictures(void **state)
     assert_shell("grep -v '^#' before > a; grep -v '^#' r/measurements.csv | cmp - a", 0);
 }
 
-/* What the user or the system ends, cleans up; what is killed is cleaned up after. A gnuplot that hangs keeps the program
-   where it has temporary files; it is ended, too. */
+/* What the user or the system ends, cleans up; what is killed is cleaned up after. A gnuplot that hangs keeps the
+   program where it has temporary files; it is ended, too. */
 static void signals_leave_nothing(void **state)
 {
     (void)state;
@@ -275,7 +275,8 @@ static void folder_names(void **state)
     assert_shell("ls -A | cmp - before", 0);
 }
 
-/* A limit of the files' size stands for a full disk, at every size: reported, exit 1 or 2, and the next call mends it. */
+/* A limit of the files' size stands for a full disk, at every size: reported, exit 1 or 2, and the next call mends
+   it. */
 static void files_beyond_the_limit(void **state)
 {
     (void)state;

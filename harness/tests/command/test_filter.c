@@ -1,4 +1,5 @@
-/* The command `filter`: its table, its settings, what it refuses, and echoes that any algorithm images as the table says. */
+/* The command `filter`: its table, its settings, what it refuses, and echoes that any algorithm images as the table
+   says. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -144,7 +145,8 @@ static double distance_of(const double complex *a, const double complex *b)
     return sqrt(difference / norm);
 }
 
-/* What the table says of energies is what images show, whoever forms them; and wk_polar is the filter ahead of omega-k. */
+/* What the table says of energies is what images show, whoever forms them; and wk_polar is the filter ahead of
+   omega-k. */
 static void any_algorithm_images_what_is_kept(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Scenes and echo files that are refused: each with exit status 2 and one line that names the key or variable; nothing is
-   written. */
+/* Scenes and echo files that are refused: each with exit status 2 and one line that names the key or variable; nothing
+   is written. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,5 +1,5 @@
-/* A command that is killed again and again, at moments that differ each time, and then resumed: the rows are those of an
-   undisturbed one, and nothing else is left. */
+/* A command that is killed again and again, at moments that differ each time, and then resumed: the rows are those of
+   an undisturbed one, and nothing else is left. */
 #include <dirent.h>
 #include <signal.h>
 #include <stdio.h>

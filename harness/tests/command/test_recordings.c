@@ -1,5 +1,5 @@
-/* Recorded echoes are scenes: what is measured on simulated echoes is measured on the same echoes out of a file. Two recorded sets
-   go through `run` where they are there, and are skipped where not. */
+/* Recorded echoes are scenes: what is measured on simulated echoes is measured on the same echoes out of a file. Two
+   recorded sets go through `run` where they are there, and are skipped where not. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -229,8 +229,8 @@ static void mixtures_are_refused(void **state)
     assert_all_refused(usages, COUNT_OF(usages));
 }
 
-/* What is recorded is not ours to ship: the folder SASBENCH_DATA. `error` and `peak` are measured, of the settings in their
-   order; peaks of the exact interpolators are those of an independent program. */
+/* What is recorded is not ours to ship: the folder SASBENCH_DATA. `error` and `peak` are measured, of the settings in
+   their order; peaks of the exact interpolators are those of an independent program. */
 enum { SETTINGS = 4 };
 static const struct recording {
     const char *file, *targets, *image;

@@ -1,5 +1,5 @@
-/* Results from elsewhere: whatever a folder holds, and whatever it is called, reporting on it starts no command, waits for
-   nobody and shows no other file. */
+/* Results from elsewhere: whatever a folder holds, and whatever it is called, reporting on it starts no command, waits
+   for nobody and shows no other file. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -291,7 +291,8 @@ static void pages_are_utf8_whatever_the_names_are(void **state)
     }
 }
 
-/* In a locale with a decimal comma mawk would read 0.25 as 0. An awk ahead of the real one tells what it is started with. */
+/* In a locale with a decimal comma mawk would read 0.25 as 0. An awk ahead of the real one tells what it is started
+   with. */
 static void pictures_are_the_same_in_every_locale(void **state)
 {
     (void)state;

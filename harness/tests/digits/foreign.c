@@ -1,6 +1,6 @@
 /* FFTW as .ci/digits links it: built without the sanitizer, it leaves the sanitizer's idea of an array as it was before
-   the transform. So each array that it may have written is declared unknown (the linker puts these functions in place of
-   FFTW's, --wrap). The extents are those of complex arrays of contiguous lines, all that the algorithms plan. */
+   the transform. So each array that it may have written is declared unknown (the linker puts these functions in place
+   of FFTW's, --wrap). The extents are those of complex arrays of contiguous lines, all that the algorithms plan. */
 #include <fftw3.h>
 #include <stddef.h>
 #include <stdlib.h>

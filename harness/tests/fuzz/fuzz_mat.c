@@ -1,5 +1,5 @@
-/* Any bytes as a MATLAB file of version 5 or 7.3: an echo file, or an image file when the last byte, which is not part of
-   the file, is odd.
+/* Any bytes as a MATLAB file of version 5 or 7.3: an echo file, or an image file when the last byte, which is not part
+   of the file, is odd.
 
    The program reads such files in a child process, because libmatio and HDF5 crash on some. Those crashes are no
    findings. So here the child's sanitizers stay on, and what they report is a finding if the stack of the fault has no

@@ -1,5 +1,5 @@
-/* Any tiny acquisition and grid that the checks of echo files let through: every algorithm makes a plan and a finite image
-   of it, or says why not. */
+/* Any tiny acquisition and grid that the checks of echo files let through: every algorithm makes a plan and a finite
+   image of it, or says why not. */
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>

@@ -1,4 +1,5 @@
-/* Two results are compared as diff.h says: what is judged how, which rows and files belong together, how it is shown. */
+/* Two results are compared as diff.h says: what is judged how, which rows and files belong together, how it is
+   shown. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

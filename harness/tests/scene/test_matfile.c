@@ -313,7 +313,8 @@ static void recorded_files_are_read(void **state)
     }
 }
 
-/* Shapes that MATLAB, Octave and SciPy leave when one dimension is 1, and coordinates in rows, are what they can only be. */
+/* Shapes that MATLAB, Octave and SciPy leave when one dimension is 1, and coordinates in rows, are what they can only
+   be. */
 static void unambiguous_shapes_are_taken(void **state)
 {
     (void)state;

@@ -11,8 +11,8 @@
 #include "tests/algorithms/reference_numbers.h"
 #include "tests/scene/scene_fixture.h"
 
-/* Every point, of the target area where there is one, is seen over its whole beam (the first and last ping hold nothing of it)
-   and lies in the records. */
+/* Every point, of the target area where there is one, is seen over its whole beam (the first and last ping hold nothing
+   of it) and lies in the records. */
 static void check_coverage(const struct scene *scene)
 {
     const struct acquisition *a = &scene->acquisition;

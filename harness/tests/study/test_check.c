@@ -177,7 +177,8 @@ static double value_of(const char *printed, const char *name)
     return value;
 }
 
-/* Delays are those that pings see, wherever in the patch and the beam that is: 20 m ahead or abeam, all rows at 20 m. */
+/* Delays are those that pings see, wherever in the patch and the beam that is: 20 m ahead or abeam, all rows at 20
+   m. */
 static void delays_are_those_of_what_is_seen(void **state)
 {
     (void)state;

@@ -1,5 +1,6 @@
-/* `sweep`: settings, Pareto fronts and lines on made-up numbers; the whole command on a small speckle scene, cut short and
-   resumed; and the two laws that a sweep has to show there: linear upsampling's floor and zero padding's order 1/K. */
+/* `sweep`: settings, Pareto fronts and lines on made-up numbers; the whole command on a small speckle scene, cut short
+   and resumed; and the two laws that a sweep has to show there: linear upsampling's floor and zero padding's order
+   1/K. */
 #include <glob.h>
 #include <math.h>
 #include <stdio.h>
