@@ -171,6 +171,11 @@ static enum status judge_read(struct formula *formula, enum answer *answer, char
         status = judge_values(formula, judge, v);
     if (status != STATUS_OK)
         return status;
+    for (int k = 0; k < (judge->count ? judge->count : 1); k++)
+        if (v[k].timed && !judge->open)
+            return formula_error(formula, at,
+                                 "%s compares a time, which noise moves; clearly_above and clearly_below are accepted",
+                                 judge->name);
     finite_check(formula, judge, v);
     *answer = judge->agrees(v) ? ANSWER_YES : judge->open && judge->open(v) ? ANSWER_OPEN : ANSWER_NO;
     if (judge->count)
@@ -190,7 +195,7 @@ static enum status part_read(struct formula *formula, enum answer *answer, char 
 {
     *answer = ANSWER_YES;
     do {
-        enum answer one;
+        enum answer one = ANSWER_NO;
         text_append(text, size, "; ");
         enum status status = judge_read(formula, &one, text, size);
         if (status != STATUS_OK)

@@ -121,7 +121,7 @@ static enum status image_metric(struct formula *formula, struct call *call, stru
     if (strncmp(call->metric->name, "flops", 5) == 0)
         return flops_metric(formula, call, values);
     enum status status = measurement_need(formula, call);
-    *values = (struct values){1, {1}};
+    *values = (struct values){.count = 1, .at = {1}, .timed = strcmp(call->metric->unit, "s") == 0};
     if (status == STATUS_OK && formula->measured)
         values->at[0] =
             measured_value(formula->measured, call->text[0], call->text[1], call->metric->offset, call->metric->name);
@@ -201,7 +201,7 @@ static enum status filtered(struct formula *formula, struct call *call, struct v
 static enum status stage(struct formula *formula, struct call *call, struct values *values)
 {
     enum status status = measurement_need(formula, call);
-    *values = (struct values){1, {1}};
+    *values = (struct values){.count = 1, .at = {1}, .timed = true};
     if (status == STATUS_OK && !*call->text[2])
         status = formula_error(formula, call->at[2], "the name of a stage, as in measurements.csv, is needed here");
     if (status == STATUS_OK && formula->measured)
@@ -212,7 +212,7 @@ static enum status stage(struct formula *formula, struct call *call, struct valu
 static enum status table_time(struct formula *formula, struct call *call, struct values *values)
 {
     char accepted[600];
-    *values = (struct values){1, {1}};
+    *values = (struct values){.count = 1, .at = {1}, .timed = true};
     int unknown = table_seconds_check(call->text[0], call->text[1], call->text[2], accepted, sizeof accepted);
     if (unknown >= 0)
         return formula_error(formula, call->at[unknown], "there is no time of '%s'; accepted: %s", call->text[unknown],

@@ -110,7 +110,7 @@ static enum status combine(struct formula *formula, const char *at, struct value
                              "lists of %d and %d numbers do not go together; lists of one length, or one "
                              "number, are accepted",
                              a->count, b->count);
-    struct values result = {.count = a->count > b->count ? a->count : b->count};
+    struct values result = {.count = a->count > b->count ? a->count : b->count, .timed = a->timed || b->timed};
     for (int k = 0; k < result.count; k++)
         result.at[k] = operation(a->at[a->count == 1 ? 0 : k], b->at[b->count == 1 ? 0 : k]);
     *a = result;
@@ -120,6 +120,7 @@ static enum status combine(struct formula *formula, const char *at, struct value
 enum status quantity_list_read(struct formula *formula, struct values *values)
 {
     values->count = 0;
+    values->timed = false;
     do {
         struct values more;
         const char *at = formula->at;
@@ -130,6 +131,7 @@ enum status quantity_list_read(struct formula *formula, struct values *values)
             return formula_error(formula, at, "more than %d numbers; up to that are accepted", VALUES_MAX);
         memcpy(values->at + values->count, more.at, (size_t)more.count * sizeof *more.at);
         values->count += more.count;
+        values->timed |= more.timed;
     } while (formula_take(formula, ','));
     return formula_take(formula, ')') ? STATUS_OK
                                       : formula_error(formula, formula->at, "an operator, ',' or ')' is needed here");
@@ -187,7 +189,7 @@ static enum status function_read(struct formula *formula, const char *at, int k,
     for (int n = 0; functions[k].each && n < list.count; n++)
         values->at[n] = functions[k].each(list.at[n]);
     if (functions[k].reduce)
-        *values = (struct values){1, {functions[k].reduce(&list)}};
+        *values = (struct values){1, {functions[k].reduce(&list)}, list.timed};
     return STATUS_OK;
 }
 
@@ -219,7 +221,7 @@ static enum status word_read(struct formula *formula, struct values *values)
     if (k >= 0)
         *values = formula->named[k].values;
     else if (strcmp(word, "pi") == 0)
-        *values = (struct values){1, {acos(-1)}};
+        *values = (struct values){1, {acos(-1)}, false};
     else {
         for (k = 0; k < formula->count; k++)
             text_append(known, sizeof known, "%s, ", formula->named[k].name);
@@ -247,6 +249,7 @@ static enum status number_read(struct formula *formula, struct values *values)
 static enum status factor_read(struct formula *formula, struct values *values)
 {
     enum status status;
+    values->timed = false;
     if (formula->depth == 20)
         return formula_error(formula, formula->at, "nested more than %d deep; less is accepted", formula->depth);
     formula->depth++;

@@ -15,6 +15,7 @@ enum { VALUES_MAX = 64 };
 struct values {
     int count;
     double at[VALUES_MAX];
+    bool timed; /* a time is among what they were worked out from: only judges that know noise may compare them */
 };
 
 /* What numbers rest on beside measurements: a scene, a setting (a formula of the phase study, a SPEC that is planned),

@@ -4,7 +4,7 @@
 
 #include "papers/claims.h"
 
-/* Measure all that verdicts on image quality and phase rest on under each set of assumptions, into DIR/sensitivity, and
+/* Measure all that verdicts of BP22, ZP15 and LBF21 on image quality and phase rest on under each set of assumptions, into DIR/sensitivity, and
    write DIR/sensitivity.md: the verdicts that flip, a row a claim, a column a set of assumptions, and the IDs of those
    that do not. Verdicts on times, and those that no scene takes part in, are left out; what a set does not change is
    measured once. `measure` measures needs into a folder, which it makes. Errors: of measuring; of files. */

@@ -121,6 +121,9 @@ static const struct {
     {"identity above(x, 0) else above(x, 0)", X, {"an identity has no else"}},
     {"undecided", "x = time_noise(bp22_t3, fast engines)", {"'bp22_t3'", "accepted: 'bp22_t4', 'lbf21_t5'"}},
     {"undecided", "x = time_noise(bp22_t4, slow engines)", {"'slow engines'", "'fast engines'"}},
+    {"above(list(1, 2 * x), 1)", "x = time(bp22_t4, sinc, fast engines)", {"'above", "a time", "clearly_above"}},
+    {"rising(1, max(x))", "x = stage(bp22/full, bp_nearest, focus)", {"'rising", "a time", "clearly_above"}},
+    {"clearly_above(x, 1, 0.1) else below(x, 1)", "x = run_s(bp22/full, bp_nearest)", {"'below", "a time"}},
 };
 
 /* Every kind of mistake has its message, which names the place and what is accepted. */
