@@ -7,6 +7,7 @@
 #             plots    folder of the scripts
 # Defines:    pictures; picture_scene[], picture_output[], picture_data[]: what `load` reads for a picture (scene.awk)
 
+load plots."/families.gp"
 quote(text) = strstrt(text, "'") ? text[1:strstrt(text, "'") - 1]."'\\''".quote(text[strstrt(text, "'") + 1:*]) : text
 # In the C locale numbers have a point, and a text is its bytes.
 read(one) = sprintf("< LC_ALL=C FOLDER='%s' SCENE='%s' awk -f '%s/scene.awk'", quote(folder), quote(one), quote(plots))

@@ -35,7 +35,9 @@ set ytics tic_step(2*extent)
 set key at screen 0.5, screen 12.0/height center bottom maxrows 2           # one legend for all, below the panels
 do for [p = 1:|panels|] {
     set title panels[p] offset 0,-0.5
-    plot for [l = 1:|lines|] data index (p - 1)*|lines| + l - 1 with lines linetype l + 1 title lines[l]
+    plot for [l = 1:|lines|] data index (p - 1)*|lines| + l - 1 with lines linetype l + 1 title lines[l], \
+        for [bound = 1:(extent > pi/4 ? 2 : 0)] (bound == 1 ? 1 : -1)*pi/4 with lines linewidth 1 dashtype 3 linecolor rgb "#606060" \
+            title (bound == 1 ? "pi/4" : "")
     unset key
 }
 unset multiplot

@@ -7,7 +7,7 @@
 #                                  rate run_s flops error pslr islr "label" "label"   (rate: samples for each one recorded,
 #                                  NaN where nothing is upsampled; the setting's value where it is to be written beside
 #                                  the point over run_s, over flops: sparsely, so that no two overlap)
-#   series[], family[], member[], precise[]   title; the algorithm's number (1 to 10); which of its series; 1 for double
+#   series[], family[], member[], precise[]   title; the algorithm's number in families.gp; which of its series; 1 for double
 #   rated[]                        the numbers of the series whose rows have a rate
 #   $control                       the scalar reference loop's time: two lines of run_s error, from the largest error to the least
 #   reference_pslr, reference_islr NaN where unknown
@@ -102,13 +102,6 @@ function note_read(line)
         note[substr(line, 1, index(line, ":") - 1)] = substr(line, index(line, ": ") + 2)
 }
 
-function family_of(algorithm)
-{
-    if (!(algorithm in families))
-        families[algorithm] = ++family_count
-    return families[algorithm]
-}
-
 # Sorted insertion of a row's line into its series.
 function series_add(key, order, line,    at)
 {
@@ -122,7 +115,6 @@ function series_add(key, order, line,    at)
 
 function point_take(    key, at)
 {
-    family_of(field["algorithm"])
     if (field["scene"] != scene || !is_number(field["run_s"]) || !is_number(field["error"]) \
         || !(field["run_s"] + 0 > 0) || !(field["error"] + 0 > 0))
         return
@@ -134,7 +126,7 @@ function point_take(    key, at)
     if (!(key in length_of)) {
         keys[++key_count] = key
         title_of[key] = field["algorithm"] (field["rest"] == "" ? "" : " " field["rest"])
-        family_at[key] = family_of(field["algorithm"])
+        algorithm_of[key] = field["algorithm"]
         if (!((field["algorithm"], field["rest"]) in member_of))
             member_of[field["algorithm"], field["rest"]] = ++member_count[field["algorithm"]]
         member_at[key] = member_of[field["algorithm"], field["rest"]]
@@ -226,7 +218,7 @@ function rows_print(    k, n, size, least, most)
     size = key_count > 0 ? key_count : 1
     print "array series[" size "]; array family[" size "]; array member[" size "]; array precise[" size "]"
     for (k = 1; k <= key_count; k++) {
-        printf "series[%d] = %s; family[%d] = %d; ", k, quoted(title_of[keys[k]]), k, (family_at[keys[k]] - 1)%10 + 1
+        printf "series[%d] = %s; family[%d] = family_drawn(%s); ", k, quoted(title_of[keys[k]]), k, quoted(algorithm_of[keys[k]])
         printf "member[%d] = %d; precise[%d] = %d\n", k, member_at[keys[k]], k, precise_at[keys[k]]
     }
     if (rated_count)
@@ -294,7 +286,6 @@ function rules_print()
 BEGIN {
     for (k = 1; k < 256; k++)
         code_of[sprintf("%c", k)] = k
-    families["reference"] = family_count = 1
     folder = ENVIRON["FOLDER"]
     scene = ENVIRON["SCENE"]
     while (row_read(folder "/points.csv")) {

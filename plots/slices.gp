@@ -1,23 +1,30 @@
-# Azimuth slices through point targets, one panel a target, one line an image.
+# Azimuth slices through point targets, one panel a target, one line an image; below each the difference to the exact image. An
+# algorithm has its own colour and point (families.gp); another setting of it is dashed otherwise.
 #
-# Variables:  output   the PNG to write
+# Variables:  output   the picture to write
 #             title    above the picture
 #             panels   array: title of each panel
 #             lines    array: label of each line
-#             data     text file: for each panel, for each line a block of "position (m)  power (dB)", blocks
+#             data     text file: for each panel, for each line a block of "position (m)  power (dB)  difference (dB)", blocks
 #                      separated by two empty lines
+#             has_differences   whether there are any
 #             plots    folder of style.gp (default "plots")
 # By hand:    gnuplot -e "output='a.png'; title='A'; array panels[1] = ['target 0']; array lines[1] = ['bp_sinc']; \
-#                         data='a.txt'" plots/slices.gp
+#                         has_differences=0; data='a.txt'" plots/slices.gp
 
 if (!exists("plots")) plots = "plots"
 columns = |panels| == 1 ? 1 : |panels| <= 4 ? 2 : |panels| <= 6 ? 3 : 4
 rows = (|panels| + columns - 1)/columns
 key_columns = columns == 1 ? 2 : columns
 key_rows = (|lines| + key_columns - 1)/key_columns
+panel_width = columns == 1 ? 1050 : 500
+upper = columns == 1 ? 560 : 300
+lower = has_differences ? (columns == 1 ? 260 : 170) : 0
+between = has_differences ? 22 : 0
+panel_height = upper + between + lower
 bottom = 90 + 26*key_rows
-width = |panels| == 1 ? 1200 : 40 + 600*columns
-height = |panels| == 1 ? 720 + bottom : bottom + 450*rows
+width = 120 + columns*panel_width + (columns - 1)*95
+height = 85 + rows*panel_height + (rows - 1)*115 + bottom
 load plots."/style.gp"
 set output output
 
@@ -26,22 +33,52 @@ stats data using ($2 > -30 ? abs($1) : NaN) name "shown" nooutput
 extent = exists("shown_max") && shown_max > 0 ? 1.15*shown_max : 1
 stats data using (abs($1) <= extent && $2 == $2 ? 1 : NaN) name "sample" nooutput
 point_interval = (exists("sample_records") ? sample_records : 0)/(12*|panels|*|lines|)
+stats data using (abs($1) <= extent && $3 == $3 ? $3 : NaN) name "off" nooutput
+off_top = exists("off_max") ? 10*ceil(off_max/10.0) : 0
+# The lines of an algorithm's further settings, and those that no algorithm has.
+array kind[|lines|]
+array member[|lines|]
+do for [l = 1:|lines|] {
+    kind[l] = family_number(lines[l]) > 0 ? family_number(lines[l]) : (l - 1)%17 + 1
+    member[l] = 0
+    do for [k = 1:l - 1] { if (kind[k] == kind[l]) { member[l] = member[l] + 1 } }
+}
+colour(l) = kind[l] == 1 ? "#b8b8b8" : family_colour[kind[l]]        # pale and broad: what lies on it stays visible
+wide(l) = kind[l] == 1 ? 5 : 1.6
+dash(l) = (family_dash[kind[l]] - 1 + member[l])%5 + 1
+point(l) = kind[l] == 1 ? 0 : family_open[kind[l]]
 
-set multiplot layout rows,columns title title font ",16" offset 0,-0.4 \
-    margins screen 95.0/width, screen 1 - 30.0/width, screen 1.0*bottom/height, screen 1 - 90.0/height \
-    spacing screen 105.0/width, screen 115.0/height
-set xlabel "azimuth from target (m)"
-set ylabel "power relative to peak (dB)"
+set multiplot title title font ",16" offset 0,-0.4
 set xrange [-extent:extent]
-set yrange [-60:3]
 set xtics tic_step(1.5*extent)
-set ytics 10
-set key at screen 0.5, screen 12.0/height center bottom maxrows key_rows    # one legend for all, below the panels
 do for [p = 1:|panels|] {
+    left = 105 + ((p - 1)%columns)*(panel_width + 95)
+    top = 85 + ((p - 1)/columns)*(panel_height + 115)
+    set lmargin at screen left/(1.0*width)
+    set rmargin at screen (left + panel_width)/(1.0*width)
+    set tmargin at screen 1 - top/(1.0*height)
+    set bmargin at screen 1 - (top + upper)/(1.0*height)
     set title panels[p] offset 0,-0.5
-    plot for [l = 1:|lines|] data index (p - 1)*|lines| + l - 1 with linespoints linetype l \
-        pointinterval point_interval + l title lines[l]
-    unset key
+    set yrange [-60:3]
+    set ytics 10
+    set ylabel "power relative to peak (dB)"
+    if (has_differences) { unset xlabel; set format x "" } else { set xlabel "azimuth from target (m)" }
+    if (p == 1) { set key at screen 0.5, screen 12.0/height center bottom maxrows key_rows } else { unset key }   # one legend for all
+    plot for [l = 1:|lines|] data index (p - 1)*|lines| + l - 1 using 1:2 with linespoints linecolor rgb colour(l) \
+        linewidth wide(l) dashtype dash(l) pointtype point(l) pointsize 1.2 pointinterval point_interval + l title lines[l]
+    if (has_differences) {
+        unset key
+        unset title
+        set format x "%g"
+        set xlabel "azimuth from target (m)"
+        set ylabel "difference (dB)"
+        set tmargin at screen 1 - (top + upper + between)/(1.0*height)
+        set bmargin at screen 1 - (top + panel_height)/(1.0*height)
+        set yrange [off_top - 80:off_top]
+        set ytics 20
+        plot for [l = 1:|lines|] data index (p - 1)*|lines| + l - 1 using 1:3 with linespoints linecolor rgb colour(l) \
+            linewidth wide(l) dashtype dash(l) pointtype point(l) pointsize 1.2 pointinterval point_interval + l notitle
+    }
 }
 unset multiplot
 unset output

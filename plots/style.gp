@@ -31,12 +31,7 @@ set linetype 9 linecolor "#7b3294" linewidth 1.8 dashtype (9,3,9,3,2,3) pointtyp
 set linetype 10 linecolor "#8c510a" linewidth 1.8 dashtype (4,2,1,2) pointtype 14 pointsize 1.3
 set linetype cycle 10
 
-# Algorithms among one another: each has its colour and its point, filled for float and open for double. `reference` is the
-# first, the order of the others is that of their first rows.
-array family_colour[10] = ["#808080", "#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", \
-    "#7b3294", "#8c510a"]
-array family_filled[10] = [15, 7, 5, 9, 13, 11, 3, 2, 1, 15]
-array family_open[10] = [14, 6, 4, 8, 12, 10, 3, 2, 1, 14]
+load plots."/families.gp"
 
 set border linecolor "#404040"
 set grid linecolor "#d0d0d0" linewidth 1 dashtype 1

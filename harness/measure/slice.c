@@ -168,3 +168,28 @@ void metrics_slice_samples(const struct image *image, const struct acquisition *
         power[k] = 10 * log10(fmax(power[k] / peak, 1e-20)); /* no -inf in a plot */
     }
 }
+
+double *metrics_slice_difference(const struct image *image, const struct image *reference,
+                                 const struct acquisition *acquisition, const struct target *target, enum axis axis,
+                                 int count)
+{
+    char reason[160] = "";
+    struct line line = line_extract(image, acquisition, target, axis, reason, sizeof reason);
+    struct line exact = line_extract(reference, acquisition, target, axis, reason, sizeof reason);
+    const bool fit = line.samples && exact.samples && line.count == exact.count && line.target == exact.target;
+    const int half_count = fit ? slice_reach(&line, FINE) : 0;
+    double *power = NULL, *wanted = NULL;
+    if (fit && count == 2 * half_count + 1) {
+        wanted = line_refine(&exact, FINE, half_count);
+        for (int k = 0; k < line.count; k++)
+            line.samples[k] -= exact.samples[k];
+        power = line_refine(&line, FINE, half_count);
+    }
+    const double peak = wanted ? wanted[maximum_find(wanted, 0, count - 1)] : 0;
+    for (int k = 0; power && k < count; k++)
+        power[k] = peak > 0 ? 10 * log10(fmax(power[k] / peak, 1e-20)) : NAN;
+    free(line.samples);
+    free(exact.samples);
+    free(wanted);
+    return power;
+}

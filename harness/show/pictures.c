@@ -55,6 +55,7 @@ void pictures_free(struct pictures *pictures)
         free((char *)pictures->lines[k].label);
         free(pictures->lines[k].position_m);
         free(pictures->lines[k].power_db);
+        free(pictures->lines[k].difference_db);
     }
     free(pictures->lines);
     *pictures = (struct pictures){0};
@@ -86,6 +87,9 @@ void pictures_add(struct pictures *pictures, int index, const char *label, const
         line->label = strdup(label);
         metrics_slice_samples(image, &scene->acquisition, &scene->targets[t], AXIS_AZIMUTH, &line->position_m,
                               &line->power_db, &line->count);
+        if (picture.reference && picture.reference != image)
+            line->difference_db = metrics_slice_difference(image, picture.reference, &scene->acquisition,
+                                                           &scene->targets[t], AXIS_AZIMUTH, line->count);
     }
 }
 

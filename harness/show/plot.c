@@ -28,14 +28,19 @@ static enum status lines_write(const struct plot *plot, const char *title, int p
     for (int l = 0; l < line_count; l++)
         plot_array_write(plot->preamble, "lines", l, lines[l].label);
 
+    bool differences = false;
+    for (int b = 0; b < shown * line_count; b++)
+        differences |= lines[b].count > 0 && lines[b].difference_db;
+    fprintf(plot->preamble, "has_differences = %d\n", differences);
     FILE *file = fopen(path, "w");
     if (!file)
         return plot_file_failed(path);
     for (int b = 0; b < shown * line_count; b++) {
         /* A block without a row would not count, and shift the ones behind it. */
-        fprintf(file, "0 NaN\n");
+        fprintf(file, "0 NaN NaN\n");
         for (int k = 0; k < lines[b].count; k++)
-            fprintf(file, "%.9g %.6g\n", lines[b].position_m[k], fmax(lines[b].power_db[k], floor_db));
+            fprintf(file, "%.9g %.6g %.6g\n", lines[b].position_m[k], fmax(lines[b].power_db[k], floor_db),
+                    lines[b].difference_db ? fmax(lines[b].difference_db[k], floor_db) : NAN);
         fprintf(file, "\n\n");
     }
     bool written = !ferror(file);

@@ -27,6 +27,7 @@ struct slice_line {
     const char *label;             /* SPEC */
     double *position_m, *power_db; /* [count], owned by the caller */
     int count;
+    double *difference_db; /* [count] of the complex difference to the exact image over its peak; NULL: unknown */
 };
 /* lines: [panel_count][line_count]. */
 enum status plot_slices(const char *path, const char *plots_directory, const char *title, int panel_count,

@@ -360,6 +360,42 @@ static void test_long_row(void **state)
     image_free(&image);
 }
 
+/* A tenth more of the exact image is -20 dB of its peak away everywhere that the slice has it. */
+static void test_slice_difference(void **state)
+{
+    (void)state;
+    const struct grid grid = {-1, 0.02, 101, 9.9, 0.025, 9, 0};
+    const struct acquisition acquisition = {.sound_speed = 1500, .fc = 150e3, .bandwidth = 20e3};
+    const struct target target = {0, 10, 1};
+    const struct grid shorter = {-1, 0.02, 100, 9.9, 0.025, 9, 0};
+    struct image image, exact, other;
+    double *position, *decibels;
+    int count;
+    support_image_make(&grid, 1, PRECISION_DOUBLE, &image);
+    support_image_make(&grid, 1, PRECISION_DOUBLE, &exact);
+    for (int j = 0; j < 101; j++) {
+        const double value = exp(-pow((j - 50) / 8.0, 2));
+        support_pixel_set(&exact, 0, 4, j, value);
+        support_pixel_set(&image, 0, 4, j, (1 + 0.1 * I) * value);
+    }
+    metrics_slice_samples(&image, &acquisition, &target, AXIS_AZIMUTH, &position, &decibels, &count);
+    assert_true(count > 100);
+    double *difference = metrics_slice_difference(&image, &exact, &acquisition, &target, AXIS_AZIMUTH, count);
+    assert_non_null(difference);
+    assert_close(difference[count / 2], -20, 1e-6);
+    const int quarter = count / 2 + count / 20;
+    assert_close(difference[quarter] - difference[count / 2], decibels[quarter] - decibels[count / 2], 1e-6);
+    free(difference);
+    assert_null(metrics_slice_difference(&image, &exact, &acquisition, &target, AXIS_AZIMUTH, count - 2));
+    support_image_make(&shorter, 1, PRECISION_DOUBLE, &other);
+    assert_null(metrics_slice_difference(&image, &other, &acquisition, &target, AXIS_AZIMUTH, count));
+    free(position);
+    free(decibels);
+    image_free(&image);
+    image_free(&exact);
+    image_free(&other);
+}
+
 static void check_sharpness(const struct image *image, double entropy, double contrast, double ratio)
 {
     struct sharpness s = metrics_sharpness(image);
@@ -432,6 +468,7 @@ int main(void)
         cmocka_unit_test(test_best_patch),
         cmocka_unit_test(test_slice_samples),
         cmocka_unit_test(test_long_row),
+        cmocka_unit_test(test_slice_difference),
         cmocka_unit_test(test_sharpness),
         cmocka_unit_test(test_quartiles),
     };

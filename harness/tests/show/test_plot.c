@@ -188,7 +188,7 @@ static void slices_are_drawn(void **state)
     }
     struct slice_line lines[4];
     for (int l = 0; l < 4; l++)
-        lines[l] = (struct slice_line){l % 2 ? "bp_'sinc'" : "reference", position, power, 101};
+        lines[l] = (struct slice_line){l % 2 ? "bp_'sinc'" : "reference", position, power, 101, l == 3 ? power : NULL};
     lines[1].count = 0;
     const char *titles[] = {"target 0", "target_1"};
     char path[4096];
@@ -202,12 +202,49 @@ static void slices_are_drawn(void **state)
     assert_nothing_left();
 }
 
+/* An algorithm has its number by its name, whatever its settings. */
+static void families_are_told_by_name(void **state)
+{
+    (void)state;
+    char path[4096], text[400], script[5000];
+    snprintf(script, sizeof script,
+             "load '%s/families.gp'; set print output\n"
+             "print family_number('reference'), family_number('bp_sinc:taps=8,window=none'), family_number('bp_sinc "
+             "double')\n"
+             "print family_number('bp_sincere'), family_number('bp'), family_number('rma_wu'), family_drawn('mine')\n"
+             "print |family_colour|, |family_filled|, |family_open|, |family_dash|, |family_names|\n"
+             "print '</svg>'\n",
+             real_plots);
+    text_to_file("slices.gp", script);
+    path_in(path, "variables.svg");
+    const char *panel = "panel";
+    const struct slice_line line = {.label = "reference"};
+    assert_drawn(plot_slices(path, folder, "title", 1, &panel, 1, &line));
+    file_to_text("variables.svg", text, sizeof text);
+    assert_string_equal(text, "1 4 4\n0 0 11 18\n18 18 18 18 17\n</svg>\n");
+    /* Every algorithm that there is has its own. */
+    FILE *families = fopen(SASBENCH_ROOT "/plots/families.gp", "r");
+    char whole[8000];
+    assert_non_null(families);
+    whole[fread(whole, 1, sizeof whole - 1, families)] = '\0';
+    fclose(families);
+    for (int k = 0; algorithms[k]; k++) {
+        char quoted[80];
+        snprintf(quoted, sizeof quoted, "\"%s\"", algorithms[k]->name);
+        if (!strstr(whole, quoted))
+            fail_msg("%s is not in family_names of plots/families.gp", algorithms[k]->name);
+    }
+}
+
 /* An empty line must not shift the ones behind it. */
 static void slice_data_are_right(void **state)
 {
     (void)state;
     text_to_file("slices.gp", "set print output\n"
                               "print title, |panels|, |lines|, panels[2], lines[2]\n"
+                              "print has_differences\n"
+                              "stats data index 3 using 3 name 'e' nooutput\n"
+                              "print sprintf('%.1f %d', e_min, e_records)\n"
                               "do for [b = 0:3] {\n"
                               "    stats data index b using ($2 == $2 ? $1 : NaN) name 'x' nooutput\n"
                               "    print sprintf('%d', exists('x_records') ? x_records : 0)\n"
@@ -216,15 +253,18 @@ static void slice_data_are_right(void **state)
                               "}\n"
                               "print '</svg>'\n");
     double position[] = {-0.5, 0, 0.25}, power[4][3] = {{-9, -1, -9}, {0}, {-9, -2, -9}, {-9, -3, -9}};
+    double difference[] = {-41, -INFINITY, -43};
     struct slice_line lines[4];
     for (int l = 0; l < 4; l++)
-        lines[l] = (struct slice_line){l % 2 ? "b" : "a", position, power[l], l == 1 ? 0 : 3};
+        lines[l] =
+            (struct slice_line){l % 2 ? "b" : "a", position, power[l], l == 1 ? 0 : 3, l == 3 ? difference : NULL};
     const char *titles[] = {"t0", "t1"};
     char path[4096], text[400];
     path_in(path, "variables.svg");
     assert_drawn(plot_slices(path, folder, "title", 2, titles, 2, lines));
     file_to_text("variables.svg", text, sizeof text);
-    assert_string_equal(text, "title 2 2 t1 b\n3\n0.25 -1.00\n0\n-\n3\n0.25 -2.00\n3\n0.25 -3.00\n</svg>\n");
+    assert_string_equal(text,
+                        "title 2 2 t1 b\n1\n-200.0 3\n3\n0.25 -1.00\n0\n-\n3\n0.25 -2.00\n3\n0.25 -3.00\n</svg>\n");
     assert_nothing_left();
 }
 
@@ -327,6 +367,7 @@ int main(void)
         cmocka_unit_test(image_data_are_right),
         cmocka_unit_test(differences_curves_and_targets),
         cmocka_unit_test(slices_are_drawn),
+        cmocka_unit_test(families_are_told_by_name),
         cmocka_unit_test(slice_data_are_right),
         cmocka_unit_test(failures_are_told),
         cmocka_unit_test(cut_pictures_are_told),
