@@ -14,7 +14,7 @@ enum status bp_plan_traces(struct bp *bp)
     const struct acquisition *a = bp->problem.acquisition;
     bool is_double = bp->problem.precision == PRECISION_DOUBLE;
     enum status status = (is_double ? traces_plan_double : traces_plan_float)(
-        a, bp->table.upsample, bp->table.guard, omp_get_max_threads(), &bp->shape, &bp->traces);
+        a, bp->table.upsample, bp->table.branches - 1, bp->table.guard, omp_get_max_threads(), &bp->shape, &bp->traces);
     if (status == STATUS_OK)
         bp->work.bytes += bp->shape.bytes;
     return status;
@@ -32,10 +32,21 @@ void bp_fill_row(const struct bp *bp, int thread, const struct echoes *echoes, s
 /* Tabulate the interpolator's weights in the plan's precision. */
 static enum status tabulate(struct bp *bp, const struct interpolator *in, const void *options)
 {
-    bp->table = (struct bp_table){
-        .upsample = in->upsample, .steps = in->steps, .taps = in->taps, .first = in->first, .guard = in->taps};
+    bp->table = (struct bp_table){.upsample = in->upsample,
+                                  .steps = in->steps,
+                                  .taps = in->taps,
+                                  .first = in->first,
+                                  .guard = in->taps,
+                                  .branches = 1};
+    if (in->degree > 0)
+        bp->table = (struct bp_table){.reading = BP_BRANCHES,
+                                      .upsample = in->upsample,
+                                      .steps = 1,
+                                      .taps = in->degree + 1,
+                                      .guard = BP_BRANCHES_GUARD,
+                                      .branches = in->degree + 1};
     if (in->taps == 1)
-        return STATUS_OK; /* BP_NEAREST */
+        return STATUS_OK; /* BP_NEAREST, BP_BRANCHES */
     bool line = in->taps == 2 && in->steps > 0;
     size_t rows = in->steps > 0 ? (size_t)in->steps : 4 * (size_t)BP_INTERVALS, taps = (size_t)in->taps;
     double *w = malloc(rows * taps * sizeof *w), *at = malloc(4 * taps * sizeof *at);
@@ -214,7 +225,7 @@ struct work bp_work(const void *plan)
     struct work work = bp->work;
     double all = (double)a->pings * a->receivers * problem_pixels(&bp->problem);
     work.pairs = pairs_count(&bp->problem);
-    work.flops += work.pairs * (bp->table.taps == 1 ? 8 : 4.0 * bp->table.taps + 8);
+    work.flops += work.pairs * (4.0 * (bp->table.taps == 1 ? 0 : bp->table.taps - (bp->table.branches > 1)) + 8);
     if (work.pairs < all)
         snprintf(work.skipped, sizeof work.skipped, "%.3g %% of the pairs: outside the record%s",
                  100 * (1 - work.pairs / all), a->aperture_limit < 1 ? " or the aperture limit" : "");

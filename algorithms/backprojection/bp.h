@@ -17,6 +17,8 @@ struct interpolator {
     int upsample;    /* records are upsampled by zero padding (exactly) by this factor first; >= 1 */
     int steps;       /* > 0: q is rounded to the nearest multiple of 1/steps first, at most 4096; 0: it is not */
     int taps, first; /* taps >= 1; first <= 0 */
+    int degree;      /* > 0: in place of taps, the record's Farrow branches up to this power (farrow.h) are read at
+                        floor(q + 1/2); taps and steps are not used */
     /* Fill w[taps] for a fraction in [0, 1). Called while planning only; NULL when taps == 1 (the weight is 1). */
     void (*weights)(const void *options, double fraction, double *w);
     bool in_papers; /* BP22 Eq. (11) and LBF21 Eq. (23) count its FLOPs (struct work): published numbers are given */

@@ -44,6 +44,15 @@
                    19 bits of fraction (POINT_BITS). Nearest samples have 32 bits; the points   `point`
                    of cubics are 1/256 sample.
 
+   Polynomials (bp_farrow) err by the slope of the signal times what positions err by, without ties:
+
+   2^-33 sample    Fixed-point numbers with 32 bits of fraction (FIXED_32).                     runs.c, points:
+   (double)                                                                                     `point`
+
+   6e-7 sample     Runs that bend little, in float: fixed-point numbers with 23 bits of         runs.c, ladder_make
+   (float)         fraction along the line, plus the bend in float, 3 n 2^-24 cycles times
+                   fs/fc.
+
    harness/tests/algorithms/test_budget.c measures the phases, in all and what float adds alone, test_bp_general.c the
    positions (near_ties). */
 #ifndef SASBENCH_BACKPROJECTION_BUDGET_H

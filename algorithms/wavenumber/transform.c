@@ -157,7 +157,7 @@ static enum status plan_compression(struct wk *wk)
     struct traces_shape shape;
     enum status status = STATUS_OK;
     if (!a->compressed) {
-        status = REAL_NAME(traces_plan)(a, 1, 0, wk->threads, &shape, &wk->traces);
+        status = REAL_NAME(traces_plan)(a, 1, 0, 0, wk->threads, &shape, &wk->traces);
         if (status == STATUS_OK) {
             wk->work.bytes += shape.bytes;
             wk->work.flops += shape.flops * wk->pings;

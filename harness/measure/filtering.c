@@ -26,7 +26,7 @@ enum status filtering_open(const struct acquisition *acquisition, const struct s
     enum status status =
         polar_filter_plan_double(acquisition, &setting, omp_get_max_threads(), &filtering->shape, &filtering->filter);
     if (status == STATUS_OK)
-        status = traces_plan_double(acquisition, 1, 0, omp_get_max_threads(), &shape, &filtering->traces);
+        status = traces_plan_double(acquisition, 1, 0, 0, omp_get_max_threads(), &shape, &filtering->traces);
     if (status != STATUS_OK)
         filtering_close(filtering);
     return status;

@@ -152,13 +152,20 @@ enum status exact_ideal(const struct scene *scene, struct exact_sum *sums)
 
 /* --- A method's own reading of the samples ---------------------------------------------------------------------- */
 
+/* Points and weights of a quadrature over [-1, 1]. */
+struct gauss {
+    int count;
+    long double point[24], weight[24];
+};
+
 /* One record and what its reading needs. */
 struct trace {
     const double complex *samples;
     int count;
     const long double *cosine, *sine; /* [count] of pi n/N */
     const struct exact_reading *reading;
-    long double level; /* rms of the samples: what a transform's rounding is relative to */
+    struct gauss gauss; /* of polynomials */
+    long double level;  /* rms of the samples: what a transform's rounding is relative to */
 };
 
 struct value {
@@ -183,7 +190,7 @@ static struct value read_band(const struct trace *trace, long double q)
     const int count = trace->count;
     const long double i = floorl(q + 0.5L), f = q - i, n = count, turn = exact_pi * (q / n);
     const long double c = cosl(turn), s = sinl(turn), near = exact_pi * f / n, wave = sinl(exact_pi * f) / n;
-    const bool odd = count % 2 != 0;
+    const bool odd = count % 2 != 0, first_negative = fmodl(i, 2.0L) != 0.0L;
     struct value value = {0};
     for (int k = 0; k < count; k++) {
         long double below = s * trace->cosine[k] - c * trace->sine[k];
@@ -192,12 +199,63 @@ static struct value read_band(const struct trace *trace, long double q)
             below = sinl(near);
             above = odd ? 1.0L : cosl(near);
         }
-        const bool negative = fmodl(i - k, 2.0L) != 0.0L;
+        const bool negative = first_negative != (k % 2 != 0);
         const long double weight = k == i && f == 0.0L ? 1.0L : (negative ? -wave : wave) * above / below;
         value.re += weight * creal(trace->samples[k]);
         value.im += weight * cimag(trace->samples[k]);
     }
     value.size = hypotl(value.re, value.im) + trace->level;
+    return value;
+}
+
+/* The Legendre polynomial P_n(z). */
+static long double legendre(int n, long double z)
+{
+    long double before = 0.0L, now = 1.0L;
+    for (int k = 0; k < n; k++) {
+        const long double next = ((2 * k + 1) * z * now - k * before) / (k + 1);
+        before = now;
+        now = next;
+    }
+    return now;
+}
+
+/* Gauss's points in [-1, 1] and their weights, by Newton's method: what they leave of a polynomial of the degree
+   times a signal of half a cycle is below 1e-17. */
+static struct gauss gauss_make(int degree)
+{
+    struct gauss gauss = {.count = degree + 7};
+    for (int k = 0; k < gauss.count; k++) {
+        const int n = gauss.count;
+        long double z = cosl(exact_pi * (k + 0.75L) / (n + 0.5L)), slope = 1.0L;
+        for (int step = 0; step < 10; step++) {
+            slope = n * (z * legendre(n, z) - legendre(n - 1, z)) / (z * z - 1.0L);
+            z -= legendre(n, z) / slope;
+        }
+        gauss.point[k] = z;
+        gauss.weight[k] = 2.0L / ((1.0L - z * z) * slope * slope);
+    }
+    return gauss;
+}
+
+/* The polynomial nearest to the signal s within half a sample of `place` is the sum over n <= degree of (2n+1)
+   P_n(2u) times the integral of s(place + t) P_n(2t) over |t| <= 1/2; at u from there. No Bessel functions, no
+   spectrum. */
+static struct value read_polynomial(const struct trace *trace, long double place, long double u)
+{
+    const struct exact_reading *reading = trace->reading;
+    struct value value = {0};
+    for (int k = 0; k < trace->gauss.count; k++) {
+        const long double z = trace->gauss.point[k];
+        long double kernel = 0.0L;
+        for (int n = 0; n <= reading->degree; n++)
+            kernel += (2 * n + 1) * legendre(n, 2.0L * u) * legendre(n, z);
+        kernel *= trace->gauss.weight[k] / 2.0L;
+        const struct value s = read_band(trace, (place + z / 2.0L) / reading->upsample);
+        value.re += kernel * s.re;
+        value.im += kernel * s.im;
+        value.size += fabsl(kernel) * s.size;
+    }
     return value;
 }
 
@@ -244,9 +302,18 @@ static struct value read_position(const struct trace *trace, long double positio
         break;
     }
     case EXACT_SINC: return read_sinc(trace, position);
-    case EXACT_BAND: return read_band(trace, position);
+    case EXACT_BAND:
+    case EXACT_POLYNOMIAL: return read_band(trace, position);
     }
     return value;
+}
+
+/* At `fine` in upsampled samples, with the positions rounded as the method rounds them to `whole` of `steps`. */
+static struct value read_rounded(const struct trace *trace, long double fine, long double whole)
+{
+    if (trace->reading->kind == EXACT_POLYNOMIAL)
+        return read_polynomial(trace, whole, fine - whole);
+    return read_position(trace, whole / trace->reading->phases);
 }
 
 /* Add a pair: its value, and what becomes of it at the other side of a tie. */
@@ -262,10 +329,10 @@ static void add_pair(const struct trace *trace, const struct acquisition *a, con
     if (reading->phases > 0) {
         const long double steps = (long double)reading->upsample * reading->phases, fine = q * steps;
         const long double whole = floorl(fine + 0.5L), edge = 0.5L - fabsl(fine - whole);
-        value = read_position(trace, whole / reading->phases);
+        value = read_rounded(trace, fine, whole);
         if (edge <= slack * a->fs * steps + reading->slack_point * reading->phases) {
             const long double beside = fine > whole ? whole + 1.0L : whole - 1.0L;
-            const struct value other = read_position(trace, beside / reading->phases);
+            const struct value other = read_rounded(trace, fine, beside);
             sum->ties += hypotl(other.re - value.re, other.im - value.im);
         }
     } else {
@@ -306,6 +373,8 @@ enum status exact_method(const struct problem *problem, const double complex *sa
     for (size_t i = 0; i < pixels; i++)
         sums[i] = (struct exact_sum){0};
     struct trace trace = {.count = a->samples, .cosine = cosine, .sine = cosine + n, .reading = reading};
+    if (reading->kind == EXACT_POLYNOMIAL)
+        trace.gauss = gauss_make(reading->degree);
     for (int ping = 0; ping < a->pings; ping++)
         for (int m = 0; m < a->receivers; m++) {
             const struct exact_pair pair = exact_pair_of(a, ping, m);

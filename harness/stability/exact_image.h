@@ -19,9 +19,16 @@ struct exact_sum {
 
 /* How a method reads a record between its samples: rows as in struct interpolator (backprojection/bp.h). */
 struct exact_reading {
-    enum { EXACT_NEAREST, EXACT_LINEAR, EXACT_SINC, EXACT_BAND } kind; /* band: the band-limited record itself */
-    int upsample;                                                      /* nearest: by zero padding; else 1 */
+    enum {
+        EXACT_NEAREST,
+        EXACT_LINEAR,
+        EXACT_SINC,
+        EXACT_BAND,      /* the band-limited record itself */
+        EXACT_POLYNOMIAL /* around each sample the polynomial nearest to the band-limited record (least squares) */
+    } kind;
+    int upsample;       /* nearest, polynomial: by zero padding; else 1 */
     int phases;         /* > 0: positions are rounded to 1/phases of an upsampled sample */
+    int degree;         /* polynomial */
     int taps;           /* sinc */
     double kaiser;      /* sinc: the window's parameter, 0 for none */
     double slack_s;     /* delays are this uncertain in the method under test (s) */

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "backprojection/farrow.h"
+
 /* An option by name; `missing` where the algorithm has none. */
 static double option_value(const struct spec *spec, const char *name, double missing)
 {
@@ -23,7 +25,7 @@ static const struct {
     double error_most;
 } laws[] = {
     {"reference", EXACT_BAND, 1e-9}, {"bp_nearest", EXACT_NEAREST, 0.15}, {"bp_linear", EXACT_LINEAR, 0.12},
-    {"bp_sinc", EXACT_SINC, 0.06},   {"bp_zeropad", EXACT_NEAREST, 0.03},
+    {"bp_sinc", EXACT_SINC, 0.06},   {"bp_zeropad", EXACT_NEAREST, 0.03}, {"bp_farrow", EXACT_POLYNOMIAL, 1e-3},
 };
 enum { LAWS = sizeof laws / sizeof *laws };
 
@@ -62,6 +64,13 @@ struct method method_of(const struct spec *spec, const char *engine, const struc
     if (method.reading.kind == EXACT_NEAREST || method.reading.kind == EXACT_LINEAR)
         method.reading.phases = (int)option_value(spec, "beta", 0) + 1;
     method.reading.upsample = (int)option_value(spec, "factor", 1);
+    if (method.reading.kind == EXACT_POLYNOMIAL) {
+        const int choice = (int)option_value(spec, "degree", 0);
+        const double band = acquisition->bandwidth / (acquisition->fs * method.reading.upsample);
+        method.reading.phases = 1;
+        method.reading.degree =
+            choice > 0 ? FARROW_LEAST + choice - 1 : farrow_degree(option_value(spec, "error", 0), band);
+    }
     if (method.reading.kind == EXACT_SINC) {
         method.reading.taps = (int)option_value(spec, "taps", 8);
         if (option_value(spec, "window", 0) != 0) {

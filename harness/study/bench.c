@@ -30,10 +30,8 @@ static const struct method {
     const char *name, *settings;
     double pair_flops;
 } methods[] = {
-    {"bp_nearest", "", 8},
-    {"bp_linear", "beta=8,", 16},
-    {"bp_sinc", "taps=8,", 40},
-    {"bp_zeropad", "factor=8,", 8},
+    {"bp_nearest", "", 8},          {"bp_linear", "beta=8,", 16},   {"bp_sinc", "taps=8,", 40},
+    {"bp_zeropad", "factor=8,", 8}, {"bp_farrow", "degree=3,", 20}, {"bp_farrow", "degree=5,", 28},
 };
 enum { METHODS = sizeof methods / sizeof *methods };
 

@@ -1,7 +1,7 @@
-/* Runs of pixels take values from records, nearest samples, between two on a line or by a kernel of many taps, which
-   are fixed by their phase and added to the sums. Copies of samples are the limit: those of neighbouring pixels are
-   loaded together where they lie near each other. This file is compiled once for each precision and instruction set
-   (BP_ISA names it). */
+/* Runs of pixels take values from records, nearest samples, between two on a line, by polynomials from Farrow
+   branches or by a kernel of many taps, which are fixed by their phase and added to the sums. Copies of samples are
+   the limit: those of neighbouring pixels are loaded together where they lie near each other. This file is compiled
+   once for each precision and instruction set (BP_ISA names it). */
 #include "backprojection/general/run.h"
 #include "common/phasor.h"
 
@@ -21,6 +21,28 @@
 #define REPEAT(from)        (vector_real) _mm256_broadcast_ps((const __m128 *)(from))
 #define SECONDS             1, 1, 1, 1, 5, 5, 5, 5
 #define QUADS(v)            __builtin_shufflevector(v(0), v(1), 0, 1, 2, 3, 4, 5, 6, 7)
+#endif
+#endif
+
+#if PERMUTES
+#include <immintrin.h>
+/* Values of a window by an index of each pixel's, of which the lowest bits count. BLOCKS: the window is two vectors,
+   `next` after `values`; else it is one. */
+#if BLOCKS && REAL_DOUBLE
+typedef long long vector_index __attribute__((vector_size(VECTOR_BYTES)));
+#define PERMUTE(values, next, index)                                                                                   \
+    (vector_real) _mm512_permutex2var_pd((__m512d)(values), (__m512i)(index), (__m512d)(next))
+#elif BLOCKS
+typedef vector_int vector_index;
+#define PERMUTE(values, next, index)                                                                                   \
+    (vector_real) _mm512_permutex2var_ps((__m512)(values), (__m512i)(index), (__m512)(next))
+#elif REAL_DOUBLE
+typedef long long vector_index __attribute__((vector_size(VECTOR_BYTES))); /* AVX2 permutes floats alone, by halves */
+#define PERMUTE(values, next, index)                                                                                   \
+    (vector_real) _mm256_permutevar8x32_ps((__m256)(values), (__m256i)(2 * (index) + (2 * (index) + 1) * (1LL << 32)))
+#else
+typedef vector_int vector_index;
+#define PERMUTE(values, next, index) (vector_real) _mm256_permutevar8x32_ps((__m256)(values), (__m256i)(index))
 #endif
 #endif
 
@@ -102,42 +124,113 @@ INLINE vector_real take_apart(bool line, const real *row, const struct run *run,
     return value + *at(run->rest + i) * (next - value);
 }
 
-/* Add to LANES pixels from i on what they take from a record: the nearest value each, or between two on a line. */
-INLINE void take(bool line, enum loading loading, const real *row, size_t row_length, const struct run *run, int i,
+/* Where a record's branches are read: its first value, and the place there of the run's sample 0. */
+struct record {
+    const real *values;
+    int place;
+};
+
+#if PERMUTES
+/* Polynomials of a record's branches at the pixels' samples, by Horner's rule, out of windows that hold the samples
+   of all (run.h, ITS GATHER). */
+INLINE void take_branches_together(int branches, struct record record, size_t apart, const struct run *run, int i,
+                                   vector_real *re, vector_real *im)
+{
+    const int *index = run->sample + i;
+    const int middle = index[MIDDLE_LANE] + record.place;
+    const vector_real u = *at(run->rest + i);
+    const int first = BLOCKS ? (middle - LANES / 2) & -LANES : middle - MIDDLE_LANE;
+    const vector_index place =
+        __builtin_convertvector(*(const vector_int *)index + (record.place - first), vector_index);
+    const size_t part = BLOCKS ? LANES : apart, block = 2 * (size_t)branches * LANES;
+    const real *from = record.values + (BLOCKS ? (size_t)first / LANES * block : (size_t)first);
+#define WINDOW_OF(n) PERMUTE(*at(from + (n)*part), *at(from + (n)*part + block), place)
+    vector_real x = WINDOW_OF(2 * (size_t)branches - 2), y = WINDOW_OF(2 * (size_t)branches - 1);
+    for (int m = branches - 2; m >= 0; m--) {
+        x = x * u + WINDOW_OF(2 * (size_t)m);
+        y = y * u + WINDOW_OF(2 * (size_t)m + 1);
+    }
+    *re = x;
+    *im = y;
+}
+#endif
+
+/* The same pixel by pixel. */
+INLINE void take_branches_apart(int branches, struct record record, size_t apart, const struct run *run, int i,
+                                vector_real *re, vector_real *im)
+{
+    const vector_real u = *at(run->rest + i);
+    const size_t part = BLOCKS ? LANES : apart;
+    int index[LANES];
+    vector_real x = {0}, y = {0};
+    for (int k = 0; k < LANES; k++) {
+        const int place = run->sample[i + k] + record.place;
+        index[k] = BLOCKS ? place / LANES * (2 * branches * LANES) + place % LANES : place;
+    }
+    for (int m = branches - 1; m >= 0; m--) {
+        x = x * u + gather_one(record.values + 2 * (size_t)m * part, index);
+        y = y * u + gather_one(record.values + (2 * (size_t)m + 1) * part, index);
+    }
+    *re = x;
+    *im = y;
+}
+
+/* How a value is taken: the nearest one, between two on a line, or from `branches` > 1. Constants where inlined. */
+struct taking {
+    bool line;
+    int branches;
+    enum loading loading;
+};
+
+/* Add to LANES pixels from i on what they take from a record. */
+INLINE void take(struct taking taking, struct record record, size_t apart, const struct run *run, int i,
                  vector_real *re, vector_real *im)
 {
+    const real *row = record.values;
     vector_real c, s, x, y;
 #if WINDOWS
-    if (loading != APART) {
+    if (taking.loading != APART)
         phasor_short(*at(run->cycles + i), &c, &s);
-        take_windows(line, loading, row, row_length, run, i, &x, &y);
-    } else
+    else
 #endif
-    {
-        (void)loading;
         phasor_vector(*at(run->cycles + i), &c, &s);
-        x = take_apart(line, row, run, i);
-        y = take_apart(line, row + row_length, run, i);
+#if PERMUTES
+    if (taking.branches > 1 && taking.loading == TOGETHER)
+        take_branches_together(taking.branches, record, apart, run, i, &x, &y);
+    else
+#endif
+        if (taking.branches > 1)
+        take_branches_apart(taking.branches, record, apart, run, i, &x, &y);
+#if WINDOWS
+    else if (taking.loading != APART)
+        take_windows(taking.line, taking.loading, row, apart, run, i, &x, &y);
+#endif
+    else {
+        x = take_apart(taking.line, row, run, i);
+        y = take_apart(taking.line, row + apart, run, i);
     }
     *re = *re + x * c - y * s;
     *im = *im + x * s + y * c;
 }
 
 /* One run of each of a group's records; `receivers` is the group's, as a constant where this is inlined. */
-INLINE void add_taken(bool line, enum loading loading, int receivers, const struct receiver_group *group,
-                      struct run *runs, int count, real *re, real *im)
+INLINE void add_taken(struct taking taking, int receivers, const struct receiver_group *group, struct run *runs,
+                      int count, real *re, real *im)
 {
-    const real *from[GROUP_RECEIVERS];
-    const size_t row_length = group->row_length;
+    struct record from[GROUP_RECEIVERS];
+    const struct bp_layout layout = group->layout;
     int i = 0;
     for (int g = 0; g < receivers; g++) {
-        from[g] = group->row + group->table->guard + group->table->first + 2 * (size_t)g * row_length + runs[g].base;
-        OPAQUE(from[g]);
+        const int place = group->table->guard + group->table->first + runs[g].base;
+        const bool whole = taking.branches > 1;
+        from[g].values = group->row + (size_t)g * layout.record + (whole ? 0 : place);
+        from[g].place = whole ? place : 0;
+        OPAQUE(from[g].values);
     }
     for (; i <= count - LANES; i += LANES) {
         vector_real x = *at(re + i), y = *at(im + i);
         for (int g = 0; g < receivers; g++)
-            take(line, loading, from[g], row_length, &runs[g], i, &x, &y);
+            take(taking, from[g], layout.apart, &runs[g], i, &x, &y);
         *at(re + i) = x;
         *at(im + i) = y;
     }
@@ -149,7 +242,7 @@ INLINE void add_taken(bool line, enum loading loading, int receivers, const stru
             runs[g].sample[k] = runs[g].sample[count - 1];
             runs[g].rest[k] = runs[g].cycles[k] = 0;
         }
-        take(line, loading, from[g], row_length, &runs[g], i, &x, &y);
+        take(taking, from[g], layout.apart, &runs[g], i, &x, &y);
     }
     for (int k = 0; i + k < count; k++) {
         re[i + k] += x[k];
@@ -157,27 +250,40 @@ INLINE void add_taken(bool line, enum loading loading, int receivers, const stru
     }
 }
 
-/* `loading` is a constant where this is inlined. */
-INLINE void add_group(bool line, enum loading loading, const struct receiver_group *group, struct run *runs, int count,
-                      real *re, real *im)
+/* `taking` is a constant where this is inlined. */
+INLINE void add_group(struct taking taking, const struct receiver_group *group, struct run *runs, int count, real *re,
+                      real *im)
 {
     if (group->receivers == GROUP_RECEIVERS) {
-        add_taken(line, loading, GROUP_RECEIVERS, group, runs, count, re, im);
+        add_taken(taking, GROUP_RECEIVERS, group, runs, count, re, im);
         return;
     }
     struct receiver_group one = *group;
     one.receivers = 1;
-    for (int g = 0; g < group->receivers; g++, one.row += 2 * one.row_length)
-        add_taken(line, loading, 1, &one, &runs[g], count, re, im);
+    for (int g = 0; g < group->receivers; g++, one.row += one.layout.record)
+        add_taken(taking, 1, &one, &runs[g], count, re, im);
 }
 
 INLINE void add_all(enum loading loading, const struct receiver_group *group, struct run *runs, int count, real *re,
                     real *im)
 {
     if (group->table->reading == BP_LINE)
-        add_group(true, loading, group, runs, count, re, im);
+        add_group((struct taking){true, 1, loading}, group, runs, count, re, im);
     else
-        add_group(false, loading, group, runs, count, re, im);
+        add_group((struct taking){false, 1, loading}, group, runs, count, re, im);
+}
+
+/* The usual degrees unroll, any other one works as well. */
+INLINE void add_branches(enum loading loading, const struct receiver_group *group, struct run *runs, int count,
+                         real *re, real *im)
+{
+    const int branches = group->table->branches;
+    switch (branches) {
+    case 4: add_group((struct taking){false, 4, loading}, group, runs, count, re, im); break;
+    case 5: add_group((struct taking){false, 5, loading}, group, runs, count, re, im); break;
+    case 6: add_group((struct taking){false, 6, loading}, group, runs, count, re, im); break;
+    default: add_group((struct taking){false, branches, loading}, group, runs, count, re, im); break;
+    }
 }
 
 /* Many weights, from a table of steps or from cubics in the fraction; the record's parts lie apart. `taps` is a
@@ -226,9 +332,16 @@ void BP_GATHER(const struct receiver_group *group, enum loading loading, int cou
         }
         return;
     }
-    const size_t length = group->row_length;
+    if (table->reading == BP_BRANCHES) {
+        if (PERMUTES && loading == TOGETHER)
+            add_branches(TOGETHER, group, runs, count, re, im);
+        else
+            add_branches(APART, group, runs, count, re, im);
+        return;
+    }
+    const size_t length = group->layout.apart;
     const real *row = group->row + table->guard + table->first;
-    for (int g = 0; g < group->receivers; g++, row += 2 * length) {
+    for (int g = 0; g < group->receivers; g++, row += group->layout.record) {
         const real *from = row + runs[g].base;
         switch (table->taps) { /* the shipped kernels unroll, any other length works as well */
         case 8: add_taps(table, 8, from, from + length, count, &runs[g], re, im); break;

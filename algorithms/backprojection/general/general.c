@@ -22,9 +22,10 @@ struct general {
     bp_sum_function *sum;
     struct vector *normal;  /* [pings] acquisition_normal */
     struct ping_box *boxes; /* [pings] */
-    int batch;              /* rows */
-    void *rows;             /* [batch][2 shape.length] real: re, then im; one value more may be read */
-    void *interleaved;      /* complex [threads][shape.length] */
+    int batch;              /* records */
+    struct bp_layout layout;
+    void *rows;        /* real [batch][layout.record]; one value more may be read */
+    void *interleaved; /* complex [threads][branches][shape.length] */
     int patch_count;
     bool *along_x; /* [patch_count] the lines' direction */
     void **sums;   /* [patch_count]: re then im, real [lines][pixels of a line] each */
@@ -79,6 +80,21 @@ static double lines_cost(const struct ping_box *box, const struct grid *grid, bo
     return cost;
 }
 
+/* One block more than a record has: windows are two. */
+static struct bp_layout layout_make(const struct bp *bp)
+{
+    const size_t length = (size_t)bp->shape.length, parts = 2 * (size_t)bp->shape.branches;
+    struct bp_layout layout = {.apart = length, .blocks = 1};
+#ifdef SASBENCH_X86_64
+    if (bp->table.reading == BP_BRANCHES && isa_choose() == ISA_V4) {
+        layout.apart = 64 / real_size(bp->problem.precision);
+        layout.blocks = (int)((length + layout.apart - 1) / layout.apart) + 1;
+    }
+#endif
+    layout.record = (size_t)layout.blocks * parts * layout.apart;
+    return layout;
+}
+
 static enum status general_plan(struct bp *bp)
 {
     const struct problem *problem = &bp->problem;
@@ -93,12 +109,14 @@ static enum status general_plan(struct bp *bp)
     if (!((double)a->samples * fine < INT_MAX))
         return status_set(STATUS_UNSUPPORTED, "records of %d samples with %d points each are too long to index",
                           a->samples, fine);
-    size_t size = real_size(problem->precision), row_bytes = (size_t)bp->shape.length * 2 * size;
+    general->layout = layout_make(bp);
+    size_t size = real_size(problem->precision), row_bytes = general->layout.record * size;
     double pairs = (double)a->pings * a->receivers;
     general->sum = sum_functions[isa_choose()][problem->precision];
     general->batch = (int)fmin(pairs, fmax(BATCH_LEAST, (double)(BATCH_BYTES / row_bytes)));
     general->rows = aligned_alloc(64, ((size_t)general->batch * row_bytes + size + 63) / 64 * 64);
-    general->interleaved = malloc((size_t)omp_get_max_threads() * row_bytes);
+    const size_t interleaved = 2 * (size_t)bp->shape.branches * (size_t)bp->shape.length * size;
+    general->interleaved = malloc((size_t)omp_get_max_threads() * interleaved);
     general->normal = calloc((size_t)a->pings, sizeof *general->normal);
     general->boxes = calloc((size_t)a->pings, sizeof *general->boxes);
     general->patch_count = problem->patch_count;
@@ -121,7 +139,7 @@ static enum status general_plan(struct bp *bp)
         if (!general->sums[k])
             return status_set(STATUS_FAILED, "no memory for the sums of %zu pixels", pixels);
     }
-    bp->work.bytes += sizeof *general + (general->batch + 1.0) * (double)row_bytes
+    bp->work.bytes += sizeof *general + general->batch * (double)row_bytes + (double)interleaved
                       + (double)a->pings * (double)(sizeof *general->normal + sizeof *general->boxes)
                       + problem_pixels(problem) * 2 * (double)size;
     return STATUS_OK;
@@ -157,14 +175,14 @@ static void sum_line(const struct bp *bp, int k, int number, size_t first, int c
     const struct grid *grid = &bp->problem.patches[k];
     const struct pixel_line line = grid_line(grid, general->along_x[k], number);
     size_t pixels = (size_t)grid->x_count * (size_t)grid->r_count, size = real_size(bp->problem.precision);
-    size_t row_bytes = (size_t)bp->shape.length * 2 * size, end = first + (size_t)count;
+    size_t row_bytes = general->layout.record * size, end = first + (size_t)count;
     char *re = (char *)general->sums[k] + (size_t)number * (size_t)line.count * size, *im = re + pixels * size;
     for (size_t index = first; index < end;) {
         int p = (int)(index / (size_t)a->receivers), m = (int)(index % (size_t)a->receivers);
-        struct bp_ping ping = {a->tx[p],        a->velocity[p],
-                               a->t0[p],        a->receivers - m,
-                               a->rx + index,   (const char *)general->rows + (index - first) * row_bytes,
-                               bp->shape.length};
+        struct bp_ping ping = {a->tx[p],       a->velocity[p],
+                               a->t0[p],       a->receivers - m,
+                               a->rx + index,  (const char *)general->rows + (index - first) * row_bytes,
+                               general->layout};
         if (end - index < (size_t)ping.receivers)
             ping.receivers = (int)(end - index);
         struct pair_span aperture[2], record[2];
@@ -211,23 +229,40 @@ static void store(const struct bp *bp, int k, void *pixels)
         }
 }
 
+/* One branch, complex [length], into its blocks. */
+#define SPREAD(real)                                                                                                   \
+    do {                                                                                                               \
+        const real *values = (const real *)from + 2 * branch * length;                                                 \
+        real *to = (real *)row + 2 * branch * block;                                                                   \
+        for (size_t left = length, k = 0; k < (size_t)layout->blocks; k++, to += step) {                               \
+            const size_t count = left < block ? left : block;                                                          \
+            for (size_t i = 0; i < count; i++) {                                                                       \
+                to[i] = values[2 * i];                                                                                 \
+                to[block + i] = values[2 * i + 1];                                                                     \
+            }                                                                                                          \
+            for (size_t i = count; i < block; i++)                                                                     \
+                to[i] = to[block + i] = 0;                                                                             \
+            values += 2 * count;                                                                                       \
+            left -= count;                                                                                             \
+        }                                                                                                              \
+    } while (0)
+
 /* Compress one record into row n of the batch. */
 static void fill(const struct bp *bp, const struct echoes *echoes, size_t index, int n)
 {
     const struct general *general = bp->state;
-    size_t length = (size_t)bp->shape.length, row_bytes = length * 2 * real_size(bp->problem.precision);
+    const struct bp_layout *layout = &general->layout;
+    const size_t branches = (size_t)bp->shape.branches, length = (size_t)bp->shape.length;
+    const size_t block = layout->apart, step = 2 * branches * block, size = real_size(bp->problem.precision);
     int thread = omp_get_thread_num();
-    void *row = (char *)general->rows + (size_t)n * row_bytes;
-    void *from = (char *)general->interleaved + (size_t)thread * row_bytes;
+    void *row = (char *)general->rows + (size_t)n * layout->record * size;
+    void *from = (char *)general->interleaved + (size_t)thread * 2 * branches * length * size;
     bp_fill_row(bp, thread, echoes, index, from);
-    for (size_t i = 0; i < length; i++)
-        if (bp->problem.precision == PRECISION_DOUBLE) {
-            ((double *)row)[i] = ((const double *)from)[2 * i];
-            ((double *)row)[length + i] = ((const double *)from)[2 * i + 1];
-        } else {
-            ((float *)row)[i] = ((const float *)from)[2 * i];
-            ((float *)row)[length + i] = ((const float *)from)[2 * i + 1];
-        }
+    for (size_t branch = 0; branch < branches; branch++)
+        if (bp->problem.precision == PRECISION_DOUBLE)
+            SPREAD(double);
+        else
+            SPREAD(float);
 }
 
 static void general_execute(struct bp *bp, const struct echoes *echoes, struct image *image, struct stages *stages)

@@ -30,6 +30,11 @@
    one of m. A slope below 1/2 does so for four pixels. loading_choose does so by the slope, with a slack of 0.01 for
    rounding. On steeper slopes, in double and without AVX each pixel loads its own samples (APART).
 
+   Farrow branches (BP_BRANCHES) take a window from each branch with AVX2 in either precision. It is a vector from
+   MIDDLE_LANE samples before m on; the pixel furthest from the middle, LANES/2 away, must be less than MIDDLE_LANE
+   samples from it: slopes below 1 - 2/LANES. With AVX-512 it is two whole blocks of LANES samples, of which m lies in
+   the middle half: slopes below 1. All branches of a block lie side by side, and blocks begin at cache lines.
+
    PART, EVEN, ODD: an example of 8 lanes (float, AVX2). Positions are double, so that 8 pixels are two vectors of 4
    doubles. The cheapest shuffle works inside each 128 bits, and takes two words of either operand there. PART orders
    the pixels so that one such shuffle brings them in order. With l the low and h the high word of a pixel's double:
@@ -54,6 +59,7 @@
    Where the index comes from, by the way of reading (enum bp_reading):
 
        BP_NEAREST             FIXED_32   sample = high word - FIXED_32_HIGH, which is the high word of FIXED_32
+       BP_BRANCHES            FIXED_32   the same; rest = low word 2^-32 - 1/2, the distance from the sample
        BP_LINE, BP_STEPS      FIXED_19   sample = low word >> 19; step = fraction x steps >> 19 (steps <= BP_STEPS_MOST)
        BP_CUBICS              FIXED_19   all 64 bits >> 19 leave 32 bits of whole part: interval = its lowest 8 bits
                                          (BP_INTERVAL_BITS), sample = the others; rest = fraction 2^-19
@@ -75,6 +81,14 @@
 #else
 #define WINDOWS 0
 #endif
+/* Is there an instruction that permutes a whole vector by another one? */
+#if defined __AVX2__
+#define PERMUTES 1
+#else
+#define PERMUTES 0
+#endif
+/* Can it take the values from two vectors? Then the samples of Farrow branches lie in blocks (struct bp_layout). */
+#define BLOCKS (VECTOR_BYTES == 64)
 
 #define INLINE static inline __attribute__((always_inline))
 
@@ -101,7 +115,8 @@ struct run {
     int base; /* sample of the upsampled record from which the others are counted */
     _Alignas(VECTOR_BYTES) int sample[RUN_PIXELS];  /* on from which the taps are counted */
     _Alignas(VECTOR_BYTES) int step[RUN_PIXELS];    /* row of the table of weights; where one is used */
-    _Alignas(VECTOR_BYTES) real rest[RUN_PIXELS];   /* position in the interval of a cubic, or a line's fraction */
+    _Alignas(VECTOR_BYTES) real rest[RUN_PIXELS];   /* position in the interval of a cubic, a line's fraction, or the
+                                                       distance from the sample whose branches are read */
     _Alignas(VECTOR_BYTES) real cycles[RUN_PIXELS]; /* phase, |cycles| <= 1/2 */
 };
 
@@ -117,8 +132,8 @@ struct receiver_group {
     const struct scale *scale;
     double phase_limit; /* rad */
     int receivers;      /* 1 to GROUP_RECEIVERS */
-    const real *row;    /* [receivers][2 row_length] their records (struct bp_ping) */
-    size_t row_length;
+    const real *row;    /* their records (struct bp_ping) */
+    struct bp_layout layout;
     real *re, *im; /* sums of the line's pixel 0 */
 };
 
@@ -137,9 +152,13 @@ void BP_GATHER(const struct receiver_group *group, enum loading loading, int cou
 static const double node[NODES] = {-0.96592582628906829, -0.70710678118654752, -0.25881904510252076,
                                    0.25881904510252076,  0.70710678118654752,  0.96592582628906829};
 
+/* The pixel of a vector whose sample its window is placed by. */
+enum { MIDDLE_LANE = LANES / 2 - 1 };
+
 /* Fixed-point numbers: what brings a double to 19 or to 32 bits of fraction, the worth of their last bits. */
 enum { POINT_BITS = 19, POINTS_MOST = 4000, FIXED_32_HIGH = 0x41380000 };
 #define FIXED_19 0x1.8p33
+#define FIXED_23 0x1.8p29
 #define FIXED_32 0x1.8p20
 #define LAST_19  ((real)0x1p-19)
 #define LAST_32  ((real)0x1p-32)

@@ -2,6 +2,7 @@
    gather.c takes up. Delay and phase are double, reduced to a fraction of a cycle before they become `real`; where
    lines bend little, only their straight part is. This file is compiled once for each precision and instruction set
    (BP_ISA names it). */
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -81,7 +82,7 @@ INLINE void quintics(double (*tau)[GROUP_RECEIVERS], const struct scale *scale, 
 INLINE void points(double (*quintic)[GROUP_RECEIVERS], int g, const struct scale *scale, double first, int count,
                    enum bp_reading reading, int steps, struct run *run)
 {
-    const bool nearest = reading == BP_NEAREST, cubics = reading == BP_CUBICS;
+    const bool nearest = reading == BP_NEAREST || reading == BP_BRANCHES, cubics = reading == BP_CUBICS;
     double c[NODES], begin = 0;
     for (int k = NODES - 1; k >= 0; k--) {
         c[k] = quintic[k][g];
@@ -106,6 +107,8 @@ INLINE void points(double (*quintic)[GROUP_RECEIVERS], int g, const struct scale
         }
         vector_int sample = LOW(point), rest = sample & ((1 << POINT_BITS) - 1);
         if (nearest) {
+            if (reading == BP_BRANCHES)
+                *at(run->rest + i) = __builtin_convertvector(sample ^ INT_MIN, vector_real) * LAST_32;
             sample = HIGH(point) - FIXED_32_HIGH;
         } else if (cubics) {
             sample = LOW(whole);
@@ -151,11 +154,31 @@ INLINE void flatten(double (*quintic)[GROUP_RECEIVERS], const struct scale *scal
     }
 }
 
-/* The same as points() for a run that bends little: the line's cycles are a fixed-point number that is counted on, the
-   bend is a float. Points are floats that are counted from the run's middle. */
-INLINE void points_flat(const struct flat *flat, int g, const struct scale *scale, int count, bool line, int steps,
-                        struct run *run)
+/* Points of a run that bends little for BP_BRANCHES: fixed-point numbers of 23 bits of fraction along the line, which
+   are counted on, and what bend and rounded step add in float. */
+struct ladder {
+    vector_unsigned point;
+    unsigned step;                    /* of a vector */
+    real points_a_cycle, points_left; /* 2^-23: bend of a cycle, and what the step leaves out for each pixel */
+};
+
+INLINE struct ladder ladder_make(const struct flat *flat, int g, const struct scale *scale, double begin, double middle)
 {
+    const double exact = LANES * flat->point[1][g] * 0x1p23, step = floor(exact + 0.5);
+    const double slope = step * (0x1p-23 / LANES);
+    vector_double fixed[2] = {PART(LANE, 0), PART(LANE, 2)};
+    for (int k = 0; k < (int)PARTS; k++)
+        fixed[k] = (fixed[k] + begin) * slope + (flat->point[0][g] + scale->shift - middle + FIXED_23);
+    return (struct ladder){(vector_unsigned)LOW(fixed), (unsigned)(int)step, (real)(0x1p23 / scale->ratio),
+                           (real)((exact - step) / LANES)};
+}
+
+/* The same as points() for a run that bends little: the line's cycles are a fixed-point number that is counted on,
+   the bend is a float. Points are floats that are counted from the run's middle; those of branches are ladders. */
+INLINE void points_flat(const struct flat *flat, int g, const struct scale *scale, int count, enum bp_reading reading,
+                        int steps, struct run *run)
+{
+    const bool line = reading == BP_LINE, branches = reading == BP_BRANCHES;
     const double begin = -0.5 * (count - 1), slope = flat->cycles[1][g], step = LANES * slope;
     const double base = flat->cycles[0][g] - floor(flat->cycles[0][g] + begin * slope) + FIXED_32;
     vector_double fixed[2] = {PART(LANE, 0), PART(LANE, 2)};
@@ -163,18 +186,26 @@ INLINE void points_flat(const struct flat *flat, int g, const struct scale *scal
         fixed[k] = (fixed[k] + begin) * slope + base;
     vector_unsigned cycles = (vector_unsigned)LOW(fixed);
     const unsigned cycles_step = (unsigned)(long long)((step - floor(step)) * 0x1p32);
-    const double middle = floor(flat->point[0][g]);
+    const double middle = floor(flat->point[0][g] + (branches ? scale->shift : 0));
     const real first = (real)(flat->point[0][g] - middle + (line ? scale->shift : 0)), second = (real)flat->point[1][g];
     const real c2 = flat->bend[0][g], c3 = flat->bend[1][g], c4 = flat->bend[2][g], c5 = flat->bend[3][g];
     const real points_a_cycle = (real)(1 / scale->ratio), one_step = 1 / (real)steps;
     vector_real u = ALL(LANE);
     u += (real)begin;
     run->base = (int)middle;
+    struct ladder ladder = ladder_make(flat, g, scale, begin, middle);
     for (int i = 0; i < count; i += LANES) {
         vector_real bend = u * u * (c2 + u * (c3 + u * (c4 + u * c5)));
         vector_real cycle = __builtin_convertvector((vector_int)cycles, vector_real) * LAST_32 + bend;
         vector_real point = first + u * second + bend * points_a_cycle;
-        if (line) {
+        if (branches) {
+            const vector_real more = u * ladder.points_left + bend * ladder.points_a_cycle;
+            const vector_int fixed_point = (vector_int)(ladder.point + (vector_unsigned)NEAREST(more));
+            *(vector_int *)(run->sample + i) = fixed_point >> 23;
+            *at(run->rest + i) =
+                __builtin_convertvector(fixed_point & ((1 << 23) - 1), vector_real) * (real)0x1p-23 - (real)0.5;
+            ladder.point += ladder.step;
+        } else if (line) {
             vector_real whole = FLOOR(point);
             *(vector_int *)(run->sample + i) = WHOLE(whole);
             *at(run->rest + i) = FLOOR((point - whole) * (real)steps) * one_step;
@@ -187,10 +218,12 @@ INLINE void points_flat(const struct flat *flat, int g, const struct scale *scal
 }
 #endif
 
-/* How the samples of neighbouring pixels are loaded, `slope` points apart at the most. */
-INLINE enum loading loading_choose(double slope)
+/* How the samples of neighbouring pixels are loaded, `slope` points apart at the most. Branches: by windows (run.h). */
+INLINE enum loading loading_choose(enum bp_reading reading, double slope)
 {
     const double slack = 0.01; /* for rounding */
+    if (reading == BP_BRANCHES)
+        return PERMUTES && slope < (BLOCKS ? 1 : 1 - 2.0 / LANES) - slack ? TOGETHER : APART;
     return !WINDOWS || slope > 0.5 - slack ? APART : slope > 2.0 / LANES - slack ? FOURS : TOGETHER;
 }
 
@@ -202,7 +235,7 @@ INLINE int flat_longest(const struct receiver_group *group, enum loading loading
     const double ratio = group->scale->ratio, half_run = sqrt(2 * budget_bend(group->phase_limit) / (bend * ratio));
     const int longest = 2 * half_run < RUN_PIXELS ? (int)(2 * half_run) / LANES * LANES : RUN_PIXELS;
     const bool flat = loading == TOGETHER && longest >= FLAT_LEAST && ratio > RATIO_LEAST
-                      && (reading == BP_NEAREST || reading == BP_LINE);
+                      && (reading == BP_NEAREST || reading == BP_LINE || reading == BP_BRANCHES);
     return flat ? longest : 0;
 }
 
@@ -213,10 +246,11 @@ INLINE void runs_flat(const struct receiver_group *group, double (*quintic)[GROU
     struct flat lines;
     flatten(quintic, group->scale, middle, &lines);
     for (int g = 0; g < group->receivers; g++)
-        if (table->reading == BP_LINE)
-            points_flat(&lines, g, group->scale, count, true, table->steps, &runs[g]);
-        else
-            points_flat(&lines, g, group->scale, count, false, 1, &runs[g]);
+        switch (table->reading) {
+        case BP_LINE: points_flat(&lines, g, group->scale, count, BP_LINE, table->steps, &runs[g]); break;
+        case BP_BRANCHES: points_flat(&lines, g, group->scale, count, BP_BRANCHES, 1, &runs[g]); break;
+        default: points_flat(&lines, g, group->scale, count, BP_NEAREST, 1, &runs[g]); break;
+        }
 }
 #endif
 
@@ -231,6 +265,7 @@ INLINE void runs_fixed(const struct receiver_group *group, double (*quintic)[GRO
         case BP_LINE: points(quintic, g, scale, first, count, BP_LINE, steps, &runs[g]); break;
         case BP_STEPS: points(quintic, g, scale, first, count, BP_STEPS, steps, &runs[g]); break;
         case BP_CUBICS: points(quintic, g, scale, first, count, BP_CUBICS, 1, &runs[g]); break;
+        case BP_BRANCHES: points(quintic, g, scale, first, count, BP_BRANCHES, 1, &runs[g]); break;
         }
     }
 }
@@ -242,7 +277,7 @@ void BP_RUNS(const struct receiver_group *group, const struct bp_block *block, d
     const double half = 0.5 * (block->end - 1 - block->begin), middle = block->begin + half;
     double slope, bend;
     quintics(tau, group->scale, half, c, &slope, &bend);
-    const enum loading loading = loading_choose(slope);
+    const enum loading loading = loading_choose(group->table->reading, slope);
     /* Cubics have 32 bits for the whole part of a point. */
     const bool fits = group->table->reading == BP_CUBICS || slope * RUN_PIXELS <= POINTS_MOST;
     int longest = fits ? RUN_PIXELS : (int)fmax(1, POINTS_MOST / slope);

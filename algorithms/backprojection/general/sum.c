@@ -98,7 +98,7 @@ static void sum_exact(const struct line_sum *sum, const struct bp_ping *ping, in
     struct run run;
     double tau[RUN_PIXELS];
     const struct motion motion = motion_make(medium, ping);
-    const bool cubics = table->reading == BP_CUBICS;
+    const bool cubics = table->reading == BP_CUBICS, branches = table->reading == BP_BRANCHES;
     const double one = cubics ? BP_INTERVALS : table->steps, last = (medium->samples - 1.0) * table->upsample;
     run.base = 0;
     for (int first = begin; first < end; first += RUN_PIXELS) {
@@ -125,28 +125,45 @@ static void sum_exact(const struct line_sum *sum, const struct bp_ping *ping, in
                 double sample = floor((point + 0.5) / one);
                 run.sample[i] = (int)sample;
                 run.step[i] = (int)(point - sample * one);
-                run.rest[i] = (real)(cubics ? q * one - point : run.step[i] / one);
+                run.rest[i] = (real)(cubics || branches ? q * one - point : run.step[i] / one);
                 run.cycles[i] = (real)(cycles - floor(cycles + 0.5));
             }
             const struct receiver_group one_receiver = {.table = table,
                                                         .receivers = 1,
-                                                        .row = (const real *)ping->rows
-                                                               + 2 * (size_t)m * (size_t)ping->row_length,
-                                                        .row_length = (size_t)ping->row_length};
+                                                        .row =
+                                                            (const real *)ping->rows + (size_t)m * ping->layout.record,
+                                                        .layout = ping->layout};
             BP_GATHER(&one_receiver, APART, count, &run, sum->re + first, sum->im + first);
         }
     }
 }
 
-/* A line reads few values of each record and comes back to the next line much later: have them fetched together. False
-   where a delay is not one of the record, which ends at `last`: then no quintic through it may become an index. */
-INLINE bool prefetch(const struct receiver_group *group, double (*tau)[GROUP_RECEIVERS], double last)
+/* Have what a group reads of its records fetched together, between samples `low` and `high` of each. */
+INLINE void prefetch(const struct receiver_group *group, const double *low, const double *high)
+{
+    enum {
+        NEAR = 64 / sizeof(real),
+        MOST = 16
+    }; /* values of a cache line; cache lines of a part, else it does not pay */
+    const bool blocks = BLOCKS && group->table->reading == BP_BRANCHES;
+    const size_t apart = group->layout.apart;
+    const int guard = group->table->guard, all = 2 * group->table->branches;
+    const int parts = blocks ? 1 : all, width = blocks ? all : 1; /* in blocks all parts lie side by side */
+    for (int g = 0; g < group->receivers; g++) {
+        const int first = ((int)low[g] + guard) / NEAR, last = ((int)high[g] + guard) / NEAR + (blocks ? 1 : 2);
+        const real *row = group->row + (size_t)g * group->layout.record;
+        for (int p = 0; last - first < MOST && p < parts; p++, row += apart)
+            for (int i = first * width; i < last * width; i++)
+                __builtin_prefetch(row + i * NEAR);
+    }
+}
+
+/* A line reads few values of each record and comes back to the next line much later. False where a delay is not one
+   of the record, which ends at `last`: then no quintic through it may become an index. */
+INLINE bool reads_inside(const struct receiver_group *group, double (*tau)[GROUP_RECEIVERS], double last)
 {
     const struct scale *scale = group->scale;
-    const real *row = group->row + group->table->guard;
-    const size_t row_length = group->row_length;
     const int upsample = group->table->upsample;
-    enum { NEAR = 64 / sizeof(real), MOST = 16 }; /* values of a cache line, cache lines */
     double low[GROUP_RECEIVERS], high[GROUP_RECEIVERS];
 #pragma omp simd
     for (int g = 0; g < GROUP_RECEIVERS; g++) {
@@ -161,11 +178,7 @@ INLINE bool prefetch(const struct receiver_group *group, double (*tau)[GROUP_REC
     for (int g = 0; g < group->receivers; g++)
         if (!(low[g] >= -2 && high[g] <= last + 2))
             return false;
-    for (int g = 0; g < group->receivers; g++, row += 2 * row_length)
-        for (int i = (int)low[g]; high[g] - low[g] < MOST * NEAR && i < high[g] + NEAR; i += NEAR) {
-            __builtin_prefetch(row + i);
-            __builtin_prefetch(row + row_length + i);
-        }
+    prefetch(group, low, high);
     return true;
 }
 
@@ -230,14 +243,14 @@ void BP_SUM(const struct bp_medium *medium, const struct bp_table *table, const 
                                              .phase_limit = medium->phase_limit,
                                              .receivers = ping->receivers - m < GROUP_RECEIVERS ? ping->receivers - m
                                                                                                 : GROUP_RECEIVERS,
-                                             .row = (const real *)ping->rows + 2 * (size_t)m * (size_t)ping->row_length,
-                                             .row_length = (size_t)ping->row_length,
+                                             .row = (const real *)ping->rows + (size_t)m * ping->layout.record,
+                                             .layout = ping->layout,
                                              .re = re,
                                              .im = im};
         group_delays(&motion, &places, ping->rx + m, group.receivers, tau);
         bool readable[BP_BLOCKS];
         for (int b = 0; b < block_count; b++)
-            readable[b] = !blocks[b].exact && prefetch(&group, tau + b * NODES, last);
+            readable[b] = !blocks[b].exact && reads_inside(&group, tau + b * NODES, last);
         for (int b = 0; b < block_count; b++)
             if (readable[b]) {
                 BP_RUNS(&group, &blocks[b], tau + b * NODES);

@@ -7,14 +7,22 @@
 #include "backprojection/general/blocks.h"
 #include "backprojection/reading.h"
 
+/* How the batch's records lie in memory: of each branch (one but for BP_BRANCHES) all real parts, then all imaginary
+   ones. With AVX-512 branches are cut into blocks of a vector's samples: [block][branch][re, im][sample]. */
+struct bp_layout {
+    size_t record; /* values from one record to the next */
+    size_t apart;  /* from a branch's real parts to its imaginary ones, and from these to the next branch */
+    int blocks;    /* of a record, each of `apart` samples; 1 where it is not cut */
+};
+
 /* Receivers of one ping, with their records. */
 struct bp_ping {
     struct vector tx, velocity;
     double t0;
     int receivers;
     const struct vector *rx; /* [receivers] at emission */
-    const void *rows;        /* [receivers][2 row_length] real: re, then im; one value behind the last may be read */
-    int row_length;
+    const void *rows;        /* real [receivers][record]; one value behind the last may be read */
+    struct bp_layout layout;
 };
 
 /* Add the receivers' contributions to the pixels of some blocks of a line, where all delays lie inside the record:

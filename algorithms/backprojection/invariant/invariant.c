@@ -12,8 +12,8 @@ enum {
     ROWS_SUMMED = 4   /* image rows of one task */
 };
 
-/* Scatter a tile of compressed pings, complex [count][length], into the slab: pings contiguous. In blocks of rows, so
-   that each cache line of the slab is filled while it is near. */
+/* Scatter a tile of compressed pings, complex [count][branches][length], into the slab: pings contiguous. In blocks
+   of rows, so that each cache line of the slab is filled while it is near. */
 #define SCATTER(real)                                                                                                  \
     do {                                                                                                               \
         const real *from = (const real *)tile;                                                                         \
@@ -21,7 +21,10 @@ enum {
         for (size_t i = 0; i < in->slab_rows; i += ROWS_FILLED) {                                                      \
             size_t at[ROWS_FILLED], rows = in->slab_rows - i < ROWS_FILLED ? in->slab_rows - i : ROWS_FILLED;          \
             for (size_t k = 0; k < rows; k++) {                                                                        \
-                at[k] = source;                                                                                        \
+                at[k] = branch * length + source;                                                                      \
+                if (++branch < branches)                                                                               \
+                    continue;                                                                                          \
+                branch = 0;                                                                                            \
                 if (++within == width) { /* on to the next sample of the steps of the slab */                          \
                     within = 0;                                                                                        \
                     source += upsample - width;                                                                        \
@@ -30,7 +33,7 @@ enum {
             }                                                                                                          \
             for (size_t p = 0; p < (size_t)count; p++)                                                                 \
                 for (size_t k = 0; k < rows; k++) {                                                                    \
-                    size_t value = 2 * (p * length + (at[k] < length ? at[k] : length - 1));                           \
+                    size_t value = 2 * (p * branches * length + (at[k] < last ? at[k] : last));                        \
                     re[(i + k) * stride + p] = from[value];                                                            \
                     im[(i + k) * stride + p] = from[value + 1];                                                        \
                 }                                                                                                      \
@@ -41,11 +44,13 @@ static void scatter(const struct bp *bp, const void *tile, int receiver, int pin
 {
     const struct invariant *in = bp->state;
     size_t upsample = (size_t)bp->table.upsample, guard = (size_t)bp->table.guard, length = (size_t)bp->shape.length;
+    size_t branches = (size_t)bp->table.branches, branch = 0;
     size_t stride = (size_t)in->slab.ping_stride, width = (size_t)in->slab.step_count,
            step = (size_t)in->slab.step_first;
     size_t base = (size_t)receiver * in->slab.receiver_stride + (size_t)in->slab.lead + (size_t)ping;
+    const size_t last = branches * length - 1;
     /* Upsampled traces leave the guards out; residues past the last sample repeat the end and are never asked for. */
-    size_t source = upsample == 1 ? 0 : guard + step, within = 0;
+    size_t source = upsample == 1 || branches > 1 ? 0 : guard + step, within = 0;
     if (bp->problem.precision == PRECISION_DOUBLE)
         SCATTER(double);
     else
@@ -58,7 +63,7 @@ static void fill_slab(const struct bp *bp, const struct echoes *echoes, int firs
     const struct invariant *in = bp->state;
     int pings = bp->problem.acquisition->pings, receivers = bp->problem.acquisition->receivers;
     int tiles = (pings + TILE - 1) / TILE;
-    size_t row_bytes = (size_t)bp->shape.length * 2 * real_size(bp->problem.precision);
+    size_t row_bytes = (size_t)bp->shape.branches * (size_t)bp->shape.length * 2 * real_size(bp->problem.precision);
 #pragma omp parallel for schedule(dynamic)
     for (int n = 0; n < count * tiles; n++) {
         int g = n / tiles, begin = n % tiles * TILE, end = begin + TILE < pings ? begin + TILE : pings;

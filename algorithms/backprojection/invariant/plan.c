@@ -113,7 +113,7 @@ enum status invariant_applicable(const struct bp *bp)
     struct straight_track track;
     struct bp_raster raster;
     char text[400];
-    if (bp->table.taps > 1 && bp->table.upsample > 1)
+    if (bp->table.taps > 1 && bp->table.upsample > 1 && bp->table.branches == 1)
         return status_set(STATUS_UNSUPPORTED, "a kernel over upsampled records has no tables");
     if (a->aperture_limit < 1 && a->echo_squint != 0)
         return status_set(STATUS_UNSUPPORTED, "the aperture limit counts from a beam squinted by %g degrees",
@@ -162,7 +162,7 @@ static double samples_read(const struct bp *bp, const struct bp_raster *raster, 
         double x = reach(raster, grid, r[end]);
         samples = fmax(samples, 2 * (sqrt(r[end] * r[end] + x * x) - r[end]) / bp->medium.sound_speed * bp->medium.fs);
     }
-    return samples + bp->table.taps;
+    return bp->table.branches > 1 ? (samples + 1) * bp->table.branches : samples + bp->table.taps;
 }
 
 /* The most samples by which the delay changes over one azimuth step, of any pair inside the aperture or one ping
@@ -181,9 +181,12 @@ static double steepness(const struct bp *bp, const struct bp_raster *raster, con
 }
 
 /* Neighbouring residues that are summed together. Of up to two taps, two where they mostly read the same samples; of
-   more taps, as many as keep their samples within BP_SPREAD, rounding included. */
+   more taps, as many as keep their samples within BP_SPREAD, rounding included; of branches, as many as read the same
+   sample or, at the most in one shift of two, the next. */
 static int residues_together(const struct bp *bp, double steepness)
 {
+    if (bp->table.branches > 1)
+        return (int)fmin(BP_TOGETHER, 1 + floor(0.5 / (steepness * bp->table.upsample)));
     if (bp->table.upsample > 1)
         return 1;
     if (bp->table.taps < 3)
@@ -204,8 +207,10 @@ static void plan_slab(struct bp *bp, double read)
     size_t row_bytes = (size_t)ping_stride * 2 * real_size(bp->problem.precision);
     size_t rows = upsample == 1 ? (size_t)bp->shape.length : (size_t)samples; /* of one fine step */
     int width = (int)fmin(upsample, fmax(1, floor((double)SLAB_MOST / (double)(rows * row_bytes))));
+    if (bp->table.branches > 1)
+        width = upsample;
     in->passes = (upsample + width - 1) / width;
-    in->slab_rows = rows * (size_t)width;
+    in->slab_rows = bp->table.branches > 1 ? (size_t)(bp->table.branches * bp->shape.length) : rows * (size_t)width;
     in->slab = (struct bp_slab){.receiver_stride = in->slab_rows * (size_t)ping_stride,
                                 .ping_stride = ping_stride,
                                 .lead = lead,
@@ -231,7 +236,7 @@ static void *take(struct arena *arena, size_t count, size_t size)
 struct lengths {
     size_t residues, row; /* of a row: residues, and entries of all of them */
     size_t entries;       /* of a chunk */
-    size_t taps;
+    size_t taps, spread;
     double samples; /* of a record that a row reads */
 };
 
@@ -239,7 +244,7 @@ struct lengths {
 static struct bp_row_scratch scratch_take(struct arena *arena, const struct lengths *lengths, size_t real_bytes)
 {
     const size_t row = lengths->row, entries = lengths->entries, taps = lengths->taps;
-    const size_t few = taps < 3 ? taps : 1, many = taps < 3 ? 0 : taps + BP_SPREAD;
+    const size_t few = taps < 3 ? taps : 1, many = taps < 3 ? 0 : lengths->spread;
     return (struct bp_row_scratch){.groups = take(arena, lengths->residues + 1, sizeof(struct bp_row_group)),
                                    .leg = take(arena, row, sizeof(double)),
                                    .ahead = take(arena, row, sizeof(double)),
@@ -307,9 +312,9 @@ static enum status plan_memory(struct bp *bp, const struct lengths *lengths)
     struct invariant *in = bp->state;
     const size_t size = real_size(bp->problem.precision), threads = (size_t)omp_get_max_threads();
     const size_t values = (size_t)in->receivers * in->slab.receiver_stride;
-    const size_t tile = (size_t)TILE * (size_t)bp->shape.length * 2 * size;
+    const size_t tile = (size_t)TILE * (size_t)bp->shape.branches * (size_t)bp->shape.length * 2 * size;
     double *bytes = &bp->work.bytes, ignored = 0;
-    if (!((double)lengths->entries * (double)(lengths->taps + BP_SPREAD) < INT_MAX))
+    if (!((double)lengths->entries * (double)lengths->spread < INT_MAX))
         return status_set(STATUS_UNSUPPORTED, "tables of %zu entries are too long to index", lengths->entries);
     if (!(in->slab.receiver_stride < INT_MAX))
         return status_set(STATUS_UNSUPPORTED, "records of %zu values a receiver are too long to index",
@@ -334,7 +339,8 @@ static enum status plan_memory(struct bp *bp, const struct lengths *lengths)
 enum status invariant_plan(struct bp *bp)
 {
     struct straight_track track;
-    struct lengths lengths = {.entries = ENTRIES_LEAST, .taps = (size_t)bp->table.taps};
+    struct lengths lengths = {
+        .entries = ENTRIES_LEAST, .taps = (size_t)bp->table.taps, .spread = (size_t)bp_spread(&bp->table)};
     bp->state = calloc(1, sizeof(struct invariant));
     if (!bp->state)
         return status_set(STATUS_FAILED, "no memory for the plan");

@@ -17,7 +17,7 @@ struct invariant {
     int receivers;                  /* of one pass */
     int passes;                     /* over the fine steps of upsampled traces, which bound the slab's size */
     void *slab_re, *slab_im;        /* real [receivers][slab_rows][ping_stride] */
-    void *tiles;                    /* complex [threads][TILE][shape.length] */
+    void *tiles;                    /* complex [threads][TILE][branches][shape.length] */
     struct bp_row_scratch *scratch; /* [threads], all in `tables` */
     void *tables;
     int patch_count;

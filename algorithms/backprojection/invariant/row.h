@@ -103,9 +103,10 @@ enum { BP_BLOCK_VECTORS = 3, BP_LANES_MOST = 16 };
 enum { BP_TOGETHER = 6, BP_SPREAD = 4 };
 
 /* Compressed traces of some receivers, pings contiguous: value (receiver g, row i, ping p) at
-   [g receiver_stride + i ping_stride + lead + p]. Row i is the trace's sample i - guard; upsampled traces keep
-   step_count of their `upsample` fine steps a sample, from step_first on: fine sample f is in row
-   (f / upsample) step_count + f % upsample - step_first. */
+   [g receiver_stride + i ping_stride + lead + p]. Row i is the trace's sample i - guard; upsampled traces whose nearest
+   value is read keep step_count of their `upsample` fine steps a sample, from step_first on: fine sample f is in row
+   (f / upsample) step_count + f % upsample - step_first. Of Farrow branches row i branches + m is branch m of sample
+   i - guard, so that the sums take them for taps. */
 struct bp_slab {
     const void *re, *im; /* real; 0 in the lead and as far behind the last ping */
     size_t receiver_stride;
@@ -157,8 +158,13 @@ struct bp_row_scratch {
     int *step;     /* [capacity] fine step or interval between two samples */
     int *rows;     /* [capacity] samples that a shift of a group reads */
     void *wr, *wi; /* real [capacity][taps], or [capacity] where there are more than two */
-    void *weights; /* real [capacity][taps + BP_SPREAD] where there are more than two taps */
+    void *weights; /* real [capacity][bp_spread] where there are more than two taps */
 };
+/* Rows that serve the residues of a group together, at the most: of Farrow branches those of two samples. */
+static inline int bp_spread(const struct bp_table *table)
+{
+    return table->taps + (table->branches > 1 ? table->branches : BP_SPREAD);
+}
 #define BP_ENTRIES(shifts) (((shifts) + BP_LANES_MOST - 1) / BP_LANES_MOST * BP_LANES_MOST)
 
 /* One image row of a patch, and the receivers of the slab that are added to it. */

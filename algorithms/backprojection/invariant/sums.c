@@ -86,12 +86,11 @@ INLINE void sum_two(int width, int taps, int stride, const struct part *part, co
 }
 
 /* Some residues, many samples with real weights, whose sum is rotated. rows[i] >= taps samples serve all residues of
-   the group; a residue's weights are 0 for those that are not its own. Registers hold the block's sums of one residue,
-   not of more. */
-INLINE void sum_taps(int residues, int width, int taps, int stride, const struct part *part, const real *sr,
+   the group; a residue's weights are 0 for those that are not its own. Registers hold the block's sums of one
+   residue, not of more. */
+INLINE void sum_taps(int residues, int width, int taps, int spread, int stride, const struct part *part, const real *sr,
                      const real *si)
 {
-    const int spread = taps + BP_SPREAD;
     vector_real sum_re[BP_BLOCK_VECTORS] = {{0}}, sum_im[BP_BLOCK_VECTORS] = {{0}};
     for (int i = part->begin; i < part->end; i++) {
         const real *x = sr + part->offset[i], *y = si + part->offset[i], *w = part->weights + i * residues * spread;
@@ -156,7 +155,7 @@ INLINE void sum_block(int residues, int width, int taps, const struct chunk *sha
     const struct bp_row_group *groups = scratch->groups;
     const int origin = groups[chunk->begin].first;
     const real *sr = chunk->sr + j, *si = chunk->si + j;
-    const int stride = chunk->slab->ping_stride;
+    const int stride = chunk->slab->ping_stride, spread = bp_spread(chunk->table);
     OPAQUE(sr);
     OPAQUE(si);
     for (int g = chunk->begin; g < chunk->end; g++) {
@@ -167,7 +166,7 @@ INLINE void sum_block(int residues, int width, int taps, const struct chunk *sha
                             .rows = scratch->rows + first,
                             .wr = (const real *)scratch->wr + first * complex_taps,
                             .wi = (const real *)scratch->wi + first * complex_taps,
-                            .weights = (const real *)scratch->weights + first * (size_t)(taps + BP_SPREAD),
+                            .weights = (const real *)scratch->weights + first * (size_t)spread,
                             .re = chunk->re + at,
                             .im = chunk->im + at,
                             .stride = chunk->stride};
@@ -179,7 +178,7 @@ INLINE void sum_block(int residues, int width, int taps, const struct chunk *sha
             part.end = between(chunk->to - group->begin, group->from, group->to);
         }
         if (taps > 2)
-            sum_taps(residues, width, taps, stride, &part, sr, si);
+            sum_taps(residues, width, taps, spread, stride, &part, sr, si);
         else if (residues == 2)
             sum_two(width, taps, stride, &part, sr, si);
         else
@@ -210,6 +209,8 @@ INLINE void sum_block(int residues, int width, int taps, const struct chunk *sha
 /* clang-format on */
 BLOCKS_FEW(nearest, 1)
 BLOCKS_FEW(line, 2)
+BLOCKS_MANY(four, 4)
+BLOCKS_MANY(six, 6)
 BLOCKS_MANY(eight, 8)
 BLOCKS_MANY(any, chunk->table->taps)
 
@@ -219,10 +220,8 @@ static const struct kernel {
     int taps;                                             /* 0: any number */
     block_function *block[BP_TOGETHER][BP_BLOCK_VECTORS]; /* [residues - 1][vectors - 1], as many as registers hold */
 } kernels[] = {
-    {1, TABLE_FEW(nearest)},
-    {2, TABLE_FEW(line)},
-    {8, TABLE_MANY(eight)},
-    {0, TABLE_MANY(any)},
+    {1, TABLE_FEW(nearest)}, {2, TABLE_FEW(line)},   {4, TABLE_MANY(four)},
+    {6, TABLE_MANY(six)},    {8, TABLE_MANY(eight)}, {0, TABLE_MANY(any)},
 };
 
 /* The shifts [from, to) of those that the row has, for a block of columns from j on. */

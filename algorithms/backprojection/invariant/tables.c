@@ -248,7 +248,7 @@ static void keep(const struct chunk *chunk, struct bp_row_group *group, int firs
 
 /* Where a chunk's entries read the slab: the first tap's row, and its value for ping `shift`. What their weights are
    made of: the fine step from the sample to the next one, or the interval, and with cubics the position inside it, in
-   place of q. */
+   place of q; with branches the distance from the sample. */
 INLINE void tabulate(const struct chunk *chunk)
 {
     const struct bp_table *table = chunk->table;
@@ -271,6 +271,17 @@ INLINE void tabulate(const struct chunk *chunk)
         }
         return;
     }
+    if (table->reading == BP_BRANCHES) {
+#pragma omp simd
+        for (int i = 0; i < n; i++) {
+            double place = q[i] * table->upsample;
+            int sample = (int)(place + 0.5);
+            row[i] = (sample + table->guard) * table->branches;
+            offset[i] = row[i] * stride + shift[i];
+            q[i] = place - sample;
+        }
+        return;
+    }
     if (table->taps == 1 && table->upsample == 1) {
 #pragma omp simd
         for (int i = 0; i < n; i++) {
@@ -290,11 +301,15 @@ INLINE void tabulate(const struct chunk *chunk)
     }
 }
 
-/* The weights of one entry's taps, from its step and, with cubics, its position u. */
+/* The weights of one entry's taps, from its step and, with cubics and branches, its position u. */
 INLINE void weigh(const struct bp_table *table, int taps, int step, real u, real *restrict weights)
 {
     const real *values = table->weights;
-    if (table->reading == BP_CUBICS) {
+    if (table->reading == BP_BRANCHES) {
+        weights[0] = 1;
+        for (int t = 1; t < taps; t++)
+            weights[t] = weights[t - 1] * u;
+    } else if (table->reading == BP_CUBICS) {
         const real *w = values + step * 4 * taps;
 #pragma omp simd
         for (int t = 0; t < taps; t++)
@@ -324,7 +339,7 @@ INLINE void join_two(const struct chunk *chunk)
 INLINE void join_many(const struct chunk *chunk, int taps, const struct bp_row_group *group, int first)
 {
     const struct bp_row_scratch *scratch = chunk->scratch;
-    const int residues = group->residues, n = group->end - group->begin, spread = taps + BP_SPREAD;
+    const int residues = group->residues, n = group->end - group->begin, spread = bp_spread(chunk->table);
     const int *row = scratch->row + first, *step = scratch->step + first;
     const double *u = scratch->q + first;
     int *offset = scratch->offset + first, *rows = scratch->rows + first;
@@ -336,7 +351,7 @@ INLINE void join_many(const struct chunk *chunk, int taps, const struct bp_row_g
             least = row[e + p] < row[least] ? e + p : least;
             most = row[e + p] > row[most] ? e + p : most;
         }
-        assert(row[most] - row[least] <= BP_SPREAD);
+        assert(row[most] - row[least] <= spread - taps);
         for (int p = 0; p < residues; p++) {
             real *w = weights + (e + p) * spread;
             for (int t = 0; t < spread; t++)

@@ -74,9 +74,17 @@ static void make_invariant_case(const struct invariant_case *c, struct acquisiti
 }
 
 static const char *const invariant_specs[] = {
-    "bp_nearest:",          "bp_linear:beta=0,",     "bp_linear:beta=2,",
-    "bp_linear:beta=8,",    "bp_sinc:taps=8,",       "bp_sinc:taps=6,window=kaiser,",
-    "bp_zeropad:factor=8,", "bp_zeropad:factor=64,",
+    "bp_nearest:",
+    "bp_linear:beta=0,",
+    "bp_linear:beta=2,",
+    "bp_linear:beta=8,",
+    "bp_sinc:taps=8,",
+    "bp_sinc:taps=6,window=kaiser,",
+    "bp_zeropad:factor=8,",
+    "bp_zeropad:factor=64,",
+    "bp_farrow:degree=2,",
+    "bp_farrow:degree=5,",
+    "bp_farrow:degree=7,factor=2,",
 };
 
 /* The invariant engine shows the exact path's image: 1e-10 in double, 3e-6 in float. The samples are noise, on which a

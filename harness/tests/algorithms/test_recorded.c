@@ -115,7 +115,11 @@ static void focus(const struct recording *recording, const struct expected *expe
     static const struct {
         const char *spec;
         bool is_sharp; /* reaches the stated peak over median */
-    } methods[] = {{"bp_sinc:taps=8", true}, {"bp_zeropad", true}, {"bp_nearest", false}, {"bp_linear", false}};
+    } methods[] = {{"bp_sinc:taps=8", true},
+                   {"bp_zeropad", true},
+                   {"bp_farrow", true},
+                   {"bp_nearest", false},
+                   {"bp_linear", false}};
     const struct grid *grid = &recording->grid;
     struct problem problem = {&recording->acquisition, 1, grid, PRECISION_FLOAT};
     for (int n = 0; n < count; n++) {

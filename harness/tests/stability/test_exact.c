@@ -141,6 +141,12 @@ static void methods_are_their_own_sums(void **state)
          {.kind = EXACT_SINC, .upsample = 1, .taps = 16, .kaiser = 5}},
         {"bp_zeropad:factor=8,exact=true,precision=double", {.kind = EXACT_NEAREST, .upsample = 8, .phases = 1}},
         {"bp_zeropad:factor=3,exact=true,precision=double", {.kind = EXACT_NEAREST, .upsample = 3, .phases = 1}},
+        {"bp_farrow:degree=3,exact=true,precision=double",
+         {.kind = EXACT_POLYNOMIAL, .upsample = 1, .phases = 1, .degree = 3}},
+        {"bp_farrow:degree=8,exact=true,precision=double",
+         {.kind = EXACT_POLYNOMIAL, .upsample = 1, .phases = 1, .degree = 8}},
+        {"bp_farrow:degree=4,factor=2,exact=true,precision=double",
+         {.kind = EXACT_POLYNOMIAL, .upsample = 2, .phases = 1, .degree = 4}},
     };
     struct scene scene;
     struct echoes echoes;

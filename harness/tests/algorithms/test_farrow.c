@@ -1,0 +1,178 @@
+/* Farrow branches: their responses against the exponential that they expand, and the a-priori error against published
+   figures, against the cut expansion, and against images of flat spectra. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "backprojection/farrow.h"
+#include "data/random.h"
+#include "measure/metrics.h"
+#include "tests/support.h"
+
+/* The polynomial of the branches at u. */
+static double complex response(int degree, double nu, double u)
+{
+    double gains[FARROW_MOST + 1];
+    double complex sum = 0;
+    farrow_gains(degree, nu, gains);
+    for (int m = degree; m >= 0; m--)
+        sum = sum * u + gains[m] * (m % 2 ? I : 1);
+    return sum;
+}
+
+static void responses_tend_to_the_exponential(void **state)
+{
+    (void)state;
+    for (int degree = FARROW_LEAST; degree <= FARROW_MOST; degree++) {
+        double worst = 0, square = 0, law = 0;
+        enum { PLACES = 400 };
+        for (int k = -8; k <= 8; k++) {
+            const double nu = k / 16.0;
+            for (int n = 0; n < PLACES; n++) {
+                const double u = (n + 0.5) / PLACES - 0.5;
+                const double off = cabs(response(degree, nu, u) - cexp(2 * M_PI * I * nu * u));
+                worst = worse_of(worst, off);
+                square += off * off / (17 * PLACES);
+            }
+        }
+        /* the law's mean over the same 17 frequencies, by the difference quotient of band times mean square */
+        for (int k = -8; k <= 8; k++) {
+            const double band = fabs(k / 8.0), step = 1e-3, low = fmax(1e-9, band - step), high = fmin(1, band + step);
+            law += (high * pow(farrow_error(degree, high), 2) - low * pow(farrow_error(degree, low), 2)) / (high - low)
+                   / 17;
+        }
+        print_message("degree %d: largest error up to fs/2 %.1e, rms %.2e, by the law %.2e\n", degree, worst,
+                      sqrt(square), sqrt(law));
+        assert_close(sqrt(square / law), 1, 0.02);
+    }
+}
+
+/* rms over a flat band, computed apart from the program: what polynomials of least squares leave of the exponential, by
+   quadrature over u and nu. */
+static void law_has_its_figures(void **state)
+{
+    (void)state;
+    static const struct {
+        double band, error[6]; /* degrees 2 to 7 */
+    } figures[] = {
+        {0.5, {4.51e-3, 3.95e-4, 2.82e-5, 1.71e-6, 8.96e-8, 4.14e-9}},
+        {1 / 1.2, {2.00e-2, 2.94e-3, 3.51e-4, 3.56e-5, 3.12e-6, 2.41e-7}},
+    };
+    for (int k = 0; k < 2; k++)
+        for (int degree = 2; degree <= 7; degree++)
+            assert_close(farrow_error(degree, figures[k].band) / figures[k].error[degree - 2], 1, 0.005);
+    for (int degree = FARROW_LEAST; degree < FARROW_MOST; degree++) { /* the least that is enough, at its very bound */
+        assert_int_equal(farrow_degree(farrow_error(degree, 0.7), 0.7), degree);
+        assert_int_equal(farrow_degree(farrow_error(degree, 0.7) * 0.999, 0.7), degree + 1);
+    }
+    assert_true(farrow_error(FARROW_MOST, 1) <= 1e-8); /* any `error` that bp_farrow accepts is reached */
+}
+
+/* Noise with a flat spectrum of the acquisition's band, so that every frequency and place between samples counts
+   alike. */
+static void make_noise(double band, struct acquisition *a, struct echoes *echoes)
+{
+    enum { SAMPLES = 240, PINGS = 24 };
+    struct random random = random_seed(3, 1);
+    *a = (struct acquisition){.sound_speed = 1500,
+                              .fc = 150e3,
+                              .fs = 30e3,
+                              .bandwidth = 30e3 * band,
+                              .samples = SAMPLES,
+                              .receivers = 1,
+                              .pings = PINGS,
+                              .compressed = true,
+                              .aperture_limit = INFINITY};
+    assert_int_equal(acquisition_allocate(a), STATUS_OK);
+    assert_int_equal(echoes_allocate(a, PRECISION_DOUBLE, echoes), STATUS_OK);
+    double complex *s = (double complex *)echoes->samples;
+    for (int p = 0; p < PINGS; p++) {
+        a->t0[p] = 780 / a->fs;
+        a->tx[p].x = a->rx[p].x = (p - PINGS / 2) * 0.171;
+        a->velocity[p].x = 2.5;
+        const int edge = (int)floor(band * SAMPLES / 2);
+        double complex bins[SAMPLES] = {0};
+        for (int k = -edge; k <= edge; k++)
+            bins[(k + SAMPLES) % SAMPLES] += random_normal(&random);
+        for (int n = 0; n < SAMPLES; n++, s++) {
+            *s = 0;
+            for (int k = -edge; k <= edge; k++)
+                *s += bins[(k + SAMPLES) % SAMPLES] * cexp(2 * M_PI * I * (k * n % SAMPLES) / SAMPLES);
+        }
+    }
+}
+
+/* Measured errors lie within a tenth of the law's, in any degree, at any band, with upsampling, by both engines. */
+static void images_follow_the_law(void **state)
+{
+    (void)state;
+    static const double bands[] = {0.4, 0.5, 1 / 1.2};
+    const struct grid grid = {-2.0, 0.171 / 7, 161, 21.03, 0.017, 61};
+    for (size_t b = 0; b < sizeof bands / sizeof *bands; b++) {
+        struct acquisition a;
+        struct echoes echoes;
+        struct image exact;
+        make_noise(bands[b], &a, &echoes);
+        struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+        assert_int_equal(support_image("reference:precision=double", problem, &echoes, &exact), STATUS_OK);
+        for (int n = 0; n < 4 * (FARROW_MOST - FARROW_LEAST); n++) {
+            const int degree = FARROW_LEAST + n / 4, factor = 1 + n % 2;
+            const double law = farrow_error(degree, bands[b] / factor);
+            struct image image;
+            char spec[120];
+            snprintf(spec, sizeof spec, "bp_farrow:degree=%d,factor=%d,precision=double,%s", degree, factor,
+                     n / 2 % 2 ? "exact=true" : "engine=invariant");
+            assert_int_equal(support_image(spec, problem, &echoes, &image), STATUS_OK);
+            const double error = metrics_error(&image, &exact).error;
+            print_message("%-64s band %.2f: error %.3g, by the law %.3g\n", spec, bands[b], error, law);
+            if (law > 1e-9 && !(fabs(error / law - 1) < 0.1))
+                fail_msg("%s: error is %g, the law says %g", spec, error, law);
+            image_free(&image);
+        }
+        image_free(&exact);
+        echoes_free(&echoes);
+        acquisition_free(&a);
+    }
+}
+
+/* degree=auto is the least degree that holds `error`: the same bits. */
+static void auto_takes_the_least(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *automatic, *chosen;
+    } pairs[] = {
+        {"bp_farrow", "bp_farrow:degree=4"}, /* 1e-4 at fs = 2B */
+        {"bp_farrow:error=1e-3", "bp_farrow:degree=3"},
+        {"bp_farrow:error=1e-5", "bp_farrow:degree=5"},
+        {"bp_farrow:error=1e-5,factor=2", "bp_farrow:degree=4,factor=2"},
+        {"bp_farrow:error=0.1", "bp_farrow:degree=2"},
+    };
+    const struct grid grid = {-0.5, 0.02, 30, 21.03, 0.017, 9};
+    struct acquisition a;
+    struct echoes echoes;
+    make_noise(0.5, &a, &echoes);
+    struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+    for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++) {
+        struct image images[2];
+        assert_int_equal(support_image(pairs[k].automatic, problem, &echoes, &images[0]), STATUS_OK);
+        assert_int_equal(support_image(pairs[k].chosen, problem, &echoes, &images[1]), STATUS_OK);
+        assert_memory_equal(images[0].pixels[0], images[1].pixels[0],
+                            (size_t)grid.x_count * (size_t)grid.r_count * precision_size(images[0].precision));
+        image_free(&images[0]);
+        image_free(&images[1]);
+    }
+    echoes_free(&echoes);
+    acquisition_free(&a);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(responses_tend_to_the_exponential),
+        cmocka_unit_test(law_has_its_figures),
+        cmocka_unit_test(images_follow_the_law),
+        cmocka_unit_test(auto_takes_the_least),
+    };
+    return cmocka_run_group_tests_name("farrow", tests, NULL, NULL);
+}
