@@ -74,10 +74,11 @@ static long double sinc(long double z)
     return fabsl(z) < 1e-12L ? 1.0L : sinl(exact_pi * z) / (exact_pi * z);
 }
 
-static long double sine_of(long double along, long double across)
+/* Off the beam's axis, which points `squint` ahead; `along` counts backwards. */
+static long double sine_of(long double along, long double across, long double squint)
 {
     const long double distance = hypotl(along, across);
-    return distance > 0.0L ? along / distance : 0.0L;
+    return distance > 0.0L ? (along * cosl(squint) + across * sinl(squint)) / distance : 0.0L;
 }
 
 long double exact_beam(const struct scene *scene, const struct exact_pair *pair, struct exact_point p,
@@ -86,8 +87,9 @@ long double exact_beam(const struct scene *scene, const struct exact_pair *pair,
     const struct acquisition *a = &scene->acquisition;
     const struct exact_point out = difference(pair->tx, p), back = way_back(pair, p, delay);
     const long double across_out = hypotl(out.y, out.z), across_back = hypotl(back.y, back.z);
-    const long double sine_out = sine_of(out.x, across_out), sine_back = sine_of(back.x, across_back);
-    const long double sine_middle = sine_of((out.x + back.x) / 2.0L, (across_out + across_back) / 2.0L);
+    const long double squint = a->echo_squint;
+    const long double sine_out = sine_of(out.x, across_out, squint), sine_back = sine_of(back.x, across_back, squint);
+    const long double sine_middle = sine_of((out.x + back.x) / 2.0L, (across_out + across_back) / 2.0L, squint);
     const long double wavenumber = (long double)a->fc / a->sound_speed, elements = a->tx_length * wavenumber;
     const long double edge = scene->beam.limit * (1.0L + 1e-12L);
     long double measure = 0.0L;
