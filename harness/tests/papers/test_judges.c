@@ -69,6 +69,11 @@ static void arithmetic_is_right(void **state)
         {"max(published(bp22_t3, T1..T6, nearest, islr_db) - published(bp22_t3, T1..T6, sinc, islr_db))", 0.59},
         {"scene(bp22/table3, bin_m)", 0.025},
         {"scene(bp22/table3, wavelength_m)", 0.01},
+        {"planned(sq18/squint_20, wk_classic:unfold=stuff, size_factor)", 7},
+        {"planned(pf05/nine, wk_polar:subapertures=1, upsampling)", 4},
+        {"max(filtered(pf05/nine, wk_polar:subapertures=1, kept_db, 4), -17)", -17}, /* the target at the edge: -17.9 */
+        {"min(filtered(pf05/nine, wk_polar:subapertures=1, changed_db, 4), -1)", -1}, /* -0.07 */
+        {"min(filtered(pf05/nine, wk_polar:subapertures=1, kept_db, 1..3), -1)", -1}, /* -0.01 */
     };
     struct measured measured;
     numbers_plant(3, 2, (double[]){-10, -3, -12}, &measured);
