@@ -116,8 +116,11 @@ enum status invariant_applicable(const struct bp *bp)
     if (bp->table.taps > 1 && bp->table.upsample > 1 && bp->table.branches == 1)
         return status_set(STATUS_UNSUPPORTED, "a kernel over upsampled records has no tables");
     if (a->aperture_limit < 1 && a->echo_squint != 0)
-        return status_set(STATUS_UNSUPPORTED, "the aperture limit counts from a beam squinted by %g degrees",
-                          a->echo_squint * 180 / M_PI);
+        return status_set(
+            STATUS_UNSUPPORTED,
+            "condition invariance: the aperture limit counts from a beam squinted by %g degrees; 0 is needed "
+            "(cure: engine=general)",
+            a->echo_squint * 180 / M_PI);
     if (!condition_holds(&condition) || !acquisition_is_straight(a, &track)) {
         condition_message(&condition, text, sizeof text);
         return status_set(STATUS_UNSUPPORTED, "%s", text);
