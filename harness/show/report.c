@@ -12,6 +12,7 @@
 #include "show/plot.h"
 #include "show/plot_points.h"
 #include "measure/results.h"
+#include "show/report_summary.h"
 #include "show/report_tables.h"
 #include "show/table.h"
 #include "data/paths.h"
@@ -365,8 +366,8 @@ static void tables_show(struct page *page, const struct folder *folder, bool fir
 /* Links to the sections, in their order. */
 static void contents_show(struct page *page, const struct folder *folder)
 {
-    const char *ids[REPORT_TABLES + 5], *titles[REPORT_TABLES + 5];
-    int count = 0;
+    const char *ids[REPORT_TABLES + 6] = {"summary"}, *titles[REPORT_TABLES + 6] = {"Summary"};
+    int count = is_measured(folder) && summary_applies(&folder->results);
     for (int first = 1; first >= 0; first--) {
         for (int k = 0; k < REPORT_TABLES; k++)
             if (folder->csvs[k].row_count > 0 && report_tables[k].first == (first == 1)) {
@@ -391,6 +392,8 @@ static void contents_show(struct page *page, const struct folder *folder)
     page_contents(page, count, ids, titles);
 }
 
+enum { MARKDOWN_ROWS = 40 }; /* more measurements are not for a comment */
+
 static enum status folder_show(struct page *page, const struct folder *folder)
 {
     const bool html = page->format == PAGE_HTML;
@@ -398,14 +401,18 @@ static enum status folder_show(struct page *page, const struct folder *folder)
     snprintf(title, sizeof title, "sasbench: %s", folder->directory);
     page_begin(page, title);
     contents_show(page, folder);
+    if (is_measured(folder))
+        summary_show(page, &folder->results, folder->scene_count, folder->scenes);
     tables_show(page, folder, true);
     enum status status = html ? figures_show(page, folder) : STATUS_OK;
     machine_show(page, folder);
     if (status == STATUS_OK && html && is_measured(folder))
         status = plots_show(page, folder);
     tables_show(page, folder, false);
-    if (is_measured(folder))
+    if (is_measured(folder) && (html || folder->results.csv.row_count <= MARKDOWN_ROWS))
         measurements_show(page, folder);
+    else if (is_measured(folder))
+        page_paragraph(page, "All measurements are in measurements.csv and report.html.");
     if (status == STATUS_OK && html)
         status = pictures_show(page, folder);
     page_end(page);

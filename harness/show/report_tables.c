@@ -15,6 +15,7 @@ const struct report_table report_tables[REPORT_TABLES] = {
      .text = "For each decade of error the setting that reaches it at the least cost, by run time and by counted "
              "operations.",
      .group = "scene",
+     .first = true,
      .columns = {{"error_below", "error below", SHOW_TEXT},
                  {"cost", "cost", SHOW_TEXT},
                  {"algorithm", "algorithm", SHOW_TEXT},

@@ -249,9 +249,13 @@ static void test_everything_is_on_the_page(void **state)
     assert_non_null(html);
     assert_non_null(markdown);
     struct parser *page = page_parse(html);
-    /* Machine, three scenes, cheapest, slopes, rules, two papers, two reproduced tables. */
-    assert_int_equal(page->tables, 11);
-    assert_int_equal(page->rows, 11 + 9 + 9 + 1 + 1 + 1 + 4 + 3);
+    /* Summary, machine, three scenes, cheapest, slopes, rules, two papers, two reproduced tables. */
+    assert_int_equal(page->tables, 12);
+    assert_int_equal(page->rows, 12 + 9 + 9 + 1 + 1 + 1 + 4 + 3 + 3);
+    assert_holds(html, "<h2 id=\"summary\">Summary</h2>");
+    assert_holds(html, "<a href=\"#summary\">");
+    assert_holds(html, "class=\"good\">9.0e-02, 33.3x</td>"); /* of scene a: no other has an error below 0.1 */
+    assert_holds(markdown, "|9.0e-02, 33.3x, fastest|");
     /* All four of two scenes; the third has neither an upsampling rate nor an exact image to compare lobes with. */
     assert_int_equal(page->drawings, 4 + 4 + 2);
     /* Slices, one image, one figure of `phase`: the picture without a row is not of these results. */
