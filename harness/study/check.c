@@ -97,10 +97,13 @@ static struct vector middle_of(const struct scene *scene)
     double x[2] = {INFINITY, -INFINITY}, r[2] = {INFINITY, -INFINITY};
     for (int k = 0; k < scene->patch_count; k++) {
         const struct grid *g = &scene->patches[k];
-        x[0] = fmin(x[0], g->x_first);
-        x[1] = fmax(x[1], g->x_first + (g->x_count - 1) * g->x_step);
-        r[0] = fmin(r[0], g->r_first);
-        r[1] = fmax(r[1], g->r_first + (g->r_count - 1) * g->r_step);
+        for (int corner = 0; corner < 4; corner++) {
+            const struct vector p = grid_point(g, corner / 2 * (g->r_count - 1), corner % 2 * (g->x_count - 1));
+            x[0] = fmin(x[0], p.x);
+            x[1] = fmax(x[1], p.x);
+            r[0] = fmin(r[0], p.y);
+            r[1] = fmax(r[1], p.y);
+        }
     }
     return (struct vector){(x[0] + x[1]) / 2, (r[0] + r[1]) / 2, 0};
 }
@@ -119,15 +122,13 @@ void check_sensitivities(const struct scene *scene, struct sensitivity list[SENS
     };
     const struct acquisition *a = &scene->acquisition;
     const struct vector middle = middle_of(scene);
-    const double sine = condition_beam_sine(a);
     for (int q = 0; q < SENSITIVITIES; q++) {
         const double none[SENSITIVITIES] = {0};
         double off[SENSITIVITIES] = {0}, least = INFINITY, greatest = -INFINITY;
         off[q] = changes[q].size;
         for (int n = 0; n < 2 * a->pings; n++) {
             int m = n % 2 ? a->receivers - 1 : 0;
-            double u = a->tx[n / 2].x - middle.x;
-            if (!(fabs(u) <= sine * hypot(u, a->tx[n / 2].y - middle.y)))
+            if (!condition_sees(a, n / 2, middle))
                 continue;
             double moved = phase_of(scene, n / 2, m, middle, off) - phase_of(scene, n / 2, m, middle, none);
             least = fmin(least, moved);
