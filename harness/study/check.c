@@ -5,6 +5,7 @@
 
 #include "common/delay.h"
 #include "measure/session.h"
+#include "show/table.h"
 
 /* ---- conditions that only the scene's own targets tell ---- */
 
@@ -60,8 +61,14 @@ enum status check_algorithm(FILE *stream, const struct scene *scene, const struc
     for (int k = 0; k < count; k++) {
         const struct condition *c = &list[k];
         bool holds = condition_holds(c);
-        fprintf(stream, "  %-7s  %-16s %10.3g  %s %-8.3g  %s%s%s\n", verdict(c), c->name, c->value,
-                c->at_least ? ">" : "<=", c->limit, c->meaning, holds ? "" : "; cure: ", holds ? "" : c->cure);
+        char figures[120], words[500];
+        int used = snprintf(figures, sizeof figures, "  %-7s  %-16s %10.3g  %s %-8.3g", verdict(c), c->name, c->value,
+                            c->at_least ? ">" : "<=", c->limit);
+        used += snprintf(words, sizeof words, "%s%s%s", c->meaning, holds ? "" : "; cure: ", holds ? "" : c->cure);
+        const bool one_line = table_fits(stream, (size_t)used + 2);
+        fprintf(stream, "%s%s%s\n", figures, one_line ? "  " : "", one_line ? words : "");
+        if (!one_line)
+            table_text(stream, 11, words);
         *refused = *refused || (!holds && c->severity == SEVERITY_REFUSE);
     }
     if (*refused)
@@ -149,11 +156,14 @@ void check_sensitivities_print(FILE *stream, const struct scene *scene)
 {
     struct sensitivity list[SENSITIVITIES];
     check_sensitivities(scene, list);
-    fprintf(stream, "Sensitivities, of the image's middle (a spread over the aperture beyond pi/4 blurs):\n");
-    for (int q = 0; q < SENSITIVITIES; q++)
-        fprintf(stream,
-                "  %s in %s moves the phase by %.3g rad, the image by %.3g mm in range; %.3g rad over the "
-                "aperture (kappa %.3g%s)\n",
-                list[q].change, list[q].quantity, list[q].phase, 1e3 * list[q].shift_m, list[q].spread, list[q].kappa,
-                q == POSITION ? " rad/m" : "");
+    fputs("Sensitivities of the image's middle (a spread over the aperture > pi/4 blurs):\n", stream);
+    for (int q = 0; q < SENSITIVITIES; q++) {
+        char text[400];
+        snprintf(text, sizeof text,
+                 "%s in %s moves the phase by %.3g rad, the image by %.3g mm in range; %.3g rad over the "
+                 "aperture (kappa %.3g%s)",
+                 list[q].change, list[q].quantity, list[q].phase, 1e3 * list[q].shift_m, list[q].spread, list[q].kappa,
+                 q == POSITION ? " rad/m" : "");
+        table_text(stream, 2, text);
+    }
 }

@@ -60,7 +60,9 @@ static bool names_one(const char *printed, const char *verdict, const char *name
     char *text = strdup(printed), *rest = text;
     for (char *line; (line = strsep(&rest, "\n"));) {
         char first[20], second[40];
-        if (strncmp(line, "  ", 2) != 0 || sscanf(line, "%19s %39s", first, second) != 2 || !strcmp(first, "holds"))
+        if (strncmp(line, "  ", 2) != 0
+            || line[2] == ' ' /* a line goes on */ || sscanf(line, "%19s %39s", first, second) != 2
+            || !strcmp(first, "holds"))
             continue;
         failing++;
         right += !strcmp(first, verdict) && !strcmp(second, name);
