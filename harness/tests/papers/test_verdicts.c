@@ -312,7 +312,8 @@ static void evidence_is_whole(void **state)
         claim_plant(claim);
         planted_end(&measured);
         numbers_draw(&measured);
-        phases_draw(&measured);
+        if (claim->phases)
+            phases_draw(&measured);
         for (enum scheme scheme = 0; scheme < (claim->by_scheme ? SCHEMES : 1); scheme++) {
             const struct judgement found = claim_judge(&claims, claim, scheme, &measured);
             char name[40];
