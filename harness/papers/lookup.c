@@ -108,7 +108,7 @@ static enum status flops_metric(struct formula *formula, struct call *call, stru
 {
     bool by_formula = call->metric->offset == offsetof(struct measurement, flops_published);
     enum status status = measurement_check(formula, call);
-    *values = (struct values){1, {1}};
+    *values = (struct values){.count = 1, .at = {1}};
     used(formula, USE_SCENE, call->text[0]);
     used(formula, USE_SETTING, call->text[1]);
     if (status == STATUS_OK && formula->measured)
@@ -169,7 +169,7 @@ static enum status planned(struct formula *formula, struct call *call, struct va
 {
     int number = 0;
     enum status status = unmeasured_check(formula, call);
-    *values = (struct values){1, {1}};
+    *values = (struct values){.count = 1, .at = {1}};
     if (status == STATUS_OK)
         status = word_check(formula, call, 2, planned_names);
     if (status != STATUS_OK || !formula->measured)
@@ -233,7 +233,7 @@ static enum status time_noise(struct formula *formula, struct call *call, struct
 {
     const char *base = NULL;
     char accepted[600];
-    *values = (struct values){1, {0.1}};
+    *values = (struct values){.count = 1, .at = {0.1}};
     for (const struct paper_table *table = paper_tables; table->id; table++)
         if (strcmp(table->id, call->text[0]) == 0)
             base = table->base;
@@ -276,7 +276,7 @@ static enum status phase(struct formula *formula, struct call *call, struct valu
         status = range_check(formula, call, 3, 0, 1e6, range);
     if (status == STATUS_OK)
         status = range_check(formula, call, 4, 0, 1, share);
-    *values = (struct values){1, {1}};
+    *values = (struct values){.count = 1, .at = {1}};
     const struct phase_part part = {strcmp(call->text[0], "long") == 0 ? PHASE_LONG : PHASE_SHORT,
                                     strcmp(call->text[1], "last") == 0,
                                     call->text[2],
@@ -339,7 +339,7 @@ static enum status scene_number(struct formula *formula, struct call *call, stru
         bin_m, wavelength_m, tx_length_m, recording_s, speed_m_s, sound_speed_m_s, edge_phase_rad};
     struct scene scene;
     int k = 0;
-    *values = (struct values){1, {1}};
+    *values = (struct values){.count = 1, .at = {1}};
     enum status status = scene_check(formula, call, 0);
     if (status == STATUS_OK)
         status = word_check(formula, call, 1, names);
