@@ -37,8 +37,9 @@ void REAL_ISA_NAME(rma_convert)(struct workspace *w, real *sums);
    `cuts`, complex [stolt_length], samples from `centre` on and then those before it at the end. */
 void REAL_ISA_NAME(rma_receivers)(struct workspace *w, const int *q, const struct rma_line *lines, real *cuts);
 
-/* By delay compensation: monostatic echoes of the tile's wavenumbers q (negative: none), each in its own of RMA_TILE
-   `cuts`, complex [stolt_length], samples from `centre` on and then those before it at the end. */
-void REAL_ISA_NAME(rma_receivers)(struct workspace *w, const int *q, const struct rma_line *lines, real *cuts);
+/* Rows of a patch, complex, from K = j 2 pi/(length step): interpolation (LBF21 Eq. (16)
+   for the exact K), bulk focusing at the first row, weight, IFFT. `z`: the spectrum with its guards, real parts before
+   imaginary ones. */
+void REAL_ISA_NAME(rma_stolt)(struct workspace *w, const struct rma_patch *patch, const real *z, real *stored);
 
 #endif

@@ -12,6 +12,7 @@ static const double SLOWEST = 0.1; /* 1 - |v|/c that spectra need */
 static const double ERROR_LIMIT = 0.1;
 static const double LAW_LIMIT = 0.1;    /* rad: an image is as wrong as its phases */
 static const double WIDEST_SINE = 0.95; /* of the aperture where neither sampling nor element length bounds it */
+static const double ECHO_ZONES = 4;     /* Fresnel zones beyond the echoes' own sine, over which their spectrum fades */
 static const double FRESNEL_ZONES = 6;  /* beyond the track's ends: what is cut farther out leaves no ripple */
 
 /* Offset of the receiver that is n/2 of the way from the least to the greatest. */
@@ -33,7 +34,7 @@ static struct rma_bounds bounds_of(const struct rma_view *view)
     struct rma_bounds bounds = {0};
     const struct acquisition *a = view->problem->acquisition;
     /* A band that reaches 0 Hz has a condition of its own, which refuses it. */
-    double lowest = fmax(a->fc - a->bandwidth / 2, 1e-9 * a->fc), farthest = 0;
+    double lowest = fmax(a->fc - a->bandwidth / 2, 1e-9 * a->fc), nearest = INFINITY, farthest = 0;
     bounds.aside = fmax(fabs(offset_at(view, 0)), fabs(offset_at(view, 2)));
     /* nu of the full rate, as an angle at the lowest frequency of the pulse. */
     bounds.sine = a->sound_speed * a->receivers / view->spacing / 4 / lowest;
@@ -42,8 +43,11 @@ static struct rma_bounds bounds_of(const struct rma_view *view)
         const struct grid *g = &view->problem->patches[k];
         double last = g->x_first + (g->x_count - 1) * g->x_step;
         bounds.way = fmax(bounds.way, fmax(last - view->x_low, view->x_high - g->x_first));
+        nearest = fmin(nearest, g->r_first);
         farthest = fmax(farthest, g->r_first + (g->r_count - 1) * g->r_step);
     }
+    if (view->method->terms > 0 && a->echo_sine > 0)
+        bounds.sine = fmin(bounds.sine, a->echo_sine + ECHO_ZONES * sqrt(a->sound_speed / lowest / (2 * nearest)));
     /* A record that holds what the widest angle sees needs no other bound. */
     double tangent = bounds.sine / sqrt(1 - bounds.sine * bounds.sine);
     if (2 * farthest * (hypot(1, tangent) - 1) / a->sound_speed * a->fs <= a->samples)

@@ -43,11 +43,13 @@ struct delay_terms {
 /* For the rows and the beam of a view. False without memory; delay_terms_free in any case. */
 bool delay_terms_make(const struct rma_view *view, int count, struct delay_terms *terms);
 void delay_terms_free(struct delay_terms *terms);
-/* U_q at nu (cycles/m) and all ranges of the table, [terms][ranges], into `line`. */
-void delay_terms_line(const struct delay_terms *terms, const struct spectrum_setting *setting, double nu,
-                      double complex *line);
-/* From such a line, U_q at range r; held beyond the table. */
-double complex delay_terms_value(const struct delay_terms *terms, const double complex *line, int q, double r);
+/* The first of four angles of the table about nu (cycles/m), and their weights: U is the sum of theirs. */
+int delay_terms_place(const struct delay_terms *terms, const struct spectrum_setting *setting, double nu,
+                      double weights[4]);
+/* nu at an angle of the table. */
+double delay_terms_wavenumber(const struct delay_terms *terms, const struct spectrum_setting *setting, int angle);
+/* U_q there, at range r; held beyond the table. */
+double complex delay_terms_value(const struct delay_terms *terms, int angle, int q, double r);
 
 /* Taps of least squares over the compressed pulse's energy spectrum, by the fraction of a sample: tap k weights sample
    k + 1 - taps/2. */

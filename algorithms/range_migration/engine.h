@@ -28,7 +28,7 @@
    stolt         [stolt_length] bins of F -> bins of K, RMA_SPAN at a time, for each patch
    focus         bins of K -> [length of the patch] -> [r_count] rows of the patch
                  phase at the first row, and weight; bins beyond the transform fold onto it; an IFFT. Rows of all
-                 patches of RMA_TILE wavenumbers, [rows][RMA_TILE], go to `focused`, [rows][columns]. `columns` of the
+                 patches of RMA_TILE wavenumbers, [RMA_TILE][rows], go to `focused`, [rows][columns]. `columns` of the
                  swath is Q rounded up to RMA_TILE
 
    inverse       [r_count][columns] -> [r_count][x_count], the pixels of each patch
@@ -38,7 +38,8 @@
    Delay compensation (delay.h) has other stages up to there, and rows of samples in place of bins:
 
    compress      [pings][M][samples] -> [pings][M][row]
-                 each record through the matched filter, between zeros, mapped onto the swath's samples by taps
+                 each record through the matched filter, between zeros
+   map           mapped onto the swath's samples by taps
    spread        as above, for each sample
    receivers     RMA_TILE wavenumbers of [M][row] -> RMA_TILE x [stolt_length] samples from `centre` on
                  turned by each receiver's offset, added up with the weights of each term, times the term's coefficient
@@ -80,11 +81,10 @@ enum rma_buffer {
     RMA_PLACES,    /* real [length]: position of those samples in blocks */
     RMA_SPECTRUM,  /* complex [RMA_GUARD + stolt_length + RMA_GUARD] in rising frequency */
     RMA_PARTS,     /* [most rows of a patch]: vectors of a direct sum's re and im */
-    RMA_STORED,    /* complex [rows][RMA_TILE] */
+    RMA_STORED,    /* complex [RMA_TILE][rows + RMA_TILE] */
     RMA_RECORD,    /* complex [record_length] */
     RMA_PADDED,    /* complex [samples + 2 map guards]: delay compensation's */
     RMA_TURNS,     /* real [RMA_TILE][receivers][2]: phasors of the receivers' offsets */
-    RMA_LINE,      /* double complex [terms][ranges]: U at one wavenumber */
     RMA_EDGES,     /* complex [RMA_TILE][terms][row/LANES + 1]: U at the edges of vectors */
     RMA_BUFFERS
 };
@@ -128,6 +128,7 @@ struct rma_map {
     int *first; /* [receivers][runs]: the first tap's, for the run's first sample; INT_MIN: outside the record */
     void *weights, *slopes; /* real [receivers][runs][taps]: at the run's middle, and over one sample */
     void *phases;           /* complex [receivers][runs RMA_RUN]: carrier, and the cut's taper */
+    void *edges;            /* complex [angles][terms][row/LANES + 1]: U at the edges of vectors */
 };
 
 /* Patches whose echoes lie in one stretch of the records, migrated together and apart from all others. */
@@ -152,6 +153,7 @@ struct rma_swath {
     int length;                /* of the range transforms */
     int band_first, band, row; /* bins, and bins of a stored row (a multiple of the vector) */
     int stolt_length;          /* of the transform that is interpolated: the samples fill 2/3 of it */
+    int held;                  /* delay compensation: samples of a row, from `begin` on */
 
     int needed, *blocks; /* [needed] the blocks that are computed; part of the plan's */
     int reference;       /* index into them: the bulk correction is this block's */
@@ -287,8 +289,8 @@ rma_map_function rma_map_float_v4, rma_map_double_v4;
 struct rma_transform {
     enum status (*plan)(struct rma *rma); /* memory, tables and FFT plans */
     void (*destroy)(struct rma *rma);     /* accepts what `plan` left unfinished */
-    /* `map` is only called where the plan compensates delays. */
-    void (*compress)(const struct rma *rma, rma_map_function *map, const void *samples);
+    /* `map` is only called where the plan compensates delays; the threads' seconds are added: compressing, mapping. */
+    void (*compress)(const struct rma *rma, rma_map_function *map, const void *samples, double seconds[2]);
     void (*spread)(const struct rma *rma, const struct rma_swath *swath);
     void (*inverse)(const struct rma *rma, const struct rma_swath *swath, const struct rma_patch *patch, void *pixels);
 };

@@ -4,7 +4,7 @@
 
 #include "range_migration/column.h"
 
-enum { SPAN = RMA_SPAN, RUN = 64 }; /* samples that a block takes or leaves together: places rise or fall along them */
+enum { RUN = 64 }; /* samples that a block takes or leaves together: places rise or fall along them */
 
 /* Bins that are evanescent, and those that only fill the last vector, read zero. */
 static void mask(const struct workspace *w, real *row)
@@ -161,95 +161,7 @@ static void spectrum(const struct workspace *w, real *cut, real *re)
     }
 }
 
-/* Values of the spectrum between its bins; position counts from the first guard bin. `taps` is a constant where
-   this is inlined. */
-static inline __attribute__((always_inline)) void interpolate(const struct rma *rma, const real *restrict spectrum,
-                                                              int length, int taps, int n,
-                                                              const double *restrict position, real *restrict re,
-                                                              real *restrict im)
-{
-    const real *kernel = rma->kernel, *imaginary = spectrum + length + 2 * RMA_GUARD;
-    for (int j = 0; j < n; j++) {
-        int bin = (int)position[j], first = bin + 1 - taps / 2;
-        double interval = (position[j] - bin) * RMA_INTERVALS;
-        const real *a = kernel + (size_t)(int)interval * (size_t)taps, *b = a + taps;
-        real u = (real)(interval - (int)interval), vr = 0, vi = 0;
-#pragma omp simd reduction(+ : vr, vi)
-        for (int k = 0; k < taps; k++) {
-            real weight = a[k] + u * (b[k] - a[k]);
-            vr += weight * spectrum[first + k];
-            vi += weight * imaginary[first + k];
-        }
-        re[j] = vr;
-        im[j] = vi;
-    }
-}
-
-/* Rows of a patch from K = j 2 pi/(length step): interpolation (LBF21 Eq. (16) for the exact K), bulk focusing at the
-   first row, weight, IFFT. */
-static void focus_interpolated(struct workspace *w, const struct rma_patch *patch, const real *z, real *stored)
-{
-    const struct rma *rma = w->rma;
-    const struct rma_swath *swath = w->swath;
-    const double c = rma->setting.sound_speed, fc = rma->setting.fc, beta = rma->setting.speed / c;
-    const double b1 = (1 - beta) * (1 + beta), half = c * w->line.nu / 2;
-    const double bin = rma->fs / swath->length, stolt_bin = rma->fs / swath->stolt_length;
-    /* The band, and some bins beside it for what the interpolation and the blocks' edges spread. */
-    const double lowest = fmax(swath->band_first - RMA_GUARD, -(swath->length / 2)) * bin;
-    const double highest = fmin(swath->band_first + swath->band - 1 + RMA_GUARD, (swath->length - 1) / 2) * bin;
-    const double low = fmax(fc + lowest, w->line.lowest), high = fc + highest;
-    const double k_step = 2 * M_PI / (patch->length * patch->step), r = patch->grid.r_first;
-    const double t_centre = swath->t_first + swath->centre / rma->fs, to_fc = swath->stolt_length / 2 + RMA_GUARD;
-    const long long first = (long long)ceil(spectrum_monostatic(&rma->setting, low, w->line.nu) / k_step);
-    const long long last = (long long)floor(spectrum_monostatic(&rma->setting, high, w->line.nu) / k_step);
-    real *wave = buffer(w, RMA_WAVE);
-    memset(wave, 0, 2 * (size_t)patch->length * sizeof *wave);
-    double position[SPAN], cycles[SPAN];
-    real weight[SPAN], re[SPAN], im[SPAN], wr[SPAN], wi[SPAN];
-    for (long long j0 = first; j0 <= last; j0 += SPAN) {
-        const int n = last - j0 + 1 < SPAN ? (int)(last - j0 + 1) : SPAN;
-        const double from = (double)j0;
-#pragma omp simd
-        for (int i = 0; i < n; i++) {
-            double k = (from + i) * k_step, kappa = c / (4 * M_PI) * k;
-            double root = sqrt(half * half + b1 * kappa * kappa), frequency = beta * half + root;
-            double offset = frequency - fc;
-            position[i] = offset / stolt_bin + to_fc;
-            double slope = b1 * kappa * c / (4 * M_PI) / root; /* dF/dK */
-            weight[i] = (real)(frequency / b1 * sqrt(c / (2 * kappa)) / kappa * slope * k_step / rma->fs);
-            double f = k * r / (2 * M_PI) - offset * t_centre + 0.125;
-            cycles[i] = f - floor(f + 0.5);
-        }
-        switch (rma->taps) {
-        case 4: interpolate(rma, z, swath->stolt_length, 4, n, position, re, im); break;
-        case 8: interpolate(rma, z, swath->stolt_length, 8, n, position, re, im); break;
-        default: interpolate(rma, z, swath->stolt_length, rma->taps, n, position, re, im); break;
-        }
-        stage_end(w, RMA_STOLT);
-#pragma omp simd
-        for (int i = 0; i < n; i++) {
-            phasor(cycles[i], &wr[i], &wi[i]);
-            wr[i] *= weight[i];
-            wi[i] *= weight[i];
-        }
-        int at = (int)(j0 % patch->length);
-        for (int i = 0; i < n; i++) {
-            wave[2 * at] += re[i] * wr[i] - im[i] * wi[i];
-            wave[2 * at + 1] += re[i] * wi[i] + im[i] * wr[i];
-            if (++at == patch->length)
-                at = 0;
-        }
-        stage_end(w, RMA_FOCUS);
-    }
-    FFTW(execute_dft)(patch->focus_plan, (complex_real *)wave, (complex_real *)wave);
-    for (int i = 0; i < patch->grid.r_count; i++) {
-        stored[2 * RMA_TILE * i] = wave[2 * i];
-        stored[2 * RMA_TILE * i + 1] = wave[2 * i + 1];
-    }
-    stage_end(w, RMA_FOCUS);
-}
-
-/* The same without interpolation: every bin of the band at every row. `z` are vectors of the band's bins whose
+/* Rows of a patch without interpolation: every bin of the band at every row. `z` are vectors of the band's bins whose
    samples count from time `origin`. */
 static void focus_direct(struct workspace *w, const struct rma_patch *patch, const real *z, double origin, real *stored)
 {
@@ -299,8 +211,8 @@ static void focus_direct(struct workspace *w, const struct rma_patch *patch, con
             re += parts[(size_t)i * 2 * LANES + (size_t)l];
             im += parts[(size_t)i * 2 * LANES + LANES + (size_t)l];
         }
-        stored[2 * RMA_TILE * i] = re;
-        stored[2 * RMA_TILE * i + 1] = im;
+        stored[2 * i] = re;
+        stored[2 * i + 1] = im;
     }
     stage_end(w, RMA_FOCUS);
 }
@@ -351,11 +263,11 @@ static void column(struct workspace *w, int n, real *stored)
     stage_end(w, RMA_RECONSTRUCT);
     for (int p = 0; p < swath->patch_count; p++) {
         const struct rma_patch *patch = &swath->patches[p];
-        real *out = stored + 2 * RMA_TILE * patch->row;
+        real *out = stored + 2 * patch->row;
         if (direct)
             focus_direct(w, patch, sums, swath->t_first + (from_sums ? 0 : swath->centre) / rma->fs, out);
         else
-            focus_interpolated(w, patch, z, out);
+            REAL_ISA_NAME(rma_stolt)(w, patch, z, out);
     }
 }
 
@@ -368,7 +280,7 @@ void REAL_ISA_NAME(rma_column)(const struct rma *rma, const struct rma_swath *sw
                           .mark = seconds_now(),
                           .scratch = (char *)rma->scratch + (size_t)thread * rma->scratch_bytes};
     real *stored = buffer(&w, RMA_STORED), *focused = rma->focused;
-    memset(stored, 0, 2 * RMA_TILE * swath->rows * sizeof *stored);
+    const size_t stride = 2 * (swath->rows + RMA_TILE); /* or rows a power of two apart would share sets of the cache */
     struct rma_line lines[RMA_TILE];
     int q[RMA_TILE];
     for (int n = 0; n < RMA_TILE; n++) {
@@ -377,13 +289,20 @@ void REAL_ISA_NAME(rma_column)(const struct rma *rma, const struct rma_swath *sw
     }
     if (rma->delay)
         REAL_ISA_NAME(rma_receivers)(&w, q, lines, buffer(&w, RMA_CUT));
-    for (int n = 0; n < RMA_TILE; n++)
-        if (lines[n].begin < swath->band) {
-            w.q = q[n];
-            w.line = lines[n];
-            column(&w, n, stored + 2 * n);
+    for (int n = 0; n < RMA_TILE; n++) {
+        w.q = q[n];
+        w.line = lines[n];
+        if (w.line.begin < swath->band)
+            column(&w, n, stored + (size_t)n * stride);
+        else
+            memset(stored + (size_t)n * stride, 0, 2 * swath->rows * sizeof *stored);
+    }
+    for (size_t i = 0; i < swath->rows; i++) {
+        real *out = focused + 2 * (i * swath->columns + (size_t)turn);
+        for (size_t n = 0; n < RMA_TILE; n++) {
+            out[2 * n] = stored[n * stride + 2 * i];
+            out[2 * n + 1] = stored[n * stride + 2 * i + 1];
         }
-    for (size_t i = 0; i < swath->rows; i++, stored += 2 * RMA_TILE)
-        memcpy(focused + 2 * (i * swath->columns + (size_t)turn), stored, 2 * RMA_TILE * sizeof *stored);
+    }
     stage_end(&w, RMA_FOCUS);
 }

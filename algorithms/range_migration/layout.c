@@ -237,11 +237,24 @@ static enum status swath_range(const struct rma *rma, struct rma_swath *swath)
     swath->band_first = half < (swath->length - 1) / 2 ? -(int)half : -(swath->length / 2);
     swath->band = half < (swath->length - 1) / 2 ? 2 * (int)half + 1 : swath->length;
     swath->row = (swath->band + lanes - 1) / lanes * lanes;
-    if (rma->delay) { /* samples instead of bins; rows a power of two apart would share a few sets of the cache */
-        swath->row = (swath->length + RMA_RUN - 1) / RMA_RUN * RMA_RUN;
-        swath->row += swath->row * lanes % 4096 == 0 ? lanes : 0;
-        swath->centre -= swath->centre % lanes;
-    }
+    return STATUS_OK;
+}
+
+/* Delay compensation keeps samples in place of bins, and only those that were recorded. */
+static enum status swath_samples(const struct rma *rma, struct rma_swath *swath)
+{
+    int lanes = RMA_ALIGNMENT / (rma->problem.precision == PRECISION_DOUBLE ? 8 : 4);
+    if (!rma->delay)
+        return STATUS_OK;
+    swath->held = swath->end - swath->begin;
+    swath->first = swath->begin;
+    swath->t_first = rma->t0 + swath->begin / rma->fs;
+    swath->centre = swath->held / 2 / lanes * lanes;
+    swath->row = (swath->held + RMA_RUN - 1) / RMA_RUN * RMA_RUN;
+    /* Rows a power of two apart would share a few sets of the cache. */
+    swath->row += swath->row * lanes % 4096 == 0 ? lanes : 0;
+    if (rma->taps > 0) /* as much to either side of `centre` as lies behind it */
+        swath->stolt_length = fft_length_fast((long long)ceil(RMA_OVERSAMPLING * 2 * (swath->held - swath->centre)));
     return STATUS_OK;
 }
 
@@ -269,7 +282,7 @@ static enum status swath_patches(const struct rma *rma, struct rma_swath *swath)
 static enum status lay_swaths(struct rma *rma)
 {
     static enum status (*const steps[])(const struct rma *, struct rma_swath *) = {swath_azimuth, swath_range,
-                                                                                   swath_patches};
+                                                                                   swath_samples, swath_patches};
     rma->taps = stolt_taps[rma->options.stolt];
     rma->shape = kaiser_shape(rma->taps, RMA_OVERSAMPLING);
     rma->block_list = malloc((size_t)rma->block_count * (size_t)rma->swath_count * sizeof *rma->block_list);
@@ -308,10 +321,9 @@ static void lay_scratch(struct rma *rma)
             [RMA_PLACES] = (size_t)s->length * real_bytes,
             [RMA_SPECTRUM] = 2 * (stolt + 2 * RMA_GUARD) * real_bytes,
             [RMA_PARTS] = rma->taps == 0 ? most_rows * 2 * RMA_ALIGNMENT : 0,
-            [RMA_STORED] = 2 * RMA_TILE * s->rows * real_bytes,
+            [RMA_STORED] = 2 * RMA_TILE * (s->rows + RMA_TILE) * real_bytes,
             [RMA_PADDED] = rma->delay ? 2 * ((size_t)rma->samples + 2 * (size_t)rma->delay->guard) * real_bytes : 0,
             [RMA_TURNS] = rma->delay ? 2 * RMA_TILE * receivers * real_bytes : 0,
-            [RMA_LINE] = rma->delay ? terms * (size_t)rma->delay->terms.ranges * 2 * sizeof(double) : 0,
             [RMA_EDGES] = RMA_TILE * terms * ((size_t)s->row * real_bytes / RMA_ALIGNMENT + 1) * 2 * real_bytes,
         };
         for (int k = 0; k < RMA_BUFFERS; k++)

@@ -63,10 +63,10 @@ static double swath_flops(const struct rma *rma, const struct rma_swath *swath)
     const double weights = swath->needed * sums > 1 ? 4 * (rma->options.blend ? rma_nodes_blended(rma) : 1) : 0;
     double flops = q * (fft_flops(swath->stolt_length) + 2 * length);
     if (rma->delay)
-        flops +=
-            receivers
-                * (rma->pings * length * (8.0 * rma->delay->taps.taps + 10) + swath->row * fft_flops(swath->period))
-            + q * length * (receivers * (6 + 4.0 * rma->delay->terms.terms) + 12 * rma->delay->terms.terms);
+        flops += receivers
+                     * (rma->pings * swath->held * (8.0 * rma->delay->taps.taps + 10)
+                        + swath->row * fft_flops(swath->period))
+                 + q * swath->held * (receivers * (6 + 4.0 * rma->delay->terms.terms) + 12 * rma->delay->terms.terms);
     else
         flops += receivers * rma->pings * fft_flops(length) + receivers * band * fft_flops(swath->period)
                  + q * receivers * band * (rma->converts ? 8 : 0) * swath->needed
@@ -210,33 +210,40 @@ enum status rma_plan(const struct problem *problem, const struct rma_method *met
     return STATUS_OK;
 }
 
+/* The threads' time in each stage, as shares of the time that passed. */
+static void stages_share(struct stages *stages, int count, const char *const *names, const double *seconds)
+{
+    double sum = 0, passed = seconds_now() - stages->mark;
+    for (int k = 0; k < count; k++)
+        sum += seconds[k];
+    for (int k = 0; k < count; k++)
+        if (seconds[k] > 0) {
+            stages->mark = seconds_now() - passed * seconds[k] / sum;
+            stages_end(stages, names[k]);
+        }
+}
+
 /* All wavenumbers of a swath, from the receivers' spectra to focused rows. */
 static void migrate(const struct rma *rma, const struct rma_swath *swath, struct stages *stages)
 {
     rma_column_function *column = column_functions[isa_choose()][rma->problem.precision];
-    double seconds[RMA_STAGES] = {0}, sum = 0;
+    double seconds[RMA_STAGES] = {0};
 #pragma omp parallel num_threads(rma->threads) reduction(+ : seconds[:RMA_STAGES])
     {
 #pragma omp for schedule(dynamic)
         for (int turn = 0; turn < swath->wavenumbers; turn += RMA_TILE)
             column(rma, swath, omp_get_thread_num(), turn, seconds);
     }
-    /* The threads' time in each stage, as shares of the time that passed. */
-    for (int k = 0; k < RMA_STAGES; k++)
-        sum += seconds[k];
-    double passed = seconds_now() - stages->mark;
-    for (int k = 0; k < RMA_STAGES; k++)
-        if (seconds[k] > 0) {
-            stages->mark = seconds_now() - passed * seconds[k] / sum;
-            stages_end(stages, stage_names[k]);
-        }
+    stages_share(stages, RMA_STAGES, stage_names, seconds);
 }
 
 enum status rma_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages)
 {
     struct rma *rma = plan;
-    transform(rma)->compress(rma, map_functions[isa_choose()][rma->problem.precision], echoes->samples);
-    stages_end(stages, "compress");
+    static const char *const first_stages[] = {"compress", "map"};
+    double seconds[2] = {0};
+    transform(rma)->compress(rma, map_functions[isa_choose()][rma->problem.precision], echoes->samples, seconds);
+    stages_share(stages, 2, first_stages, seconds);
     for (const struct rma_swath *swath = rma->swaths; swath < rma->swaths + rma->swath_count; swath++) {
         transform(rma)->spread(rma, swath);
         stages_end(stages, "spread");

@@ -203,6 +203,7 @@ static void destroy(struct rma *rma)
         free(swath->map.weights);
         free(swath->map.slopes);
         free(swath->map.phases);
+        free(swath->map.edges);
         free(swath->data);
         free(swath->apodization);
     }
@@ -261,13 +262,15 @@ static real *padded(const struct rma *rma, const real *record)
 
 /* Pulse compression by a linear correlation, then each swath's cut. Records of a receiver follow one another, so that
    the tables of its map stay in the cache. */
-static void compress(const struct rma *rma, rma_map_function *map, const void *samples)
+static void compress(const struct rma *rma, rma_map_function *map, const void *samples, double seconds[2])
 {
+    double compressing = 0, mapping = 0;
     const size_t n = 2 * (size_t)rma->samples, length = 2 * (size_t)rma->record_length;
-#pragma omp parallel for schedule(static) num_threads(rma->threads)
+#pragma omp parallel for schedule(static) num_threads(rma->threads) reduction(+ : compressing, mapping)
     for (int turn = 0; turn < rma->pings * rma->receivers; turn++) {
         const int receiver = turn / rma->pings, k = turn % rma->pings * rma->receivers + receiver;
         const real *record = (const real *)samples + n * (size_t)k;
+        const double begun = seconds_now();
         if (length > 0) {
             real *wave = scratch_of(rma, RMA_RECORD);
             memcpy(wave, record, n * sizeof *wave);
@@ -278,6 +281,7 @@ static void compress(const struct rma *rma, rma_map_function *map, const void *s
             record = wave;
         }
         const real *between = rma->delay ? padded(rma, record) : NULL;
+        const double compressed = seconds_now();
         for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
             real *row = (real *)s->data + 2 * (size_t)s->row * (size_t)k;
             if (rma->delay)
@@ -285,7 +289,11 @@ static void compress(const struct rma *rma, rma_map_function *map, const void *s
             else
                 cut(rma, s, record, row);
         }
+        compressing += compressed - begun;
+        mapping += seconds_now() - compressed;
     }
+    seconds[0] = compressing + (rma->delay ? 0 : mapping);
+    seconds[1] = rma->delay ? mapping : 0;
 }
 
 /* Azimuth FFT over the pings and the zeros after them, in place; the complex numbers of a vector become its real

@@ -17,6 +17,7 @@
 #include "measure/timing.h"
 #include "scene/scene.h"
 #include "scene/simulate.h"
+#include "study/fft_seconds.h"
 
 enum { ROUNDS = 3 };
 
@@ -111,6 +112,7 @@ struct line {
     int threads;
     double run_s[ROUNDS], plan_s[ROUNDS], control[ROUNDS], peak[ROUNDS]; /* control: its time by ours */
     struct timing timing;                                                /* of the last round */
+    struct fft_seconds fft;                                              /* NAN where it is no measure */
 };
 
 static enum status line_measure(const struct spec *spec, const struct loaded *loaded, int threads, struct line *line)
@@ -132,7 +134,24 @@ static enum status line_measure(const struct spec *spec, const struct loaded *lo
         image_free(&image);
     }
     omp_set_num_threads(all);
+    line->fft = (struct fft_seconds){NAN, NAN, NAN};
+    const struct acquisition *a = &loaded->scene.acquisition;
+    if (status == STATUS_OK && line->timing.work.pairs == 0 && spec->precision == PRECISION_FLOAT)
+        status = fft_seconds(a->pings * a->receivers, a->samples, threads, &line->fft);
     return status;
+}
+
+/* The whole run, and what follows the range compression, in FFTW's transforms of as many values as were recorded. */
+static void fft_ratios(const struct line *line, double run_s, double *whole, double *after)
+{
+    double sum = 0, compress = 0;
+    for (int k = 0; k < line->timing.stages.count; k++) {
+        sum += line->timing.stages.stage[k].seconds;
+        compress +=
+            strcmp(line->timing.stages.stage[k].name, "compress") == 0 ? line->timing.stages.stage[k].seconds : 0;
+    }
+    *whole = run_s / line->fft.best;
+    *after = *whole * (1 - compress / sum);
 }
 
 /* `alone`: the same on one thread. */
@@ -145,13 +164,19 @@ static void line_write(FILE *file, const struct spec *spec, const struct loaded 
     const double control = median(line->control, ROUNDS), gain = alone->run_s[ROUNDS / 2] / run_s; /* sorted by then */
     char name[300];
     snprintf(name, sizeof name, "%s%s%s", spec->algorithm->name, *spec->text ? ":" : "", spec->text);
-    fprintf(file, "%s,%s,\"%s\",%s,%d,%d,%d,%.4g,%.4g,%.9g,%.4g,%.4g,%.9g,%.4g,%.4g,%.4g,%.6g\n", loaded->scene.name,
-            spec->algorithm->name, spec->text, precision_name(spec->precision), line->threads, loaded->grid.x_count,
-            loaded->grid.r_count, plan_s, run_s, work->flops, rate, fraction, work->pairs, work->pairs / run_s, control,
-            gain, work->bytes);
+    double whole, after;
+    fft_ratios(line, run_s, &whole, &after);
+    fprintf(file, "%s,%s,\"%s\",%s,%d,%d,%d,%.4g,%.4g,%.9g,%.4g,%.4g,%.9g,%.4g,%.4g,%.4g,%.6g,%.4g,%.4g,%.4g,%.4g\n",
+            loaded->scene.name, spec->algorithm->name, spec->text, precision_name(spec->precision), line->threads,
+            loaded->grid.x_count, loaded->grid.r_count, plan_s, run_s, work->flops, rate, fraction, work->pairs,
+            work->pairs / run_s, control, gain, work->bytes, line->fft.plan, line->fft.strips, whole, after);
     printf("%-17s %-28s %-6s %2d %8.4g %8.4g %7.2f %6.3f %7.3f %8.3g %6.2f\n", loaded->scene.name, name,
            precision_name(spec->precision), line->threads, plan_s, run_s, 1e-9 * rate, fraction,
            1e-9 * work->pairs / run_s, control, gain);
+    if (isfinite(whole))
+        printf("    %.3g of FFTW's forward and inverse transforms of as many values as were recorded, %.3g after range "
+               "compression (one plan %.4g s, strips %.4g s)\n",
+               whole, after, line->fft.plan, line->fft.strips);
     fflush(stdout);
 }
 
@@ -202,10 +227,10 @@ static void head_write(FILE *file)
     provenance_fill(&provenance, omp_get_max_threads());
     fprintf(
         file,
-        "# sasbench bench_algorithms 1\n# machine: %s\n# compiler: %s\n# flags: %s\n# commit: %s\n# date: %s\n"
+        "# sasbench bench_algorithms 2\n# machine: %s\n# compiler: %s\n# flags: %s\n# commit: %s\n# date: %s\n"
         "# isa: %s\n"
         "scene,algorithm,options,precision,threads,columns,rows,plan_s,run_s,flops,flops_per_s,fraction_of_peak,pairs,"
-        "pairs_per_s,ratio_to_control,gain_of_threads,plan_bytes\n",
+        "pairs_per_s,ratio_to_control,gain_of_threads,plan_bytes,fft_plan_s,fft_strips_s,run_to_fft,after_to_fft\n",
         provenance.machine, provenance.compiler, provenance.flags, provenance.commit, provenance.date, provenance.isa);
     printf("%-17s %-28s %-6s %2s %8s %8s %7s %6s %7s %8s %6s\n", "scene", "algorithm", "prec.", "t", "plan s", "run s",
            "GFLOP/s", "peak", "Gpair/s", "control", "gain");

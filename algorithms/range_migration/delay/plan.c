@@ -5,9 +5,9 @@
 #include "common/real.h"
 #include "range_migration/engine.h"
 
-enum { NODES = 4 };                                /* of a cubic over a run */
-static const double nodes[NODES] = {0, 5, 10, 15}; /* samples */
-static const double NEAREST = 0.5;                 /* of the nearest row: no delay is computed for less */
+enum { NODES = 4, LANES = RMA_ALIGNMENT / sizeof(real) }; /* of a cubic over a run */
+static const double nodes[NODES] = {0, 5, 10, 15};        /* samples */
+static const double NEAREST = 0.5;                        /* of the nearest row: no delay is computed for less */
 
 /* The delays of a run's samples (s), beyond those of d = 0: exact at the nodes. */
 static void run_delays(const struct rma *rma, const struct rma_swath *swath, int receiver, int run,
@@ -70,17 +70,37 @@ static void run_fill(const struct rma *rma, const struct rma_swath *swath, int r
     }
 }
 
+/* U at the edges of the row's vectors, where the echo of range r arrives with each angle of the table. */
+static void edges_fill(const struct rma *rma, const struct rma_swath *swath)
+{
+    const struct delay_terms *terms = &rma->delay->terms;
+    const double c = rma->setting.sound_speed, beta = rma->setting.speed / c;
+    complex_real *edges = swath->map.edges;
+    for (int a = 0; a < terms->angles; a++) {
+        double walk = spectrum_walk(&rma->setting, delay_terms_wavenumber(terms, &rma->setting, a));
+        double to_range = c / 2 * sqrt((1 - beta) * (1 + beta)) / walk;
+        for (int q = 0; q < terms->terms; q++)
+            for (int sample = 0; sample <= swath->row; sample += LANES) {
+                double tau = swath->t_first + sample / rma->fs;
+                *edges++ = (complex_real)delay_terms_value(terms, a, q, fmax(tau * to_range, NEAREST * swath->nearest));
+            }
+    }
+}
+
 bool REAL_NAME(rma_map_plan)(struct rma *rma, struct rma_swath *swath)
 {
     struct rma_map *map = &swath->map;
-    map->runs = (swath->length + RMA_RUN - 1) / RMA_RUN;
+    map->runs = (swath->held + RMA_RUN - 1) / RMA_RUN;
     const size_t runs = (size_t)map->runs * (size_t)rma->receivers, taps = (size_t)rma->delay->taps.taps;
     map->first = rma_take(rma, runs, sizeof *map->first, 1);
     map->weights = rma_take(rma, runs * taps, sizeof(real), 1);
     map->slopes = rma_take(rma, runs * taps, sizeof(real), 1);
     map->phases = rma_take(rma, runs * RMA_RUN, sizeof(complex_real), 1);
-    if (!map->first || !map->weights || !map->slopes || !map->phases)
+    map->edges = rma_take(rma, (size_t)(rma->delay->terms.angles * rma->delay->terms.terms),
+                          ((size_t)swath->row / LANES + 1) * sizeof(complex_real), 1);
+    if (!map->first || !map->weights || !map->slopes || !map->phases || !map->edges)
         return false;
+    edges_fill(rma, swath);
     for (int m = 0; m < rma->receivers; m++)
         for (int run = 0; run < map->runs; run++)
             run_fill(rma, swath, m, run);

@@ -12,7 +12,23 @@ enum { VECTOR_BYTES = 32, TOGETHER = 2 };
 enum { VECTOR_BYTES = 16, TOGETHER = 2 };
 #endif
 typedef real vec __attribute__((vector_size(VECTOR_BYTES), may_alias));
+typedef real vec_unaligned __attribute__((vector_size(VECTOR_BYTES), aligned(sizeof(real)), may_alias));
 enum { VECTOR = VECTOR_BYTES / sizeof(real) };
+
+/* The first and the second half of the complex numbers with these real and imaginary parts. */
+#if defined __AVX512F__ && !REAL_DOUBLE
+#define FIRST(a, b)  __builtin_shufflevector(a, b, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23)
+#define SECOND(a, b) __builtin_shufflevector(a, b, 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31)
+#elif defined __AVX512F__ || (defined __AVX__ && !REAL_DOUBLE)
+#define FIRST(a, b)  __builtin_shufflevector(a, b, 0, 8, 1, 9, 2, 10, 3, 11)
+#define SECOND(a, b) __builtin_shufflevector(a, b, 4, 12, 5, 13, 6, 14, 7, 15)
+#elif defined __AVX__ || !REAL_DOUBLE
+#define FIRST(a, b)  __builtin_shufflevector(a, b, 0, 4, 1, 5)
+#define SECOND(a, b) __builtin_shufflevector(a, b, 2, 6, 3, 7)
+#else
+#define FIRST(a, b)  __builtin_shufflevector(a, b, 0, 2)
+#define SECOND(a, b) __builtin_shufflevector(a, b, 1, 3)
+#endif
 
 /* Wavenumbers that read the same spectra. */
 struct group {
@@ -35,22 +51,16 @@ static void turns_fill(const struct rma *rma, double nu, real *turns)
 }
 
 /* U at the edges of the row's vectors. */
-static void edges_fill(const struct workspace *w, double nu, complex_real *edges)
+static void edges_fill(const struct workspace *w, double nu, real *restrict edges)
 {
-    const struct rma *rma = w->rma;
-    const struct rma_swath *swath = w->swath;
-    const int count = swath->row / LANES + 1;
-    double complex *line = buffer(w, RMA_LINE);
-    const double c = rma->setting.sound_speed, beta = rma->setting.speed / c;
-    const double to_range = c / 2 * sqrt((1 - beta) * (1 + beta)) / spectrum_walk(&rma->setting, nu);
-    delay_terms_line(&rma->delay->terms, &rma->setting, nu, line);
-    for (int q = 0; q < rma->delay->terms.terms; q++)
-        for (int e = 0; e < count; e++) {
-            double tau = swath->t_first + (double)e * LANES / rma->fs;
-            double complex value =
-                delay_terms_value(&rma->delay->terms, line, q, fmax(tau * to_range, swath->nearest / 2));
-            *edges++ = (complex_real)value;
-        }
+    const struct delay_terms *terms = &w->rma->delay->terms;
+    const size_t count = 2 * (size_t)terms->terms * (size_t)(w->swath->row / LANES + 1);
+    double weights[4];
+    const size_t first = (size_t)delay_terms_place(terms, &w->rma->setting, nu, weights);
+    const real *a = (const real *)w->swath->map.edges + first * count, *b = a + count, *c = b + count, *d = c + count;
+    const real wa = (real)weights[0], wb = (real)weights[1], wc = (real)weights[2], wd = (real)weights[3];
+    for (size_t k = 0; k < count; k++)
+        edges[k] = wa * a[k] + wb * b[k] + wc * c[k] + wd * d[k];
 }
 
 /* One vector of samples of `count` wavenumbers from `member` on; both are constants where this is inlined. */
@@ -71,6 +81,9 @@ static inline __attribute__((always_inline)) void samples_add(const struct group
         const real *basis = rma->delay->basis;
         for (int m = 0; m < receivers; m++, x += row) {
             const vec xr = *(const vec *)x, xi = *(const vec *)(x + LANES);
+            __builtin_prefetch(x
+                               + 2 * LANES); /* the next vector's: more streams than the processor follows by itself */
+            __builtin_prefetch(x + 3 * LANES);
             for (int n = 0; n < count; n++) {
                 const real *turn = g->turns + 2 * ((size_t)member[n] * (size_t)receivers + (size_t)m);
                 const vec pr = xr * turn[0] - xi * turn[1], pi = xr * turn[1] + xi * turn[0];
@@ -100,7 +113,12 @@ static inline __attribute__((always_inline)) void samples_add(const struct group
                        + 2
                              * ((size_t)member[n] * (size_t)swath->stolt_length
                                 + (size_t)(ahead < 0 ? ahead + swath->stolt_length : ahead));
-            const int kept = swath->length - sample < VECTOR ? swath->length - sample : VECTOR;
+            const int kept = swath->held - sample < VECTOR ? swath->held - sample : VECTOR;
+            if (kept == VECTOR) {
+                *(vec_unaligned *)to = FIRST(zr, zi);
+                *(vec_unaligned *)(to + VECTOR) = SECOND(zr, zi);
+                continue;
+            }
             for (int l = 0; l < kept; l++) {
                 to[2 * l] = zr[l];
                 to[2 * l + 1] = zi[l];
@@ -111,7 +129,7 @@ static inline __attribute__((always_inline)) void samples_add(const struct group
 
 static inline __attribute__((always_inline)) void group_add(const struct group *g, int terms)
 {
-    const int blocks = (g->swath->length + LANES - 1) / LANES;
+    const int blocks = (g->swath->held + LANES - 1) / LANES;
     for (int block = 0; block < blocks; block++) {
         int n = 0;
         for (; n + TOGETHER <= g->count; n += TOGETHER)
@@ -130,15 +148,17 @@ void REAL_ISA_NAME(rma_receivers)(struct workspace *w, const int *q, const struc
     complex_real *values = buffer(w, RMA_EDGES);
     struct group group = {.rma = rma, .swath = swath, .turns = turns, .edges = values, .cuts = cuts};
     int column[RMA_TILE];
-    memset(cuts, 0, RMA_TILE * 2 * (size_t)swath->stolt_length * sizeof *cuts);
     for (int n = 0; n < RMA_TILE; n++) {
         column[n] = -1;
         if (q[n] < 0 || lines[n].begin >= swath->band)
             continue;
         const int wraps = q[n] - swath->wavenumbers / 2;
         column[n] = ((rma->spacing < 0 ? -wraps : wraps) % period + period) % period;
+        /* Zeros between the last sample and the first. */
+        memset(cuts + 2 * ((size_t)n * (size_t)swath->stolt_length + (size_t)(swath->held - swath->centre)), 0,
+               2 * (size_t)(swath->stolt_length - swath->held) * sizeof *cuts);
         turns_fill(rma, lines[n].nu, turns + 2 * (size_t)n * (size_t)rma->receivers);
-        edges_fill(w, lines[n].nu, values + (size_t)n * (size_t)rma->delay->terms.terms * (size_t)edges);
+        edges_fill(w, lines[n].nu, (real *)(values + (size_t)n * (size_t)rma->delay->terms.terms * (size_t)edges));
     }
     for (int n = 0; n < RMA_TILE; n++) {
         if (column[n] < 0)

@@ -106,8 +106,11 @@ static void extent(const struct rma_view *view, struct delay_terms *terms)
     double from = fmax(-widest, angle_of(&view->setting, -full)), to = fmin(widest, angle_of(&view->setting, full));
     terms->angle_first = from;
     terms->angle_step = (to - from) / (ANGLES - 1);
-    terms->inverse_first = 1 / (1.01 * farthest);
-    terms->inverse_step = (1 / (0.99 * nearest) - terms->inverse_first) / (RANGES - 1);
+    /* What arrives with the rows' widest angle is a row farther away, broadside. */
+    double walk = fmax(spectrum_walk(&view->setting, wavenumber(&view->setting, from)),
+                       spectrum_walk(&view->setting, wavenumber(&view->setting, to)));
+    terms->inverse_first = 1 / (1.05 * farthest * walk);
+    terms->inverse_step = (1 / (0.9 * nearest) - terms->inverse_first) / (RANGES - 1);
 }
 
 static double table_range(const struct delay_terms *terms, int n)
@@ -266,23 +269,23 @@ static int cubic(double place, int count, double weights[4])
     return first;
 }
 
-void delay_terms_line(const struct delay_terms *terms, const struct spectrum_setting *setting, double nu,
-                      double complex *line)
+int delay_terms_place(const struct delay_terms *terms, const struct spectrum_setting *setting, double nu,
+                      double weights[4])
 {
-    double weights[4], place = 0;
-    if (terms->angle_step > 0)
-        place = (angle_of(setting, nu) - terms->angle_first) / terms->angle_step;
-    const size_t row = (size_t)terms->terms * (size_t)terms->ranges;
-    const double complex *from = terms->coefficients + (size_t)cubic(place, terms->angles, weights) * row;
-    for (size_t k = 0; k < row; k++)
-        line[k] = weights[0] * from[k] + weights[1] * from[row + k] + weights[2] * from[2 * row + k]
-                  + weights[3] * from[3 * row + k];
+    double place = terms->angle_step > 0 ? (angle_of(setting, nu) - terms->angle_first) / terms->angle_step : 0;
+    return cubic(place, terms->angles, weights);
 }
 
-double complex delay_terms_value(const struct delay_terms *terms, const double complex *line, int q, double r)
+double delay_terms_wavenumber(const struct delay_terms *terms, const struct spectrum_setting *setting, int angle)
+{
+    return wavenumber(setting, terms->angle_first + angle * terms->angle_step);
+}
+
+double complex delay_terms_value(const struct delay_terms *terms, int angle, int q, double r)
 {
     double weights[4];
-    const double complex *from = line + (size_t)q * (size_t)terms->ranges
+    const double complex *from = terms->coefficients
+                                 + ((size_t)angle * (size_t)terms->terms + (size_t)q) * (size_t)terms->ranges
                                  + cubic((1 / r - terms->inverse_first) / terms->inverse_step, terms->ranges, weights);
     return weights[0] * from[0] + weights[1] * from[1] + weights[2] * from[2] + weights[3] * from[3];
 }
