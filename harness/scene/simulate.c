@@ -49,7 +49,11 @@ static double sine(const struct acquisition *a, double along, double across)
 {
     double distance = hypot(along, across);
     if (a->echo_squint != 0) {
-        along = along * cos(a->echo_squint) + across * sin(a->echo_squint);
+        const double c = cos(a->echo_squint), s = sin(a->echo_squint), ahead = across * c - along * s;
+        along = along * c + across * s;
+        if (ahead < 0) { /* the beam has no back lobe */
+            return along < 0 ? -1 : 1;
+        }
     }
     return distance > 0 ? along / distance : 0;
 }

@@ -74,11 +74,13 @@ static long double sinc(long double z)
     return fabsl(z) < 1e-12L ? 1.0L : sinl(exact_pi * z) / (exact_pi * z);
 }
 
-/* Off the beam's axis, which points `squint` ahead; `along` counts backwards. */
+/* Off the beam's axis, which points `squint` ahead; `along` counts backwards. What lies behind the beam is as far off as can be. */
 static long double sine_of(long double along, long double across, long double squint)
 {
-    const long double distance = hypotl(along, across);
-    return distance > 0.0L ? (along * cosl(squint) + across * sinl(squint)) / distance : 0.0L;
+    const long double distance = hypotl(along, across), sine = along * cosl(squint) + across * sinl(squint);
+    if (across * cosl(squint) < along * sinl(squint))
+        return copysignl(1.0L, sine);
+    return distance > 0.0L ? sine / distance : 0.0L;
 }
 
 long double exact_beam(const struct scene *scene, const struct exact_pair *pair, struct exact_point p,

@@ -42,6 +42,28 @@ static void spectra(void **state)
     squint_scene_free(&scene);
 }
 
+/* A beam along the track hears what lies ahead, and nothing of what lies behind, whose sine off the axis is as small. */
+static void behind_the_beam(void **state)
+{
+    (void)state;
+    for (int side = -1; side <= 1; side += 2) {
+        struct scene scene;
+        struct echoes echoes;
+        double energy = 0;
+        scene_sq18(&sonar_sq18, radians(89), &scene);
+        scene.targets[0].x = side * 45 * sin(radians(89));
+        scene.targets[0].r = 45 * cos(radians(side > 0 ? 89 : 89.9)); /* 1.1 degrees off the axis run backwards */
+        scene.target_count = scene.point_count = 1;
+        support_echoes(&scene, &echoes);
+        const size_t count = (size_t)scene.acquisition.pings * (size_t)scene.acquisition.samples;
+        for (size_t n = 0; n < count; n++)
+            energy += pow(cabs(((const double complex *)echoes.samples)[n]), 2);
+        assert_true(side > 0 ? energy > 1 : energy == 0);
+        echoes_free(&echoes);
+        squint_scene_free(&scene);
+    }
+}
+
 /* Exact images, which the others are measured against. The numbers are scaled by spacing and bin over bandwidth. */
 static void check_image(const struct scene *scene, const struct image_number *numbers, int count)
 {
@@ -344,9 +366,10 @@ static void refusals(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(spectra),  cmocka_unit_test(exact_images), cmocka_unit_test(rotated_spectrum),
-        cmocka_unit_test(squints),  cmocka_unit_test(ways),         cmocka_unit_test(motion),
-        cmocka_unit_test(reversed), cmocka_unit_test(sizes),        cmocka_unit_test(refusals),
+        cmocka_unit_test(spectra),          cmocka_unit_test(behind_the_beam), cmocka_unit_test(exact_images),
+        cmocka_unit_test(rotated_spectrum), cmocka_unit_test(squints),         cmocka_unit_test(ways),
+        cmocka_unit_test(motion),           cmocka_unit_test(reversed),        cmocka_unit_test(sizes),
+        cmocka_unit_test(refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
