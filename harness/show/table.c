@@ -124,7 +124,8 @@ void table_header(FILE *stream)
             "error     against the exact image, relative L2;%s phase: rms over\n"
             "          the strong pixels\n"
             "width     of the targets' main lobes at -3 dB, PSLR and ISLR of their azimuth\n"
-            "          slices (medians)\n\n",
+            "          slices (medians); where a scene has no targets: the image's entropy,\n"
+            "          contrast, and peak over median\n\n",
             table.width == WIDTH_WIDE ? " +gain: after one best gain;" : "");
     line_print(stream, (const char *const[]){"algorithm", "time", "speed-up", "rate", "error", "+gain", "phase",
                                              "width", "PSLR", "ISLR"});
