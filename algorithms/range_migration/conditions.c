@@ -46,7 +46,7 @@ static struct rma_bounds bounds_of(const struct rma_view *view)
         nearest = fmin(nearest, g->r_first);
         farthest = fmax(farthest, g->r_first + (g->r_count - 1) * g->r_step);
     }
-    if (view->method->terms > 0 && a->echo_sine > 0)
+    if (view->method->terms > 0 && a->echo_sine > 0 && a->echo_tapers) /* a sharp edge fades too slowly */
         bounds.sine = fmin(bounds.sine, a->echo_sine + ECHO_ZONES * sqrt(a->sound_speed / lowest / (2 * nearest)));
     /* A record that holds what the widest angle sees needs no other bound. */
     double tangent = bounds.sine / sqrt(1 - bounds.sine * bounds.sine);
