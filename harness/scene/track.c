@@ -44,7 +44,7 @@ static enum status csv_poses(struct reading *reading, const char *path)
     for (int k = 0; k < NAMES; k++) {
         columns[k] = csv_column(&csv, names[k]);
         const bool lone = k > VELOCITY && (columns[k] < 0) != (columns[VELOCITY] < 0);
-        if (status == STATUS_OK && ((columns[k] < 0 && k < NEEDED) || lone))
+        if (status == STATUS_OK && ((k < NEEDED && columns[k] < 0) || lone))
             status = status_set(
                 STATUS_INVALID,
                 "%s: column '%s' is missing; x, y, z in m are needed, yaw in degrees and vx, vy, vz in m/s may "
