@@ -140,19 +140,25 @@ double spectrum_walk(const struct spectrum_setting *setting, double nu)
 {
     double c = setting->sound_speed, beta = setting->speed / c, b1 = (1 - beta) * (1 + beta), f = setting->fc / b1;
     double along = c * nu / 2 + f * beta, broadside = f * beta;
-    double slope = (f - along * beta) / sqrt((f - along) * (f + along));
+    double slope = (f - along * beta) / root_of((f - along) * (f + along));
     return slope / ((f - broadside * beta) / sqrt((f - broadside) * (f + broadside)));
 }
 
 double spectrum_residual(const struct spectrum_setting *setting, double d, double r, double nu)
 {
-    double abeam = spectrum_abeam(setting, d, r * spectrum_walk(setting, nu));
+    const double walk = spectrum_walk(setting, nu);
+    if (isnan(walk))
+        return NAN;
+    double abeam = spectrum_abeam(setting, d, r * walk);
     return bistatic(setting, d, r, setting->fc, nu) - 2 * M_PI * setting->fc * abeam;
 }
 
 double spectrum_compensated(const struct spectrum_setting *setting, double d, double r, double frequency, double nu)
 {
-    double abeam = spectrum_abeam(setting, d, r * spectrum_walk(setting, nu));
+    const double walk = spectrum_walk(setting, nu);
+    if (isnan(walk))
+        return NAN;
+    double abeam = spectrum_abeam(setting, d, r * walk);
     return -(r * spectrum_monostatic(setting, frequency, nu) - M_PI * nu * d + 2 * M_PI * frequency * abeam
              + spectrum_residual(setting, d, r, nu));
 }

@@ -66,7 +66,7 @@ static void phasors(const struct rma_view *view, const struct offsets *offsets, 
     double phase[OFFSETS];
     for (int k = 0; k < offsets->count; k++) {
         phase[k] = spectrum_residual(&view->setting, offsets->at[k], r, nu);
-        if (!isfinite(phase[k]))
+        if (isnan(phase[k]))
             phase[k] = 0; /* no echo comes from there */
     }
     for (int m = 0; m < offsets->receivers; m++) {

@@ -32,6 +32,7 @@ static const char *const specs[] = {
     "rma_pca",
     "rma_wu",
     "rma_numeric",
+    "rma_delay",
     "wk_classic",
     "wk_classic:unfold=stuff,taps=4",
     "wk_squint",
