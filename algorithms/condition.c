@@ -66,11 +66,16 @@ static double quarter_sine(const struct acquisition *a)
     return inside * a->sound_speed / a->fc;
 }
 
+double condition_cut_sine(const struct acquisition *a)
+{
+    if (a->echo_sine > 0)
+        return a->echo_sine;
+    return a->tx_length > 0 ? LOBE * a->sound_speed / a->fc / a->tx_length : INFINITY;
+}
+
 double condition_beam_sine(const struct acquisition *a)
 {
-    double sine = a->echo_sine > 0 ? a->echo_sine : INFINITY;
-    if (!(a->echo_sine > 0) && a->tx_length > 0)
-        sine = LOBE * a->sound_speed / a->fc / a->tx_length;
+    const double sine = condition_cut_sine(a);
     return a->echo_tapers ? fmin(sine, quarter_sine(a)) : sine;
 }
 
@@ -121,6 +126,12 @@ static double off_axis(const struct acquisition *a, int p, struct vector place, 
     double u = a->tx[p].x - place.x, across2 = pow(a->tx[p].y - place.y, 2) + pow(a->tx[p].z, 2);
     *distance = sqrt(u * u + across2);
     return a->echo_squint != 0 ? u * cos(a->echo_squint) + sqrt(across2) * sin(a->echo_squint) : u;
+}
+
+bool condition_sees(const struct acquisition *a, int ping, struct vector place)
+{
+    double range, off = fabs(off_axis(a, ping, place, &range));
+    return off <= condition_beam_sine(a) * range;
 }
 
 /* The first and the last ping that see a place, and the one nearest to seeing it on the axis; -1: none does. */
@@ -178,9 +189,8 @@ static void extent_search(const struct acquisition *a, const struct grid *g, str
 {
     for (int p = 0; p < a->pings; p++)
         for (int n = 0; n < 3; n++) {
-            double range;
             const struct vector place = row_on_axis(a, p, g, n / 2.0 * (g->r_count - 1));
-            if (fabs(off_axis(a, p, place, &range)) <= condition_beam_sine(a) * range)
+            if (condition_sees(a, p, place))
                 extent_add_pings(a, place, (const int[3]){p, -1, -1}, extent);
         }
 }

@@ -6,9 +6,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "acquisition.h"
 #include "status.h"
 
-struct acquisition;
 struct problem;
 
 enum severity {
@@ -52,6 +52,10 @@ double condition_offset(const struct acquisition *acquisition, int n);
 /* |sin theta_t| up to which the echoes count: their stated truncation, where both elements' amplitude falls to a
    quarter, or the half-power beam of a transmitter of known length; INFINITY where nothing is known. */
 double condition_beam_sine(const struct acquisition *acquisition);
+/* The same whether the amplitude tapers or not: the stated truncation, or the half-power beam. */
+double condition_cut_sine(const struct acquisition *acquisition);
+/* Does a ping see a place within condition_beam_sine of its beam's axis? */
+bool condition_sees(const struct acquisition *acquisition, int ping, struct vector place);
 /* |sin theta_t| up to which anything is seen at all: condition_beam_sine, but three nulls of a beam that tapers. */
 double condition_seen_sine(const struct acquisition *acquisition);
 /* Amplitude of the echo of a unit target r m beside a straight track along x, the transmitter u m ahead of it: 1 inside

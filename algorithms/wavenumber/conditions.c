@@ -7,7 +7,6 @@
 #include "wavenumber/engine.h"
 
 static const double SLOWEST = 0.1; /* of 1 - |v|/c, as in range migration */
-static const double LOBE = 0.443;  /* half a beam, in lambda/D, of echoes that do not say theirs */
 
 double wk_centroid_slope(const struct acquisition *a, const struct straight_track *track)
 {
@@ -28,9 +27,7 @@ struct view {
 static struct view view_of(const struct acquisition *a, const struct straight_track *track)
 {
     const double last = track->x_first + (a->pings - 1) * track->spacing;
-    double half = a->echo_sine > 0 ? a->echo_sine : INFINITY;
-    if (!(a->echo_sine > 0) && a->tx_length > 0)
-        half = LOBE * a->sound_speed / a->fc / a->tx_length;
+    const double half = condition_cut_sine(a);
     const double b = half < 1 ? asin(half) : M_PI, low = a->echo_squint - b, high = a->echo_squint + b;
     return (struct view){.acquisition = a,
                          .spacing = fabs(track->spacing),

@@ -5,6 +5,7 @@
 
 #include "command/task.h"
 #include "scene/matfile.h"
+#include "show/table.h"
 #include "study/inspect.h"
 
 static const struct {
@@ -54,7 +55,7 @@ static void accepted_format(const struct param *param, char *text, size_t size)
     snprintf(text, size, "%s to %s", min, max);
 }
 
-#define LAYOUT "%-11s %-10s %-24s %-18s %s\n"
+#define LAYOUT "%-11s %-10s %-24s %s\n"
 
 static enum status file_info(const char *path)
 {
@@ -91,9 +92,9 @@ enum status command_info(const struct task *task)
     }
     printf("%s: %s\nreference: %s\ntraits: ", algorithm->name, algorithm->summary, algorithm->reference);
     print_traits(algorithm);
-    printf("\n" LAYOUT, "parameter", "default", "accepted", "sweep", "");
-    printf(LAYOUT, "precision", "float", "float, double", "float double",
-           "of samples, sums and pixels; geometry is always double");
+    printf("\n" LAYOUT, "parameter", "default", "accepted", "sweep");
+    printf(LAYOUT, "precision", "float", "float, double", "float double");
+    table_text(stdout, 12, "of samples, sums and pixels; geometry is always double");
     for (const struct param *p = algorithm->params; p && p->name; p++) {
         char initial[64], accepted[160];
         if (p->type == PARAM_REAL)
@@ -101,7 +102,8 @@ enum status command_info(const struct task *task)
         else
             param_format(p, p->initial, initial, sizeof initial);
         accepted_format(p, accepted, sizeof accepted);
-        printf(LAYOUT, p->name, initial, accepted, p->sweep ? p->sweep : "-", p->summary);
+        printf(LAYOUT, p->name, initial, accepted, p->sweep ? p->sweep : "-");
+        table_text(stdout, 12, p->summary);
     }
     return STATUS_OK;
 }

@@ -33,8 +33,8 @@ void metrics_slice_samples(const struct image *image, const struct acquisition *
                            const struct target *target, enum axis axis, double **position_m, double **power_db,
                            int *count);
 
-/* The difference of the complex slices of two images of the same patches, at the same places, in dB over the second one's peak:
-   malloc'ed [count], count as above. NULL where there is none, or no memory. */
+/* The difference of the complex slices of two images of the same patches, at the same places, in dB over the second
+   one's peak: malloc'ed [count], count as above. NULL where there is none, or no memory. */
 double *metrics_slice_difference(const struct image *image, const struct image *reference,
                                  const struct acquisition *acquisition, const struct target *target, enum axis axis,
                                  int count);

@@ -66,9 +66,9 @@ static struct cell cell_fixed(double value)
 }
 
 /* Text broken at blanks, each line behind `indent` blanks; a word longer than a line is broken anywhere. */
-static void print_wrapped(FILE *stream, int indent, const char *text)
+static void wrapped_print(FILE *stream, int width, int indent, const char *text)
 {
-    int room = table.width - indent;
+    int room = width - indent;
     while (*text) {
         int length = (int)strcspn(text, "\n");
         if (length > room) {
@@ -81,6 +81,11 @@ static void print_wrapped(FILE *stream, int indent, const char *text)
         text += length;
         text += strspn(text, " \n");
     }
+}
+
+static void print_wrapped(FILE *stream, int indent, const char *text)
+{
+    wrapped_print(stream, table.width, indent, text);
 }
 
 /* One line: texts in the order of LAYOUT_WIDE. */
@@ -104,6 +109,16 @@ static int width_find(FILE *stream)
     if (!isatty(fileno(stream)) || ioctl(fileno(stream), TIOCGWINSZ, &size) != 0 || size.ws_col == 0)
         return WIDTH_WIDE;
     return size.ws_col < WIDTH_LEAST ? WIDTH_LEAST : size.ws_col;
+}
+
+void table_text(FILE *stream, int indent, const char *text)
+{
+    wrapped_print(stream, width_find(stream), indent, text);
+}
+
+bool table_fits(FILE *stream, size_t length)
+{
+    return length <= (size_t)width_find(stream);
 }
 
 void table_header(FILE *stream)

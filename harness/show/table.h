@@ -3,6 +3,7 @@
 #ifndef SASBENCH_SHOW_TABLE_H
 #define SASBENCH_SHOW_TABLE_H
 
+#include <stdbool.h>
 #include <stdio.h>
 
 #include "measure/results.h"
@@ -14,6 +15,11 @@ void table_scene(FILE *stream, const char *name, const char *what);
 /* One measurement, the sharpness in place of lobes where the scene has no targets; a heading line whenever the scene is
    another than the row's before. Undefined values are "-". */
 void table_row(FILE *stream, const struct measurement *row);
+
+/* Text broken at blanks to the width of the terminal (110 where there is none), each line behind `indent` blanks. */
+void table_text(FILE *stream, int indent, const char *text);
+/* Whether a text of this length fits a line. */
+bool table_fits(FILE *stream, size_t length);
 
 /* A number with its unit as the table shows it. */
 struct cell {

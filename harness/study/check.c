@@ -5,6 +5,7 @@
 
 #include "common/delay.h"
 #include "measure/session.h"
+#include "show/table.h"
 
 /* ---- conditions that only the scene's own targets tell ---- */
 
@@ -60,8 +61,14 @@ enum status check_algorithm(FILE *stream, const struct scene *scene, const struc
     for (int k = 0; k < count; k++) {
         const struct condition *c = &list[k];
         bool holds = condition_holds(c);
-        fprintf(stream, "  %-7s  %-16s %10.3g  %s %-8.3g  %s%s%s\n", verdict(c), c->name, c->value,
-                c->at_least ? ">" : "<=", c->limit, c->meaning, holds ? "" : "; cure: ", holds ? "" : c->cure);
+        char figures[120], words[500];
+        int used = snprintf(figures, sizeof figures, "  %-7s  %-16s %10.3g  %s %-8.3g", verdict(c), c->name, c->value,
+                            c->at_least ? ">" : "<=", c->limit);
+        used += snprintf(words, sizeof words, "%s%s%s", c->meaning, holds ? "" : "; cure: ", holds ? "" : c->cure);
+        const bool one_line = table_fits(stream, (size_t)used + 2);
+        fprintf(stream, "%s%s%s\n", figures, one_line ? "  " : "", one_line ? words : "");
+        if (!one_line)
+            table_text(stream, 11, words);
         *refused = *refused || (!holds && c->severity == SEVERITY_REFUSE);
     }
     if (*refused)
@@ -97,10 +104,13 @@ static struct vector middle_of(const struct scene *scene)
     double x[2] = {INFINITY, -INFINITY}, r[2] = {INFINITY, -INFINITY};
     for (int k = 0; k < scene->patch_count; k++) {
         const struct grid *g = &scene->patches[k];
-        x[0] = fmin(x[0], g->x_first);
-        x[1] = fmax(x[1], g->x_first + (g->x_count - 1) * g->x_step);
-        r[0] = fmin(r[0], g->r_first);
-        r[1] = fmax(r[1], g->r_first + (g->r_count - 1) * g->r_step);
+        for (int corner = 0; corner < 4; corner++) {
+            const struct vector p = grid_point(g, corner / 2 * (g->r_count - 1), corner % 2 * (g->x_count - 1));
+            x[0] = fmin(x[0], p.x);
+            x[1] = fmax(x[1], p.x);
+            r[0] = fmin(r[0], p.y);
+            r[1] = fmax(r[1], p.y);
+        }
     }
     return (struct vector){(x[0] + x[1]) / 2, (r[0] + r[1]) / 2, 0};
 }
@@ -119,15 +129,13 @@ void check_sensitivities(const struct scene *scene, struct sensitivity list[SENS
     };
     const struct acquisition *a = &scene->acquisition;
     const struct vector middle = middle_of(scene);
-    const double sine = condition_beam_sine(a);
     for (int q = 0; q < SENSITIVITIES; q++) {
         const double none[SENSITIVITIES] = {0};
         double off[SENSITIVITIES] = {0}, least = INFINITY, greatest = -INFINITY;
         off[q] = changes[q].size;
         for (int n = 0; n < 2 * a->pings; n++) {
             int m = n % 2 ? a->receivers - 1 : 0;
-            double u = a->tx[n / 2].x - middle.x;
-            if (!(fabs(u) <= sine * hypot(u, a->tx[n / 2].y - middle.y)))
+            if (!condition_sees(a, n / 2, middle))
                 continue;
             double moved = phase_of(scene, n / 2, m, middle, off) - phase_of(scene, n / 2, m, middle, none);
             least = fmin(least, moved);
@@ -148,11 +156,14 @@ void check_sensitivities_print(FILE *stream, const struct scene *scene)
 {
     struct sensitivity list[SENSITIVITIES];
     check_sensitivities(scene, list);
-    fprintf(stream, "Sensitivities, of the image's middle (a spread over the aperture beyond pi/4 blurs):\n");
-    for (int q = 0; q < SENSITIVITIES; q++)
-        fprintf(stream,
-                "  %s in %s moves the phase by %.3g rad, the image by %.3g mm in range; %.3g rad over the "
-                "aperture (kappa %.3g%s)\n",
-                list[q].change, list[q].quantity, list[q].phase, 1e3 * list[q].shift_m, list[q].spread, list[q].kappa,
-                q == POSITION ? " rad/m" : "");
+    fputs("Sensitivities of the image's middle (a spread over the aperture > pi/4 blurs):\n", stream);
+    for (int q = 0; q < SENSITIVITIES; q++) {
+        char text[400];
+        snprintf(text, sizeof text,
+                 "%s in %s moves the phase by %.3g rad, the image by %.3g mm in range; %.3g rad over the "
+                 "aperture (kappa %.3g%s)",
+                 list[q].change, list[q].quantity, list[q].phase, 1e3 * list[q].shift_m, list[q].spread, list[q].kappa,
+                 q == POSITION ? " rad/m" : "");
+        table_text(stream, 2, text);
+    }
 }

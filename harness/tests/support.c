@@ -25,6 +25,28 @@ void support_echoes(const struct scene *scene, struct echoes *echoes)
     CHECK(scene_simulate(scene, echoes));
 }
 
+struct acquisition support_acquisition(int pings, int receivers, int samples)
+{
+    struct acquisition a = {.sound_speed = 1500,
+                            .fc = 150e3,
+                            .fs = 30e3,
+                            .bandwidth = 15e3,
+                            .samples = samples,
+                            .receivers = receivers,
+                            .pings = pings,
+                            .compressed = true,
+                            .aperture_limit = INFINITY};
+    CHECK(acquisition_allocate(&a));
+    return a;
+}
+
+void support_noise(const struct acquisition *a, struct random *random, struct echoes *echoes)
+{
+    CHECK(echoes_allocate(a, PRECISION_DOUBLE, echoes));
+    for (int n = 0; n < a->samples * a->receivers * a->pings; n++)
+        ((double complex *)echoes->samples)[n] = random_normal(random);
+}
+
 enum status support_image(const char *text, struct problem problem, const struct echoes *echoes, struct image *image)
 {
     struct spec spec;

@@ -5,6 +5,7 @@
 #include "tests/assertions.h"
 
 #include "data/echo_data.h"
+#include "data/random.h"
 #include "scene/scene.h"
 #include "measure/spec.h"
 
@@ -12,6 +13,11 @@
 void support_scene(const char *name, struct scene *scene);
 /* Its echoes in double. */
 void support_echoes(const struct scene *scene, struct echoes *echoes);
+/* Compressed echoes' acquisition at 150 kHz, B = 15 kHz, fs = 30 kHz, c = 1500 m/s: all places, velocities and t0 are
+   0. To be freed. */
+struct acquisition support_acquisition(int pings, int receivers, int samples);
+/* Its echoes as noise, in double; to be freed. */
+void support_noise(const struct acquisition *acquisition, struct random *random, struct echoes *echoes);
 /* Image a problem by SPEC (the SPEC's precision replaces the problem's) from double echoes. *image is allocated
    here. */
 enum status support_image(const char *spec, struct problem problem, const struct echoes *echoes, struct image *image);

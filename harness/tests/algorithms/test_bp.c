@@ -45,9 +45,7 @@ static void random_case(uint64_t seed, struct acquisition *a, struct grid *grid,
     }
     *grid = (struct grid){uniform(&random, -6, 1), uniform(&random, 0.02, 0.4), (int)uniform(&random, 1, 20),
                           uniform(&random, -8, 8), uniform(&random, 0.01, 0.2), (int)uniform(&random, 1, 600)};
-    assert_int_equal(echoes_allocate(a, PRECISION_DOUBLE, echoes), STATUS_OK);
-    for (int n = 0; n < a->samples * a->receivers * a->pings; n++)
-        ((double complex *)echoes->samples)[n] = random_normal(&random);
+    support_noise(a, &random, echoes);
 }
 
 /* How a method reads a record at sample coordinate q, written down once more from its definition. */

@@ -48,16 +48,8 @@ static const struct image_case {
 static void make_image_case(const struct image_case *c, struct acquisition *a, struct grid *grid, struct echoes *echoes)
 {
     struct random random = random_seed(11, (uint64_t)c->columns);
-    *a = (struct acquisition){.sound_speed = 1500,
-                              .fc = 150e3,
-                              .fs = 30e3,
-                              .bandwidth = 15e3,
-                              .samples = c->samples,
-                              .receivers = c->receivers,
-                              .pings = c->pings,
-                              .compressed = true,
-                              .aperture_limit = c->limit};
-    assert_int_equal(acquisition_allocate(a), STATUS_OK);
+    *a = support_acquisition(c->pings, c->receivers, c->samples);
+    a->aperture_limit = c->limit;
     for (int p = 0; p < a->pings; p++) {
         struct vector sway = vector_random(&random, c->wobble);
         a->t0[p] = (c->first_sample + (c->wobble > 0 ? p % 3 : 0)) / a->fs;
@@ -68,9 +60,7 @@ static void make_image_case(const struct image_case *c, struct acquisition *a, s
                 (struct vector){a->tx[p].x + c->first_offset + 0.04 * m, a->tx[p].y + 0.01 * c->wobble * m, a->tx[p].z};
     }
     *grid = (struct grid){c->x_first, c->x_step, c->columns, c->r_first, c->r_step, c->rows};
-    assert_int_equal(echoes_allocate(a, PRECISION_DOUBLE, echoes), STATUS_OK);
-    for (int n = 0; n < a->samples * a->receivers * a->pings; n++)
-        ((double complex *)echoes->samples)[n] = random_normal(&random);
+    support_noise(a, &random, echoes);
 }
 
 static const struct {

@@ -49,16 +49,8 @@ static void make_invariant_case(const struct invariant_case *c, struct acquisiti
 {
     struct random random = random_seed(7, (uint64_t)c->columns);
     double spacing = c->ratio * c->step;
-    *a = (struct acquisition){.sound_speed = 1500,
-                              .fc = 150e3,
-                              .fs = 30e3,
-                              .bandwidth = 15e3,
-                              .samples = c->samples,
-                              .receivers = c->receivers,
-                              .pings = c->pings,
-                              .compressed = true,
-                              .aperture_limit = c->limit};
-    assert_int_equal(acquisition_allocate(a), STATUS_OK);
+    *a = support_acquisition(c->pings, c->receivers, c->samples);
+    a->aperture_limit = c->limit;
     for (int p = 0; p < a->pings; p++) {
         int place = c->backwards ? a->pings - 1 - p : p;
         a->t0[p] = fmax(0, floor(2 * c->r_first / 1500 * 30e3 - 20)) / 30e3;
@@ -68,9 +60,7 @@ static void make_invariant_case(const struct invariant_case *c, struct acquisiti
             a->rx[p * a->receivers + m].x = a->tx[p].x + c->first_offset + 0.04 * m;
     }
     *grid = (struct grid){c->x_first, c->step, c->columns, c->r_first, 0.025, c->rows};
-    assert_int_equal(echoes_allocate(a, PRECISION_DOUBLE, echoes), STATUS_OK);
-    for (int n = 0; n < a->samples * a->receivers * a->pings; n++)
-        ((double complex *)echoes->samples)[n] = random_normal(&random);
+    support_noise(a, &random, echoes);
 }
 
 static const char *const invariant_specs[] = {
@@ -164,16 +154,10 @@ static const struct crossing {
 static void make_crossing(const struct crossing *c, struct acquisition *a, struct grid *grid, struct echoes *echoes)
 {
     struct random random = random_seed(8, (uint64_t)(c - crossings));
-    *a = (struct acquisition){.sound_speed = 1500,
-                              .fc = 150e3,
-                              .fs = 60e3,
-                              .bandwidth = 40e3,
-                              .samples = c->samples,
-                              .receivers = c->receivers,
-                              .pings = c->pings,
-                              .compressed = true,
-                              .aperture_limit = c->limit};
-    assert_int_equal(acquisition_allocate(a), STATUS_OK);
+    *a = support_acquisition(c->pings, c->receivers, c->samples);
+    a->fs = 60e3;
+    a->bandwidth = 40e3;
+    a->aperture_limit = c->limit;
     for (int p = 0; p < a->pings; p++) {
         int place = c->speed < 0 ? a->pings - 1 - p : p;
         a->t0[p] = c->t0;
@@ -183,9 +167,7 @@ static void make_crossing(const struct crossing *c, struct acquisition *a, struc
             a->rx[p * a->receivers + m].x = a->tx[p].x + c->first_offset + 0.04 * m;
     }
     *grid = (struct grid){-0.5 * c->columns * c->step, c->step, c->columns, c->r_first, c->r_step, c->rows};
-    assert_int_equal(echoes_allocate(a, PRECISION_DOUBLE, echoes), STATUS_OK);
-    for (int n = 0; n < a->samples * a->receivers * a->pings; n++)
-        ((double complex *)echoes->samples)[n] = random_normal(&random);
+    support_noise(a, &random, echoes);
 }
 
 static void rows_cross_the_track(void **state)
@@ -324,16 +306,8 @@ static void jitter_takes_the_general_engine(void **state)
 static void auto_falls_back(void **state)
 {
     (void)state;
-    struct acquisition a = {.sound_speed = 1500,
-                            .fc = 150e3,
-                            .fs = 30e3,
-                            .bandwidth = 15e3,
-                            .samples = 80000,
-                            .receivers = 1,
-                            .pings = 30000,
-                            .compressed = true,
-                            .aperture_limit = 0.05};
-    assert_int_equal(acquisition_allocate(&a), STATUS_OK);
+    struct acquisition a = support_acquisition(30000, 1, 80000);
+    a.aperture_limit = 0.05;
     for (int p = 0; p < a.pings; p++) {
         a.tx[p].x = a.rx[p].x = p * 0.04;
         a.velocity[p].x = 1;

@@ -86,9 +86,7 @@ static void images_at_speed(void **state)
         const double shortest = (double)delay_halving(a.tx[0].x, a.rx[0].x, v, 0, 20, c);
         for (int p = 0; p < PINGS; p++)
             a.t0[p] = floor(shortest * a.fs - SAMPLES / 2) / a.fs;
-        assert_int_equal(echoes_allocate(&a, PRECISION_DOUBLE, &echoes), STATUS_OK);
-        for (int k = 0; k < SAMPLES * RECEIVERS * PINGS; k++)
-            ((double complex *)echoes.samples)[k] = random_normal(&random);
+        support_noise(&a, &random, &echoes);
         struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
         struct image exact, image;
         assert_int_equal(image_allocate(1, &grid, PRECISION_DOUBLE, &exact), STATUS_OK);

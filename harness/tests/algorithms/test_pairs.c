@@ -12,16 +12,7 @@
 
 static void make(struct acquisition *a, int pings, int receivers, int samples, double spacing, double speed)
 {
-    *a = (struct acquisition){.sound_speed = 1500,
-                              .fc = 150e3,
-                              .fs = 30e3,
-                              .bandwidth = 15e3,
-                              .samples = samples,
-                              .receivers = receivers,
-                              .pings = pings,
-                              .compressed = true,
-                              .aperture_limit = INFINITY};
-    assert_int_equal(acquisition_allocate(a), STATUS_OK);
+    *a = support_acquisition(pings, receivers, samples);
     for (int p = 0; p < pings; p++) {
         a->tx[p].x = (p - pings / 2) * spacing;
         a->velocity[p].x = speed;
@@ -157,9 +148,7 @@ static void engines_agree_on_the_track(void **state)
         const double step = steps[n % 3];
         make(&a, 9, 2, 400, 2 * step, 2.5);
         a.aperture_limit = limits[n / 3 % 4];
-        assert_int_equal(echoes_allocate(&a, PRECISION_DOUBLE, &echoes), STATUS_OK);
-        for (int k = 0; k < a.samples * a.receivers * a.pings; k++)
-            ((double complex *)echoes.samples)[k] = random_normal(&random);
+        support_noise(&a, &random, &echoes);
         struct grid grid = {-16 * step, step, 33, firsts[n / 12], 0.05, 9};
         struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
         assert_int_equal(support_image("bp_sinc:window=kaiser,exact=true,precision=double", problem, &echoes, &exact),

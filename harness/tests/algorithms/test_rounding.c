@@ -40,16 +40,7 @@ enum { METHODS = sizeof methods / sizeof *methods, ISAS = sizeof isas / sizeof *
 static void make_echoes(struct acquisition *a, struct echoes *echoes)
 {
     struct random random = random_seed(5, 0);
-    *a = (struct acquisition){.sound_speed = 1500,
-                              .fc = 150e3,
-                              .fs = 30e3,
-                              .bandwidth = 15e3,
-                              .samples = SAMPLES,
-                              .receivers = RECEIVERS,
-                              .pings = PINGS,
-                              .compressed = true,
-                              .aperture_limit = INFINITY};
-    assert_int_equal(acquisition_allocate(a), STATUS_OK);
+    *a = support_acquisition(PINGS, RECEIVERS, SAMPLES);
     for (int p = 0; p < PINGS; p++) {
         a->t0[p] = 700 / 30e3;
         a->tx[p].x = (p - PINGS / 2) * 0.16;
@@ -57,9 +48,7 @@ static void make_echoes(struct acquisition *a, struct echoes *echoes)
         for (int m = 0; m < RECEIVERS; m++)
             a->rx[p * RECEIVERS + m].x = a->tx[p].x + 0.04 + 0.04 * m;
     }
-    assert_int_equal(echoes_allocate(a, PRECISION_DOUBLE, echoes), STATUS_OK);
-    for (int n = 0; n < SAMPLES * RECEIVERS * PINGS; n++)
-        ((double complex *)echoes->samples)[n] = random_normal(&random);
+    support_noise(a, &random, echoes);
 }
 
 /* All images in one mode; the child's end of the pipe. Returns what the process ends with: 0, or a code that says why
