@@ -74,7 +74,8 @@ static long double sinc(long double z)
     return fabsl(z) < 1e-12L ? 1.0L : sinl(exact_pi * z) / (exact_pi * z);
 }
 
-/* Off the beam's axis, which points `squint` ahead; `along` counts backwards. What lies behind the beam is as far off as can be. */
+/* Off the beam's axis, which points `squint` ahead; `along` counts backwards. What lies behind the beam is as far off
+   as can be. */
 static long double sine_of(long double along, long double across, long double squint)
 {
     const long double distance = hypotl(along, across), sine = along * cosl(squint) + across * sinl(squint);

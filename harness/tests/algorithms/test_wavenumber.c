@@ -42,7 +42,8 @@ static void spectra(void **state)
     squint_scene_free(&scene);
 }
 
-/* A beam along the track hears what lies ahead, and nothing of what lies behind, whose sine off the axis is as small. */
+/* A beam along the track hears what lies ahead, and nothing of what lies behind, whose sine off the axis is as
+   small. */
 static void behind_the_beam(void **state)
 {
     (void)state;
