@@ -84,12 +84,13 @@ static double lines_cost(const struct ping_box *box, const struct grid *grid, bo
 static struct bp_layout layout_make(const struct bp *bp)
 {
     const size_t length = (size_t)bp->shape.length, parts = 2 * (size_t)bp->shape.branches;
-    struct bp_layout layout = {.apart = length, .blocks = 1};
+    const size_t vector = 64 / real_size(bp->problem.precision), blocks = (length + vector - 1) / vector + 1;
+    const bool branches =
+        bp->table.reading == BP_BRANCHES; /* rounded up, so that a plan needs the same memory everywhere */
+    struct bp_layout layout = {.apart = branches ? blocks * vector : length, .blocks = 1};
 #ifdef SASBENCH_X86_64
-    if (bp->table.reading == BP_BRANCHES && isa_choose() == ISA_V4) {
-        layout.apart = 64 / real_size(bp->problem.precision);
-        layout.blocks = (int)((length + layout.apart - 1) / layout.apart) + 1;
-    }
+    if (branches && isa_choose() == ISA_V4)
+        layout = (struct bp_layout){.apart = vector, .blocks = (int)blocks};
 #endif
     layout.record = (size_t)layout.blocks * parts * layout.apart;
     return layout;
