@@ -6,6 +6,7 @@
 
 #include "backprojection/engine.h"
 #include "backprojection/budget.h"
+#include "backprojection/kernel.h"
 #include "common/fft_length.h"
 #include "backprojection/pairs.h"
 
@@ -29,6 +30,20 @@ void bp_fill_row(const struct bp *bp, int thread, const struct echoes *echoes, s
         traces_fill_float(bp->traces, thread, (const float complex *)echoes->samples + offset, row);
 }
 
+/* The kernel's branches, where they are few enough; false without memory. */
+static bool kernel_make(struct bp *bp, const struct interpolator *in, const void *options)
+{
+    const size_t count = KERNEL_BRANCHES_MOST * (size_t)in->taps;
+    const double tolerance = bp->problem.precision == PRECISION_DOUBLE ? 1e-10 : 1e-6;
+    bp->kernel = (struct bp_kernel){.taps = in->taps, .first = in->first};
+    bp->kernel.coefficients = malloc(count * sizeof *bp->kernel.coefficients);
+    if (!bp->kernel.coefficients)
+        return false;
+    bp->kernel.branches = kernel_branches(in, options, tolerance, bp->kernel.coefficients);
+    bp->work.bytes += (double)count * sizeof *bp->kernel.coefficients;
+    return true;
+}
+
 /* Tabulate the interpolator's weights in the plan's precision. */
 static enum status tabulate(struct bp *bp, const struct interpolator *in, const void *options)
 {
@@ -44,7 +59,8 @@ static enum status tabulate(struct bp *bp, const struct interpolator *in, const 
                                       .steps = 1,
                                       .taps = in->degree + 1,
                                       .guard = BP_BRANCHES_GUARD,
-                                      .branches = in->degree + 1};
+                                      .branches = in->degree + 1,
+                                      .shift = 0.5};
     if (in->taps == 1)
         return STATUS_OK; /* BP_NEAREST, BP_BRANCHES */
     bool line = in->taps == 2 && in->steps > 0;
@@ -82,7 +98,7 @@ static enum status tabulate(struct bp *bp, const struct interpolator *in, const 
             else
                 ((float *)bp->weights)[i] = (float)w[i];
     }
-    bool complete = w && at && bp->weights;
+    bool complete = w && at && bp->weights && (in->steps > 0 || kernel_make(bp, in, options));
     free(w);
     free(at);
     bp->table.weights = bp->weights;
@@ -239,6 +255,7 @@ void bp_destroy(void *plan)
         return;
     engine_discard(bp);
     free(bp->weights);
+    free(bp->kernel.coefficients);
     turned_free(&bp->turned);
     free(bp);
 }

@@ -8,11 +8,18 @@
 #include "backprojection/traces.h"
 #include "backprojection/turned.h"
 
+/* The weights of a kernel of many taps as polynomials (kernel.h), for the general engine's interpolated delays. */
+struct bp_kernel {
+    int branches, taps, first; /* no branches: it has none */
+    double *coefficients;      /* [branches][taps] */
+};
+
 struct bp {
     struct problem problem;
     struct bp_medium medium;
     struct bp_table table;
     void *weights; /* of table */
+    struct bp_kernel kernel;
     struct traces *traces;
     struct traces_shape shape;
     const struct bp_engine *engine;

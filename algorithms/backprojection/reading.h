@@ -25,6 +25,7 @@ struct bp_table {
     enum bp_reading reading;
     int upsample, steps, taps, first, guard;
     int branches;        /* values of each place of a record: `taps` if BP_BRANCHES, else 1 */
+    double shift;        /* branches: they are read at floor(place + shift), u = place + shift - 1/2 from there */
     const void *weights; /* of the plan's precision; NULL if BP_NEAREST */
 };
 

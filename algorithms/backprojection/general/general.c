@@ -80,10 +80,36 @@ static double lines_cost(const struct ping_box *box, const struct grid *grid, bo
     return cost;
 }
 
+/* A kernel's branches in place of its taps. */
+static void read_branches(struct bp *bp)
+{
+    const struct bp_kernel *kernel = &bp->kernel;
+    bp->table = (struct bp_table){.reading = BP_BRANCHES,
+                                  .upsample = bp->table.upsample,
+                                  .steps = 1,
+                                  .taps = kernel->branches,
+                                  .guard = BP_BRANCHES_GUARD,
+                                  .branches = kernel->branches};
+    bp->shape.flops += 4.0 * kernel->branches * kernel->taps * ((bp->shape.samples - 1.0) * bp->table.upsample + 1);
+}
+
+/* Values of a branch: as a record's, but for the guards of a kernel. */
+static size_t branch_length(const struct bp *bp)
+{
+    return (size_t)(bp->shape.length + 2 * (bp->table.guard - bp->shape.guard));
+}
+
+/* Complex values of a record before they are spread: its trace, and after it the branches of a kernel. */
+static size_t values_of(const struct bp *bp)
+{
+    const size_t trace = (size_t)bp->shape.branches * (size_t)bp->shape.length;
+    return trace + (bp->table.branches > bp->shape.branches ? (size_t)bp->table.branches * branch_length(bp) : 0);
+}
+
 /* One block more than a record has: windows are two. */
 static struct bp_layout layout_make(const struct bp *bp)
 {
-    const size_t length = (size_t)bp->shape.length, parts = 2 * (size_t)bp->shape.branches;
+    const size_t length = branch_length(bp), parts = 2 * (size_t)bp->table.branches;
     const size_t vector = 64 / real_size(bp->problem.precision), blocks = (length + vector - 1) / vector + 1;
     const bool branches =
         bp->table.reading == BP_BRANCHES; /* rounded up, so that a plan needs the same memory everywhere */
@@ -106,6 +132,8 @@ static enum status general_plan(struct bp *bp)
     enum status status = bp_plan_traces(bp);
     if (status != STATUS_OK)
         return status;
+    if (bp->kernel.branches > 0 && bp->medium.phase_limit > 0)
+        read_branches(bp);
     int fine = bp->table.upsample * (bp->table.reading == BP_CUBICS ? BP_INTERVALS : 1);
     if (!((double)a->samples * fine < INT_MAX))
         return status_set(STATUS_UNSUPPORTED, "records of %d samples with %d points each are too long to index",
@@ -116,7 +144,7 @@ static enum status general_plan(struct bp *bp)
     general->sum = sum_functions[isa_choose()][problem->precision];
     general->batch = (int)fmin(pairs, fmax(BATCH_LEAST, (double)(BATCH_BYTES / row_bytes)));
     general->rows = aligned_alloc(64, ((size_t)general->batch * row_bytes + size + 63) / 64 * 64);
-    const size_t interleaved = 2 * (size_t)bp->shape.branches * (size_t)bp->shape.length * size;
+    const size_t interleaved = 2 * values_of(bp) * size;
     general->interleaved = malloc((size_t)omp_get_max_threads() * interleaved);
     general->normal = calloc((size_t)a->pings, sizeof *general->normal);
     general->boxes = calloc((size_t)a->pings, sizeof *general->boxes);
@@ -248,17 +276,48 @@ static void store(const struct bp *bp, int k, void *pixels)
         }                                                                                                              \
     } while (0)
 
+/* A kernel's branches of a trace, complex [branches][length], which follow it; 0 beyond the record's ends. */
+#define FILTER(real)                                                                                                   \
+    do {                                                                                                               \
+        const size_t count = 2 * (length - 2 * guard);                                                                 \
+        for (size_t m = 0; m < branches; m++) {                                                                        \
+            real *to = (real *)trace + 2 * ((size_t)bp->shape.length + m * length);                                    \
+            memset(to, 0, 2 * length * sizeof *to);                                                                    \
+            to += 2 * guard;                                                                                           \
+            for (int t = 0; t < kernel->taps; t++) {                                                                   \
+                const real weight = (real)kernel->coefficients[m * (size_t)kernel->taps + (size_t)t];                  \
+                const real *values = (const real *)trace + 2 * (bp->shape.guard + kernel->first + t);                  \
+                for (size_t i = 0; i < count; i++)                                                                     \
+                    to[i] += weight * values[i];                                                                       \
+            }                                                                                                          \
+        }                                                                                                              \
+    } while (0)
+
+static void filter(const struct bp *bp, void *trace)
+{
+    const struct bp_kernel *kernel = &bp->kernel;
+    const size_t branches = (size_t)bp->table.branches, length = branch_length(bp), guard = (size_t)bp->table.guard;
+    if (bp->problem.precision == PRECISION_DOUBLE)
+        FILTER(double);
+    else
+        FILTER(float);
+}
+
 /* Compress one record into row n of the batch. */
 static void fill(const struct bp *bp, const struct echoes *echoes, size_t index, int n)
 {
     const struct general *general = bp->state;
     const struct bp_layout *layout = &general->layout;
-    const size_t branches = (size_t)bp->shape.branches, length = (size_t)bp->shape.length;
+    const size_t branches = (size_t)bp->table.branches, length = branch_length(bp);
     const size_t block = layout->apart, step = 2 * branches * block, size = real_size(bp->problem.precision);
     int thread = omp_get_thread_num();
     void *row = (char *)general->rows + (size_t)n * layout->record * size;
-    void *from = (char *)general->interleaved + (size_t)thread * 2 * branches * length * size;
+    char *from = (char *)general->interleaved + (size_t)thread * 2 * values_of(bp) * size;
     bp_fill_row(bp, thread, echoes, index, from);
+    if (bp->table.branches > bp->shape.branches) {
+        filter(bp, from);
+        from += 2 * (size_t)bp->shape.length * size;
+    }
     for (size_t branch = 0; branch < branches; branch++)
         if (bp->problem.precision == PRECISION_DOUBLE)
             SPREAD(double);

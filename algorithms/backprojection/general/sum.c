@@ -125,7 +125,8 @@ static void sum_exact(const struct line_sum *sum, const struct bp_ping *ping, in
                 double sample = floor((point + 0.5) / one);
                 run.sample[i] = (int)sample;
                 run.step[i] = (int)(point - sample * one);
-                run.rest[i] = (real)(cubics || branches ? q * one - point : run.step[i] / one);
+                const double within = q * one - point; /* what is rounded to the nearest step needs no more */
+                run.rest[i] = (real)(cubics ? within : branches ? within + scale->shift - 0.5 : run.step[i] / one);
                 run.cycles[i] = (real)(cycles - floor(cycles + 0.5));
             }
             const struct receiver_group one_receiver = {.table = table,
@@ -221,7 +222,9 @@ static struct scale scale_make(const struct bp_medium *medium, const struct bp_t
     return (struct scale){.t0 = t0,
                           .fs = medium->fs,
                           .fine = fine,
-                          .shift = cubics ? 0 : 0.5 / steps,
+                          .shift = table->reading == BP_BRANCHES ? table->shift
+                                   : cubics                      ? 0
+                                                                 : 0.5 / steps,
                           .ratio = medium->fc / (medium->fs * fine),
                           .base = cycles - floor(cycles)};
 }
