@@ -1,5 +1,5 @@
-/* A kernel of many taps as Farrow branches: each tap's weight is a polynomial in u = fraction - 1/2, so that branch m is
-   the record filtered by the coefficients of u^m, and a pair needs neither weights nor neighbours (farrow.h). */
+/* A kernel of many taps as Farrow branches: each tap's weight is a polynomial in u = fraction - 1/2, so that branch m
+   is the record filtered by the coefficients of u^m, and a pair needs neither weights nor neighbours (farrow.h). */
 #ifndef SASBENCH_BACKPROJECTION_KERNEL_H
 #define SASBENCH_BACKPROJECTION_KERNEL_H
 
@@ -7,8 +7,8 @@
 
 enum { KERNEL_BRANCHES_MOST = 20 };
 
-/* Fill coefficients[KERNEL_BRANCHES_MOST][taps], lowest power first, by the Chebyshev series of each weight. Returns the
-   least number of branches that keep all weights within `tolerance`, 0 where KERNEL_BRANCHES_MOST do not. */
+/* Fill coefficients[KERNEL_BRANCHES_MOST][taps], lowest power first, by the Chebyshev series of each weight. Returns
+   the least number of branches that keep all weights within `tolerance`, 0 where KERNEL_BRANCHES_MOST do not. */
 int kernel_branches(const struct interpolator *interpolator, const void *options, double tolerance,
                     double *coefficients);
 
