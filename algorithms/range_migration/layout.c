@@ -219,8 +219,9 @@ static enum status swath_range(const struct rma *rma, struct rma_swath *swath)
     if (!(to - from < INT_MAX / 64))
         return unsupported(rma, "the range transform is too long");
     swath->first = (int)from;
-    swath->begin = (int)fmin(fmax(from, 0), end);
-    swath->end = (int)fmin(fmax(to, 0), end) + 1;
+    bool recorded = from <= end && to >= 0; /* else nothing is taken: the rows lie beside the record */
+    swath->begin = recorded ? (int)fmax(from, 0) : swath->first;
+    swath->end = recorded ? (int)fmin(to, end) + 1 : swath->first;
     swath->t_first = rma->t0 + from / rma->fs;
     swath->centre = (int)((to - from) / 2);
     swath->length = fft_length_fast((long long)(to - from) + 1 + RMA_GUARD);

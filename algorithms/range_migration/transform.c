@@ -235,7 +235,8 @@ static void cut(const struct rma *rma, const struct rma_swath *swath, const real
     const int length = swath->length, count = swath->end - swath->begin, lead = swath->begin - swath->first;
     real *wave = scratch_of(rma, RMA_WAVE), *taken = wave + 2 * lead;
     memset(wave, 0, 2 * (size_t)lead * sizeof *wave);
-    memcpy(taken, record + 2 * swath->begin, 2 * (size_t)count * sizeof *wave);
+    if (count > 0)
+        memcpy(taken, record + 2 * swath->begin, 2 * (size_t)count * sizeof *wave);
     memset(taken + 2 * count, 0, 2 * (size_t)(length - lead - count) * sizeof *wave);
     for (int k = 0; k < rma->taper && k < count; k++)
         for (int part = 0; part < 2; part++) {

@@ -149,8 +149,10 @@ int wk_conditions(const struct problem *problem, const void *options, struct con
                                       "range migration (rma_*), which takes that into account"};
     if (azimuth_requirements(problem, all, &count, &track) && conditions_accept(all, count)) {
         beam_conditions(problem, &track, all, &count);
-        if (conditions_accept(all, count))
-            all[count++] = ghosts_condition(problem, &track);
+        if (conditions_accept(all, count)) {
+            all[count] = ghosts_condition(problem, &track);
+            all[count++].severity = SEVERITY_REFUSE; /* nothing else here predicts what lies within a patch */
+        }
     }
     for (int k = 0; k < count && k < room; k++)
         list[k] = all[k];

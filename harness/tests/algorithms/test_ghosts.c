@@ -12,20 +12,20 @@
    at 0.0536 at the lowest frequency. */
 static const double LIMIT = 0.0535714;
 
-static void load(double apart, double limit, double squint, struct scene *scene)
+static void load(double apart, double limit, double squint, double half, struct scene *scene)
 {
     char text[1500];
     const double c = cos(squint * M_PI / 180), s = sin(squint * M_PI / 180), r = 30;
-    snprintf(
-        text, sizeof text,
-        "sonar = { fc = 150e3; bandwidth = 20e3; fs = 25e3; };\npulse = { kind = \"flat\"; };\n"
-        "array = { tx_length = 0.2; rx_length = 0.2; receivers = 1; };\n"
-        "track = { speed = 0.0; pri = 0.1; spacing = 0.04; pings = 220; x_first = -4.4; };\n"
-        "record = { first_sample = 700; samples = 600; };\naperture_limit = %.17g;\n"
-        "beam = { kind = \"rect\"; truncation = \"tx\"; limit = 0.5; squint = %.17g; };\n"
-        "targets = { points = ( { x = %.17g; r = %.17g; }, { x = %.17g; r = %.17g; } ); };\n"
-        "image = { angle = %.17g; around_targets = { half_x = 0.4; half_r = 0.2; x_step = 0.04; r_step = 0.02; }; };\n",
-        limit, squint, -apart * c + r * s, apart * s + r * c, apart * c + r * s, -apart * s + r * c, squint);
+    snprintf(text, sizeof text,
+             "sonar = { fc = 150e3; bandwidth = 20e3; fs = 25e3; };\npulse = { kind = \"flat\"; };\n"
+             "array = { tx_length = 0.2; rx_length = 0.2; receivers = 1; };\n"
+             "track = { speed = 0.0; pri = 0.1; spacing = 0.04; pings = 220; x_first = -4.4; };\n"
+             "record = { first_sample = 700; samples = 600; };\naperture_limit = %.17g;\n"
+             "beam = { kind = \"rect\"; truncation = \"tx\"; limit = 0.5; squint = %.17g; };\n"
+             "targets = { points = ( { x = %.17g; r = %.17g; }, { x = %.17g; r = %.17g; } ); };\n"
+             "image = { angle = %.17g; around_targets = { half_x = %.17g; half_r = 0.2; x_step = 0.04; r_step = 0.02; "
+             "}; };\n",
+             limit, squint, -apart * c + r * s, apart * s + r * c, apart * c + r * s, -apart * s + r * c, squint, half);
     support_write("scene.cfg", text);
     if (scene_load(path_of("scene.cfg"), SASBENCH_ROOT "/scenes", scene) != STATUS_OK)
         fail_msg("%s", status_message());
@@ -65,8 +65,8 @@ static double measured(double apart, double squint)
     struct scene scene, limited;
     struct echoes echoes;
     struct image with, without;
-    load(apart, 1, squint, &scene);
-    load(apart, LIMIT, squint, &limited);
+    load(apart, 1, squint, 0.4, &scene);
+    load(apart, LIMIT, squint, 0.4, &limited);
     const struct problem all = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE};
     const struct problem sampled = {&limited.acquisition, limited.patch_count, limited.patches, PRECISION_DOUBLE};
     support_echoes(&scene, &echoes);
@@ -90,8 +90,8 @@ static void refused_or_right(void **state)
     for (int n = 0; n < 4 * 3; n++) {
         const double apart = aparts[n % 4], squint = squints[n / 4], ghosts = measured(apart, squint);
         struct scene scene, limited;
-        load(apart, 1, squint, &scene);
-        load(apart, LIMIT, squint, &limited);
+        load(apart, 1, squint, 0.4, &scene);
+        load(apart, LIMIT, squint, 0.4, &limited);
         double value = ghosts_of(&scene);
         print_message("%g m apart, squint %g: ghosts %.3f, predicted %.3f\n", apart, squint, ghosts, value);
         if (!(value >= ghosts / 1.5 && value <= 4 * ghosts + 0.02) || !(ghosts_of(&limited) < 5e-3))
@@ -111,10 +111,54 @@ static void refused_or_right(void **state)
     assert_true(refused > 5 && accepted > 5); /* both do occur */
 }
 
+/* A patch so wide that back projection sees a target in it as ghosts at its ends. */
+static void within_a_patch(void **state)
+{
+    (void)state;
+    static const double halves[] = {0.8, 3};
+    for (int k = 0; k < 2; k++) {
+        struct scene scene;
+        load(0, 1, 0, halves[k], &scene);
+        double range_migration = error_of("rma_numeric", &scene), omega_k = error_of("wk_classic:pad=2", &scene);
+        print_message("%g m to either side: %.4f, %.4f\n", halves[k], range_migration, omega_k);
+        assert_true(k == 0 ? range_migration < 0.1 && omega_k >= 0 && omega_k < 0.1 : omega_k < 0);
+        scene_free(&scene);
+    }
+}
+
+/* Rows beside the record, ahead of it and behind it: patches of zeros, and the others as they are alone. */
+static void rows_beside_the_record(void **state)
+{
+    (void)state;
+    static const char *const specs[] = {"rma_lbf", "rma_numeric", "rma_delay"};
+    static const double places[] = {30, 22, 38}; /* the record lasts from 26 to 34 m */
+    char text[1500];
+    snprintf(text, sizeof text,
+             "sonar = { fc = 150e3; bandwidth = 15e3; fs = 20e3; };\npulse = { kind = \"flat\"; };\n"
+             "array = { tx_length = 0.08; rx_length = 0.04; receivers = 8; first_offset = 0.04; pitch = 0.04; };\n"
+             "track = { speed = 2.5; pri = 0.064; pings = 40; x_first = -3.2; };\n"
+             "record = { first_sample = 693; samples = 214; };\nbeam = { kind = \"txrx\"; };\n"
+             "targets = { points = ( { x = 0; r = %g; }, { x = 0.3; r = %g; }, { x = -0.3; r = %g; } ); };\n"
+             "image = { around_targets = { half_x = 0.08; half_r = 0; x_step = 0.01; r_step = 0.0125; }; };\n",
+             places[0], places[1], places[2]);
+    struct scene scene;
+    support_write("scene.cfg", text);
+    if (scene_load(path_of("scene.cfg"), SASBENCH_ROOT "/scenes", &scene) != STATUS_OK)
+        fail_msg("%s", status_message());
+    for (int k = 0; k < 3; k++) {
+        double error = error_of(specs[k], &scene);
+        print_message("%s: %.4f\n", specs[k], error);
+        assert_true(error >= 0 && error < 0.05);
+    }
+    scene_free(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(refused_or_right, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(within_a_patch, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(rows_beside_the_record, folder_make, folder_remove),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
