@@ -6,7 +6,7 @@
 int fft_length(long long n)
 {
     static const int primes[] = {2, 3, 5, 7};
-    for (; n <= INT_MAX; n++) {
+    for (n = n > 1 ? n : 1; n <= INT_MAX; n++) {
         long long rest = n;
         for (int i = 0; i < 4; i++)
             while (rest % primes[i] == 0)
@@ -19,9 +19,9 @@ int fft_length(long long n)
 
 int fft_length_fast(long long n)
 {
-    for (; n <= INT_MAX; n++) {
+    for (n = n > 1 ? n : 1; n <= INT_MAX; n++) {
         long long odd = n;
-        while (odd > 0 && odd % 2 == 0)
+        while (odd % 2 == 0)
             odd /= 2;
         if (odd > 4 * (n / odd))
             continue;

@@ -247,7 +247,9 @@ static enum status swath_samples(const struct rma *rma, struct rma_swath *swath)
     int lanes = RMA_ALIGNMENT / (rma->problem.precision == PRECISION_DOUBLE ? 8 : 4);
     if (!rma->delay)
         return STATUS_OK;
-    swath->held = swath->end - swath->begin;
+    if (swath->end == swath->begin) /* the rows lie beside the record: a stretch of zeros */
+        swath->begin = swath->end = 0;
+    swath->held = swath->end > swath->begin ? swath->end - swath->begin : RMA_RUN;
     swath->first = swath->begin;
     swath->t_first = rma->t0 + swath->begin / rma->fs;
     swath->centre = swath->held / 2 / lanes * lanes;
