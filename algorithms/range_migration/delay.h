@@ -28,6 +28,7 @@ enum {
     DELAY_TAPS = 24, /* at most */
     DELAY_INTERVALS = 256
 };
+#define DELAY_NEAREST 0.5 /* of the nearest row: no delay is computed for less */
 
 /* V and U, in double. */
 struct delay_terms {

@@ -240,7 +240,7 @@ struct condition ghosts_condition(const struct problem *problem, const struct st
         sqrt(worst),
         LIMIT,
         false,
-        refusing > LIMIT * LIMIT ? SEVERITY_REFUSE : SEVERITY_WARN,
+        refusing > LIMIT * LIMIT || a->aperture_limit < 1 ? SEVERITY_REFUSE : SEVERITY_WARN,
         "ghosts of point targets in other places, by pings that back projection sums there and a transform does not "
         "image "
         "(relative L2)",

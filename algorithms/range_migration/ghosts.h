@@ -10,7 +10,7 @@
    transform. With an aperture limit it may be the other way round. The value is
    the ghosts of point targets in the patches over the targets' own images (relative L2), the worst of the patches. It
    refuses where a patch holds ghosts of the other patches' targets. Where a patch is so wide that targets at its ends
-   make ghosts within it, it warns: whether there are such targets is not known (omega-k refuses there too, as it predicts no
+   make ghosts within it, it warns, without an aperture limit: whether there are such targets is not known (omega-k refuses there too, as it predicts no
    error). */
 struct condition ghosts_condition(const struct problem *problem, const struct straight_track *track);
 

@@ -252,6 +252,13 @@ static enum status swath_samples(const struct rma *rma, struct rma_swath *swath)
     swath->held = swath->end > swath->begin ? swath->end - swath->begin : RMA_RUN;
     swath->first = swath->begin;
     swath->t_first = rma->t0 + swath->begin / rma->fs;
+    if (swath->end > swath->begin && !(rma->setting.sound_speed / 2 * swath->t_first >= DELAY_NEAREST * swath->nearest))
+        return status_set(
+            STATUS_UNSUPPORTED,
+            "%s: condition delay_near: the range where the nearest row's pulse begins, over that row's "
+            "%g m, is %.3g; at least %g is needed (cure: rows farther away, or more bandwidth; rma_numeric)",
+            rma->method.name, swath->nearest, rma->setting.sound_speed / 2 * swath->t_first / swath->nearest,
+            DELAY_NEAREST);
     swath->centre = swath->held / 2 / lanes * lanes;
     swath->row = (swath->held + RMA_RUN - 1) / RMA_RUN * RMA_RUN;
     /* Rows a power of two apart would share a few sets of the cache. */

@@ -7,7 +7,6 @@
 
 enum { NODES = 4, LANES = RMA_ALIGNMENT / sizeof(real) }; /* of a cubic over a run */
 static const double nodes[NODES] = {0, 5, 10, 15};        /* samples */
-static const double NEAREST = 0.5;                        /* of the nearest row: no delay is computed for less */
 
 /* The delays of a run's samples (s), beyond those of d = 0: exact at the nodes. */
 static void run_delays(const struct rma *rma, const struct rma_swath *swath, int receiver, int run,
@@ -19,7 +18,7 @@ static void run_delays(const struct rma *rma, const struct rma_swath *swath, int
     for (int k = 0; k < NODES; k++) {
         double tau = swath->t_first + (run * RMA_RUN + nodes[k]) / rma->fs;
         values[k] =
-            spectrum_abeam(&rma->setting, rma->offset[receiver], fmax(tau * to_range, NEAREST * swath->nearest));
+            spectrum_abeam(&rma->setting, rma->offset[receiver], fmax(tau * to_range, DELAY_NEAREST * swath->nearest));
     }
     for (int n = 0; n < RMA_RUN; n++) {
         delays[n] = 0;
@@ -82,7 +81,8 @@ static void edges_fill(const struct rma *rma, const struct rma_swath *swath)
         for (int q = 0; q < terms->terms; q++)
             for (int sample = 0; sample <= swath->row; sample += LANES) {
                 double tau = swath->t_first + sample / rma->fs;
-                *edges++ = (complex_real)delay_terms_value(terms, a, q, fmax(tau * to_range, NEAREST * swath->nearest));
+                *edges++ =
+                    (complex_real)delay_terms_value(terms, a, q, fmax(tau * to_range, DELAY_NEAREST * swath->nearest));
             }
     }
 }

@@ -153,12 +153,39 @@ static void rows_beside_the_record(void **state)
     scene_free(&scene);
 }
 
+/* Rows a few range cells from the start of the record, where no delay of a receiver is small (was .31). */
+static void delays_near_the_start(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct echoes echoes;
+    struct image image;
+    support_write(
+        "scene.cfg",
+        "sonar = { fc = 300e3; bandwidth = 6e3; fs = 7.5e3; };\npulse = { kind = \"flat\"; };\n"
+        "array = { tx_length = 0.04; rx_length = 0.02; receivers = 16; first_offset = -0.112; pitch = 0.014; };\n"
+        "track = { speed = 1.5; pri = 0.07466666667; pings = 3; x_first = -0.1344; };\n"
+        "record = { first_sample = 0; samples = 173; };\n"
+        "beam = { kind = \"rect\"; truncation = \"tx\"; limit = 0.443; };\n"
+        "targets = { points = ( { x = 0.004550466958; r = 0.7402909316; } ); };\n"
+        "image = { x = { first = -0.07544953304; step = 0.01; count = 16; };\n"
+        "          r = { first = 0.2402909316; step = 0.0625; count = 16; }; };\n");
+    assert_int_equal(scene_load(path_of("scene.cfg"), SASBENCH_ROOT "/scenes", &scene), STATUS_OK);
+    const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
+    support_echoes(&scene, &echoes);
+    assert_int_equal(support_image("rma_delay", problem, &echoes, &image), STATUS_UNSUPPORTED);
+    assert_non_null(strstr(status_message(), "condition delay_near:"));
+    echoes_free(&echoes);
+    scene_free(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(refused_or_right, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(within_a_patch, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(rows_beside_the_record, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(delays_near_the_start, folder_make, folder_remove),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
