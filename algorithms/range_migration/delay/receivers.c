@@ -94,7 +94,7 @@ static inline __attribute__((always_inline)) void samples_add(const struct group
                 }
             }
         }
-        vec along;
+        vec along = zero;
         for (int l = 0; l < VECTOR; l++)
             along[l] = (real)(v * VECTOR + l) / LANES;
         for (int n = 0; n < count; n++) {
