@@ -240,6 +240,21 @@ static void folder_fill(void)
     support_write("phase-x.png", "abc");
 }
 
+/* Every link within the page leads somewhere. */
+static void assert_links_lead_somewhere(const char *html, const struct parser *page)
+{
+    for (const char *link = html; (link = strstr(link, "href=\"#"));) {
+        char id[48];
+        bool found = false;
+        link += strlen("href=\"#");
+        snprintf(id, sizeof id, "%.*s", (int)strcspn(link, "\""), link);
+        for (int k = 0; k < page->id_count; k++)
+            found |= strcmp(page->ids[k], id) == 0;
+        if (!found)
+            fail_msg("a link to #%s, which is not there", id);
+    }
+}
+
 static void test_everything_is_on_the_page(void **state)
 {
     (void)state;
@@ -291,17 +306,7 @@ static void test_everything_is_on_the_page(void **state)
     assert_null(strstr(strstr(html, "the layout is lost") + 1, "the layout is lost"));
     assert_false(support_exists("report.html.part") || support_exists("report.md.part"));
     assert_null(strstr(html, "could not be drawn"));
-    /* Every link within the page leads somewhere. */
-    for (const char *link = html; (link = strstr(link, "href=\"#"));) {
-        char id[48];
-        bool found = false;
-        link += strlen("href=\"#");
-        snprintf(id, sizeof id, "%.*s", (int)strcspn(link, "\""), link);
-        for (int k = 0; k < page->id_count; k++)
-            found |= strcmp(page->ids[k], id) == 0;
-        if (!found)
-            fail_msg("a link to #%s, which is not there", id);
-    }
+    assert_links_lead_somewhere(html, page);
     free(page);
     free(html);
     free(markdown);
