@@ -227,8 +227,8 @@ static void test_narrow_table(void **state)
     row.options = "";
     row.status = "unsupported";
     static const char *const refused[] = {"wk_classic", "wk_squint", "wk_polar"};
+    char reason[200];
     for (int k = 0; k < 3; k++) {
-        char reason[200];
         row.algorithm = refused[k];
         snprintf(reason, sizeof reason, "%s: condition one_receiver: the number of receivers is 8; at most 1 is needed",
                  refused[k]);
