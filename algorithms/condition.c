@@ -54,6 +54,11 @@ double condition_sinc(double z)
     return fabs(z) < 1e-9 ? 1 : sin(M_PI * z) / (M_PI * z);
 }
 
+double condition_worse(double worst, double value)
+{
+    return isnan(worst) || isnan(value) ? NAN : fmax(worst, value);
+}
+
 /* Where the echoes' amplitude, by both elements' sinc, falls to a quarter. */
 static double quarter_sine(const struct acquisition *a)
 {

@@ -63,5 +63,7 @@ double condition_seen_sine(const struct acquisition *acquisition);
 double condition_amplitude(const struct acquisition *acquisition, double r, double u);
 /* sin(pi z)/(pi z) */
 double condition_sinc(double z);
+/* The larger of two values; NAN, which no limit holds, where one of them is. */
+double condition_worse(double worst, double value);
 
 #endif

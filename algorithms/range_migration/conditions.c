@@ -101,7 +101,7 @@ static double worst_row(const struct rma_view *view, row_function *function)
         for (int end = 0; end < 2; end++) {
             double r = patch->r_first + end * (patch->r_count - 1) * patch->r_step;
             double value = rma_view_aperture(view, patch, r, &low, &high) ? function(view, r, low, high) : 0;
-            worst = isnan(worst) || isnan(value) ? NAN : fmax(worst, value);
+            worst = condition_worse(worst, value);
         }
     }
     return worst;

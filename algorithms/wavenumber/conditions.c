@@ -53,12 +53,6 @@ struct worst {
     int unseen; /* patches of which no ping sees any of these places */
 };
 
-/* A NaN is kept. */
-static double larger(double worst, double value)
-{
-    return value <= worst ? worst : value;
-}
-
 static struct worst patches_see(const struct view *view, const struct problem *problem)
 {
     const struct acquisition *a = view->acquisition;
@@ -75,9 +69,9 @@ static struct worst patches_see(const struct view *view, const struct problem *p
             any = true;
             double steepest = fmax(fabs(seen[0] - view->slope), fabs(seen[1] - view->slope));
             double cosine = sqrt(1 - fmax(seen[0] * seen[0], seen[1] * seen[1]));
-            worst.doppler =
-                larger(worst.doppler, (a->fc + a->bandwidth / 2) / a->sound_speed * 4 * view->spacing * steepest);
-            worst.stationary = larger(worst.stationary, wavelength / (32 * M_PI * p.y * cosine));
+            worst.doppler = condition_worse(worst.doppler,
+                                            (a->fc + a->bandwidth / 2) / a->sound_speed * 4 * view->spacing * steepest);
+            worst.stationary = condition_worse(worst.stationary, wavelength / (32 * M_PI * p.y * cosine));
         }
         worst.unseen += !any;
     }

@@ -216,6 +216,14 @@ static void delays_are_those_of_what_is_seen(void **state)
     }
 }
 
+/* The worst of several values is none where one of them is none. */
+static void no_worst_hides_a_nan(void **state)
+{
+    (void)state;
+    assert_true(isnan(condition_worse(NAN, 1)) && isnan(condition_worse(1, NAN)));
+    assert_true(condition_worse(1, 2) == 2 && condition_worse(2, 1) == 2);
+}
+
 /* What no condition knows, the plan does: columns that no wavenumber of the track reaches. */
 static void refusals_of_the_plan_are_told(void **state)
 {
@@ -299,6 +307,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(exactly_the_violated_condition_is_named, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(delays_are_those_of_what_is_seen, folder_make, folder_remove),
+        cmocka_unit_test(no_worst_hides_a_nan),
         cmocka_unit_test_setup_teardown(refusals_of_the_plan_are_told, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(rows_beyond_the_record_are_refused, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(sensitivities_are_those_of_the_delay, folder_make, folder_remove),
