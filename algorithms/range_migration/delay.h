@@ -41,7 +41,9 @@ struct delay_terms {
     double bytes;
 };
 
-/* For the rows and the beam of a view. False without memory; delay_terms_free in any case. */
+/* What `count` terms leave for the rows and the beam of a view; NAN without memory. */
+double delay_terms_left(const struct rma_view *view, int count);
+/* They themselves. False without memory; delay_terms_free in any case. */
 bool delay_terms_make(const struct rma_view *view, int count, struct delay_terms *terms);
 void delay_terms_free(struct delay_terms *terms);
 /* The first of four angles of the table about nu (cycles/m), and their weights: U is the sum of theirs. */
@@ -56,16 +58,17 @@ double complex delay_terms_value(const struct delay_terms *terms, int angle, int
    k + 1 - taps/2. */
 struct delay_taps {
     int taps;
-    double error; /* relative L2 of the pulse, half-way between two samples */
     double weights[DELAY_INTERVALS + 1][DELAY_TAPS], slopes[DELAY_INTERVALS + 1][DELAY_TAPS];
 };
 
 /* STATUS_FAILED without memory. */
 enum status delay_taps_make(const struct acquisition *acquisition, int taps, struct delay_taps *made);
+/* Their error, relative L2 of the pulse, half-way between two samples; NAN without memory. */
+double delay_taps_error(const struct acquisition *acquisition, int taps);
 /* Weights for the signal `fraction` samples (0 to 1) after tap taps/2 - 1, and their slopes over it. */
 void delay_taps_weights(const struct delay_taps *taps, double fraction, double *weights, double *slopes);
 
-/* Append delay_terms (its value is NAN without memory) and delay_taps to a list; returns the number. */
+/* Append delay_terms and delay_taps to a list, whose values are NAN without memory; returns the number. */
 int delay_conditions(const struct rma_view *view, struct condition *list, int count);
 
 #endif

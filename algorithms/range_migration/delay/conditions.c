@@ -7,21 +7,16 @@ static const double TERMS_LIMIT = 0.05, TAPS_LIMIT = 0.05; /* relative L2: half 
 
 int delay_conditions(const struct rma_view *view, struct condition *list, int count)
 {
-    struct delay_terms terms;
-    struct delay_taps taps;
-    double left = delay_terms_make(view, view->method->terms, &terms) ? terms.left : NAN;
-    delay_terms_free(&terms);
-    if (delay_taps_make(view->problem->acquisition, view->method->taps, &taps) != STATUS_OK)
-        left = NAN;
+    const double error = view->converts ? delay_taps_error(view->problem->acquisition, view->method->taps) : 0;
     list[count++] = (struct condition){"delay_terms",
-                                       left,
+                                       delay_terms_left(view, view->method->terms),
                                        TERMS_LIMIT,
                                        false,
                                        SEVERITY_REFUSE,
                                        "what the terms over the receivers leave of their phases (relative L2)",
                                        "more terms, rows farther away, a shorter array or a narrower beam"};
     list[count++] = (struct condition){"delay_taps",
-                                       view->converts ? taps.error : 0,
+                                       error,
                                        TAPS_LIMIT,
                                        false,
                                        SEVERITY_REFUSE,

@@ -61,7 +61,7 @@ static double correlation(const double energy[BINS], double x, double *slope)
 }
 
 /* Both triangles of Cholesky's factor. */
-static void solve(double factor[DELAY_TAPS][DELAY_TAPS], int taps, double *x)
+static void solve(const double factor[DELAY_TAPS][DELAY_TAPS], int taps, double *x)
 {
     for (int j = 0; j < taps; j++) {
         for (int k = 0; k < j; k++)
@@ -75,33 +75,62 @@ static void solve(double factor[DELAY_TAPS][DELAY_TAPS], int taps, double *x)
     }
 }
 
-enum status delay_taps_make(const struct acquisition *acquisition, int taps, struct delay_taps *made)
+/* The taps' correlations with each other, as Cholesky's factor. */
+struct normal {
+    int taps;
+    double energy[BINS], factor[DELAY_TAPS][DELAY_TAPS];
+};
+
+static enum status normal_make(const struct acquisition *acquisition, int taps, struct normal *normal)
 {
-    double energy[BINS], between[DELAY_TAPS], factor[DELAY_TAPS][DELAY_TAPS], unused;
-    made->taps = taps;
-    enum status status = spectrum_fill(acquisition, energy);
+    double between[DELAY_TAPS], unused;
+    normal->taps = taps;
+    enum status status = spectrum_fill(acquisition, normal->energy);
     if (status != STATUS_OK)
         return status;
     for (int k = 0; k < taps; k++)
-        between[k] = correlation(energy, k, &unused);
+        between[k] = correlation(normal->energy, k, &unused);
     for (int j = 0; j < taps; j++)
         for (int k = j; k < taps; k++) {
             double value = between[k - j];
             for (int n = 0; n < j; n++)
-                value -= factor[k][n] * factor[j][n];
-            factor[k][j] = k == j ? sqrt(value) : value / factor[j][j];
+                value -= normal->factor[k][n] * normal->factor[j][n];
+            normal->factor[k][j] = k == j ? sqrt(value) : value / normal->factor[j][j];
         }
-    for (int i = 0; i <= DELAY_INTERVALS; i++) {
-        double *weights = made->weights[i], *slopes = made->slopes[i], aims[DELAY_TAPS], left = 1;
-        for (int k = 0; k < taps; k++)
-            aims[k] = weights[k] = correlation(energy, (double)i / DELAY_INTERVALS - (k + 1 - taps / 2), &slopes[k]);
-        solve(factor, taps, weights);
-        solve(factor, taps, slopes);
-        for (int k = 0; k < taps; k++)
-            left -= weights[k] * aims[k];
-        if (i == DELAY_INTERVALS / 2)
-            made->error = sqrt(fmax(left, 0));
-    }
+    return STATUS_OK;
+}
+
+/* Weights for a fraction of a sample and their slopes over it; returns the error. */
+static double weights_solve(const struct normal *normal, double fraction, double weights[DELAY_TAPS],
+                            double slopes[DELAY_TAPS])
+{
+    const int taps = normal->taps;
+    double aims[DELAY_TAPS], left = 1;
+    for (int k = 0; k < taps; k++)
+        aims[k] = weights[k] = correlation(normal->energy, fraction - (k + 1 - taps / 2), &slopes[k]);
+    solve(normal->factor, taps, weights);
+    solve(normal->factor, taps, slopes);
+    for (int k = 0; k < taps; k++)
+        left -= weights[k] * aims[k];
+    return sqrt(fmax(left, 0));
+}
+
+double delay_taps_error(const struct acquisition *acquisition, int taps)
+{
+    struct normal normal;
+    double weights[DELAY_TAPS], slopes[DELAY_TAPS];
+    return normal_make(acquisition, taps, &normal) == STATUS_OK ? weights_solve(&normal, 0.5, weights, slopes) : NAN;
+}
+
+enum status delay_taps_make(const struct acquisition *acquisition, int taps, struct delay_taps *made)
+{
+    struct normal normal;
+    enum status status = normal_make(acquisition, taps, &normal);
+    if (status != STATUS_OK)
+        return status;
+    made->taps = taps;
+    for (int i = 0; i <= DELAY_INTERVALS; i++)
+        weights_solve(&normal, (double)i / DELAY_INTERVALS, made->weights[i], made->slopes[i]);
     return STATUS_OK;
 }
 

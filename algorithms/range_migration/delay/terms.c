@@ -202,12 +202,10 @@ static bool basis_make(const struct rma_view *view, const struct offsets *offset
                         samples + (size_t)count * receivers);
         }
     if (count > 0) {
-        double most_offset = 0;
-        for (int k = 0; k < 3; k++)
-            most_offset = fmax(most_offset, fabs(condition_offset(view->problem->acquisition, k)));
+        const struct acquisition *a = view->problem->acquisition;
+        const double most_offset = view->bounds.aside;
         for (size_t m = 0; m < receivers; m++)
             for (int q = 0; q < terms->terms; q++) {
-                const struct acquisition *a = view->problem->acquisition;
                 double d = most_offset > 0 ? (a->rx[m].x - a->tx[0].x) / most_offset : 0;
                 terms->basis[(size_t)q * receivers + m] = q == 0 ? 1 : q == 1 ? d * d : d;
             }
@@ -218,29 +216,46 @@ static bool basis_make(const struct rma_view *view, const struct offsets *offset
     return count > 0;
 }
 
-bool delay_terms_make(const struct rma_view *view, int count, struct delay_terms *terms)
+/* Extent and basis. False without memory; offsets->weights and the terms are to be freed in any case. */
+static bool terms_begin(const struct rma_view *view, int count, struct delay_terms *terms, struct offsets *offsets)
 {
     const int receivers = view->problem->acquisition->receivers;
-    struct offsets offsets = {0};
+    *offsets = (struct offsets){0};
     *terms = (struct delay_terms){
         .terms = count < receivers ? count : receivers, .receivers = receivers, .angles = ANGLES, .ranges = RANGES};
     extent(view, terms);
-    const size_t basis = (size_t)terms->terms * (size_t)receivers,
-                 table = (size_t)ANGLES * (size_t)terms->terms * RANGES;
-    terms->bytes = (double)(basis * sizeof *terms->basis + table * sizeof *terms->coefficients);
-    terms->basis = calloc(basis, sizeof *terms->basis);
-    terms->coefficients = calloc(table, sizeof *terms->coefficients);
-    double complex *sample = malloc((size_t)receivers * sizeof *sample);
-    bool made = terms->basis && terms->coefficients && sample && offsets_make(view, &offsets)
-                && basis_make(view, &offsets, terms);
+    terms->basis = calloc((size_t)terms->terms * (size_t)receivers, sizeof *terms->basis);
+    return terms->basis && offsets_make(view, offsets) && basis_make(view, offsets, terms);
+}
+
+double delay_terms_left(const struct rma_view *view, int count)
+{
+    struct offsets offsets;
+    struct delay_terms terms;
+    const double left = terms_begin(view, count, &terms, &offsets) ? terms.left : NAN;
+    free(offsets.weights);
+    delay_terms_free(&terms);
+    return left;
+}
+
+bool delay_terms_make(const struct rma_view *view, int count, struct delay_terms *terms)
+{
+    struct offsets offsets;
+    bool made = terms_begin(view, count, terms, &offsets);
+    const size_t receivers = (size_t)terms->receivers, all = (size_t)terms->terms;
+    double complex *sample = malloc(receivers * sizeof *sample);
+    terms->coefficients = calloc(ANGLES * all * RANGES, sizeof *terms->coefficients);
+    terms->bytes =
+        (double)(all * receivers * sizeof *terms->basis + ANGLES * all * RANGES * sizeof *terms->coefficients);
+    made = made && terms->coefficients && sample;
     for (int a = 0; made && a < ANGLES; a++)
         for (int n = 0; n < RANGES; n++) {
             double complex parts[DELAY_TERMS];
             phasors(view, &offsets, table_range(terms, n),
                     wavenumber(&view->setting, terms->angle_first + a * terms->angle_step), sample);
             project(terms, sample, parts);
-            for (int q = 0; q < terms->terms; q++)
-                terms->coefficients[((size_t)a * (size_t)terms->terms + (size_t)q) * RANGES + (size_t)n] = parts[q];
+            for (size_t q = 0; q < all; q++)
+                terms->coefficients[((size_t)a * all + q) * RANGES + (size_t)n] = parts[q];
         }
     free(sample);
     free(offsets.weights);
