@@ -147,8 +147,8 @@ static enum status option_unknown(const struct command *command, const char *opt
             snprintf(accepted + used, sizeof accepted - used, "%s--%s", used ? ", " : "", o->name);
         }
     suggestion_text(&suggestion, meant, sizeof meant);
-    return status_set(STATUS_INVALID, "%s: option '%s' %s%s accepted: %s", command->name, option, fault,
-                      *meant ? meant : ";", *accepted ? accepted : "none");
+    return status_set(STATUS_INVALID, "%s: option '%s' %s%s accepted: %s", command->name, option, fault, meant,
+                      *accepted ? accepted : "none");
 }
 
 static enum status spec_add(struct task *task, const char *text)
@@ -250,8 +250,8 @@ static enum status command_find(const char *name, const struct command **found)
     suggestion_text(&suggestion, meant, sizeof meant);
     if (strcmp(name, "test") == 0)
         return status_set(STATUS_INVALID, "'test' is a command of the script ./sasbench: ./sasbench test [NAME ...]");
-    return status_set(STATUS_INVALID, "'%s' is not a command%s accepted: %stest, --help, --version", name,
-                      *meant ? meant : ";", names);
+    return status_set(STATUS_INVALID, "'%s' is not a command%s accepted: %stest, --help, --version", name, meant,
+                      names);
 }
 
 /* One line, whatever the arguments that it quotes hold. */

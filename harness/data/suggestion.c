@@ -49,7 +49,8 @@ void suggestion_offer(struct suggestion *suggestion, const char *word)
 
 void suggestion_text(const struct suggestion *suggestion, char *text, size_t size)
 {
-    *text = '\0';
     if (suggestion->best)
         snprintf(text, size, "; did you mean '%s'?", suggestion->best);
+    else
+        snprintf(text, size, ";");
 }

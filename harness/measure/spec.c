@@ -192,7 +192,7 @@ static enum status spec_read(const char *place, char *copy, struct spec *spec)
         }
         suggestion_text(&suggestion, meant, sizeof meant);
         return status_set(STATUS_INVALID, "SPEC '%.100s': unknown algorithm '%.100s'%s accepted: %s", place, copy,
-                          *meant ? meant : ";", accepted.text);
+                          meant, accepted.text);
     }
     if (spec->algorithm->options_size > 0) {
         spec->options = calloc(1, spec->algorithm->options_size);

@@ -46,9 +46,10 @@ static enum status unknown_name(const char *scene, const char *path, const char 
     for (int k = 0; k < count; k++) {
         suggestion_offer(&suggestion, names[k]);
     }
+    const bool near = suggestion.best != NULL;
     suggestion_text(&suggestion, meant, sizeof meant);
     scene_names_free(names, count);
-    return status == STATUS_OK && *meant
+    return status == STATUS_OK && near
                ? status_set(STATUS_INVALID,
                             "%.300s: there is no such scene%s The path of a .cfg file, or the name of a "
                             "shipped scene without .cfg, is accepted",
