@@ -1,7 +1,5 @@
 /* The commands `list` and `info`: what the algorithm tables say of themselves. */
 #include <stdio.h>
-#include <string.h>
-#include <strings.h>
 
 #include "command/task.h"
 #include "scene/matfile.h"
@@ -78,9 +76,8 @@ static enum status file_info(const char *path)
 enum status command_info(const struct task *task)
 {
     const struct algorithm *algorithm = algorithm_find(task->names[0]);
-    const char *extension = strrchr(task->names[0], '.');
     struct spec spec;
-    if (extension && strcasecmp(extension, ".mat") == 0)
+    if (has_extension(task->names[0], ".mat"))
         return file_info(task->names[0]);
     if (!algorithm) {
         enum status status = spec_parse(task->names[0], &spec); /* says what is accepted */

@@ -12,7 +12,7 @@
 #include "scene/matfile.h"
 #include "show/plot.h"
 
-static bool has_extension(const char *path, const char *extension)
+bool has_extension(const char *path, const char *extension)
 {
     const char *found = path ? strrchr(path, '.') : NULL;
     return found && strcasecmp(found, extension) == 0;

@@ -16,6 +16,8 @@ struct task {
     struct spec *specs; /* [spec_count] of --algorithm */
 };
 
+/* Does a path (NULL: no) end in an extension, ".mat", in small letters or large? */
+bool has_extension(const char *path, const char *extension);
 /* -o of a command that writes a MATLAB file, or a picture: its place exists, its extension says so. Errors:
    STATUS_INVALID. */
 enum status output_check(const char *command, const char *output);
