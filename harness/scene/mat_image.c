@@ -149,19 +149,22 @@ static enum status patch_add(const char *path, struct image_file *file, bool *mo
     for (int k = 0; k < IMAGE_VARIABLES; k++) {
         wanted[k] = image_variables[k];
         wanted[k].name = patch_name(image_variables[k].name, patch, names[k], sizeof names[k]);
-        wanted[k].is_optional = k == IMAGE_ANGLE || (patch > 0 && k == IMAGE);
+        wanted[k].is_optional = patch > 0 || k == IMAGE_ANGLE;
     }
-    /* Whether there is a further patch is asked of the image alone: its axes are then needed. */
-    enum status status = patch == 0 ? STATUS_OK : variables_read(path, &wanted[IMAGE], 1, variables);
-    if (status == STATUS_OK && patch > 0) {
-        *more = variables[0].values != NULL;
-        variables_free(variables, 1);
-    }
-    if (status != STATUS_OK || !*more) {
+    enum status status = variables_read(path, wanted, IMAGE_VARIABLES, variables);
+    if (status != STATUS_OK) {
         return status;
     }
-    status = variables_read(path, wanted, IMAGE_VARIABLES, variables);
-    if (status != STATUS_OK) {
+    /* Whether there is a further patch, its image says: the axes are then needed. */
+    *more = variables[IMAGE].values != NULL;
+    for (int k = 0; k < IMAGE_VARIABLES; k++) {
+        wanted[k].is_optional = k == IMAGE_ANGLE;
+    }
+    if (*more) {
+        status = variables_check(path, wanted, IMAGE_VARIABLES, variables);
+    }
+    if (status != STATUS_OK || !*more) {
+        variables_free(variables, IMAGE_VARIABLES);
         return status;
     }
     struct grid *patches = realloc(file->patches, ((size_t)patch + 1) * sizeof *patches);

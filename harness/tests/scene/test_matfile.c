@@ -96,11 +96,12 @@ static void what_varies_from_ping_to_ping_comes_back(void **state)
     acquisition_free(&a);
 }
 
+static const struct grid grids[] = {
+    {-1, 0.02, 3, 40, 0.5, 4, 0.3}, {0.1, 1, 1, -2, 0.1, 6}, {0.1, 0.3, 5, 7, 1, 1}, {3, 1, 1, 4, 1, 1}};
+
 static void images_come_back_as_matlab_has_them(void **state)
 {
     (void)state;
-    const struct grid grids[] = {
-        {-1, 0.02, 3, 40, 0.5, 4, 0.3}, {0.1, 1, 1, -2, 0.1, 6}, {0.1, 0.3, 5, 7, 1, 1}, {3, 1, 1, 4, 1, 1}};
     for (int precision = PRECISION_FLOAT; precision <= PRECISION_DOUBLE; precision++) {
         struct image image;
         assert_ok(image_allocate(4, grids, (enum precision)precision, &image));
@@ -151,6 +152,43 @@ static void images_come_back_as_matlab_has_them(void **state)
         }
         image_free(&image);
     }
+}
+
+/* All patches of a file, with what it says of itself; a patch that lacks an axis is refused. */
+static void all_patches_come_back(void **state)
+{
+    (void)state;
+    struct image image;
+    struct image_file file;
+    assert_ok(image_allocate(4, grids, PRECISION_DOUBLE, &image));
+    for (int patch = 0; patch < 4; patch++) {
+        ((double complex *)image.pixels[patch])[0] = patch + 1;
+    }
+    assert_ok(image_file_write(path, &image, "bp_linear", "beta=8", "of/here"));
+    assert_ok(image_file_open(path, &file));
+    assert_int_equal(file.image.patch_count, 4);
+    for (int patch = 0; patch < 4; patch++) {
+        const struct grid *back = &file.image.patches[patch];
+        assert_int_equal(back->x_count * back->r_count, grids[patch].x_count * grids[patch].r_count);
+        assert_true(back->x_first == grids[patch].x_first && back->r_first == grids[patch].r_first);
+        assert_true(back->angle_rad == grids[patch].angle_rad);
+        assert_true(image_pixel(&file.image, patch, 0, 0) == patch + 1);
+    }
+    assert_string_equal(file.algorithm, "bp_linear");
+    assert_string_equal(file.options, "beta=8");
+    assert_string_equal(file.scene, "of/here");
+    image_file_close(&file);
+    image_free(&image);
+
+    static const char *const names[] = {"image", "x", "r", "image_2", "x_2"};
+    static const double value[2] = {1, 2};
+    mat_t *mat = Mat_CreateVer(path, NULL, MAT_FT_MAT5);
+    for (int k = 0; k < 5; k++) {
+        variable_add(mat, &(struct mat_values){names[k], MAT_C_DOUBLE, MAT_T_DOUBLE, {1, 1, 1}, value, NULL}, true);
+    }
+    Mat_Close(mat);
+    assert_int_equal(image_file_open(path, &file), STATUS_INVALID);
+    assert_non_null(strstr(status_message(), "variable `r_2` is missing"));
 }
 
 static void both_versions_are_read(void **state)
@@ -369,6 +407,7 @@ int main(void)
         cmocka_unit_test(echoes_of_every_shape_come_back),
         cmocka_unit_test(what_varies_from_ping_to_ping_comes_back),
         cmocka_unit_test(images_come_back_as_matlab_has_them),
+        cmocka_unit_test(all_patches_come_back),
         cmocka_unit_test(both_versions_are_read),
         cmocka_unit_test(other_classes_and_shapes_are_read),
         cmocka_unit_test(extreme_pulses_are_brought_to_one),
