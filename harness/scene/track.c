@@ -15,16 +15,10 @@ static const double degree = M_PI / 180;
 
 /* ---- measured positions ---- */
 
-static enum status file_refuse(const char *path, const char *what, int count)
-{
-    return status_set(STATUS_INVALID, "%s: %s, %d pings; positions of 1 to %.0f pings within +-%g m are needed", path,
-                      what, count, 0x1p26, COORDINATE_MAX_M);
-}
-
 static enum status poses_allocate(struct reading *reading, const char *path, size_t count)
 {
     if (count < 1 || count > 0x1p26)
-        return file_refuse(path, "too few or too many", (int)fmin((double)count, 1e9));
+        return status_set(STATUS_INVALID, "%s: positions of %zu pings; of 1 to %.0f are needed", path, count, 0x1p26);
     reading->poses = calloc(count, sizeof *reading->poses);
     if (!reading->poses)
         return scene_out_of_memory(reading);
@@ -124,7 +118,8 @@ static enum status poses_check(const struct reading *reading, const char *path)
     for (int p = 0; p < reading->scene.acquisition.pings; p++) {
         const struct vector *tx = &reading->poses[p].tx;
         if (!(fabs(tx->x) <= COORDINATE_MAX_M && fabs(tx->y) <= COORDINATE_MAX_M && fabs(tx->z) <= COORDINATE_MAX_M))
-            return file_refuse(path, "a place is not finite or too far", p + 1);
+            return status_set(STATUS_INVALID, "%s: ping %d lies at (%g, %g, %g) m; within +-%g m is needed", path,
+                              p + 1, tx->x, tx->y, tx->z, COORDINATE_MAX_M);
     }
     return STATUS_OK;
 }

@@ -219,7 +219,8 @@ static void wrong_tracks_are_refused(void **state)
         {"file = \"none.mat\"; pri = 0.064;", "none.mat: cannot be read"},
         {"file = \"bare.csv\"; pri = 0.064;", "column 'z' is missing; x, y, z in m are needed"},
         {"file = \"word.csv\"; pri = 0.064;", "word.csv:2: y is 'wide'; a finite number is needed"},
-        {"file = \"empty.csv\"; pri = 0.064;", "positions of 1 to"},
+        {"file = \"empty.csv\"; pri = 0.064;", "empty.csv: positions of 0 pings; of 1 to 67108864 are needed"},
+        {"file = \"far.csv\"; pri = 0.064;", "far.csv: ping 2 lies at (0, 3e+12, 1) m; within +-1e+12 m is needed"},
         {"file = \"half.csv\"; pri = 0.064;", "column 'vy' is missing"},
         {EVEN "errors = ( { axis = \"roll\"; walk = 1e-3; } );",
          "key 'track.errors[0].axis' is \"roll\", must be one of"},
@@ -232,6 +233,7 @@ static void wrong_tracks_are_refused(void **state)
     support_write("bare.csv", "x,y\n1,2\n");
     support_write("word.csv", "x,y,z\n1,wide,3\n");
     support_write("empty.csv", "x,y,z\n");
+    support_write("far.csv", "x,y,z\n1,2,3\n0,3e12,1\n");
     support_write("half.csv", "x,y,z,vx\n1,2,3,4\n");
     for (size_t k = 0; k < COUNT_OF(cases); k++) {
         struct scene scene;
