@@ -128,30 +128,35 @@ static enum status image_metric(struct formula *formula, struct call *call, stru
     return status;
 }
 
-/* Targets counted from 1: one of them, or from the first to the last. */
-static enum status targets_check(const struct formula *formula, const struct call *call, int k, double range[2])
+/* A call's last two texts: one of `words`, and targets counted from 1, one of them or the first and the last. Fills the
+   count of values, each of them 1, and the first target's index. */
+static enum status targets_read(const struct formula *formula, const struct call *call, const char *const *words,
+                                struct values *values, int *first)
 {
-    enum status status = range_check(formula, call, k, 1, VALUES_MAX, range);
-    return status != STATUS_OK || (range[0] == floor(range[0]) && range[1] == floor(range[1]))
-               ? status
-               : formula_error(formula, call->at[k], "targets are counted by whole numbers");
+    double range[2] = {1, 1};
+    enum status status = word_check(formula, call, 2, words);
+    if (status == STATUS_OK)
+        status = range_check(formula, call, 3, 1, VALUES_MAX, range);
+    if (status == STATUS_OK && (range[0] != floor(range[0]) || range[1] != floor(range[1])))
+        status = formula_error(formula, call->at[3], "targets are counted by whole numbers");
+    *first = (int)range[0] - 1;
+    values->count = status == STATUS_OK ? (int)(range[1] - range[0]) + 1 : 0;
+    for (int k = 0; k < values->count; k++)
+        values->at[k] = 1;
+    return status;
 }
 
 static enum status target_metric(struct formula *formula, struct call *call, struct values *values)
 {
     static const char *const definitions[] = {"null", "3db", "pixel", NULL};
-    double range[2] = {1, 1};
+    int first;
     enum status status = measurement_need(formula, call);
+    values->count = 0;
     if (status == STATUS_OK)
-        status = word_check(formula, call, 2, definitions);
-    if (status == STATUS_OK)
-        status = targets_check(formula, call, 3, range);
-    values->count = status == STATUS_OK ? (int)(range[1] - range[0]) + 1 : 0;
-    for (int k = 0; k < values->count; k++)
-        values->at[k] = !formula->measured
-                            ? 1
-                            : measured_target(formula->measured, call->text[0], call->text[1], (int)range[0] - 1 + k,
-                                              call->text[2], call->metric->offset, call->metric->name);
+        status = targets_read(formula, call, definitions, values, &first);
+    for (int k = 0; formula->measured && k < values->count; k++)
+        values->at[k] = measured_target(formula->measured, call->text[0], call->text[1], first + k, call->text[2],
+                                        call->metric->offset, call->metric->name);
     return status;
 }
 
@@ -183,18 +188,14 @@ static enum status planned(struct formula *formula, struct call *call, struct va
 static enum status filtered(struct formula *formula, struct call *call, struct values *values)
 {
     static const char *const quantities[] = {"kept_db", "changed_db", NULL};
-    double range[2] = {1, 1};
+    int first;
     enum status status = unmeasured_check(formula, call);
+    values->count = 0;
     if (status == STATUS_OK)
-        status = word_check(formula, call, 2, quantities);
-    if (status == STATUS_OK)
-        status = targets_check(formula, call, 3, range);
-    values->count = status == STATUS_OK ? (int)(range[1] - range[0]) + 1 : 0;
-    for (int k = 0; k < values->count; k++)
-        values->at[k] = !formula->measured
-                            ? 1
-                            : filtered_value(formula->measured, call->text[0], call->text[1], (int)range[0] - 1 + k,
-                                             call->text[2][0] == 'c' ? QUANTITY_CHANGED_DB : QUANTITY_KEPT_DB);
+        status = targets_read(formula, call, quantities, values, &first);
+    for (int k = 0; formula->measured && k < values->count; k++)
+        values->at[k] = filtered_value(formula->measured, call->text[0], call->text[1], first + k,
+                                       call->text[2][0] == 'c' ? QUANTITY_CHANGED_DB : QUANTITY_KEPT_DB);
     return status;
 }
 
