@@ -41,7 +41,7 @@ static bool kernel_make(struct bp *bp, const struct interpolator *in, const void
         return false;
     bp->kernel.branches = kernel_branches(in, options, tolerance, bp->kernel.coefficients);
     bp->work.bytes += (double)count * sizeof *bp->kernel.coefficients;
-    return true;
+    return bp->kernel.branches >= 0;
 }
 
 /* Tabulate the interpolator's weights in the plan's precision. */

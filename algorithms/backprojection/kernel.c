@@ -22,7 +22,7 @@ int kernel_branches(const struct interpolator *interpolator, const void *options
     const int taps = interpolator->taps;
     double powers[MOST][MOST], left = 0, *values = malloc(2 * MOST * (size_t)taps * sizeof *values);
     if (!values)
-        return 0;
+        return -1;
     double *series = values + MOST * taps;
     for (int k = 0; k < MOST; k++)
         interpolator->weights(options, 0.5 + 0.5 * cos(M_PI * (k + 0.5) / MOST), values + k * taps);

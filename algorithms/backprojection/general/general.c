@@ -106,13 +106,12 @@ static size_t values_of(const struct bp *bp)
     return trace + (bp->table.branches > bp->shape.branches ? (size_t)bp->table.branches * branch_length(bp) : 0);
 }
 
-/* One block more than a record has: windows are two. */
+/* One block more than a record has: windows are two. Rounded up, so that a plan needs the same memory everywhere. */
 static struct bp_layout layout_make(const struct bp *bp)
 {
     const size_t length = branch_length(bp), parts = 2 * (size_t)bp->table.branches;
     const size_t vector = 64 / real_size(bp->problem.precision), blocks = (length + vector - 1) / vector + 1;
-    const bool branches =
-        bp->table.reading == BP_BRANCHES; /* rounded up, so that a plan needs the same memory everywhere */
+    const bool branches = bp->table.reading == BP_BRANCHES;
     struct bp_layout layout = {.apart = branches ? blocks * vector : length, .blocks = 1};
 #ifdef SASBENCH_X86_64
     if (branches && isa_choose() == ISA_V4)

@@ -314,6 +314,8 @@ static void check_refused_memory(const struct scene *scene, enum precision preci
             REFUSE("raw",
                    "without the memory of allocation %d plan returns status %d, \"%s\", must be %d with a reason", call,
                    status, status_message(), STATUS_FAILED);
+        if (status == STATUS_OK && refused)
+            REFUSE("raw", "plan goes on without the memory of allocation %d, must say so", call);
         if (left.blocks != 0 || left.plans != left.plans_destroyed)
             REFUSE("raw", "without the memory of allocation %d plan leaves %d blocks and %d FFT plans, must be none",
                    call, left.blocks, left.plans - left.plans_destroyed);
