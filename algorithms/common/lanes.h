@@ -3,14 +3,8 @@
 #define SASBENCH_COMMON_LANES_H
 
 #include "common/real.h"
+#include "common/vector_bytes.h"
 
-#if defined __AVX512F__
-#define VECTOR_BYTES 64
-#elif defined __AVX__
-#define VECTOR_BYTES 32
-#else
-#define VECTOR_BYTES 16
-#endif
 enum { LANES = VECTOR_BYTES / sizeof(real) };
 
 /* Loaded and stored wherever it lies. */

@@ -5,8 +5,14 @@
 
 #include "range_migration/engine.h"
 #include "common/phasor.h"
+#include "common/vector_bytes.h"
 
-enum { LANES = RMA_ALIGNMENT / sizeof(real) }; /* real parts and imaginary parts of a row take turns */
+enum {
+    LANES = RMA_ALIGNMENT / sizeof(real), /* real parts and imaginary parts of a row take turns */
+    VECTOR = VECTOR_BYTES / sizeof(real)  /* of the instruction set: wider ones would live in memory */
+};
+typedef real vec __attribute__((vector_size(VECTOR_BYTES), may_alias));
+typedef real vec_unaligned __attribute__((vector_size(VECTOR_BYTES), aligned(sizeof(real)), may_alias));
 
 struct workspace {
     const struct rma *rma;

@@ -7,15 +7,7 @@
 
 #include "range_migration/column.h"
 
-#if defined __AVX512F__
-enum { VECTOR_BYTES = 64 };
-#elif defined __AVX__
-enum { VECTOR_BYTES = 32 };
-#else
-enum { VECTOR_BYTES = 16 }; /* wider ones would live in memory */
-#endif
-typedef real vec __attribute__((vector_size(VECTOR_BYTES), may_alias));
-enum { VECTOR = VECTOR_BYTES / sizeof(real), PAIR = LANES > VECTOR ? 2 : 1, SPAN = RMA_SPAN };
+enum { PAIR = LANES > VECTOR ? 2 : 1, SPAN = RMA_SPAN };
 
 /* exp(j 2 pi poly(y)) of n bins, |y| <= 1. Polynomials below an eighth of a turn need neither double nor whole turns
    taken off. */

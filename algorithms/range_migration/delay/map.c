@@ -5,15 +5,7 @@
 
 #include "range_migration/column.h"
 
-#if defined __AVX512F__
-enum { VECTOR_BYTES = 64 };
-#elif defined __AVX__
-enum { VECTOR_BYTES = 32 };
-#else
-enum { VECTOR_BYTES = 16 };
-#endif
-typedef real vec __attribute__((vector_size(VECTOR_BYTES), aligned(sizeof(real)), may_alias));
-enum { VECTOR = VECTOR_BYTES / sizeof(real), VECTORS = 2 * RMA_RUN / VECTOR };
+enum { VECTORS = 2 * RMA_RUN / VECTOR };
 
 /* One run: taps at its middle, and their slope along it. `taps` is a constant where this is inlined. */
 static inline __attribute__((always_inline)) void run_taps(int taps, const real *x, const real *weights,
@@ -22,14 +14,14 @@ static inline __attribute__((always_inline)) void run_taps(int taps, const real 
     for (int v = 0; v < VECTORS; v++) {
         vec sum = {0}, slope = {0};
         for (int k = 0; k < taps; k++) {
-            const vec s = *(const vec *)(x + 2 * k + v * VECTOR);
+            const vec s = *(const vec_unaligned *)(x + 2 * k + v * VECTOR);
             sum += weights[k] * s;
             slope += slopes[k] * s;
         }
         real along[VECTOR];
         for (int l = 0; l < VECTOR; l++)
             along[l] = (real)((v * VECTOR + l) / 2) - (real)(RMA_RUN - 1) / 2;
-        *(vec *)(values + v * VECTOR) = sum + *(const vec *)along * slope;
+        *(vec_unaligned *)(values + v * VECTOR) = sum + *(const vec_unaligned *)along * slope;
     }
 }
 

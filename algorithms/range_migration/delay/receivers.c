@@ -4,16 +4,7 @@
 
 #include "range_migration/column.h"
 
-#if defined __AVX512F__
-enum { VECTOR_BYTES = 64, TOGETHER = 4 };
-#elif defined __AVX__
-enum { VECTOR_BYTES = 32, TOGETHER = 2 };
-#else
-enum { VECTOR_BYTES = 16, TOGETHER = 2 };
-#endif
-typedef real vec __attribute__((vector_size(VECTOR_BYTES), may_alias));
-typedef real vec_unaligned __attribute__((vector_size(VECTOR_BYTES), aligned(sizeof(real)), may_alias));
-enum { VECTOR = VECTOR_BYTES / sizeof(real) };
+enum { TOGETHER = VECTOR_BYTES == 64 ? 4 : 2 }; /* wavenumbers, as many as registers hold */
 
 /* The first and the second half of the complex numbers with these real and imaginary parts. */
 #if defined __AVX512F__ && !REAL_DOUBLE
