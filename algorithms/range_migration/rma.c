@@ -105,12 +105,14 @@ static void count_published(struct rma *rma)
     work->published[1].flops = paper + (rma->block_count - 1) * receivers * na * nr * (1.5 * log2(nr) + 1);
 }
 
-static void count_work(struct rma *rma)
+static enum status count_work(struct rma *rma)
 {
     struct work *work = &rma->work;
     double taken = 0, bins = 0, all = 0;
     int needed = 0;
     bool *used = calloc((size_t)rma->block_count, sizeof *used), differential = false;
+    if (!used)
+        return status_set(STATUS_FAILED, "%s: no memory for %d blocks", rma->method.name, rma->block_count);
     if (rma->record_length > 0)
         work->flops =
             (double)rma->receivers * rma->pings * (2 * fft_flops(rma->record_length) + 6 * rma->record_length);
@@ -120,11 +122,11 @@ static void count_work(struct rma *rma)
         bins += s->band;
         all += s->length;
         differential = differential || s->needed > 1;
-        for (int n = 0; used && n < s->needed; n++)
+        for (int n = 0; n < s->needed; n++)
             used[s->blocks[n]] = true;
     }
     for (int n = 0; n < rma->block_count; n++)
-        needed += used && used[n];
+        needed += used[n];
     free(used);
     count_published(rma);
     if (rma->delay)
@@ -152,6 +154,7 @@ static void count_work(struct rma *rma)
         if (notes[k].happens && length < sizeof work->skipped)
             length += (size_t)snprintf(work->skipped + length, sizeof work->skipped - length, notes[k].format,
                                        notes[k].values[0], notes[k].values[1]);
+    return STATUS_OK;
 }
 
 /* Scenes that back projection images in moments may ask range migration, whose transforms do not know how little is
@@ -196,10 +199,10 @@ enum status rma_plan(const struct problem *problem, const struct rma_method *met
     rma->work.bytes = sizeof *rma;
     rma_nodes(rma);
     enum status status = rma_layout(rma);
-    if (status == STATUS_OK) {
-        count_work(rma);
+    if (status == STATUS_OK)
+        status = count_work(rma);
+    if (status == STATUS_OK)
         status = check_work(rma);
-    }
     if (status == STATUS_OK)
         status = transform(rma)->plan(rma);
     if (status != STATUS_OK) {
