@@ -12,7 +12,7 @@
 #include "measure/imaging.h"
 #include "measure/scalar_loop.h"
 
-enum { RUNS_LEAST = 5, RUNS_MOST = 1000 };
+enum { RUNS_FEWEST = 3, RUNS_LEAST = 5, RUNS_MOST = 1000 };
 static const double seconds_least = 0.5, seconds_most = 3, seconds_single = 10;
 
 static int compare_double(const void *a, const void *b)
@@ -63,7 +63,7 @@ static enum status repeat(struct imaging *imaging, const struct echoes *echoes, 
     int runs = seconds[0] >= seconds_single;
     double begin = seconds_now(), elapsed = 0;
     while (status == STATUS_OK && seconds[0] < seconds_single && runs < RUNS_MOST
-           && (runs < RUNS_LEAST || elapsed < seconds_least) && (runs == 0 || elapsed < seconds_most)) {
+           && (runs < RUNS_LEAST || elapsed < seconds_least) && (runs < RUNS_FEWEST || elapsed < seconds_most)) {
         status = run_once(imaging, echoes, &stages[runs], &seconds[runs]);
         runs++;
         elapsed = seconds_now() - begin;
