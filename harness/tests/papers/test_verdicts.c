@@ -228,7 +228,7 @@ static void numbers_draw(struct measured *measured)
 static void phases_draw(struct measured *measured)
 {
     static const char *const files[] = {"phase-lbf21__phase_short.csv", "phase-lbf21__phase_long.csv"};
-    static const double ranges[] = {50, 135, 220, 300}, shares[] = {0, 0.25, 0.5, 1};
+    static const double ranges[] = {50, 135, 220, 300}, shares[] = {0, 0.25, 0.5, 0.75, 1};
     for (int setup = 0; setup < 2; setup++) {
         FILE *file = fopen(path_of(files[setup]), "w");
         assert_non_null(file);
@@ -241,7 +241,7 @@ static void phases_draw(struct measured *measured)
                 by_share[f] = coin() ? drawn(0, 3) : 0; /* 0: all of it within a quarter of the band */
             }
             for (int r = 0; r < 4; r++)
-                for (int s = 0; s < 4; s++) {
+                for (int s = 0; s < 5; s++) {
                     fprintf(file, "%s,%g,%g", receiver ? "66" : "1", ranges[r], 10 * shares[s]);
                     for (int f = 0; f < 4; f++)
                         fprintf(file, ",%.9g",
