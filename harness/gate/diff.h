@@ -67,7 +67,7 @@ const char *diff_text(struct diff *diff, const char *format, ...) __attribute__(
 enum status diff_judge(const struct diff *diff);
 void diff_free(struct diff *diff);
 
-/* Readable text: remarks, all findings but the same ones, counts. */
+/* Readable text: remarks, the findings but the same ones by what may have caused them (diff_groups.h), counts. */
 void diff_print(const struct diff *diff, FILE *stream);
 /* The same for a comment of a CI, as Markdown; at most 100 findings, the worst first. Errors: of text_file. */
 enum status diff_markdown(const struct diff *diff, const char *path);

@@ -2,27 +2,45 @@
 #include "gate/diff.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "data/shown_text.h"
 #include "data/text_file.h"
+#include "gate/diff_groups.h"
 
-enum { MARKDOWN_MOST = 100 }; /* findings: a comment has room for 65536 characters */
+enum {
+    MARKDOWN_MOST = 100, /* findings: a comment has room for 65536 characters */
+    SHOWN_MOST = 4       /* of each group on the terminal */
+};
 
 struct cell {
     char text[200];
 };
 
-static struct cell cell_value(double value, const char *text)
+/* Three digits, or as many as it takes to tell it from the other value. */
+static struct cell cell_value(double value, double other, const char *text)
 {
-    struct cell cell = {""};
+    struct cell cell = {""}, beside = {""};
     if (text)
         snprintf(cell.text, sizeof cell.text, "%s", text);
-    else if (!isnan(value))
-        snprintf(cell.text, sizeof cell.text, "%.6g", value);
+    for (int digits = 3; !text && !isnan(value) && digits <= 9; digits++) {
+        snprintf(cell.text, sizeof cell.text, "%.*g", digits, value);
+        snprintf(beside.text, sizeof beside.text, "%.*g", digits, other);
+        if (value == other || strcmp(cell.text, beside.text) != 0)
+            break;
+    }
     shown_make(cell.text);
     return cell;
+}
+
+static struct cell cell_before(const struct finding *f)
+{
+    return cell_value(f->before, f->after, f->before_text);
+}
+
+static struct cell cell_after(const struct finding *f)
+{
+    return cell_value(f->after, f->before, f->after_text);
 }
 
 static struct cell cell_change(const struct finding *finding)
@@ -36,26 +54,6 @@ static struct cell cell_change(const struct finding *finding)
     else if (!isnan(finding->after - finding->before))
         snprintf(cell.text, sizeof cell.text, "%+.3g %s", finding->after - finding->before, finding->unit);
     return cell;
-}
-
-static int order_findings(const void *a, const void *b)
-{
-    const struct finding *x = *(const struct finding *const *)a, *y = *(const struct finding *const *)b;
-    int order = (x->verdict > y->verdict) - (x->verdict < y->verdict);
-    return order ? order : (x > y) - (x < y);
-}
-
-/* All findings but the same ones, the worst first, in an array that the caller frees; NULL without memory. */
-static const struct finding **changed(const struct diff *diff, int *count)
-{
-    const struct finding **list = calloc((size_t)diff->finding_count + 1, sizeof *list);
-    *count = 0;
-    for (int k = 0; list && k < diff->finding_count; k++)
-        if (diff->findings[k].verdict != VERDICT_SAME)
-            list[(*count)++] = &diff->findings[k];
-    if (list)
-        qsort(list, (size_t)*count, sizeof *list, order_findings);
-    return list;
 }
 
 static bool verdict_occurs(const struct diff *diff, int verdict)
@@ -103,46 +101,55 @@ static const char *headline(const struct diff *diff)
     return verdict_occurs(diff, VERDICT_NOISY) ? "nothing failed, not all could be judged" : "nothing got worse";
 }
 
-static int widest(int width, const char *text)
-{
-    int length = (int)strlen(text);
-    return length > width ? length : width;
-}
-
 static void line_write(FILE *stream, const char *text)
 {
     shown_write(stream, text);
     fputc('\n', stream);
 }
 
+/* What is better, new or too noisy to tell is counted only. */
+static bool is_folded(enum verdict verdict)
+{
+    return verdict == VERDICT_NOISY || verdict == VERDICT_BETTER || verdict == VERDICT_NEW;
+}
+
+static void finding_print(const struct finding *f, FILE *stream)
+{
+    fprintf(stream, "  %-17s %11s %11s %11s  ", f->metric, cell_before(f).text, cell_after(f).text,
+            cell_change(f).text);
+    const char *const parts[] = {f->scene, " ", f->spec, *f->detail ? " " : "", f->detail};
+    for (size_t n = 0; n < sizeof parts / sizeof *parts; n++)
+        shown_write(stream, parts[n]);
+    fputc('\n', stream);
+}
+
+static void group_print(const struct groups *groups, const struct finding_group *group, FILE *stream)
+{
+    fprintf(stream, "%s, %s of ", verdict_names[group->verdict], class_names[group->class]);
+    shown_write(stream, group->spec);
+    fprintf(stream, ": %d %s, ", group->count, group->count == 1 ? "value" : "values");
+    line_write(stream, group->what);
+    for (int k = 0; k < group->count && k < SHOWN_MOST && !is_folded(group->verdict); k++)
+        finding_print(groups->findings[group->first + k], stream);
+    if (group->count > SHOWN_MOST && !is_folded(group->verdict))
+        fprintf(stream, "  and %d more\n", group->count - SHOWN_MOST);
+}
+
 void diff_print(const struct diff *diff, FILE *stream)
 {
-    int count;
-    const struct finding **list = changed(diff, &count);
+    struct groups groups;
     for (int k = 0; k < diff->note_count; k++)
         line_write(stream, diff->notes[k]);
-    int verdict_width = 8, change_width = 11;
-    for (int k = 0; list && k < count; k++) {
-        verdict_width = widest(verdict_width, verdict_names[list[k]->verdict]);
-        change_width = widest(change_width, cell_change(list[k]).text);
-    }
-    if (count > 0)
-        fprintf(stream, "\n%-*s %-17s %13s %13s %*s  %s\n", verdict_width, "verdict", "metric", "OLD", "NEW",
-                change_width, "change", "of");
-    for (int k = 0; list && k < count; k++) {
-        const struct finding *f = list[k];
-        fprintf(stream, "%-*s %-17s %13s %13s %*s  ", verdict_width, verdict_names[f->verdict], f->metric,
-                cell_value(f->before, f->before_text).text, cell_value(f->after, f->after_text).text, change_width,
-                cell_change(f).text);
-        const char *const parts[] = {f->scene, " ", f->spec, *f->detail ? " " : "", f->detail};
-        for (size_t n = 0; n < sizeof parts / sizeof *parts; n++)
-            shown_write(stream, parts[n]);
-        fputc('\n', stream);
+    if (groups_make(diff, &groups) == STATUS_OK) {
+        if (groups.count > 0)
+            fprintf(stream, "\n  %-17s %11s %11s %11s  %s\n", "metric", "OLD", "NEW", "change", "of");
+        for (int k = 0; k < groups.count; k++)
+            group_print(&groups, &groups.groups[k], stream);
+        groups_free(&groups);
     }
     fputc('\n', stream);
     print_counts(diff, stream, "", "\n");
     fprintf(stream, "%s\n", headline(diff));
-    free(list);
 }
 
 static void markdown_cell(FILE *stream, const char *text)
@@ -152,42 +159,73 @@ static void markdown_cell(FILE *stream, const char *text)
     fputc(' ', stream);
 }
 
-enum status diff_markdown(const struct diff *diff, const char *path)
+static void markdown_groups(const struct groups *groups, FILE *stream)
 {
-    int count;
-    struct text_file file;
-    const struct finding **list = changed(diff, &count);
-    if (!list)
-        return status_set(STATUS_FAILED, "no memory for %d findings", diff->finding_count);
-    enum status status = text_file_open(path, &file);
-    if (status == STATUS_OK) {
-        fprintf(file.stream, "## sasbench: %s\n\n", headline(diff));
-        print_counts(diff, file.stream, "- ", "\n");
-        if (count > 0)
-            fputs("\n| verdict | metric | OLD | NEW | change | scene | algorithm |\n|---|---|--:|--:|--:|---|---|\n",
-                  file.stream);
-        for (int k = 0; k < count && k < MARKDOWN_MOST; k++) {
-            const struct finding *f = list[k];
-            struct cell before = cell_value(f->before, f->before_text), after = cell_value(f->after, f->after_text);
-            struct cell change = cell_change(f), of;
+    fputs("\n| verdict | of | values | metrics and scenes | the largest: OLD | NEW | change |\n"
+          "|---|---|--:|---|--:|--:|--:|\n",
+          stream);
+    for (int k = 0; k < groups->count && k < MARKDOWN_MOST; k++) {
+        const struct finding_group *group = &groups->groups[k];
+        const struct finding *worst = groups->findings[group->first];
+        const struct cell before = cell_before(worst), after = cell_after(worst), change = cell_change(worst);
+        char count[16];
+        snprintf(count, sizeof count, "%d", group->count);
+        const char *const cells[] = {
+            verdict_names[group->verdict], group->spec, count, group->what, before.text, after.text, change.text};
+        for (size_t c = 0; c < sizeof cells / sizeof *cells; c++)
+            markdown_cell(stream, cells[c]);
+        fputs("|\n", stream);
+    }
+    if (groups->count > MARKDOWN_MOST)
+        fprintf(stream, "\n%d more are not shown.\n", groups->count - MARKDOWN_MOST);
+}
+
+/* The findings one by one, folded away. */
+static void markdown_findings(const struct groups *groups, FILE *stream)
+{
+    int shown = 0;
+    fprintf(stream, "\n<details><summary>each value</summary>\n\n"
+                    "| verdict | metric | OLD | NEW | change | scene | algorithm |\n|---|---|--:|--:|--:|---|---|\n");
+    for (int n = 0; n < groups->count; n++)
+        for (int k = 0; k < groups->groups[n].count && shown < MARKDOWN_MOST; k++, shown++) {
+            const struct finding *f = groups->findings[groups->groups[n].first + k];
+            const struct cell before = cell_before(f), after = cell_after(f), change = cell_change(f);
+            struct cell of;
             snprintf(of.text, sizeof of.text, "%.150s%s%.40s", f->spec, *f->detail ? ", " : "", f->detail);
             const char *const cells[] = {
                 verdict_names[f->verdict], f->metric, before.text, after.text, change.text, f->scene, of.text};
             for (size_t c = 0; c < sizeof cells / sizeof *cells; c++)
-                markdown_cell(file.stream, cells[c]);
-            fputs("|\n", file.stream);
+                markdown_cell(stream, cells[c]);
+            fputs("|\n", stream);
         }
-        if (count > MARKDOWN_MOST)
-            fprintf(file.stream, "\n%d more are not shown.\n", count - MARKDOWN_MOST);
-        fputc('\n', file.stream);
+    if (groups->finding_count > shown)
+        fprintf(stream, "\n%d more are not shown.\n", groups->finding_count - shown);
+    fputs("\n</details>\n", stream);
+}
+
+enum status diff_markdown(const struct diff *diff, const char *path)
+{
+    struct text_file file;
+    struct groups groups;
+    enum status status = groups_make(diff, &groups);
+    if (status != STATUS_OK)
+        return status;
+    status = text_file_open(path, &file);
+    if (status == STATUS_OK) {
+        fprintf(file.stream, "## sasbench: %s\n\n", headline(diff));
         for (int k = 0; k < diff->note_count; k++) {
             fputs("- ", file.stream);
             shown_markdown(file.stream, diff->notes[k]);
             fputc('\n', file.stream);
         }
+        print_counts(diff, file.stream, "- ", "\n");
+        if (groups.count > 0) {
+            markdown_groups(&groups, file.stream);
+            markdown_findings(&groups, file.stream);
+        }
         status = text_file_close(&file, status);
     }
-    free(list);
+    groups_free(&groups);
     return status;
 }
 

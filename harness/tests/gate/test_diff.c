@@ -355,13 +355,15 @@ static void shown_as_text_markdown_and_json(void **state)
     FILE *stream = fmemopen(text, sizeof text - 1, "w");
     diff_print(&diff, stream);
     fclose(stream);
-    assert_non_null(strstr(text, "worse    error                       0.1          0.15       +50 %  s a:beta=8\n"));
-    assert_non_null(strstr(text, "worse    pslr_db                   -13.3         -13.2     +0.1 dB  s a:beta=8\n"));
-    assert_non_null(strstr(text, "new      row"));
+    assert_non_null(strstr(text, "worse, quality of a:beta=8: 2 values, error, pslr_db on s\n"));
+    assert_non_null(strstr(text, "  error                     0.1        0.15       +50 %  s a:beta=8\n"));
+    assert_non_null(strstr(text, "  pslr_db                 -13.3       -13.2     +0.1 dB  s a:beta=8\n"));
+    assert_non_null(strstr(text, "new, "));
     assert_non_null(strstr(text, "something got worse\n"));
     assert_int_equal(diff_markdown(&diff, path_of("out.md")), STATUS_OK);
     assert_non_null(strstr(text_read("out.md"), "| worse | error | 0.1 | 0.15 | +50 % | s | a:beta=8 |\n"));
     assert_non_null(strstr(text_read("out.md"), "| t\\|\"x | a:precision=double |\n"));
+    assert_non_null(strstr(text_read("out.md"), "| worse | a:beta=8 | 2 | error, pslr_db on s | 0.1 | 0.15 | +50 % |"));
     assert_int_equal(diff_json(&diff, path_of("out.json")), STATUS_OK);
     assert_non_null(strstr(text_read("out.json"), "{\"name\": \"s a:beta=8 error\", \"unit\": \"1\", \"value\": 0.15, "
                                                   "\"range\": \"0.0001\"}"));
