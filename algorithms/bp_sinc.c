@@ -16,7 +16,7 @@ static const char *const windows[] = {"none", "kaiser", NULL};
 
 static const struct param params[] = {
     {PARAM(struct options, taps), .summary = "kernel length in samples, even", .initial = 8, .min = 2, .max = 64,
-     .sweep = "4 8 16 32"},
+     .sweep = "4 6 8 10 12 16 32"},
     {PARAM_NAMED(struct options, window, windows),
      .summary = "taper of the kernel: none (the papers') or Kaiser with beta = 5", .initial = WINDOW_NONE,
      .max = WINDOW_KAISER, .sweep = "none kaiser"},

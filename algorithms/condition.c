@@ -277,6 +277,21 @@ struct condition condition_ghost(const struct acquisition *a, double spacing)
                               "pings half the array's length apart"};
 }
 
+/* Near enough to a uniform straight track that gaps between the pings are what `track` has: no ping is farther off than
+   a quarter of the spacing along the track, or the spacing across it. */
+static bool is_sampled_evenly(const struct acquisition *a, struct straight_track *track)
+{
+    if (acquisition_is_straight(a, track))
+        return true;
+    acquisition_unevenness(a, track);
+    const double spacing = fabs(track->spacing);
+    for (int p = 0; p < a->pings; p++)
+        if (!(fabs(a->tx[p].x - track->x_first - p * track->spacing) <= spacing / 4
+              && fmax(fabs(a->tx[p].y - a->tx[0].y), fabs(a->tx[p].z - a->tx[0].z)) <= spacing))
+            return false;
+    return spacing > 0;
+}
+
 int conditions_sampled(const struct problem *problem, struct condition *list, int room)
 {
     const struct acquisition *a = problem->acquisition;
@@ -285,7 +300,7 @@ int conditions_sampled(const struct problem *problem, struct condition *list, in
     add(list, room, &count,
         (struct condition){"above_dc", a->fc - a->bandwidth / 2, 0, true, SEVERITY_WARN,
                            "the lowest frequency fc - B/2 (Hz)", "a higher carrier or a narrower band"});
-    if (a->pings < 2 || !acquisition_is_straight(a, &track))
+    if (a->pings < 2 || !is_sampled_evenly(a, &track))
         return count;
     add(list, room, &count,
         (struct condition){

@@ -44,6 +44,11 @@ int conditions_general(const struct problem *problem, struct condition *list, in
    have. */
 int conditions_sampled(const struct problem *problem, struct condition *list, int room);
 
+enum { CONDITIONS_SCENE = 7 };
+/* Fill `list` with what the scene must fulfil whichever algorithm images it, and return the number: units, pixels as
+   fine as the image's resolution, pixels, patches and beam within the records. All of them warn. */
+int conditions_scene(const struct problem *problem, struct condition list[CONDITIONS_SCENE]);
+
 /* The ghosts of a straight track of several receivers, `spacing` m from ping to ping. */
 struct condition condition_ghost(const struct acquisition *acquisition, double spacing);
 

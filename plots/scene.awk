@@ -4,15 +4,16 @@
 # Without SCENE it prints the array scenes[]. With it:
 #   caption                        scene, machine, threads and commit
 #   $rows                          a block for each series, sorted by its setting, of the lines
-#                                  rate run_s flops error pslr islr "label" "label"   (rate: samples for each one recorded,
+#                                  rate run_s flops error pslr islr "label" "label" low high   (rate: samples for each one recorded,
 #                                  NaN where nothing is upsampled; the setting's value where it is to be written beside
-#                                  the point over run_s, over flops: sparsely, so that no two overlap)
+#                                  the point over run_s, over flops: sparsely, so that no two overlap; low, high: the
+#                                  quartiles of run_s)
 #   series[], family[], member[], precise[]   title; the algorithm's number in families.gp; which of its series; 1 for double
 #   rated[]                        the numbers of the series whose rows have a rate
 #   $control                       the scalar reference loop's time: two lines of run_s error, from the largest error to the least
 #   reference_pslr, reference_islr NaN where unknown
-#   has_points, has_lobes, has_rates   1 where there is something to draw: any row, lobes beside the reference's, an
-#                                  upsampling rate above 1
+#   has_points, has_lobes, has_rates   1 where there is something to draw: a series of three points; with it lobes beside
+#                                  the reference's; three points with an upsampling rate, one of them above 1
 #   $front_run_s, $front_flops     lines: cost error
 #   $slopes, $slope_labels         lines: rate error, two for each straight line, with two empty lines after; rate error
 #                                  "label"; has_slopes: 1 where there are any
@@ -135,7 +136,7 @@ function point_take(    key, at)
     series_add(key, field["value"] + 0, number(field["rate"]) " " number(field["run_s"]) " " number(field["flops"]) " " \
         number(field["error"]) " " number(field["pslr_db"]) " " number(field["islr_db"]) " " \
         (is_number(field["value"]) ? number(field["value"]) : "-") " " (field["is_point"] == "1") " " \
-        (field["front_run_s"] == "1") " " (field["front_flops"] == "1"))
+        (field["front_run_s"] == "1") " " (field["front_flops"] == "1") " " number(field["run_q1_s"]) " " number(field["run_q3_s"]))
     if (!is_number(field["control_s"]))
         return
     for (at = ++control_count; at > 1 && control[at - 1] + 0 > field["control_s"] + 0; at--)
@@ -159,10 +160,12 @@ function points_collect(    k, at, part)
             point[points, "label"] = part[7]
             point[points, "front", 1] = part[9]
             point[points, "front", 2] = part[10]
-            lobes = lobes || (part[5] != "NaN" && title_of[keys[k]] != "reference")
+            point[points, "interval"] = part[11] " " part[12]
+            lobes += (part[5] != "NaN" && title_of[keys[k]] != "reference")
             if (part[1] != "NaN" && rated[rated_count] != k)
                 rated[++rated_count] = k
-            rates = rates || (part[1] != "NaN" && part[1] + 0 > 1)
+            rates += (part[1] != "NaN")
+            upsampled = upsampled || (part[1] != "NaN" && part[1] + 0 > 1)
         }
 }
 
@@ -200,7 +203,7 @@ function far(distance, extent)
     return 30*(distance < 0 ? -distance : distance)/(extent > 0 ? extent : 1)
 }
 
-function rows_print(    k, n, size, least, most)
+function rows_print(    k, n, size, longest, least, most)
 {
     points_collect()
     labels_place(1)
@@ -208,10 +211,10 @@ function rows_print(    k, n, size, least, most)
     print "$rows << END_OF_ROWS"
     for (k = n = 1; k <= key_count; k++) {
         if (point[n, "key"] != k)
-            print "NaN NaN NaN NaN NaN NaN \"\" \"\""
+            print "NaN NaN NaN NaN NaN NaN \"\" \"\" NaN NaN"
         for (; point[n, "key"] == k; n++)
             print point[n, "line"], "\"" (point[n, "shown", 1] ? point[n, "label"] : "") "\"",
-                "\"" (point[n, "shown", 2] ? point[n, "label"] : "") "\""
+                "\"" (point[n, "shown", 2] ? point[n, "label"] : "") "\"", point[n, "interval"]
         print "\n"
     }
     print "END_OF_ROWS"
@@ -235,8 +238,15 @@ function rows_print(    k, n, size, least, most)
         printf "$control << END_OF_CONTROL\n%s %.9g\n%s %.9g\nEND_OF_CONTROL\n", control[int((control_count + 1)/2)],
             exp(most), control[int((control_count + 1)/2)], exp(least)
     printf "reference_pslr = %s; reference_islr = %s\n", number(reference_pslr), number(reference_islr)
-    printf "has_points = %d; has_lobes = %d; has_rates = %d\n", (points > 0),
-        lobes && reference_pslr != "" && reference_islr != "", rates
+    longest = 0
+    for (k = 1; k <= key_count; k++) {
+        for (n = size = 0; n <= points; n++)
+            size += (point[n, "key"] == k)
+        if (size > longest)
+            longest = size
+    }
+    printf "has_points = %d; has_lobes = %d; has_rates = %d\n", (longest >= 3),
+        (longest >= 3 && lobes >= 3 && reference_pslr != "" && reference_islr != ""), (rates >= 3 && upsampled)
 }
 
 # The Pareto front, the cheapest first.

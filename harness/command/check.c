@@ -21,6 +21,7 @@ enum status command_check(const struct task *task)
     }
     printf("%s\n", scene->name);
     check_sensitivities_print(stdout, scene);
+    check_scene(stdout, scene);
     for (int k = 0; status == STATUS_OK && (task->spec_count > 0 ? k < task->spec_count : algorithms[k] != NULL); k++) {
         struct spec own = {0};
         bool refused = false;

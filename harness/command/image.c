@@ -3,6 +3,7 @@
 
 #include "data/echo_data.h"
 #include "measure/imaging.h"
+#include "measure/outcome.h"
 #include "scene/matfile.h"
 #include "scene/simulate.h"
 #include "show/plot.h"
@@ -111,6 +112,21 @@ static enum status image_put(const struct task *task, const struct scene *scene,
     return picture_draw(task->output, image, title, range_db, scene);
 }
 
+/* What is known to be wrong with the scene, before the work begins. */
+static void warn(const struct spec *spec, const struct scene *scene)
+{
+    const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, spec->precision};
+    struct condition list[SCENE_CONDITIONS + CONDITIONS_MAX];
+    char text[400];
+    int count = scene_conditions(scene, list);
+    count += algorithm_conditions(spec->algorithm, &problem, spec->options, list + count, CONDITIONS_MAX);
+    for (int k = 0; k < count; k++)
+        if (list[k].severity == SEVERITY_WARN && !condition_holds(&list[k])) {
+            outcome_warning(&list[k], text, sizeof text);
+            fprintf(stderr, "sasbench: %s\n", text);
+        }
+}
+
 enum status command_image(const struct task *task)
 {
     struct scene scene;
@@ -123,6 +139,7 @@ enum status command_image(const struct task *task)
         status = scene_open(task, &scene);
     if (status != STATUS_OK)
         return status;
+    warn(&task->specs[0], &scene);
     status = form_image(&task->specs[0], &scene, &image, &seconds);
     if (status == STATUS_OK) {
         status = image_put(task, &scene, &image, range_db);

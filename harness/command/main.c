@@ -56,8 +56,9 @@ static const struct command commands[] = {
      0, 0, command_baseline, false},
     {"reproduce", "[ID ...] [-o DIR]", "the papers' tables and claims beside ours", "ot", 0, INT_MAX, command_reproduce,
      true},
-    {"sweep", "([SCENE ...] | --echoes FILE.mat --grid GRID) [--algorithm SPEC ...] [-o DIR]",
-     "parameter sweep: error against run time, each algorithm over its settings", "oateg", 0, INT_MAX, command_sweep,
+    {"sweep",
+     "([SCENE ...] | --echoes FILE.mat --grid GRID) [--algorithm SPEC ...] [--precision float|double] [-o DIR]",
+     "parameter sweep: error against run time, each algorithm over its settings", "oategP", 0, INT_MAX, command_sweep,
      true},
     {"report", "DIR", "a results folder as one page: DIR/report.html, and DIR/report.md", "", 1, 1, command_report,
      false},
@@ -72,13 +73,21 @@ static const struct command commands[] = {
 };
 
 static const struct option long_options[] = {
-    {"output", required_argument, NULL, 'o'}, {"scene", required_argument, NULL, 's'},
-    {"echoes", required_argument, NULL, 'e'}, {"algorithm", required_argument, NULL, 'a'},
-    {"grid", required_argument, NULL, 'g'},   {"threads", required_argument, NULL, 't'},
-    {"at", required_argument, NULL, 'A'},     {"markdown", required_argument, NULL, 'M'},
-    {"json", required_argument, NULL, 'J'},   {"range", required_argument, NULL, 'R'},
-    {"ab", no_argument, NULL, 'B'},           {"quick", no_argument, NULL, 'Q'},
-    {"help", no_argument, NULL, 'h'},         {NULL, 0, NULL, 0},
+    {"output", required_argument, NULL, 'o'},
+    {"scene", required_argument, NULL, 's'},
+    {"echoes", required_argument, NULL, 'e'},
+    {"algorithm", required_argument, NULL, 'a'},
+    {"grid", required_argument, NULL, 'g'},
+    {"threads", required_argument, NULL, 't'},
+    {"at", required_argument, NULL, 'A'},
+    {"markdown", required_argument, NULL, 'M'},
+    {"json", required_argument, NULL, 'J'},
+    {"range", required_argument, NULL, 'R'},
+    {"ab", no_argument, NULL, 'B'},
+    {"quick", no_argument, NULL, 'Q'},
+    {"precision", required_argument, NULL, 'P'},
+    {"help", no_argument, NULL, 'h'},
+    {NULL, 0, NULL, 0},
 };
 
 static const struct {
@@ -92,6 +101,7 @@ static const struct {
     {'g', "-g, --grid GRID       xmin:xstep:xcount,rmin:rstep:rcount in metres; ,ANGLE in degrees: turned axes"},
     {'t', "-t, --threads N       OpenMP threads, 1 to 1024"},
     {'R', "    --range DB        what a picture shows below its peak, 60 dB unless given"},
+    {'P', "    --precision WHICH one of float and double (both unless given, or a SPEC says which)"},
     {'A', "    --at FILE.csv     points: columns d, r, F, f, fc, v, c"},
     {'B', "    --ab              run two programs side by side and compare their times"},
     {'Q', "    --quick           one scene of each family, in two of the four rounding modes"},
@@ -183,9 +193,9 @@ static enum status parse(const struct command *command, int argc, char **argv, s
     const struct {
         int letter;
         const char **field;
-    } texts[] = {{'o', &task->output}, {'s', &task->scene}, {'e', &task->echoes},
-                 {'g', &task->grid},   {'A', &task->at},    {'M', &task->markdown},
-                 {'J', &task->json},   {'t', &threads},     {'R', &task->range}};
+    } texts[] = {{'o', &task->output}, {'s', &task->scene},    {'e', &task->echoes}, {'g', &task->grid},
+                 {'A', &task->at},     {'M', &task->markdown}, {'J', &task->json},   {'t', &threads},
+                 {'R', &task->range},  {'P', &task->precision}};
     enum status status = STATUS_OK;
     opterr = 0;
     for (int letter;

@@ -1,6 +1,8 @@
 /* The command `sweep`: every algorithm over its settings, error against run time. */
 #include <stdio.h>
+#include <string.h>
 
+#include "data/interruption.h"
 #include "study/batch.h"
 #include "show/plot.h"
 #include "show/plot_points.h"
@@ -11,6 +13,20 @@
 /* A point, speckle, and the two ends of the range. */
 static const char *const default_scenes[] = {"sweep/point", "sweep/speckle", "sweep/near", "sweep/far"};
 
+/* In the precision asked for, where one is and the SPEC does not say its own. */
+static enum status add(const struct task *task, const struct spec *spec, struct sweep_settings *settings)
+{
+    struct spec fixed;
+    if (!task->precision || spec_given(spec, "precision"))
+        return settings_add(settings, spec);
+    enum status status = spec_vary(spec, "precision", task->precision, &fixed);
+    if (status != STATUS_OK)
+        return status;
+    status = settings_add(settings, &fixed);
+    spec_free(&fixed);
+    return status;
+}
+
 /* The exact image's own cost comes first: what the others save, and what their PSLR and ISLR are compared with. */
 static enum status settings_load(const struct task *task, struct sweep_settings *settings)
 {
@@ -20,14 +36,21 @@ static enum status settings_load(const struct task *task, struct sweep_settings 
         status = settings_add(settings, &spec);
     spec_free(&spec);
     for (int k = 0; k < task->spec_count && status == STATUS_OK; k++)
-        status = settings_add(settings, &task->specs[k]);
+        status = add(task, &task->specs[k], settings);
     for (int k = 0; task->spec_count == 0 && algorithms[k] && status == STATUS_OK; k++) {
         status = spec_parse(algorithms[k]->name, &spec);
         if (status == STATUS_OK)
-            status = settings_add(settings, &spec);
+            status = add(task, &spec, settings);
         spec_free(&spec);
     }
     return status;
+}
+
+static enum status precision_check(const struct task *task)
+{
+    if (!task->precision || strcmp(task->precision, "float") == 0 || strcmp(task->precision, "double") == 0)
+        return STATUS_OK;
+    return status_set(STATUS_INVALID, "sweep: --precision is '%s', must be float or double", task->precision);
 }
 
 /* A plot that cannot be drawn is reported and counted, but does not fail what was measured. Returns how many. */
@@ -56,19 +79,28 @@ enum status command_sweep(const struct task *task)
     struct scene *scenes = NULL;
     struct sweep_settings settings = {0};
     struct batch batch = {0};
-    enum status status = settings_load(task, &settings);
+    enum status status = precision_check(task);
+    if (status == STATUS_OK)
+        status = settings_load(task, &settings);
     if (status == STATUS_OK)
         status = task_scenes("sweep", task, default_count, default_scenes, &scenes, &scene_count);
     if (status == STATUS_OK)
         status = batch_open(directory, scene_count * settings.count, false, &batch);
-    for (int k = 0; k < scene_count && status == STATUS_OK; k++)
+    batch.in_turn = true;
+    interruption_hold();
+    for (int k = 0; k < scene_count && status == STATUS_OK && !interruption_seen(); k++) {
         status = batch_scene(&batch, &scenes[k], settings.count, settings.specs);
-    if (status == STATUS_OK)
-        status = sweep_tables(directory, scenes, scene_count);
-    if (status == STATUS_OK)
-        status = plot_points_write(directory);
-    for (int k = 0; k < scene_count && status == STATUS_OK; k++)
-        batch.undrawn += draw(directory, &scenes[k]);
+        if (status == STATUS_OK)
+            status = sweep_tables(directory, scenes, scene_count, scenes[k].name);
+        if (status == STATUS_OK)
+            status = plot_points_write(directory);
+        if (status == STATUS_OK)
+            batch.undrawn += draw(directory, &scenes[k]);
+    }
+    if (interruption_seen())
+        fprintf(stderr, "sasbench: interrupted; %s holds what was measured, the same command goes on from there\n",
+                directory);
+    interruption_end();
     if (status == STATUS_OK)
         printf("\nResults: %s/measurements.csv, targets.csv, fronts.csv, cheapest.csv, slopes.csv, rules.csv, "
                "points.csv and plots.\n",

@@ -10,7 +10,7 @@
 struct task {
     const char *const *names; /* [name_count] what stands without an option: scenes, an algorithm */
     int name_count;
-    const char *output, *scene, *echoes, *grid, *at, *markdown, *json, *range;
+    const char *output, *scene, *echoes, *grid, *at, *markdown, *json, *range, *precision;
     bool ab, quick;
     int spec_count;
     struct spec *specs; /* [spec_count] of --algorithm */

@@ -73,7 +73,7 @@ void baseline_row(const struct session *session, const struct spec *spec, char *
                   struct measurement *row)
 {
     struct outcome outcome;
-    outcome_measure(session, spec, false, &outcome);
+    outcome_measure(session, spec, false, NULL, &outcome);
     snprintf(reason, reason_size, "%s", outcome.reason);
     *row = outcome.row;
     row->reason = reason;

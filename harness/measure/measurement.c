@@ -2,6 +2,7 @@
 #include "measure/measurement.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 #include "data/echo_data.h"
 
@@ -77,4 +78,11 @@ struct measurement measurement_empty(const char *scene, const char *algorithm, c
                                 .entropy = NAN,
                                 .contrast = NAN,
                                 .peak_over_median = NAN};
+}
+
+void measurement_interval(const struct measurement *row, double *low, double *high)
+{
+    const bool known = isfinite(row->run_q1_s) && isfinite(row->run_q3_s);
+    *low = known ? row->run_q1_s : row->run_s;
+    *high = known ? row->run_q3_s : row->run_s;
 }

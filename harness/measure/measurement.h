@@ -46,4 +46,7 @@ extern const struct metric target_metrics[]; /* of struct target_row */
 struct measurement measurement_empty(const char *scene, const char *algorithm, const char *options,
                                      enum precision precision);
 
+/* s: the quartiles of the runs, or both the median where there are none. */
+void measurement_interval(const struct measurement *row, double *low, double *high);
+
 #endif

@@ -2,6 +2,7 @@
 #include "measure/outcome.h"
 
 #include <math.h>
+#include <omp.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,7 +12,6 @@
 #include "data/echo_data.h"
 #include "measure/imaging.h"
 #include "measure/metrics.h"
-#include "measure/timing.h"
 
 enum { AXES = 2, DEFINITIONS = 3 };
 static const char *const axis_names[AXES] = {[AXIS_AZIMUTH] = "azimuth", [AXIS_RANGE] = "range"};
@@ -135,20 +135,32 @@ static void work_fill(const struct session *session, const struct problem *probl
 
 static void noise_tell(const struct timing *timing, char *text, size_t size)
 {
-    const double spread = timing_spread(timing);
+    const double spread = timing_spread(timing), waited = timing->waited / omp_get_max_threads();
+    const char *before = OUTCOME_NOISE ": ";
+    size_t used = 0;
     *text = '\0';
-    if (spread > TIMING_NOISY)
-        snprintf(text, size, OUTCOME_NOISE ": the middle half of %d runs spans %.0f %% of the median", timing->runs,
-                 100 * spread);
+    if (spread > TIMING_NOISY) {
+        used += (size_t)snprintf(text, size, "%sthe middle half of %d runs spans %.0f %% of the median", before,
+                                 timing->runs, 100 * spread);
+        before = "; ";
+    }
+    if (waited > TIMING_NOISY && used < size) {
+        used += (size_t)snprintf(text + used, size - used, "%sother work had the processors for %.0f %% of the time",
+                                 before, 100 * waited);
+        before = "; ";
+    }
+    if (fabs(timing->drift) > TIMING_NOISY && used < size)
+        snprintf(text + used, size - used, "%sthe scalar reference loop's time changed by %+.0f %% meanwhile", before,
+                 100 * timing->drift);
 }
 
 static enum status image_time(const struct session *session, const struct spec *spec, const struct problem *problem,
-                              struct outcome *outcome)
+                              struct timing_samples *samples, struct outcome *outcome)
 {
     struct timing timing;
     struct measurement *row = &outcome->row;
     enum status status = timing_measure(spec, problem, &session->echoes[spec->precision],
-                                        &session->echoes[PRECISION_FLOAT], &outcome->image, &timing);
+                                        &session->echoes[PRECISION_FLOAT], samples, &outcome->image, &timing);
     if (status == STATUS_OK) {
         outcome->work = timing.work;
         row->plan_s = timing.plan_s;
@@ -170,18 +182,45 @@ static void outcome_fail(struct outcome *outcome, enum status status)
     snprintf(outcome->reason, sizeof outcome->reason, "%s", status_message());
 }
 
+void outcome_warning(const struct condition *condition, char *text, size_t size)
+{
+    snprintf(text, size, OUTCOME_WARNING "condition %s: %s is %.3g, limit %g (cure: %s)", condition->name,
+             condition->meaning, condition->value, condition->limit, condition->cure);
+}
+
+static void warnings_add(const struct condition *list, int count, struct outcome *outcome)
+{
+    char text[400];
+    for (int k = 0; k < count; k++)
+        if (list[k].severity == SEVERITY_WARN && !condition_holds(&list[k])) {
+            outcome_warning(&list[k], text, sizeof text);
+            reason_add(outcome->reason, sizeof outcome->reason, "%s", text);
+        }
+}
+
 /* What fails without refusing: behind the other reasons, so that a table finds it there. */
-static void warnings_fill(const struct spec *spec, const struct problem *problem, struct outcome *outcome)
+static void warnings_fill(const struct session *session, const struct spec *spec, const struct problem *problem,
+                          struct outcome *outcome)
 {
     struct condition list[CONDITIONS_MAX];
     int count = algorithm_conditions(spec->algorithm, problem, spec->options, list, CONDITIONS_MAX);
-    for (int k = 0; k < count; k++)
-        if (list[k].severity == SEVERITY_WARN && !condition_holds(&list[k]))
-            reason_add(outcome->reason, sizeof outcome->reason, OUTCOME_WARNING "condition %s: %s is %.3g, limit %g",
-                       list[k].name, list[k].meaning, list[k].value, list[k].limit);
+    warnings_add(session->conditions, session->condition_count, outcome);
+    warnings_add(list, count, outcome);
 }
 
-void outcome_measure(const struct session *session, const struct spec *spec, bool timed, struct outcome *outcome)
+void outcome_round(const struct session *session, const struct spec *spec, struct timing_samples *samples)
+{
+    struct timing timing;
+    struct image image;
+    const struct problem problem = session_problem(session->scene, spec->algorithm, spec->precision);
+    if (timing_measure(spec, &problem, &session->echoes[spec->precision], &session->echoes[PRECISION_FLOAT], samples,
+                       &image, &timing)
+        == STATUS_OK)
+        image_free(&image);
+}
+
+void outcome_measure(const struct session *session, const struct spec *spec, bool timed, struct timing_samples *samples,
+                     struct outcome *outcome)
 {
     *outcome = (struct outcome){
         .row = measurement_empty(session->scene->name, spec->algorithm->name, spec->text, spec->precision)};
@@ -190,12 +229,12 @@ void outcome_measure(const struct session *session, const struct spec *spec, boo
     outcome->row.stages = outcome->stages;
     struct problem problem = session_problem(session->scene, spec->algorithm, spec->precision);
     const struct echoes *echoes = &session->echoes[spec->precision];
-    enum status status = timed ? image_time(session, spec, &problem, outcome)
+    enum status status = timed ? image_time(session, spec, &problem, samples, outcome)
                                : imaging_form(spec, &problem, echoes, &outcome->image, &outcome->work);
     if (status == STATUS_OK) {
         work_fill(session, &problem, outcome);
         status = quality_fill(session, outcome);
-        warnings_fill(spec, &problem, outcome);
+        warnings_fill(session, spec, &problem, outcome);
         if (*outcome->noise)
             reason_add(outcome->reason, sizeof outcome->reason, "%s", outcome->noise);
     }

@@ -3,6 +3,7 @@
 #define SASBENCH_MEASURE_OUTCOME_H
 
 #include "measure/session.h"
+#include "measure/timing.h"
 
 /* Begins a warning in the reason of a row that is ok. */
 #define OUTCOME_WARNING "warning: "
@@ -21,12 +22,19 @@ struct outcome {
     struct work work;   /* of the plan */
     int target_count;   /* rows, several for each point target */
     struct target_row *targets;
-    char reason[512], skipped[400], stages[512], noise[120];
+    char reason[1200], skipped[400], stages[512], noise[300];
 };
 
+/* "warning: condition NAME: MEANING is VALUE, limit LIMIT (cure: CURE)". */
+void outcome_warning(const struct condition *condition, char *text, size_t size);
+
 /* Measure a SPEC on a session's scene. What fails or is unsupported becomes a row with the reason, so that there is no
-   error. `timed`: measured as timing.h says; otherwise formed once, and the row has no times. */
-void outcome_measure(const struct session *session, const struct spec *spec, bool timed, struct outcome *outcome);
+   error. `timed`: measured as timing.h says, `samples` being those of the earlier rounds, or NULL; otherwise formed
+   once, and the row has no times. */
+void outcome_measure(const struct session *session, const struct spec *spec, bool timed, struct timing_samples *samples,
+                     struct outcome *outcome);
+/* One of the earlier rounds: times alone. What fails says so in outcome_measure again. */
+void outcome_round(const struct session *session, const struct spec *spec, struct timing_samples *samples);
 void outcome_free(struct outcome *outcome);
 
 #endif

@@ -45,6 +45,7 @@ static enum status form_reference(struct session *session)
 enum status session_open(const struct scene *scene, struct session *session)
 {
     *session = (struct session){.scene = scene};
+    session->condition_count = scene_conditions(scene, session->conditions);
     enum status status = scene_echoes(scene, &session->echoes[PRECISION_DOUBLE]);
     if (status == STATUS_OK)
         status = echoes_convert(&session->echoes[PRECISION_DOUBLE], PRECISION_FLOAT, &session->echoes[PRECISION_FLOAT]);

@@ -12,6 +12,8 @@ struct session {
     struct echoes echoes[2];   /* by enum precision; extreme ones divided by one power of two, which images keep */
     struct image reference;    /* double, on the patches where images are compared; no patches without one */
     char no_reference[512];    /* why there is none: refused, or no memory; else empty */
+    struct condition conditions[SCENE_CONDITIONS]; /* [condition_count] of the scene by itself */
+    int condition_count;
 };
 
 /* Make the echoes (scene_echoes) and form the exact image; where there can be none, images are measured without their

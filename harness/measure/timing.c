@@ -1,5 +1,6 @@
 #include "measure/timing.h"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
@@ -12,8 +13,7 @@
 #include "measure/imaging.h"
 #include "measure/scalar_loop.h"
 
-enum { RUNS_FEWEST = 3, RUNS_LEAST = 5, RUNS_MOST = 1000 };
-static const double seconds_least = 0.5, seconds_most = 3, seconds_single = 10;
+static const double seconds_single = 10;
 
 static int compare_double(const void *a, const void *b)
 {
@@ -44,6 +44,28 @@ double timing_spread(const struct timing *timing)
     return (timing->run_q3_s - timing->run_q1_s) / timing->run_s;
 }
 
+/* s: how long threads of this process were ready to run and had no processor, all together; NAN where Linux does not
+   say. */
+static double waited_s(void)
+{
+    DIR *threads = opendir("/proc/self/task");
+    double sum = 0;
+    if (!threads)
+        return NAN;
+    for (struct dirent *entry; (entry = readdir(threads));) {
+        char path[300];
+        long long waited;
+        snprintf(path, sizeof path, "/proc/self/task/%s/schedstat", entry->d_name);
+        FILE *file = entry->d_name[0] == '.' ? NULL : fopen(path, "r");
+        if (file && fscanf(file, "%*d %lld", &waited) == 1)
+            sum += 1e-9 * (double)waited;
+        if (file)
+            fclose(file);
+    }
+    closedir(threads);
+    return sum;
+}
+
 static enum status run_once(struct imaging *imaging, const struct echoes *echoes, struct stages *stages,
                             double *seconds)
 {
@@ -54,24 +76,47 @@ static enum status run_once(struct imaging *imaging, const struct echoes *echoes
     return status;
 }
 
-/* Times of the repeated runs; stages of the run nearest the median. */
-static enum status repeat(struct imaging *imaging, const struct echoes *echoes, struct timing *timing)
+/* How long runs are repeated, alone or in one of several rounds. */
+static const struct budget {
+    int runs_fewest, runs_least; /* beyond seconds_most; within */
+    double seconds_least, seconds_most;
+} whole = {3, 5, 0.5, 3}, part = {1, 2, 0.5 / TIMING_ROUNDS, 3.0 / TIMING_ROUNDS};
+
+/* Times of repeated runs, behind those of earlier rounds. */
+static enum status repeat(struct imaging *imaging, const struct echoes *echoes, const struct budget *budget,
+                          struct timing_samples *samples)
 {
-    static double seconds[RUNS_MOST], sorted[RUNS_MOST];
-    static struct stages stages[RUNS_MOST];
-    enum status status = run_once(imaging, echoes, &stages[0], &seconds[0]); /* warms up */
-    int runs = seconds[0] >= seconds_single;
-    double begin = seconds_now(), elapsed = 0;
-    while (status == STATUS_OK && seconds[0] < seconds_single && runs < RUNS_MOST
-           && (runs < RUNS_LEAST || elapsed < seconds_least) && (runs < RUNS_FEWEST || elapsed < seconds_most)) {
-        status = run_once(imaging, echoes, &stages[runs], &seconds[runs]);
-        runs++;
+    double first;
+    struct stages stages;
+    enum status status = run_once(imaging, echoes, &stages, &first); /* warms up */
+    double begin = seconds_now(), elapsed = 0, waited = waited_s();
+    const bool single = first >= seconds_single;
+    if (single && samples->runs == 0) { /* so long that it counts itself */
+        samples->seconds[0] = first;
+        samples->stages[0] = stages;
+        samples->runs = 1;
+    }
+    for (int runs = 0; status == STATUS_OK && !single && samples->runs < TIMING_RUNS
+                       && (runs < budget->runs_least || elapsed < budget->seconds_least)
+                       && (runs < budget->runs_fewest || elapsed < budget->seconds_most);
+         runs++) {
+        status = run_once(imaging, echoes, &samples->stages[samples->runs], &samples->seconds[samples->runs]);
+        samples->runs++;
         elapsed = seconds_now() - begin;
     }
-    if (status != STATUS_OK)
-        return status;
+    samples->waited += waited_s() - waited;
+    samples->elapsed += elapsed;
+    return status;
+}
+
+/* Stages are those of the run nearest the median. */
+static void samples_evaluate(const struct timing_samples *samples, struct timing *timing)
+{
+    static double sorted[TIMING_RUNS];
+    const int runs = samples->runs;
     for (int k = 0; k < runs; k++)
-        sorted[k] = seconds[k];
+        sorted[k] = samples->seconds[k];
+    timing->waited = samples->elapsed > 0 ? samples->waited / samples->elapsed : NAN;
     timing->runs = runs;
     timing->run_s = median(sorted, runs);
     timing->run_min_s = sorted[0];
@@ -79,19 +124,37 @@ static enum status repeat(struct imaging *imaging, const struct echoes *echoes, 
     timing->run_q3_s = runs >= 4 ? quantile(sorted, runs, 0.75) : NAN;
     int nearest = 0;
     for (int k = 1; k < runs; k++)
-        if (fabs(seconds[k] - timing->run_s) < fabs(seconds[nearest] - timing->run_s))
+        if (fabs(samples->seconds[k] - timing->run_s) < fabs(samples->seconds[nearest] - timing->run_s))
             nearest = k;
-    timing->stages = stages[nearest];
-    return STATUS_OK;
+    timing->stages = samples->stages[nearest];
+}
+
+/* The scalar reference loop's seconds for a pair: the faster of two. */
+static double control_measure(const struct problem *problem, const struct echoes *echoes,
+                              struct timing_samples *samples)
+{
+    double least = INFINITY;
+    for (int k = 0; k < 2; k++) {
+        const double seconds = control_seconds_per_pair(problem, echoes);
+        least = fmin(least, seconds);
+        if (samples->controls < 4 * TIMING_ROUNDS)
+            samples->control[samples->controls++] = seconds;
+    }
+    return least;
 }
 
 enum status timing_measure(const struct spec *spec, const struct problem *problem, const struct echoes *echoes,
-                           const struct echoes *control_echoes, struct image *image, struct timing *timing)
+                           const struct echoes *control_echoes, struct timing_samples *samples, struct image *image,
+                           struct timing *timing)
 {
-    double control[4];
+    static struct timing_samples own;
+    const struct budget *budget = samples ? &part : &whole;
     struct imaging imaging;
     struct problem back = *problem; /* the control knows rows and columns along x and r only */
     struct turned_problem turned;
+    double before = 0;
+    own = (struct timing_samples){.runs = 0};
+    samples = samples ? samples : &own;
     *timing = (struct timing){0};
     *image = (struct image){0};
     enum status status = imaging_open(spec, problem, &imaging);
@@ -101,18 +164,19 @@ enum status timing_measure(const struct spec *spec, const struct problem *proble
     if (status == STATUS_OK) {
         timing->plan_s = imaging.plan_s;
         timing->work = imaging.algorithm->work(imaging.plan);
-        control[0] = control_seconds_per_pair(&back, control_echoes);
-        control[1] = control_seconds_per_pair(&back, control_echoes);
-        status = repeat(&imaging, echoes, timing);
+        before = control_measure(&back, control_echoes, samples);
+        status = repeat(&imaging, echoes, budget, samples);
     }
     if (status == STATUS_OK)
         status = imaging_finish(&imaging, echoes, image);
     imaging_close(&imaging);
     if (status == STATUS_OK) {
-        control[2] = control_seconds_per_pair(&back, control_echoes);
-        control[3] = control_seconds_per_pair(&back, control_echoes);
-        double pairs = timing->work.pairs > 0 ? timing->work.pairs : pairs_count(&back);
-        timing->control_s = median(control, 4) * pairs;
+        double pairs = timing->work.pairs > 0 ? timing->work.pairs : pairs_count(&back), sorted[4 * TIMING_ROUNDS];
+        timing->drift = control_measure(&back, control_echoes, samples) / before - 1;
+        for (int k = 0; k < samples->controls; k++)
+            sorted[k] = samples->control[k];
+        timing->control_s = median(sorted, samples->controls) * pairs;
+        samples_evaluate(samples, timing);
     }
     turned_free(&turned);
     return status;
@@ -129,8 +193,11 @@ double timing_floor(void)
 {
     const struct algorithm nothing = {.name = "nothing", .execute = nothing_execute};
     struct imaging imaging = {.algorithm = &nothing};
+    static struct timing_samples samples;
     struct timing timing;
-    repeat(&imaging, NULL, &timing);
+    samples = (struct timing_samples){.runs = 0};
+    repeat(&imaging, NULL, &whole, &samples);
+    samples_evaluate(&samples, &timing);
     return timing.run_s;
 }
 

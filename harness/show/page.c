@@ -1,6 +1,7 @@
 /* Headings, tables and pictures as HTML or Markdown (page.h). */
 #include "show/page.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>
@@ -364,7 +365,9 @@ static void base64_write(FILE *stream, const char *bytes, size_t size)
     }
 }
 
-enum status page_image(struct page *page, const char *path, const char *caption)
+/* A picture of the type, a link around it where `link` is not NULL. */
+static enum status figure_write(struct page *page, const char *path, const char *type, const char *link,
+                                const char *caption)
 {
     char *bytes;
     size_t size;
@@ -373,15 +376,33 @@ enum status page_image(struct page *page, const char *path, const char *caption)
     enum status status = file_read(path, &bytes, &size);
     if (status != STATUS_OK)
         return status;
-    fputs("<figure>\n<img alt=\"", page->stream);
+    fputs("<figure>\n", page->stream);
+    if (link) {
+        fputs("<a href=\"", page->stream);
+        for (const char *at = link; *at; at++)
+            fprintf(page->stream, isalnum((unsigned char)*at) || strchr("-_.", *at) ? "%c" : "%%%02X",
+                    (unsigned char)*at);
+        fputs("\">", page->stream);
+    }
+    fputs("<img alt=\"", page->stream);
     text_write(page, caption);
-    fputs("\" src=\"data:image/png;base64,", page->stream);
+    fprintf(page->stream, "\" src=\"data:image/%s;base64,", type);
     base64_write(page->stream, bytes, size);
-    fputs("\"/>\n", page->stream);
+    fprintf(page->stream, "\"/>%s\n", link ? "</a>" : "");
     element_write(page, "figcaption", NULL, NULL, caption);
     fputs("\n</figure>\n", page->stream);
     free(bytes);
     return STATUS_OK;
+}
+
+enum status page_image(struct page *page, const char *path, const char *caption)
+{
+    return figure_write(page, path, "png", NULL, caption);
+}
+
+enum status page_thumbnail(struct page *page, const char *small, const char *name, const char *caption)
+{
+    return figure_write(page, small, "jpeg", name, caption);
 }
 
 void page_gallery_begin(struct page *page)

@@ -53,6 +53,8 @@ void page_table_end(struct page *page);
    a PNG is encoded in the page. Errors: STATUS_FAILED when the file cannot be read. */
 enum status page_drawing(struct page *page, const char *path, const char *title);
 enum status page_image(struct page *page, const char *path, const char *caption);
+/* The JPEG file `small` in place of a PNG, with a link to the file `name` beside the page. */
+enum status page_thumbnail(struct page *page, const char *small, const char *name, const char *caption);
 void page_gallery_begin(struct page *page);
 void page_gallery_end(struct page *page);
 

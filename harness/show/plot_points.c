@@ -69,6 +69,19 @@ int pareto_front_find(int count, const double *cost, const double *error, int *f
     return size;
 }
 
+int pareto_ties_find(int count, const double *low, const double *high, const double *error, int size, int *front)
+{
+    int ties = 0;
+    for (int i = 0; i < count; i++) {
+        bool beaten = !(low[i] > 0 && error[i] > 0);
+        for (int k = 0; k < size && !beaten; k++)
+            beaten = front[k] == i || (error[front[k]] <= error[i] && high[front[k]] <= low[i]);
+        if (!beaten)
+            front[size + ties++] = i;
+    }
+    return ties;
+}
+
 /* All [row_count]; of one scene at a time. */
 struct points {
     double *run_s, *flops, *error; /* NAN where a row is no point of the scene */
@@ -130,6 +143,8 @@ static void rows_write(FILE *file, const struct results *results, const struct p
                                   row->run_s,    row->flops,
                                   row->error,    row->pslr_db,
                                   row->islr_db,  row->control_s};
+        double interval[2];
+        measurement_interval(row, &interval[0], &interval[1]);
         if (strcmp(row->status, "ok") != 0 || !(row->run_s > 0 && row->error > 0))
             continue;
         for (size_t n = 0; n < sizeof texts / sizeof *texts; n++) {
@@ -140,7 +155,12 @@ static void rows_write(FILE *file, const struct results *results, const struct p
             csv_write_number(file, numbers[n]);
             fputc(',', file);
         }
-        fprintf(file, "%d,%d,%d\n", points->is_point[k], points->cheap[0][k], points->cheap[1][k]);
+        fprintf(file, "%d,%d,%d", points->is_point[k], points->cheap[0][k], points->cheap[1][k]);
+        for (int n = 0; n < 2; n++) {
+            fputc(',', file);
+            csv_write_number(file, interval[n]);
+        }
+        fputc('\n', file);
     }
 }
 
@@ -161,13 +181,13 @@ static enum status file_write(const char *directory, const struct results *resul
     enum status status = text_file_open(path, &file);
     if (status != STATUS_OK)
         return status;
-    fputs("# sasbench points 1\n", file.stream);
+    fputs("# sasbench points 2\n", file.stream);
     for (size_t k = 0; k < sizeof keys / sizeof *keys; k++) {
         const char *value = csv_comment(&results->csv, keys[k]);
         fprintf(file.stream, "# %s: %s\n", keys[k], value ? value : "unknown");
     }
     fputs("scene,algorithm,precision,rest,value,rate,run_s,flops,error,pslr_db,islr_db,control_s,is_point,front_run_s,"
-          "front_flops\n",
+          "front_flops,run_q1_s,run_q3_s\n",
           file.stream);
     rows_write(file.stream, results, points);
     return text_file_close(&file, STATUS_OK);

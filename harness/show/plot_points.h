@@ -25,6 +25,10 @@ double scene_most_pairs(const struct results *results, const char *scene);
    points. */
 int pareto_front_find(int count, const double *cost, const double *error, int *front);
 
+/* Behind the `size` indices of a front, those of points that no other, with less or equal error, surely costs less than:
+   whose interval [low, high] of the cost lies below theirs. Returns how many. */
+int pareto_ties_find(int count, const double *low, const double *high, const double *error, int size, int *front);
+
 /* Write DIR/points.csv from DIR/measurements.csv: a row for each that was measured (results/README.md has its columns),
    which is all that plots/scene.awk knows of them. Errors: as results_read; STATUS_INVALID for a folder that cannot be
    written; STATUS_FAILED without memory. */

@@ -5,13 +5,13 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "data/folder.h"
 #include "show/plot.h"
 #include "show/plot_points.h"
 #include "measure/results.h"
+#include "show/report_pictures.h"
 #include "show/report_summary.h"
 #include "show/report_tables.h"
 #include "show/table.h"
@@ -250,6 +250,7 @@ static enum status plots_show(struct page *page, const struct folder *folder)
 {
     enum status status = STATUS_OK;
     const char *shown = NULL;
+    struct pictures_count count = {0};
     page_heading(page, 2, "plots", "Plots");
     for (int k = 0; k < folder->drawing_count && status == STATUS_OK; k++) {
         const struct drawing *drawing = &folder->drawings[k];
@@ -259,53 +260,13 @@ static enum status plots_show(struct page *page, const struct folder *folder)
             page_heading(page, 3, NULL, shown = drawing->scene);
         if (*drawing->fault)
             page_paragraph(page, drawing->fault);
-        else
+        else if (report_room(page, drawing->path, 1, &count))
             status = page_drawing(page, drawing->path, drawing->title);
     }
     if (!shown)
-        page_paragraph(page, "No measurement here has both a time and an error.");
+        page_paragraph(page, "No scene here has an algorithm in three settings with both a time and an error.");
+    report_left_out_show(page, &count);
     return status;
-}
-
-struct pictures_count {
-    int shown, left_out, irregular;
-};
-
-/* A picture of the folder as long as the page has room. */
-static enum status picture_show(struct page *page, const char *path, const char *caption, struct pictures_count *count)
-{
-    struct stat info;
-    if (lstat(path, &info) != 0)
-        return STATUS_OK; /* not drawn: a sweep's images, a run without gnuplot */
-    if (!S_ISREG(info.st_mode)) {
-        count->irregular++;
-        return STATUS_OK;
-    }
-    if (ftell(page->stream) + info.st_size / 3 * 4 > REPORT_HTML_BYTES) {
-        count->left_out++;
-        return STATUS_OK;
-    }
-    count->shown++;
-    return page_image(page, path, caption);
-}
-
-/* What of the pictures is not on the page, and why. */
-static void left_out_show(struct page *page, const struct pictures_count *count)
-{
-    char caption[300];
-    if (count->irregular) {
-        snprintf(caption, sizeof caption,
-                 "%d %s left out: links, folders or pipes; only regular files of the folder itself are shown.",
-                 count->irregular, count->irregular == 1 ? "picture is" : "pictures are");
-        page_paragraph(page, caption);
-    }
-    if (count->left_out) {
-        snprintf(caption, sizeof caption,
-                 "%d pictures are left out to keep this page below %d MB; they lie beside "
-                 "it.",
-                 count->left_out, REPORT_HTML_BYTES >> 20);
-        page_paragraph(page, caption);
-    }
 }
 
 /* What `phase` and `reproduce` drew as the papers do. */
@@ -319,40 +280,9 @@ static enum status figures_show(struct page *page, const struct folder *folder)
     page_heading(page, 2, "figures", figures_title(folder));
     for (int k = 0; k < folder->file_count && status == STATUS_OK; k++) {
         snprintf(path, sizeof path, "%s/%s", folder->directory, folder->files[k]->d_name);
-        status = picture_show(page, path, folder->files[k]->d_name, &count);
+        status = report_picture_show(page, path, NULL, folder->files[k]->d_name, &count);
     }
-    left_out_show(page, &count);
-    return status;
-}
-
-/* Slices and images that `run` left. */
-static enum status pictures_show(struct page *page, const struct folder *folder)
-{
-    enum status status = STATUS_OK;
-    char path[4096], name[700], label[600], caption[1200];
-    struct pictures_count count = {0};
-    page_heading(page, 2, "images", "Slices and images");
-    for (int s = 0; s < folder->scene_count && status == STATUS_OK; s++) {
-        const char *scene = folder->scenes[s];
-        picture_path(folder->directory, scene, "slices.png", path, sizeof path);
-        snprintf(caption, sizeof caption, "%s: azimuth slices", scene);
-        status = picture_show(page, path, caption, &count);
-        page_gallery_begin(page);
-        for (int row = 0; row < folder->results.csv.row_count && status == STATUS_OK; row++) {
-            const struct measurement *measured = &folder->results.measurements[row];
-            if (strcmp(measured->scene, scene) != 0 || strcmp(measured->status, "ok") != 0)
-                continue;
-            picture_label(measured->algorithm, measured->options, measured->precision, label, sizeof label);
-            snprintf(name, sizeof name, "%s.png", label);
-            picture_path(folder->directory, scene, name, path, sizeof path);
-            snprintf(caption, sizeof caption, "%s: %s", scene, label);
-            status = picture_show(page, path, caption, &count);
-        }
-        page_gallery_end(page);
-    }
-    if (count.shown == 0)
-        page_paragraph(page, "None in this folder: `run` draws them, `sweep` does not.");
-    left_out_show(page, &count);
+    report_left_out_show(page, &count);
     return status;
 }
 
@@ -414,7 +344,7 @@ static enum status folder_show(struct page *page, const struct folder *folder)
     else if (is_measured(folder))
         page_paragraph(page, "All measurements are in measurements.csv and report.html.");
     if (status == STATUS_OK && html)
-        status = pictures_show(page, folder);
+        status = report_pictures_show(page, folder->directory, &folder->results, folder->scene_count, folder->scenes);
     page_end(page);
     return status;
 }

@@ -13,11 +13,13 @@ const struct report_table report_tables[REPORT_TABLES] = {
      .id = "cheapest",
      .title = "Cheapest settings",
      .text = "For each decade of error the setting that reaches it at the least cost, by run time and by counted "
-             "operations.",
+             "operations; of all algorithms, and of each family. Ties: settings that are as fast within the noise.",
      .group = "scene",
      .first = true,
+     .parts = "family",
      .columns = {{"error_below", "error below", SHOW_TEXT},
                  {"cost", "cost", SHOW_TEXT},
+                 {"family", "of", SHOW_TEXT, .later = true},
                  {"algorithm", "algorithm", SHOW_TEXT},
                  {"options", "options", SHOW_TEXT},
                  {"precision", "precision", SHOW_TEXT},
@@ -26,7 +28,8 @@ const struct report_table report_tables[REPORT_TABLES] = {
                  {"flops", "FLOP", SHOW_NUMBER},
                  {"error", "error", SHOW_NUMBER},
                  {"pslr_db", "PSLR (dB)", SHOW_NUMBER},
-                 {"islr_db", "ISLR (dB)", SHOW_NUMBER}}},
+                 {"islr_db", "ISLR (dB)", SHOW_NUMBER},
+                 {"ties", "ties", SHOW_TEXT, .later = true}}},
     {.file = "slopes.csv",
      .id = "slopes",
      .title = "Slopes",
@@ -127,7 +130,7 @@ enum status report_table_read(const char *directory, const struct report_table *
     if (status == STATUS_OK && table->group && csv_column(csv, table->group) < 0)
         status = status_set(STATUS_INVALID, "%s: there is no column '%s', which is needed", path, table->group);
     for (int k = 0; k < REPORT_COLUMNS && table->columns[k].title && status == STATUS_OK; k++)
-        if (csv_column(csv, table->columns[k].name) < 0)
+        if (csv_column(csv, table->columns[k].name) < 0 && !table->columns[k].later)
             status = status_set(STATUS_INVALID, "%s: there is no column '%s', which is needed", path,
                                 table->columns[k].name);
     return status;
@@ -166,6 +169,13 @@ static void verdicts_count_show(struct page *page, const struct report_table *ta
     }
 }
 
+/* Empty where there is no such column; `column` may be NULL. */
+static const char *cell_of(const struct csv *csv, int row, const char *column)
+{
+    const int index = column ? csv_column(csv, column) : -1;
+    return index < 0 ? "" : csv_cell(csv, row, index);
+}
+
 static void rows_show(struct page *page, const struct report_table *table, const struct csv *csv, const char *group)
 {
     struct page_column columns[REPORT_COLUMNS];
@@ -179,8 +189,11 @@ static void rows_show(struct page *page, const struct report_table *table, const
         char numbers[REPORT_COLUMNS][32];
         if (group && strcmp(csv_cell(csv, row, csv_column(csv, table->group)), group) != 0)
             continue;
+        if (page->format == PAGE_MARKDOWN && *cell_of(csv, row, table->parts)
+            && strcmp(cell_of(csv, row, table->parts), "all") != 0)
+            continue;
         for (int k = 0; k < count; k++) {
-            const char *text = csv_cell(csv, row, csv_column(csv, table->columns[k].name));
+            const char *text = cell_of(csv, row, table->columns[k].name);
             double value;
             cells[k] = (struct page_cell){text, NULL};
             if (table->columns[k].show == SHOW_VERDICT)

@@ -5,7 +5,7 @@
 #include "data/csv.h"
 #include "show/page.h"
 
-enum { REPORT_COLUMNS = 12 };
+enum { REPORT_COLUMNS = 13 };
 
 /* A CSV file on the page. */
 struct report_table {
@@ -13,9 +13,11 @@ struct report_table {
     const char *group; /* column whose values become headings, or NULL */
     bool stack;        /* long texts: rows fall apart on a narrow screen */
     bool first;        /* of the papers: ahead of the measurements that it rests on */
+    const char *parts; /* column of which Markdown shows the rows that say "all" only, or NULL */
     struct {
         const char *name, *title;
         enum { SHOW_TEXT, SHOW_NUMBER, SHOW_VERDICT, SHOW_ONCE } show; /* once: not again in the rows below */
+        bool later;                                                    /* files of an older version have none */
     } columns[REPORT_COLUMNS];                                         /* title NULL ends */
 };
 enum { REPORT_TABLES = 6, REPORT_STABILITY = 5 };

@@ -25,6 +25,7 @@ static struct {
     bool sharpness;    /* the last three columns are that: the scene has no targets */
     char refusal[600]; /* the latest of the scene, without the algorithm's name, which is `refused` */
     char refused[64];
+    char warned[4000]; /* the scene's warnings so far, each with a line's end */
 } table = {.width = WIDTH_WIDE, .spec_width = 34};
 
 struct cell cell_significant(double value, const char *unit)
@@ -163,6 +164,7 @@ void table_scene(FILE *stream, const char *name, const char *what)
     snprintf(table.scene, sizeof table.scene, "%s", name);
     table.sharpness = false;
     *table.refusal = '\0';
+    *table.warned = '\0';
 }
 
 static void text_print(FILE *stream, const char *before, const char *text)
@@ -173,15 +175,33 @@ static void text_print(FILE *stream, const char *before, const char *text)
     print_wrapped(stream, 4, shown);
 }
 
-/* All but that of a noisy time, which has its mark. */
+void table_warning(FILE *stream, const char *text)
+{
+    const size_t used = strlen(table.warned);
+    snprintf(table.warned + used, sizeof table.warned - used, "%s\n", text);
+    text_print(stream, "", text);
+}
+
+static bool is_warned(const char *text)
+{
+    const size_t length = strlen(text);
+    for (const char *line = table.warned; *line; line += strcspn(line, "\n") + 1)
+        if (strcspn(line, "\n") == length && strncmp(line, text, length) == 0)
+            return true;
+    return false;
+}
+
+/* All but that of a noisy time, which has its mark, and those that were said. */
 static void warnings_print(FILE *stream, const char *reason)
 {
-    const char *warning = strstr(reason, OUTCOME_WARNING), *noise = strstr(reason, OUTCOME_NOISE);
-    if (!warning || warning == noise)
-        return;
     char text[1024];
-    snprintf(text, sizeof text, "%.*s", noise ? (int)(noise - warning) - 2 : (int)sizeof text - 1, warning);
-    text_print(stream, "", text);
+    for (const char *next, *warning = strstr(reason, OUTCOME_WARNING); warning; warning = next) {
+        const char *end = strstr(warning, "; " OUTCOME_WARNING);
+        next = end ? end + 2 : NULL;
+        snprintf(text, sizeof text, "%.*s", end ? (int)(end - warning) : (int)sizeof text - 1, warning);
+        if (strncmp(text, OUTCOME_NOISE, strlen(OUTCOME_NOISE)) != 0 && !is_warned(text))
+            table_warning(stream, text);
+    }
 }
 
 static void ok_print(FILE *stream, const struct measurement *row, const char *spec)

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "data/echo_data.h"
+#include "data/interruption.h"
 #include "show/pictures.h"
 #include "measure/outcome.h"
 #include "show/table.h"
@@ -20,14 +21,18 @@ struct visit {
     struct session session;
     const struct spec *specs;
     int spec_count;
-    struct pictures pictures; /* all zero when none are drawn */
-    struct work *works;       /* [spec_count] of the algorithms measured now; flops 0 otherwise */
+    struct pictures pictures;       /* all zero when none are drawn */
+    struct work *works;             /* [spec_count] of the algorithms measured now; flops 0 otherwise */
+    struct timing_samples *samples; /* [TURNS] of the settings from turns_first on; NULL: each is timed at once */
+    int turns_first;
 };
+enum { TURNS = 24 }; /* settings that are timed in turn */
 
 static void visit_close(struct visit *visit)
 {
     pictures_free(&visit->pictures);
     free(visit->works);
+    free(visit->samples);
     session_close(&visit->session);
 }
 
@@ -56,7 +61,8 @@ static enum status visit_open(const struct batch *batch, const struct scene *sce
     if (status != STATUS_OK)
         return status;
     visit->works = calloc((size_t)spec_count, sizeof *visit->works);
-    if (!visit->works)
+    visit->samples = batch->in_turn ? calloc(TURNS, sizeof *visit->samples) : NULL;
+    if (!visit->works || (batch->in_turn && !visit->samples))
         status = status_set(STATUS_FAILED, "%s: no memory for %d algorithms", scene->name, spec_count);
     if (status == STATUS_OK && batch->details)
         status = pictures_begin(batch->directory, batch->footer, scene, &visit->session.reference, spec_count,
@@ -134,7 +140,8 @@ static enum status measure(struct batch *batch, struct visit *visit, int index)
     if (crash)
         return add_crashed(batch, visit->session.scene, &visit->specs[index], crash);
     supervisor_enter(task);
-    outcome_measure(&visit->session, &visit->specs[index], !batch->untimed, &outcome);
+    outcome_measure(&visit->session, &visit->specs[index], !batch->untimed,
+                    visit->samples ? &visit->samples[index - visit->turns_first] : NULL, &outcome);
     supervisor_leave();
     outcome.row.threads = batch->threads;
     visit->works[index] = outcome.work;
@@ -165,16 +172,55 @@ static void print_works(const struct visit *visit)
         }
 }
 
-static void progress(const struct batch *batch, const char *scene, const char *what)
+/* ", about 4 min to go", from the rows measured so far. */
+static void to_go_format(const struct batch *batch, char *text, size_t size)
 {
-    if (isatty(STDERR_FILENO))
-        fprintf(stderr, "\r\033[K[%d/%d] %s %s\r", batch->done + 1, batch->rows, scene, what);
+    const double left = (seconds_now() - batch->begin) / batch->measured * (batch->rows - batch->done);
+    *text = '\0';
+    if (batch->measured >= 5)
+        snprintf(text, size, left < 90 ? ", about %.0f s to go" : ", about %.0f min to go",
+                 left < 90 ? left : left / 60);
+}
+
+/* On a terminal a line that is written over; elsewhere a line a minute. */
+static void progress(struct batch *batch, const char *scene, const char *what)
+{
+    const bool terminal = isatty(STDERR_FILENO);
+    const double now = seconds_now();
+    char left[60];
+    if (!terminal && now - batch->told < 60)
+        return;
+    to_go_format(batch, left, sizeof left);
+    batch->told = now;
+    fprintf(stderr, terminal ? "\r\033[K[%d/%d%s] %s %s\r" : "[%d/%d%s] %s %s\n", batch->done + 1, batch->rows, left,
+            scene, what);
 }
 
 static void progress_clear(void)
 {
     if (isatty(STDERR_FILENO))
         fprintf(stderr, "\r\033[K");
+}
+
+/* All rounds but the last, which measure() adds, of the settings from `first` on that are to be measured. */
+static void turns_take(struct batch *batch, struct visit *visit, int first)
+{
+    const struct scene *scene = visit->session.scene;
+    const int end = first + TURNS < visit->spec_count ? first + TURNS : visit->spec_count;
+    char task[700];
+    visit->turns_first = first;
+    memset(visit->samples, 0, TURNS * sizeof *visit->samples);
+    for (int round = 1; round < TIMING_ROUNDS; round++)
+        for (int k = first; k < end && !interruption_seen(); k++) {
+            const struct spec *spec = &visit->specs[k];
+            task_format(scene, spec, task, sizeof task);
+            if (batch_find(batch, scene, spec) || supervisor_crash(task))
+                continue;
+            progress(batch, scene->name, spec->algorithm->name);
+            supervisor_enter(task);
+            outcome_round(&visit->session, spec, &visit->samples[k - first]);
+            supervisor_leave();
+        }
 }
 
 const struct measurement *batch_find(const struct batch *batch, const struct scene *scene, const struct spec *spec)
@@ -224,6 +270,19 @@ static bool pictures_missing(const struct batch *batch, const struct scene *scen
            || (images > 0 && scene->point_count > 0 && !picture_exists(batch->directory, scene->name, NULL));
 }
 
+/* What is known to be wrong with the scene, before the work begins. */
+static void warnings_print(const struct scene *scene)
+{
+    struct condition list[SCENE_CONDITIONS];
+    char text[400];
+    for (int k = 0, count = scene_conditions(scene, list); k < count; k++)
+        if (!condition_holds(&list[k])) {
+            outcome_warning(&list[k], text, sizeof text);
+            table_warning(stdout, text);
+        }
+    fflush(stdout);
+}
+
 /* A patch costs back projection little and range migration as much as the whole swath: the heading says which it is. */
 static void heading_print(const struct scene *scene)
 {
@@ -241,6 +300,7 @@ static void heading_print(const struct scene *scene)
     snprintf(what, sizeof what, "%s, %.2g %% of the recorded ranges, %s echoes", size,
              100 * fmin(imaged_m / recorded_m, 1), a->compressed ? "compressed" : "raw");
     table_scene(stdout, scene->name, what);
+    warnings_print(scene);
 }
 
 enum status batch_scene(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs)
@@ -262,9 +322,14 @@ enum status batch_scene(struct batch *batch, const struct scene *scene, int spec
     }
     if (status != STATUS_OK)
         return status;
-    for (int k = 0; k < spec_count && status == STATUS_OK; k++, batch->done++) {
+    for (int k = 0; k < spec_count && status == STATUS_OK && !interruption_seen(); k++, batch->done++) {
         const struct measurement *row = batch_find(batch, scene, &specs[k]);
+        if (visited && visit.samples && k % TURNS == 0)
+            turns_take(batch, &visit, k);
+        if (interruption_seen())
+            break;
         progress(batch, scene->name, specs[k].algorithm->name);
+        batch->measured += !row;
         if (!row)
             status = measure(batch, &visit, k);
         else if (visited && batch->details)
@@ -291,9 +356,13 @@ enum status batch_open(const char *directory, int rows, bool details, struct bat
     *batch = (struct batch){.directory = directory, .threads = omp_get_max_threads(), .details = details, .rows = rows};
     provenance_fill(&provenance, batch->threads);
     snprintf(batch->footer, sizeof batch->footer, "sasbench %s, %s", provenance.commit, provenance.date);
+    batch->begin = batch->told = seconds_now();
     enum status status = results_folder_open(directory, &provenance, &batch->results);
     if (status == STATUS_OK)
         table_header(stdout);
+    if (status == STATUS_OK && batch->threads > omp_get_num_procs())
+        fprintf(stderr, "sasbench: warning: %d threads share %d processors: times are not those of %d threads\n",
+                batch->threads, omp_get_num_procs(), batch->threads);
     return status;
 }
 

@@ -11,11 +11,14 @@ struct batch {
     char footer[160];      /* of its pictures */
     struct results_folder *results;
     int threads;
-    bool details;   /* of every scene: draw images and slices, print FLOPs by formula */
-    bool untimed;   /* form each image once: rows have no times */
-    bool failed;    /* a measurement failed */
-    int undrawn;    /* pictures that could not be drawn */
-    int done, rows; /* measurements, for the progress line */
+    bool details; /* of every scene: draw images and slices, print FLOPs by formula */
+    bool untimed; /* form each image once: rows have no times */
+    bool in_turn; /* time settings by rounds, so that a bad minute is not one setting's alone */
+    bool failed;  /* a measurement failed */
+    int undrawn;  /* pictures that could not be drawn */
+    /* For the progress line: */
+    int done, rows, measured; /* rows behind, rows in all, rows measured now */
+    double begin, told;       /* monotonic clock, s: at the start, at the last line */
 };
 
 /* Open the folder (results_folder_open: finished rows of an earlier run are kept) and print the table's head.

@@ -126,7 +126,7 @@ static enum status line_measure(const struct spec *spec, const struct loaded *lo
         struct image image = {0};
         double peak = peak_flops(spec->precision, threads);
         status = timing_measure(spec, &problem, &loaded->echoes[spec->precision], &loaded->echoes[PRECISION_FLOAT],
-                                &image, &line->timing);
+                                NULL, &image, &line->timing);
         line->peak[round] = (peak + peak_flops(spec->precision, threads)) / 2;
         line->run_s[round] = line->timing.run_s;
         line->plan_s[round] = line->timing.plan_s;

@@ -52,7 +52,7 @@ static enum status image_seconds(const char *text, const struct problem *problem
     if (status != STATUS_OK)
         return status;
     if (repeated) {
-        status = timing_measure(&spec, problem, echoes, echoes, &image, timing);
+        status = timing_measure(&spec, problem, echoes, echoes, NULL, &image, timing);
     } else {
         status = imaging_open(&spec, problem, &imaging);
         if (status == STATUS_OK) {

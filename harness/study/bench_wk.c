@@ -27,7 +27,7 @@ static enum status spec_seconds(const char *text, const struct problem *problem,
     enum status status = spec_parse(text, &spec);
     if (status != STATUS_OK)
         return status;
-    status = timing_measure(&spec, problem, echoes, echoes, &image, &timing);
+    status = timing_measure(&spec, problem, echoes, echoes, NULL, &image, &timing);
     if (status == STATUS_OK)
         *seconds = timing.run_s;
     image_free(&image);

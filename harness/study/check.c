@@ -49,6 +49,29 @@ static const char *verdict(const struct condition *condition)
     return condition->severity == SEVERITY_REFUSE ? "REFUSED" : condition->severity == SEVERITY_WARN ? "warns" : "note";
 }
 
+/* The line of a condition; does it hold, or not refuse? */
+static bool condition_print(FILE *stream, const struct condition *c)
+{
+    const bool holds = condition_holds(c);
+    char figures[120], words[500];
+    int used = snprintf(figures, sizeof figures, "  %-7s  %-16s %10.3g  %s %-8.3g", verdict(c), c->name, c->value,
+                        c->at_least ? ">" : "<=", c->limit);
+    used += snprintf(words, sizeof words, "%s%s%s", c->meaning, holds ? "" : "; cure: ", holds ? "" : c->cure);
+    const bool one_line = table_fits(stream, (size_t)used + 2);
+    fprintf(stream, "%s%s%s\n", figures, one_line ? "  " : "", one_line ? words : "");
+    if (!one_line)
+        table_text(stream, 11, words);
+    return holds || c->severity != SEVERITY_REFUSE;
+}
+
+void check_scene(FILE *stream, const struct scene *scene)
+{
+    struct condition list[SCENE_CONDITIONS];
+    fprintf(stream, "\nThe scene, whichever algorithm images it\n");
+    for (int k = 0, count = scene_conditions(scene, list); k < count; k++)
+        condition_print(stream, &list[k]);
+}
+
 enum status check_algorithm(FILE *stream, const struct scene *scene, const struct spec *spec, bool *refused)
 {
     struct problem problem = session_problem(scene, spec->algorithm, spec->precision);
@@ -58,19 +81,8 @@ enum status check_algorithm(FILE *stream, const struct scene *scene, const struc
     count += targets_conditions(scene, spec->precision, list + count);
     fprintf(stream, "\n%s%s%s\n", spec->algorithm->name, *spec->text ? ":" : "", spec->text);
     *refused = false;
-    for (int k = 0; k < count; k++) {
-        const struct condition *c = &list[k];
-        bool holds = condition_holds(c);
-        char figures[120], words[500];
-        int used = snprintf(figures, sizeof figures, "  %-7s  %-16s %10.3g  %s %-8.3g", verdict(c), c->name, c->value,
-                            c->at_least ? ">" : "<=", c->limit);
-        used += snprintf(words, sizeof words, "%s%s%s", c->meaning, holds ? "" : "; cure: ", holds ? "" : c->cure);
-        const bool one_line = table_fits(stream, (size_t)used + 2);
-        fprintf(stream, "%s%s%s\n", figures, one_line ? "  " : "", one_line ? words : "");
-        if (!one_line)
-            table_text(stream, 11, words);
-        *refused = *refused || (!holds && c->severity == SEVERITY_REFUSE);
-    }
+    for (int k = 0; k < count; k++)
+        *refused |= !condition_print(stream, &list[k]);
     if (*refused)
         return STATUS_OK;
     enum status status = spec->algorithm->plan(&problem, spec->options, &plan);

@@ -8,6 +8,9 @@
 #include "measure/spec.h"
 #include "scene/scene.h"
 
+/* Print the conditions of the scene by itself. */
+void check_scene(FILE *stream, const struct scene *scene);
+
 /* Print the conditions of one SPEC on a scene, those that hold too, and whether its plan can be made. *refused is set
    where it cannot. Errors: STATUS_FAILED without memory. */
 enum status check_algorithm(FILE *stream, const struct scene *scene, const struct spec *spec, bool *refused);

@@ -20,9 +20,12 @@ struct line_fit line_fit(int count, const double *rate, const double *error);
 int floor_find(int count, const double *error);
 
 /* Read DIR/measurements.csv, write fronts.csv, cheapest.csv, slopes.csv and rules.csv beside it (results/README.md has
-   their columns) and print the last three. `scenes` are those that were measured; others are looked for by name, of
-   which only shipped ones are found. Errors: as results_read; STATUS_INVALID for a folder that cannot be written;
-   STATUS_FAILED without memory. */
-enum status sweep_tables(const char *directory, const struct scene *scenes, int scene_count);
+   their columns) and print the last three of the scene `told` (NULL: of none). `scenes` are those that were measured;
+   others are looked for by name, of which only shipped ones are found. Errors: as results_read; STATUS_INVALID for a
+   folder that cannot be written; STATUS_FAILED without memory. */
+enum status sweep_tables(const char *directory, const struct scene *scenes, int scene_count, const char *told);
+
+/* Does a folder hold an algorithm in two settings on one scene? */
+bool sweep_is(const char *directory);
 
 #endif

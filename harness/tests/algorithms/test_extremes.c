@@ -210,7 +210,7 @@ static void coordinates_far_from_zero_are_on_the_raster(void **state)
     struct outcome outcome;
     assert_int_equal(session_open(&scene, &session), STATUS_OK);
     assert_int_equal(spec_parse("bp_nearest", &spec), STATUS_OK);
-    outcome_measure(&session, &spec, false, &outcome);
+    outcome_measure(&session, &spec, false, NULL, &outcome);
     assert_string_equal(outcome.row.status, "ok");
     assert_true(outcome.row.error > 0 && outcome.row.error < 0.5 && outcome.row.phase_rms_rad < 0.5);
     assert_says(outcome.reason, "target 1: the main lobe does not fall to half its peak"); /* 3 mm of image */

@@ -42,7 +42,7 @@ struct refusal {
 /* An image of an echo file, which should not come about. */
 #define ECHOES(file)                                                                                                   \
     {                                                                                                                  \
-        "image", "--grid", "0:0.1:5,20:0.1:5", "-a", "bp_nearest", "-o", "x.mat", "--echoes", file                     \
+        "image", "--grid", "0:0.02:5,20:0.04:5", "-a", "bp_nearest", "-o", "x.mat", "--echoes", file                   \
     }
 /* Whether the program exits with status 2 and one line of error that holds every text of `says`, prints nothing else,
    and writes nothing; prints what is wrong otherwise. */

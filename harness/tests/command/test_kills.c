@@ -164,6 +164,40 @@ static void killed_sweep_resumes(void **state)
     check_resumed("sweep", SWEEP("sweep"), SWEEP("sweep-killed"));
 }
 
+/* An interrupted sweep ends by the signal, but first writes what its rows say. */
+static void interrupted_sweep_leaves_tables(void **state)
+{
+    (void)state;
+    static const char *const arguments[ARGUMENTS_MAX] = {"sweep",       "scene.cfg", "-a", "bp_zeropad",
+                                                         "--precision", "float",     "-o", "interrupted"};
+    int status;
+    FILE *sink = tmpfile();
+    assert_non_null(sink);
+    const pid_t child = program_start(arguments, sink, sink);
+    int rows = 0;
+    for (int k = 0; k < 6000 && rows < 2; k++) {
+        struct csv csv;
+        nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);
+        if (support_exists("interrupted/measurements.csv")
+            && csv_read(path_of("interrupted/measurements.csv"), CSV_TAIL_DROP, &csv) == STATUS_OK) {
+            rows = csv.row_count;
+            csv_free(&csv);
+        }
+    }
+    kill(child, SIGINT);
+    assert_int_equal(waitpid(child, &status, 0), child);
+    fclose(sink);
+    assert_true(WIFSIGNALED(status) && WTERMSIG(status) == SIGINT);
+    assert_in_range(rows, 2, 7);
+    static const char *const files[] = {"cheapest.csv", "fronts.csv", "points.csv", "slopes.csv"};
+    for (size_t k = 0; k < COUNT_OF(files); k++) {
+        char name[60];
+        snprintf(name, sizeof name, "interrupted/%s", files[k]);
+        if (!support_exists(name))
+            fail_msg("%s is not there", name);
+    }
+}
+
 static void killed_reproduction_resumes(void **state)
 {
     (void)state;
@@ -175,6 +209,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(killed_run_resumes),
         cmocka_unit_test(killed_sweep_resumes),
+        cmocka_unit_test(interrupted_sweep_leaves_tables),
         cmocka_unit_test(killed_reproduction_resumes),
     };
     return cmocka_run_group_tests(tests, inputs_make, folder_remove);

@@ -60,7 +60,7 @@ static void measure(const struct session *session, const char *spec_text)
         faulty.execute = spoiled_execute;
         used.algorithm = &faulty;
     }
-    outcome_measure(session, &used, false, &outcome);
+    outcome_measure(session, &used, false, NULL, &outcome);
     assert_string_equal(outcome.row.status, "ok");
     struct measurement row = planted_row(session->scene->name, &spec);
     row.error = outcome.row.error;

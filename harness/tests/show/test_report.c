@@ -200,17 +200,22 @@ static void folder_fill(void)
         row_of("a", "bp_nearest", "", 0.01, 0.2),
         row_of("a", "bp_linear", "beta=2", 0.02, 0.1),
         row_of("a", "bp_linear", "beta=8", 0.03, 0.09),
+        row_of("a", "bp_linear", "beta=4", 0.025, 0.095),
         row_of(odd_scene, "reference", "", 0.9, 1e-6),
         row_of(odd_scene, "bp_zeropad", "factor=4", 0.2, 0.01),
         row_of(odd_scene, "rma_pca", "blocks=2", 0, 0),
         row_of(odd_scene, "rma_wu", "blocks=2", 0, 0),
         row_of("no/rate", "rma_pca", "blocks=2", 0.1, 0.1),
+        row_of("no/rate", "rma_pca", "blocks=4", 0.2, 0.05),
+        row_of("no/rate", "rma_pca", "blocks=8", 0.3, 0.04),
+        row_of(odd_scene, "bp_zeropad", "factor=8", 0.3, 0.005),
+        row_of(odd_scene, "bp_zeropad", "factor=16", 0.4, 0.003),
     };
-    rows[6].status = "unsupported";
-    rows[6].reason = "a track of <3 pings | none";
-    rows[7].status = "failed";
-    rows[7].reason = "no & memory";
-    for (int k = 6; k < 8; k++)
+    rows[7].status = "unsupported";
+    rows[7].reason = "a track of <3 pings | none";
+    rows[8].status = "failed";
+    rows[8].reason = "no & memory";
+    for (int k = 7; k < 9; k++)
         rows[k].run_s = rows[k].error = NAN;
     record_rows(rows, sizeof rows / sizeof *rows);
     support_write("cheapest.csv", "# sasbench cheapest 1\nscene,cost,error_below,algorithm,options,precision,run_s,"
@@ -266,7 +271,7 @@ static void test_everything_is_on_the_page(void **state)
     struct parser *page = page_parse(html);
     /* Summary, machine, three scenes, cheapest, slopes, rules, two papers, two reproduced tables. */
     assert_int_equal(page->tables, 12);
-    assert_int_equal(page->rows, 12 + 9 + 9 + 1 + 1 + 1 + 4 + 3 + 3);
+    assert_int_equal(page->rows, 12 + 14 + 9 + 1 + 1 + 1 + 4 + 3 + 3);
     assert_holds(html, "<h2 id=\"summary\">Summary</h2>");
     assert_holds(html, "<a href=\"#summary\">");
     assert_holds(html, "class=\"good\">9.0e-02, 33.3x</td>"); /* of scene a: no other has an error below 0.1 */

@@ -38,18 +38,22 @@ static struct scene scene_of(const struct parts *varied)
     return scene;
 }
 
-/* What check prints of a SPEC; for the caller to free. */
+/* What check prints of a SPEC, or of the scene by itself; for the caller to free. */
 static char *checked(const struct scene *scene, const char *text, bool *refused)
 {
+    static char *printed; /* gcc 12 takes what is found in it for a pointer to a local one */
+    static size_t size;
     struct spec spec;
-    char *printed = NULL;
-    size_t size;
     FILE *stream = open_memstream(&printed, &size);
     assert_non_null(stream);
-    assert_int_equal(spec_parse(text, &spec), STATUS_OK);
-    assert_int_equal(check_algorithm(stream, scene, &spec, refused), STATUS_OK);
+    if (text) {
+        assert_int_equal(spec_parse(text, &spec), STATUS_OK);
+        assert_int_equal(check_algorithm(stream, scene, &spec, refused), STATUS_OK);
+        spec_free(&spec);
+    } else {
+        check_scene(stream, scene);
+    }
     fclose(stream);
-    spec_free(&spec);
     return printed;
 }
 
@@ -167,16 +171,131 @@ static void exactly_the_violated_condition_is_named(void **state)
     assert_int_equal(failures, 0);
 }
 
+static char *scene_checked(const struct scene *scene)
+{
+    return checked(scene, NULL, NULL);
+}
+
 /* The value of a condition's line. */
-static double value_of(const char *printed, const char *name)
+static double value_with(const char *printed, const char *verdict, const char *name)
 {
     char line[60];
     double value = NAN;
-    snprintf(line, sizeof line, "holds    %s ", name);
+    snprintf(line, sizeof line, "%-7s  %s ", verdict, name);
     const char *found = strstr(printed, line);
     if (found)
         sscanf(found + strlen(line), "%lf", &value);
     return value;
+}
+
+static double value_of(const char *printed, const char *name)
+{
+    return value_with(printed, "holds", name);
+}
+
+/* Mistakes that any algorithm's image shows: units, pixels, records. */
+static void mistakes_of_the_scene_are_named(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name; /* empty: none */
+        double value;
+        struct parts parts;
+    } mistakes[] = {
+        {"", 0, {0}},
+        /* 150, 15 and 30 kHz typed as Hz: wavelength 10 m, the longest step 0.16 m from ping to ping */
+        {"wavelength",
+         62.5,
+         {.sonar = "fc = 150.0; bandwidth = 15.0; fs = 30.0;",
+          .image = "x = { first = 0.0; step = 0.02; count = 1; };"
+                   "r = { first = 20.0; step = 0.025; count = 1; };"}},
+        {"narrow_band", 1e4, {.sonar = "fc = 150e3; bandwidth = 15.0; fs = 30e3;"}},
+        /* resolution along x: 1/(2 * 2 sin * (fc + B/2)/c), sin = 0.443 lambda/0.08 m, less the array's length */
+        {"pixel_x",
+         0.05 / (0.04 / 0.886 / 1.05),
+         {.image = "x = { first = -0.6; step = 0.05; count = 25; }; r = { first = 19.9; step = 0.025; count = 9; };"}},
+        {"pixel_r",
+         0.06 / 0.05,
+         {.image = "x = { first = -0.6; step = 0.02; count = 61; }; r = { first = 19.9; step = 0.06; count = 4; };"}},
+        /* 4000 samples reach to 100 m: of 17 rows from 90 to 122 m those from 100 m on are not met, but the array makes
+           delays longer by its offset squared */
+        {"pixels_met",
+         100 * 11.0 / 17,
+         {.beam = "kind = \"rect\"; truncation = \"none\";",
+          .image = "x = { first = 0.0; step = 0.02; count = 1; }; r = { first = 90.0; step = 0.04; count = 801; };"}},
+        /* the record ends at 99.975 m; pings that see the place from its sides are up to 12 mm farther */
+        {"beam_in_record",
+         100,
+         {.image = "x = { first = 0.0; step = 0.02; count = 1; }; r = { first = 99.968; step = 0.004; count = 2; };"}},
+    };
+    int failures = 0;
+    for (size_t k = 0; k < sizeof mistakes / sizeof *mistakes; k++) {
+        struct scene scene = scene_of(&mistakes[k].parts);
+        char *printed = scene_checked(&scene);
+        const double value = *mistakes[k].name ? value_with(printed, "warns", mistakes[k].name) : 0;
+        if (!names_one(printed, "warns", mistakes[k].name)
+            || (*mistakes[k].name && !is_close(value / mistakes[k].value, 1, 0.2))) {
+            failures++;
+            print_error("should name '%s' alone, with %g:\n", mistakes[k].name, mistakes[k].value);
+            fputs(printed, stderr);
+        }
+        free(printed);
+        scene_free(&scene);
+    }
+    assert_int_equal(failures, 0);
+}
+
+/* Patches beyond the record are counted, and so are the pixels in them. */
+static void patches_beyond_the_record_are_counted(void **state)
+{
+    (void)state;
+    struct scene scene = scene_of(&(struct parts){.image = "patches = ( { x = { first = 0.0; step = 0.02; count = 5; };"
+                                                           "r = { first = 20.0; step = 0.025; count = 8; }; },"
+                                                           "{ x = { first = 0.0; step = 0.02; count = 5; };"
+                                                           "r = { first = 120.0; step = 0.025; count = 24; }; } );"});
+    char *printed = scene_checked(&scene);
+    assert_close(value_with(printed, "warns", "patches_met"), 1, 1e-9);
+    assert_close(value_with(printed, "warns", "pixels_met"), 75, 1e-6);
+    free(printed);
+    scene_free(&scene);
+}
+
+/* Gaps between pings are told of a track with errors as of an even one. */
+static void gaps_are_told_of_an_uneven_track(void **state)
+{
+    (void)state;
+    struct scene scene = scene_of(&(struct parts){.track = "speed = 2.5; pri = 0.08; pings = 18; x_first = -1.9;"});
+    for (int p = 0; p < scene.acquisition.pings; p++) {
+        scene.acquisition.tx[p].y += p % 2 ? 0.01 : -0.01;
+        for (int m = 0; m < scene.acquisition.receivers; m++)
+            scene.acquisition.rx[p * scene.acquisition.receivers + m].y += p % 2 ? 0.01 : -0.01;
+    }
+    bool refused;
+    assert_false(acquisition_is_straight(&scene.acquisition, NULL));
+    char *printed = checked(&scene, "bp_nearest", &refused);
+    assert_close(value_with(printed, "warns", "ghost"), 0.25, 1e-3);
+    free(printed);
+    scene_free(&scene);
+}
+
+/* Recorded samples of a real signal: passband, or a lost part. */
+static void echoes_without_an_imaginary_part_are_told(void **state)
+{
+    (void)state;
+    struct scene scene = scene_of(&(struct parts){0});
+    const struct acquisition *a = &scene.acquisition;
+    const size_t count = (size_t)a->pings * (size_t)a->receivers * (size_t)a->samples;
+    scene.recorded = calloc(count, sizeof *scene.recorded);
+    assert_non_null(scene.recorded);
+    scene.recorded[count / 2] = -2;
+    char *printed = scene_checked(&scene);
+    assert_true(names_one(printed, "warns", "imaginary"));
+    free(printed);
+    scene.recorded[1] = 1e-3 * I;
+    printed = scene_checked(&scene);
+    assert_true(names_one(printed, "", ""));
+    free(printed);
+    scene_free(&scene);
 }
 
 /* Delays are those that pings see, wherever in the patch and the beam that is: 20 m ahead or abeam, all rows at 20
@@ -306,6 +425,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(exactly_the_violated_condition_is_named, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(mistakes_of_the_scene_are_named, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(patches_beyond_the_record_are_counted, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(gaps_are_told_of_an_uneven_track, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(echoes_without_an_imaginary_part_are_told, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(delays_are_those_of_what_is_seen, folder_make, folder_remove),
         cmocka_unit_test(no_worst_hides_a_nan),
         cmocka_unit_test_setup_teardown(refusals_of_the_plan_are_told, folder_make, folder_remove),

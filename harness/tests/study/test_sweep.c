@@ -93,8 +93,8 @@ static void test_settings(void **state)
         {"bp_linear:beta=3", 2},
         {"bp_linear:precision=double", 7},
         {"bp_linear:beta=3,precision=double", 1},
-        {"bp_sinc", 4 * 2 * 2}, /* taps 4 8 16 32, window none and kaiser */
-        {"bp_sinc:window=kaiser", 4 * 2},
+        {"bp_sinc", 7 * 2 * 2}, /* taps 4 6 8 10 12 16 32, window none and kaiser */
+        {"bp_sinc:window=kaiser", 7 * 2},
         {"bp_zeropad", 7 * 2}, /* factor 1 2 4 8 16 32 64 */
         {"bp_farrow", 6 * 2},  /* degree 2 3 4 5 6 7 */
     };
@@ -155,8 +155,25 @@ static void rows_make_up(void)
         row.run_s = row.run_min_s = 0.01 * rate;
         row.flops = 1e9 - 1e6 * rate; /* by operations the finest is cheapest */
         row.error = 0.3 / rate;
+        row.run_q1_s = 0.95 * row.run_s;
+        row.run_q3_s = 1.05 * row.run_s;
         assert_int_equal(results_folder_add(results, &row), STATUS_OK);
     }
+    /* As fast as factor=4 within the noise, and less exact; slower than factor=8 beyond it. */
+    row.algorithm = "rma_pca";
+    row.options = "blocks=2";
+    row.run_s = 0.042;
+    row.run_q1_s = 0.041;
+    row.run_q3_s = 0.05;
+    row.flops = 2e9;
+    row.error = 0.08;
+    assert_int_equal(results_folder_add(results, &row), STATUS_OK);
+    row.options = "blocks=8";
+    row.run_s = 0.1;
+    row.run_q1_s = 0.09;
+    row.run_q3_s = 0.11;
+    row.error = 0.04;
+    assert_int_equal(results_folder_add(results, &row), STATUS_OK);
     row.run_s = row.flops = 1e-9; /* would beat everything */
     row.error = 1e-9;
     row.options = "";
@@ -175,23 +192,34 @@ static void test_tables_of_made_up_rows(void **state)
 {
     (void)state;
     rows_make_up();
-    assert_int_equal(sweep_tables(folder, NULL, 0), STATUS_OK);
+    assert_int_equal(sweep_tables(folder, NULL, 0, NULL), STATUS_OK);
     struct csv csv;
     assert_int_equal(csv_read(path_of("slopes.csv"), CSV_TAIL_KEEP, &csv), STATUS_OK);
-    assert_int_equal(csv.row_count, 2); /* all of it, and its finest half */
+    assert_int_equal(csv.row_count, 3); /* all of it, and its finest half; two settings of rma_pca */
     int slope = row_find(&csv, (const char *const[]){"setting", "part"}, (const char *const[]){"factor", "finest"});
     assert_close(cell(&csv, slope, "slope"), -1, 1e-8);
     assert_close(cell(&csv, slope, "residual_log10"), 0, 1e-8);
     assert_close(cell(&csv, slope, "points"), 4, 0);
     csv_free(&csv);
     assert_int_equal(csv_read(path_of("fronts.csv"), CSV_TAIL_KEEP, &csv), STATUS_OK);
-    assert_int_equal(csv.row_count, 7 + 1);
+    assert_int_equal(csv.row_count, 7 + 1 + 1);
+    const int tie =
+        row_find(&csv, (const char *const[]){"cost", "algorithm"}, (const char *const[]){"run_s", "rma_pca"});
+    assert_string_equal(csv_cell(&csv, tie, csv_column(&csv, "options")), "blocks=2");
+    assert_close(cell(&csv, tie, "tie"), 1, 0);
+    assert_close(cell(&csv, 0, "tie"), 0, 0);
     csv_free(&csv);
     assert_int_equal(csv_read(path_of("cheapest.csv"), CSV_TAIL_KEEP, &csv), STATUS_OK);
     const char *const names[2] = {"cost", "error_below"};
     int tenth = row_find(&csv, names, (const char *const[]){"run_s", "1e-1"});
     assert_close(cell(&csv, tenth, "error"), 0.075, 1e-9);
     assert_close(cell(&csv, tenth, "speed_up"), 200, 1e-6);
+    assert_string_equal(csv_cell(&csv, tenth, csv_column(&csv, "ties")), "rma_pca:blocks=2");
+    int family = row_find(&csv, (const char *const[]){"family", "error_below"}, (const char *const[]){"rma", "1e-1"});
+    assert_close(cell(&csv, family, "run_s"), 0.042, 1e-9);
+    assert_string_equal(csv_cell(&csv, family, csv_column(&csv, "ties")), "");
+    assert_int_equal(row_find(&csv, (const char *const[]){"family", "error_below"}, (const char *const[]){"wk", "1e0"}),
+                     -1);
     tenth = row_find(&csv, names, (const char *const[]){"flops", "1e-1"});
     assert_close(cell(&csv, tenth, "run_s"), 0.64, 1e-9);
     assert_int_equal(row_find(&csv, names, (const char *const[]){"run_s", "1e-3"}), -1);
@@ -312,7 +340,7 @@ static void test_bad_scene_makes_nothing(void **state)
     struct task task = {.names = (const char *const[]){"no/such/scene"}, .name_count = 1, .output = output};
     assert_int_equal(command_sweep(&task), STATUS_INVALID);
     assert_false(support_exists("none"));
-    assert_int_equal(sweep_tables(folder, NULL, 0), STATUS_INVALID);
+    assert_int_equal(sweep_tables(folder, NULL, 0, NULL), STATUS_INVALID);
     assert_false(support_exists("fronts.csv") || support_exists("fronts.csv.part"));
 }
 

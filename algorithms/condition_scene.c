@@ -1,0 +1,178 @@
+/* Conditions of a scene by itself, whichever algorithm images it (condition.h): units, pixels, records. Places are the
+   nodes of a lattice over each patch, pings that see them are taken with three receivers. */
+#include <math.h>
+
+#include "algorithm.h"
+#include "common/delay.h"
+
+enum {
+    NODES_MOST = 17,   /* of the lattice along each axis */
+    PLACES_MOST = 1000 /* of all patches, as far as three nodes along each axis allow */
+};
+
+/* Of the shortest an element, a pitch or a pixel is, and the widest a band: what lies beyond was typed in kHz. */
+static const double WAVELENGTH_MOST = 10, CARRIER_MOST = 2000;
+static const double CUT_PIXELS_MOST = 20; /* %: a swath may end with the records */
+static const double CUT_MOST = 0.05;      /* of a place's echoes, before it counts as cut */
+
+struct survey {
+    double places, unmet; /* pixels, by the lattice */
+    double cut;           /* pixels met of whose echoes from inside the beam the records hold not all */
+    int patches_unmet;
+    double step_x, step_r; /* over the resolution there; the coarsest */
+};
+
+/* Spread of the wavenumbers F dtau/dx' and F dtau/dr' (1/m) of the echoes of one place, x' and r' the image's axes. */
+struct spread {
+    double least[2], greatest[2];
+};
+
+static double axis_component(struct vector slope, const struct grid *g, int axis)
+{
+    return axis == 0 ? slope.x * cos(g->angle_rad) - slope.y * sin(g->angle_rad)
+                     : slope.x * sin(g->angle_rad) + slope.y * cos(g->angle_rad);
+}
+
+/* Unit vector from a to b, added to `sum`. */
+static void direction_add(struct vector a, struct vector b, struct vector *sum)
+{
+    const double length = sqrt(pow(b.x - a.x, 2) + pow(b.y - a.y, 2) + pow(b.z - a.z, 2));
+    if (!(length > 0))
+        return;
+    sum->x += (b.x - a.x) / length;
+    sum->y += (b.y - a.y) / length;
+}
+
+static void spread_add(const struct acquisition *a, const struct grid *g, struct vector tx, struct vector rx,
+                       struct vector place, struct spread *spread)
+{
+    struct vector slope = {0, 0, 0}; /* c dtau/dp, as if nothing moved */
+    direction_add(tx, place, &slope);
+    direction_add(rx, place, &slope);
+    for (int axis = 0; axis < 2; axis++)
+        for (int edge = -1; edge <= 1; edge += 2) {
+            const double f = a->fc + edge * a->bandwidth / 2;
+            const double turns = f * axis_component(slope, g, axis) / a->sound_speed;
+            spread->least[axis] = fmin(spread->least[axis], turns);
+            spread->greatest[axis] = fmax(spread->greatest[axis], turns);
+        }
+}
+
+/* Of a patch. */
+struct counts {
+    int places, met, cut;
+};
+
+/* One place: is it met, and what do the echoes of the pings that see it say? */
+static void place_survey(const struct acquisition *a, const struct grid *g, struct vector place, struct counts *counts,
+                         struct survey *survey)
+{
+    const bool beam_known = isfinite(condition_beam_sine(a));
+    struct spread spread = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
+    double seen = 0, cut = 0;
+    bool met = false;
+    for (int p = 0; p < a->pings; p++) {
+        const bool sees = condition_sees(a, p, place);
+        for (int n = 0; n < 3 && (n == 0 || a->receivers > 1); n++) {
+            const struct vector rx =
+                a->rx[(size_t)p * (size_t)a->receivers + (size_t)(n * (double)(a->receivers - 1) / 2)];
+            const double delay = delay_exact(a->tx[p], rx, a->velocity[p], place, a->sound_speed);
+            const double first = (delay - a->t0[p]) * a->fs;
+            const bool inside = first >= 0 && first <= a->samples - 1;
+            met = met || inside;
+            if (!sees)
+                continue;
+            seen++;
+            cut += !(first >= 0 && first + fmax(a->pulse_length - 1, 0) <= a->samples - 1);
+            if (inside)
+                spread_add(a, g, a->tx[p], rx, place, &spread);
+        }
+    }
+    counts->places++;
+    counts->met += met;
+    counts->cut += met && beam_known && cut > CUT_MOST * seen;
+    if (g->x_count > 1 && spread.greatest[0] > spread.least[0])
+        survey->step_x = fmax(survey->step_x, g->x_step * (spread.greatest[0] - spread.least[0]));
+    if (g->r_count > 1 && spread.greatest[1] > spread.least[1])
+        survey->step_r = fmax(survey->step_r, g->r_step * (spread.greatest[1] - spread.least[1]));
+}
+
+/* The row or column in the middle of the n-th of `nodes` equal parts: a pixel where there are as many. */
+static double node(int n, int nodes, int count)
+{
+    return (n + 0.5) * count / nodes - 0.5;
+}
+
+static int nodes_of(int count, int most)
+{
+    return count < most ? count : most;
+}
+
+static struct survey survey_make(const struct problem *problem)
+{
+    struct survey survey = {0};
+    int most = NODES_MOST;
+    while (most > 3 && (double)most * most * problem->patch_count > PLACES_MOST)
+        most--;
+    for (int k = 0; k < problem->patch_count; k++) {
+        const struct grid *g = &problem->patches[k];
+        const int rows = nodes_of(g->r_count, most), columns = nodes_of(g->x_count, most);
+        struct counts counts = {0, 0, 0};
+        for (int n = 0; n < rows * columns; n++)
+            place_survey(problem->acquisition, g,
+                         grid_point(g, node(n / columns, rows, g->r_count), node(n % columns, columns, g->x_count)),
+                         &counts, &survey);
+        const double pixels = (double)g->r_count * g->x_count;
+        survey.places += pixels;
+        survey.unmet += pixels * (counts.places - counts.met) / counts.places;
+        survey.cut += pixels * counts.cut / counts.places;
+        if (counts.met == 0) {
+            for (int n = 0; n < 4; n++)
+                place_survey(problem->acquisition, g, grid_point(g, n / 2 * (g->r_count - 1), n % 2 * (g->x_count - 1)),
+                             &counts, &survey);
+            survey.patches_unmet += counts.met == 0;
+        }
+    }
+    return survey;
+}
+
+/* m: the longest of element, pitch, ping spacing and pixel: none of them is a small part of a wavelength. */
+static double longest_step(const struct problem *problem)
+{
+    const struct acquisition *a = problem->acquisition;
+    double longest = fmax(a->tx_length, a->rx_length);
+    if (a->receivers > 1)
+        longest = fmax(longest, fabs(a->rx[1].x - a->rx[0].x));
+    if (a->pings > 1)
+        longest =
+            fmax(longest, hypot(hypot(a->tx[1].x - a->tx[0].x, a->tx[1].y - a->tx[0].y), a->tx[1].z - a->tx[0].z));
+    for (int k = 0; k < problem->patch_count; k++)
+        longest = fmax(longest, fmax(problem->patches[k].x_step, problem->patches[k].r_step));
+    return longest;
+}
+
+int conditions_scene(const struct problem *problem, struct condition list[CONDITIONS_SCENE])
+{
+    const struct acquisition *a = problem->acquisition;
+    const struct survey survey = survey_make(problem);
+    const struct condition all[CONDITIONS_SCENE] = {
+        {"wavelength", a->sound_speed / a->fc / longest_step(problem), WAVELENGTH_MOST, false, SEVERITY_WARN,
+         "the wavelength over the longest of element, pitch, ping spacing and pixel", "fc in Hz, not kHz"},
+        {"narrow_band", a->fc / a->bandwidth, CARRIER_MOST, false, SEVERITY_WARN, "the carrier over the bandwidth",
+         "bandwidth and fs in Hz, not kHz"},
+        {"pixel_x", survey.step_x, 1, false, SEVERITY_WARN, "the pixels' step along x over the resolution there",
+         "a step smaller by that factor; targets may fall between the pixels"},
+        {"pixel_r", survey.step_r, 1, false, SEVERITY_WARN, "the pixels' step along r over the resolution there",
+         "a step smaller by that factor; targets may fall between the pixels"},
+        {"pixels_met", 100 * survey.unmet / survey.places, 0, false, SEVERITY_WARN,
+         "how many of the pixels no record meets, so that they are zero (%)", "a grid within the records"},
+        {"patches_met", survey.patches_unmet, 0, false, SEVERITY_WARN, "the number of patches that no record meets",
+         "patches within the records"},
+        {"beam_in_record", 100 * survey.cut / survey.places, CUT_PIXELS_MOST, false, SEVERITY_WARN,
+         "how many of the pixels lose echoes from inside the beam at the ends of the records (%)",
+         "longer records, or a grid farther from their ends"},
+    };
+    for (int k = 0; k < CONDITIONS_SCENE; k++)
+        list[k] = all[k];
+    return CONDITIONS_SCENE;
+}

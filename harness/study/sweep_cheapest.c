@@ -1,0 +1,107 @@
+/* Which setting is enough: cheapest.csv of a sweep (sweep_group.h). */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "data/shown_text.h"
+#include "show/table.h"
+#include "study/sweep_group.h"
+
+enum { TIES_TOLD = 3 };
+
+/* Families by the beginning of the name; that of all algorithms is the first. */
+static const struct {
+    const char *name, *begins, *title;
+} families[] = {
+    {"all", "", "by"},
+    {"bp", "bp_", "back projection, by"},
+    {"rma", "rma_", "range migration, by"},
+    {"wk", "wk_", "omega-k, by"},
+};
+
+static bool is_candidate(const struct group *group, int k, double below, const char *begins)
+{
+    return group->error[k] <= below && strncmp(group->rows[k]->algorithm, begins, strlen(begins)) == 0;
+}
+
+/* The cheapest row with an error up to `below`, of equal ones the fastest; -1 if no row comes that far. */
+static int cheapest_find(const struct group *group, double below, const char *begins)
+{
+    int best = -1;
+    for (int k = 0; k < group->count; k++)
+        if (is_candidate(group, k, below, begins)
+            && (best < 0 || group->cost[k] < group->cost[best]
+                || (group->cost[k] == group->cost[best] && group->rows[k]->run_s < group->rows[best]->run_s)))
+            best = k;
+    return best;
+}
+
+/* The settings whose interval overlaps the cheapest one's, separated by "; "; returns how many. */
+static int ties_find(const struct group *group, int best, double below, const char *begins, char *text, size_t size)
+{
+    int count = 0;
+    *text = '\0';
+    for (int k = 0; k < group->count && group->high[best] > group->low[best]; k++) {
+        char spec[512];
+        const size_t used = strlen(text);
+        if (k == best || !is_candidate(group, k, below, begins) || group->low[k] > group->high[best])
+            continue;
+        measurement_spec(group->rows[k], spec, sizeof spec);
+        if (count++ < TIES_TOLD)
+            snprintf(text + used, size - used, "%s%s", used ? "; " : "", spec);
+    }
+    if (count > TIES_TOLD)
+        snprintf(text + strlen(text), size - strlen(text), "; %d more", count - TIES_TOLD);
+    return count;
+}
+
+static void row_tell(const struct measurement *row, const char *threshold, const char *ties)
+{
+    char spec[512], tied[2000];
+    measurement_spec(row, spec, sizeof spec);
+    shown_make(spec);
+    printf("    %7s  %8s %8s %9s  %7.1e  %s\n", threshold, cell_time(row->run_s).text,
+           cell_significant(row->control_s / row->run_s, "x").text, cell_significant(1e-6 * row->flops, "").text,
+           row->error, spec);
+    if (!*ties)
+        return;
+    snprintf(tied, sizeof tied, "as fast, within the noise: %s", ties);
+    shown_make(tied);
+    table_text(stdout, 52, tied);
+}
+
+/* For each decade from 1 down to the last that any setting of the family reaches. */
+static void family_write(struct group *group, size_t family, int c, FILE *file)
+{
+    const char *begins = families[family].begins;
+    int best = cheapest_find(group, 1, begins);
+    if (best >= 0 && group->told)
+        printf("  %s %s\n      below      time speed-up     MFLOP    error  setting\n", families[family].title,
+               sweep_costs[c].title);
+    for (int decade = 0; best >= 0; decade--, best = cheapest_find(group, pow(10, decade), begins)) {
+        const struct measurement *row = group->rows[best];
+        char threshold[16], ties[1800];
+        snprintf(threshold, sizeof threshold, "1e%d", decade);
+        ties_find(group, best, pow(10, decade), begins, ties, sizeof ties);
+        if (group->told)
+            row_tell(row, threshold, ties);
+        fields_write(file,
+                     (const char *const[]){row->scene, sweep_costs[c].name, threshold, row->algorithm, row->options,
+                                           row->precision, NULL},
+                     (double[]){row->run_s, row->control_s / row->run_s, row->flops, row->error, row->error_gain,
+                                row->pslr_db, row->islr_db},
+                     7, false);
+        fields_write(file, (const char *const[]){families[family].name, ties, NULL}, NULL, 0, true);
+    }
+}
+
+void cheapest_write(struct group *group, FILE *file)
+{
+    if (group->told)
+        printf("\n%s: the cheapest setting for each decade of error\n", group->scene);
+    for (size_t family = 0; family < sizeof families / sizeof *families; family++)
+        for (int c = 0; c < SWEEP_COSTS; c++) {
+            group_values(group, &sweep_costs[c]);
+            family_write(group, family, c, file);
+        }
+}
