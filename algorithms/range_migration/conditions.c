@@ -81,6 +81,11 @@ double rma_reach(const struct acquisition *acquisition, const struct rma_bounds 
     return fmin(r * bounds->sine / sqrt(1 - bounds->sine * bounds->sine), track);
 }
 
+double rma_focused(const struct acquisition *acquisition, const struct rma_bounds *bounds, double r)
+{
+    return rma_reach(acquisition, bounds, r) + bounds->aside / 2;
+}
+
 bool rma_view_aperture(const struct rma_view *view, const struct grid *patch, double r, double *low, double *high)
 {
     double sine = view->beam_sine, reach = sine < 1 ? r * sine / sqrt((1 - sine) * (1 + sine)) : INFINITY;
@@ -139,7 +144,7 @@ static struct condition spa_amplitude(const struct rma_view *view)
                               worst_row(view, amplitude_at),
                               0.05,
                               false,
-                              SEVERITY_WARN,
+                              SEVERITY_REFUSE,
                               "the amplitude that a monostatic weight gets wrong, (1 + (d/2r)^2)^.75 - 1",
                               "rows farther away, or receivers nearer to the transmitter"};
 }
@@ -268,11 +273,12 @@ bool azimuth_requirements(const struct problem *problem, struct condition *list,
 static int prediction_conditions(const struct rma_view *view, const struct straight_track *track, struct condition *all,
                                  int count)
 {
-    struct condition causes[] = {spa_amplitude(view), doppler(view), formula(view)};
+    struct condition causes[] = {doppler(view), formula(view)};
     struct condition error = predicted_error(view);
-    bool named = false;
     if (view->problem->acquisition->receivers > 1)
         all[count++] = condition_ghost(view->problem->acquisition, track->spacing);
+    all[count++] = spa_amplitude(view);
+    bool named = !condition_holds(&all[count - 1]);
     for (size_t k = 0; k < sizeof causes / sizeof *causes; k++) {
         causes[k].severity = error.severity;
         named = named || !condition_holds(&causes[k]);

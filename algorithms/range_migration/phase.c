@@ -37,9 +37,9 @@ struct rma_line rma_line(const struct rma *rma, const struct rma_swath *swath, i
     line.half = fmax(last - line.middle, rma->fs / swath->length);
     double f = line.middle / b1, along = c * line.nu / 2 + f * beta, s2 = (f - along) * (f + along);
     line.slowness = 2 / c * (f - along * beta) / b1 / sqrt(s2);
-    /* Seen by no ping, from no column: its echoes would only fold onto those that are. */
-    if (swath->nearest * fabs(along) / sqrt(s2) > rma_reach(rma->problem.acquisition, &rma->bounds, swath->nearest)
-                                                      + rma->bounds.aside * (rma->delay ? 0.5 : 1))
+    /* Seen by no ping, from no column: its echoes would only fold onto those that are. A pair's wavenumber is that of
+       its middle. */
+    if (swath->nearest * fabs(along) / sqrt(s2) > rma_focused(rma->problem.acquisition, &rma->bounds, swath->nearest))
         line.begin = swath->band;
     return line;
 }

@@ -32,6 +32,7 @@ enum {
     TABLES = 5,       /* receivers whose errors are tabulated: each stands for those nearest to it */
     FREQUENCIES = 3,  /* of the band: Gauss and Legendre's */
     FINER = 3,        /* places of a table for each independent one */
+    ROWS = 8,         /* of a patch, at most */
     LONGEST = 1 << 14 /* wavenumbers; places that would take more are left out */
 };
 static const double abscissas[FREQUENCIES] = {-0.7745966692414834, 0, 0.7745966692414834};
@@ -40,6 +41,7 @@ static const double FRESNEL_ZONES = 6; /* beside the places asked for, over whic
 static const double SPARE = 1.1;       /* of the tables' period, so that fading ends do not overlap */
 static const double NEAR = 4;          /* resolutions: what is near a target */
 static const double DEEP = 0.05;       /* of their range: patches whose first and last row are looked at both */
+static const double APART = 1.4;       /* ratio of two rows' ranges, beyond which one between them is looked at, too */
 
 /* Errors e of the kernel at one row, at places `step` apart. */
 struct kernel {
@@ -81,7 +83,7 @@ static void kernel_transform(const struct kernel *kernel, double d, double frequ
     const struct spectrum_setting *setting = &view->setting;
     const double c = setting->sound_speed, r = kernel->r, beta = setting->speed / c;
     const double f = frequency / ((1 - beta) * (1 + beta)),
-                 focused = rma_reach(view->problem->acquisition, &view->bounds, r) + view->bounds.aside;
+                 focused = rma_focused(view->problem->acquisition, &view->bounds, r);
     memset(kernel->wave, 0, (size_t)kernel->length * sizeof *kernel->wave);
     for (int k = -kernel->count / 2; k <= kernel->count / 2; k++) {
         double nu = k * kernel->nu_step, monostatic = spectrum_monostatic(setting, frequency, nu);
@@ -266,10 +268,11 @@ double prediction_error(const struct rma_view *view)
         return INFINITY;
     for (int k = 0; k < view->problem->patch_count; k++) {
         const struct grid *patch = &view->problem->patches[k];
-        double depth = (patch->r_count - 1) * patch->r_step;
-        bool deep = depth > DEEP * patch->r_first;
-        for (int end = 0; end < (deep ? 2 : 1); end++) {
-            double error = row_error(view, patch, patch->r_first + (deep ? end : 0.5) * depth);
+        double first = patch->r_first, last = first + (patch->r_count - 1) * patch->r_step;
+        int gaps = last - first > DEEP * first ? (int)fmin(1 + log(last / first) / log(APART), ROWS - 1) : 0;
+        for (int row = 0; row <= gaps; row++) {
+            double r = gaps > 0 ? first * pow(last / first, (double)row / gaps) : (first + last) / 2;
+            double error = row_error(view, patch, r);
             worst = error <= worst ? worst : error; /* a NaN is kept */
         }
     }

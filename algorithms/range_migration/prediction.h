@@ -4,8 +4,8 @@
 
 #include "range_migration/conditions.h"
 
-/* Relative L2 error of azimuth slices through point targets on the wanted columns (1), the worst of the first and the
-   last row of every patch; INFINITY where no ping sees any of them, NAN without memory. */
+/* Relative L2 error of azimuth slices through point targets on the wanted columns (1), the worst of every patch's first
+   and last row and of some between them; INFINITY where no ping sees any of them, NAN without memory. */
 double prediction_error(const struct rma_view *view);
 
 #endif

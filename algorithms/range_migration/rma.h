@@ -103,6 +103,9 @@ struct rma_bounds {
    some Fresnel zones beyond it. */
 double rma_reach(const struct acquisition *acquisition, const struct rma_bounds *bounds, double r);
 
+/* How far the middle of a pair can be from a target at range r, m: what wavenumbers beyond hold is left out. */
+double rma_focused(const struct acquisition *acquisition, const struct rma_bounds *bounds, double r);
+
 /* The callbacks of struct algorithm, for a method. `options` is only used during the call. */
 enum status rma_plan(const struct problem *problem, const struct rma_method *method, const struct rma_options *options,
                      void **plan);
