@@ -13,9 +13,11 @@
 enum status bp_plan_traces(struct bp *bp)
 {
     const struct acquisition *a = bp->problem.acquisition;
+    const struct traces_form form = {bp->table.upsample, bp->table.branches - 1, bp->table.guard,
+                                     bp->table.preemphasis};
     bool is_double = bp->problem.precision == PRECISION_DOUBLE;
-    enum status status = (is_double ? traces_plan_double : traces_plan_float)(
-        a, bp->table.upsample, bp->table.branches - 1, bp->table.guard, omp_get_max_threads(), &bp->shape, &bp->traces);
+    enum status status =
+        (is_double ? traces_plan_double : traces_plan_float)(a, &form, omp_get_max_threads(), &bp->shape, &bp->traces);
     if (status == STATUS_OK)
         bp->work.bytes += bp->shape.bytes;
     return status;
@@ -28,6 +30,23 @@ void bp_fill_row(const struct bp *bp, int thread, const struct echoes *echoes, s
         traces_fill_double(bp->traces, thread, (const double complex *)echoes->samples + offset, row);
     else
         traces_fill_float(bp->traces, thread, (const float complex *)echoes->samples + offset, row);
+}
+
+void bp_fill_spectrum(const struct bp *bp, const struct echoes *echoes, size_t index, void *spectrum)
+{
+    size_t offset = index * (size_t)bp->shape.samples;
+    if (bp->problem.precision == PRECISION_DOUBLE)
+        traces_spectrum_double(bp->traces, (const double complex *)echoes->samples + offset, spectrum);
+    else
+        traces_spectrum_float(bp->traces, (const float complex *)echoes->samples + offset, spectrum);
+}
+
+void bp_fill_plane(const struct bp *bp, const void *spectrum, int plane, void *values)
+{
+    if (bp->problem.precision == PRECISION_DOUBLE)
+        traces_plane_double(bp->traces, spectrum, plane, values);
+    else
+        traces_plane_float(bp->traces, spectrum, plane, values);
 }
 
 /* The kernel's branches, where they are few enough; false without memory. */
@@ -52,7 +71,8 @@ static enum status tabulate(struct bp *bp, const struct interpolator *in, const 
                                   .taps = in->taps,
                                   .first = in->first,
                                   .guard = in->taps,
-                                  .branches = 1};
+                                  .branches = 1,
+                                  .preemphasis = in->preemphasis};
     if (in->degree > 0)
         bp->table = (struct bp_table){.reading = BP_BRANCHES,
                                       .upsample = in->upsample,

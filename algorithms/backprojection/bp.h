@@ -14,10 +14,12 @@
    w[k] s[floor(q) + first + k],  w = weights(fraction of q). Taps beyond the record's ends read zero (with upsample >
    1: the band-limited signal's own continuation). */
 struct interpolator {
-    int upsample;    /* records are upsampled by zero padding (exactly) by this factor first; >= 1 */
-    int steps;       /* > 0: q is rounded to the nearest multiple of 1/steps first, at most 4096; 0: it is not */
-    int taps, first; /* taps >= 1; first <= 0 */
-    int degree;      /* > 0: in place of taps, the record's Farrow branches up to this power (farrow.h) are read at
+    int upsample;     /* records are upsampled by zero padding (exactly) by this factor first; >= 1 */
+    int steps;        /* > 0: q is rounded to the nearest multiple of 1/steps first, at most 4096; 0: it is not */
+    int taps, first;  /* taps >= 1; first <= 0 */
+    bool preemphasis; /* what linear interpolation takes off the spectrum, sinc^2(f/fs), is divided out first; not with
+                         a degree */
+    int degree;       /* > 0: in place of taps, the record's Farrow branches up to this power (farrow.h) are read at
                         floor(q + 1/2); taps and steps are not used */
     /* Fill w[taps] for a fraction in [0, 1). Called while planning only; NULL when taps == 1 (the weight is 1). */
     void (*weights)(const void *options, double fraction, double *w);

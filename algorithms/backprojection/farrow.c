@@ -3,18 +3,7 @@
 
 #include <math.h>
 
-/* The spherical Bessel function j_n(x) by its power series, whose terms fall at once for |x| <= pi/2. */
-static double spherical_bessel(int n, double x)
-{
-    double term = 1, sum = 0;
-    for (int k = 1; k <= n; k++)
-        term *= x / (2 * k + 1);
-    for (int k = 0; k < 20; k++) {
-        sum += term;
-        term *= -x * x / (2 * (k + 1) * (2 * (n + k) + 3));
-    }
-    return sum;
-}
+#include "common/bessel.h"
 
 void farrow_gains(int degree, double nu, double *gains)
 {
@@ -22,7 +11,7 @@ void farrow_gains(int degree, double nu, double *gains)
     for (int m = 0; m <= degree; m++)
         gains[m] = 0;
     for (int n = 0; n <= degree; n++) {
-        const double weight = (n / 2 % 2 ? -1 : 1) * (2 * n + 1) * spherical_bessel(n, M_PI * nu);
+        const double weight = (n / 2 % 2 ? -1 : 1) * (2 * n + 1) * bessel_spherical(n, M_PI * nu);
         for (int m = n % 2; m <= n; m += 2)
             gains[m] += weight * now[m];
         for (int m = degree; m >= 0; m--) { /* (n + 1) P_(n+1)(z) = (2n + 1) z P_n(z) - n P_(n-1)(z) */
@@ -39,7 +28,7 @@ double farrow_error(int degree, double band)
     double sum = 0;
     for (int k = 0; k < FREQUENCIES; k++)
         for (int n = degree + 1; n <= degree + TERMS; n++) {
-            const double value = spherical_bessel(n, M_PI * band / 2 * (k + 0.5) / FREQUENCIES);
+            const double value = bessel_spherical(n, M_PI * band / 2 * (k + 0.5) / FREQUENCIES);
             sum += (2 * n + 1) * value * value;
         }
     return sqrt(sum / FREQUENCIES);

@@ -2,6 +2,8 @@
 #ifndef SASBENCH_BACKPROJECTION_READING_H
 #define SASBENCH_BACKPROJECTION_READING_H
 
+#include <stdbool.h>
+
 /* Of the speed of sound, the receivers' below which the delay's root (q + s)/e loses less than a bit where it cancels
    (delay.h): the division of the other form is spared. */
 #define BP_SLOW 0.125
@@ -26,6 +28,7 @@ struct bp_table {
     int upsample, steps, taps, first, guard;
     int branches;        /* values of each place of a record: `taps` if BP_BRANCHES, else 1 */
     double shift;        /* branches: they are read at floor(place + shift), u = place + shift - 1/2 from there */
+    bool preemphasis;    /* of the records (struct traces_form) */
     const void *weights; /* of the plan's precision; NULL if BP_NEAREST */
 };
 

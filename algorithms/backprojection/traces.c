@@ -1,5 +1,5 @@
-/* Range compression and exact upsampling of single records (traces.h). Cost: an FFT of L and one of L upsample for each
-   branch. */
+/* Range compression and exact upsampling of single records (traces.h). Cost: an FFT of L, and one for each phase of
+   each branch: as many operations as one of L upsample, less those on zeros, and all in the nearest cache. */
 #include "backprojection/traces.h"
 
 #include <limits.h>
@@ -14,13 +14,11 @@
 
 struct traces {
     struct traces_shape shape;
-    int transform;                 /* L: period of the transformed signal, >= samples + pulse - 1 */
-    bool transforms;               /* false: compressed already and not upsampled */
-    FFTW(plan) forward, inverse;   /* of L, and of L upsample */
-    complex_real *filter;          /* [L] conj(P)/(L sum|p|^2); 1/L if compressed */
-    real *gains;                   /* [branches][L/2 + 1] of frequencies 0 to fs/2 (farrow.h); NULL without branches */
-    complex_real *scratch;         /* [threads][scratch_length], of L and of L upsample values */
-    size_t scratch_length, second; /* where the latter begin: both at cache lines, as FFTW's plans expect */
+    bool transforms;             /* false: compressed already, and read as it is */
+    FFTW(plan) forward, inverse; /* of L = shape.period, in place */
+    complex_real *filter;        /* [L] conj(P)/(L sum|p|^2); 1/L if compressed; over sinc^2 where it is emphasised */
+    complex_real *factors;       /* [branches][upsample][L/2 + 1] of frequencies 0 to fs/2; NULL: of one plane, all 1 */
+    complex_real *scratch;       /* [threads][2][shape.pitch] */
 };
 
 static void filter_fill(const struct acquisition *acquisition, int length, double complex *work, complex_real *filter)
@@ -38,14 +36,31 @@ static void filter_fill(const struct acquisition *acquisition, int length, doubl
         filter[k] = (complex_real)(conj(work[k]) / (energy * length));
 }
 
-static void gains_fill(const struct traces *traces)
+/* Linear interpolation between samples takes off sinc^2(nu) at nu cycles a sample. */
+static void emphasise(int length, complex_real *filter)
 {
-    const int length = traces->transform, branches = traces->shape.branches;
+    for (int k = 1; k < length; k++) {
+        const double x = M_PI * (2 * k > length ? k - length : k) / length, sinc = sin(x) / x;
+        filter[k] /= (real)(sinc * sinc);
+    }
+}
+
+/* Branch m at phase j of K is the signal of the spectrum times H_m(nu) exp(j 2 pi nu j/K), of which the factors of -nu
+   are the conjugates of those of nu. */
+static void factors_fill(const struct traces *traces)
+{
+    const int length = traces->shape.period, branches = traces->shape.branches, upsample = traces->shape.upsample;
+    const size_t half = (size_t)length / 2 + 1;
     double gains[FARROW_MOST + 1];
-    for (int k = 0; k <= length / 2; k++) {
-        farrow_gains(branches - 1, (double)k / length / traces->shape.upsample, gains);
+    for (size_t k = 0; k < half; k++) {
+        farrow_gains(branches - 1, (double)k / length / upsample, gains);
         for (int m = 0; m < branches; m++)
-            traces->gains[m * (length / 2 + 1) + k] = (real)gains[m];
+            for (int j = 0; j < upsample; j++) {
+                const double turn = 2 * M_PI * (double)k * j / ((double)length * upsample);
+                const double gain = branches > 1 ? gains[m] : 1;
+                const double complex factor = gain * (cos(turn) + I * sin(turn)) * (m % 2 ? I : 1);
+                traces->factors[((size_t)m * (size_t)upsample + (size_t)j) * half + k] = (complex_real)factor;
+            }
     }
 }
 
@@ -56,73 +71,76 @@ static size_t whole_lines(int count)
     return ((size_t)count + line - 1) / line * line;
 }
 
-/* Filter, gains, scratch and FFTW's plans, and what they count in the shape. */
-static enum status transforms_plan(struct traces *traces, const struct acquisition *acquisition, int threads)
+/* Filter, factors, scratch and FFTW's plans, and what they count in the shape. */
+static enum status transforms_plan(struct traces *traces, const struct acquisition *acquisition, bool preemphasis,
+                                   int threads)
 {
     struct traces_shape *shape = &traces->shape;
-    const int length = traces->transform, branches = shape->branches, fine = length * shape->upsample;
-    const size_t gains = branches > 1 ? (size_t)branches * ((size_t)length / 2 + 1) : 0;
-    traces->second = whole_lines(length);
-    traces->scratch_length = traces->second + whole_lines(fine);
-    /* Scratch, filter, the pulse's spectrum, and as much as FFTW's plans may hold. */
-    enum status status = memory_check(((threads + 1.0) * (double)traces->scratch_length + length) * sizeof(complex_real)
-                                          + (double)length * sizeof(double complex) + (double)gains * sizeof(real),
-                                      "range compression");
+    const int length = shape->period, planes = shape->branches * shape->upsample;
+    const size_t pitch = whole_lines(length), factors = planes > 1 ? (size_t)planes * ((size_t)length / 2 + 1) : 0;
+    shape->pitch = pitch;
+    /* Scratch, filter, factors, the pulse's spectrum, and as much as FFTW's plans may hold. */
+    enum status status =
+        memory_check((2 * (threads + 1.0) * (double)pitch + length + (double)factors) * sizeof(complex_real)
+                         + (double)length * sizeof(double complex),
+                     "range compression");
     if (status != STATUS_OK)
         return status;
-    traces->scratch = FFTW(malloc)((size_t)threads * traces->scratch_length * sizeof *traces->scratch);
+    traces->scratch = FFTW(malloc)((size_t)threads * 2 * pitch * sizeof *traces->scratch);
     traces->filter = FFTW(malloc)((size_t)length * sizeof *traces->filter);
-    traces->gains = gains > 0 ? FFTW(malloc)(gains * sizeof *traces->gains) : NULL;
+    traces->factors = factors > 0 ? FFTW(malloc)(factors * sizeof *traces->factors) : NULL;
     double complex *work = fftw_malloc((size_t)length * sizeof *work);
-    if (traces->scratch && traces->filter && work && (traces->gains || gains == 0)) {
+    if (traces->scratch && traces->filter && work && (traces->factors || factors == 0)) {
         if (acquisition->compressed)
             for (int k = 0; k < length; k++)
                 traces->filter[k] = (real)1 / (real)length;
         else
             filter_fill(acquisition, length, work, traces->filter);
-        if (gains > 0)
-            gains_fill(traces);
+        if (preemphasis)
+            emphasise(length, traces->filter);
+        if (factors > 0)
+            factors_fill(traces);
         /* ESTIMATE: the same algorithm, hence the same bits, at every planning; measuring costs more than a scene's
            compression. */
-        complex_real *a = traces->scratch, *b = a + traces->second;
+        complex_real *a = traces->scratch;
         traces->forward = FFTW(plan_dft_1d)(length, a, a, FFTW_FORWARD, FFTW_ESTIMATE);
-        traces->inverse = FFTW(plan_dft_1d)(fine, b, b, FFTW_BACKWARD, FFTW_ESTIMATE);
+        traces->inverse = FFTW(plan_dft_1d)(length, a, a, FFTW_BACKWARD, FFTW_ESTIMATE);
     }
     fftw_free(work);
     if (!traces->forward || !traces->inverse)
         return status_set(STATUS_FAILED, "no memory for range compression (%.0f MB)",
-                          (double)threads * (double)traces->scratch_length * sizeof(complex_real) / 1e6);
-    shape->flops = fft_flops(length) + branches * fft_flops(fine) + 6.0 * length;
-    shape->flops += gains > 0 ? 2.0 * branches * length : 0;
-    shape->bytes += (double)(traces->scratch_length + (size_t)length) * sizeof(complex_real);
-    shape->bytes += (double)gains * sizeof(real);
+                          (double)threads * 2 * (double)pitch * sizeof(complex_real) / 1e6);
+    shape->flops = (planes + 1) * fft_flops(length) + 6.0 * length;
+    shape->flops += factors > 0 ? 6.0 * planes * length : 0;
+    shape->bytes += (double)(2 * pitch + (size_t)length + factors) * sizeof(complex_real);
     return STATUS_OK;
 }
 
-enum status REAL_NAME(traces_plan)(const struct acquisition *acquisition, int upsample, int degree, int guard,
-                                   int threads, struct traces_shape *shape, struct traces **out)
+enum status REAL_NAME(traces_plan)(const struct acquisition *acquisition, const struct traces_form *form, int threads,
+                                   struct traces_shape *shape, struct traces **out)
 {
     *out = NULL;
-    int n = acquisition->samples;
+    const int n = acquisition->samples, upsample = form->upsample, branches = form->degree + 1;
     int length = acquisition->compressed ? n : fft_length_fast((long long)n + acquisition->pulse_length - 1);
-    long long fine = (long long)length * upsample, row = (long long)(n - 1) * upsample + 1 + 2LL * guard;
-    if (length == 0 || fine * (degree + 1) > INT_MAX / 4 || row * (degree + 1) > INT_MAX / 4)
+    long long fine = (long long)length * upsample, row = (long long)(n - 1) * upsample + 1 + 2LL * form->guard;
+    if (length == 0 || fine * branches > INT_MAX / 4 || row * branches > INT_MAX / 4)
         return status_set(STATUS_UNSUPPORTED,
                           "records of %d samples upsampled by %d are too long to transform "
                           "(at most %d values)",
-                          n, upsample, INT_MAX / 4 / (degree + 1));
+                          n, upsample, INT_MAX / 4 / branches);
     struct traces *traces = calloc(1, sizeof *traces);
     if (!traces)
         return status_set(STATUS_FAILED, "no memory for range compression");
     traces->shape = (struct traces_shape){.samples = n,
                                           .upsample = upsample,
-                                          .guard = guard,
-                                          .branches = degree + 1,
+                                          .guard = form->guard,
+                                          .branches = branches,
                                           .length = (int)row,
+                                          .period = length,
                                           .bytes = sizeof *traces};
-    traces->transform = length;
-    traces->transforms = !acquisition->compressed || upsample > 1 || degree > 0;
-    enum status status = traces->transforms ? transforms_plan(traces, acquisition, threads) : STATUS_OK;
+    traces->transforms = !acquisition->compressed || upsample > 1 || branches > 1 || form->preemphasis;
+    enum status status =
+        traces->transforms ? transforms_plan(traces, acquisition, form->preemphasis, threads) : STATUS_OK;
     if (status != STATUS_OK) {
         REAL_NAME(traces_destroy)(traces);
         return status;
@@ -132,100 +150,82 @@ enum status REAL_NAME(traces_plan)(const struct acquisition *acquisition, int up
     return STATUS_OK;
 }
 
-/* Place the L bins of `from` into the L upsample bins of `to`. */
-static void spectrum_pad(const complex_real *from, int length, complex_real *to, size_t fine)
+void REAL_NAME(traces_spectrum)(const struct traces *traces, const complex_real *record, complex_real *spectrum)
 {
-    int positive = (length + 1) / 2; /* bins 0 .. positive - 1; a bin at fs/2 stands apart */
-    int negative = length / 2 - (length % 2 == 0);
-    memcpy(to, from, (size_t)positive * sizeof *to);
-    memset(to + positive, 0, (fine - (size_t)positive) * sizeof *to);
-    memcpy(to + fine - negative, from + length - negative, (size_t)negative * sizeof *to);
-    if (length % 2 == 0) {
-        to[length / 2] = from[length / 2] / 2;
-        to[fine - (size_t)length / 2] += from[length / 2] / 2;
+    const size_t n = (size_t)traces->shape.samples, length = (size_t)traces->shape.period;
+    memcpy(spectrum, record, n * sizeof *spectrum);
+    memset(spectrum + n, 0, (length - n) * sizeof *spectrum);
+    FFTW(execute_dft)(traces->forward, spectrum, spectrum);
+    real *x = (real *)spectrum;
+    const real *h = (const real *)traces->filter;
+    for (size_t k = 0; k < 2 * length; k += 2) { /* written out: a complex product would check for NaN */
+        real re = x[k] * h[k] - x[k + 1] * h[k + 1];
+        x[k + 1] = x[k] * h[k + 1] + x[k + 1] * h[k];
+        x[k] = re;
     }
 }
 
-/* The spectrum of one branch, of L upsample bins: the L bins of `from` times gains, and times j where `odd`. */
-static void spectrum_branch(const complex_real *from, int length, const real *gains, bool odd, complex_real *to,
-                            size_t fine)
+void REAL_NAME(traces_plane)(const struct traces *traces, const complex_real *spectrum, int plane, complex_real *values)
 {
-    const real *x = (const real *)from;
-    real *y = (real *)to;
-    const int re = odd, im = !odd; /* j (a + j b) = -b + j a */
-    const real sign = odd ? -1 : 1;
-    memset(to, 0, fine * sizeof *to);
-    for (int k = 0; 2 * k < length; k++) {
-        y[2 * k + re] = gains[k] * x[2 * k];
-        y[2 * k + im] = sign * gains[k] * x[2 * k + 1];
+    const size_t length = (size_t)traces->shape.period, half = length / 2 + 1;
+    if (!traces->factors) {
+        memcpy(values, spectrum, length * sizeof *values);
+        FFTW(execute_dft)(traces->inverse, values, values);
+        return;
     }
-    real *end = y + 2 * fine;
-    for (int k = 1; 2 * k < length; k++) { /* gains of odd branches are odd */
-        end[-2 * k + re] = sign * gains[k] * x[2 * (length - k)];
-        end[-2 * k + im] = gains[k] * x[2 * (length - k) + 1];
+    const real *h = (const real *)(traces->factors + (size_t)plane * half), *x = (const real *)spectrum;
+    real *y = (real *)values;
+    for (size_t k = 0; k < length; k += 2) { /* below fs/2 */
+        y[k] = x[k] * h[k] - x[k + 1] * h[k + 1];
+        y[k + 1] = x[k] * h[k + 1] + x[k + 1] * h[k];
     }
-    if (length % 2 == 0) { /* the bin at fs/2: half at either end of the band, which is one bin without upsampling */
-        const real a = gains[length / 2] * x[length] / 2, b = sign * gains[length / 2] * x[length + 1] / 2;
-        real *positive = y + length, *negative = end - length;
-        positive[re] += a;
-        positive[im] += b;
-        negative[re] += sign * a;
-        negative[im] += sign * b;
+    for (size_t k = 1; 2 * k < length; k++) {
+        const real re = h[2 * k], im = -h[2 * k + 1];
+        const size_t at = 2 * (length - k);
+        y[at] = x[at] * re - x[at + 1] * im;
+        y[at + 1] = x[at] * im + x[at + 1] * re;
     }
+    if (length % 2 == 0) { /* the bin at fs/2: half of it at either end of the band, the factors' mean */
+        y[length] = x[length] * h[length];
+        y[length + 1] = x[length + 1] * h[length];
+    }
+    FFTW(execute_dft)(traces->inverse, values, values);
 }
 
-/* One period of a signal into a row's branch. */
-static void row_fill(const struct traces_shape *shape, const complex_real *source, size_t fine, complex_real *row)
+/* One period of a plane's values into its row, every `upsample`-th value of it. */
+static void row_fill(const struct traces_shape *shape, const complex_real *values, size_t phase, complex_real *row)
 {
-    const size_t n = (size_t)shape->samples, guard = (size_t)shape->guard;
-    if (shape->upsample == 1) {
+    const size_t upsample = (size_t)shape->upsample, guard = (size_t)shape->guard, length = (size_t)shape->length;
+    const size_t period = (size_t)shape->period, n = (size_t)shape->samples;
+    if (upsample == 1) {
         memset(row, 0, guard * sizeof *row);
-        memcpy(row + guard, source, n * sizeof *row);
+        memcpy(row + guard, values, n * sizeof *row);
         memset(row + guard + n, 0, guard * sizeof *row);
         return;
     }
-    size_t start = (fine - guard % fine) % fine;
-    for (size_t i = 0; i < (size_t)shape->length; i++) {
-        row[i] = source[start];
-        if (++start == fine)
-            start = 0;
+    /* Value guard + n upsample + phase is sample n; the first one in the row has n = -before. */
+    const size_t before = (guard + phase) / upsample;
+    size_t source = (period - before % period) % period;
+    for (size_t i = guard + phase - before * upsample; i < length; i += upsample) {
+        row[i] = values[source];
+        source = source + 1 < period ? source + 1 : 0;
     }
 }
 
 void REAL_NAME(traces_fill)(const struct traces *traces, int thread, const complex_real *record, complex_real *row)
 {
     const struct traces_shape *shape = &traces->shape;
-    size_t n = (size_t)shape->samples, length = (size_t)traces->transform;
-    const complex_real *source = record;
-    size_t fine = length * (size_t)shape->upsample;
-    if (traces->transforms) {
-        complex_real *a = traces->scratch + (size_t)thread * traces->scratch_length, *b = a + traces->second;
-        memcpy(a, record, n * sizeof *a);
-        memset(a + n, 0, (length - n) * sizeof *a);
-        FFTW(execute_dft)(traces->forward, a, a);
-        real *x = (real *)a;
-        const real *h = (const real *)traces->filter;
-        for (size_t k = 0; k < 2 * length; k += 2) { /* written out: a complex product would check for NaN */
-            real re = x[k] * h[k] - x[k + 1] * h[k + 1];
-            x[k + 1] = x[k] * h[k + 1] + x[k + 1] * h[k];
-            x[k] = re;
-        }
-        for (int m = 0; traces->gains && m < shape->branches; m++, row += shape->length) {
-            const real *gains = traces->gains + (size_t)m * (length / 2 + 1);
-            spectrum_branch(a, (int)length, gains, m % 2 != 0, b, fine);
-            FFTW(execute_dft)(traces->inverse, b, b);
-            row_fill(shape, b, fine, row);
-        }
-        if (traces->gains)
-            return;
-        if (shape->upsample > 1)
-            spectrum_pad(a, (int)length, b, fine);
-        else
-            b = a;
-        FFTW(execute_dft)(traces->inverse, b, b);
-        source = b;
+    if (!traces->transforms) {
+        row_fill(shape, record, 0, row);
+        return;
     }
-    row_fill(shape, source, fine, row);
+    complex_real *spectrum = traces->scratch + 2 * (size_t)thread * shape->pitch, *values = spectrum + shape->pitch;
+    REAL_NAME(traces_spectrum)(traces, record, spectrum);
+    for (int plane = 0; plane < shape->branches * shape->upsample; plane++) {
+        REAL_NAME(traces_plane)(traces, spectrum, plane, values);
+        row_fill(shape, values, (size_t)(plane % shape->upsample),
+                 row + (size_t)(plane / shape->upsample) * (size_t)shape->length);
+    }
 }
 
 void REAL_NAME(traces_destroy)(struct traces *traces)
@@ -237,7 +237,7 @@ void REAL_NAME(traces_destroy)(struct traces *traces)
     if (traces->inverse)
         FFTW(destroy_plan)(traces->inverse);
     FFTW(free)(traces->filter);
-    FFTW(free)(traces->gains);
+    FFTW(free)(traces->factors);
     FFTW(free)(traces->scratch);
     free(traces);
 }

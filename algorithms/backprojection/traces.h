@@ -6,29 +6,51 @@
 
 struct traces; /* the plan */
 
+/* How a record is read. Raw echoes are correlated linearly with conj(pulse)/sum|pulse|^2 (BP22 Eq. (4), inverse
+   transform along range). upsample > 1 evaluates the band-limited signal exactly (ZP15: zero padding of the spectrum,
+   the bin at fs/2 shared between both ends). */
+struct traces_form {
+    int upsample;     /* >= 1 */
+    int degree;       /* > 0: of Farrow branches (farrow.h), u in upsampled samples */
+    int guard;        /* upsampled samples before and behind the record */
+    bool preemphasis; /* the spectrum is divided by sinc^2(f/fs), which linear interpolation takes off it */
+};
+
 /* A row holds guard + (samples - 1) upsample + 1 + guard values; value guard + i lies at sample coordinate i/upsample
-   of the record, t = t0 + i/(upsample fs). Raw echoes are correlated linearly with conj(pulse)/sum|pulse|^2 (BP22 Eq.
-   (4), inverse transform along range). upsample > 1 evaluates the band-limited signal exactly (ZP15: zero padding of
-   the spectrum, the bin at fs/2 shared between both ends) and continues it into the guards, periodically where it has
-   no other continuation; with upsample = 1 the guards read zero. With a degree > 0 a row holds degree + 1 of these
-   one behind the other: the Farrow branches of the band-limited signal (farrow.h), u in upsampled samples. */
+   of the record, t = t0 + i/(upsample fs). Guards continue the band-limited signal, periodically where it has no other
+   continuation; with upsample = 1 they read zero. With a degree > 0 a row holds degree + 1 of these one behind the
+   other, the branches.
+
+   Zero padding is done by phases: values i = n upsample + phase are the samples n of the signal phase/upsample samples
+   earlier, hence an inverse transform of the record's own length L, of its spectrum times exp(j 2 pi nu
+   phase/upsample). `upsample` short transforms stand for one long one, and each is made for itself. */
 struct traces_shape {
     int samples, upsample, guard;
     int branches; /* 1, or degree + 1 */
     int length;   /* of a row's branch, complex values */
+    int period;   /* L: of the transformed signal, >= samples + pulse - 1 if raw */
+    size_t pitch; /* from one spectrum or plane to the next, complex values: whole cache lines; 0: none is made */
     double flops; /* for one record: 5 N log2 N an FFT, 6 a complex product */
     double bytes; /* held with one thread */
 };
 
-/* `threads`: how many threads may call fill at once; `degree`: 0, or of Farrow branches. Errors: STATUS_FAILED
-   without memory, STATUS_UNSUPPORTED when a row is too long to index. *traces is NULL then. */
-enum status traces_plan_float(const struct acquisition *acquisition, int upsample, int degree, int guard, int threads,
+/* `threads`: how many threads may call fill at once. Errors: STATUS_FAILED without memory, STATUS_UNSUPPORTED when a
+   row is too long to index. *traces is NULL then. */
+enum status traces_plan_float(const struct acquisition *acquisition, const struct traces_form *form, int threads,
                               struct traces_shape *shape, struct traces **traces);
-enum status traces_plan_double(const struct acquisition *acquisition, int upsample, int degree, int guard, int threads,
+enum status traces_plan_double(const struct acquisition *acquisition, const struct traces_form *form, int threads,
                                struct traces_shape *shape, struct traces **traces);
 /* Turn one record, complex [samples], into a row; `thread` < threads names the scratch to use. */
 void traces_fill_float(const struct traces *traces, int thread, const float complex *record, float complex *row);
 void traces_fill_double(const struct traces *traces, int thread, const double complex *record, double complex *row);
+/* The same in two steps, where pitch > 0: a record's spectrum, complex [period], compressed; and of it one plane, number
+   branch times upsample + phase: complex [period], of which value n is fine sample n upsample + phase. Both arrays
+   begin at cache lines. */
+void traces_spectrum_float(const struct traces *traces, const float complex *record, float complex *spectrum);
+void traces_spectrum_double(const struct traces *traces, const double complex *record, double complex *spectrum);
+void traces_plane_float(const struct traces *traces, const float complex *spectrum, int plane, float complex *values);
+void traces_plane_double(const struct traces *traces, const double complex *spectrum, int plane,
+                         double complex *values);
 void traces_destroy_float(struct traces *traces);
 void traces_destroy_double(struct traces *traces);
 

@@ -22,3 +22,16 @@ double bessel_i0_scaled(double x)
 {
     return series(x, exp(-x));
 }
+
+/* By the power series, whose terms fall at once for these x. */
+double bessel_spherical(int n, double x)
+{
+    double term = 1, sum = 0;
+    for (int k = 1; k <= n; k++)
+        term *= x / (2 * k + 1);
+    for (int k = 0; k < 20; k++) {
+        sum += term;
+        term *= -x * x / (2 * (k + 1) * (2 * (n + k) + 3));
+    }
+    return sum;
+}

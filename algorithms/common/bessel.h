@@ -1,8 +1,11 @@
-/* The modified Bessel function I0: Kaiser windows are made of it. */
+/* The modified Bessel function I0, which Kaiser windows are made of; spherical ones, of which expansions of
+   exponentials are. */
 #ifndef SASBENCH_COMMON_BESSEL_H
 #define SASBENCH_COMMON_BESSEL_H
 
 double bessel_i0(double x);
 double bessel_i0_scaled(double x); /* I0(x) exp(-x), which does not overflow */
+/* The spherical Bessel function j_n(x), n >= 0, |x| <= pi/2; to a few roundings however small it is. */
+double bessel_spherical(int n, double x);
 
 #endif

@@ -154,10 +154,11 @@ static bool plan_all(struct wk *wk)
 static enum status plan_compression(struct wk *wk)
 {
     const struct acquisition *a = wk->problem.acquisition;
+    const struct traces_form form = {.upsample = 1};
     struct traces_shape shape;
     enum status status = STATUS_OK;
     if (!a->compressed) {
-        status = REAL_NAME(traces_plan)(a, 1, 0, 0, wk->threads, &shape, &wk->traces);
+        status = REAL_NAME(traces_plan)(a, &form, wk->threads, &shape, &wk->traces);
         if (status == STATUS_OK) {
             wk->work.bytes += shape.bytes;
             wk->work.flops += shape.flops * wk->pings;

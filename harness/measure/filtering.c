@@ -21,12 +21,13 @@ enum status filtering_open(const struct acquisition *acquisition, const struct s
 {
     const struct wk_options *options = spec->options;
     const struct polar_setting setting = {options->subapertures, options->curvature};
+    const struct traces_form form = {.upsample = 1};
     struct traces_shape shape;
     *filtering = (struct filtering){.acquisition = acquisition};
     enum status status =
         polar_filter_plan_double(acquisition, &setting, omp_get_max_threads(), &filtering->shape, &filtering->filter);
     if (status == STATUS_OK)
-        status = traces_plan_double(acquisition, 1, 0, 0, omp_get_max_threads(), &shape, &filtering->traces);
+        status = traces_plan_double(acquisition, &form, omp_get_max_threads(), &shape, &filtering->traces);
     if (status != STATUS_OK)
         filtering_close(filtering);
     return status;

@@ -164,8 +164,9 @@ struct trace {
     int count;
     const long double *cosine, *sine; /* [count] of pi n/N */
     const struct exact_reading *reading;
-    struct gauss gauss; /* of polynomials */
-    long double level;  /* rms of the samples: what a transform's rounding is relative to */
+    struct gauss gauss;                                  /* of polynomials */
+    long double lower[EXACT_TAPS_MOST][EXACT_TAPS_MOST]; /* of fitted taps: Cholesky's factor of the normal equations */
+    long double level; /* rms of the samples: what a transform's rounding is relative to */
 };
 
 struct value {
@@ -270,6 +271,11 @@ static long double bessel_i0(long double x)
     return sum;
 }
 
+static long double sinc(long double x)
+{
+    return x == 0.0L ? 1.0L : sinl(exact_pi * x) / (exact_pi * x);
+}
+
 static struct value read_sinc(const struct trace *trace, long double q)
 {
     const int taps = trace->reading->taps;
@@ -277,10 +283,55 @@ static struct value read_sinc(const struct trace *trace, long double q)
     struct value value = {0};
     for (int k = 1 - taps / 2; k <= taps / 2; k++) {
         const long double z = f - k, edge = 2.0L * z / taps, inside = 1.0L - edge * edge;
-        const long double kernel = z == 0.0L ? 1.0L : sinl(exact_pi * z) / (exact_pi * z);
         const long double window =
             beta > 0.0L ? bessel_i0(beta * sqrtl(inside > 0.0L ? inside : 0.0L)) / bessel_i0(beta) : 1.0L;
-        add_tap(trace, whole + k, kernel * window, &value);
+        add_tap(trace, whole + k, sinc(z) * window, &value);
+    }
+    return value;
+}
+
+/* The normal equations of fitted taps, with 1e-12 on the diagonal. */
+static void normal_factor(const struct exact_reading *reading, struct trace *trace)
+{
+    for (int i = 0; i < reading->taps; i++)
+        for (int j = 0; j <= i; j++) {
+            long double left = sinc((long double)reading->band * (i - j)) + (i == j ? 1e-12L : 0.0L);
+            for (int k = 0; k < j; k++)
+                left -= trace->lower[i][k] * trace->lower[j][k];
+            trace->lower[i][j] = i == j ? sqrtl(left) : left / trace->lower[j][j];
+        }
+}
+
+/* Solved anew for each position. */
+static struct value read_fitted(const struct trace *trace, long double fine)
+{
+    const struct exact_reading *reading = trace->reading;
+    const int taps = reading->taps;
+    const long double whole = floorl(fine), f = fine - whole;
+    long double w[EXACT_TAPS_MOST];
+    struct value value = {0};
+    for (int i = 0; i < taps; i++) {
+        w[i] = sinc((long double)reading->band * (f - (1 - taps / 2 + i)));
+        for (int k = 0; k < i; k++)
+            w[i] -= trace->lower[i][k] * w[k];
+        w[i] /= trace->lower[i][i];
+    }
+    for (int i = taps - 1; i >= 0; i--) {
+        for (int k = i + 1; k < taps; k++)
+            w[i] -= trace->lower[k][i] * w[k];
+        w[i] /= trace->lower[i][i];
+    }
+    for (int i = 0; i < taps; i++) {
+        const long double at = whole + (1 - taps / 2 + i);
+        if (reading->upsample == 1) {
+            add_tap(trace, at, w[i], &value);
+            continue;
+        }
+        const long double q = at / reading->upsample; /* the record's period holds it all */
+        const struct value s = read_band(trace, q - trace->count * floorl(q / trace->count));
+        value.re += w[i] * s.re;
+        value.im += w[i] * s.im;
+        value.size += fabsl(w[i]) * s.size;
     }
     return value;
 }
@@ -302,6 +353,7 @@ static struct value read_position(const struct trace *trace, long double positio
         break;
     }
     case EXACT_SINC: return read_sinc(trace, position);
+    case EXACT_FITTED: return read_fitted(trace, position * trace->reading->upsample);
     case EXACT_BAND:
     case EXACT_POLYNOMIAL: return read_band(trace, position);
     }
@@ -375,6 +427,8 @@ enum status exact_method(const struct problem *problem, const double complex *sa
     struct trace trace = {.count = a->samples, .cosine = cosine, .sine = cosine + n, .reading = reading};
     if (reading->kind == EXACT_POLYNOMIAL)
         trace.gauss = gauss_make(reading->degree);
+    if (reading->kind == EXACT_FITTED)
+        normal_factor(reading, &trace);
     for (int ping = 0; ping < a->pings; ping++)
         for (int m = 0; m < a->receivers; m++) {
             const struct exact_pair pair = exact_pair_of(a, ping, m);

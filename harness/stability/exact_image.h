@@ -17,20 +17,24 @@ struct exact_sum {
     int pairs;        /* summed */
 };
 
+enum { EXACT_TAPS_MOST = 16 };
+
 /* How a method reads a record between its samples: rows as in struct interpolator (backprojection/bp.h). */
 struct exact_reading {
     enum {
         EXACT_NEAREST,
         EXACT_LINEAR,
         EXACT_SINC,
+        EXACT_FITTED,    /* taps of least squared error over a band */
         EXACT_BAND,      /* the band-limited record itself */
         EXACT_POLYNOMIAL /* around each sample the polynomial nearest to the band-limited record (least squares) */
     } kind;
-    int upsample;       /* nearest, polynomial: by zero padding; else 1 */
+    int upsample;       /* nearest, fitted, polynomial: by zero padding; else 1 */
     int phases;         /* > 0: positions are rounded to 1/phases of an upsampled sample */
     int degree;         /* polynomial */
-    int taps;           /* sinc */
+    int taps;           /* sinc, fitted: at most EXACT_TAPS_MOST then */
     double kaiser;      /* sinc: the window's parameter, 0 for none */
+    double band;        /* fitted: bandwidth over upsampled rate */
     double slack_s;     /* delays are this uncertain in the method under test (s) */
     double slack_point; /* and positions this much beside, in upsampled samples */
 };

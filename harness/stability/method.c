@@ -24,8 +24,9 @@ static const struct {
     int kind;
     double error_most;
 } laws[] = {
-    {"reference", EXACT_BAND, 1e-9}, {"bp_nearest", EXACT_NEAREST, 0.15}, {"bp_linear", EXACT_LINEAR, 0.12},
-    {"bp_sinc", EXACT_SINC, 0.06},   {"bp_zeropad", EXACT_NEAREST, 0.03}, {"bp_farrow", EXACT_POLYNOMIAL, 1e-3},
+    {"reference", EXACT_BAND, 1e-9},   {"bp_nearest", EXACT_NEAREST, 0.15}, {"bp_linear", EXACT_LINEAR, 0.12},
+    {"bp_sinc", EXACT_SINC, 0.06},     {"bp_zeropad", EXACT_NEAREST, 0.03}, {"bp_farrow", EXACT_POLYNOMIAL, 1e-3},
+    {"bp_fitted", EXACT_FITTED, 1e-3},
 };
 enum { LAWS = sizeof laws / sizeof *laws };
 
@@ -56,6 +57,8 @@ struct method method_of(const struct spec *spec, const char *engine, const struc
             method.reading.kind = laws[k].kind;
             method.error_most = laws[k].error_most;
         }
+    if (option_value(spec, "preemphasis", 0) != 0)
+        method.has_reading = false; /* no filter in extended precision */
     if (!method.has_reading)
         return method;
     method.weight = 0;
@@ -64,6 +67,11 @@ struct method method_of(const struct spec *spec, const char *engine, const struc
     if (method.reading.kind == EXACT_NEAREST || method.reading.kind == EXACT_LINEAR)
         method.reading.phases = (int)option_value(spec, "beta", 0) + 1;
     method.reading.upsample = (int)option_value(spec, "factor", 1);
+    if (method.reading.kind == EXACT_FITTED) {
+        method.reading.upsample = 1 << method.reading.upsample; /* the choice's index */
+        method.reading.taps = (int)option_value(spec, "taps", 8);
+        method.reading.band = acquisition->bandwidth / (acquisition->fs * method.reading.upsample);
+    }
     if (method.reading.kind == EXACT_POLYNOMIAL) {
         const int choice = (int)option_value(spec, "degree", 0);
         const double band = acquisition->bandwidth / (acquisition->fs * method.reading.upsample);
@@ -73,13 +81,15 @@ struct method method_of(const struct spec *spec, const char *engine, const struc
     }
     if (method.reading.kind == EXACT_SINC) {
         method.reading.taps = (int)option_value(spec, "taps", 8);
-        if (option_value(spec, "window", 0) != 0) {
-            method.reading.kaiser = 5;
+        const int window = (int)option_value(spec, "window", 0);
+        const double left = 1 - acquisition->bandwidth / acquisition->fs;
+        if (window > 0) {
+            method.reading.kaiser = window == 1 ? 5 : 0.5 * M_PI * method.reading.taps * left;
             method.error_most = ERROR_KAISER;
         }
     }
     /* Cubics through a kernel at 4 of 1024 places a sample; the reference's kernel over four times as many samples. */
-    if (method.reading.kind == EXACT_SINC || method.reading.kind == EXACT_BAND)
+    if (method.reading.kind == EXACT_SINC || method.reading.kind == EXACT_FITTED || method.reading.kind == EXACT_BAND)
         method.weight = 2e-10;
     if (strcmp(engine, "general") == 0)
         interpolated_delays(spec, acquisition, &method);

@@ -47,6 +47,30 @@ void support_noise(const struct acquisition *a, struct random *random, struct ec
         ((double complex *)echoes->samples)[n] = random_normal(random);
 }
 
+void support_flat_noise(double band, struct acquisition *a, struct echoes *echoes)
+{
+    enum { SAMPLES = 240, PINGS = 24 };
+    struct random random = random_seed(3, 1);
+    *a = support_acquisition(PINGS, 1, SAMPLES);
+    a->bandwidth = band * a->fs;
+    CHECK(echoes_allocate(a, PRECISION_DOUBLE, echoes));
+    double complex *s = (double complex *)echoes->samples;
+    for (int p = 0; p < PINGS; p++) {
+        a->t0[p] = 780 / a->fs;
+        a->tx[p].x = a->rx[p].x = (p - PINGS / 2) * 0.171;
+        a->velocity[p].x = 2.5;
+        const int edge = (int)floor(band * SAMPLES / 2);
+        double complex bins[SAMPLES] = {0};
+        for (int k = -edge; k <= edge; k++)
+            bins[(k + SAMPLES) % SAMPLES] += random_normal(&random);
+        for (int n = 0; n < SAMPLES; n++, s++) {
+            *s = 0;
+            for (int k = -edge; k <= edge; k++)
+                *s += bins[(k + SAMPLES) % SAMPLES] * cexp(2 * M_PI * I * (k * n % SAMPLES) / SAMPLES);
+        }
+    }
+}
+
 enum status support_image(const char *text, struct problem problem, const struct echoes *echoes, struct image *image)
 {
     struct spec spec;

@@ -12,69 +12,94 @@ enum {
     ROWS_SUMMED = 4   /* image rows of one task */
 };
 
-/* Scatter a tile of compressed pings, complex [count][branches][length], into the slab: pings contiguous. In blocks
-   of rows, so that each cache line of the slab is filled while it is near. */
+/* What a tile of compressed pings becomes in the slab: sample i of branch m, complex value i + m `length` of a ping's
+   `pitch`, is row first + (i branches + m) step. */
+struct scattering {
+    size_t pitch, length, branches, rows; /* rows: of all branches */
+    size_t first, step;
+};
+
+/* Pings contiguous; in blocks of rows, so that each cache line of the slab is filled while it is near. */
 #define SCATTER(real)                                                                                                  \
     do {                                                                                                               \
         const real *from = (const real *)tile;                                                                         \
         real *re = (real *)in->slab_re + base, *im = (real *)in->slab_im + base;                                       \
-        for (size_t i = 0; i < in->slab_rows; i += ROWS_FILLED) {                                                      \
-            size_t at[ROWS_FILLED], rows = in->slab_rows - i < ROWS_FILLED ? in->slab_rows - i : ROWS_FILLED;          \
+        for (size_t i = 0, branch = 0, sample = 0; i < s->rows; i += ROWS_FILLED) {                                    \
+            size_t at[ROWS_FILLED], rows = s->rows - i < ROWS_FILLED ? s->rows - i : ROWS_FILLED;                      \
             for (size_t k = 0; k < rows; k++) {                                                                        \
-                at[k] = branch * length + source;                                                                      \
-                if (++branch < branches)                                                                               \
-                    continue;                                                                                          \
-                branch = 0;                                                                                            \
-                if (++within == width) { /* on to the next sample of the steps of the slab */                          \
-                    within = 0;                                                                                        \
-                    source += upsample - width;                                                                        \
-                }                                                                                                      \
-                source++;                                                                                              \
+                at[k] = branch * s->length + sample;                                                                   \
+                branch = branch + 1 < s->branches ? branch + 1 : 0;                                                    \
+                sample += branch == 0;                                                                                 \
             }                                                                                                          \
             for (size_t p = 0; p < (size_t)count; p++)                                                                 \
                 for (size_t k = 0; k < rows; k++) {                                                                    \
-                    size_t value = 2 * (p * branches * length + (at[k] < last ? at[k] : last));                        \
-                    re[(i + k) * stride + p] = from[value];                                                            \
-                    im[(i + k) * stride + p] = from[value + 1];                                                        \
+                    const size_t value = 2 * (p * s->pitch + at[k]), to = (i + k) * s->step * stride + p;              \
+                    re[to] = from[value];                                                                              \
+                    im[to] = from[value + 1];                                                                          \
                 }                                                                                                      \
         }                                                                                                              \
     } while (0)
 
-static void scatter(const struct bp *bp, const void *tile, int receiver, int ping, int count)
+static void scatter(const struct bp *bp, const void *tile, const struct scattering *s, int receiver, int ping,
+                    int count)
 {
     const struct invariant *in = bp->state;
-    size_t upsample = (size_t)bp->table.upsample, guard = (size_t)bp->table.guard, length = (size_t)bp->shape.length;
-    size_t branches = (size_t)bp->table.branches, branch = 0;
-    size_t stride = (size_t)in->slab.ping_stride, width = (size_t)in->slab.step_count,
-           step = (size_t)in->slab.step_first;
-    size_t base = (size_t)receiver * in->slab.receiver_stride + (size_t)in->slab.lead + (size_t)ping;
-    const size_t last = branches * length - 1;
-    /* Upsampled traces leave the guards out; residues past the last sample repeat the end and are never asked for. */
-    size_t source = upsample == 1 || branches > 1 ? 0 : guard + step, within = 0;
+    const size_t stride = (size_t)in->slab.ping_stride;
+    const size_t base =
+        (size_t)receiver * in->slab.receiver_stride + s->first * stride + (size_t)in->slab.lead + (size_t)ping;
     if (bp->problem.precision == PRECISION_DOUBLE)
         SCATTER(double);
     else
         SCATTER(float);
 }
 
+/* Compress pings [begin, end) of slab's receiver g, record m, whole rows with their guards. */
+static void fill_rows(const struct bp *bp, const struct echoes *echoes, int m, int g, int begin, int end)
+{
+    const struct invariant *in = bp->state;
+    const size_t length = (size_t)bp->shape.length, branches = (size_t)bp->shape.branches;
+    const struct scattering whole = {branches * length, length, branches, in->slab_rows, 0, 1};
+    const int pings = bp->problem.acquisition->pings, receivers = bp->problem.acquisition->receivers;
+    const int thread = omp_get_thread_num();
+    char *tile = (char *)in->tiles + (size_t)thread * in->tile_bytes;
+    for (int p = begin; p < end; p++) {
+        int ping = in->reversed ? pings - 1 - p : p;
+        bp_fill_row(bp, thread, echoes, (size_t)ping * (size_t)receivers + (size_t)m,
+                    tile + (size_t)(p - begin) * whole.pitch * 2 * real_size(bp->problem.precision));
+    }
+    scatter(bp, tile, &whole, g, begin, end - begin);
+}
+
+/* The same of the fine steps that the slab holds, each from a transform of its own. */
+static void fill_steps(const struct bp *bp, const struct echoes *echoes, int m, int g, int begin, int end)
+{
+    const struct invariant *in = bp->state;
+    const int pings = bp->problem.acquisition->pings, receivers = bp->problem.acquisition->receivers;
+    const size_t pitch = bp->shape.pitch, bytes = pitch * 2 * real_size(bp->problem.precision);
+    const size_t samples = (size_t)bp->shape.samples;
+    char *spectra = (char *)in->tiles + (size_t)omp_get_thread_num() * in->tile_bytes, *tile = spectra + TILE * bytes;
+    for (int p = begin; p < end; p++) {
+        int ping = in->reversed ? pings - 1 - p : p;
+        bp_fill_spectrum(bp, echoes, (size_t)ping * (size_t)receivers + (size_t)m,
+                         spectra + (size_t)(p - begin) * bytes);
+    }
+    for (int k = 0; k < in->slab.step_count && in->slab.step_first + k < bp->table.upsample; k++) {
+        const struct scattering step = {pitch, 0, 1, samples, (size_t)k, (size_t)in->slab.step_count};
+        for (int p = 0; p < end - begin; p++)
+            bp_fill_plane(bp, spectra + (size_t)p * bytes, in->slab.step_first + k, tile + (size_t)p * bytes);
+        scatter(bp, tile, &step, g, begin, end - begin);
+    }
+}
+
 /* Compress receivers [first, first + count) into the slab. */
 static void fill_slab(const struct bp *bp, const struct echoes *echoes, int first, int count)
 {
-    const struct invariant *in = bp->state;
-    int pings = bp->problem.acquisition->pings, receivers = bp->problem.acquisition->receivers;
+    int pings = bp->problem.acquisition->pings;
     int tiles = (pings + TILE - 1) / TILE;
-    size_t row_bytes = (size_t)bp->shape.branches * (size_t)bp->shape.length * 2 * real_size(bp->problem.precision);
 #pragma omp parallel for schedule(dynamic)
     for (int n = 0; n < count * tiles; n++) {
         int g = n / tiles, begin = n % tiles * TILE, end = begin + TILE < pings ? begin + TILE : pings;
-        int thread = omp_get_thread_num();
-        char *tile = (char *)in->tiles + (size_t)thread * TILE * row_bytes;
-        for (int p = begin; p < end; p++) {
-            int ping = in->reversed ? pings - 1 - p : p;
-            bp_fill_row(bp, thread, echoes, (size_t)ping * (size_t)receivers + (size_t)(first + g),
-                        tile + (size_t)(p - begin) * row_bytes);
-        }
-        scatter(bp, tile, g, begin, end - begin);
+        (bp_whole(&bp->table) ? fill_rows : fill_steps)(bp, echoes, first + g, g, begin, end);
     }
 }
 

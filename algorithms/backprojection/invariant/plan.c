@@ -113,8 +113,8 @@ enum status invariant_applicable(const struct bp *bp)
     struct straight_track track;
     struct bp_raster raster;
     char text[400];
-    if (bp->table.taps > 1 && bp->table.upsample > 1 && bp->table.branches == 1)
-        return status_set(STATUS_UNSUPPORTED, "a kernel over upsampled records has no tables");
+    if (bp->table.reading != BP_CUBICS && bp->table.taps > 1 && bp->table.upsample > 1 && bp->table.branches == 1)
+        return status_set(STATUS_UNSUPPORTED, "steps between upsampled samples have no tables");
     if (a->aperture_limit < 1 && a->echo_squint != 0)
         return status_set(
             STATUS_UNSUPPORTED,
@@ -188,9 +188,10 @@ static double steepness(const struct bp *bp, const struct bp_raster *raster, con
    sample or, at the most in one shift of two, the next. */
 static int residues_together(const struct bp *bp, double steepness)
 {
+    steepness *= bp->table.upsample;
     if (bp->table.branches > 1)
-        return (int)fmin(BP_TOGETHER, 1 + floor(0.5 / (steepness * bp->table.upsample)));
-    if (bp->table.upsample > 1)
+        return (int)fmin(BP_TOGETHER, 1 + floor(0.5 / steepness));
+    if (!bp_whole(&bp->table))
         return 1;
     if (bp->table.taps < 3)
         return steepness <= 0.5 ? 2 : 1;
@@ -208,12 +209,12 @@ static void plan_slab(struct bp *bp, double read)
     const int ping_stride = round_up(bp->problem.acquisition->pings + 2 * lead, 8);
     int upsample = bp->table.upsample, samples = bp->shape.samples;
     size_t row_bytes = (size_t)ping_stride * 2 * real_size(bp->problem.precision);
-    size_t rows = upsample == 1 ? (size_t)bp->shape.length : (size_t)samples; /* of one fine step */
-    int width = (int)fmin(upsample, fmax(1, floor((double)SLAB_MOST / (double)(rows * row_bytes))));
-    if (bp->table.branches > 1)
-        width = upsample;
+    int width = upsample;
+    if (!bp_whole(&bp->table))
+        width = (int)fmin(upsample, fmax(1, floor((double)SLAB_MOST / ((double)samples * (double)row_bytes))));
     in->passes = (upsample + width - 1) / width;
-    in->slab_rows = bp->table.branches > 1 ? (size_t)(bp->table.branches * bp->shape.length) : rows * (size_t)width;
+    in->slab_rows =
+        bp_whole(&bp->table) ? (size_t)bp->table.branches * (size_t)bp->shape.length : (size_t)samples * (size_t)width;
     in->slab = (struct bp_slab){.receiver_stride = in->slab_rows * (size_t)ping_stride,
                                 .ping_stride = ping_stride,
                                 .lead = lead,
@@ -315,7 +316,9 @@ static enum status plan_memory(struct bp *bp, const struct lengths *lengths)
     struct invariant *in = bp->state;
     const size_t size = real_size(bp->problem.precision), threads = (size_t)omp_get_max_threads();
     const size_t values = (size_t)in->receivers * in->slab.receiver_stride;
-    const size_t tile = (size_t)TILE * (size_t)bp->shape.branches * (size_t)bp->shape.length * 2 * size;
+    const size_t tile =
+        (bp_whole(&bp->table) ? (size_t)bp->shape.branches * (size_t)bp->shape.length : 2 * bp->shape.pitch) * TILE * 2
+        * size;
     double *bytes = &bp->work.bytes, ignored = 0;
     if (!((double)lengths->entries * (double)lengths->spread < INT_MAX))
         return status_set(STATUS_UNSUPPORTED, "tables of %zu entries are too long to index", lengths->entries);
@@ -327,12 +330,13 @@ static enum status plan_memory(struct bp *bp, const struct lengths *lengths)
     const size_t per_thread = arena.used;
     in->slab_re = allocate(values * size, bytes);
     in->slab_im = allocate(values * size, bytes);
-    in->tiles = allocate(threads * tile, &ignored);
+    in->tile_bytes = (tile + 63) / 64 * 64;
+    in->tiles = allocate(threads * in->tile_bytes, &ignored);
     in->tables = allocate(threads * per_thread, &ignored);
     in->scratch = allocate(threads * sizeof *in->scratch, &ignored);
     if (!in->slab_re || !in->slab_im || !in->tiles || !in->tables || !in->scratch)
         return status_set(STATUS_FAILED, "no memory for records of %d receivers", in->receivers);
-    *bytes += (double)(tile + per_thread + sizeof *in->scratch);
+    *bytes += (double)(in->tile_bytes + per_thread + sizeof *in->scratch);
     arena = (struct arena){in->tables, 0};
     for (size_t t = 0; t < threads; t++)
         in->scratch[t] = scratch_take(&arena, lengths, size);

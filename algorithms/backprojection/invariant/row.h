@@ -103,16 +103,22 @@ enum { BP_BLOCK_VECTORS = 3, BP_LANES_MOST = 16 };
 enum { BP_TOGETHER = 6, BP_SPREAD = 4 };
 
 /* Compressed traces of some receivers, pings contiguous: value (receiver g, row i, ping p) at
-   [g receiver_stride + i ping_stride + lead + p]. Row i is the trace's sample i - guard; upsampled traces whose nearest
-   value is read keep step_count of their `upsample` fine steps a sample, from step_first on: fine sample f is in row
-   (f / upsample) step_count + f % upsample - step_first. Of Farrow branches row i branches + m is branch m of sample
-   i - guard, so that the sums take them for taps. */
+   [g receiver_stride + i ping_stride + lead + p]. Row i is the trace's sample i - guard, a fine one where it is
+   upsampled (bp_whole); upsampled traces whose nearest value is read keep step_count of their `upsample` fine steps a
+   sample, from step_first on: fine sample f is in row (f / upsample) step_count + f % upsample - step_first. Of Farrow
+   branches row i branches + m is branch m of sample i - guard, so that the sums take them for taps. */
 struct bp_slab {
     const void *re, *im; /* real; 0 in the lead and as far behind the last ping */
     size_t receiver_stride;
     int ping_stride, lead;
     int step_first, step_count;
 };
+
+/* Are traces in the slab from guard to guard, with all their fine steps? */
+static inline bool bp_whole(const struct bp_table *table)
+{
+    return table->upsample == 1 || table->taps > 1;
+}
 
 /* One patch seen from the track: ping p lies at x_first + p spacing, column n at n/ratio spacings from the grid's
    beginning, so that delay and phase depend on (row, receiver, n mod ratio, p - n div ratio) only. */
@@ -125,7 +131,7 @@ struct bp_raster {
     int columns;                  /* of the grid */
     int residue_columns;          /* of one residue at the most: ceil(columns/ratio) */
     double limit;                 /* aperture limit */
-    int together;                 /* residues summed together at most, 2 for up to two taps, 1 for upsampled traces */
+    int together; /* residues summed together at most, 2 for up to two taps, 1 for the nearest fine step */
 };
 
 static inline int raster_residues(const struct bp_raster *raster)

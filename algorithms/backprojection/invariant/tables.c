@@ -257,13 +257,14 @@ INLINE void tabulate(const struct chunk *chunk)
     const int n = chunk->entries, *restrict shift = chunk->shift;
     double *restrict q = scratch->q;
     int *restrict row = scratch->row, *restrict offset = scratch->offset, *restrict step = scratch->step;
-    const int first = table->upsample > 1 ? -slab->step_first : table->guard + table->first;
+    const int first = bp_whole(table) ? table->guard + table->first : -slab->step_first;
     const int width = slab->step_count, stride = slab->ping_stride;
     if (table->reading == BP_CUBICS) {
 #pragma omp simd
         for (int i = 0; i < n; i++) {
-            int sample = (int)q[i];
-            double interval = (q[i] - sample) * BP_INTERVALS;
+            double place = q[i] * table->upsample;
+            int sample = (int)place;
+            double interval = (place - sample) * BP_INTERVALS;
             row[i] = sample + first;
             offset[i] = row[i] * stride + shift[i];
             step[i] = (int)interval;

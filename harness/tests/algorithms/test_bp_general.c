@@ -67,9 +67,17 @@ static const struct {
     const char *spec;
     int fine; /* points of the grid that q is rounded to; 0: it is not */
 } methods[] = {
-    {"bp_nearest:", 1},          {"bp_linear:beta=0,", 1},   {"bp_linear:beta=8,", 9},
-    {"bp_sinc:taps=2,", 0},      {"bp_sinc:taps=8,", 0},     {"bp_sinc:taps=16,window=kaiser,", 0},
-    {"bp_zeropad:factor=8,", 8}, {"bp_farrow:degree=3,", 1}, {"bp_farrow:degree=8,factor=2,", 2},
+    {"bp_nearest:", 1},
+    {"bp_linear:beta=0,", 1},
+    {"bp_linear:beta=8,", 9},
+    {"bp_sinc:taps=2,", 0},
+    {"bp_sinc:taps=8,", 0},
+    {"bp_sinc:taps=16,window=kaiser,", 0},
+    {"bp_zeropad:factor=8,", 8},
+    {"bp_farrow:degree=3,", 1},
+    {"bp_farrow:degree=8,factor=2,", 2},
+    {"bp_fitted:taps=8,", 0},
+    {"bp_fitted:taps=6,factor=4,", 0},
 };
 enum { METHODS = sizeof methods / sizeof *methods };
 

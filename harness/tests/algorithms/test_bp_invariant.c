@@ -68,6 +68,7 @@ static const char *const invariant_specs[] = {
     "bp_linear:beta=0,",
     "bp_linear:beta=2,",
     "bp_linear:beta=8,",
+    "bp_linear:beta=8,preemphasis=on,",
     "bp_sinc:taps=8,",
     "bp_sinc:taps=6,window=kaiser,",
     "bp_zeropad:factor=8,",
@@ -75,6 +76,9 @@ static const char *const invariant_specs[] = {
     "bp_farrow:degree=2,",
     "bp_farrow:degree=5,",
     "bp_farrow:degree=7,factor=2,",
+    "bp_fitted:taps=2,factor=2,",
+    "bp_fitted:taps=6,",
+    "bp_fitted:taps=8,factor=4,",
 };
 
 /* The invariant engine shows the exact path's image: 1e-10 in double, 3e-6 in float. The samples are noise, on which a

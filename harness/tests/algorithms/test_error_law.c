@@ -125,11 +125,66 @@ static void speckle(void **state)
     }
 }
 
+/* rms of what linear interpolation leaves of frequencies -edge .. edge over `period`, in cycles a sample: its response
+   is sinc^2(nu) in the mean over the places between two samples, and 1 - (2/3) sin^2(pi nu) is the mean of its square.
+   Emphasised, the former becomes 1. */
+static double linear_law(int edge, int period, bool preemphasis)
+{
+    double square = 0;
+    for (int k = -edge; k <= edge; k++) {
+        const double x = M_PI * k / period, mean = k == 0 ? 1 : pow(sin(x) / x, 2);
+        const double power = 1 - 2.0 / 3 * sin(x) * sin(x);
+        square += preemphasis ? power / (mean * mean) - 1 : power - 2 * mean + 1;
+    }
+    return sqrt(square / (2 * edge + 1));
+}
+
+/* Laws for a flat band B/fs = rho, each within its own factor: linear interpolation with and without preemphasis, and
+   sinc under a Kaiser window that knows the band, whose law is rough. */
+static void flat_bands(void **state)
+{
+    (void)state;
+    static const double bands[] = {0.4, 0.5, 0.7};
+    static const struct grid grid = {-2.0, 0.171 / 7, 161, 21.03, 0.017, 61};
+    for (size_t b = 0; b < sizeof bands / sizeof *bands; b++) {
+        enum { PERIOD = 240 }; /* of support_flat_noise */
+        const double rho = bands[b];
+        const int edge = (int)floor(rho * PERIOD / 2);
+        const struct {
+            const char *spec;
+            double law, factor;
+        } flat[] = {
+            {"bp_linear:beta=1024", linear_law(edge, PERIOD, false), 1.05},
+            {"bp_linear:beta=1024,preemphasis=on", linear_law(edge, PERIOD, true), 1.05},
+            {"bp_sinc:taps=4,window=kaiser_band", 0.25 * exp(-0.5 * M_PI * 4 * (1 - rho)), 2},
+            {"bp_sinc:taps=8,window=kaiser_band", 0.25 * exp(-0.5 * M_PI * 8 * (1 - rho)), 2},
+            {"bp_sinc:taps=16,window=kaiser_band", 0.25 * exp(-0.5 * M_PI * 16 * (1 - rho)), 2},
+        };
+        struct acquisition a;
+        struct echoes echoes;
+        struct image exact;
+        support_flat_noise(rho, &a, &echoes);
+        assert_int_equal(a.samples, PERIOD);
+        const struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+        assert_int_equal(support_image("reference:precision=double", problem, &echoes, &exact), STATUS_OK);
+        for (size_t k = 0; k < sizeof flat / sizeof *flat; k++) {
+            const double error = measure(flat[k].spec, &problem, &echoes, &exact).error;
+            print_message("%-36s band %.2f: error %.3g, by the law %.3g\n", flat[k].spec, rho, error, flat[k].law);
+            if (!(error < flat[k].factor * flat[k].law && error > flat[k].law / flat[k].factor))
+                fail_msg("%s, band %g: error is %g, the law says %g", flat[k].spec, rho, error, flat[k].law);
+        }
+        image_free(&exact);
+        echoes_free(&echoes);
+        acquisition_free(&a);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(point),
         cmocka_unit_test(speckle),
+        cmocka_unit_test(flat_bands),
     };
     return cmocka_run_group_tests_name("error law", tests, NULL, NULL);
 }

@@ -101,7 +101,7 @@ static void flush_to_zero(bool on)
 
 static void amplitude_measured(const char *amplitude, double value, bool flush)
 {
-    static const char *const specs[] = {"bp_nearest", "bp_sinc", "bp_zeropad", "bp_farrow", "rma_lbf"};
+    static const char *const specs[] = {"bp_nearest", "bp_sinc", "bp_zeropad", "bp_farrow", "bp_fitted", "rma_lbf"};
     char targets[100];
     struct parts parts = plain;
     snprintf(targets, sizeof targets, "{ x = 0.0; r = 20.0; amplitude = %s; }", amplitude);

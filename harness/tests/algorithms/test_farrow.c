@@ -5,7 +5,6 @@
 #include <stdlib.h>
 
 #include "backprojection/farrow.h"
-#include "data/random.h"
 #include "measure/metrics.h"
 #include "tests/support.h"
 
@@ -68,40 +67,6 @@ static void law_has_its_figures(void **state)
     assert_true(farrow_error(FARROW_MOST, 1) <= 1e-8); /* any `error` that bp_farrow accepts is reached */
 }
 
-/* Noise with a flat spectrum of the acquisition's band, so that every frequency and place between samples counts
-   alike. */
-static void make_noise(double band, struct acquisition *a, struct echoes *echoes)
-{
-    enum { SAMPLES = 240, PINGS = 24 };
-    struct random random = random_seed(3, 1);
-    *a = (struct acquisition){.sound_speed = 1500,
-                              .fc = 150e3,
-                              .fs = 30e3,
-                              .bandwidth = 30e3 * band,
-                              .samples = SAMPLES,
-                              .receivers = 1,
-                              .pings = PINGS,
-                              .compressed = true,
-                              .aperture_limit = INFINITY};
-    assert_int_equal(acquisition_allocate(a), STATUS_OK);
-    assert_int_equal(echoes_allocate(a, PRECISION_DOUBLE, echoes), STATUS_OK);
-    double complex *s = (double complex *)echoes->samples;
-    for (int p = 0; p < PINGS; p++) {
-        a->t0[p] = 780 / a->fs;
-        a->tx[p].x = a->rx[p].x = (p - PINGS / 2) * 0.171;
-        a->velocity[p].x = 2.5;
-        const int edge = (int)floor(band * SAMPLES / 2);
-        double complex bins[SAMPLES] = {0};
-        for (int k = -edge; k <= edge; k++)
-            bins[(k + SAMPLES) % SAMPLES] += random_normal(&random);
-        for (int n = 0; n < SAMPLES; n++, s++) {
-            *s = 0;
-            for (int k = -edge; k <= edge; k++)
-                *s += bins[(k + SAMPLES) % SAMPLES] * cexp(2 * M_PI * I * (k * n % SAMPLES) / SAMPLES);
-        }
-    }
-}
-
 /* Measured errors lie within a tenth of the law's, in any degree, at any band, with upsampling, by both engines. */
 static void images_follow_the_law(void **state)
 {
@@ -112,7 +77,7 @@ static void images_follow_the_law(void **state)
         struct acquisition a;
         struct echoes echoes;
         struct image exact;
-        make_noise(bands[b], &a, &echoes);
+        support_flat_noise(bands[b], &a, &echoes);
         struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
         assert_int_equal(support_image("reference:precision=double", problem, &echoes, &exact), STATUS_OK);
         for (int n = 0; n < 4 * (FARROW_MOST - FARROW_LEAST); n++) {
@@ -151,7 +116,7 @@ static void auto_takes_the_least(void **state)
     const struct grid grid = {-0.5, 0.02, 30, 21.03, 0.017, 9};
     struct acquisition a;
     struct echoes echoes;
-    make_noise(0.5, &a, &echoes);
+    support_flat_noise(0.5, &a, &echoes);
     struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
     for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++) {
         struct image images[2];

@@ -29,11 +29,13 @@ static const struct {
     {"bp_linear:beta=8,engine=general", {4e-3, 4e-3}},
     {"bp_sinc:taps=8,engine=general", {1e-4, 1e-7}},
     {"bp_farrow:degree=5,engine=general", {1e-4, 1e-7}},
+    {"bp_fitted:factor=2,engine=general", {1e-4, 1e-7}},
     {"bp_nearest:exact=true", {3e-6, 1e-9}},
     {"bp_nearest:engine=invariant", {3e-6, 1e-9}},
     {"bp_zeropad:factor=8,engine=invariant", {3e-6, 1e-9}},
     {"bp_sinc:taps=8,engine=invariant", {3e-6, 1e-9}},
     {"bp_farrow:degree=5,engine=invariant", {4e-6, 1e-9}}, /* two float transforms in directed modes */
+    {"bp_fitted:factor=2,engine=invariant", {4e-6, 1e-8}}, /* what it reads beyond the fitted band is less certain */
 };
 enum { METHODS = sizeof methods / sizeof *methods, ISAS = sizeof isas / sizeof *isas, IMAGES = METHODS * ISAS * 2 };
 

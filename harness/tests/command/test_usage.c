@@ -92,7 +92,7 @@ static const struct refusal usages[] = {
     {SPEC("bp_sinc:taps=7"), {"bp_sinc: taps is 7, must be even"}},
     {SPEC("bp_sinc:taps=8,taps=8"), {"taps is given twice", "each key once"}},
     {SPEC("bp_sinc:beta=8"), {"unknown key 'beta'", "accepted: taps, window,"}},
-    {SPEC("bp_sinc:window=hann"), {"window is 'hann'", "accepted: none, kaiser"}},
+    {SPEC("bp_sinc:window=hann"), {"window is 'hann'", "accepted: none, kaiser, kaiser_band"}},
     {SPEC("bp_nearest:precision=half"), {"precision is 'half'", "accepted: float, double"}},
     {SPEC("bp_linear:beta=-1"), {"beta is '-1'", "a whole number from 0 to"}},
     {SPEC("bp_zeropad:factor=0"), {"factor is '0'", "a whole number from 1 to"}},

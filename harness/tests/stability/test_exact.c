@@ -147,6 +147,9 @@ static void methods_are_their_own_sums(void **state)
          {.kind = EXACT_POLYNOMIAL, .upsample = 1, .phases = 1, .degree = 8}},
         {"bp_farrow:degree=4,factor=2,exact=true,precision=double",
          {.kind = EXACT_POLYNOMIAL, .upsample = 2, .phases = 1, .degree = 4}},
+        {"bp_fitted:taps=6,exact=true,precision=double", {.kind = EXACT_FITTED, .upsample = 1, .taps = 6, .band = 0.5}},
+        {"bp_fitted:taps=8,factor=4,exact=true,precision=double",
+         {.kind = EXACT_FITTED, .upsample = 4, .taps = 8, .band = 0.125}},
     };
     struct scene scene;
     struct echoes echoes;

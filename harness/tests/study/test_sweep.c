@@ -95,8 +95,9 @@ static void test_settings(void **state)
         {"bp_linear:beta=3,precision=double", 1},
         {"bp_sinc", 7 * 2 * 2}, /* taps 4 6 8 10 12 16 32, window none and kaiser */
         {"bp_sinc:window=kaiser", 7 * 2},
-        {"bp_zeropad", 7 * 2}, /* factor 1 2 4 8 16 32 64 */
-        {"bp_farrow", 6 * 2},  /* degree 2 3 4 5 6 7 */
+        {"bp_zeropad", 7 * 2},    /* factor 1 2 4 8 16 32 64 */
+        {"bp_farrow", 6 * 2},     /* degree 2 3 4 5 6 7 */
+        {"bp_fitted", 3 * 3 * 2}, /* taps 4 6 8, factor 1 2 4 */
     };
     for (size_t k = 0; k < sizeof lists / sizeof *lists; k++)
         assert_int_equal(settings_count(lists[k].spec), lists[k].count);

@@ -1,0 +1,66 @@
+/* Back projection with least-squares taps:  s(q) = sum of w_k s[floor(q) + k], k = -taps/2+1 .. taps/2, of the record
+   upsampled by `factor` through zero padding (exactly). The weights leave the least error over the acquisition's band
+   at each fraction of a sample (backprojection/fitted.h: R w = s with sinc functions of B/(factor fs)).
+
+   Cost: 4 taps + 8 FLOPs a pair; an inverse FFT of factor N a record. Error, relative L2 of a record of flat spectrum:
+   9.2e-3, 1.3e-3, 2.0e-4 for 4, 6, 8 taps at fs = 2B, 0.094, 0.047, 0.024 at fs = 1.2 B; factor = 2 with 6 taps 1.7e-5
+   and 4.0e-4. Two to six times below Kaiser-windowed taps of the same length. Frequencies beyond the band are not
+   fitted: the tails of a raw chirp are interpolated worse than by bp_farrow. */
+#include "backprojection/bp.h"
+#include "backprojection/fitted.h"
+
+struct options {
+    struct bp_options bp;
+    int taps, factor;
+};
+
+static const char *const factors[] = {"1", "2", "4", NULL};
+
+static const struct param params[] = {
+    {PARAM(struct options, taps), .summary = "kernel length in samples, even", .initial = 8, .min = 2,
+     .max = FITTED_TAPS_MOST, .sweep = "4 6 8"},
+    {PARAM_NAMED(struct options, factor, factors), .summary = "length of the padded spectrum over the record's",
+     .max = 2, .sweep = "1 2 4"},
+    BP_PARAMS,
+    {.name = NULL},
+};
+
+/* What `weights` is handed in place of the options. */
+struct planned {
+    struct bp_options bp;
+    struct fitted fitted;
+};
+
+static void weights(const void *options, double fraction, double *w)
+{
+    fitted_weights(&((const struct planned *)options)->fitted, fraction, w);
+}
+
+static enum status plan(const struct problem *problem, const void *options, void **plan)
+{
+    const struct options *o = options;
+    const struct acquisition *a = problem->acquisition;
+    const int upsample = 1 << o->factor;
+    struct planned planned = {.bp = o->bp};
+    *plan = NULL;
+    if (o->taps % 2)
+        return status_set(STATUS_UNSUPPORTED, "bp_fitted: taps is %d, must be even", o->taps);
+    fitted_make(o->taps, a->bandwidth / (a->fs * upsample), &planned.fitted);
+    const struct interpolator fitted = {
+        .upsample = upsample, .taps = o->taps, .first = 1 - o->taps / 2, .weights = weights};
+    return bp_plan(problem, &fitted, &planned, plan);
+}
+
+const struct algorithm bp_fitted = {
+    .name = "bp_fitted",
+    .summary = "back projection, taps fitted to the band by least squares",
+    .reference = "Oetken, Parks, Schuessler, IEEE Trans. ASSP 23 (1975)",
+    .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT,
+    .options_size = sizeof(struct options),
+    .params = params,
+    .conditions = bp_conditions,
+    .plan = plan,
+    .execute = bp_execute,
+    .work = bp_work,
+    .destroy = bp_destroy,
+};
