@@ -121,11 +121,39 @@ static double profile_q(const struct profile *profile, int i)
     return (tau - a->t0[profile->ping]) * a->fs;
 }
 
-/* The first pixel of [begin, end) with q > bound (rising) or q < bound (falling side: q <= bound is wanted there). */
+/* Where q passes `bound`, in pixels, on the rising or the falling side: a delay of D/c is an ellipsoid about
+   transmitter and receiver at reception, |A| + |B| = D. A line meets it where 4 D^2 |B|^2 = (D^2 - (|A|^2 - |B|^2))^2, a
+   quadratic as |A|^2 - |B|^2 is linear along the line. Negative where it does not. */
+static double profile_root(const struct profile *profile, bool rising, double bound)
+{
+    const struct acquisition *a = profile->acquisition;
+    const struct vector tx = a->tx[profile->ping], v = a->velocity[profile->ping];
+    const struct vector rx = a->rx[(size_t)profile->ping * a->receivers + profile->receiver];
+    const struct pixel_line *line = profile->line;
+    const bool along_x = line->x_step > 0;
+    const double step = along_x ? line->x_step : line->r_step, tau = a->t0[profile->ping] + bound / a->fs;
+    const double d = a->sound_speed * tau, ax = line->x_first - tx.x, ar = line->r_first - tx.y, az = -tx.z;
+    const double bx = line->x_first - (rx.x + v.x * tau), br = line->r_first - (rx.y + v.y * tau);
+    const double bz = -(rx.z + v.z * tau), a0 = along_x ? ax : ar, b0 = along_x ? bx : br;
+    /* With s metres along the line: |B|^2 = s^2 + 2 b0 s + bb, D^2 - (|A|^2 - |B|^2) = p + 2 g s. */
+    const double bb = bx * bx + br * br + bz * bz, g = b0 - a0;
+    const double p = d * d - (ax * ax + ar * ar + az * az) + bb;
+    const double qa = d * d - g * g, half = b0 * d * d - 0.5 * p * g, qc = d * d * bb - 0.25 * p * p;
+    const double square = half * half - qa * qc;
+    if (!(qa > 1e-9 * d * d && square >= 0))
+        return -2;
+    return (rising ? -half + sqrt(square) : -half - sqrt(square)) / (qa * step);
+}
+
+/* The first pixel of [begin, end) with q > bound (rising) or q < bound (falling side: q <= bound is wanted there). The
+   pixels beside the root in closed form are asked before it is searched for. */
 static int profile_cross(const struct profile *profile, int begin, int end, bool rising, double bound, bool inclusive)
 {
-    while (begin < end) {
+    const double root = begin < end ? floor(profile_root(profile, rising, bound)) : -2;
+    for (int n = 0; begin < end; n++) {
         int middle = begin + (end - begin) / 2;
+        if (n < 2 && root + n >= begin && root + n < end)
+            middle = (int)root + n;
         double q = profile_q(profile, middle);
         bool above = inclusive ? q >= bound : q > bound;
         if (above == rising)
