@@ -1,0 +1,169 @@
+/* Growth over image sizes and settings (bench_growth.h). */
+#include "study/bench_growth.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+
+#include "data/echo_data.h"
+#include "data/paths.h"
+#include "data/text_file.h"
+#include "measure/imaging.h"
+#include "measure/provenance.h"
+#include "measure/timing.h"
+#include "scene/simulate.h"
+#include "show/plot.h"
+
+static const struct size {
+    int columns, rows;
+} sizes[] = {{100, 100}, {200, 300}, {400, 700}, {800, 1400}, {1600, 2700}, {2880, 4800}};
+enum { SIZES = sizeof sizes / sizeof *sizes, MIDDLE = 2 /* the size whose memory is asked for */ };
+
+/* The general engine takes ten times as long: its time a pair has settled by the third size. */
+static const struct subject {
+    const char *spec;
+    int sizes;
+} subjects[] = {
+    {"bp_nearest:engine=invariant", SIZES},
+    {"bp_linear:engine=invariant", SIZES},
+    {"bp_sinc:engine=invariant", SIZES},
+    {"bp_zeropad:engine=invariant", SIZES},
+    {"bp_farrow:degree=3,engine=invariant", SIZES},
+    {"bp_farrow:degree=5,engine=invariant", SIZES},
+    {"bp_fitted:taps=6,engine=invariant", SIZES},
+    {"bp_nearest:engine=general", 4},
+    {"bp_sinc:engine=general", 4},
+    {"bp_farrow:degree=3,engine=general", 4},
+    {"bp_farrow:degree=5,engine=general", 4},
+};
+
+/* Memory over a setting. */
+static const struct range {
+    const char *format;
+    int values[8];
+} ranges[] = {
+    {"bp_sinc:taps=%d", {2, 4, 8, 16, 32, 64}},
+    {"bp_zeropad:factor=%d", {1, 2, 4, 8, 16, 32, 64, 128}},
+    {"bp_farrow:degree=%d", {2, 3, 4, 5, 6, 7, 8, 9}},
+    {"bp_fitted:factor=%d", {1, 2, 4}},
+};
+
+/* As many columns and rows of the grid, from its middle. */
+static struct grid middle_of(const struct grid *grid, const struct size *size)
+{
+    struct grid cut = *grid;
+    cut.x_count = size->columns;
+    cut.r_count = size->rows;
+    cut.x_first += (grid->x_count - cut.x_count) / 2 * grid->x_step;
+    cut.r_first += (grid->r_count - cut.r_count) / 2 * grid->r_step;
+    return cut;
+}
+
+/* One line: planned, and where there are echoes, run: once, or three times where that is short. setting < 0: none. */
+static enum status line_measure(FILE *file, const char *text, const struct problem *problem,
+                                const struct echoes *echoes, int setting)
+{
+    enum { RUNS = 3 };
+    const struct grid *grid = problem->patches;
+    double seconds[RUNS];
+    struct spec spec;
+    struct imaging imaging;
+    struct stages stages;
+    int runs = 0;
+    enum status status = spec_parse(text, &spec);
+    if (status != STATUS_OK)
+        return status;
+    status = imaging_open(&spec, problem, &imaging);
+    if (status == STATUS_OK) {
+        const struct work work = spec.algorithm->work(imaging.plan);
+        while (echoes && status == STATUS_OK && runs < RUNS && !(runs > 0 && seconds[0] > 2)) {
+            const double begin = seconds_now();
+            status = imaging_execute(&imaging, echoes, &stages);
+            seconds[runs++] = seconds_now() - begin;
+        }
+        if (status == STATUS_OK) {
+            fprintf(file, "%s,\"%s\",%s,", spec.algorithm->name, spec.text, work.engine);
+            if (setting >= 0)
+                fprintf(file, "%d", setting);
+            fprintf(file, ",%d,%d,%.9g,", grid->x_count, grid->r_count, work.pairs);
+            if (runs > 0)
+                fprintf(file, "%.4g,%.4g", median(seconds, runs), 1e9 * median(seconds, runs) / work.pairs);
+            else
+                fprintf(file, ",");
+            fprintf(file, ",%.6g\n", work.bytes);
+            if (runs > 0)
+                printf("%-38s %5d x %-5d %8.3f ns a pair %8.0f MiB\n", text, grid->x_count, grid->r_count,
+                       1e9 * median(seconds, runs) / work.pairs, work.bytes / 0x1p20);
+            fflush(stdout);
+        }
+        imaging_close(&imaging);
+    }
+    spec_free(&spec);
+    return status;
+}
+
+static enum status lines_measure(FILE *file, const struct scene *scene, const struct echoes *echoes)
+{
+    enum status status = STATUS_OK;
+    for (size_t k = 0; k < sizeof subjects / sizeof *subjects; k++)
+        for (int n = 0; n < subjects[k].sizes && status == STATUS_OK; n++) {
+            const struct grid grid = middle_of(&scene->patches[0], &sizes[n]);
+            const struct problem problem = {&scene->acquisition, 1, &grid, PRECISION_FLOAT};
+            status = line_measure(file, subjects[k].spec, &problem, echoes, -1);
+        }
+    const struct grid grid = middle_of(&scene->patches[0], &sizes[MIDDLE]);
+    const struct problem problem = {&scene->acquisition, 1, &grid, PRECISION_FLOAT};
+    for (size_t k = 0; k < sizeof ranges / sizeof *ranges; k++)
+        for (int n = 0; n < 8 && ranges[k].values[n] > 0 && status == STATUS_OK; n++) {
+            char text[64];
+            snprintf(text, sizeof text, ranges[k].format, ranges[k].values[n]);
+            status = line_measure(file, text, &problem, NULL, ranges[k].values[n]);
+        }
+    return status;
+}
+
+static enum status growth_measure(FILE *file)
+{
+    struct provenance provenance;
+    struct scene scene;
+    struct echoes recorded, echoes;
+    enum status status = scene_load("bp22/full_limited", SCENE_DIRECTORY, &scene);
+    if (status != STATUS_OK)
+        return status;
+    provenance_fill(&provenance, omp_get_max_threads());
+    fprintf(file,
+            "# sasbench growth 1\n# machine: %s\n# compiler: %s\n# flags: %s\n# commit: %s\n# date: %s\n# isa: %s\n"
+            "algorithm,options,engine,setting,columns,rows,pairs,run_s,ns_per_pair,plan_bytes\n",
+            provenance.machine, provenance.compiler, provenance.flags, provenance.commit, provenance.date,
+            provenance.isa);
+    status = scene_simulate(&scene, &recorded);
+    if (status == STATUS_OK) {
+        status = echoes_convert(&recorded, PRECISION_FLOAT, &echoes);
+        echoes_free(&recorded);
+    }
+    if (status == STATUS_OK) {
+        status = lines_measure(file, &scene, &echoes);
+        echoes_free(&echoes);
+    }
+    scene_free(&scene);
+    return status;
+}
+
+enum status bench_growth(const char *directory)
+{
+    char csv[4096], picture[4096];
+    struct text_file file;
+    snprintf(csv, sizeof csv, "%s/growth.csv", directory);
+    enum status status = text_file_open(csv, &file);
+    if (status != STATUS_OK)
+        return status;
+    printf("\n");
+    status = text_file_close(&file, growth_measure(file.stream));
+    for (int k = 0; k < 2 && status == STATUS_OK; k++) {
+        snprintf(picture, sizeof picture, "%s/growth.%s", directory, k ? "svg" : "png");
+        status = plot_csv(picture, PLOT_DIRECTORY, "growth.gp", csv);
+    }
+    if (status == STATUS_OK)
+        printf("\nResults: %s/growth.csv, growth.png, growth.svg\n", directory);
+    return status;
+}
