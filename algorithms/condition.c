@@ -278,17 +278,22 @@ struct condition condition_ghost(const struct acquisition *a, double spacing)
 }
 
 /* Near enough to a uniform straight track that gaps between the pings are what `track` has: no ping is farther off than
-   a quarter of the spacing along the track, or the spacing across it. */
+   a quarter of the spacing along the track, or the spacing across it, and the receivers stay where they are on it. */
 static bool is_sampled_evenly(const struct acquisition *a, struct straight_track *track)
 {
     if (acquisition_is_straight(a, track))
         return true;
     acquisition_unevenness(a, track);
     const double spacing = fabs(track->spacing);
-    for (int p = 0; p < a->pings; p++)
+    for (int p = 0; p < a->pings; p++) {
+        const struct vector *rx = a->rx + (size_t)p * (size_t)a->receivers;
         if (!(fabs(a->tx[p].x - track->x_first - p * track->spacing) <= spacing / 4
               && fmax(fabs(a->tx[p].y - a->tx[0].y), fabs(a->tx[p].z - a->tx[0].z)) <= spacing))
             return false;
+        for (int m = 0; m < a->receivers; m++)
+            if (!(fabs(rx[m].x - a->tx[p].x - a->rx[m].x + a->tx[0].x) <= spacing / 4))
+                return false;
+    }
     return spacing > 0;
 }
 

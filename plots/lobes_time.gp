@@ -47,7 +47,7 @@ do for [picture = 1:pictures] {
             pointtype (precise[k] ? family_open[family[k]] : family_filled[family[k]]) pointsize (precise[k] ? 1 : 1.4) \
             title (precise[k] ? "" : series[k]), \
             for [k = 1:|series|] $rows index k - 1 using 2:(shown(abs(column(4 + panel) - exact[panel]))):9:10 \
-            with xerrorbars pointtype 0 linewidth 1 linecolor rgb family_colour[family[k]] notitle, \
+            with xerrorbars pointtype 0 linewidth 1 dashtype 1 linecolor rgb family_colour[family[k]] notitle, \
             keyentry with points pointtype 6 linewidth 1 pointsize 1.2 linecolor rgb "#000000" \
                 title "open, thin: in double"
         unset label 1

@@ -224,6 +224,8 @@ static void test_narrow_table(void **state)
         "no point targets to measure lobes of; warning: condition ghost: spacing is 2, limit 1; warning: times "
         "scatter: the middle half of 5 runs spans 30 % of the median";
     table_row(stream, &row);
+    row.reason = "warning: condition ghost: spacing is 2, limit 1; warning: condition doppler: beam is 3, limit 1";
+    table_row(stream, &row);
     row.options = "";
     row.status = "unsupported";
     static const char *const refused[] = {"wk_classic", "wk_squint", "wk_polar"};
@@ -243,7 +245,7 @@ static void test_narrow_table(void **state)
         &(struct work){.flops = 1e9, .published = {{"BP22 Eq. (11) + sinc load", 1e9}, {"LBF21 Eq. (23)", 1e9}}});
     unsetenv("COLUMNS");
     fclose(stream);
-    int said = 0, referred = 0;
+    int said = 0, referred = 0, warned = 0;
     assert_non_null(strstr(text, " 333 ms~ "));
     assert_non_null(strstr(text, "    warning: condition ghost: spacing is 2, limit 1\n"));
     assert_null(strstr(text, "times scatter"));
@@ -253,9 +255,12 @@ static void test_narrow_table(void **state)
         if (strlen(line) > 80)
             fail_msg("%zu columns: %s", strlen(line), line);
         said += strstr(line, "condition one_receiver: ") != NULL;
+        warned += strstr(line, "warning: condition ghost: ") != NULL;
+        warned += 10 * (strstr(line, "warning: condition doppler: ") != NULL);
         referred += strstr(line, "unsupported, as wk_classic") != NULL;
     }
     assert_int_equal(said, 2); /* once a scene */
+    assert_int_equal(warned, 11);
     assert_int_equal(referred, 2);
 }
 

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "measure/metrics.h"
+#include "measure/outcome.h"
 #include "measure/timing.h"
 #include "tests/support.h"
 
@@ -98,12 +99,48 @@ static void test_quartiles(void **state)
     assert_close(timing_spread(&(struct timing){.run_s = 2, .run_q1_s = 1.9, .run_q3_s = 2.3}), 0.2, 1e-12);
 }
 
+/* Rounds of a setting are put together; one alone is timed at least three times. */
+static void test_rounds_add_up(void **state)
+{
+    (void)state;
+    static struct timing_samples samples;
+    struct scene scene;
+    struct session session;
+    struct spec spec;
+    struct outcome outcome;
+    support_scene("study/quick", &scene);
+    assert_int_equal(spec_parse("bp_nearest", &spec), STATUS_OK);
+    assert_int_equal(session_open(&scene, &session), STATUS_OK);
+    int before = 0;
+    for (int round = 1; round < TIMING_ROUNDS; round++) {
+        outcome_round(&session, &spec, &samples);
+        assert_true(samples.runs > before && samples.elapsed > 0 && samples.controls == 4 * round);
+        before = samples.runs;
+    }
+    outcome_measure(&session, &spec, true, &samples, &outcome);
+    assert_string_equal(outcome.row.status, "ok");
+    assert_true(samples.runs > before && outcome.row.runs == samples.runs && samples.controls == 4 * TIMING_ROUNDS);
+    double sorted[TIMING_RUNS];
+    for (int k = 0; k < samples.runs; k++)
+        sorted[k] = samples.seconds[k];
+    assert_close(outcome.row.run_s, median(sorted, samples.runs), 0);
+    assert_close(outcome.row.run_min_s, sorted[0], 0);
+    double low, high;
+    measurement_interval(&outcome.row, &low, &high);
+    assert_true(low <= outcome.row.run_s && high >= outcome.row.run_s);
+    outcome_free(&outcome);
+    spec_free(&spec);
+    session_close(&session);
+    scene_free(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_slice_difference),
         cmocka_unit_test(test_sharpness),
         cmocka_unit_test(test_quartiles),
+        cmocka_unit_test(test_rounds_add_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

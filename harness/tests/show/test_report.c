@@ -86,6 +86,14 @@ static void parse_name(struct parser *parser, char name[32])
     parser->at += length;
 }
 
+/* A link may lead to a PNG file in the folder of the page. */
+static bool is_picture_beside(const char *value, const char *end)
+{
+    const size_t length = (size_t)(end - value);
+    return length > 4 && memcmp(end - 4, ".png", 4) == 0 && *value != '.'
+           && strspn(value, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.%") >= length;
+}
+
 /* One `NAME="VALUE"`: nothing may come from outside, no script may run, no two elements may have one name. */
 static void parse_attribute(struct parser *parser)
 {
@@ -98,7 +106,9 @@ static void parse_attribute(struct parser *parser)
     if (!end || memchr(value, '<', (size_t)(end - value)))
         parse_failed(parser, "a value that is not closed");
     bool link = strcmp(name, "href") == 0 || strcmp(name, "xlink:href") == 0;
-    if ((link && *value != '#') || (strcmp(name, "src") == 0 && strncmp(value, "data:image/png;base64,", 22) != 0)
+    if ((link && *value != '#' && !is_picture_beside(value, end))
+        || (strcmp(name, "src") == 0 && strncmp(value, "data:image/png;base64,", 22) != 0
+            && strncmp(value, "data:image/jpeg;base64,", 23) != 0)
         || strncmp(name, "on", 2) == 0)
         parse_failed(parser, "something from outside");
     if (strcmp(name, "id") == 0) {
@@ -394,6 +404,27 @@ static void test_faults_leave_the_old_pages(void **state)
     assert_int_equal(report_write("/nowhere/at/all"), STATUS_INVALID);
 }
 
+/* A picture is on the page as a small one that links to it. */
+static void test_images_are_thumbnails(void **state)
+{
+    (void)state;
+    struct measurement row = row_of("a", "bp_nearest", "", 0.1, 0.1);
+    double places[] = {-1, 0, 1}, powers[] = {-20, 0, -20};
+    const struct slice_line line = {"bp_nearest", places, powers, 3, NULL};
+    const char *const titles[] = {"one"};
+    record_rows(&row, 1);
+    assert_int_equal(plot_slices(path_of("a-slices.png"), SASBENCH_ROOT "/plots", "a", 1, titles, 1, &line), STATUS_OK);
+    assert_int_equal(report_write(folder), STATUS_OK);
+    char *html = support_read("report.html");
+    assert_non_null(html);
+    struct parser *page = page_parse(html);
+    assert_int_equal(page->images, 1);
+    assert_holds(html, "<a href=\"a-slices.png\"><img alt=\"a: azimuth slices\" src=\"data:image/jpeg;base64,/9j/");
+    assert_null(strstr(html, "image/png"));
+    free(page);
+    free(html);
+}
+
 static void test_pages_stay_small(void **state)
 {
     (void)state;
@@ -429,6 +460,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_failures_alone_make_a_page, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(test_faults_leave_the_old_pages, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(test_stability_alone_makes_a_page, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(test_images_are_thumbnails, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(test_pages_stay_small, folder_make, folder_remove),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
