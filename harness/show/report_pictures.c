@@ -1,6 +1,7 @@
 /* The pictures of a report (report_pictures.h). */
 #include "show/report_pictures.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -10,7 +11,10 @@
 #include "show/report.h"
 #include "show/thumbnails.h"
 
-enum { SLICES_WIDTH = 560, IMAGE_WIDTH = 300 }; /* pixels of thumbnails */
+/* Thumbnails: bytes of all in the page, bytes a pixel (measured, in base64); their pixels, and how many more slices
+   have. */
+static const double BYTES_MOST = 2e6, BYTES_A_PIXEL = 0.5;
+static const double PIXELS_LEAST = 8e3, PIXELS_MOST = 1e5, SLICES_LARGER = 2;
 
 bool report_room(const struct page *page, const char *path, double growth, struct pictures_count *count)
 {
@@ -85,7 +89,7 @@ static enum status pictures_find(const char *directory, const struct results *re
 }
 
 static enum status scene_show(struct page *page, const char *directory, struct picture *list, int list_count,
-                              struct pictures_count *count)
+                              double pixels, struct pictures_count *count)
 {
     char beside[4200], small[PATH_MAX + 32];
     struct thumbnails thumbnails;
@@ -93,7 +97,7 @@ static enum status scene_show(struct page *page, const char *directory, struct p
     snprintf(beside, sizeof beside, "%s/report.html", directory);
     thumbnails_begin(&thumbnails, beside);
     for (int k = 0; k < list_count; k++)
-        list[k].thumbnail = thumbnails_add(&thumbnails, list[k].path, k ? IMAGE_WIDTH : SLICES_WIDTH);
+        list[k].thumbnail = thumbnails_add(&thumbnails, list[k].path, k ? pixels : SLICES_LARGER * pixels);
     thumbnails_draw(&thumbnails, PLOT_DIRECTORY);
     for (int k = 0; k < list_count && status == STATUS_OK; k++) {
         const bool drawn = thumbnails_path(&thumbnails, list[k].thumbnail, small);
@@ -107,11 +111,21 @@ static enum status scene_show(struct page *page, const char *directory, struct p
     return status;
 }
 
+/* The pixels of a thumbnail with which all pictures that there may be fit. */
+static double pixels_choose(const struct results *results, int scene_count)
+{
+    double pictures = SLICES_LARGER * scene_count;
+    for (int row = 0; row < results->csv.row_count; row++)
+        pictures += strcmp(results->measurements[row].status, "ok") == 0;
+    return fmax(PIXELS_LEAST, fmin(PIXELS_MOST, BYTES_MOST / (pictures * BYTES_A_PIXEL)));
+}
+
 enum status report_pictures_show(struct page *page, const char *directory, const struct results *results,
                                  int scene_count, const char *const *scenes)
 {
     enum status status = STATUS_OK;
     struct pictures_count count = {0};
+    const double pixels = pixels_choose(results, scene_count);
     page_heading(page, 2, "images", "Slices and images");
     page_paragraph(page, "Each links to its full size, which lies beside this page.");
     for (int s = 0; s < scene_count && status == STATUS_OK; s++) {
@@ -119,7 +133,7 @@ enum status report_pictures_show(struct page *page, const char *directory, const
         int list_count;
         status = pictures_find(directory, results, scenes[s], &list, &list_count);
         if (status == STATUS_OK)
-            status = scene_show(page, directory, list, list_count, &count);
+            status = scene_show(page, directory, list, list_count, pixels, &count);
         free(list);
     }
     if (count.shown == 0)

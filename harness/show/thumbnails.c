@@ -2,6 +2,7 @@
 #include "show/thumbnails.h"
 
 #include <fcntl.h>
+#include <math.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -55,7 +56,7 @@ static void output_path(const struct thumbnails *thumbnails, int number, char pa
     plot_file(&thumbnails->plot, name, path);
 }
 
-int thumbnails_add(struct thumbnails *thumbnails, const char *path, int width)
+int thumbnails_add(struct thumbnails *thumbnails, const char *path, double pixels)
 {
     FILE *preamble = thumbnails->plot.preamble;
     int size[2], number = thumbnails->count;
@@ -63,13 +64,13 @@ int thumbnails_add(struct thumbnails *thumbnails, const char *path, int width)
     if (!preamble || number == THUMBNAILS_MOST || !size_read(path, size)
         || snprintf(source, sizeof source, "%s%s", *path == '/' ? "" : "./", path) >= (int)sizeof source)
         return -1;
-    const int small = size[0] < width ? size[0] : width;
-    const int high = (int)((double)size[1] * small / size[0] + 0.5);
+    const double scale = fmin(1, sqrt(pixels / size[0] / size[1]));
+    const int width = (int)fmax(1, size[0] * scale), height = (int)fmax(1, size[1] * scale);
     output_path(thumbnails, number, output);
     plot_array_write(preamble, "sources", number, source);
     plot_array_write(preamble, "outputs", number, output);
     fprintf(preamble, "source_width[%d] = %d; source_height[%d] = %d\n", number + 1, size[0], number + 1, size[1]);
-    fprintf(preamble, "small_width[%d] = %d; small_height[%d] = %d\n", number + 1, small, number + 1, high);
+    fprintf(preamble, "small_width[%d] = %d; small_height[%d] = %d\n", number + 1, width, number + 1, height);
     return thumbnails->count++;
 }
 
