@@ -36,8 +36,8 @@ bool azimuth_requirements(const struct problem *problem, struct condition *list,
 
 /* The conditions of range migration by a method, conditions_general among them. What may cause a large error
    (doppler, the formula's law) refuses only where the predicted error is too large, and then stands for it; without
-   such a cause predicted_error itself refuses. spa_amplitude always refuses: the prediction takes the beam of a pair for
-   that of its transmitter. Its value is NAN without memory. */
+   such a cause predicted_error itself refuses. spa_amplitude always refuses: the prediction takes the beam of a pair
+   for that of its transmitter. Its value is NAN without memory. */
 int rma_conditions(const struct problem *problem, const struct rma_method *method, struct condition *list, int room);
 
 #endif

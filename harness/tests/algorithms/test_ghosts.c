@@ -153,9 +153,9 @@ static void rows_beside_the_record(void **state)
     scene_free(&scene);
 }
 
-/* Twice as many receivers as the spacing of the pings needs: the aliases of what is seen at broadside lie at wavenumbers
-   that neither any ping nor any receiver sees from the columns wanted, and focus on rows nearer by (was .13). The
-   records begin so near that the delays of the receivers are not small against the range. */
+/* Twice as many receivers as the spacing of the pings needs: the aliases of what is seen at broadside lie at
+   wavenumbers that neither any ping nor any receiver sees from the columns wanted, and focus on rows nearer by (was
+   .13). The records begin so near that the delays of the receivers are not small against the range. */
 static void redundant_receivers(void **state)
 {
     (void)state;
