@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #include <cmocka.h>
 
@@ -29,6 +30,23 @@ static inline void check_close(double value, double wanted, double slack, const 
     if (is_close(value, wanted, slack))
         return;
     print_error("%s is %.12g, must be %.12g +- %.3g\n", text, value, wanted, slack);
+    _fail(file, line);
+}
+
+/* A measured value up to its bound; the words behind name what was measured: scene, SPEC. A NaN is above any bound. */
+#define assert_up_to(value, bound, ...) check_up_to(value, bound, __FILE__, __LINE__, __VA_ARGS__)
+
+static inline void __attribute__((format(printf, 5, 6)))
+check_up_to(double value, double bound, const char *file, int line, const char *format, ...)
+{
+    char text[400];
+    va_list arguments;
+    if (value <= bound)
+        return;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    print_error("%s: %.6g, must be up to %.6g\n", text, value, bound);
     _fail(file, line);
 }
 

@@ -180,7 +180,7 @@ static void method_slices(void **state)
             assert_int_equal(support_image(spec, problem, &echoes[k], &image), STATUS_OK);
             double worst = deviation(&image, 0, numbers->methods[m].slice, peak);
             print_message("%s %s: within %.1e of the peak\n", numbers->scene, numbers->methods[m].spec, worst);
-            assert_true(worst < 1e-8);
+            assert_up_to(worst, 1e-8, "%s, %s: of the peak", numbers->scene, spec);
             image_free(&image);
         }
     }

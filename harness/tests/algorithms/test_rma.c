@@ -116,7 +116,7 @@ static void independent_numbers(void **state)
                 worst = worse_of(worst, cabs(image_pixel(&exact, 0, i, j) - value) / peak);
             }
         print_message("%s: back projection within %.1e of the peak\n", n->name, worst);
-        assert_true(worst < 1e-4);
+        assert_up_to(worst, 1e-4, "%s: back projection, of the peak", n->name);
         for (int m = 0; m < 5; m++) {
             char spec[120];
             snprintf(spec, sizeof spec, "%sblocks=1,stolt=direct,precision=double", n->method[m].spec);
@@ -127,9 +127,9 @@ static void independent_numbers(void **state)
             double pslr = slice.pslr_db[DEFINITION_NULL] - n->method[m].pslr_db;
             print_message("    %-66s error %.5f (%.5f), azimuth %+.4f mm, PSLR %+.4f dB\n", spec, error,
                           n->method[m].l2, 1e3 * offset, pslr);
-            assert_true(fabs(error / n->method[m].l2 - 1) < 0.2);
-            assert_true(fabs(offset) < 5e-5);
-            assert_true(fabs(pslr) < 0.03);
+            assert_up_to(fabs(error / n->method[m].l2 - 1), 0.2, "%s, %s: error, relatively off", n->name, spec);
+            assert_up_to(fabs(offset), 5e-5, "%s, %s: azimuth (m)", n->name, spec);
+            assert_up_to(fabs(pslr), 0.03, "%s, %s: PSLR (dB)", n->name, spec);
             image_free(&image);
         }
         image_free(&exact);
@@ -200,7 +200,8 @@ static void other_ways(void **state)
     for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++) {
         struct image image;
         form(pairs[k].spec, problem, &echoes, &image);
-        assert_true(swath_error(pairs[k].other, problem, &echoes, &image) <= pairs[k].bound);
+        assert_up_to(swath_error(pairs[k].other, problem, &echoes, &image), pairs[k].bound, "%s against %s",
+                     pairs[k].spec, pairs[k].other);
         image_free(&image);
     }
     echoes_free(&echoes);
@@ -253,7 +254,7 @@ static void recurrences(void **state)
         snprintf(spec, sizeof spec, "rma_%s:blocks=2,precision=double", methods[k]);
         snprintf(other, sizeof other, "%s,phases=libm", spec);
         form(other, problem, &echoes, &image);
-        assert_true(swath_error(spec, problem, &echoes, &image) < 1e-5);
+        assert_up_to(swath_error(spec, problem, &echoes, &image), 1e-5, "%s against libm", spec);
         image_free(&image);
     }
     echoes_free(&echoes);
@@ -289,7 +290,7 @@ static void long_swath(void **state)
         for (int t = 0; t < 4; t++) {
             double error = patch_error(&image, &exact, 2 + t);
             print_message("    %s at %g m: %.4f\n", runs[k].spec, targets[t], error);
-            assert_true(error <= runs[k].bound);
+            assert_up_to(error, runs[k].bound, "error of %s at %g m", runs[k].spec, targets[t]);
         }
         image_free(&image);
     }

@@ -149,7 +149,7 @@ static void deep_swath(void **state)
         for (int t = 0; t < TARGETS; t++) {
             double error = patch_error(&image, &exact, t);
             print_message("    %-32s at %g m: %.2e\n", runs[k].spec, deep_targets[t], error);
-            assert_true(error <= runs[k].bounds[t]);
+            assert_up_to(error, runs[k].bounds[t], "error of %s at %g m", runs[k].spec, deep_targets[t]);
         }
         image_free(&image);
     }
