@@ -40,14 +40,15 @@ do for [picture = 1:pictures] {
             linecolor rgb family_colour[family[k]] linewidth (precise[k] ? 1 : 1.8) dashtype 1 + (member[k] > 1) \
             pointtype (precise[k] ? family_open[family[k]] : family_filled[family[k]]) \
             pointsize (precise[k] ? 1 : 1.4) title (precise[k] ? "" : series[k]), \
-        for [k = 1:cost == 2 ? |series| : 0] $rows index k - 1 using 2:4:9:10 with xerrorbars pointtype 0 linewidth 1 dashtype 1 \
-            linecolor rgb family_colour[family[k]] notitle, \
+        for [k = 1:cost == 2 ? |series| : 0] $rows index k - 1 using 2:4:9:10 with xerrorbars pointtype 0 \
+            linewidth 1 dashtype 1 linecolor rgb family_colour[family[k]] notitle, \
         for [k = 1:|series|] $rows index k - 1 using cost:4:(strcol(5 + cost)) with labels font ",10" \
             offset 0.5,0.5 left textcolor rgb family_colour[family[k]] notitle, \
         keyentry with points pointtype 6 linewidth 1 pointsize 1.2 linecolor rgb "#000000" \
             title "open, thin: in double", \
         keyentry with lines linewidth 1.5 dashtype 3 linecolor rgb "#000000" \
             title (cost == 2 ? "time of the scalar reference loop" : ""), \
-        keyentry with lines linewidth 1 dashtype 1 linecolor rgb "#000000" title (cost == 2 ? "bars: quartiles of the runs" : "")
+        keyentry with lines linewidth 1 dashtype 1 linecolor rgb "#000000" \
+            title (cost == 2 ? "bars: quartiles of the runs" : "")
     unset output
 }

@@ -365,6 +365,30 @@ static void base64_write(FILE *stream, const char *bytes, size_t size)
     }
 }
 
+/* The beginning of a link to a file beside the page. */
+static void link_write(struct page *page, const char *name)
+{
+    fputs("<a href=\"", page->stream);
+    for (const char *at = name; *at; at++)
+        fprintf(page->stream, isalnum((unsigned char)*at) || strchr("-_.", *at) ? "%c" : "%%%02X", (unsigned char)*at);
+    fputs("\">", page->stream);
+}
+
+void page_files(struct page *page, const char *before, int count, const char *const *names, const char *const *texts)
+{
+    if (page->format != PAGE_HTML || count == 0)
+        return;
+    fputs("<p>", page->stream);
+    text_write(page, before);
+    for (int k = 0; k < count; k++) {
+        fputs(k ? ", " : " ", page->stream);
+        link_write(page, names[k]);
+        text_write(page, texts[k]);
+        fputs("</a>", page->stream);
+    }
+    fputs("</p>\n", page->stream);
+}
+
 /* A picture of the type, a link around it where `link` is not NULL. */
 static enum status figure_write(struct page *page, const char *path, const char *type, const char *link,
                                 const char *caption)
@@ -377,13 +401,8 @@ static enum status figure_write(struct page *page, const char *path, const char 
     if (status != STATUS_OK)
         return status;
     fputs("<figure>\n", page->stream);
-    if (link) {
-        fputs("<a href=\"", page->stream);
-        for (const char *at = link; *at; at++)
-            fprintf(page->stream, isalnum((unsigned char)*at) || strchr("-_.", *at) ? "%c" : "%%%02X",
-                    (unsigned char)*at);
-        fputs("\">", page->stream);
-    }
+    if (link)
+        link_write(page, link);
     fputs("<img alt=\"", page->stream);
     text_write(page, caption);
     fprintf(page->stream, "\" src=\"data:image/%s;base64,", type);

@@ -55,6 +55,8 @@ enum status page_drawing(struct page *page, const char *path, const char *title)
 enum status page_image(struct page *page, const char *path, const char *caption);
 /* The JPEG file `small` in place of a PNG, with a link to the file `name` beside the page. */
 enum status page_thumbnail(struct page *page, const char *small, const char *name, const char *caption);
+/* A word, then links to files beside the page, in HTML only. */
+void page_files(struct page *page, const char *before, int count, const char *const *names, const char *const *texts);
 void page_gallery_begin(struct page *page);
 void page_gallery_end(struct page *page);
 

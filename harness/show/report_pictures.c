@@ -11,10 +11,14 @@
 #include "show/report.h"
 #include "show/thumbnails.h"
 
-/* Thumbnails: bytes of all in the page, bytes a pixel (measured, in base64); their pixels, and how many more slices
-   have. */
-static const double BYTES_MOST = 2e6, BYTES_A_PIXEL = 0.5;
-static const double PIXELS_LEAST = 8e3, PIXELS_MOST = 1e5, SLICES_LARGER = 2;
+/* Thumbnails: bytes in the page of all of them, shared by the scenes; their pixels, and how many more slices have. */
+static const double BYTES_MOST = 2e6, PIXELS_LEAST = 1.2e4, PIXELS_MOST = 1e5, SLICES_LARGER = 2;
+
+/* Bytes in the page of a thumbnail, in base64, as measured between 1e4 and 1e5 pixels. */
+static double thumbnail_bytes(double pixels)
+{
+    return 12.7e3 * pow(pixels / 1.05e4, 0.69);
+}
 
 bool report_room(const struct page *page, const char *path, double growth, struct pictures_count *count)
 {
@@ -88,18 +92,48 @@ static enum status pictures_find(const char *directory, const struct results *re
     return STATUS_OK;
 }
 
+/* How large a scene's thumbnails are within its share of the bytes, and how many images have one. */
+static int thumbnails_choose(double share, int images, double *pixels)
+{
+    *pixels = PIXELS_MOST;
+    while (*pixels > PIXELS_LEAST
+           && thumbnail_bytes(SLICES_LARGER * *pixels) + images * thumbnail_bytes(*pixels) > share)
+        *pixels /= 1.05;
+    const int fit = (int)((share - thumbnail_bytes(SLICES_LARGER * *pixels)) / thumbnail_bytes(*pixels));
+    const int most = images < THUMBNAILS_MOST ? images : THUMBNAILS_MOST - 1;
+    return fit < 1 ? 1 : fit < most ? fit : most;
+}
+
+/* Images without room for a thumbnail, as links. */
+static void links_show(struct page *page, const struct picture *list, int count)
+{
+    const char **texts = calloc(2 * (size_t)count + 1, sizeof *texts), **names = texts + count;
+    int shown = 0;
+    struct stat info;
+    for (int k = 0; texts && k < count; k++)
+        if (lstat(list[k].path, &info) == 0 && S_ISREG(info.st_mode)) {
+            names[shown] = strrchr(list[k].path, '/') + 1;
+            texts[shown++] = list[k].caption;
+        }
+    if (texts)
+        page_files(page, "Beside this page:", shown, names, texts);
+    free(texts);
+}
+
 static enum status scene_show(struct page *page, const char *directory, struct picture *list, int list_count,
-                              double pixels, struct pictures_count *count)
+                              double share, struct pictures_count *count)
 {
     char beside[4200], small[PATH_MAX + 32];
     struct thumbnails thumbnails;
+    double pixels;
+    const int shown = 1 + thumbnails_choose(share, list_count - 1, &pixels);
     enum status status = STATUS_OK;
     snprintf(beside, sizeof beside, "%s/report.html", directory);
     thumbnails_begin(&thumbnails, beside);
-    for (int k = 0; k < list_count; k++)
+    for (int k = 0; k < list_count && k < shown; k++)
         list[k].thumbnail = thumbnails_add(&thumbnails, list[k].path, k ? pixels : SLICES_LARGER * pixels);
     thumbnails_draw(&thumbnails, PLOT_DIRECTORY);
-    for (int k = 0; k < list_count && status == STATUS_OK; k++) {
+    for (int k = 0; k < list_count && k < shown && status == STATUS_OK; k++) {
         const bool drawn = thumbnails_path(&thumbnails, list[k].thumbnail, small);
         if (k == 1)
             page_gallery_begin(page);
@@ -107,17 +141,10 @@ static enum status scene_show(struct page *page, const char *directory, struct p
     }
     if (list_count > 1)
         page_gallery_end(page);
+    if (shown < list_count)
+        links_show(page, list + shown, list_count - shown);
     thumbnails_end(&thumbnails);
     return status;
-}
-
-/* The pixels of a thumbnail with which all pictures that there may be fit. */
-static double pixels_choose(const struct results *results, int scene_count)
-{
-    double pictures = SLICES_LARGER * scene_count;
-    for (int row = 0; row < results->csv.row_count; row++)
-        pictures += strcmp(results->measurements[row].status, "ok") == 0;
-    return fmax(PIXELS_LEAST, fmin(PIXELS_MOST, BYTES_MOST / (pictures * BYTES_A_PIXEL)));
 }
 
 enum status report_pictures_show(struct page *page, const char *directory, const struct results *results,
@@ -125,7 +152,6 @@ enum status report_pictures_show(struct page *page, const char *directory, const
 {
     enum status status = STATUS_OK;
     struct pictures_count count = {0};
-    const double pixels = pixels_choose(results, scene_count);
     page_heading(page, 2, "images", "Slices and images");
     page_paragraph(page, "Each links to its full size, which lies beside this page.");
     for (int s = 0; s < scene_count && status == STATUS_OK; s++) {
@@ -133,7 +159,7 @@ enum status report_pictures_show(struct page *page, const char *directory, const
         int list_count;
         status = pictures_find(directory, results, scenes[s], &list, &list_count);
         if (status == STATUS_OK)
-            status = scene_show(page, directory, list, list_count, pixels, &count);
+            status = scene_show(page, directory, list, list_count, BYTES_MOST / scene_count, &count);
         free(list);
     }
     if (count.shown == 0)
