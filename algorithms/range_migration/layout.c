@@ -17,9 +17,13 @@ static const double PULSE_PERIODS = 8; /* of B: beside the rows, so that no puls
 static const double EVEN = 1e-12;      /* relative: columns that divide the period but for rounding */
 static const int stolt_taps[] = {0, 4, 6, 8, 12, 16};
 
-static enum status unsupported(const struct rma *rma, const char *reason)
+static enum status too_long(const struct rma *rma, const struct rma_swath *swath, double samples)
 {
-    return status_set(STATUS_UNSUPPORTED, "%s: %s", rma->method.name, reason);
+    return status_set(
+        STATUS_UNSUPPORTED,
+        "%s: condition transform_length: the samples of a record that rows from %g to %g m need are %.3g; "
+        "at most %d is needed (cure: fewer rows, columns nearer to the track, or back projection)",
+        rma->method.name, swath->nearest, swath->farthest, samples, INT_MAX / 64);
 }
 
 /* Offsets of the receivers, their extremes, and whether they are evenly spaced. */
@@ -180,9 +184,11 @@ static enum status swath_azimuth(const struct rma *rma, struct rma_swath *swath)
         double last = g->x_first + (g->x_count - 1) * g->x_step;
         if (g->x_first < x_low - angle || last > x_high + angle)
             return status_set(STATUS_UNSUPPORTED,
-                              "%s: columns from %g to %g m leave what the wavenumbers of the "
-                              "track cover, %g to %g m (squint too large)",
-                              rma->method.name, g->x_first, last, x_low - angle, x_high + angle);
+                              "%s: condition in_wavenumbers: how far columns from %g to %g m leave what the "
+                              "wavenumbers of the track cover, %g to %g m, is %.3g m; at most 0 is needed (cure: "
+                              "columns nearer to the track, rows farther away, or a shorter transmitter)",
+                              rma->method.name, g->x_first, last, x_low - angle, x_high + angle,
+                              fmax(x_low - angle - g->x_first, last - x_high - angle));
         overhang = fmax(overhang, fmax(x_low - g->x_first, last - x_high));
     }
     /* A receiver aside sees half its offset farther; what is less than a Fresnel zone tapers like any edge. */
@@ -191,9 +197,11 @@ static enum status swath_azimuth(const struct rma *rma, struct rma_swath *swath)
     swath->period = fft_length((long long)fmin(1e9, fmax(ceil(extent / spacing) + 1, folds / spacing)));
     if (swath->period == 0 || (double)swath->period * rma->receivers > INT_MAX / 4)
         return status_set(STATUS_UNSUPPORTED,
-                          "%s: the azimuth transform is too long: %g m to either side of a target, pings "
-                          "%g m apart, %d receivers",
-                          rma->method.name, reach, spacing, rma->receivers);
+                          "%s: condition transform_length: the wavenumbers of %g m to either side of a target, pings "
+                          "%g m apart, %d receivers, are %.3g; at most %d is needed (cure: columns nearer to the "
+                          "track, fewer receivers, or back projection)",
+                          rma->method.name, reach, spacing, rma->receivers,
+                          fmax(ceil(extent / spacing) + 1, folds / spacing) * rma->receivers, INT_MAX / 4);
     swath->wavenumbers = swath->period * rma->receivers;
     swath->columns = (size_t)(swath->wavenumbers + RMA_TILE - 1) / RMA_TILE * RMA_TILE;
     return STATUS_OK;
@@ -217,7 +225,7 @@ static enum status swath_range(const struct rma *rma, struct rma_swath *swath)
     double from = floor(fmin(first - pulse, fmax(first - margin, 0)));
     double to = ceil(fmax(last + pulse, fmin(last + margin, end)));
     if (!(to - from < INT_MAX / 64))
-        return unsupported(rma, "the range transform is too long");
+        return too_long(rma, swath, to - from);
     swath->first = (int)from;
     bool recorded = from <= end && to >= 0; /* else nothing is taken: the rows lie beside the record */
     swath->begin = recorded ? (int)fmax(from, 0) : swath->first;
@@ -228,7 +236,7 @@ static enum status swath_range(const struct rma *rma, struct rma_swath *swath)
     swath->stolt_length =
         rma->taps == 0 ? swath->length : fft_length_fast((long long)(RMA_OVERSAMPLING * swath->length));
     if (swath->length == 0 || swath->stolt_length == 0 || swath->stolt_length > INT_MAX / 64)
-        return unsupported(rma, "the range transform is too long");
+        return too_long(rma, swath, RMA_OVERSAMPLING * (to - from));
 
     /* What the tapers smear beyond the pulse's band belongs to it. */
     int lanes = RMA_ALIGNMENT / (rma->problem.precision == PRECISION_DOUBLE ? 8 : 4);
@@ -283,8 +291,10 @@ static enum status swath_patches(const struct rma *rma, struct rma_swath *swath)
         patch->columns =
             patch->folds ? (int)whole : fft_length_fast((long long)swath->wavenumbers + patch->grid.x_count - 1);
         if (patch->length == 0 || patch->columns == 0)
-            return status_set(STATUS_UNSUPPORTED, "%s: rows %g m apart over %g m are too many to transform",
-                              rma->method.name, patch->step, extent);
+            return status_set(STATUS_UNSUPPORTED,
+                              "%s: condition transform_length: the rows %g m apart over %g m are %.3g; at most 1e8 is "
+                              "needed (cure: rows farther apart, or back projection)",
+                              rma->method.name, patch->step, extent, rows);
     }
     return STATUS_OK;
 }

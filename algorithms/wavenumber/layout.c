@@ -100,7 +100,10 @@ static enum status lay_range(struct wk *wk)
     double length = WK_OVERSAMPLING * (wk->samples + 2 * wk->record_pad + WK_GUARD);
     wk->range_length = length < INT_MAX / 64 ? fft_length_fast((long long)length) : 0;
     if (wk->range_length == 0)
-        return status_set(STATUS_UNSUPPORTED, "%s: the range transform is too long", wk->method.name);
+        return status_set(STATUS_UNSUPPORTED,
+                          "%s: condition transform_length: the samples of a record with what the turned axes add are "
+                          "%.3g; at most %d is needed (cure: shorter records or tracks, or back projection)",
+                          wk->method.name, length, INT_MAX / 64);
     double half = fmin(whole_above(band.half_hz / wk->fs * wk->range_length), (wk->range_length - 1) / 2);
     double lowest = (wk->fc - wk->fs / 2 > 0 ? wk->fs / 2 : wk->fc * (1 - 1e-6)) / wk->fs * wk->range_length;
     wk->band_first = -(int)fmin(half, floor(lowest)); /* F > 0 */
@@ -164,8 +167,10 @@ static double own_period(const struct wk *wk)
 
 static enum status too_long(const struct wk *wk, double period)
 {
-    return status_set(STATUS_UNSUPPORTED, "%s: the azimuth transform is too long: %g m of pings %g m apart",
-                      wk->method.name, period, wk->spacing);
+    return status_set(STATUS_UNSUPPORTED,
+                      "%s: condition transform_length: the pings %g m apart over %g m are too many to transform (cure: "
+                      "a narrower beam, rows nearer to the track, or back projection)",
+                      wk->method.name, wk->spacing, period);
 }
 
 /* Lines over all of Kx that the pings hold: the centroid +- pi/spacing at each frequency. */
@@ -271,8 +276,11 @@ static enum status resampled_axis(const struct wk *wk, double span, double *firs
     *step = 2 * M_PI / (WK_OVERSAMPLING * span);
     double beside = wk->taps / 2 + 1, points = whole_above(extent / *step) + 2 * beside + 1;
     if (!(points < 1e8))
-        return status_set(STATUS_UNSUPPORTED, "%s: %g m every %g m are too many places to resample from",
-                          wk->method.name, extent, *step);
+        return status_set(
+            STATUS_UNSUPPORTED,
+            "%s: condition transform_length: the places %g m apart over %g m to resample from are %.3g; at "
+            "most 1e8 is needed (cure: a smaller patch, or back projection)",
+            wk->method.name, *step, extent, points);
     *first -= beside * *step;
     *count = (int)points;
     return STATUS_OK;
@@ -326,8 +334,10 @@ static enum status lay_steps(struct wk *wk)
                        && fft_length((long long)whole) == whole;
         patch->columns = patch->folds ? (int)whole : fft_length_fast((long long)wk->lines + g->x_count - 1);
         if (patch->length == 0 || patch->columns == 0)
-            return status_set(STATUS_UNSUPPORTED, "%s: rows %g m apart over %g m are too many to transform",
-                              wk->method.name, g->r_step, extent);
+            return status_set(STATUS_UNSUPPORTED,
+                              "%s: condition transform_length: the rows %g m apart over %g m are %.3g; at most 1e8 is "
+                              "needed (cure: rows farther apart, or back projection)",
+                              wk->method.name, g->r_step, extent, rows);
         if (patch->resampled)
             patch->bin_carrier = (long long)whole_below((low + high) / 2 / (2 * M_PI / (patch->length * g->r_step)));
         patch->row = wk->rows;

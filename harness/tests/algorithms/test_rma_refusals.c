@@ -20,7 +20,7 @@ static void refusals(void **state)
         {"number of pings", {0, 0.02, 3, 40, 0.1, 3}, 1, INFINITY, 0},
         {"aperture_limit", {0, 0.02, 3, 40, 0.1, 3}, 8, 0.05, 0},
         {"range r of the nearest pixel", {0, 0.02, 3, 0, 0.1, 3}, 8, INFINITY, 0},
-        {"squint", {0, 5, 9, 40, 0.1, 3}, 8, INFINITY, 0},
+        {"condition in_wavenumbers:", {0, 5, 9, 40, 0.1, 3}, 8, INFINITY, 0},
         {"outside the record", {0, 0.02, 3, 90, 0.1, 3}, 8, INFINITY, 0},
         {"spa_amplitude", {0, 0.02, 3, 0.5, 0.1, 3}, 8, INFINITY, 0},
         {"work", {0, 1e-6, 3, 40, 1e-6, 3}, 8, INFINITY, 0},
