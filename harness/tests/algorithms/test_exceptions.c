@@ -138,11 +138,6 @@ static void stability_scenes_raise_none(void **state)
     (void)state;
     char **names;
     int count, faults = 0, read = 0;
-#ifdef __SANITIZE_ADDRESS__
-    /* A quarter of an hour; exceptions are the same, and these scenes' memory is looked at by test_stability. */
-    print_message("skipped under the address sanitizer: all of scenes/extreme\n");
-    skip();
-#endif
     assert_int_equal(scene_names(SCENES "/extreme", &names, &count), STATUS_OK);
     for (int k = 0; k < count; k++) {
         char name[200];
