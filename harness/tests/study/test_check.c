@@ -360,7 +360,9 @@ static void refusals_of_the_plan_are_told(void **state)
     char *printed = checked(&scene, "rma_numeric", &refused);
     if (!refused || !strstr(printed, "condition in_wavenumbers:"))
         fputs(printed, stderr);
-    assert_true(refused && strstr(printed, "  REFUSED  rma_numeric: condition in_wavenumbers: how far columns from 0 to 11.8 m"));
+    assert_true(
+        refused
+        && strstr(printed, "  REFUSED  rma_numeric: condition in_wavenumbers: how far columns from 0 to 11.8 m"));
     free(printed);
     scene_free(&scene);
 }
