@@ -128,7 +128,8 @@ void table_header(FILE *stream)
     table.width = width_find(stream) < WIDTH_WIDE ? WIDTH_LEAST : WIDTH_WIDE;
     table.spec_width = table.width == WIDTH_WIDE ? 34 : 24;
     fputs("time      median seconds from the echoes in memory to the complex image; with ~\n"
-          "          the middle half of the runs spans more than 10 % of it\n"
+          "          it is noisy: the middle half of the runs spans more than 10 % of it,\n"
+          "          or other work had the processors, or the machine's speed changed\n"
           "speed-up  against the scalar reference loop timed beside, which takes out the\n"
           "          machine's momentary speed\n",
           stream);

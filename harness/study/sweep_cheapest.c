@@ -70,12 +70,23 @@ static void row_tell(const struct measurement *row, const char *threshold, const
     table_text(stdout, 52, tied);
 }
 
+/* Is a family worth its own lines on the terminal: only one of several, and by run time? */
+static bool is_told(const struct group *group, size_t family, int c)
+{
+    bool others = false;
+    for (int k = 0; k < group->count; k++)
+        others |= strcmp(group->rows[k]->algorithm, "reference") != 0
+                  && strncmp(group->rows[k]->algorithm, families[family].begins, strlen(families[family].begins)) != 0;
+    return group->told && (family == 0 || (others && c == SWEEP_RUN_TIME));
+}
+
 /* For each decade from 1 down to the last that any setting of the family reaches. */
 static void family_write(struct group *group, size_t family, int c, FILE *file)
 {
     const char *begins = families[family].begins;
+    const bool told = is_told(group, family, c);
     int best = cheapest_find(group, 1, begins);
-    if (best >= 0 && group->told)
+    if (best >= 0 && told)
         printf("  %s %s\n      below      time speed-up     MFLOP    error  setting\n", families[family].title,
                sweep_costs[c].title);
     for (int decade = 0; best >= 0; decade--, best = cheapest_find(group, pow(10, decade), begins)) {
@@ -83,7 +94,7 @@ static void family_write(struct group *group, size_t family, int c, FILE *file)
         char threshold[16], ties[1800];
         snprintf(threshold, sizeof threshold, "1e%d", decade);
         ties_find(group, best, pow(10, decade), begins, ties, sizeof ties);
-        if (group->told)
+        if (told)
             row_tell(row, threshold, ties);
         fields_write(file,
                      (const char *const[]){row->scene, sweep_costs[c].name, threshold, row->algorithm, row->options,
