@@ -29,8 +29,8 @@ dash(name) = strstrt(name, "general") ? 2 : 1
 set output output
 set multiplot
 set tmargin at screen 1 - 50.0/height
-set bmargin at screen 190.0/height
-set key at screen 0.5,130.0/height center top maxrows 4 samplen 4 font ",12"
+set bmargin at screen 205.0/height
+set key at screen 0.5,115.0/height center top maxrows 4 samplen 4 font ",12"
 set lmargin at screen 90.0/width
 set rmargin at screen 0.49
 set logscale xy
@@ -52,6 +52,6 @@ set ylabel "memory of the plan (MiB)"
 set title "memory, 400 x 700 pixels"
 plot for [k = 1:4] csv using (column("setting")): \
     (strcol("algorithm") eq sized[k] && strcol("setting") ne "" ? column("plan_bytes")/1048576.0 : NaN) \
-    with linespoints linecolor rgb colour(sized[k]) pointtype point(sized[k]) title sized[k].", ".setting[k]
+    with linespoints linecolor rgb colour(sized[k]) pointtype point(sized[k]) linewidth 2 dashtype 1 title sized[k].", ".setting[k]
 unset multiplot
 unset output

@@ -18,7 +18,7 @@ struct traces {
     FFTW(plan) forward, inverse; /* of L = shape.period, in place */
     complex_real *filter;        /* [L] conj(P)/(L sum|p|^2); 1/L if compressed; over sinc^2 where it is emphasised */
     complex_real *factors;       /* [branches][upsample][L/2 + 1] of frequencies 0 to fs/2; NULL: of one plane, all 1 */
-    complex_real *scratch;       /* [threads][2][shape.pitch] */
+    complex_real *scratch;       /* [threads][1 + upsample][shape.pitch]: a spectrum, and a branch's planes */
 };
 
 static void filter_fill(const struct acquisition *acquisition, int length, double complex *work, complex_real *filter)
@@ -78,15 +78,16 @@ static enum status transforms_plan(struct traces *traces, const struct acquisiti
     struct traces_shape *shape = &traces->shape;
     const int length = shape->period, planes = shape->branches * shape->upsample;
     const size_t pitch = whole_lines(length), factors = planes > 1 ? (size_t)planes * ((size_t)length / 2 + 1) : 0;
+    const int each = 1 + shape->upsample; /* arrays of a thread */
     shape->pitch = pitch;
     /* Scratch, filter, factors, the pulse's spectrum, and as much as FFTW's plans may hold. */
     enum status status =
-        memory_check((2 * (threads + 1.0) * (double)pitch + length + (double)factors) * sizeof(complex_real)
+        memory_check((each * (threads + 1.0) * (double)pitch + length + (double)factors) * sizeof(complex_real)
                          + (double)length * sizeof(double complex),
                      "range compression");
     if (status != STATUS_OK)
         return status;
-    traces->scratch = FFTW(malloc)((size_t)threads * 2 * pitch * sizeof *traces->scratch);
+    traces->scratch = FFTW(malloc)((size_t)threads * (size_t)each * pitch * sizeof *traces->scratch);
     traces->filter = FFTW(malloc)((size_t)length * sizeof *traces->filter);
     traces->factors = factors > 0 ? FFTW(malloc)(factors * sizeof *traces->factors) : NULL;
     double complex *work = fftw_malloc((size_t)length * sizeof *work);
@@ -109,10 +110,10 @@ static enum status transforms_plan(struct traces *traces, const struct acquisiti
     fftw_free(work);
     if (!traces->forward || !traces->inverse)
         return status_set(STATUS_FAILED, "no memory for range compression (%.0f MB)",
-                          (double)threads * 2 * (double)pitch * sizeof(complex_real) / 1e6);
+                          (double)threads * each * (double)pitch * sizeof(complex_real) / 1e6);
     shape->flops = (planes + 1) * fft_flops(length) + 6.0 * length;
     shape->flops += factors > 0 ? 6.0 * planes * length : 0;
-    shape->bytes += (double)(2 * pitch + (size_t)length + factors) * sizeof(complex_real);
+    shape->bytes += (double)((size_t)each * pitch + (size_t)length + factors) * sizeof(complex_real);
     return STATUS_OK;
 }
 
@@ -192,8 +193,8 @@ void REAL_NAME(traces_plane)(const struct traces *traces, const complex_real *sp
     FFTW(execute_dft)(traces->inverse, values, values);
 }
 
-/* One period of a plane's values into its row, every `upsample`-th value of it. */
-static void row_fill(const struct traces_shape *shape, const complex_real *values, size_t phase, complex_real *row)
+/* A branch's row from one period of each of its planes, [upsample][pitch]. */
+static void row_fill(const struct traces_shape *shape, const complex_real *values, complex_real *row)
 {
     const size_t upsample = (size_t)shape->upsample, guard = (size_t)shape->guard, length = (size_t)shape->length;
     const size_t period = (size_t)shape->period, n = (size_t)shape->samples;
@@ -203,12 +204,14 @@ static void row_fill(const struct traces_shape *shape, const complex_real *value
         memset(row + guard + n, 0, guard * sizeof *row);
         return;
     }
-    /* Value guard + n upsample + phase is sample n; the first one in the row has n = -before. */
-    const size_t before = (guard + phase) / upsample;
-    size_t source = (period - before % period) % period;
-    for (size_t i = guard + phase - before * upsample; i < length; i += upsample) {
-        row[i] = values[source];
-        source = source + 1 < period ? source + 1 : 0;
+    /* Value guard + n upsample + phase is sample n of the phase; the row begins before sample 0. */
+    const size_t before = (guard + upsample - 1) / upsample, first = before * upsample - guard;
+    size_t sample = (period - before % period) % period;
+    for (size_t i = 0, phase = first; i < length; phase = 0) {
+        const size_t end = upsample - phase < length - i ? upsample : phase + length - i;
+        for (; phase < end; phase++)
+            row[i++] = values[phase * shape->pitch + sample];
+        sample = sample + 1 < period ? sample + 1 : 0;
     }
 }
 
@@ -216,15 +219,17 @@ void REAL_NAME(traces_fill)(const struct traces *traces, int thread, const compl
 {
     const struct traces_shape *shape = &traces->shape;
     if (!traces->transforms) {
-        row_fill(shape, record, 0, row);
+        row_fill(shape, record, row);
         return;
     }
-    complex_real *spectrum = traces->scratch + 2 * (size_t)thread * shape->pitch, *values = spectrum + shape->pitch;
+    complex_real *spectrum = traces->scratch + (size_t)thread * (size_t)(1 + shape->upsample) * shape->pitch;
+    complex_real *values = spectrum + shape->pitch;
     REAL_NAME(traces_spectrum)(traces, record, spectrum);
-    for (int plane = 0; plane < shape->branches * shape->upsample; plane++) {
-        REAL_NAME(traces_plane)(traces, spectrum, plane, values);
-        row_fill(shape, values, (size_t)(plane % shape->upsample),
-                 row + (size_t)(plane / shape->upsample) * (size_t)shape->length);
+    for (int branch = 0; branch < shape->branches; branch++, row += shape->length) {
+        for (int phase = 0; phase < shape->upsample; phase++)
+            REAL_NAME(traces_plane)
+        (traces, spectrum, branch * shape->upsample + phase, values + (size_t)phase * shape->pitch);
+        row_fill(shape, values, row);
     }
 }
 
