@@ -50,6 +50,7 @@ set xrange [-0.5:columns - 0.5]
 set yrange [rows - 0.5:-0.5]
 set cbrange [-3:3]
 set cblabel "digits lost"
+set colorbox user origin screen 1 - 110.0/width, screen 340.0/height size screen 20.0/width, screen 1 - 385.0/height
 unset key
 unset grid
 set xtics rotate by 90 right
