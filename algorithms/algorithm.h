@@ -18,6 +18,7 @@
 
 #include "acquisition.h"
 #include "condition.h"
+#include "forecast.h"
 #include "status.h"
 
 enum precision { PRECISION_FLOAT, PRECISION_DOUBLE };
@@ -131,6 +132,10 @@ struct algorithm {
     /* Fill list[room] with what the problem must fulfil, and return the number; known before any work, and the same
        that plan refuses by. NULL: conditions_general. */
     int (*conditions)(const struct problem *problem, const void *options, struct condition *list, int room);
+    /* What the settings will make of a problem, without a plan; far cheaper than one, but for range migration. Errors:
+       STATUS_UNSUPPORTED with the reason, as plan, STATUS_FAILED without memory. NULL: nothing is known beforehand, and
+       no planner chooses the algorithm. */
+    enum status (*forecast)(const struct problem *problem, const void *options, struct forecast *forecast);
     /* Make a plan in *plan. Errors: STATUS_UNSUPPORTED with the reason, STATUS_FAILED; *plan is then NULL. */
     enum status (*plan)(const struct problem *problem, const void *options, void **plan);
     /* Echoes of the plan's acquisition and precision into an image of the plan's patches and precision. */

@@ -32,16 +32,25 @@ static const struct param params[] = {
     {.name = NULL},
 };
 
+static struct interpolator interpolator_of(const struct acquisition *a, const struct options *o)
+{
+    return (struct interpolator){.upsample = o->factor,
+                                 .taps = 1,
+                                 .degree = o->degree == DEGREE_AUTO
+                                               ? farrow_degree(o->error, a->bandwidth / (a->fs * o->factor))
+                                               : FARROW_LEAST + o->degree - DEGREE_FIRST};
+}
+
+static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
+{
+    const struct interpolator interpolator = interpolator_of(problem->acquisition, options);
+    return bp_forecast(problem, &interpolator, options, forecast);
+}
+
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
-    const struct options *o = options;
-    const struct acquisition *a = problem->acquisition;
-    const struct interpolator farrow = {.upsample = o->factor,
-                                        .taps = 1,
-                                        .degree = o->degree == DEGREE_AUTO
-                                                      ? farrow_degree(o->error, a->bandwidth / (a->fs * o->factor))
-                                                      : FARROW_LEAST + o->degree - DEGREE_FIRST};
-    return bp_plan(problem, &farrow, options, plan);
+    const struct interpolator interpolator = interpolator_of(problem->acquisition, options);
+    return bp_plan(problem, &interpolator, options, plan);
 }
 
 const struct algorithm bp_farrow = {
@@ -52,6 +61,7 @@ const struct algorithm bp_farrow = {
     .options_size = sizeof(struct options),
     .params = params,
     .conditions = bp_conditions,
+    .forecast = forecast,
     .plan = plan,
     .execute = bp_execute,
     .work = bp_work,

@@ -36,18 +36,30 @@ static void weights(const void *options, double fraction, double *w)
     fitted_weights(&((const struct planned *)options)->fitted, fraction, w);
 }
 
+static struct interpolator interpolator_of(const struct acquisition *a, const struct options *o,
+                                           struct planned *planned)
+{
+    const int upsample = 1 << o->factor;
+    *planned = (struct planned){.bp = o->bp};
+    fitted_make(o->taps, a->bandwidth / (a->fs * upsample), &planned->fitted);
+    return (struct interpolator){.upsample = upsample, .taps = o->taps, .first = 1 - o->taps / 2, .weights = weights};
+}
+
+static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
+{
+    struct planned planned;
+    const struct interpolator fitted = interpolator_of(problem->acquisition, options, &planned);
+    return bp_forecast(problem, &fitted, &planned, forecast);
+}
+
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
     const struct options *o = options;
-    const struct acquisition *a = problem->acquisition;
-    const int upsample = 1 << o->factor;
-    struct planned planned = {.bp = o->bp};
+    struct planned planned;
     *plan = NULL;
     if (o->taps % 2)
         return status_set(STATUS_UNSUPPORTED, "bp_fitted: taps is %d, must be even", o->taps);
-    fitted_make(o->taps, a->bandwidth / (a->fs * upsample), &planned.fitted);
-    const struct interpolator fitted = {
-        .upsample = upsample, .taps = o->taps, .first = 1 - o->taps / 2, .weights = weights};
+    const struct interpolator fitted = interpolator_of(problem->acquisition, o, &planned);
     return bp_plan(problem, &fitted, &planned, plan);
 }
 
@@ -59,6 +71,7 @@ const struct algorithm bp_fitted = {
     .options_size = sizeof(struct options),
     .params = params,
     .conditions = bp_conditions,
+    .forecast = forecast,
     .plan = plan,
     .execute = bp_execute,
     .work = bp_work,

@@ -35,16 +35,26 @@ static void weights(const void *options, double fraction, double *w)
     w[1] = fraction;
 }
 
+static struct interpolator interpolator_of(const struct options *options)
+{
+    return (struct interpolator){.upsample = 1,
+                                 .steps = options->beta + 1,
+                                 .taps = 2,
+                                 .preemphasis = options->preemphasis != 0,
+                                 .weights = weights,
+                                 .in_papers = !options->preemphasis};
+}
+
+static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
+{
+    const struct interpolator interpolator = interpolator_of(options);
+    return bp_forecast(problem, &interpolator, options, forecast);
+}
+
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
-    const struct options *o = options;
-    const struct interpolator linear = {.upsample = 1,
-                                        .steps = o->beta + 1,
-                                        .taps = 2,
-                                        .preemphasis = o->preemphasis != 0,
-                                        .weights = weights,
-                                        .in_papers = !o->preemphasis};
-    return bp_plan(problem, &linear, options, plan);
+    const struct interpolator interpolator = interpolator_of(options);
+    return bp_plan(problem, &interpolator, options, plan);
 }
 
 const struct algorithm bp_linear = {
@@ -55,6 +65,7 @@ const struct algorithm bp_linear = {
     .options_size = sizeof(struct options),
     .params = params,
     .conditions = bp_conditions,
+    .forecast = forecast,
     .plan = plan,
     .execute = bp_execute,
     .work = bp_work,

@@ -10,9 +10,15 @@ static const struct param params[] = {
     {.name = NULL},
 };
 
+static const struct interpolator nearest = {.upsample = 1, .steps = 1, .taps = 1, .in_papers = true};
+
+static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
+{
+    return bp_forecast(problem, &nearest, options, forecast);
+}
+
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
-    const struct interpolator nearest = {.upsample = 1, .steps = 1, .taps = 1, .in_papers = true};
     return bp_plan(problem, &nearest, options, plan);
 }
 
@@ -24,6 +30,7 @@ const struct algorithm bp_nearest = {
     .options_size = sizeof(struct bp_options),
     .params = params,
     .conditions = bp_conditions,
+    .forecast = forecast,
     .plan = plan,
     .execute = bp_execute,
     .work = bp_work,

@@ -41,17 +41,32 @@ static void weights(const void *options, double fraction, double *w)
     sinc_weights(planned->taps, planned->beta, fraction, w);
 }
 
+static struct planned planned_of(const struct acquisition *a, const struct options *o)
+{
+    const double betas[] = {0, 5, 0.5 * M_PI * o->taps * (1 - a->bandwidth / a->fs)};
+    return (struct planned){o->bp, o->taps, betas[o->window]};
+}
+
+static struct interpolator interpolator_of(const struct options *o)
+{
+    return (struct interpolator){
+        .upsample = 1, .taps = o->taps, .first = 1 - o->taps / 2, .weights = weights, .in_papers = true};
+}
+
+static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
+{
+    const struct planned planned = planned_of(problem->acquisition, options);
+    const struct interpolator sinc = interpolator_of(options);
+    return bp_forecast(problem, &sinc, &planned, forecast);
+}
+
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
-    const struct options *o = options;
-    const struct acquisition *a = problem->acquisition;
-    const double betas[] = {0, 5, 0.5 * M_PI * o->taps * (1 - a->bandwidth / a->fs)};
-    const struct planned planned = {o->bp, o->taps, betas[o->window]};
+    const struct planned planned = planned_of(problem->acquisition, options);
+    const struct interpolator sinc = interpolator_of(options);
     *plan = NULL;
-    if (o->taps % 2)
-        return status_set(STATUS_UNSUPPORTED, "bp_sinc: taps is %d, must be even", o->taps);
-    const struct interpolator sinc = {
-        .upsample = 1, .taps = o->taps, .first = 1 - o->taps / 2, .weights = weights, .in_papers = true};
+    if (sinc.taps % 2)
+        return status_set(STATUS_UNSUPPORTED, "bp_sinc: taps is %d, must be even", sinc.taps);
     return bp_plan(problem, &sinc, &planned, plan);
 }
 
@@ -63,6 +78,7 @@ const struct algorithm bp_sinc = {
     .options_size = sizeof(struct options),
     .params = params,
     .conditions = bp_conditions,
+    .forecast = forecast,
     .plan = plan,
     .execute = bp_execute,
     .work = bp_work,

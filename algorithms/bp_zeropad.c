@@ -19,11 +19,21 @@ static const struct param params[] = {
     {.name = NULL},
 };
 
+static struct interpolator interpolator_of(const struct options *options)
+{
+    return (struct interpolator){.upsample = options->factor, .steps = 1, .taps = 1, .in_papers = true};
+}
+
+static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
+{
+    const struct interpolator interpolator = interpolator_of(options);
+    return bp_forecast(problem, &interpolator, options, forecast);
+}
+
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
-    int factor = ((const struct options *)options)->factor;
-    const struct interpolator zeropad = {.upsample = factor, .steps = 1, .taps = 1, .in_papers = true};
-    return bp_plan(problem, &zeropad, options, plan);
+    const struct interpolator interpolator = interpolator_of(options);
+    return bp_plan(problem, &interpolator, options, plan);
 }
 
 const struct algorithm bp_zeropad = {
@@ -34,6 +44,7 @@ const struct algorithm bp_zeropad = {
     .options_size = sizeof(struct options),
     .params = params,
     .conditions = bp_conditions,
+    .forecast = forecast,
     .plan = plan,
     .execute = bp_execute,
     .work = bp_work,

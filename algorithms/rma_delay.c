@@ -40,10 +40,22 @@ static int conditions(const struct problem *problem, const void *options, struct
     return rma_conditions(problem, &method, list, room);
 }
 
+static struct rma_options shared_of(const struct delay_options *options)
+{
+    return (struct rma_options){.blocks = 1, .stolt = options->stolt};
+}
+
+static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
+{
+    const struct rma_method method = method_of(options);
+    const struct rma_options shared = shared_of(options);
+    return rma_forecast(problem, &method, &shared, forecast);
+}
+
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
-    struct rma_method method = method_of(options);
-    struct rma_options shared = {.blocks = 1, .stolt = ((const struct delay_options *)options)->stolt};
+    const struct rma_method method = method_of(options);
+    const struct rma_options shared = shared_of(options);
     return rma_plan(problem, &method, &shared, plan);
 }
 
@@ -54,6 +66,7 @@ const struct algorithm rma_delay = {
     .options_size = sizeof(struct delay_options),
     .params = params,
     .conditions = conditions,
+    .forecast = forecast,
     .plan = plan,
     .execute = rma_execute,
     .work = rma_work,

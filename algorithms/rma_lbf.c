@@ -48,6 +48,13 @@ static int conditions(const struct problem *problem, const void *options, struct
     return rma_conditions(problem, &method, list, room);
 }
 
+static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
+{
+    const struct lbf_options *lbf = options;
+    const struct rma_method method = method_of(lbf);
+    return rma_forecast(problem, &method, &lbf->shared, forecast);
+}
+
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
     const struct lbf_options *lbf = options;
@@ -62,6 +69,7 @@ const struct algorithm rma_lbf = {
     .options_size = sizeof(struct lbf_options),
     .params = params,
     .conditions = conditions,
+    .forecast = forecast,
     .plan = plan,
     .execute = rma_execute,
     .work = rma_work,

@@ -32,6 +32,11 @@ static int conditions(const struct problem *problem, const void *options, struct
     return rma_conditions(problem, &method, list, room);
 }
 
+static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
+{
+    return rma_forecast(problem, &method, options, forecast);
+}
+
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
     return rma_plan(problem, &method, options, plan);
@@ -44,6 +49,7 @@ const struct algorithm rma_pca = {
     .options_size = sizeof(struct rma_options),
     .params = params,
     .conditions = conditions,
+    .forecast = forecast,
     .plan = plan,
     .execute = rma_execute,
     .work = rma_work,

@@ -28,6 +28,11 @@ static int conditions(const struct problem *problem, const void *options, struct
     return rma_conditions(problem, &method, list, room);
 }
 
+static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
+{
+    return rma_forecast(problem, &method, options, forecast);
+}
+
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
     return rma_plan(problem, &method, options, plan);
@@ -40,6 +45,7 @@ const struct algorithm rma_wu = {
     .options_size = sizeof(struct rma_options),
     .params = params,
     .conditions = conditions,
+    .forecast = forecast,
     .plan = plan,
     .execute = rma_execute,
     .work = rma_work,

@@ -7,6 +7,7 @@
 #include "backprojection/engine.h"
 #include "backprojection/budget.h"
 #include "backprojection/kernel.h"
+#include "backprojection/law.h"
 #include "common/fft_length.h"
 #include "backprojection/pairs.h"
 
@@ -266,6 +267,71 @@ struct work bp_work(const void *plan)
         snprintf(work.skipped, sizeof work.skipped, "%.3g %% of the pairs: outside the record%s",
                  100 * (1 - work.pairs / all), a->aperture_limit < 1 ? " or the aperture limit" : "");
     return work;
+}
+
+/* Rounding, relative L2: of sums in the invariant engine, and with the phase factors of the general one (budget.h). */
+static const double ROUNDING[][2] = {{3e-7, 1e-13}, {2.5e-6, 1e-9}};
+/* Of the phase limit, what interpolated delays leave, root mean square: the bound holds at a block's corners. */
+static const double DELAYS_SHARE = 0.3;
+
+/* What a pair reads in the general engine: a kernel of few branches is read as those. */
+static enum status forecast_reading(const struct bp *bp, const struct interpolator *in, const void *options,
+                                    struct forecast *forecast)
+{
+    struct bp kernel = {.problem = bp->problem};
+    kernel.problem.precision = PRECISION_FLOAT; /* so that both precisions are forecast alike */
+    const bool line = in->taps == 2 && in->steps > 0;
+    forecast->kind = in->degree > 0 ? READ_BRANCHES : line ? READ_LINE : in->taps > 1 ? READ_TAPS : READ_NEAREST;
+    forecast->values = in->degree > 0 ? in->degree + 1 : in->taps;
+    if (bp->engine == &bp_invariant || in->degree > 0 || in->taps == 1 || in->steps > 0)
+        return STATUS_OK;
+    const bool made = kernel_make(&kernel, in, options);
+    if (made && kernel.kernel.branches > 0 && bp->medium.phase_limit > 0) {
+        forecast->kind = READ_BRANCHES;
+        forecast->values = kernel.kernel.branches;
+    }
+    free(kernel.kernel.coefficients);
+    return made ? STATUS_OK : status_set(STATUS_FAILED, "no memory for interpolation weights");
+}
+
+enum status bp_forecast(const struct problem *problem, const struct interpolator *in, const void *options,
+                        struct forecast *forecast)
+{
+    const struct acquisition *a = problem->acquisition;
+    struct bp bp = {.problem = *problem, .medium = {a->sound_speed, a->fc, a->fs, a->samples, 0}};
+    bp.table = (struct bp_table){.reading = in->degree > 0  ? BP_BRANCHES
+                                            : in->taps == 1 ? BP_NEAREST
+                                            : in->steps > 0 ? BP_STEPS
+                                                            : BP_CUBICS,
+                                 .upsample = in->upsample,
+                                 .steps = in->steps,
+                                 .taps = in->degree > 0 ? in->degree + 1 : in->taps,
+                                 .branches = in->degree > 0 ? in->degree + 1 : 1};
+    struct condition list[CONDITIONS_MAX];
+    *forecast = (struct forecast){.sums_pairs = true};
+    enum status status =
+        conditions_check("back projection", list, bp_conditions(problem, options, list, CONDITIONS_MAX));
+    if (status == STATUS_OK)
+        status = choose_engine(&bp, options);
+    if (status == STATUS_OK)
+        status = forecast_reading(&bp, in, options, forecast);
+    if (status != STATUS_OK)
+        return status;
+    const bool general = bp.engine == &bp_general;
+    const struct traces_form form = {.upsample = in->upsample, .degree = in->degree, .preemphasis = in->preemphasis};
+    struct law_spectrum spectrum;
+    law_spectrum(a, &spectrum);
+    const double law = interpolation_error(in, options, &spectrum);
+    if (isnan(law))
+        return status_set(STATUS_FAILED, "no memory for an error law");
+    forecast->tables = !general;
+    /* At fs = B the bin at fs/2 stands for both ends of the band. */
+    forecast->error[CAUSE_INTERPOLATION] = hypot(law, a->bandwidth < a->fs ? 0 : 1.0 / a->samples);
+    forecast->error[CAUSE_DELAYS] = general ? DELAYS_SHARE * bp.medium.phase_limit : 1e-7;
+    forecast->error[CAUSE_FLOAT] = ROUNDING[general][problem->precision];
+    forecast->pair_flops = 4.0 * (in->degree > 0 ? in->degree : in->taps == 1 ? 0 : in->taps) + 8;
+    forecast->record_flops = (double)a->pings * a->receivers * traces_flops_double(a, &form);
+    return STATUS_OK;
 }
 
 void bp_destroy(void *plan)

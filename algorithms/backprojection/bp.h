@@ -54,6 +54,10 @@ enum status bp_plan(const struct problem *problem, const struct interpolator *in
 enum status bp_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
 struct work bp_work(const void *plan);
 void bp_destroy(void *plan);
+/* The forecast of an interpolator: its error law, the delays and the rounding of the engine that bp_plan would choose.
+   Errors: as bp_plan for the engine asked for, and for the conditions; STATUS_FAILED without memory. */
+enum status bp_forecast(const struct problem *problem, const struct interpolator *interpolator, const void *options,
+                        struct forecast *forecast);
 /* conditions_sampled and `invariance`, which refuses where the invariant engine is asked for. */
 int bp_conditions(const struct problem *problem, const void *options, struct condition *list, int room);
 

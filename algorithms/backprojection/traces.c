@@ -111,10 +111,28 @@ static enum status transforms_plan(struct traces *traces, const struct acquisiti
     if (!traces->forward || !traces->inverse)
         return status_set(STATUS_FAILED, "no memory for range compression (%.0f MB)",
                           (double)threads * each * (double)pitch * sizeof(complex_real) / 1e6);
-    shape->flops = (planes + 1) * fft_flops(length) + 6.0 * length;
-    shape->flops += factors > 0 ? 6.0 * planes * length : 0;
     shape->bytes += (double)((size_t)each * pitch + (size_t)length + factors) * sizeof(complex_real);
     return STATUS_OK;
+}
+
+/* The period of the transformed signal; 0 where it is too long. */
+static int period(const struct acquisition *acquisition)
+{
+    const int n = acquisition->samples;
+    return acquisition->compressed ? n : fft_length_fast((long long)n + acquisition->pulse_length - 1);
+}
+
+static bool transforms(const struct acquisition *acquisition, const struct traces_form *form)
+{
+    return !acquisition->compressed || form->upsample > 1 || form->degree > 0 || form->preemphasis;
+}
+
+double REAL_NAME(traces_flops)(const struct acquisition *acquisition, const struct traces_form *form)
+{
+    const double length = period(acquisition), planes = (form->degree + 1.0) * form->upsample;
+    if (!transforms(acquisition, form))
+        return 0;
+    return (planes + 1) * fft_flops(length) + 6 * length + (planes > 1 ? 6 * planes * length : 0);
 }
 
 enum status REAL_NAME(traces_plan)(const struct acquisition *acquisition, const struct traces_form *form, int threads,
@@ -122,7 +140,7 @@ enum status REAL_NAME(traces_plan)(const struct acquisition *acquisition, const 
 {
     *out = NULL;
     const int n = acquisition->samples, upsample = form->upsample, branches = form->degree + 1;
-    int length = acquisition->compressed ? n : fft_length_fast((long long)n + acquisition->pulse_length - 1);
+    const int length = period(acquisition);
     long long fine = (long long)length * upsample, row = (long long)(n - 1) * upsample + 1 + 2LL * form->guard;
     if (length == 0 || fine * branches > INT_MAX / 4 || row * branches > INT_MAX / 4)
         return status_set(STATUS_UNSUPPORTED,
@@ -139,7 +157,8 @@ enum status REAL_NAME(traces_plan)(const struct acquisition *acquisition, const 
                                           .length = (int)row,
                                           .period = length,
                                           .bytes = sizeof *traces};
-    traces->transforms = !acquisition->compressed || upsample > 1 || branches > 1 || form->preemphasis;
+    traces->shape.flops = REAL_NAME(traces_flops)(acquisition, form);
+    traces->transforms = transforms(acquisition, form);
     enum status status =
         traces->transforms ? transforms_plan(traces, acquisition, form->preemphasis, threads) : STATUS_OK;
     if (status != STATUS_OK) {

@@ -34,6 +34,9 @@ struct traces_shape {
     double bytes; /* held with one thread */
 };
 
+/* `flops` of the shape without a plan. */
+double traces_flops_float(const struct acquisition *acquisition, const struct traces_form *form);
+double traces_flops_double(const struct acquisition *acquisition, const struct traces_form *form);
 /* `threads`: how many threads may call fill at once. Errors: STATUS_FAILED without memory, STATUS_UNSUPPORTED when a
    row is too long to index. *traces is NULL then. */
 enum status traces_plan_float(const struct acquisition *acquisition, const struct traces_form *form, int threads,

@@ -3,6 +3,7 @@
 #include "range_migration/conditions.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "range_migration/delay.h"
 #include "range_migration/ghosts.h"
@@ -331,4 +332,13 @@ int rma_conditions(const struct problem *problem, const struct rma_method *metho
     for (int k = 0; k < count && k < room; k++)
         list[k] = all[k];
     return count < room ? count : room;
+}
+
+enum status rma_conditions_check(const struct rma_method *method, const struct condition *list, int count)
+{
+    static const char *const computed[] = {"predicted_error", "delay_terms", "delay_taps"};
+    for (int k = 0; k < 3 * count; k++)
+        if (strcmp(list[k / 3].name, computed[k % 3]) == 0 && isnan(list[k / 3].value))
+            return status_set(STATUS_FAILED, "%s: no memory to predict the image's error", method->name);
+    return conditions_check(method->name, list, count);
 }

@@ -40,4 +40,11 @@ bool azimuth_requirements(const struct problem *problem, struct condition *list,
    for that of its transmitter. Its value is NAN without memory. */
 int rma_conditions(const struct problem *problem, const struct rma_method *method, struct condition *list, int room);
 
+/* STATUS_UNSUPPORTED as conditions_check, STATUS_FAILED where a value is NAN without memory. */
+enum status rma_conditions_check(const struct rma_method *method, const struct condition *list, int count);
+
+/* The forecast by a method. Errors: as rma_conditions_check. */
+enum status rma_forecast(const struct problem *problem, const struct rma_method *method,
+                         const struct rma_options *options, struct forecast *forecast);
+
 #endif

@@ -63,11 +63,7 @@ static enum status lay_track(struct rma *rma)
     const struct acquisition *a = rma->problem.acquisition;
     struct condition list[CONDITIONS_MAX];
     int count = rma_conditions(&rma->problem, &rma->method, list, CONDITIONS_MAX);
-    static const char *const computed[] = {"predicted_error", "delay_terms", "delay_taps"};
-    for (int k = 0; k < 3 * count; k++)
-        if (strcmp(list[k / 3].name, computed[k % 3]) == 0 && isnan(list[k / 3].value))
-            return status_set(STATUS_FAILED, "%s: no memory to predict the image's error", rma->method.name);
-    enum status status = conditions_check(rma->method.name, list, count);
+    enum status status = rma_conditions_check(&rma->method, list, count);
     if (status == STATUS_OK)
         status = lay_receivers(rma);
     if (status != STATUS_OK)

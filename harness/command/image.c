@@ -8,6 +8,7 @@
 #include "scene/simulate.h"
 #include "show/plot.h"
 #include "show/table.h"
+#include "study/machine_rates.h"
 #include "command/task.h"
 
 enum status command_simulate(const struct task *task)
@@ -132,6 +133,7 @@ enum status command_image(const struct task *task)
     struct scene scene;
     struct image image;
     double range_db, seconds = 0;
+    machine_rates_use(NULL);
     enum status status = check_usage(task);
     if (status == STATUS_OK)
         status = range_parse("image", task->range, &range_db);

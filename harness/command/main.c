@@ -37,6 +37,12 @@ static const struct command commands[] = {
      "algorithm is "
      "refused",
      "aeg", 0, 1, command_check, false},
+    {"plan", "(SCENE | --echoes FILE.mat --grid GRID) [--error E] [--memory BYTES] [-o FILE.csv]",
+     "the fastest algorithm and settings within an error budget, with predicted error, time and memory, and why others "
+     "are not; exit status 1 where nothing fits",
+     "oegtEY", 0, 1, command_plan, false},
+    {"scenes", "random --seed N [-o FILE.cfg]", "a scene drawn from a seed, of any band, array and range", "oS", 1, 1,
+     command_scenes, false},
     {"simulate", "SCENE -o FILE.mat", "write a scene's echoes", "ot", 1, 1, command_simulate, false},
     {"image", "(--scene SCENE | --echoes FILE.mat --grid GRID) --algorithm SPEC -o (FILE.mat | FILE.png) [--range DB]",
      "form one image, as numbers or as a picture", "oseagtR", 0, 0, command_image, false},
@@ -73,21 +79,15 @@ static const struct command commands[] = {
 };
 
 static const struct option long_options[] = {
-    {"output", required_argument, NULL, 'o'},
-    {"scene", required_argument, NULL, 's'},
-    {"echoes", required_argument, NULL, 'e'},
-    {"algorithm", required_argument, NULL, 'a'},
-    {"grid", required_argument, NULL, 'g'},
-    {"threads", required_argument, NULL, 't'},
-    {"at", required_argument, NULL, 'A'},
-    {"markdown", required_argument, NULL, 'M'},
-    {"json", required_argument, NULL, 'J'},
-    {"range", required_argument, NULL, 'R'},
-    {"ab", no_argument, NULL, 'B'},
-    {"quick", no_argument, NULL, 'Q'},
-    {"precision", required_argument, NULL, 'P'},
-    {"help", no_argument, NULL, 'h'},
-    {NULL, 0, NULL, 0},
+    {"output", required_argument, NULL, 'o'}, {"scene", required_argument, NULL, 's'},
+    {"echoes", required_argument, NULL, 'e'}, {"algorithm", required_argument, NULL, 'a'},
+    {"grid", required_argument, NULL, 'g'},   {"threads", required_argument, NULL, 't'},
+    {"at", required_argument, NULL, 'A'},     {"markdown", required_argument, NULL, 'M'},
+    {"json", required_argument, NULL, 'J'},   {"range", required_argument, NULL, 'R'},
+    {"error", required_argument, NULL, 'E'},  {"memory", required_argument, NULL, 'Y'},
+    {"seed", required_argument, NULL, 'S'},   {"ab", no_argument, NULL, 'B'},
+    {"quick", no_argument, NULL, 'Q'},        {"precision", required_argument, NULL, 'P'},
+    {"help", no_argument, NULL, 'h'},         {NULL, 0, NULL, 0},
 };
 
 static const struct {
@@ -102,6 +102,9 @@ static const struct {
     {'t', "-t, --threads N       OpenMP threads, 1 to 1024"},
     {'R', "    --range DB        what a picture shows below its peak, 60 dB unless given"},
     {'P', "    --precision WHICH one of float and double (both unless given, or a SPEC says which)"},
+    {'E', "    --error E         relative L2 error of the image after one gain, 1e-3 unless given"},
+    {'Y', "    --memory BYTES    that a plan may hold, 4G unless given"},
+    {'S', "    --seed N          a whole number from 0 to 1e15"},
     {'A', "    --at FILE.csv     points: columns d, r, F, f, fc, v, c"},
     {'B', "    --ab              run two programs side by side and compare their times"},
     {'Q', "    --quick           one scene of each family, in two of the four rounding modes"},
@@ -193,9 +196,10 @@ static enum status parse(const struct command *command, int argc, char **argv, s
     const struct {
         int letter;
         const char **field;
-    } texts[] = {{'o', &task->output}, {'s', &task->scene},    {'e', &task->echoes}, {'g', &task->grid},
-                 {'A', &task->at},     {'M', &task->markdown}, {'J', &task->json},   {'t', &threads},
-                 {'R', &task->range},  {'P', &task->precision}};
+    } texts[] = {{'o', &task->output},   {'s', &task->scene},    {'e', &task->echoes}, {'g', &task->grid},
+                 {'A', &task->at},       {'M', &task->markdown}, {'J', &task->json},   {'t', &threads},
+                 {'R', &task->range},    {'E', &task->error},    {'Y', &task->memory}, {'S', &task->seed},
+                 {'P', &task->precision}};
     enum status status = STATUS_OK;
     opterr = 0;
     for (int letter;

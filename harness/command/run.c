@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "study/batch.h"
+#include "study/machine_rates.h"
 #include "command/task.h"
 #include "measure/timing.h"
 
@@ -37,6 +38,7 @@ enum status command_run(const struct task *task)
     struct spec *all = NULL;
     int scene_count = 0, all_count = 0;
     struct batch batch = {0};
+    machine_rates_use(NULL);
     enum status status = check_twice(task);
     if (status == STATUS_OK && task->spec_count == 0)
         status = load_specs(&all, &all_count);
@@ -47,6 +49,9 @@ enum status command_run(const struct task *task)
         status = batch_open(task->output ? task->output : "results/latest", scene_count * spec_count, true, &batch);
     for (int k = 0; k < scene_count && status == STATUS_OK; k++)
         status = batch_scene(&batch, &scenes[k], spec_count, task->spec_count ? task->specs : all);
+    if (status == STATUS_OK && batch.measured > 0)
+        printf("\nTime: %.3g s, of which measuring %.3g s, echoes and exact images %.3g s, pictures %.3g s.\n",
+               seconds_now() - batch.begin, batch.measured_s, batch.echoes_s, batch.drawn_s);
     if (status == STATUS_OK)
         printf(
             "\nThe harness itself takes %.1f ns a run (an algorithm that does nothing). Results: %s/measurements.csv, "

@@ -4,6 +4,7 @@
 
 #include "data/interruption.h"
 #include "study/batch.h"
+#include "study/machine_rates.h"
 #include "show/plot.h"
 #include "show/plot_points.h"
 #include "study/sweep_settings.h"
@@ -79,6 +80,7 @@ enum status command_sweep(const struct task *task)
     struct scene *scenes = NULL;
     struct sweep_settings settings = {0};
     struct batch batch = {0};
+    machine_rates_use(NULL);
     enum status status = precision_check(task);
     if (status == STATUS_OK)
         status = settings_load(task, &settings);

@@ -10,7 +10,7 @@
 struct task {
     const char *const *names; /* [name_count] what stands without an option: scenes, an algorithm */
     int name_count;
-    const char *output, *scene, *echoes, *grid, *at, *markdown, *json, *range, *precision;
+    const char *output, *scene, *echoes, *grid, *at, *markdown, *json, *range, *precision, *error, *memory, *seed;
     bool ab, quick;
     int spec_count;
     struct spec *specs; /* [spec_count] of --algorithm */
@@ -55,6 +55,8 @@ enum status command_sweep(const struct task *task);
 enum status command_report(const struct task *task);
 enum status command_phase(const struct task *task);
 enum status command_check(const struct task *task);
+enum status command_plan(const struct task *task);
+enum status command_scenes(const struct task *task);
 enum status command_bench(const struct task *task);
 enum status command_stability(const struct task *task);
 

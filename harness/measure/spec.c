@@ -9,6 +9,7 @@
 
 #include "data/number.h"
 #include "data/suggestion.h"
+#include "param.h"
 
 /* Every algorithm takes `precision` beside its own table; it goes to spec.precision. */
 static const char *const precision_names[] = {[PRECISION_FLOAT] = "float", [PRECISION_DOUBLE] = "double", NULL};
@@ -76,13 +77,11 @@ static double value_number(const struct param *param, const char *value)
 static enum status choice_read(const char *place, const struct param *param, const char *value, double *out)
 {
     struct name_list accepted = {.length = 0};
-    for (int i = 0; param->choices[i]; i++) {
-        if (strcmp(value, param->choices[i]) == 0) {
-            *out = i;
-            return STATUS_OK;
-        }
+    *out = param_choice(param, value);
+    if (*out >= 0)
+        return STATUS_OK;
+    for (int i = 0; param->choices[i]; i++)
         name_list_add(&accepted, param->choices[i]);
-    }
     return status_set(STATUS_INVALID, "SPEC '%.100s': %s is '%.100s'; accepted: %s", place, param->name, value,
                       accepted.text);
 }
@@ -99,21 +98,6 @@ static enum status value_read(const char *place, const struct param *param, cons
     param_format(param, param->max, max, sizeof max);
     return status_set(STATUS_INVALID, "SPEC '%.100s': %s is '%.100s'; accepted: %s number from %s to %s", place,
                       param->name, value, param->type == PARAM_INTEGER ? "a whole" : "a", min, max);
-}
-
-static void value_store(const struct param *param, void *options, double value)
-{
-    void *field = (char *)options + param->offset;
-    if (param->type == PARAM_REAL)
-        *(double *)field = value;
-    else
-        *(int *)field = (int)value;
-}
-
-static double value_load(const struct param *param, const void *options)
-{
-    const void *field = (const char *)options + param->offset;
-    return param->type == PARAM_REAL ? *(const double *)field : *(const int *)field;
 }
 
 /* One key=value (modified in place). */
@@ -150,7 +134,7 @@ static enum status setting_read(const char *place, char *setting, struct spec *s
     if (is_precision)
         spec->precision = (enum precision)number;
     else
-        value_store(param, spec->options, number);
+        param_store(param, spec->options, number);
     return STATUS_OK;
 }
 
@@ -162,9 +146,9 @@ static enum status text_build(struct spec *spec)
     *spec->text = '\0';
     for (const struct param *param = spec->algorithm->params; param && param->name; param++) {
         char value[64];
-        if (param->terse && value_load(param, spec->options) == param->initial)
+        if (param->terse && param_load(param, spec->options) == param->initial)
             continue;
-        param_format(param, value_load(param, spec->options), value, sizeof value);
+        param_format(param, param_load(param, spec->options), value, sizeof value);
         int added =
             snprintf(spec->text + length, sizeof spec->text - length, "%s%s=%s", length ? "," : "", param->name, value);
         length += (size_t)added;
@@ -199,8 +183,7 @@ static enum status spec_read(const char *place, char *copy, struct spec *spec)
         if (!spec->options)
             return status_set(STATUS_FAILED, "SPEC '%.100s': out of memory", place);
     }
-    for (const struct param *param = spec->algorithm->params; param && param->name; param++)
-        value_store(param, spec->options, param->initial);
+    options_fill(spec->algorithm, spec->options);
 
     while (rest) {
         char *setting = strsep(&rest, ",");

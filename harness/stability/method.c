@@ -5,15 +5,14 @@
 #include <string.h>
 
 #include "backprojection/farrow.h"
+#include "param.h"
 
 /* An option by name; `missing` where the algorithm has none. */
 static double option_value(const struct spec *spec, const char *name, double missing)
 {
     for (const struct param *param = spec->algorithm->params; param && param->name; param++)
-        if (strcmp(param->name, name) == 0) {
-            const void *field = (const char *)spec->options + param->offset;
-            return param->type == PARAM_REAL ? *(const double *)field : *(const int *)field;
-        }
+        if (strcmp(param->name, name) == 0)
+            return param_load(param, spec->options);
     return missing;
 }
 
@@ -57,6 +56,8 @@ struct method method_of(const struct spec *spec, const char *engine, const struc
             method.reading.kind = laws[k].kind;
             method.error_most = laws[k].error_most;
         }
+    if (strcmp(spec->algorithm->name, "auto") == 0) /* its own promise, with room */
+        method.error_most = fmin(1.5 * option_value(spec, "error", ERROR_MOST), ERROR_MOST);
     if (option_value(spec, "preemphasis", 0) != 0)
         method.has_reading = false; /* no filter in extended precision */
     if (!method.has_reading)

@@ -47,16 +47,18 @@ static void task_format(const struct scene *scene, const struct spec *spec, char
 }
 
 /* On failure the visit is closed. */
-static enum status visit_open(const struct batch *batch, const struct scene *scene, int spec_count,
-                              const struct spec *specs, struct visit *visit)
+static enum status visit_open(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs,
+                              struct visit *visit)
 {
     *visit = (struct visit){.specs = specs, .spec_count = spec_count};
     char task[700];
     task_format(scene, NULL, task, sizeof task);
     const char *crash = supervisor_crash(task);
     supervisor_enter(task);
+    const double begin = seconds_now();
     enum status status = crash ? status_set(STATUS_FAILED, "making the echoes and the exact image %s", crash)
                                : session_open(scene, &visit->session);
+    batch->echoes_s += seconds_now() - begin;
     supervisor_leave();
     if (status != STATUS_OK)
         return status;
@@ -140,8 +142,11 @@ static enum status measure(struct batch *batch, struct visit *visit, int index)
     if (crash)
         return add_crashed(batch, visit->session.scene, &visit->specs[index], crash);
     supervisor_enter(task);
+    const double begin = seconds_now();
     outcome_measure(&visit->session, &visit->specs[index], !batch->untimed,
                     visit->samples ? &visit->samples[index - visit->turns_first] : NULL, &outcome);
+    const double measured = seconds_now();
+    batch->measured_s += measured - begin;
     supervisor_leave();
     outcome.row.threads = batch->threads;
     visit->works[index] = outcome.work;
@@ -149,6 +154,7 @@ static enum status measure(struct batch *batch, struct visit *visit, int index)
         status = results_folder_targets(batch->results, outcome.targets, outcome.target_count);
         if (status == STATUS_OK)
             draw(visit, index, &outcome.image);
+        batch->drawn_s += seconds_now() - measured;
     }
     batch->failed |= strcmp(outcome.row.status, "failed") == 0;
     if (status == STATUS_OK)
@@ -340,8 +346,10 @@ enum status batch_scene(struct batch *batch, const struct scene *scene, int spec
         fflush(stdout);
     }
     if (visited) {
+        const double begin = seconds_now();
         if (status == STATUS_OK && batch->details)
             pictures_slices(&visit.pictures);
+        batch->drawn_s += seconds_now() - begin;
         if (status == STATUS_OK && batch->details && missing > 0)
             print_works(&visit);
         batch->undrawn += visit.pictures.undrawn;

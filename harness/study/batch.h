@@ -17,8 +17,9 @@ struct batch {
     bool failed;  /* a measurement failed */
     int undrawn;  /* pictures that could not be drawn */
     /* For the progress line: */
-    int done, rows, measured; /* rows behind, rows in all, rows measured now */
-    double begin, told;       /* monotonic clock, s: at the start, at the last line */
+    int done, rows, measured;             /* rows behind, rows in all, rows measured now */
+    double begin, told;                   /* monotonic clock, s: at the start, at the last line */
+    double echoes_s, measured_s, drawn_s; /* where the time went: echoes and exact images, measurements, pictures */
 };
 
 /* Open the folder (results_folder_open: finished rows of an earlier run are kept) and print the table's head.

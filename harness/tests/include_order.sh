@@ -10,7 +10,7 @@ find algorithms harness -name '*.[ch]' | sort | xargs awk '
         # beside the algorithms, which nobody includes.
         order = "algorithms algorithms/common algorithms/backprojection algorithms/backprojection/general " \
                 "algorithms/backprojection/invariant algorithms/range_migration " \
-                "algorithms/range_migration/delay algorithms/wavenumber harness/data harness/scene " \
+                "algorithms/range_migration/delay algorithms/wavenumber algorithms/planner harness/data harness/scene " \
                 "harness/measure harness/show harness/study harness/stability harness/gate harness/papers " \
                 "harness/command harness/tests " \
                 "harness/tests/algorithms harness/tests/scene harness/tests/measure harness/tests/show " \

@@ -194,8 +194,10 @@ static void run_leaves_its_results_and_keeps_them(void **state)
     assert_true(good >= 5); /* reference and the back projections image everything */
     assert_int_equal(rows_with_status(&first, "failed"), 0);
     assert_int_equal(pictures_count("results/quick"), good + 1);
-    for (int row = 0; row < good; row++) {
+    for (int row = 0; row < first.row_count; row++) {
         double run_s, error;
+        if (strcmp(csv_cell(&first, row, csv_column(&first, "status")), "ok") != 0)
+            continue;
         assert_string_equal(csv_cell(&first, row, csv_column(&first, "scene")), "study/quick");
         assert_true(csv_number(csv_cell(&first, row, csv_column(&first, "run_s")), &run_s) && run_s > 0);
         assert_true(csv_number(csv_cell(&first, row, csv_column(&first, "error")), &error) && error < 0.5);

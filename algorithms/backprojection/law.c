@@ -1,0 +1,112 @@
+/* Error laws of interpolators (law.h). Fractions are averaged by the midpoint rule, as many in each step of those that
+   round. */
+#include "backprojection/law.h"
+
+#include <complex.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "backprojection/farrow.h"
+
+enum { GAUSS = 8, BINS = 48, FRACTIONS = 256, IN_A_STEP = 8 };
+/* The positive half of Gauss and Legendre's 16 points. */
+static const double node[GAUSS] = {0.0950125098376374, 0.2816035507792589, 0.4580167776572274, 0.6178762444026438,
+                                   0.7554044083550030, 0.8656312023878318, 0.9445750230732326, 0.9894009349916499};
+static const double weight[GAUSS] = {0.1894506104550685, 0.1826034150449236, 0.1691565193950025, 0.1495959888165767,
+                                     0.1246289712555339, 0.0951585116824928, 0.0622535239386479, 0.0271524594117541};
+
+/* Pulses of more cycles of time and bandwidth have a flat spectrum: its flanks are no matter. */
+static const double FLAT = 200;
+
+/* |P|^4 at a frequency in cycles a sample: the energy of the compressed pulse there. `scale`: 1 over the sum of the
+   replica's magnitudes, so that no power overflows. */
+static double pulse_energy(const struct acquisition *a, double scale, double nu)
+{
+    const double complex turn = cexp(-2 * I * M_PI * nu);
+    double complex sum = 0, wave = 1;
+    for (int k = 0; k < a->pulse_length; k++, wave *= turn)
+        sum += scale * a->pulse[k] * wave;
+    const double power = creal(sum * conj(sum));
+    return power * power;
+}
+
+void law_spectrum(const struct acquisition *a, struct law_spectrum *spectrum)
+{
+    const double band = fmin(a->bandwidth / a->fs, 1);
+    double sum = 0, magnitudes = 0;
+    if (a->compressed || a->pulse_length * band > FLAT) {
+        *spectrum = (struct law_spectrum){.count = GAUSS};
+        for (int n = 0; n < GAUSS; n++) {
+            spectrum->nu[n] = node[n] * band / 2;
+            spectrum->weight[n] = weight[n];
+        }
+        return;
+    }
+    *spectrum = (struct law_spectrum){.count = BINS};
+    for (int k = 0; k < a->pulse_length; k++)
+        magnitudes += cabs(a->pulse[k]);
+    for (int n = 0; n < BINS; n++) {
+        const double nu = (n + 0.5) / (2 * BINS);
+        spectrum->nu[n] = nu;
+        spectrum->weight[n] = pulse_energy(a, 1 / magnitudes, nu) + pulse_energy(a, 1 / magnitudes, -nu);
+        sum += spectrum->weight[n];
+    }
+    for (int n = 0; n < BINS; n++)
+        spectrum->weight[n] /= sum;
+}
+
+/* H of Farrow branches: what they make of exp(j 2 pi nu u), |u| <= 1/2, over it. */
+static double complex branches_response(int degree, double nu, double u)
+{
+    static const double complex turns[] = {1, I};
+    double gains[FARROW_MOST + 1], power = 1;
+    double complex sum = 0;
+    farrow_gains(degree, nu, gains);
+    for (int m = 0; m <= degree; m++, power *= u)
+        sum += turns[m % 2] * gains[m] * power;
+    return sum * cexp(-2 * I * M_PI * nu * u);
+}
+
+/* H of taps, the first of them `first` samples on. */
+static double complex taps_response(const double *taps, int first, int count, double nu, double fraction)
+{
+    const double complex step = cexp(2 * I * M_PI * nu);
+    double complex wave = cexp(2 * I * M_PI * nu * (first - fraction)), sum = 0;
+    for (int k = 0; k < count; k++, wave *= step)
+        sum += taps[k] * wave;
+    return sum;
+}
+
+double interpolation_error(const struct interpolator *in, const void *options, const struct law_spectrum *spectrum)
+{
+    double off[LAW_NODES] = {0}, spread[LAW_NODES] = {0}; /* means of the real part of H - 1, and of |H - 1|^2 */
+    const int steps = in->steps, rounded = steps > 0 ? IN_A_STEP * steps : 0;
+    const int count = rounded > FRACTIONS ? rounded : steps > 0 ? FRACTIONS / steps * steps : FRACTIONS;
+    double *taps = malloc((size_t)in->taps * sizeof *taps);
+    if (!taps)
+        return NAN;
+    for (int k = 0; k < count; k++) {
+        const double fraction = (k + 0.5) / count, place = steps > 0 ? floor(fraction * steps + 0.5) / steps : fraction;
+        const int whole = (int)floor(place);
+        taps[0] = 1;
+        if (in->weights)
+            in->weights(options, place - whole, taps);
+        for (int n = 0; n < spectrum->count; n++) {
+            const double nu = spectrum->nu[n] / in->upsample;
+            const double complex read = in->degree > 0 ? branches_response(in->degree, nu, fraction - 0.5)
+                                                       : taps_response(taps, whole + in->first, in->taps, nu, fraction);
+            const double lost = in->preemphasis && nu > 0 ? pow(sin(M_PI * nu) / (M_PI * nu), 2) : 1;
+            const double complex response = read / lost;
+            off[n] += (creal(response) - 1) / count;
+            spread[n] += creal((response - 1) * conj(response - 1)) / count;
+        }
+    }
+    free(taps);
+    double mean = 0, variance = 0;
+    for (int n = 0; n < spectrum->count; n++) {
+        mean += spectrum->weight[n] * off[n];
+        variance += spectrum->weight[n] * spread[n];
+    }
+    variance -= mean * mean;
+    return sqrt(fmax(variance, 0) / ((1 + mean) * (1 + mean) + variance)); /* <|H|^2> = |<H>|^2 + variance */
+}

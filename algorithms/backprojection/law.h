@@ -1,0 +1,33 @@
+/* The error law of an interpolator, from its weights alone. At the frequency nu (cycles a sample) and the fraction
+   delta it makes of exp(j 2 pi nu q)
+
+       H(nu, delta) = sum over k of  h_k(delta) exp(j 2 pi nu (k - delta))
+
+   in place of 1. Over a scene all fractions are alike, and what depends on delta scatters over the image. With c_0(nu)
+   the mean of H over delta, and < > the mean over the echoes' energy spectrum,
+
+       E^2 = 1 - |<c_0>|^2 / <mean over delta of |H|^2>
+
+   is the relative L2 error after one best complex gain. Part of what scatters may fall outside of an image: E is an
+   upper bound for a whole scene, and near it. */
+#ifndef SASBENCH_BACKPROJECTION_LAW_H
+#define SASBENCH_BACKPROJECTION_LAW_H
+
+#include "backprojection/bp.h"
+
+enum { LAW_NODES = 48 };
+
+/* Positive frequencies and their share of the compressed echoes' energy: flat over the bandwidth, or, of raw echoes of a
+   pulse of small time-bandwidth product, which has flanks, the replica's own. The means of both signs of a frequency
+   are the same but for the sign of their imaginary parts. */
+struct law_spectrum {
+    int count;
+    double nu[LAW_NODES], weight[LAW_NODES]; /* cycles a sample, 0 to 1/2; their sum is 1 */
+};
+void law_spectrum(const struct acquisition *acquisition, struct law_spectrum *spectrum);
+
+/* The error law; the interpolator's own upsampling divides the frequencies. NAN without memory. */
+double interpolation_error(const struct interpolator *interpolator, const void *options,
+                           const struct law_spectrum *spectrum);
+
+#endif

@@ -1,0 +1,38 @@
+/* What the settings of an algorithm will make of an image, said before any plan: how far off it will be and why, and
+   what the sums will be made of. */
+#ifndef SASBENCH_FORECAST_H
+#define SASBENCH_FORECAST_H
+
+#include <stdbool.h>
+
+/* Why an image is not the exact one. Causes are independent: their squares add up. */
+enum cause {
+    CAUSE_INTERPOLATION, /* values between samples */
+    CAUSE_DELAYS,        /* delays that are interpolated, by pixel or by record */
+    CAUSE_SPECTRUM,      /* the two-dimensional spectrum: stationary phase, sampling in azimuth, the formula */
+    CAUSE_BLOCKS,        /* ranges that share a conversion, and receivers that share its terms */
+    CAUSE_STOLT,         /* the interpolation of the spectrum */
+    CAUSE_FLOAT,         /* rounding */
+    CAUSES
+};
+extern const char *const cause_names[CAUSES];
+
+/* How a pair's value is read: what its time depends on. */
+enum reading_kind { READ_NEAREST, READ_LINE, READ_TAPS, READ_BRANCHES, READ_KINDS };
+
+struct forecast {
+    double error[CAUSES]; /* relative L2 of the complex image after one best complex gain, root mean square */
+    bool sums_pairs;      /* back projection: what follows is of its pairs, and of its records */
+    bool tables;          /* by the invariant engine */
+    enum reading_kind kind;
+    int values;          /* that a pair reads */
+    double pair_flops;   /* of a pair */
+    double record_flops; /* of range compression, all records together */
+};
+
+/* Of all causes: the root of the sum of squares. */
+double forecast_error(const struct forecast *forecast);
+/* The cause that is most of it. */
+enum cause forecast_cause(const struct forecast *forecast);
+
+#endif

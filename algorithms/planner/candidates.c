@@ -1,0 +1,78 @@
+#include "planner/candidates.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "param.h"
+
+/* THE list: an algorithm with a forecast, what is fixed, and the values that one parameter takes. */
+static const struct {
+    const char *algorithm, *fixed, *varied, *values; /* "key=value", "key", "value value" */
+} families[] = {
+    {"bp_nearest", "", "", ""},
+    {"bp_linear", "", "beta", "1 2 8 32"},
+    {"bp_zeropad", "", "factor", "2 4 8 16 32 64"},
+    {"bp_farrow", "", "degree", "2 3 4 5 6 7 8 9"},
+    {"bp_farrow", "factor=2", "degree", "2 3 4 5 6 7 8 9"},
+    {"bp_sinc", "window=none", "taps", "4 8 16 32"},
+    {"bp_sinc", "window=kaiser", "taps", "4 8 16 32"},
+    {"bp_fitted", "", "taps", "4 6 8 12"},
+    {"bp_fitted", "factor=2", "taps", "4 6 8 12"},
+    {"bp_fitted", "factor=4", "taps", "4 6 8"},
+    {"rma_delay", "", "terms", "1 2"},
+    {"rma_delay", "taps=24", "terms", "2 3"},
+    {"rma_lbf", "", "limit", "0.785 0.1 0.01"},
+    {"rma_pca", "", "limit", "0.785 0.1"},
+    {"rma_wu", "", "limit", "0.785 0.1"},
+    {"rma_numeric", "", "limit", "0.785 0.1 0.01"},
+};
+
+/* Set a parameter of the table by its text. False where it is none, or takes no such value. */
+static bool setting_store(const struct algorithm *algorithm, void *options, const char *key, const char *value)
+{
+    for (const struct param *param = algorithm->params; param && param->name; param++)
+        if (strcmp(param->name, key) == 0) {
+            const double number = param->type == PARAM_CHOICE ? param_choice(param, value) : strtod(value, NULL);
+            if (!(number >= param->min && number <= param->max))
+                return false;
+            param_store(param, options, number);
+            return true;
+        }
+    return false;
+}
+
+/* One candidate of a family; false where the algorithm does not take its settings. */
+static bool candidate_fill(int family, const char *value, struct candidate *candidate)
+{
+    const struct algorithm *algorithm = algorithm_find(families[family].algorithm);
+    const char *fixed = families[family].fixed, *varied = families[family].varied, *equals = strchr(fixed, '=');
+    if (!algorithm || !algorithm->forecast || algorithm->options_size > sizeof candidate->options)
+        return false;
+    *candidate = (struct candidate){.algorithm = algorithm};
+    options_fill(algorithm, candidate->options);
+    snprintf(candidate->settings, sizeof candidate->settings, "%s%s%s%s%s", fixed, *fixed && *varied ? "," : "", varied,
+             *varied ? "=" : "", value);
+    if (equals) {
+        char key[32];
+        snprintf(key, sizeof key, "%.*s", (int)(equals - fixed), fixed);
+        if (!setting_store(algorithm, candidate->options, key, equals + 1))
+            return false;
+    }
+    return !*varied || setting_store(algorithm, candidate->options, varied, value);
+}
+
+int candidates_fill(struct candidate *list)
+{
+    int count = 0;
+    for (size_t k = 0; k < sizeof families / sizeof *families; k++) {
+        char values[80], *rest = values;
+        snprintf(values, sizeof values, "%s", families[k].values);
+        do {
+            const char *value = strsep(&rest, " ");
+            if (count < CANDIDATES_MAX && candidate_fill((int)k, value, &list[count]))
+                count++;
+        } while (rest);
+    }
+    return count;
+}

@@ -1,0 +1,13 @@
+/* The settings that a planner chooses among. */
+#ifndef SASBENCH_PLANNER_CANDIDATES_H
+#define SASBENCH_PLANNER_CANDIDATES_H
+
+#include "planner/planner.h"
+
+enum { CANDIDATES_MAX = 128 };
+
+/* Fill list[CANDIDATES_MAX] with algorithm, settings and options of every candidate, back projections first; the rest
+   is zero. Returns their number. */
+int candidates_fill(struct candidate *list);
+
+#endif

@@ -1,0 +1,220 @@
+/* Choosing among candidates (planner.h). Back projections are forecast first: their forecasts are cheap. Range migration
+   is forecast where the FFTs alone that it cannot do without are faster than the fastest of those. */
+#include "planner/planner.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "backprojection/pairs.h"
+#include "common/fft_length.h"
+#include "planner/candidates.h"
+#include "planner/rates.h"
+
+/* Forecasts are means over scenes: what is planned with lies above. */
+static const double MARGIN = 1.12;
+
+/* What all candidates of a problem share. */
+struct setting {
+    const struct problem *problem;
+    const struct budget *budget;
+    double pairs, entries; /* of back projection; of the invariant engine's tables */
+    double transforms;     /* FLOPs: range and azimuth transforms of all records */
+};
+
+void candidate_name(const struct candidate *candidate, char text[CANDIDATE_NAME])
+{
+    snprintf(text, CANDIDATE_NAME, "%s%s%s", candidate->algorithm->name, *candidate->settings ? ":" : "",
+             candidate->settings);
+}
+
+static struct setting setting_of(const struct problem *problem, const struct budget *budget)
+{
+    const struct acquisition *a = problem->acquisition;
+    const double spacing = a->pings > 1 ? fabs(a->tx[1].x - a->tx[0].x) : 0, receivers = a->receivers;
+    struct setting setting = {problem, budget, pairs_count(problem), 0, 0};
+    for (int k = 0; k < problem->patch_count; k++) {
+        const struct grid *g = &problem->patches[k];
+        setting.entries += g->r_count * receivers * (g->x_count + a->pings * fmax(1, spacing / g->x_step));
+    }
+    setting.transforms = receivers * (a->pings * fft_flops(a->samples) + (double)a->samples * fft_flops(a->pings));
+    return setting;
+}
+
+/* Over the budget, or not. */
+static void judge(const struct setting *setting, struct candidate *candidate)
+{
+    candidate->error = MARGIN * forecast_error(&candidate->forecast);
+    candidate->verdict = VERDICT_SLOWER;
+    if (candidate->error <= setting->budget->error)
+        return;
+    candidate->verdict = VERDICT_ERROR;
+    snprintf(candidate->reason, sizeof candidate->reason, "error %.2g is over the budget of %.2g, most of it %s",
+             candidate->error, setting->budget->error, cause_names[forecast_cause(&candidate->forecast)]);
+}
+
+/* One that is refused says why, and that is no error. */
+static enum status refused(struct candidate *candidate, enum status status)
+{
+    if (status != STATUS_UNSUPPORTED)
+        return status;
+    candidate->verdict = VERDICT_REFUSED;
+    candidate->seconds = candidate->error = INFINITY;
+    snprintf(candidate->reason, sizeof candidate->reason, "%s", status_message());
+    return STATUS_OK;
+}
+
+static void sums_fill(const struct setting *setting, struct candidate *candidate)
+{
+    candidate->pairs = setting->pairs;
+    candidate->flops = setting->pairs * candidate->forecast.pair_flops + candidate->forecast.record_flops;
+    candidate->seconds =
+        rates_sums(&candidate->forecast, setting->problem->precision, setting->pairs, setting->entries);
+}
+
+/* Its FLOPs are counted by its own plan, which is made where the error allows it. */
+static enum status migration_fill(const struct setting *setting, struct candidate *candidate)
+{
+    const struct problem *problem = setting->problem;
+    void *plan = NULL;
+    candidate->pairs = 0;
+    if (candidate->verdict == VERDICT_ERROR)
+        return STATUS_OK;
+    enum status status = candidate->algorithm->plan(problem, candidate->options, &plan);
+    if (status != STATUS_OK)
+        return status;
+    const struct work work = candidate->algorithm->work(plan);
+    candidate->algorithm->destroy(plan);
+    candidate->flops = work.flops;
+    candidate->bytes = work.bytes;
+    candidate->seconds = rates_migration(problem->precision, work.flops);
+    return STATUS_OK;
+}
+
+static enum status candidate_forecast(const struct setting *setting, struct candidate *candidate)
+{
+    enum status status = candidate->algorithm->forecast(setting->problem, candidate->options, &candidate->forecast);
+    if (status == STATUS_OK) {
+        judge(setting, candidate);
+        if (candidate->forecast.sums_pairs)
+            sums_fill(setting, candidate);
+        else
+            status = migration_fill(setting, candidate);
+    }
+    return refused(candidate, status);
+}
+
+/* The time of the fastest candidate within the budget; INFINITY without one. */
+static double fastest(const struct choice *choice)
+{
+    double least = INFINITY;
+    for (int k = 0; k < choice->count; k++)
+        if (choice->list[k].verdict == VERDICT_SLOWER)
+            least = fmin(least, choice->list[k].seconds);
+    return least;
+}
+
+static enum status forecast_all(const struct setting *setting, struct choice *choice)
+{
+    const double floor_s = rates_migration(setting->problem->precision, setting->transforms);
+    enum status status = STATUS_OK;
+    for (int k = 0; k < choice->count; k++) { /* no verdict yet */
+        struct candidate *c = &choice->list[k];
+        c->verdict = VERDICT_REFUSED;
+        c->error = c->seconds = INFINITY; /* numbers, for they are compared, which of a NAN would raise FE_INVALID */
+        c->flops = c->pairs = c->bytes = NAN;
+    }
+    for (int k = 0; k < choice->count && status == STATUS_OK; k++) {
+        struct candidate *c = &choice->list[k];
+        const bool sums = c->algorithm->traits & TRAIT_ANY_TRACK;
+        const double best = sums ? INFINITY : fastest(choice);
+        if (sums || setting->budget->thorough || floor_s < best) {
+            status = candidate_forecast(setting, c);
+        } else {
+            c->verdict = VERDICT_SLOWER;
+            c->seconds = floor_s;
+            snprintf(c->reason, sizeof c->reason,
+                     "%.1f times the chosen one's time or more: its transforms alone take %.2g s", floor_s / best,
+                     floor_s);
+        }
+    }
+    return status;
+}
+
+/* Plan the fastest that is left; false without one. One that its plan refuses, or whose memory is too much, is out. */
+static enum status plan_fastest(const struct setting *setting, struct choice *choice, bool *tried)
+{
+    struct candidate *best = NULL;
+    for (int k = 0; k < choice->count; k++) {
+        struct candidate *c = &choice->list[k];
+        if (c->verdict == VERDICT_SLOWER && c->error < INFINITY && (!best || c->seconds < best->seconds))
+            best = c;
+    }
+    *tried = best != NULL;
+    if (!best)
+        return STATUS_OK;
+    enum status status = best->algorithm->plan(setting->problem, best->options, &choice->plan);
+    if (status != STATUS_OK)
+        return refused(best, status);
+    best->bytes = best->algorithm->work(choice->plan).bytes;
+    if (best->bytes <= setting->budget->bytes) {
+        best->verdict = VERDICT_CHOSEN;
+        choice->found = true;
+        return STATUS_OK;
+    }
+    best->algorithm->destroy(choice->plan);
+    choice->plan = NULL;
+    best->verdict = VERDICT_MEMORY;
+    snprintf(best->reason, sizeof best->reason, "its plan holds %.3g MB, more than %.3g MB", best->bytes / 1e6,
+             setting->budget->bytes / 1e6);
+    return STATUS_OK;
+}
+
+static int compare(const void *a, const void *b)
+{
+    const struct candidate *one = a, *other = b;
+    if (one->verdict != other->verdict)
+        return one->verdict < other->verdict ? -1 : 1;
+    return (one->seconds > other->seconds) - (one->seconds < other->seconds);
+}
+
+static void reasons_fill(struct choice *choice)
+{
+    for (int k = 1; k < choice->count; k++) {
+        struct candidate *c = &choice->list[k];
+        if (c->verdict == VERDICT_SLOWER && !*c->reason)
+            snprintf(c->reason, sizeof c->reason, "within the budget, %.2f times the chosen one's time",
+                     c->seconds / choice->list[0].seconds);
+    }
+}
+
+enum status planner_choose(const struct problem *problem, const struct budget *budget, struct choice *choice)
+{
+    const struct setting setting = setting_of(problem, budget);
+    *choice = (struct choice){.least = INFINITY, .list = malloc(CANDIDATES_MAX * sizeof *choice->list)};
+    if (!choice->list)
+        return status_set(STATUS_FAILED, "no memory for the candidates of a plan");
+    choice->count = candidates_fill(choice->list);
+    enum status status = forecast_all(&setting, choice);
+    for (bool tried = true; status == STATUS_OK && tried && !choice->found;)
+        status = plan_fastest(&setting, choice, &tried);
+    if (status != STATUS_OK) {
+        choice_free(choice);
+        return status;
+    }
+    for (int k = 0; k < choice->count; k++)
+        choice->least = fmin(choice->least, choice->list[k].error);
+    qsort(choice->list, (size_t)choice->count, sizeof *choice->list, compare);
+    if (choice->found)
+        reasons_fill(choice);
+    return STATUS_OK;
+}
+
+void choice_free(struct choice *choice)
+{
+    if (choice->plan)
+        choice->list[0].algorithm->destroy(choice->plan);
+    free(choice->list);
+    *choice = (struct choice){.list = NULL};
+}

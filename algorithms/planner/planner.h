@@ -1,0 +1,49 @@
+/* Which algorithm, with which settings, images a problem within an error budget in the least time: every candidate's
+   forecast, its time from the work that is counted and the machine's rates, and why it is chosen or not. */
+#ifndef SASBENCH_PLANNER_PLANNER_H
+#define SASBENCH_PLANNER_PLANNER_H
+
+#include <stddef.h>
+
+#include "algorithm.h"
+
+enum verdict { VERDICT_CHOSEN, VERDICT_SLOWER, VERDICT_MEMORY, VERDICT_ERROR, VERDICT_REFUSED };
+
+struct candidate {
+    const struct algorithm *algorithm;
+    char settings[24];        /* as in a SPEC: "degree=4", may be empty */
+    max_align_t options[8];   /* the algorithm's options struct */
+    struct forecast forecast; /* zero where refused, and where it is too slow in any case */
+    double error;             /* relative L2 that is planned with; INFINITY where there is no forecast */
+    double seconds;           /* of a run; a lower bound where it is too slow in any case; INFINITY where unknown */
+    double flops, pairs;      /* counted; NAN where unknown */
+    double bytes;             /* of the plan; NAN where none was made */
+    enum verdict verdict;
+    char reason[480]; /* why it is not chosen; empty for the one that is */
+};
+
+/* Made by planner_choose, released by choice_free, which accepts a zeroed struct. */
+struct choice {
+    struct candidate *list; /* [count]: the chosen one first, then by verdict and time */
+    int count;
+    bool found;
+    void *plan;   /* of the chosen one's algorithm: the caller may take it, and leave NULL */
+    double least; /* the least error of those that are not refused; INFINITY if all are */
+};
+
+/* What is asked for. */
+struct budget {
+    double error;  /* relative L2 of the complex image after one best complex gain, > 0 */
+    double bytes;  /* that the plan may hold */
+    bool thorough; /* forecasts of range migration also where back projection is faster for sure */
+};
+
+/* Errors: STATUS_FAILED without memory. Where nothing fits, found is false, and the reasons say why. */
+enum status planner_choose(const struct problem *problem, const struct budget *budget, struct choice *choice);
+void choice_free(struct choice *choice);
+
+/* "bp_farrow:degree=4": as the column `engine` holds it. */
+enum { CANDIDATE_NAME = 32 };
+void candidate_name(const struct candidate *candidate, char text[CANDIDATE_NAME]);
+
+#endif

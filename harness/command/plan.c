@@ -1,0 +1,101 @@
+/* The command `plan`: the least work for an error budget, before any imaging. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "command/task.h"
+#include "data/number.h"
+#include "data/text_file.h"
+#include "study/batch.h"
+#include "study/machine_rates.h"
+#include "study/planned.h"
+
+static enum status error_parse(const char *text, double *error)
+{
+    const char *end = text ? number_read(text, error) : "";
+    if (!text)
+        *error = 1e-3;
+    return end && !*end && *error > 0 && *error <= 1
+               ? STATUS_OK
+               : status_set(STATUS_INVALID, "plan: --error is '%s', must be a number above 0, at most 1", text);
+}
+
+/* "4G": bytes. */
+static enum status memory_parse(const char *text, double *bytes)
+{
+    static const char suffixes[] = "kMGT";
+    const char *end = text ? number_read(text, bytes) : "", *suffix = end && *end ? strchr(suffixes, *end) : NULL;
+    if (!text)
+        *bytes = 4e9;
+    if (suffix) {
+        *bytes *= pow(1000, (double)(suffix - suffixes) + 1);
+        end++;
+    }
+    return end && !*end && *bytes > 0
+               ? STATUS_OK
+               : status_set(STATUS_INVALID, "plan: --memory is '%s', must be bytes above 0; k, M, G or T may follow",
+                            text);
+}
+
+/* The rates of this machine, measured where the cache has none. */
+static enum status rates_need(void)
+{
+    char path[4096];
+    bool found;
+    struct rates rates;
+    machine_rates_use(&found);
+    if (!found) {
+        enum status status = machine_rates_measure(&rates);
+        if (status == STATUS_OK)
+            status = machine_rates_keep(&rates);
+        if (status != STATUS_OK)
+            return status;
+    }
+    machine_rates_path(path, sizeof path);
+    printf("Rates of this machine, %s; times repeat within %.0f %%: %s\n\n", found ? "measured before" : "measured now",
+           100 * rates_get()->noise, *path ? path : "not kept, for HOME is not set");
+    return STATUS_OK;
+}
+
+static enum status plan_scene(const struct task *task, const struct scene *scene, const struct budget *budget)
+{
+    struct planned planned;
+    struct text_file file;
+    enum status status = planned_make(scene, budget, &planned);
+    if (status == STATUS_OK) {
+        printf("%s\n", scene->name);
+        planned_print(stdout, &planned);
+    }
+    if (status == STATUS_OK && task->output)
+        status = text_file_open(task->output, &file);
+    if (status == STATUS_OK && task->output) {
+        planned_write(file.stream, &planned);
+        status = text_file_close(&file, STATUS_OK);
+    }
+    if (status == STATUS_OK && planned_precision(&planned) < 0)
+        status = status_set(STATUS_FAILED,
+                            "plan: nothing images %s within an error of %.3g and %.3g MB; the least predicted is %.3g",
+                            scene->name, budget->error, budget->bytes / 1e6, planned.choices[PRECISION_DOUBLE].least);
+    planned_free(&planned);
+    return status;
+}
+
+enum status command_plan(const struct task *task)
+{
+    struct scene *scene = NULL;
+    struct budget budget = {.thorough = true};
+    int count = 0;
+    if (!task->name_count && !task->echoes)
+        return status_set(STATUS_INVALID, "plan: a SCENE, or --echoes FILE.mat with --grid GRID, is missing");
+    enum status status = error_parse(task->error, &budget.error);
+    if (status == STATUS_OK)
+        status = memory_parse(task->memory, &budget.bytes);
+    if (status == STATUS_OK)
+        status = task_scenes("plan", task, 0, NULL, &scene, &count);
+    if (status == STATUS_OK)
+        status = rates_need();
+    if (status == STATUS_OK)
+        status = plan_scene(task, &scene[0], &budget);
+    scenes_free(scene, count);
+    return status;
+}

@@ -1,0 +1,305 @@
+/* Probes (machine_rates.h): one scene whose echoes are zeros, for times do not depend on what
+   is summed. */
+#include "study/machine_rates.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/clock.h"
+#include "data/csv.h"
+#include "data/echo_data.h"
+#include "data/folder.h"
+#include "data/paths.h"
+#include "data/text_file.h"
+#include "measure/imaging.h"
+#include "measure/provenance.h"
+#include "measure/timing.h"
+#include "scene/scene.h"
+
+static const char scene_name[] = "sweep/speckle";
+enum { RUNS = 2, ROUNDS = 3 }; /* of a probe in a round; rounds of all probes */
+
+/* The k-th number of the file and its name; NULL behind the last. */
+static double *rate_at(struct rates *rates, int k, char name[48])
+{
+    static const char *const engines[] = {"general", "invariant"};
+    static const char *const kinds[READ_KINDS] = {"nearest", "line", "taps", "branches"};
+    const struct {
+        const char *name;
+        double *rate;
+    } others[] = {{"entry_nearest", &rates->entry[READ_NEAREST]},
+                  {"entry_line", &rates->entry[READ_LINE]},
+                  {"entry_taps", &rates->entry[READ_TAPS]},
+                  {"entry_branches", &rates->entry[READ_BRANCHES]},
+                  {"compress", &rates->compress},
+                  {"migrate", &rates->migrate},
+                  {"doubled", &rates->doubled},
+                  {"noise", &rates->noise}};
+    const int pairs = 4 * READ_KINDS, engine = k / (2 * READ_KINDS), kind = k / 2 % READ_KINDS;
+    if (k < pairs) {
+        snprintf(name, 48, "%s_%s_%s", engines[engine], kinds[kind], k % 2 ? "value" : "pair");
+        return k % 2 ? &rates->value[engine][kind] : &rates->pair[engine][kind];
+    }
+    if (k - pairs >= (int)(sizeof others / sizeof *others))
+        return NULL;
+    snprintf(name, 48, "%s", others[k - pairs].name);
+    return others[k - pairs].rate;
+}
+
+/* The least of some runs: what other work on the machine takes only adds. */
+struct probe {
+    double total, compress, focus; /* s */
+    struct work work;
+    struct forecast forecast;
+};
+
+static double stage_seconds(const struct stages *stages, const char *name)
+{
+    for (int k = 0; k < stages->count; k++)
+        if (strcmp(stages->stage[k].name, name) == 0)
+            return stages->stage[k].seconds;
+    return 0;
+}
+
+static enum status probe_run(struct imaging *imaging, const struct echoes *echoes, struct probe *probe)
+{
+    enum status status = STATUS_OK;
+    for (int k = 0; k <= RUNS && status == STATUS_OK; k++) {
+        struct stages stages;
+        stages_begin(&stages);
+        const double begin = stages.mark;
+        status = imaging_execute(imaging, echoes, &stages);
+        if (k == 0)
+            continue; /* warms up */
+        probe->total = fmin(probe->total, seconds_now() - begin);
+        probe->compress = fmin(probe->compress, stage_seconds(&stages, "compress"));
+        probe->focus = fmin(probe->focus, stage_seconds(&stages, "focus"));
+    }
+    return status;
+}
+
+/* What is probed: some rows of the scene with all of its columns, or the first of them. */
+struct bench {
+    struct scene scene;
+    struct grid wide, narrow;
+    struct echoes echoes[2];
+};
+
+static enum status probe_spec(const struct bench *bench, const char *text, bool narrow, struct probe *probe)
+{
+    struct spec spec;
+    struct imaging imaging;
+    enum status status = spec_parse(text, &spec);
+    if (status != STATUS_OK)
+        return status;
+    const struct problem problem = {&bench->scene.acquisition, 1, narrow ? &bench->narrow : &bench->wide,
+                                    spec.precision};
+    status = spec.algorithm->forecast(&problem, spec.options, &probe->forecast);
+    if (status == STATUS_OK)
+        status = imaging_open(&spec, &problem, &imaging);
+    if (status == STATUS_OK) {
+        probe->work = imaging.algorithm->work(imaging.plan);
+        status = probe_run(&imaging, &bench->echoes[spec.precision], probe);
+        imaging_close(&imaging);
+    }
+    spec_free(&spec);
+    return status;
+}
+
+static const char *const specs[] = {"bp_nearest:engine=",
+                                    "bp_linear:engine=",
+                                    "bp_sinc:taps=8,engine=",
+                                    "bp_sinc:taps=16,engine=",
+                                    "bp_farrow:degree=3,engine=",
+                                    "bp_farrow:degree=7,engine=",
+                                    "bp_nearest:precision=double,engine="};
+enum { NEAREST, LINE, FEW_TAPS, MANY_TAPS, FEW_BRANCHES, MANY_BRANCHES, DOUBLE, PROBES };
+
+/* The rates of a kind. Tables are told from pairs by two widths of the image: focus = pairs p + entries e, twice. */
+static void kind_fill(int tables, enum reading_kind kind, const struct probe *few, const struct probe *many,
+                      const struct probe *narrow, const double entries[2], struct rates *rates)
+{
+    double entries_s = 0;
+    if (tables) {
+        const double share = narrow->work.pairs / few->work.pairs;
+        const double entry = (narrow->focus - share * few->focus) / (entries[1] - share * entries[0]);
+        entries_s = fmin(fmax(entry, 0) * entries[0], 0.9 * few->focus);
+        rates->entry[kind] = entries_s / entries[0];
+    }
+    const double a = (few->focus - entries_s) / few->work.pairs, b = (many->focus - entries_s) / many->work.pairs;
+    const int more = many->forecast.values - few->forecast.values;
+    const double value = more > 0 ? fmax(b - a, 0) / more : 0;
+    rates->value[tables][kind] = value;
+    rates->pair[tables][kind] = fmax(a - value * few->forecast.values, 0);
+}
+
+struct probes {
+    struct probe of[2][PROBES], narrow[PROBES], migration; /* by engine; invariant on the narrow image */
+    double nearest[ROUNDS];                                /* s: of the general engine, in each round */
+    double noise;
+};
+
+static enum status round_run(const struct bench *bench, struct probes *probes)
+{
+    enum status status = STATUS_OK;
+    for (int k = 0; k < 3 * PROBES && status == STATUS_OK; k++) {
+        char text[80];
+        const int way = k / PROBES, n = k % PROBES;
+        snprintf(text, sizeof text, "%s%s", specs[n], way > 0 ? "invariant" : "general");
+        status = probe_spec(bench, text, way == 2, way == 2 ? &probes->narrow[n] : &probes->of[way][n]);
+    }
+    return status == STATUS_OK ? probe_spec(bench, "rma_lbf", false, &probes->migration) : status;
+}
+
+static void rates_fill(const struct bench *bench, struct probes *probes, struct rates *rates)
+{
+    static const struct {
+        enum reading_kind kind;
+        int few, many;
+    } kinds[] = {{READ_NEAREST, NEAREST, NEAREST},
+                 {READ_LINE, LINE, LINE},
+                 {READ_TAPS, FEW_TAPS, MANY_TAPS},
+                 {READ_BRANCHES, FEW_BRANCHES, MANY_BRANCHES}};
+    const struct acquisition *a = &bench->scene.acquisition;
+    const double ratio = fabs(a->tx[1].x - a->tx[0].x) / bench->narrow.x_step;
+    double entries[2];
+    for (int k = 0; k < 2; k++) {
+        const struct grid *grid = k ? &bench->narrow : &bench->wide;
+        entries[k] = (double)grid->r_count * a->receivers * (grid->x_count + a->pings * ratio);
+    }
+    for (int tables = 0; tables < 2; tables++)
+        for (int k = 0; k < READ_KINDS; k++)
+            kind_fill(tables, kinds[k].kind, &probes->of[tables][kinds[k].few], &probes->of[tables][kinds[k].many],
+                      &probes->narrow[kinds[k].few], entries, rates);
+    const struct probe *branches = &probes->of[1][MANY_BRANCHES];
+    rates->compress = branches->compress / branches->forecast.record_flops;
+    rates->migrate = probes->migration.total / probes->migration.work.flops;
+    rates->doubled = sqrt(probes->of[0][DOUBLE].total / probes->of[0][NEAREST].total * probes->of[1][DOUBLE].total
+                          / probes->of[1][NEAREST].total);
+    rates->noise = probes->noise;
+}
+
+/* Rounds of all probes; by how much the first of them was slower in a round than in the fastest is the noise. */
+static enum status rounds_run(const struct bench *bench, struct probes *probes)
+{
+    const struct probe none = {.total = INFINITY, .compress = INFINITY, .focus = INFINITY};
+    struct probe *const all[] = {probes->of[0], probes->of[1], probes->narrow};
+    enum status status = STATUS_OK;
+    for (int k = 0; k < 3 * PROBES; k++)
+        all[k / PROBES][k % PROBES] = none;
+    probes->migration = none;
+    for (int number = 0; number < ROUNDS && status == STATUS_OK; number++) {
+        struct probe nearest = none;
+        status = probe_spec(bench, "bp_nearest:engine=general", false, &nearest);
+        probes->nearest[number] = nearest.total;
+        if (status == STATUS_OK)
+            status = round_run(bench, probes);
+    }
+    const double middle = median(probes->nearest, ROUNDS); /* sorts them */
+    probes->noise = middle / probes->nearest[0] - 1;
+    return status;
+}
+
+enum status machine_rates_measure(struct rates *rates)
+{
+    struct bench bench = {.echoes = {{0}, {0}}};
+    struct probes probes;
+    const int threads = omp_get_max_threads();
+    *rates = (struct rates){.doubled = 1};
+    enum status status = scene_load(scene_name, SCENE_DIRECTORY, &bench.scene);
+    if (status != STATUS_OK)
+        return status;
+    bench.wide = bench.narrow = bench.scene.patches[0];
+    bench.wide.r_count = bench.narrow.r_count = 40; /* are enough */
+    bench.narrow.x_count /= 4;
+    for (int precision = 0; precision < 2 && status == STATUS_OK; precision++)
+        status = echoes_allocate(&bench.scene.acquisition, (enum precision)precision, &bench.echoes[precision]);
+    omp_set_num_threads(1); /* whose waiting for a processor is known */
+    seconds_skip_waiting();
+    if (status == STATUS_OK)
+        status = rounds_run(&bench, &probes);
+    clock_set(clock_monotonic);
+    omp_set_num_threads(threads);
+    if (status == STATUS_OK)
+        rates_fill(&bench, &probes, rates);
+    echoes_free(&bench.echoes[0]);
+    echoes_free(&bench.echoes[1]);
+    scene_free(&bench.scene);
+    return status;
+}
+
+/* ---- the file ---- */
+
+void machine_rates_path(char *path, size_t size)
+{
+    const char *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
+    *path = '\0';
+    if (cache && *cache)
+        snprintf(path, size, "%s/sasbench/rates.csv", cache);
+    else if (home && *home)
+        snprintf(path, size, "%s/.cache/sasbench/rates.csv", home);
+}
+
+/* What rates depend on, beside the program. */
+static void owner_format(char *text, size_t size)
+{
+    struct provenance provenance;
+    provenance_fill(&provenance, 1);
+    snprintf(text, size, "%s, %s", provenance.machine, provenance.isa);
+}
+
+void machine_rates_use(bool *found)
+{
+    char path[4096], owner[300];
+    struct csv csv = {0};
+    struct rates rates = {.doubled = NAN};
+    bool whole = false;
+    machine_rates_path(path, sizeof path);
+    owner_format(owner, sizeof owner);
+    if (*path && csv_read(path, CSV_TAIL_DROP, &csv) == STATUS_OK) {
+        const char *of = csv_comment(&csv, "machine");
+        const int name = csv_column(&csv, "rate"), value = csv_column(&csv, "value");
+        whole = of && strcmp(of, owner) == 0 && name >= 0 && value >= 0;
+        for (int k = 0; whole; k++) {
+            char wanted[48];
+            double *rate = rate_at(&rates, k, wanted);
+            int row = 0;
+            if (!rate)
+                break;
+            while (row < csv.row_count && strcmp(csv_cell(&csv, row, name), wanted) != 0)
+                row++;
+            whole = row < csv.row_count && csv_number(csv_cell(&csv, row, value), rate) && *rate >= 0 && *rate < 1e3;
+        }
+    }
+    csv_free(&csv);
+    if (whole)
+        rates_set(&rates);
+    if (found)
+        *found = whole;
+}
+
+enum status machine_rates_keep(const struct rates *rates)
+{
+    char path[4096], directory[4096], owner[300];
+    struct text_file file;
+    rates_set(rates);
+    machine_rates_path(path, sizeof path);
+    if (!*path)
+        return STATUS_OK;
+    snprintf(directory, sizeof directory, "%.*s", (int)(strrchr(path, '/') - path), path);
+    owner_format(owner, sizeof owner);
+    enum status status = directory_make(directory);
+    if (status == STATUS_OK)
+        status = text_file_open(path, &file);
+    if (status != STATUS_OK)
+        return status;
+    fprintf(file.stream, "# sasbench rates 1\n# machine: %s\nrate,value\n", owner);
+    struct rates copy = *rates;
+    char name[48];
+    for (int k = 0; rate_at(&copy, k, name); k++)
+        fprintf(file.stream, "%s,%.9g\n", name, *rate_at(&copy, k, name));
+    return text_file_close(&file, status);
+}

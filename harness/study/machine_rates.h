@@ -1,0 +1,21 @@
+/* The rates that planning goes by (planner/rates.h), measured on this machine once and kept in the user's cache:
+   $XDG_CACHE_HOME/sasbench/rates.csv, or .cache/sasbench/rates.csv in the home folder. */
+#ifndef SASBENCH_STUDY_MACHINE_RATES_H
+#define SASBENCH_STUDY_MACHINE_RATES_H
+
+#include <stddef.h>
+
+#include "planner/rates.h"
+
+/* Measure them: some seconds on one thread, without the time that it waits for a processor. Errors: as planning and
+   imaging. */
+enum status machine_rates_measure(struct rates *rates);
+
+/* The file's path; empty where the environment names no folder. */
+void machine_rates_path(char *path, size_t size);
+/* Let planning go by the rates of the file, where it holds those of this machine and instruction set; *found (may be NULL) says whether it does. Nothing else changes. */
+void machine_rates_use(bool *found);
+/* Write rates there, and let planning go by them. Errors: as text_file_open. */
+enum status machine_rates_keep(const struct rates *rates);
+
+#endif

@@ -1,0 +1,181 @@
+#include "study/planned.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "backprojection/pairs.h"
+#include "data/csv.h"
+#include "data/echo_data.h"
+#include "show/table.h"
+
+static const char *const verdict_names[] = {[VERDICT_CHOSEN] = "chosen",
+                                            [VERDICT_SLOWER] = "slower",
+                                            [VERDICT_ERROR] = "error",
+                                            [VERDICT_MEMORY] = "memory",
+                                            [VERDICT_REFUSED] = "refused"};
+
+enum status planned_make(const struct scene *scene, const struct budget *budget, struct planned *planned)
+{
+    *planned = (struct planned){.scene = scene, .budget = *budget};
+    enum status status = STATUS_OK;
+    for (int precision = 0; precision < 2 && status == STATUS_OK; precision++) {
+        const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches,
+                                        (enum precision)precision};
+        status = planner_choose(&problem, budget, &planned->choices[precision]);
+    }
+    return status;
+}
+
+void planned_free(struct planned *planned)
+{
+    choice_free(&planned->choices[0]);
+    choice_free(&planned->choices[1]);
+}
+
+int planned_precision(const struct planned *planned)
+{
+    return planned->choices[PRECISION_FLOAT].found    ? PRECISION_FLOAT
+           : planned->choices[PRECISION_DOUBLE].found ? PRECISION_DOUBLE
+                                                      : -1;
+}
+
+/* "2.1e-04", or "-" of what is unknown or none. */
+static const char *error_text(double error, char text[16])
+{
+    if (error > 0 && error < INFINITY)
+        snprintf(text, 16, "%.1e", error);
+    else
+        snprintf(text, 16, "-");
+    return text;
+}
+
+static void candidate_print(FILE *stream, const struct candidate *candidate)
+{
+    char name[CANDIDATE_NAME], cells[CAUSES + 1][16];
+    candidate_name(candidate, name);
+    fprintf(stream, "%c %-30s %9s %8s", candidate->verdict == VERDICT_CHOSEN ? '>' : ' ', name,
+            cell_time(candidate->seconds).text, error_text(candidate->error, cells[CAUSES]));
+    for (int k = 0; k < CAUSES; k++)
+        fprintf(stream, " %8s", error_text(candidate->forecast.error[k], cells[k]));
+    fprintf(stream, " %9s\n", cell_significant(1e-9 * candidate->flops, " GF").text);
+}
+
+/* Of those that are over the budget or refused: the nearest of each algorithm, with its reason. */
+static void rejected_print(FILE *stream, const struct choice *choice)
+{
+    for (int k = 0; k < choice->count; k++) {
+        const struct candidate *c = &choice->list[k];
+        bool nearest = c->verdict > VERDICT_SLOWER;
+        for (int n = 0; n < choice->count && nearest; n++) {
+            const struct candidate *other = &choice->list[n];
+            if (n == k || other->algorithm != c->algorithm)
+                continue;
+            const bool refused = isinf(c->error), better = other->error < c->error;
+            nearest = other->verdict > VERDICT_SLOWER && !better && !(refused && isinf(other->error) && n < k);
+        }
+        if (nearest) {
+            char text[600], name[CANDIDATE_NAME];
+            candidate_name(c, name);
+            snprintf(text, sizeof text, "%s: %s", name, c->reason);
+            table_text(stream, 2, text);
+        }
+    }
+}
+
+/* What the chosen way does not do, and what each of these adds to the error. */
+static void left_out_print(FILE *stream, const struct planned *planned, int precision)
+{
+    const struct candidate *chosen = &planned->choices[precision].list[0];
+    const struct acquisition *a = &planned->scene->acquisition;
+    const struct problem problem = {a, planned->scene->patch_count, planned->scene->patches, (enum precision)precision};
+    const struct forecast *f = &chosen->forecast;
+    char text[400];
+    fprintf(stream, "\nLeft out, and the error that it adds:\n");
+    if (f->sums_pairs) {
+        const double all = (double)a->pings * a->receivers * problem_pixels(&problem);
+        if (chosen->pairs < all) {
+            snprintf(text, sizeof text, "%.3g %% of the pairs of pixels and records, which meet no sample%s: 0",
+                     100 * (1 - chosen->pairs / all), a->aperture_limit < 1 ? " inside the aperture limit" : "");
+            table_text(stream, 2, text);
+        }
+        snprintf(text, sizeof text, "exact values between samples: %.2g", f->error[CAUSE_INTERPOLATION]);
+        table_text(stream, 2, text);
+        snprintf(text, sizeof text,
+                 f->tables ? "delays of all pings but one, which repeat from ping to ping: %.2g"
+                           : "delays of all pixels but those between which they are interpolated: %.2g",
+                 f->error[CAUSE_DELAYS]);
+        table_text(stream, 2, text);
+    } else {
+        snprintf(text, sizeof text, "the sum over pairs: %.2g by the spectrum, %.2g by blocks or terms, %.2g by Stolt",
+                 f->error[CAUSE_SPECTRUM], f->error[CAUSE_BLOCKS], f->error[CAUSE_STOLT]);
+        table_text(stream, 2, text);
+    }
+    if (precision == PRECISION_FLOAT) {
+        snprintf(text, sizeof text, "double precision: %.2g", f->error[CAUSE_FLOAT]);
+        table_text(stream, 2, text);
+    }
+}
+
+void planned_print(FILE *stream, const struct planned *planned)
+{
+    const int chosen = planned_precision(planned), precision = chosen >= 0 ? chosen : PRECISION_DOUBLE;
+    const struct choice *choice = &planned->choices[precision];
+    int shown = 0;
+    fprintf(stream, "Within the error of %.2g after one gain, in %s:\n", planned->budget.error,
+            precision_name((enum precision)precision));
+    fprintf(stream, "  %-30s %9s %8s %8s %8s %8s %8s %8s %8s %9s\n", "candidate", "time", "error", "interp.", "delays",
+            "spectrum", "blocks", "stolt", "float", "work");
+    for (int k = 0; k < choice->count; k++)
+        if (choice->list[k].verdict <= VERDICT_SLOWER) {
+            candidate_print(stream, &choice->list[k]);
+            shown++;
+        }
+    if (shown == 0)
+        fprintf(stream, "  none\n");
+    fprintf(stream, "\nRejected, the nearest of each algorithm:\n");
+    rejected_print(stream, choice);
+    if (choice->found) {
+        const struct candidate *best = &choice->list[0];
+        char name[CANDIDATE_NAME];
+        left_out_print(stream, planned, precision);
+        candidate_name(best, name);
+        fprintf(stream, "\nChosen: %s%s%s, some %s, %s of memory\n", name,
+                precision == PRECISION_FLOAT ? ""
+                : *best->settings            ? ","
+                                             : ":",
+                precision == PRECISION_FLOAT ? "" : "precision=double", cell_time(best->seconds).text,
+                cell_significant(1e-6 * best->bytes, " MB").text);
+    }
+}
+
+void planned_write(FILE *stream, const struct planned *planned)
+{
+    fprintf(stream, "scene,algorithm,options,precision,verdict,seconds,error");
+    for (int k = 0; k < CAUSES; k++)
+        fprintf(stream, ",error_%s", cause_names[k]);
+    fprintf(stream, ",flops,pairs,bytes,reason\n");
+    for (int precision = 0; precision < 2; precision++)
+        for (int n = 0; n < planned->choices[precision].count; n++) {
+            const struct candidate *c = &planned->choices[precision].list[n];
+            csv_write_text(stream, planned->scene->name);
+            fprintf(stream, ",%s,", c->algorithm->name);
+            csv_write_text(stream, c->settings);
+            fprintf(stream, ",%s,%s,", precision_name((enum precision)precision), verdict_names[c->verdict]);
+            csv_write_number(stream, isinf(c->seconds) ? NAN : c->seconds);
+            fputc(',', stream);
+            csv_write_number(stream, isinf(c->error) ? NAN : c->error);
+            for (int k = 0; k < CAUSES; k++) {
+                fputc(',', stream);
+                csv_write_number(stream, isinf(c->error) ? NAN : c->forecast.error[k]);
+            }
+            const double rest[] = {c->flops, c->pairs, c->bytes};
+            for (int k = 0; k < 3; k++) {
+                fputc(',', stream);
+                csv_write_number(stream, rest[k]);
+            }
+            fputc(',', stream);
+            csv_write_text(stream, c->reason);
+            fputc('\n', stream);
+        }
+}

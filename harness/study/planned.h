@@ -1,0 +1,28 @@
+/* A plan in words: what is chosen, why, and what it leaves out (planner/planner.h). */
+#ifndef SASBENCH_STUDY_PLANNED_H
+#define SASBENCH_STUDY_PLANNED_H
+
+#include <stdio.h>
+
+#include "planner/planner.h"
+#include "scene/scene.h"
+
+/* The choice in either precision. */
+struct planned {
+    const struct scene *scene;
+    struct budget budget;
+    struct choice choices[2]; /* by enum precision */
+};
+
+/* Plan a scene, freed with planned_free even on failure. Errors: as planner_choose. */
+enum status planned_make(const struct scene *scene, const struct budget *budget, struct planned *planned);
+void planned_free(struct planned *planned);
+/* The precision that is chosen: float, unless only double fits the budget; -1 where nothing does. */
+int planned_precision(const struct planned *planned);
+
+/* The candidates of the precision that is chosen, the chosen one first, and what it leaves out. */
+void planned_print(FILE *stream, const struct planned *planned);
+/* All of both as CSV. */
+void planned_write(FILE *stream, const struct planned *planned);
+
+#endif

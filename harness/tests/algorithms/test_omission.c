@@ -1,0 +1,146 @@
+/* What is lost where geometry is left out: the laws against errors measured by the exact image of a geometry without
+   it. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "measure/metrics.h"
+#include "planner/omission.h"
+#include "tests/support.h"
+
+/* Speckle before an array whose pings lie half of it apart. */
+struct setup {
+    double fc, bandwidth, element, r, slow; /* Hz, Hz, wavelengths, m; the interval over the way's time */
+    int receivers;
+};
+
+static const struct setup setups[] = {
+    {100e3, 20e3, 4, 20, 4, 8},   {150e3, 15e3, 6, 60, 10, 16}, {60e3, 20e3, 3, 12, 3, 6},
+    {200e3, 20e3, 8, 90, 20, 20}, {80e3, 8e3, 5, 35, 6, 10},    {250e3, 60e3, 6, 25, 2, 8},
+};
+static const double RATIO = 1.4; /* predicted over measured at most, and 1 over it at least */
+enum { SETUPS = sizeof setups / sizeof *setups };
+
+static void scene_make(const struct setup *s, struct scene *scene)
+{
+    char text[2000];
+    const double c = 1500, wavelength = c / s->fc, element = s->element * wavelength, pitch = element / 2;
+    const double spacing = s->receivers * pitch / 2, pri = s->slow * 2 * s->r / c, fs = 1.5 * s->bandwidth;
+    const double aside = s->r / sqrt(s->element * s->element - 1) + 0.5; /* the beam's main lobe */
+    const int pings = (int)ceil(2 * aside / spacing) + 2;
+    const double late = 2 * (hypot(s->r + 1, aside + 1) - s->r) / c;
+    const int first = (int)(2 * s->r / c * fs) - 40;
+    snprintf(
+        text, sizeof text,
+        "sonar = { fc = %.17g; bandwidth = %.17g; fs = %.17g; };\npulse = { kind = \"flat\"; };\n"
+        "array = { tx_length = %.17g; rx_length = %.17g; receivers = %d; first_offset = %.17g; pitch = %.17g; };\n"
+        "track = { speed = %.17g; pri = %.17g; pings = %d; x_first = %.17g; };\n"
+        "record = { first_sample = %d; samples = %d; };\n"
+        "beam = { kind = \"txrx\"; truncation = \"tx\"; limit = 1.0; };\n"
+        "targets = { fields = ( { x = [-0.4, 0.4]; r = [%.6f, %.6f]; count = 40; seed = 5; } ); };\n"
+        "image = { x = { first = -0.5; step = %.17g; count = %d; }; r = { first = %.17g; step = %.17g; count = 12; "
+        "}; };\n",
+        s->fc, s->bandwidth, fs, element, pitch, s->receivers, pitch, pitch, spacing / pri, pri, pings,
+        -(pings - 1) * spacing / 2, first, (int)(late * fs) + 80, s->r, s->r + 12 * c / (2 * fs) * 0.8, element / 8,
+        (int)(1 / (element / 8)) + 1, s->r, c / (2 * fs) * 0.8);
+    support_write("scene.cfg", text);
+    if (scene_load(path_of("scene.cfg"), SASBENCH_ROOT "/scenes", scene) != STATUS_OK)
+        fail_msg("%s", status_message());
+}
+
+/* The exact image of the scene's echoes as another acquisition has it. */
+static void image_by(const struct scene *scene, const struct acquisition *acquisition, const struct echoes *echoes,
+                     struct image *image)
+{
+    const struct problem problem = {acquisition, scene->patch_count, scene->patches, PRECISION_DOUBLE};
+    assert_int_equal(support_image("reference:precision=double", problem, echoes, image), STATUS_OK);
+}
+
+static void compare(int setup, const char *what, double predicted, double measured)
+{
+    print_message("setup %d, %-22s predicted %.3e, measured %.3e, ratio %.2f\n", setup, what, predicted, measured,
+                  predicted / measured);
+    if (!(predicted < RATIO * measured && predicted > measured / RATIO))
+        fail_msg("setup %d, %s: %g is predicted, %g measured", setup, what, predicted, measured);
+}
+
+static void apertures(const struct setup *s, const struct scene *scene, const struct echoes *echoes,
+                      const struct image *exact)
+{
+    static const double errors[] = {0.1, 0.03};
+    const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, PRECISION_DOUBLE};
+    for (size_t k = 0; k < sizeof errors / sizeof *errors; k++) {
+        struct acquisition limited = scene->acquisition;
+        struct image image;
+        char what[40];
+        limited.aperture_limit = aperture_sine(&problem, errors[k]);
+        image_by(scene, &limited, echoes, &image);
+        snprintf(what, sizeof what, "aperture to %.3f", limited.aperture_limit);
+        compare((int)(s - setups), what, aperture_error(&problem, limited.aperture_limit),
+                metrics_error(&image, exact).error_gain);
+        image_free(&image);
+    }
+}
+
+static void motions(const struct setup *s, const struct scene *scene, const struct echoes *echoes,
+                    const struct image *exact)
+{
+    const struct acquisition *a = &scene->acquisition;
+    const struct problem problem = {a, scene->patch_count, scene->patches, PRECISION_DOUBLE};
+    for (int motion = MOTION_NONE; motion <= MOTION_BROADSIDE; motion++) {
+        struct scene altered;
+        struct image image;
+        scene_make(s, &altered);
+        const struct grid *g = &scene->patches[0];
+        const double travel = 2 * (g->r_first + (g->r_count - 1) * g->r_step / 2) / a->sound_speed;
+        for (int p = 0; p < a->pings; p++) {
+            for (int m = 0; m < a->receivers && motion == MOTION_BROADSIDE; m++)
+                altered.acquisition.rx[p * a->receivers + m].x += a->velocity[p].x * travel;
+            altered.acquisition.velocity[p] = (struct vector){0, 0, 0};
+        }
+        image_by(scene, &altered.acquisition, echoes, &image);
+        compare((int)(s - setups), motion == MOTION_NONE ? "no motion" : "motion as broadside",
+                motion_error(&problem, (enum motion)motion), metrics_error(&image, exact).error_gain);
+        image_free(&image);
+        scene_free(&altered);
+    }
+}
+
+static void laws_hold(void **state)
+{
+    (void)state;
+    for (int k = 0; k < SETUPS; k++) {
+        struct scene scene;
+        struct echoes echoes;
+        struct image exact;
+        scene_make(&setups[k], &scene);
+        support_echoes(&scene, &echoes);
+        image_by(&scene, &scene.acquisition, &echoes, &exact);
+        apertures(&setups[k], &scene, &echoes, &exact);
+        motions(&setups[k], &scene, &echoes, &exact);
+        image_free(&exact);
+        echoes_free(&echoes);
+        scene_free(&scene);
+    }
+}
+
+/* Few pings have no law. */
+static void few_pings(void **state)
+{
+    (void)state;
+    struct acquisition a = support_acquisition(5, 1, 64);
+    const struct grid grid = {0, 0.01, 4, 10, 0.01, 4};
+    const struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+    assert_true(isnan(aperture_error(&problem, 0.1)));
+    assert_true(isinf(aperture_sine(&problem, 0.1)));
+    acquisition_free(&a);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(laws_hold, folder_make, folder_remove),
+        cmocka_unit_test(few_pings),
+    };
+    return cmocka_run_group_tests_name("omission", tests, NULL, NULL);
+}

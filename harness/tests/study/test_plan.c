@@ -1,0 +1,242 @@
+/* Planning: choices within their budgets on scenes drawn from seeds, refusals with the best that there is, and what the
+   command prints and writes. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "command/task.h"
+#include "data/csv.h"
+#include "measure/metrics.h"
+#include "measure/session.h"
+#include "measure/timing.h"
+#include "planner/planner.h"
+#include "planner/rates.h"
+#include "scene/random_scene.h"
+#include "study/machine_rates.h"
+#include "study/planned.h"
+#include "tests/support.h"
+
+static void random_scene(int seed, struct scene *scene)
+{
+    FILE *file = fopen(path_of("random.cfg"), "w");
+    assert_non_null(file);
+    random_scene_write(file, (uint64_t)seed);
+    fclose(file);
+    if (scene_load(path_of("random.cfg"), SASBENCH_ROOT "/scenes", scene) != STATUS_OK)
+        fail_msg("seed %d: %s", seed, status_message());
+}
+
+/* Every seed is a scene, and always the same one. */
+static void scenes_are_whole(void **state)
+{
+    (void)state;
+    for (int seed = 0; seed < 200; seed++) {
+        struct scene scene;
+        random_scene(seed, &scene);
+        const struct acquisition *a = &scene.acquisition;
+        assert_true(a->pings <= 90 && a->samples <= 1500 && a->receivers >= 1 && a->receivers <= 80);
+        assert_true(a->fs >= 1.05 * a->bandwidth * 0.999 && a->fs <= 4.001 * a->bandwidth);
+        const uint64_t hash = scene.hash;
+        scene_free(&scene);
+        random_scene(seed, &scene);
+        assert_true(scene.hash == hash);
+        scene_free(&scene);
+    }
+}
+
+/* What choices made of their budgets. */
+struct tally {
+    double used[4000]; /* measured error over the budget */
+    int count, refused;
+};
+
+/* Measure what `auto` chooses for one scene and budget. */
+static void choice_measure(const struct session *session, int seed, double budget, struct tally *tally)
+{
+    char text[64];
+    struct spec spec;
+    struct image image;
+    snprintf(text, sizeof text, "auto:error=%g", budget);
+    assert_int_equal(spec_parse(text, &spec), STATUS_OK);
+    enum status status = session_image(session, &spec, &image);
+    if (status == STATUS_OK) {
+        const double error = metrics_error(&image, &session->reference).error_gain;
+        print_message("seed %d, %s: %.2e, %.2f of the budget\n", seed, text, error, error / budget);
+        tally->used[tally->count++] = error / budget;
+        image_free(&image);
+    } else {
+        if (status != STATUS_UNSUPPORTED || !strstr(status_message(), "condition budget"))
+            fail_msg("seed %d, %s: %s", seed, text, status_message());
+        print_message("seed %d: %s\n", seed, status_message());
+        tally->refused++;
+    }
+    spec_free(&spec);
+}
+
+/* Measured errors within the budget, of other seeds than the planner was made with: a few, or as many as the environment
+   variable SASBENCH_RANDOM_SCENES says. */
+static void within_budget(void **state)
+{
+    (void)state;
+    static const double budgets[] = {1e-1, 1e-2, 1e-3, 1e-4};
+    enum { FIRST = 2001, BUDGETS = sizeof budgets / sizeof *budgets };
+    static struct tally tally;
+    const char *more = getenv("SASBENCH_RANDOM_SCENES");
+    const int seeds = more ? atoi(more) : 6;
+    int over = 0;
+    assert_true(seeds > 0 && seeds <= 1000);
+    for (int seed = FIRST; seed < FIRST + seeds; seed++) {
+        struct scene scene;
+        struct session session;
+        random_scene(seed, &scene);
+        assert_int_equal(session_open(&scene, &session), STATUS_OK);
+        for (int k = 0; k < BUDGETS; k++)
+            choice_measure(&session, seed, budgets[k], &tally);
+        session_close(&session);
+        scene_free(&scene);
+    }
+    const double middle = median(tally.used, tally.count); /* sorts them */
+    for (int k = 0; k < tally.count; k++)
+        over += tally.used[k] > 1;
+    print_message("%d choices on %d scenes, %d refused: %d over the budget, at most %.2f of it, median %.2f\n",
+                  tally.count, seeds, tally.refused, over, tally.used[tally.count - 1], middle);
+    if (over > tally.count / 100 || tally.used[tally.count - 1] > 1.5)
+        fail_msg("%d of %d choices are over the budget, the worst %g times", over, tally.count,
+                 tally.used[tally.count - 1]);
+    assert_true(tally.refused <= seeds / 10);
+}
+
+/* A choice on study/quick. */
+static void choose(double error, double bytes, enum precision precision, struct choice *choice)
+{
+    struct scene scene;
+    support_scene("study/quick", &scene);
+    const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, precision};
+    const struct budget budget = {error, bytes, true};
+    assert_int_equal(planner_choose(&problem, &budget, choice), STATUS_OK);
+    if (choice->plan)
+        choice->list[0].algorithm->destroy(choice->plan);
+    choice->plan = NULL;
+    scene_free(&scene);
+}
+
+/* The chosen one is within the budget, and no other is that and faster; a larger budget takes no more time. */
+static void fastest_within(void **state)
+{
+    (void)state;
+    double before = INFINITY;
+    for (double error = 1e-5; error < 0.2; error *= 10) {
+        struct choice choice;
+        choose(error, 4e9, PRECISION_FLOAT, &choice);
+        assert_true(choice.found);
+        const struct candidate *best = &choice.list[0];
+        assert_true(best->verdict == VERDICT_CHOSEN && best->error <= error && best->bytes > 0 && !*best->reason);
+        assert_true(best->seconds <= before);
+        before = best->seconds;
+        for (int k = 1; k < choice.count; k++) {
+            const struct candidate *c = &choice.list[k];
+            char name[CANDIDATE_NAME];
+            candidate_name(c, name);
+            assert_int_equal(strlen(name), /* whole */
+                             strlen(c->algorithm->name) + (*c->settings ? 1 : 0) + strlen(c->settings));
+            assert_true(*c->reason != '\0');
+            if (c->error <= error && c->verdict == VERDICT_SLOWER)
+                assert_true(c->seconds >= best->seconds);
+            if (c->verdict == VERDICT_ERROR)
+                assert_true(c->error > error);
+        }
+        choice_free(&choice);
+    }
+}
+
+static void nothing_fits(void **state)
+{
+    (void)state;
+    struct choice choice;
+    choose(1e-9, 4e9, PRECISION_FLOAT, &choice);
+    assert_false(choice.found);
+    assert_true(choice.least > 1e-9 && choice.least < 1e-5);
+    choice_free(&choice);
+    choose(1e-3, 100, PRECISION_FLOAT, &choice);
+    assert_false(choice.found);
+    assert_int_equal(choice.list[0].verdict, VERDICT_MEMORY);
+    choice_free(&choice);
+
+    struct scene scene;
+    struct spec spec;
+    void *plan;
+    support_scene("study/quick", &scene);
+    const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
+    assert_int_equal(spec_parse("auto:error=1e-9", &spec), STATUS_OK);
+    assert_int_equal(spec.algorithm->plan(&problem, spec.options, &plan), STATUS_UNSUPPORTED);
+    assert_null(plan);
+    assert_non_null(strstr(status_message(), "condition budget"));
+    assert_non_null(strstr(status_message(), "bp_farrow"));
+    spec_free(&spec);
+    scene_free(&scene);
+}
+
+/* Rates go to the cache and come from there; those of another machine are not taken. */
+static void rates_are_kept(void **state)
+{
+    (void)state;
+    const struct rates before = *rates_get();
+    struct rates made = before;
+    char path[4096];
+    bool found;
+    setenv("XDG_CACHE_HOME", path_of("cache"), 1);
+    machine_rates_use(&found);
+    assert_false(found);
+    made.migrate = 1.25e-9;
+    assert_int_equal(machine_rates_keep(&made), STATUS_OK);
+    rates_set(&before);
+    machine_rates_use(&found);
+    assert_true(found);
+    assert_close(rates_get()->migrate, 1.25e-9, 1e-15);
+    machine_rates_path(path, sizeof path);
+    support_write("cache/sasbench/rates.csv", "# machine: another\nrate,value\nmigrate,1\n");
+    machine_rates_use(&found);
+    assert_false(found);
+    rates_set(&before);
+}
+
+static void command_writes(void **state)
+{
+    (void)state;
+    const char *names[] = {"study/quick"};
+    struct csv csv;
+    setenv("XDG_CACHE_HOME", path_of("cache"), 1);
+    struct task task = {.names = names, .name_count = 1, .output = path_of("plan.csv"), .error = "1e-2"};
+    if (command_plan(&task) != STATUS_OK)
+        fail_msg("%s", status_message());
+    assert_int_equal(csv_read(path_of("plan.csv"), CSV_TAIL_KEEP, &csv), STATUS_OK);
+    int chosen = 0;
+    const int verdict = csv_column(&csv, "verdict"), error = csv_column(&csv, "error");
+    for (int row = 0; row < csv.row_count; row++)
+        if (strcmp(csv_cell(&csv, row, verdict), "chosen") == 0) {
+            chosen++;
+            assert_true(atof(csv_cell(&csv, row, error)) <= 1e-2);
+        }
+    assert_int_equal(chosen, 2); /* one in each precision */
+    assert_true(csv.row_count > 60);
+    csv_free(&csv);
+    task.error = "-1";
+    assert_int_equal(command_plan(&task), STATUS_INVALID);
+    task.error = NULL;
+    task.memory = "4X";
+    assert_int_equal(command_plan(&task), STATUS_INVALID);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(scenes_are_whole, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(within_budget, folder_make, folder_remove),
+        cmocka_unit_test(fastest_within),
+        cmocka_unit_test(nothing_fits),
+        cmocka_unit_test_setup_teardown(rates_are_kept, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(command_writes, folder_make, folder_remove),
+    };
+    return cmocka_run_group_tests_name("plan", tests, NULL, NULL);
+}
