@@ -47,10 +47,11 @@ static const double APART = 1.4;       /* ratio of two rows' ranges, beyond whic
 struct kernel {
     const struct rma_view *view;
     double r;              /* m */
-    double reach, margin;  /* m: the places asked for, on either side; over the margin beside them it tapers */
-    int count;             /* wavenumbers: k nu_step, k = -count/2 ... count/2 */
+    double axis, centroid; /* m: place from which the row lies on the beam's axis; fc times the delay's slope there */
+    double reach, margin;  /* m: the places asked for, on either side of the axis; beside them it tapers */
+    int count;             /* wavenumbers: k nu_step off the centroid, k = -count/2 ... count/2 */
     double nu_step;        /* cycles/m */
-    int length;            /* of a table: places from -length/2 step on */
+    int length;            /* of a table: places from axis - length/2 step on */
     double step;           /* m */
     double offset[TABLES]; /* m: of the receivers */
     double complex *error; /* [TABLES][length][FREQUENCIES] */
@@ -72,31 +73,45 @@ static int receiver_of(const struct rma_view *view, int k, int count)
 /* Share of the kernel that is kept whose stationary point is u ahead of the pixel. */
 static double taper(const struct kernel *kernel, double u)
 {
-    double beyond = (fabs(u) - kernel->reach) / kernel->margin;
+    double beyond = (fabs(u - kernel->axis) - kernel->reach) / kernel->margin;
     return beyond <= 0.5 ? 1 : beyond < 1 ? 0.5 - 0.5 * cos(2 * M_PI * beyond) : 0;
 }
 
-/* h of a receiver at offset d and one frequency, into `wave`, place 0 first. */
+/* Does the method focus what is seen from a place? */
+static bool is_focused(const struct kernel *kernel, double place)
+{
+    const struct rma_view *view = kernel->view;
+    const double squint = view->problem->acquisition->echo_squint, r = kernel->r;
+    if (squint == 0)
+        return fabs(place) <= rma_focused(view->problem->acquisition, &view->bounds, r);
+    return fabs(place * cos(squint) + r * sin(squint)) <= view->bounds.sine * hypot(place, r);
+}
+
+static double complex turns(double cycles)
+{
+    return cexp(2 * I * M_PI * (cycles - floor(cycles)));
+}
+
+/* h of a receiver at offset d and one frequency, less the centroid's own turns, into `wave`, the axis first. */
 static void kernel_transform(const struct kernel *kernel, double d, double frequency)
 {
     const struct rma_view *view = kernel->view;
     const struct spectrum_setting *setting = &view->setting;
     const double c = setting->sound_speed, r = kernel->r, beta = setting->speed / c;
-    const double f = frequency / ((1 - beta) * (1 + beta)),
-                 focused = rma_focused(view->problem->acquisition, &view->bounds, r);
+    const double f = frequency / ((1 - beta) * (1 + beta)), centroid = -kernel->centroid * frequency / setting->fc;
     memset(kernel->wave, 0, (size_t)kernel->length * sizeof *kernel->wave);
     for (int k = -kernel->count / 2; k <= kernel->count / 2; k++) {
-        double nu = k * kernel->nu_step, monostatic = spectrum_monostatic(setting, frequency, nu);
+        double nu = centroid + k * kernel->nu_step, monostatic = spectrum_monostatic(setting, frequency, nu);
         if (isnan(monostatic))
             continue; /* evanescent */
         double kappa = c * monostatic / (4 * M_PI), place = -r * (c * nu / 2 + f * beta) / kappa;
-        if (!(fabs(place) <= focused))
+        if (!is_focused(kernel, place))
             continue;
         double phase = view->converts ? view->method->spectrum(setting, d, r, frequency, nu) : -r * monostatic;
         double weight = f * sqrt(c * r / (2 * kappa * kappa * kappa)) * kernel->nu_step * taper(kernel, place - d / 2);
         if (weight > 0 && !isnan(phase))
-            kernel->wave[k < 0 ? kernel->length + k : k] =
-                (2 * abs(k) == kernel->count ? 0.5 : 1) * weight * cexp(I * (M_PI / 4 - phase));
+            kernel->wave[k < 0 ? kernel->length + k : k] = (2 * abs(k) == kernel->count ? 0.5 : 1) * weight
+                                                           * turns(0.125 - phase / (2 * M_PI) - nu * kernel->axis);
     }
     fftw_execute(kernel->transform);
 }
@@ -108,10 +123,12 @@ static void kernel_fill(const struct kernel *kernel, double d, double complex *e
         double frequency = a->fc + abscissas[n] * a->bandwidth / 2;
         kernel_transform(kernel, d, frequency);
         for (int i = 0; i < kernel->length; i++) {
-            int place = i - kernel->length / 2;
-            double cycles = frequency * spectrum_delay(&kernel->view->setting, d, kernel->r, place * kernel->step);
-            double complex h = kernel->wave[place < 0 ? kernel->length + place : place];
-            error[i * FREQUENCIES + n] = h * cexp(-2 * I * M_PI * (cycles - floor(cycles))) - 1;
+            int k = i - kernel->length / 2;
+            double place = k * kernel->step, centroid = -kernel->centroid * frequency / a->fc;
+            double cycles = frequency * spectrum_delay(&kernel->view->setting, d, kernel->r, kernel->axis + place)
+                            + centroid * place;
+            double complex h = kernel->wave[k < 0 ? kernel->length + k : k];
+            error[i * FREQUENCIES + n] = h * turns(-cycles) - 1;
         }
     }
 }
@@ -124,18 +141,37 @@ static void kernel_free(struct kernel *kernel)
     fftw_free(kernel->wave);
 }
 
-/* At range r, for places up to `reach` on either side. False without memory; freed with kernel_free in any case. */
+/* Azimuth wavenumbers, cycles/m, within which places up to `far` on either side of the axis lie. */
+static double band_of(const struct kernel *kernel, double far)
+{
+    const struct acquisition *a = kernel->view->problem->acquisition;
+    const double highest = a->fc + a->bandwidth / 2, beta = fabs(kernel->view->setting.speed) / a->sound_speed;
+    if (kernel->axis == 0) /* bounded, whatever the offset */
+        return 4 * highest / a->sound_speed / (1 - beta) * fmin(1, far / hypot(far, kernel->r) + 2 * beta);
+    double half = 0, slope = spectrum_slope(&kernel->view->setting, 0, kernel->r, kernel->axis);
+    for (int side = -1; side <= 1; side += 2)
+        half =
+            fmax(half, fabs(spectrum_slope(&kernel->view->setting, 0, kernel->r, kernel->axis + side * far) - slope));
+    return 2 * highest * half;
+}
+
+/* At range r, for places up to `reach` on either side of the axis. False without memory; freed with kernel_free in any
+   case. */
 static bool kernel_make(const struct rma_view *view, double r, double reach, struct kernel *kernel)
 {
     const struct acquisition *a = view->problem->acquisition;
-    const double c = a->sound_speed, highest = a->fc + a->bandwidth / 2, lowest = a->fc - a->bandwidth / 2;
-    const double beta = fabs(view->setting.speed) / c, margin = FRESNEL_ZONES * sqrt(c / lowest * r / 2);
+    const double c = a->sound_speed, lowest = a->fc - a->bandwidth / 2, cosine = cos(a->echo_squint);
+    const double margin = FRESNEL_ZONES * sqrt(c / lowest * r / cosine / 2) / cosine;
     double far =
         reach + margin + view->bounds.aside; /* the angle to there, and what the speed adds, bound the wavenumbers */
-    double band =
-        fmin(a->receivers / view->spacing, 4 * highest / c / (1 - beta) * fmin(1, far / hypot(far, r) + 2 * beta));
+    *kernel = (struct kernel){.view = view, .r = r, .reach = reach, .margin = margin};
+    if (a->echo_squint != 0) {
+        kernel->axis = -r * tan(a->echo_squint);
+        kernel->centroid = a->fc * spectrum_slope(&view->setting, 0, r, kernel->axis);
+    }
+    double band = fmin(a->receivers / view->spacing, band_of(kernel, far));
     int count = (int)fmin(ceil(band * 2 * SPARE * far), LONGEST);
-    *kernel = (struct kernel){.view = view, .r = r, .reach = reach, .margin = margin, .count = count + count % 2};
+    kernel->count = count + count % 2;
     kernel->length = fft_length_fast(FINER * ((long long)kernel->count + 2));
     kernel->nu_step = fmax(band / kernel->count, 0);
     kernel->step = 1 / (kernel->nu_step * kernel->length);
@@ -164,7 +200,7 @@ static const double complex *kernel_error(const struct kernel *kernel, double d,
     int table = 0;
     for (int t = 1; t < TABLES; t++)
         table = fabs(kernel->offset[t] - d) < fabs(kernel->offset[table] - d) ? t : table;
-    double place = floor(u / kernel->step + 0.5) + kernel->length / 2;
+    double place = floor((u - kernel->axis) / kernel->step + 0.5) + kernel->length / 2;
     if (!(place >= 0 && place < kernel->length))
         return NULL;
     return &kernel->error[((size_t)table * (size_t)kernel->length + (size_t)place) * FREQUENCIES];
@@ -191,7 +227,8 @@ static void pixel_add(const struct kernel *kernel, const struct target *target, 
     for (int p = target->first; p < target->first + target->count; p += target->every) {
         double u = a->tx[p].x - target->x, at = a->tx[p].x - x, seen = condition_amplitude(a, kernel->r, u);
         /* What back projection leaves out, range migration images all the same: its whole kernel is error. */
-        bool summed = !(fabs(at) > a->aperture_limit * hypot(at, kernel->r));
+        bool summed = !(fabs(at * cos(a->echo_squint) + kernel->r * sin(a->echo_squint))
+                        > a->aperture_limit * hypot(at, kernel->r));
         for (int k = 0; k < receivers && seen != 0; k++) {
             double d = offset_of(view, receiver_of(view, k, receivers));
             const double complex *error = kernel_error(kernel, d, at);
@@ -200,8 +237,7 @@ static void pixel_add(const struct kernel *kernel, const struct target *target, 
             double late =
                 spectrum_delay(&view->setting, d, kernel->r, at) - spectrum_delay(&view->setting, d, kernel->r, u);
             double cycles = a->fc * late;
-            double complex pair =
-                seen * condition_sinc(a->bandwidth * late) * cexp(2 * I * M_PI * (cycles - floor(cycles)));
+            double complex pair = seen * condition_sinc(a->bandwidth * late) * turns(cycles);
             image += summed ? pair : 0;
             for (int n = 0; n < FREQUENCIES; n++)
                 errors[n] += pair * (summed ? error[n] : error[n] + 1);
@@ -212,12 +248,12 @@ static void pixel_add(const struct kernel *kernel, const struct target *target, 
         energies->error += weight * weights[n] * creal(errors[n] * conj(errors[n]));
 }
 
-/* The slice through a target at column x of a patch. */
-static void slice_add(const struct kernel *kernel, const struct grid *patch, double x, struct energies *energies)
+/* The slice through a target at column x of a row. */
+static void slice_add(const struct kernel *kernel, const struct grid *row, double x, struct energies *energies)
 {
     const struct rma_view *view = kernel->view;
     const struct acquisition *a = view->problem->acquisition;
-    const double width = (patch->x_count - 1) * patch->x_step, wavelength = a->sound_speed / a->fc;
+    const double width = (row->x_count - 1) * row->x_step, wavelength = a->sound_speed / a->fc;
     struct target target = {x, 0, 0, 1};
     for (int p = a->pings - 1; p >= 0; p--)
         if (condition_amplitude(a, kernel->r, a->tx[p].x - x) != 0) {
@@ -235,27 +271,46 @@ static void slice_add(const struct kernel *kernel, const struct grid *patch, dou
                              wavelength * kernel->r / 2 / (view->x_high - view->x_low + view->spacing));
     double near = fmin(NEAR * resolution, width), near_step = 2 * near / (COLUMNS - 1), step = width / (COLUMNS - 1);
     for (int k = 0; k < COLUMNS; k++) {
-        double beside = (k - COLUMNS / 2) * near_step, column = patch->x_first + k * step;
-        if (x + beside >= patch->x_first - patch->x_step / 2
-            && x + beside <= patch->x_first + width + patch->x_step / 2)
+        double beside = (k - COLUMNS / 2) * near_step, column = row->x_first + k * step;
+        if (x + beside >= row->x_first - row->x_step / 2 && x + beside <= row->x_first + width + row->x_step / 2)
             pixel_add(kernel, &target, x + beside, near_step, energies);
         if (fabs(column - x) > near + near_step / 2)
             pixel_add(kernel, &target, column, step, energies);
     }
 }
 
-/* One row of a patch: error over image, negative where no ping sees anything, NAN without memory. */
-static double row_error(const struct rma_view *view, const struct grid *patch, double r)
+/* Row i of a patch, along the track in any case: the columns of a turned row lie as close as their places along it. */
+static struct grid row_of(const struct grid *patch, double i)
 {
-    double width = (patch->x_count - 1) * patch->x_step, sine = condition_seen_sine(view->problem->acquisition);
-    double reach = fmax(patch->x_first + width - view->x_low, view->x_high - patch->x_first);
+    const double cosine = cos(patch->angle_rad), half = (patch->x_count - 1) / 2.0;
+    const struct vector middle = grid_point(patch, i, half);
+    return (struct grid){.x_first = middle.x - half * patch->x_step * cosine,
+                         .x_step = patch->x_step * cosine,
+                         .x_count = patch->x_count,
+                         .r_first = middle.y,
+                         .r_count = 1};
+}
+
+/* How far off the axis pings see a row: by the beam, or by where pings and columns are. */
+static double row_reach(const struct rma_view *view, const struct grid *row)
+{
+    const double r = row->r_first, width = (row->x_count - 1) * row->x_step,
+                 squint = view->problem->acquisition->echo_squint;
+    const double sine = condition_seen_sine(view->problem->acquisition), axis = -r * tan(squint);
+    double reach = fmax(row->x_first + width - view->x_low + axis, view->x_high - row->x_first - axis);
+    const double edge = fabs(squint) + asin(fmin(sine, 1));
+    return edge < M_PI / 2 ? fmin(reach, width + r * (tan(edge) - tan(fabs(squint)))) : reach;
+}
+
+/* Error over image, negative where no ping sees anything, NAN without memory. */
+static double row_error(const struct rma_view *view, const struct grid *row)
+{
+    const double width = (row->x_count - 1) * row->x_step;
     struct kernel kernel;
     struct energies energies = {0, 0};
-    if (sine < 1)
-        reach = fmin(reach, width + r * sine / sqrt((1 - sine) * (1 + sine)));
-    bool made = kernel_make(view, r, reach, &kernel);
+    bool made = kernel_make(view, row->r_first, fmax(row_reach(view, row), 0), &kernel);
     for (int t = 0; t < (width > 0 ? TARGETS : 1) && made; t++)
-        slice_add(&kernel, patch, patch->x_first + t * width / (TARGETS - 1), &energies);
+        slice_add(&kernel, row, row->x_first + t * width / (TARGETS - 1), &energies);
     kernel_free(&kernel);
     return !made ? NAN : energies.image > 0 ? sqrt(energies.error / energies.image) : -1;
 }
@@ -268,11 +323,13 @@ double prediction_error(const struct rma_view *view)
         return INFINITY;
     for (int k = 0; k < view->problem->patch_count; k++) {
         const struct grid *patch = &view->problem->patches[k];
-        double first = patch->r_first, last = first + (patch->r_count - 1) * patch->r_step;
-        int gaps = last - first > DEEP * first ? (int)fmin(1 + log(last / first) / log(APART), ROWS - 1) : 0;
-        for (int row = 0; row <= gaps; row++) {
-            double r = gaps > 0 ? first * pow(last / first, (double)row / gaps) : (first + last) / 2;
-            double error = row_error(view, patch, r);
+        const double last = patch->r_count - 1;
+        const double near = row_of(patch, 0).r_first, far = row_of(patch, last).r_first;
+        const int gaps = far - near > DEEP * near ? (int)fmin(1 + log(far / near) / log(APART), ROWS - 1) : 0;
+        for (int n = 0; n <= gaps; n++) {
+            double r = gaps > 0 ? near * pow(far / near, (double)n / gaps) : (near + far) / 2;
+            struct grid row = row_of(patch, far > near ? (r - near) / (far - near) * last : 0);
+            double error = row_error(view, &row);
             worst = error <= worst ? worst : error; /* a NaN is kept */
         }
     }

@@ -3,10 +3,12 @@
 
 #include "range_migration/conditions.h"
 #include "range_migration/ghosts.h"
+#include "range_migration/prediction.h"
 #include "range_migration/spectrum.h"
 #include "wavenumber/engine.h"
 
-static const double SLOWEST = 0.1; /* of 1 - |v|/c, as in range migration */
+static const double SLOWEST = 0.1;         /* of 1 - |v|/c, as in range migration */
+static const double SLOWEST_ROTATED = 0.8; /* beyond, axes turned by the angle at rest leave 7 % and more */
 
 double wk_centroid_slope(const struct acquisition *a, const struct straight_track *track)
 {
@@ -118,6 +120,23 @@ static void beam_conditions(const struct problem *problem, const struct straight
                                          "rows farther away, or a higher frequency"};
 }
 
+/* As range migration's, of a lone receiver at the transmitter. */
+static struct condition predicted_error(const struct problem *problem, const struct straight_track *track)
+{
+    static const struct rma_method monostatic = {0};
+    struct rma_view view = rma_view_of(problem, &monostatic, track);
+    view.converts = false;
+    view.bounds = (struct rma_bounds){.sine = rma_widest_sine(problem->acquisition), .way = INFINITY};
+    return (struct condition){"predicted_error",
+                              prediction_error(&view),
+                              0.1,
+                              false,
+                              SEVERITY_REFUSE,
+                              "the error predicted for azimuth slices through point targets (relative L2)",
+                              "more pings in the beam, columns within the track, pings closer together, or rows "
+                              "farther away"};
+}
+
 int wk_conditions(const struct problem *problem, const void *options, struct condition *list, int room)
 {
     (void)options;
@@ -143,6 +162,8 @@ int wk_conditions(const struct problem *problem, const void *options, struct con
                                       "range migration (rma_*), which takes that into account"};
     if (azimuth_requirements(problem, all, &count, &track) && conditions_accept(all, count)) {
         beam_conditions(problem, &track, all, &count);
+        if (conditions_accept(all, count))
+            all[count++] = predicted_error(problem, &track);
         if (conditions_accept(all, count)) {
             all[count] = ghosts_condition(problem, &track);
             all[count++].severity = SEVERITY_REFUSE; /* nothing else here predicts what lies within a patch */
@@ -151,4 +172,12 @@ int wk_conditions(const struct problem *problem, const void *options, struct con
     for (int k = 0; k < count && k < room; k++)
         list[k] = all[k];
     return count < room ? count : room;
+}
+
+int wk_rotated_conditions(const struct problem *problem, const void *options, struct condition *list, int room)
+{
+    int count = wk_conditions(problem, options, list, room);
+    if (count > 0)
+        list[0].limit = SLOWEST_ROTATED;
+    return count;
 }

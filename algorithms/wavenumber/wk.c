@@ -2,9 +2,11 @@
    not depend on the number of threads. */
 #include "wavenumber/wk.h"
 
+#include <math.h>
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "common/fft_length.h"
 #include "common/isa.h"
@@ -78,8 +80,11 @@ enum status wk_plan(const struct problem *problem, const struct wk_method *metho
 {
     struct condition conditions[CONDITIONS_MAX];
     *plan = NULL;
-    enum status status =
-        conditions_check(method->name, conditions, wk_conditions(problem, options, conditions, CONDITIONS_MAX));
+    int count = (method->rotates ? wk_rotated_conditions : wk_conditions)(problem, options, conditions, CONDITIONS_MAX);
+    for (int k = 0; k < count; k++)
+        if (strcmp(conditions[k].name, "predicted_error") == 0 && isnan(conditions[k].value))
+            return status_set(STATUS_FAILED, "%s: no memory to predict the image's error", method->name);
+    enum status status = conditions_check(method->name, conditions, count);
     if (status != STATUS_OK)
         return status;
     struct wk *wk = calloc(1, sizeof *wk);

@@ -61,6 +61,8 @@ struct wk_method {
 enum status wk_plan(const struct problem *problem, const struct wk_method *method, const struct wk_options *options,
                     void **plan);
 int wk_conditions(const struct problem *problem, const void *options, struct condition *list, int room);
+/* Of a method that rotates: of a slower platform. */
+int wk_rotated_conditions(const struct problem *problem, const void *options, struct condition *list, int room);
 enum status wk_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
 struct work wk_work(const void *plan);
 void wk_destroy(void *plan);

@@ -142,7 +142,7 @@ static const struct {
      "",
      "",
      {.array = "receivers = 1;",
-      .track = "speed = 1.0; pri = 0.04; pings = 72; x_first = -1.4;",
+      .track = "speed = 1.0; pri = 0.03; pings = 146; x_first = -2.2;",
       .record = "first_sample = 0; samples = 1600;"}},
     {"wk_classic",
      "REFUSED",
