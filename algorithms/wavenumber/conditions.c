@@ -8,7 +8,7 @@
 #include "wavenumber/engine.h"
 
 static const double SLOWEST = 0.1;         /* of 1 - |v|/c, as in range migration */
-static const double SLOWEST_ROTATED = 0.8; /* beyond, axes turned by the angle at rest leave 7 % and more */
+static const double SLOWEST_ROTATED = 0.78; /* beyond, axes turned by the angle at rest leave 7 % and more */
 
 double wk_centroid_slope(const struct acquisition *a, const struct straight_track *track)
 {
