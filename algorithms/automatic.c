@@ -1,8 +1,8 @@
 /* Chooses: plans every algorithm that has a forecast for the problem (planner/planner.h), and runs the fastest whose
    predicted error is within the budget. `auto` is a word of C, hence the file's name.
 
-   Error: the chosen one's, predicted with a margin of 1.12. The choice is the same in float and in double, unless rounding
-   is near the budget, and for any number of threads; it follows the rates of planner/rates.h. */
+   Error: the chosen one's, predicted with a margin of 1.12. The choice is the same in float and in double, unless
+   rounding is near the budget, and for any number of threads; it follows the rates of planner/rates.h. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

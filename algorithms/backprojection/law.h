@@ -17,8 +17,8 @@
 
 enum { LAW_NODES = 48 };
 
-/* Positive frequencies and their share of the compressed echoes' energy: flat over the bandwidth, or, of raw echoes of a
-   pulse of small time-bandwidth product, which has flanks, the replica's own. The means of both signs of a frequency
+/* Positive frequencies and their share of the compressed echoes' energy: flat over the bandwidth, or, of raw echoes of
+   a pulse of small time-bandwidth product, which has flanks, the replica's own. The means of both signs of a frequency
    are the same but for the sign of their imaginary parts. */
 struct law_spectrum {
     int count;

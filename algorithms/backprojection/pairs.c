@@ -122,8 +122,8 @@ static double profile_q(const struct profile *profile, int i)
 }
 
 /* Where q passes `bound`, in pixels, on the rising or the falling side: a delay of D/c is an ellipsoid about
-   transmitter and receiver at reception, |A| + |B| = D. A line meets it where 4 D^2 |B|^2 = (D^2 - (|A|^2 - |B|^2))^2, a
-   quadratic as |A|^2 - |B|^2 is linear along the line. Negative where it does not. */
+   transmitter and receiver at reception, |A| + |B| = D. A line meets it where 4 D^2 |B|^2 = (D^2 - (|A|^2 - |B|^2))^2,
+   a quadratic as |A|^2 - |B|^2 is linear along the line. Negative where it does not. */
 static double profile_root(const struct profile *profile, bool rising, double bound)
 {
     const struct acquisition *a = profile->acquisition;

@@ -46,9 +46,9 @@ enum status traces_plan_double(const struct acquisition *acquisition, const stru
 /* Turn one record, complex [samples], into a row; `thread` < threads names the scratch to use. */
 void traces_fill_float(const struct traces *traces, int thread, const float complex *record, float complex *row);
 void traces_fill_double(const struct traces *traces, int thread, const double complex *record, double complex *row);
-/* The same in two steps, where pitch > 0: a record's spectrum, complex [period], compressed; and of it one plane, number
-   branch times upsample + phase: complex [period], of which value n is fine sample n upsample + phase. Both arrays
-   begin at cache lines. */
+/* The same in two steps, where pitch > 0: a record's spectrum, complex [period], compressed; and of it one plane,
+   number branch times upsample + phase: complex [period], of which value n is fine sample n upsample + phase. Both
+   arrays begin at cache lines. */
 void traces_spectrum_float(const struct traces *traces, const float complex *record, float complex *spectrum);
 void traces_spectrum_double(const struct traces *traces, const double complex *record, double complex *spectrum);
 void traces_plane_float(const struct traces *traces, const float complex *spectrum, int plane, float complex *values);

@@ -20,8 +20,8 @@ double aperture_sine(const struct problem *problem, double error);
 
        E^2 = 1 - |<e>|^2 / (<|mean over receivers of e|^2> + sum over j of phi_j <|DFT_j of e over the receivers|^2>):
 
-   differences between receivers repeat with every ping and make ghosts, j lambda r/(2 spacing) beside a target; phi_j is
-   the share of them inside the image. NAN where no ping sees the pixel. */
+   differences between receivers repeat with every ping and make ghosts, j lambda r/(2 spacing) beside a target; phi_j
+   is the share of them inside the image. NAN where no ping sees the pixel. */
 enum motion { MOTION_NONE, MOTION_BROADSIDE };
 double motion_error(const struct problem *problem, enum motion motion);
 

@@ -1,5 +1,5 @@
-/* Choosing among candidates (planner.h). Back projections are forecast first: their forecasts are cheap. Range migration
-   is forecast where the FFTs alone that it cannot do without are faster than the fastest of those. */
+/* Choosing among candidates (planner.h). Back projections are forecast first: their forecasts are cheap. Range
+   migration is forecast where the FFTs alone that it cannot do without are faster than the fastest of those. */
 #include "planner/planner.h"
 
 #include <math.h>

@@ -18,8 +18,8 @@ struct rates {
 const struct rates *rates_get(void);
 void rates_set(const struct rates *rates);
 
-/* With all threads that OpenMP has: the seconds that a forecast's sums take of `pairs` pairs, from tables of `entries` entries; those of a range
-   migration of `flops`. */
+/* With all threads that OpenMP has: the seconds that a forecast's sums take of `pairs` pairs, from tables of `entries`
+   entries; those of a range migration of `flops`. */
 double rates_sums(const struct forecast *forecast, enum precision precision, double pairs, double entries);
 double rates_migration(enum precision precision, double flops);
 

@@ -7,7 +7,7 @@
 #include "range_migration/spectrum.h"
 #include "wavenumber/engine.h"
 
-static const double SLOWEST = 0.1;         /* of 1 - |v|/c, as in range migration */
+static const double SLOWEST = 0.1;          /* of 1 - |v|/c, as in range migration */
 static const double SLOWEST_ROTATED = 0.78; /* beyond, axes turned by the angle at rest leave 7 % and more */
 
 double wk_centroid_slope(const struct acquisition *a, const struct straight_track *track)

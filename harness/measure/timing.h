@@ -26,11 +26,10 @@ struct timing_samples {
     double waited, elapsed;            /* s */
 };
 
-/* Plan, run once to warm up, then repeat until five runs and half a second are timed; long runs are repeated less (three
-   at least, and no new run begins after 3 s; a first run of 10 s or more is the only one). The control is timed before
-   and after.
-   `control_echoes`: the same echoes in float. With `samples` this is one of TIMING_ROUNDS rounds, each a part as long;
-   times are of all runs so far. *image is the finished one (imaging_finish), freed by the caller.
+/* Plan, run once to warm up, then repeat until five runs and half a second are timed; long runs are repeated less
+   (three at least, and no new run begins after 3 s; a first run of 10 s or more is the only one). The control is timed
+   before and after. `control_echoes`: the same echoes in float. With `samples` this is one of TIMING_ROUNDS rounds,
+   each a part as long; times are of all runs so far. *image is the finished one (imaging_finish), freed by the caller.
    Errors: as imaging_open, imaging_execute, imaging_finish; *image is then empty. */
 enum status timing_measure(const struct spec *spec, const struct problem *problem, const struct echoes *echoes,
                            const struct echoes *control_echoes, struct timing_samples *samples, struct image *image,

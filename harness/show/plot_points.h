@@ -25,8 +25,8 @@ double scene_most_pairs(const struct results *results, const char *scene);
    points. */
 int pareto_front_find(int count, const double *cost, const double *error, int *front);
 
-/* Behind the `size` indices of a front, those of points that no other, with less or equal error, surely costs less than:
-   whose interval [low, high] of the cost lies below theirs. Returns how many. */
+/* Behind the `size` indices of a front, those of points that no other, with less or equal error, surely costs less
+   than: whose interval [low, high] of the cost lies below theirs. Returns how many. */
 int pareto_ties_find(int count, const double *low, const double *high, const double *error, int size, int *front);
 
 /* Write DIR/points.csv from DIR/measurements.csv: a row for each that was measured (results/README.md has its columns),

@@ -14,8 +14,9 @@ void table_header(FILE *stream);
 void table_scene(FILE *stream, const char *name, const char *what);
 /* A warning of the scene, below its heading; it is not said again below its rows. */
 void table_warning(FILE *stream, const char *text);
-/* One measurement, with its warnings that no row of the scene had before; the sharpness in place of lobes where the scene has no targets; a heading line whenever the scene is
-   another than the row's before. Undefined values are "-". */
+/* One measurement, with its warnings that no row of the scene had before; the sharpness in place of lobes where the
+   scene has no targets; a heading line whenever the scene is another than the row's before. Undefined values are "-".
+   */
 void table_row(FILE *stream, const struct measurement *row);
 
 /* Text broken at blanks to the width of the terminal (110 where there is none), each line behind `indent` blanks. */

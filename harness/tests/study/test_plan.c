@@ -74,8 +74,8 @@ static void choice_measure(const struct session *session, int seed, double budge
     spec_free(&spec);
 }
 
-/* Measured errors within the budget, of other seeds than the planner was made with: a few, or as many as the environment
-   variable SASBENCH_RANDOM_SCENES says. */
+/* Measured errors within the budget, of other seeds than the planner was made with: a few, or as many as the
+   environment variable SASBENCH_RANDOM_SCENES says. */
 static void within_budget(void **state)
 {
     (void)state;
