@@ -80,7 +80,8 @@ enum status wk_plan(const struct problem *problem, const struct wk_method *metho
 {
     struct condition conditions[CONDITIONS_MAX];
     *plan = NULL;
-    int count = (method->rotates ? wk_rotated_conditions : wk_conditions)(problem, options, conditions, CONDITIONS_MAX);
+    int count = method->rotates ? wk_rotated_conditions(problem, options, conditions, CONDITIONS_MAX)
+                                : wk_conditions(problem, options, conditions, CONDITIONS_MAX);
     for (int k = 0; k < count; k++)
         if (strcmp(conditions[k].name, "predicted_error") == 0 && isnan(conditions[k].value))
             return status_set(STATUS_FAILED, "%s: no memory to predict the image's error", method->name);

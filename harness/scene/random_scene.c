@@ -37,7 +37,7 @@ static double rounded(double value)
 
 static struct draw draw_sonar(struct random *random)
 {
-    struct draw d;
+    struct draw d = {0};
     const bool air = random_uniform(random) < 0.25;
     d.c = air ? 343 : 1500;
     d.fc = rounded(air ? scale(random, 10e3, 60e3) : scale(random, 20e3, 300e3));

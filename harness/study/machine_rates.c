@@ -206,7 +206,7 @@ static enum status rounds_run(const struct bench *bench, struct probes *probes)
 enum status machine_rates_measure(struct rates *rates)
 {
     struct bench bench = {.echoes = {{0}, {0}}};
-    struct probes probes;
+    struct probes probes = {0};
     const int threads = omp_get_max_threads();
     *rates = (struct rates){.doubled = 1};
     enum status status = scene_load(scene_name, SCENE_DIRECTORY, &bench.scene);
