@@ -171,9 +171,17 @@ static const struct {
     double (*reduce)(const struct values *values);
     double (*each)(double value); /* instead: of every element */
 } functions[] = {
-    {"list", 0, NULL, NULL},           {"min", 0, least, NULL},     {"max", 0, largest, NULL},
-    {"magnitude", 0, magnitude, NULL}, {"median", 0, middle, NULL}, {"abs", 0, NULL, fabs},
-    {"log2", 0, NULL, log2},           {"sqrt", 0, NULL, sqrt},     {"upsampling_rate", 3, rate, NULL},
+    {"list", 0, NULL, NULL},
+    {"min", 0, least, NULL},
+    {"max", 0, largest, NULL},
+    {"magnitude", 0, magnitude, NULL},
+    {"median", 0, middle, NULL},
+    {"abs", 0, NULL, fabs},
+    {"log2", 0, NULL, log2},
+    {"sqrt", 0, NULL, sqrt},
+    {"tan", 0, NULL, tan},
+    {"atan", 0, NULL, atan},
+    {"upsampling_rate", 3, rate, NULL},
 };
 enum { FUNCTIONS = sizeof functions / sizeof *functions };
 

@@ -62,6 +62,8 @@ static void arithmetic_is_right(void **state)
         {"max(abs(v + 10))", 7},
         {"log2(8)", 3},
         {"sqrt(9)", 3},
+        {"tan(pi / 4)", 1},
+        {"min(atan(list(1, -1)) * 4)", -3.14159265358979},
         {"min(2 * v + v)", -36},
         {"upsampling_rate(0.025, 0.041, 0.01)", 2},
         {"published(bp22_t4, '', sinc, time_s)", 31276},
