@@ -43,6 +43,25 @@ static enum status spoiled_execute(void *plan, const struct echoes *echoes, stru
     return status;
 }
 
+/* The stand-in has scatterers alone: its error, in dB, stands for the side lobes of the targets that claims ask for. */
+static void side_lobes_plant(const char *scene, const struct spec *spec, double error)
+{
+    const double lobes_db = 20 * log10(error);
+    for (int k = 0; k < 8; k++) {
+        const struct target_row target = {.scene = scene,
+                                          .algorithm = spec->algorithm->name,
+                                          .options = spec->text,
+                                          .precision = precision_name(spec->precision),
+                                          .target = k,
+                                          .axis = "azimuth",
+                                          .definition = "pixel",
+                                          .extent_m = 3,
+                                          .pslr_db = lobes_db,
+                                          .islr_db = lobes_db};
+        assert_int_equal(results_folder_targets(rows, &target, 1), STATUS_OK);
+    }
+}
+
 /* Measure SPEC on a session whose scene has a name that claims ask for, with the fault if it concerns SPEC. */
 static void measure(const struct session *session, const char *spec_text)
 {
@@ -70,6 +89,7 @@ static void measure(const struct session *session, const char *spec_text)
     row.pslr_db = outcome.row.pslr_db;
     row.islr_db = outcome.row.islr_db;
     assert_int_equal(results_folder_add(rows, &row), STATUS_OK);
+    side_lobes_plant(session->scene->name, &spec, row.error);
     outcome_free(&outcome);
     spec_free(&used);
     spec_free(&spec);
