@@ -5,7 +5,9 @@
 #include <float.h>
 #include <limits.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "algorithm.h"
 #include "common/delay.h"
@@ -23,6 +25,21 @@ void condition_message(const struct condition *condition, char *text, size_t siz
 {
     snprintf(text, size, "condition %s: %s is %.3g; %s %g is needed (cure: %s)", condition->name, condition->meaning,
              condition->value, condition->at_least ? "more than" : "at most", condition->limit, condition->cure);
+}
+
+void condition_cure_add(struct condition *condition, const char *format, ...)
+{
+    const size_t used = strlen(condition->cure);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(condition->cure + used, sizeof condition->cure - used, format, arguments);
+    va_end(arguments);
+}
+
+double condition_at_most(double value)
+{
+    const double unit = pow(10, floor(log10(value)) - 2);
+    return floor(value / unit) * unit;
 }
 
 /* The number of the first that refuses; count if none does. */
@@ -257,24 +274,37 @@ int conditions_general(const struct problem *problem, struct condition *list, in
                            "the largest sample coordinate that is read", "shorter records"});
     if (a->pings > 1 && speed > 0) {
         double interval = fabs(a->tx[a->pings - 1].x - a->tx[0].x) / (a->pings - 1) / speed;
-        add(list, room, &count,
-            (struct condition){"unambiguous", extent.delay / interval, 1, false, SEVERITY_WARN,
-                               "the longest delay over the time from ping to ping, beyond which real records overlap",
-                               "more time from ping to ping"});
+        struct condition unambiguous = {
+            "unambiguous",
+            extent.delay / interval,
+            1,
+            false,
+            SEVERITY_WARN,
+            "the longest delay over the time from ping to ping, beyond which real records overlap",
+            "more time from ping to ping"};
+        condition_cure_add(&unambiguous, " than %.3g s", extent.delay);
+        add(list, room, &count, unambiguous);
     }
     return count;
 }
 
+/* Phase centres lie M d/2 from ping to ping without gaps, or n deep where the spacing is a whole part of that. */
 struct condition condition_ghost(const struct acquisition *a, double spacing)
 {
-    double half = fabs(condition_offset(a, 2) - condition_offset(a, 0)) / (a->receivers - 1) * a->receivers / 2;
-    return (struct condition){"ghost",
-                              fabs(fabs(spacing) / half - 1),
+    const double half = fabs(condition_offset(a, 2) - condition_offset(a, 0)) / (a->receivers - 1) * a->receivers / 2;
+    const double even = half / fmax(1, round(half / fabs(spacing))), speed = speed_of(a);
+    struct condition ghost = {"ghost",
+                              fabs(fabs(spacing) / even - 1),
                               1e-3,
                               false,
                               SEVERITY_WARN,
-                              "how far the ping spacing is from half the array, which makes ghosts (relative)",
-                              "pings half the array's length apart"};
+                              "how far the ping spacing is from half the array or a whole part of it, which makes "
+                              "ghosts (relative)",
+                              ""};
+    condition_cure_add(&ghost, "pings %.5g m apart in place of %.5g m", even, fabs(spacing));
+    if (speed > 0)
+        condition_cure_add(&ghost, ", a PRI of %.5g s at %.5g m/s", even / speed, speed);
+    return ghost;
 }
 
 /* Near enough to a uniform straight track that gaps between the pings are what `track` has: no ping is farther off than

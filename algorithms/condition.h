@@ -22,13 +22,21 @@ struct condition {
     double value, limit;
     bool at_least; /* the value must lie above the limit, not below */
     enum severity severity;
-    const char *meaning, *cure; /* what the value is, and what would change it: static texts */
+    const char *meaning; /* what the value is: a static text */
+    char cure[200];      /* what would change it, in figures where they are known */
 };
 
 enum { CONDITIONS_MAX = 24 }; /* of one algorithm */
 
 /* A NaN does not hold. */
 bool condition_holds(const struct condition *condition);
+/* A further part of the cure, formatted. */
+#ifdef __GNUC__
+__attribute__((format(printf, 2, 3)))
+#endif
+void condition_cure_add(struct condition *condition, const char *format, ...);
+/* A value to three digits, downwards: what may be at most `value` may be that. */
+double condition_at_most(double value);
 /* "condition NAME: MEANING is VALUE; at most LIMIT is needed (cure: CURE)". */
 void condition_message(const struct condition *condition, char *text, size_t size);
 /* Does none of `list` refuse? */

@@ -19,7 +19,11 @@ struct survey {
     double places, unmet; /* pixels, by the lattice */
     double cut;           /* pixels met of whose echoes from inside the beam the records hold not all */
     int patches_unmet;
-    double step_x, step_r; /* over the resolution there; the coarsest */
+    struct steps {
+        double worst; /* the step over the resolution at the place where that is largest */
+        double most;  /* m: the step that would be as large as the resolution there */
+    } x, r;
+    double nearest, farthest; /* m: the ranges that the records hold */
 };
 
 /* Spread of the wavenumbers F dtau/dx' and F dtau/dr' (1/m) of the echoes of one place, x' and r' the image's axes. */
@@ -63,6 +67,12 @@ struct counts {
     int places, met, cut;
 };
 
+static void steps_add(double step, int count, double least, double greatest, struct steps *steps)
+{
+    if (count > 1 && step * (greatest - least) > steps->worst)
+        *steps = (struct steps){step * (greatest - least), 1 / (greatest - least)};
+}
+
 /* One place: is it met, and what do the echoes of the pings that see it say? */
 static void place_survey(const struct acquisition *a, const struct grid *g, struct vector place, struct counts *counts,
                          struct survey *survey)
@@ -91,10 +101,8 @@ static void place_survey(const struct acquisition *a, const struct grid *g, stru
     counts->places++;
     counts->met += met;
     counts->cut += met && beam_known && cut > CUT_MOST * seen;
-    if (g->x_count > 1 && spread.greatest[0] > spread.least[0])
-        survey->step_x = fmax(survey->step_x, g->x_step * (spread.greatest[0] - spread.least[0]));
-    if (g->r_count > 1 && spread.greatest[1] > spread.least[1])
-        survey->step_r = fmax(survey->step_r, g->r_step * (spread.greatest[1] - spread.least[1]));
+    steps_add(g->x_step, g->x_count, spread.least[0], spread.greatest[0], &survey->x);
+    steps_add(g->r_step, g->r_count, spread.least[1], spread.greatest[1], &survey->r);
 }
 
 /* The row or column in the middle of the n-th of `nodes` equal parts: a pixel where there are as many. */
@@ -110,8 +118,13 @@ static int nodes_of(int count, int most)
 
 static struct survey survey_make(const struct problem *problem)
 {
-    struct survey survey = {0};
+    const struct acquisition *a = problem->acquisition;
+    struct survey survey = {.nearest = INFINITY};
     int most = NODES_MOST;
+    for (int p = 0; p < a->pings; p++) {
+        survey.nearest = fmin(survey.nearest, fmax(a->t0[p], 0) * a->sound_speed / 2);
+        survey.farthest = fmax(survey.farthest, (a->t0[p] + (a->samples - 1) / a->fs) * a->sound_speed / 2);
+    }
     while (most > 3 && (double)most * most * problem->patch_count > PLACES_MOST)
         most--;
     for (int k = 0; k < problem->patch_count; k++) {
@@ -119,7 +132,7 @@ static struct survey survey_make(const struct problem *problem)
         const int rows = nodes_of(g->r_count, most), columns = nodes_of(g->x_count, most);
         struct counts counts = {0, 0, 0};
         for (int n = 0; n < rows * columns; n++)
-            place_survey(problem->acquisition, g,
+            place_survey(a, g,
                          grid_point(g, node(n / columns, rows, g->r_count), node(n % columns, columns, g->x_count)),
                          &counts, &survey);
         const double pixels = (double)g->r_count * g->x_count;
@@ -128,8 +141,7 @@ static struct survey survey_make(const struct problem *problem)
         survey.cut += pixels * counts.cut / counts.places;
         if (counts.met == 0) {
             for (int n = 0; n < 4; n++)
-                place_survey(problem->acquisition, g, grid_point(g, n / 2 * (g->r_count - 1), n % 2 * (g->x_count - 1)),
-                             &counts, &survey);
+                place_survey(a, g, grid_point(g, n / 2 * (g->r_count - 1), n % 2 * (g->x_count - 1)), &counts, &survey);
             survey.patches_unmet += counts.met == 0;
         }
     }
@@ -151,27 +163,39 @@ static double longest_step(const struct problem *problem)
     return longest;
 }
 
+enum { WAVELENGTH, NARROW_BAND, PIXEL_X, PIXEL_R, PIXELS_MET, PATCHES_MET, BEAM_IN_RECORD };
+
 int conditions_scene(const struct problem *problem, struct condition list[CONDITIONS_SCENE])
 {
     const struct acquisition *a = problem->acquisition;
     const struct survey survey = survey_make(problem);
-    const struct condition all[CONDITIONS_SCENE] = {
-        {"wavelength", a->sound_speed / a->fc / longest_step(problem), WAVELENGTH_MOST, false, SEVERITY_WARN,
-         "the wavelength over the longest of element, pitch, ping spacing and pixel", "fc in Hz, not kHz"},
-        {"narrow_band", a->fc / a->bandwidth, CARRIER_MOST, false, SEVERITY_WARN, "the carrier over the bandwidth",
-         "bandwidth and fs in Hz, not kHz"},
-        {"pixel_x", survey.step_x, 1, false, SEVERITY_WARN, "the pixels' step along x over the resolution there",
-         "a step smaller by that factor; targets may fall between the pixels"},
-        {"pixel_r", survey.step_r, 1, false, SEVERITY_WARN, "the pixels' step along r over the resolution there",
-         "a step smaller by that factor; targets may fall between the pixels"},
-        {"pixels_met", 100 * survey.unmet / survey.places, 0, false, SEVERITY_WARN,
-         "how many of the pixels no record meets, so that they are zero (%)", "a grid within the records"},
-        {"patches_met", survey.patches_unmet, 0, false, SEVERITY_WARN, "the number of patches that no record meets",
-         "patches within the records"},
-        {"beam_in_record", 100 * survey.cut / survey.places, CUT_PIXELS_MOST, false, SEVERITY_WARN,
-         "how many of the pixels lose echoes from inside the beam at the ends of the records (%)",
-         "longer records, or a grid farther from their ends"},
+    struct condition all[CONDITIONS_SCENE] = {
+        [WAVELENGTH] = {"wavelength", a->sound_speed / a->fc / longest_step(problem), WAVELENGTH_MOST, false,
+                        SEVERITY_WARN, "the wavelength over the longest of element, pitch, ping spacing and pixel",
+                        "fc in Hz, not kHz"},
+        [NARROW_BAND] = {"narrow_band", a->fc / a->bandwidth, CARRIER_MOST, false, SEVERITY_WARN,
+                         "the carrier over the bandwidth", "bandwidth and fs in Hz, not kHz"},
+        [PIXEL_X] = {"pixel_x", survey.x.worst, 1, false, SEVERITY_WARN,
+                     "the pixels' step along x over the resolution there",
+                     "a smaller step, or targets may fall between the pixels"},
+        [PIXEL_R] = {"pixel_r", survey.r.worst, 1, false, SEVERITY_WARN,
+                     "the pixels' step along r over the resolution there",
+                     "a smaller step, or targets may fall between the pixels"},
+        [PIXELS_MET] = {"pixels_met", 100 * survey.unmet / survey.places, 0, false, SEVERITY_WARN,
+                        "how many of the pixels no record meets, so that they are zero (%)",
+                        "a grid within the records"},
+        [PATCHES_MET] = {"patches_met", survey.patches_unmet, 0, false, SEVERITY_WARN,
+                         "the number of patches that no record meets", "patches within the records"},
+        [BEAM_IN_RECORD] = {"beam_in_record", 100 * survey.cut / survey.places, CUT_PIXELS_MOST, false, SEVERITY_WARN,
+                            "how many of the pixels lose echoes from inside the beam at the ends of the records (%)",
+                            "longer records, or a grid farther from their ends"},
     };
+    for (int k = PIXEL_X; k <= PIXEL_R; k++)
+        if (!condition_holds(&all[k]))
+            condition_cure_add(&all[k], ": at most %.3g m",
+                               condition_at_most(k == PIXEL_X ? survey.x.most : survey.r.most));
+    for (int k = PIXELS_MET; k <= PATCHES_MET; k++)
+        condition_cure_add(&all[k], ", which hold ranges of %.4g to %.4g m", survey.nearest, survey.farthest);
     for (int k = 0; k < CONDITIONS_SCENE; k++)
         list[k] = all[k];
     return CONDITIONS_SCENE;

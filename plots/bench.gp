@@ -3,13 +3,14 @@
 #
 # By hand:    gnuplot -c plots/bench.gp results/bench/bench.csv
 # Variables:  csv      what `bench` wrote
-#             output   the picture, PNG or SVG (default: beside the CSV, .png)
+#             output   the picture, PNG or SVG (default: beside the CSV, .png); footer: below it (default: none)
 #             plots    folder of the scripts
 
 if (!exists("plots")) plots = "plots"
 if (!exists("csv")) csv = ARGC >= 1 ? ARG1 : "results/bench/bench.csv"
 if (csv[1:1] ne "/") csv = "./".csv                    # one that begins with '<' would be a command
 if (!exists("output")) output = csv[1:strlen(csv) - 4].".png"
+if (!exists("footer")) footer = ""
 width = 1400
 height = 620
 load plots."/style.gp"
@@ -31,6 +32,7 @@ set output output
 set style fill solid 0.9 noborder
 set grid noytics
 set yrange [|$rows| - 0.3:-0.7]
+set label 1 footer at screen 0.5,14.0/height center font ",10" textcolor "#606060"
 set multiplot title sprintf("Back projection of BP22's full size, %d thread%s", threads_max, threads_max > 1 ? "s" : "")
 set tmargin at screen 1 - 60.0/height
 set bmargin at screen 125.0/height
@@ -46,6 +48,7 @@ do for [k = 1:3] {
     if (k == 3) { set key at screen 0.5,50.0/height center top } else { unset key }
     plot for [e = 1:2] $rows using (low):0:(low):(strstrt(strcol(2), engine[e]) ? column(k + 2) : NaN):($0 - 0.35):($0 + 0.35): \
         ytic(k == 1 ? 1 : 6) with boxxyerror linecolor rgb colour[e] title engine[e]." engine"
+    unset label 1
 }
 unset multiplot
 unset output

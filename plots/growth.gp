@@ -2,13 +2,14 @@
 #
 # By hand:    gnuplot -c plots/growth.gp results/bench/growth.csv
 # Variables:  csv      what `bench` wrote
-#             output   the picture, PNG or SVG (default: beside the CSV, .png)
+#             output   the picture, PNG or SVG (default: beside the CSV, .png); footer: below it (default: none)
 #             plots    folder of the scripts
 
 if (!exists("plots")) plots = "plots"
 if (!exists("csv")) csv = ARGC >= 1 ? ARG1 : "results/bench/growth.csv"
 if (csv[1:1] ne "/") csv = "./".csv                    # one that begins with '<' would be a command
 if (!exists("output")) output = csv[1:strlen(csv) - 4].".png"
+if (!exists("footer")) footer = ""
 width = 1400
 height = 720
 load plots."/style.gp"
@@ -27,6 +28,7 @@ point(name) = family_filled[family_drawn(name[1:(strstrt(name, " ") ? strstrt(na
 dash(name) = strstrt(name, "general") ? 2 : 1
 
 set output output
+set label 1 footer at screen 0.5,14.0/height center font ",10" textcolor "#606060"
 set multiplot
 set tmargin at screen 1 - 50.0/height
 set bmargin at screen 205.0/height
@@ -42,6 +44,7 @@ plot for [k = 1:|timed|] csv using (column("columns")*column("rows")): \
     (line(strcol("algorithm"), strcol("options"), strcol("engine")) eq timed[k] && strcol("setting") eq "" ? column("ns_per_pair") : NaN) \
     with linespoints linecolor rgb colour(timed[k]) pointtype point(timed[k]) dashtype dash(timed[k]) \
     linewidth (strstrt(timed[k], "degree 5") ? 1 : 2) title timed[k]
+unset label 1
 set lmargin at screen 0.56
 set rmargin at screen 1 - 25.0/width
 set format x "%g"

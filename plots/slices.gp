@@ -4,13 +4,13 @@
 # Variables:  output   the picture to write
 #             title    above the picture
 #             panels   array: title of each panel
-#             lines    array: label of each line
+#             lines    array: label of each line; algorithms: whose colour it has; footer: below the picture
 #             data     text file: for each panel, for each line a block of "position (m)  power (dB)  difference (dB)", blocks
 #                      separated by two empty lines
 #             has_differences   whether there are any
 #             plots    folder of style.gp (default "plots")
 # By hand:    gnuplot -e "output='a.png'; title='A'; array panels[1] = ['target 0']; array lines[1] = ['bp_sinc']; \
-#                         has_differences=0; data='a.txt'" plots/slices.gp
+#                         array algorithms[1] = ['bp_sinc']; footer=''; has_differences=0; data='a.txt'" plots/slices.gp
 
 if (!exists("plots")) plots = "plots"
 columns = |panels| == 1 ? 1 : |panels| <= 4 ? 2 : |panels| <= 6 ? 3 : 4
@@ -22,7 +22,7 @@ upper = columns == 1 ? 560 : 300
 lower = has_differences ? (columns == 1 ? 260 : 170) : 0
 between = has_differences ? 22 : 0
 panel_height = upper + between + lower
-bottom = 90 + 26*key_rows
+bottom = 108 + 26*key_rows
 width = 120 + columns*panel_width + (columns - 1)*95
 height = 85 + rows*panel_height + (rows - 1)*115 + bottom
 load plots."/style.gp"
@@ -39,7 +39,7 @@ off_top = exists("off_max") ? 10*ceil(off_max/10.0) : 0
 array kind[|lines|]
 array member[|lines|]
 do for [l = 1:|lines|] {
-    kind[l] = family_number(lines[l]) > 0 ? family_number(lines[l]) : (l - 1)%17 + 1
+    kind[l] = family_number(algorithms[l]) > 0 ? family_number(algorithms[l]) : (l - 1)%17 + 1
     member[l] = 0
     do for [k = 1:l - 1] { if (kind[k] == kind[l]) { member[l] = member[l] + 1 } }
 }
@@ -49,6 +49,7 @@ dash(l) = (family_dash[kind[l]] - 1 + member[l])%5 + 1
 point(l) = kind[l] == 1 ? 0 : family_open[kind[l]]
 
 set multiplot title title font ",16" offset 0,-0.4
+set label 1 footer at screen 0.5, screen 14.0/height center font ",10" textcolor "#606060"
 set xrange [-extent:extent]
 set xtics tic_step(1.5*extent)
 do for [p = 1:|panels|] {
@@ -63,9 +64,10 @@ do for [p = 1:|panels|] {
     set ytics 10
     set ylabel "power relative to peak (dB)"
     if (has_differences) { unset xlabel; set format x "" } else { set xlabel "azimuth from target (m)" }
-    if (p == 1) { set key at screen 0.5, screen 12.0/height center bottom maxrows key_rows } else { unset key }   # one legend for all
+    if (p == 1) { set key at screen 0.5, screen 30.0/height center bottom maxrows key_rows } else { unset key }   # one legend for all
     plot for [l = 1:|lines|] data index (p - 1)*|lines| + l - 1 using 1:2 with linespoints linecolor rgb colour(l) \
         linewidth wide(l) dashtype dash(l) pointtype point(l) pointsize 1.2 pointinterval point_interval + l title lines[l]
+    unset label 1
     if (has_differences) {
         unset key
         unset title

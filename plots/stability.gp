@@ -3,13 +3,14 @@
 #
 # By hand:    gnuplot -c plots/stability.gp results/stability/stability.csv
 # Variables:  csv      what `stability` wrote: the same algorithms for every scene
-#             output   the picture, PNG or SVG (default: beside the CSV, .png)
+#             output   the picture, PNG or SVG (default: beside the CSV, .png); footer: below it (default: none)
 #             plots    folder of the scripts
 
 if (!exists("plots")) plots = "plots"
 if (!exists("csv")) csv = ARGC >= 1 ? ARG1 : "results/stability/stability.csv"
 if (csv[1:1] ne "/") csv = "./".csv                    # one that begins with '<' would be a command
 if (!exists("output")) output = csv[1:strlen(csv) - 4].".png"
+if (!exists("footer")) footer = ""
 width = 1400
 height = 900
 load plots."/style.gp"
@@ -25,32 +26,34 @@ short(scene) = scene[(strstrt(scene, "extreme/") == 1 ? 9 : 1):*]
 name(algorithm, options, precision) = algorithm.(options eq "" ? "" : ":".options).(precision eq "double" ? " double" : "")
 kind(verdict) = verdict[1:5] eq "works" ? 0 : verdict[1:7] eq "refused" ? 2 : verdict[1:5] eq "fails" ? 3 : 1
 why(verdict) = strstrt(verdict, ": ") ? verdict[strstrt(verdict, ": ") + 2:*] : ""
-set table $cells separator comma
+set table $cells separator tab                         # options hold commas
 plot csv using (place(strcol("scene"))):(column_now):(strcol("digits") eq "" ? "none" : strcol("digits")):(kind(strcol("verdict"))): \
     (short(strcol("scene"))):(name(strcol("algorithm"), strcol("options"), strcol("precision"))): \
     (why(strcol("verdict"))):(" ") with table
 unset table
 unset datafile columnheaders
+set datafile separator tab
 digits(text) = text[1:1] eq "n" ? NaN : real(text)
 stats $cells using 1:2 name "cells" nooutput
 rows = cells_max_x + 1
 columns = cells_max_y + 1
 
-width = 350 + 52*columns
-height = 410 + 22*rows
+width = columns < 9 ? 820 : 350 + 52*columns            # room for the title, and for the colour bar's labels
+height = 450 + 22*(rows < 9 ? 9 : rows)
 set terminal pngcairo noenhanced size width,height font "DejaVu Sans,12" background "#ffffff"
 if (svg) { set terminal svg noenhanced size width,height dynamic font "DejaVu Sans,Verdana,sans-serif,12" background "#ffffff" }
 set output output
-set title "Digits lost against the method's own sum in extended precision (grey: refused, red frame: degrades, red: fails)"
+set label 1 footer at screen 0.5,screen 14.0/height center font ",10" textcolor "#606060"
+set title "Digits lost against the method's own sum in extended precision\n(grey: refused, red frame: degrades, red: fails, white: no digits are judged)"
 set lmargin at screen 190.0/width
 set rmargin at screen 1 - 130.0/width
-set tmargin at screen 1 - 45.0/height
-set bmargin at screen 340.0/height
+set tmargin at screen 1 - 65.0/height
+set bmargin at screen 360.0/height
 set xrange [-0.5:columns - 0.5]
 set yrange [rows - 0.5:-0.5]
 set cbrange [-3:3]
 set cblabel "digits lost"
-set colorbox user origin screen 1 - 110.0/width, screen 340.0/height size screen 20.0/width, screen 1 - 385.0/height
+set colorbox user origin screen 1 - 110.0/width, screen 360.0/height size screen 20.0/width, screen 1 - 425.0/height
 unset key
 unset grid
 set xtics rotate by 90 right
@@ -62,8 +65,9 @@ plot $cells using 2:1:($2 - 0.48):($2 + 0.48):($1 - 0.46):($1 + 0.46):(column(4)
     "" using 2:(box(2) ? column(1) : NaN):($2 - 0.48):($2 + 0.48):($1 - 0.46):($1 + 0.46) with boxxyerror linecolor rgb "#d8d8d8", \
     "" using 2:(box(3) ? column(1) : NaN):($2 - 0.48):($2 + 0.48):($1 - 0.46):($1 + 0.46) with boxxyerror linecolor rgb "#d00000", \
     "" using 2:(box(1) ? column(1) : NaN):($2 - 0.48):($2 + 0.48):($1 - 0.46):($1 + 0.46) with boxxyerror fillstyle empty \
-        border linecolor rgb "#d00000" linewidth 2, \
+        border linecolor rgb "#d00000" linewidth 2 dashtype 1, \
     "" using 2:(column(4) < 2 ? column(1) : NaN):(number(strcol(3))) with labels font ",9" textcolor rgb "#ffffff", \
-    "" using 2:(column(4) > 1 ? column(1) : NaN):(strcol(7)[1:9]) with labels font ",7" textcolor rgb "#404040", \
+    "" using 2:(box(2) ? column(1) : NaN):(strcol(7)[1:9]) with labels font ",7" textcolor rgb "#404040", \
+    "" using 2:(box(3) ? column(1) : NaN):(strcol(7)[1:9]) with labels font ",7" textcolor rgb "#ffffff", \
     "" using 2:1:(" "):xtic(6):ytic(5) with labels
 unset output

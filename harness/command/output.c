@@ -1,6 +1,5 @@
 /* What -o and --range of commands accept, pictures, and what is said of an image. */
 #include <math.h>
-#include <omp.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
@@ -56,10 +55,8 @@ enum status range_parse(const char *command, const char *text, double *range_db)
 enum status picture_draw(const char *path, const struct image *image, const char *title, double range_db,
                          const struct scene *scene)
 {
-    struct provenance provenance;
-    char footer[160];
-    provenance_fill(&provenance, omp_get_max_threads());
-    snprintf(footer, sizeof footer, "sasbench %s, %s", provenance.commit, provenance.date);
+    char footer[PROVENANCE_LINE];
+    provenance_line(footer);
     const struct image_picture picture = {.image = image,
                                           .title = title,
                                           .footer = footer,

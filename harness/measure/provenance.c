@@ -56,6 +56,15 @@ static void program_fill(char *text, size_t size)
     fclose(file);
 }
 
+static void date_fill(char *text, size_t size)
+{
+    time_t now = time(NULL);
+    struct tm utc;
+    *text = '\0';
+    if (gmtime_r(&now, &utc))
+        strftime(text, size, "%Y-%m-%dT%H:%M:%SZ", &utc);
+}
+
 void provenance_fill(struct provenance *provenance, int threads)
 {
     *provenance = (struct provenance){.threads = threads};
@@ -70,8 +79,12 @@ void provenance_fill(struct provenance *provenance, int threads)
     snprintf(provenance->libraries, sizeof provenance->libraries, "%s, matio-%d.%d.%d, libconfig-%d.%d.%d",
              fftw_version, matio[0], matio[1], matio[2], LIBCONFIG_VER_MAJOR, LIBCONFIG_VER_MINOR,
              LIBCONFIG_VER_REVISION);
-    time_t now = time(NULL);
-    struct tm utc;
-    if (gmtime_r(&now, &utc))
-        strftime(provenance->date, sizeof provenance->date, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    date_fill(provenance->date, sizeof provenance->date);
+}
+
+void provenance_line(char text[PROVENANCE_LINE])
+{
+    char date[32];
+    date_fill(date, sizeof date);
+    snprintf(text, PROVENANCE_LINE, "sasbench %s, %s", SASBENCH_COMMIT, date);
 }

@@ -8,5 +8,8 @@ struct provenance {
     int threads;
 };
 void provenance_fill(struct provenance *provenance, int threads);
+/* What stands below a picture that is drawn now: "sasbench COMMIT, DATE". */
+enum { PROVENANCE_LINE = 160 };
+void provenance_line(char text[PROVENANCE_LINE]);
 
 #endif

@@ -7,6 +7,7 @@
 #include "data/echo_data.h"
 #include "data/paths.h"
 #include "measure/filtering.h"
+#include "measure/provenance.h"
 #include "papers/sources.h"
 #include "scene/simulate.h"
 #include "show/plot.h"
@@ -37,6 +38,7 @@ static enum status records_draw(const struct acquisition *a, const double comple
                               .r_step = a->sound_speed / (2 * a->fs),
                               .r_count = a->samples};
     struct image image;
+    char footer[PROVENANCE_LINE];
     enum status status = image_allocate(1, &grid, PRECISION_DOUBLE, &image);
     if (status != STATUS_OK)
         return status;
@@ -44,7 +46,9 @@ static enum status records_draw(const struct acquisition *a, const double comple
     for (int n = 0; n < a->samples; n++)
         for (int p = 0; p < a->pings; p++)
             pixels[(size_t)n * (size_t)a->pings + (size_t)p] = records[(size_t)p * (size_t)a->samples + (size_t)n];
-    if (plot_image(path, PLOT_DIRECTORY, &(struct image_picture){.image = &image, .title = title}) != STATUS_OK) {
+    provenance_line(footer);
+    if (plot_image(path, PLOT_DIRECTORY, &(struct image_picture){.image = &image, .title = title, .footer = footer})
+        != STATUS_OK) {
         fprintf(stderr, "sasbench: %s\n", status_message());
         ++*undrawn;
     }

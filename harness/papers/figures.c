@@ -11,6 +11,7 @@
 #include "data/paths.h"
 #include "data/text_file.h"
 #include "measure/metrics.h"
+#include "measure/provenance.h"
 #include "measure/session.h"
 #include "papers/echo_figures.h"
 #include "papers/sources.h"
@@ -27,7 +28,8 @@ struct figures {
     int first; /* the papers' number of the first target of a layout */
     struct {
         const char *scene;
-        int targets; /* how many of its targets, the first ones, are the papers' */
+        int targets;      /* how many of its targets, the first ones, are the papers' */
+        const char *what; /* its panels' titles begin with this; may be NULL */
     } scenes[SCENES_MAX];
     struct {
         const char *label, *spec;
@@ -45,7 +47,7 @@ static const struct figures sets[] = {
      0.1,
      "BP22 Figs 8 to 10",
      0,
-     {{"bp22/table3", 6}},
+     {{"bp22/table3", 6, NULL}},
      {{"nearest", NEAREST}, {"linear, beta 2", LINEAR_2}, {"linear, beta 8", LINEAR_8}, {"sinc", SINC_8}}},
     {NULL,
      "zp15_f3",
@@ -54,24 +56,24 @@ static const struct figures sets[] = {
      0.1,
      "ZP15 Figs 3 and 4",
      0,
-     {{"zp15/target", 1}},
+     {{"zp15/target", 1, NULL}},
      {{"no interpolation", NEAREST}, {"truncated sinc", SINC_8}, {"zero padding", ZEROPAD_8}}},
     {NULL,
      NULL,
      "lbf21_f11",
      "lbf21_f12",
      0.05,
-     "LBF21 Figs 11 and 12: sub-blocks of 30, 18, 12, 11.4, 9.6, 2.7 m",
+     "LBF21 Figs 11 and 12",
      0,
-     {{"lbf21/blocks_30_0", 1},
-      {"lbf21/blocks_18_0", 1},
-      {"lbf21/blocks_12_0", 1},
-      {"lbf21/blocks_11_4", 1},
-      {"lbf21/blocks_9_6", 1},
-      {"lbf21/blocks_2_7", 1}},
-     {{"LBF, as printed", "rma_lbf:variant=printed,blend=off,blocks=1,spacing=uniform"},
-      {"PCA", PCA_16},
-      {"BP", NULL}}},
+     {{"lbf21/blocks_30_0", 1, "sub-blocks of 30 m: "},
+      {"lbf21/blocks_18_0", 1, "sub-blocks of 18 m: "},
+      {"lbf21/blocks_12_0", 1, "sub-blocks of 12 m: "},
+      {"lbf21/blocks_11_4", 1, "sub-blocks of 11.4 m: "},
+      {"lbf21/blocks_9_6", 1, "sub-blocks of 9.6 m: "},
+      {"lbf21/blocks_2_7", 1, "sub-blocks of 2.7 m: "}},
+     {{"BP", NULL},
+      {"LBF, as printed", "rma_lbf:variant=printed,blend=off,blocks=1,spacing=uniform"},
+      {"PCA", PCA_16}}},
     {"lbf21_f13",
      "lbf21_f14",
      "lbf21_f15",
@@ -79,11 +81,11 @@ static const struct figures sets[] = {
      0,
      "LBF21 Figs 13 to 15",
      1,
-     {{"lbf21/table3_near", 2}, {"lbf21/table3_far", 4}},
-     {{"LBF, as printed", PRINTED("blocks=16")},
+     {{"lbf21/table3_near", 2, NULL}, {"lbf21/table3_far", 4, NULL}},
+     {{"BP", NULL},
+      {"LBF, as printed", PRINTED("blocks=16")},
       {"LBF, corrected", CORRECTED("blocks=16")},
-      {"PCA", PCA_16},
-      {"BP", NULL}}},
+      {"PCA", PCA_16}}},
     {"lbf21_f16",
      "lbf21_f17",
      "lbf21_f18",
@@ -91,23 +93,23 @@ static const struct figures sets[] = {
      0,
      "LBF21 Figs 16 to 18",
      7,
-     {{"lbf21/table4_near", 2}, {"lbf21/table4_far", 2}},
-     {{"LBF, as printed", PRINTED("blocks=16")},
+     {{"lbf21/table4_near", 2, NULL}, {"lbf21/table4_far", 2, NULL}},
+     {{"BP", NULL},
+      {"LBF, as printed", PRINTED("blocks=16")},
       {"LBF, corrected", CORRECTED("blocks=16")},
       {"PCA", PCA_16},
-      {"Wu", WU_16},
-      {"BP", NULL}}},
+      {"Wu", WU_16}}},
     {.images = "pf05_f5",
      .title = "PF05 Figs 5D to 5F",
-     .scenes = {{"pf05/picture", 0}, {"pf05/picture_inside", 0}},
+     .scenes = {{"pf05/picture", 0, NULL}, {"pf05/picture_inside", 0, NULL}},
      .methods = {{"4 sub-apertures", POLAR_4}, {"2 sub-apertures", POLAR_2}, {"no filter", IDEAL}}},
     {.images = "sq18_f3a",
      .title = "SQ18 Fig. 3(a)",
-     .scenes = {{"sq18/picture", 0}},
+     .scenes = {{"sq18/picture", 0, NULL}},
      .methods = {{"improved omega-k", TURNED}}},
     {.images = "sq18_f3b",
      .title = "SQ18 Fig. 3(b)",
-     .scenes = {{"sq18/squint_20", 0}, {"sq18/squint_00", 0}},
+     .scenes = {{"sq18/squint_20", 0, NULL}, {"sq18/squint_00", 0, NULL}},
      .methods = {{"improved omega-k", TURNED}, {"BP", NULL}}},
 };
 enum { SETS = sizeof sets / sizeof *sets };
@@ -118,7 +120,7 @@ struct drawing {
     const char *directory;
     bool images, slices, close; /* asked for and not there */
     int panel_count, method_count;
-    char titles[PANELS_MAX][120];
+    char titles[PANELS_MAX][120], footer[PROVENANCE_LINE];
     struct slice_line lines[PANELS_MAX][METHODS_MAX];
     int *undrawn;
 };
@@ -171,12 +173,14 @@ static void image_use(struct drawing *drawing, const struct session *session, co
         report(drawing, plot_image(path, PLOT_DIRECTORY,
                                    &(struct image_picture){.image = image,
                                                            .title = title,
+                                                           .footer = drawing->footer,
                                                            .targets = scene->targets,
                                                            .target_count = scene->point_count}));
     }
     for (int t = 0; t < set->scenes[s].targets && (drawing->slices || drawing->close); t++) {
         struct slice_line *line = &drawing->lines[first + t][m];
         line->label = set->methods[m].label;
+        line->algorithm = set->methods[m].spec ? set->methods[m].spec : "reference";
         metrics_slice_samples(image, &scene->acquisition, &scene->targets[t], AXIS_AZIMUTH, &line->position_m,
                               &line->power_db, &line->count);
     }
@@ -195,9 +199,15 @@ static enum status scene_use(struct drawing *drawing, int s, int first)
         scene_free(&scene);
         return status;
     }
-    for (int t = 0; t < set->scenes[s].targets; t++)
-        snprintf(drawing->titles[first + t], sizeof drawing->titles[0], "%s: x = %g m, r = %g m",
-                 strrchr(scene.name, '/') + 1, scene.targets[t].x, scene.targets[t].r);
+    for (int t = 0; t < set->scenes[s].targets; t++) {
+        char name[60] = "";
+        if (set->scenes[s].what)
+            snprintf(name, sizeof name, "%s", set->scenes[s].what);
+        else if (set->first > 0)
+            snprintf(name, sizeof name, "PT%d: ", set->first + first + t);
+        snprintf(drawing->titles[first + t], sizeof drawing->titles[0], "%sx = %g m, r = %g m", name,
+                 scene.targets[t].x, scene.targets[t].r);
+    }
     for (int m = 0; m < drawing->method_count && status == STATUS_OK; m++) {
         struct spec spec;
         struct image image = {0};
@@ -232,19 +242,27 @@ static void slices_draw(const struct drawing *drawing, const char *id, double mo
     for (int p = 0; p < drawing->panel_count; p++) {
         titles[p] = drawing->titles[p];
         for (int m = 0; m < drawing->method_count; m++) {
-            struct slice_line line = drawing->lines[p][m];
+            const struct slice_line line = drawing->lines[p][m];
             int from = 0, to = line.count;
             while (from < to && line.position_m[from] < -most_m)
                 from++;
             while (to > from && line.position_m[to - 1] > most_m)
                 to--;
-            shown[count++] = (struct slice_line){line.label, line.position_m + from, line.power_db + from, to - from};
+            shown[count] = line;
+            shown[count].position_m += from;
+            shown[count].power_db += from;
+            shown[count++].count = to - from;
         }
     }
     picture_name(drawing, id, NULL, NULL, path, sizeof path);
     snprintf(title, sizeof title, "%s: azimuth slices%s", drawing->set->title, isfinite(most_m) ? ", close" : "");
-    report(drawing,
-           plot_slices(path, PLOT_DIRECTORY, title, drawing->panel_count, titles, drawing->method_count, shown));
+    report(drawing, plot_slices(path, PLOT_DIRECTORY,
+                                &(struct slices_picture){.title = title,
+                                                         .footer = drawing->footer,
+                                                         .panel_count = drawing->panel_count,
+                                                         .line_count = drawing->method_count,
+                                                         .panel_titles = titles,
+                                                         .lines = shown}));
 }
 
 static enum status set_draw(struct drawing *drawing)
@@ -301,7 +319,7 @@ static enum status layout_draw(struct drawing *drawing)
     }
     status = text_file_close(&file, status);
     if (status == STATUS_OK)
-        report(drawing, plot_csv(picture, PLOT_DIRECTORY, "layout.gp", csv));
+        report(drawing, plot_csv(picture, PLOT_DIRECTORY, "layout.gp", csv, drawing->footer));
     return status;
 }
 
@@ -311,6 +329,7 @@ enum status figures_draw(const char *directory, bool (*asked)(const void *of, co
     enum status status = STATUS_OK;
     for (int k = 0; k < SETS && status == STATUS_OK; k++) {
         struct drawing drawing = {.set = &sets[k], .directory = directory, .undrawn = undrawn};
+        provenance_line(drawing.footer);
         if (wanted(&drawing, sets[k].layout, sets[k].layout && asked(of, sets[k].layout), false))
             status = layout_draw(&drawing);
         drawing.images = wanted(&drawing, sets[k].images, sets[k].images && asked(of, sets[k].images), true);

@@ -18,6 +18,7 @@ static const char style[] =
     "h1 { font-size: 1.6rem; overflow-wrap: anywhere; }\n"
     "h2 { font-size: 1.3rem; margin-top: 2.5rem; border-bottom: 1px solid #ccc; }\n"
     "h3 { font-size: 1.05rem; margin-top: 1.8rem; overflow-wrap: anywhere; }\n"
+    "summary { margin: .6rem 0; font-weight: bold; cursor: pointer; overflow-wrap: anywhere; }\n"
     "nav a { margin-right: 1rem; white-space: nowrap; }\n"
     "a { color: #005a9c; }\n"
     ".scroll, .drawing { overflow-x: auto; }\n"
@@ -54,6 +55,7 @@ static const char style[] =
     "  @page { size: A4 landscape; margin: 10mm; }\n"
     "  body { max-width: none; padding: 0; font-size: 10pt; }\n"
     "  nav { display: none; }\n"
+    "  details::details-content { content-visibility: visible; block-size: auto; }\n"
     "  .scroll, .drawing { overflow: visible; }\n"
     "  table { font-size: 7pt; }\n"
     "  th, td { padding: .1rem .3rem; }\n"
@@ -146,6 +148,23 @@ void page_heading(struct page *page, int level, const char *id, const char *text
     }
     element_write(page, level == 2 ? "h2" : "h3", "id", id, text);
     fputc('\n', page->stream);
+}
+
+void page_part_begin(struct page *page, const char *title, bool folded)
+{
+    if (folded && page->format == PAGE_HTML) {
+        fputs("<details>\n", page->stream);
+        element_write(page, "summary", NULL, NULL, title);
+        fputc('\n', page->stream);
+    } else {
+        page_heading(page, 3, NULL, title);
+    }
+}
+
+void page_part_end(struct page *page, bool folded)
+{
+    if (folded && page->format == PAGE_HTML)
+        fputs("</details>\n", page->stream);
 }
 
 void page_paragraph(struct page *page, const char *text)

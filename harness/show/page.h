@@ -38,6 +38,9 @@ void page_end(struct page *page);
 /* level 2 or 3; `id` for links within the page, may be NULL. */
 void page_heading(struct page *page, int level, const char *id, const char *text);
 void page_paragraph(struct page *page, const char *text);
+/* A part with a heading of level 3; `folded`: closed until it is asked for, in HTML. */
+void page_part_begin(struct page *page, const char *title, bool folded);
+void page_part_end(struct page *page, bool folded);
 /* Links to headings, in HTML only. */
 void page_contents(struct page *page, int count, const char *const *ids, const char *const *titles);
 

@@ -93,6 +93,15 @@ void pictures_add(struct pictures *pictures, int index, const char *label, const
     }
 }
 
+/* Does any image have a slice through target t? */
+static bool target_is_imaged(const struct pictures *pictures, int t)
+{
+    for (int k = 0; k < pictures->spec_count; k++)
+        if (pictures->lines[t * pictures->spec_count + k].count > 0)
+            return true;
+    return false;
+}
+
 void pictures_slices(struct pictures *pictures)
 {
     const struct scene *scene = pictures->scene;
@@ -100,20 +109,28 @@ void pictures_slices(struct pictures *pictures)
     char(*texts)[64] = calloc((size_t)scene->point_count + 1, sizeof *texts);
     const char **titles = calloc((size_t)scene->point_count + 1, sizeof *titles);
     struct slice_line *lines = calloc((size_t)scene->point_count * (size_t)pictures->spec_count + 1, sizeof *lines);
-    int count = 0; /* lines without a label have no image: unsupported or failed */
-    for (int k = 0; lines && k < scene->point_count * pictures->spec_count; k++)
-        if (pictures->lines[k % pictures->spec_count].label)
-            lines[count++] = pictures->lines[k];
-    if (count > 0 && texts && titles) {
-        for (int t = 0; t < scene->point_count; t++) {
-            snprintf(texts[t], sizeof texts[t], "T%d: x = %g m, r = %g m", t + 1, scene->targets[t].x,
-                     scene->targets[t].r);
-            titles[t] = texts[t];
-        }
+    int count = 0, panels = 0;
+    for (int t = 0; lines && texts && titles && t < scene->point_count; t++) {
+        if (!target_is_imaged(pictures, t))
+            continue;
+        snprintf(texts[panels], sizeof texts[panels], "T%d: x = %g m, r = %g m", t + 1, scene->targets[t].x,
+                 scene->targets[t].r);
+        titles[panels] = texts[panels];
+        panels++;
+        for (int k = 0; k < pictures->spec_count; k++) /* without a label there is no image: unsupported or failed */
+            if (pictures->lines[t * pictures->spec_count + k].label)
+                lines[count++] = pictures->lines[t * pictures->spec_count + k];
+    }
+    if (panels > 0) {
         path_make(pictures->directory, scene->name, NULL, path, sizeof path);
         snprintf(title, sizeof title, "%s: azimuth slices", scene->name);
-        tell(pictures,
-             plot_slices(path, PLOT_DIRECTORY, title, scene->point_count, titles, count / scene->point_count, lines));
+        tell(pictures, plot_slices(path, PLOT_DIRECTORY,
+                                   &(struct slices_picture){.title = title,
+                                                            .footer = pictures->footer,
+                                                            .panel_count = panels,
+                                                            .line_count = count / panels,
+                                                            .panel_titles = titles,
+                                                            .lines = lines}));
     }
     free(lines);
     free(texts);

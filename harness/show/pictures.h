@@ -23,7 +23,8 @@ enum status pictures_begin(const char *directory, const char *footer, const stru
                            const struct image *exact, int spec_count, struct pictures *pictures);
 /* Draw one algorithm's image (DIR/SCENE-LABEL.png) and keep its slices. index: 0 to spec_count - 1. */
 void pictures_add(struct pictures *pictures, int index, const char *label, const struct image *image);
-/* Draw the azimuth slices of all images added (DIR/SCENE-slices.png), one panel a target. */
+/* Draw the azimuth slices of all images added (DIR/SCENE-slices.png), one panel for each target that a
+   patch holds. */
 void pictures_slices(struct pictures *pictures);
 void pictures_free(struct pictures *pictures);
 

@@ -9,33 +9,39 @@
 
 static const double floor_db = -200; /* stands for zero power, far below what is shown */
 
-static enum status lines_write(const struct plot *plot, const char *title, int panel_count,
-                               const char *const *panel_titles, int line_count, const struct slice_line *lines)
+static enum status lines_write(const struct plot *plot, const struct slices_picture *picture)
 {
-    int shown = panel_count < PANELS_MAX ? panel_count : PANELS_MAX;
-    char full_title[600], path[PATH_MAX + 32];
-    int length = snprintf(full_title, sizeof full_title, "%.500s", title);
-    if (shown < panel_count)
-        snprintf(full_title + length, sizeof full_title - (size_t)length, " (first %d of %d panels)", shown,
-                 panel_count);
+    const int shown = picture->panel_count < PANELS_MAX ? picture->panel_count : PANELS_MAX;
+    const struct slice_line *lines = picture->lines;
+    char title[600], path[PATH_MAX + 32];
+    int length = snprintf(title, sizeof title, "%.500s", picture->title);
+    if (shown < picture->panel_count)
+        snprintf(title + length, sizeof title - (size_t)length, " (first %d of %d panels)", shown,
+                 picture->panel_count);
     plot_file(plot, "slices", path);
-    plot_variable(plot->preamble, "title", full_title);
+    plot_variable(plot->preamble, "title", title);
+    plot_variable(plot->preamble, "footer", picture->footer ? picture->footer : "");
     plot_variable(plot->preamble, "data", path);
     plot_array(plot->preamble, "panels", shown);
     for (int p = 0; p < shown; p++)
-        plot_array_write(plot->preamble, "panels", p, panel_titles[p]);
-    plot_array(plot->preamble, "lines", line_count);
-    for (int l = 0; l < line_count; l++)
+        plot_array_write(plot->preamble, "panels", p, picture->panel_titles[p]);
+    plot_array(plot->preamble, "lines", picture->line_count);
+    plot_array(plot->preamble, "algorithms", picture->line_count);
+    plot_array(plot->preamble, "printed", picture->line_count);
+    for (int l = 0; l < picture->line_count; l++) {
         plot_array_write(plot->preamble, "lines", l, lines[l].label);
+        plot_array_write(plot->preamble, "algorithms", l, lines[l].algorithm ? lines[l].algorithm : lines[l].label);
+        fprintf(plot->preamble, "printed[%d] = %.9g\n", l + 1, lines[l].printed);
+    }
 
     bool differences = false;
-    for (int b = 0; b < shown * line_count; b++)
+    for (int b = 0; b < shown * picture->line_count; b++)
         differences |= lines[b].count > 0 && lines[b].difference_db;
     fprintf(plot->preamble, "has_differences = %d\n", differences);
     FILE *file = fopen(path, "w");
     if (!file)
         return plot_file_failed(path);
-    for (int b = 0; b < shown * line_count; b++) {
+    for (int b = 0; b < shown * picture->line_count; b++) {
         /* A block without a row would not count, and shift the ones behind it. */
         fprintf(file, "0 NaN NaN\n");
         for (int k = 0; k < lines[b].count; k++)
@@ -48,30 +54,27 @@ static enum status lines_write(const struct plot *plot, const char *title, int p
     return written ? STATUS_OK : plot_file_failed(path);
 }
 
-static enum status lines_draw(const char *path, const char *plots_directory, const char *script, const char *title,
-                              int panel_count, const char *const *panel_titles, int line_count,
-                              const struct slice_line *lines)
+static enum status lines_draw(const char *path, const char *plots_directory, const char *script,
+                              const struct slices_picture *picture)
 {
     struct plot plot;
     enum status status = plot_begin(&plot, path);
     if (status == STATUS_OK)
-        status = lines_write(&plot, title, panel_count, panel_titles, line_count, lines);
+        status = lines_write(&plot, picture);
     if (status == STATUS_OK)
         status = plot_draw(&plot, plots_directory, script);
     plot_end(&plot);
     return status;
 }
 
-enum status plot_slices(const char *path, const char *plots_directory, const char *title, int panel_count,
-                        const char *const *panel_titles, int line_count, const struct slice_line *lines)
+enum status plot_slices(const char *path, const char *plots_directory, const struct slices_picture *picture)
 {
-    return lines_draw(path, plots_directory, "slices.gp", title, panel_count, panel_titles, line_count, lines);
+    return lines_draw(path, plots_directory, "slices.gp", picture);
 }
 
-enum status plot_phase(const char *path, const char *plots_directory, const char *title, int panel_count,
-                       const char *const *panel_titles, int line_count, const struct slice_line *lines)
+enum status plot_phase(const char *path, const char *plots_directory, const struct slices_picture *picture)
 {
-    return lines_draw(path, plots_directory, "phase.gp", title, panel_count, panel_titles, line_count, lines);
+    return lines_draw(path, plots_directory, "phase.gp", picture);
 }
 
 const char *const folder_plots[] = {"error_time", "error_flops", "lobes_time", "upsampling", NULL};
@@ -97,12 +100,14 @@ enum status plot_folder(const char *path, const char *plots_directory, const cha
     return status;
 }
 
-enum status plot_csv(const char *path, const char *plots_directory, const char *script, const char *csv)
+enum status plot_csv(const char *path, const char *plots_directory, const char *script, const char *csv,
+                     const char *footer)
 {
     struct plot plot;
     enum status status = plot_begin(&plot, path);
     if (status == STATUS_OK) {
         plot_variable(plot.preamble, "csv", csv);
+        plot_variable(plot.preamble, "footer", footer);
         status = plot_draw(&plot, plots_directory, script);
     }
     plot_end(&plot);

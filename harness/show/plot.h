@@ -28,13 +28,18 @@ struct slice_line {
     double *position_m, *power_db; /* [count], owned by the caller */
     int count;
     double *difference_db; /* [count] of the complex difference to the exact image over its peak; NULL: unknown */
+    const char *algorithm; /* whose colour it has: a name, or a SPEC; NULL: the label is one */
+    double printed;        /* of phase errors: the largest that the paper says; 0: it says none */
 };
-/* lines: [panel_count][line_count]. */
-enum status plot_slices(const char *path, const char *plots_directory, const char *title, int panel_count,
-                        const char *const *panel_titles, int line_count, const struct slice_line *lines);
+struct slices_picture {
+    const char *title, *footer; /* footer: where they are from; may be NULL */
+    int panel_count, line_count;
+    const char *const *panel_titles; /* [panel_count] */
+    const struct slice_line *lines;  /* [panel_count][line_count] */
+};
+enum status plot_slices(const char *path, const char *plots_directory, const struct slices_picture *picture);
 /* The same for phase errors: position in cycles a metre, `power_db` holds radians. */
-enum status plot_phase(const char *path, const char *plots_directory, const char *title, int panel_count,
-                       const char *const *panel_titles, int line_count, const struct slice_line *lines);
+enum status plot_phase(const char *path, const char *plots_directory, const struct slices_picture *picture);
 
 /* The scripts about a results folder, by name; NULL ends the list. */
 extern const char *const folder_plots[];
@@ -43,8 +48,9 @@ extern const char *const folder_plots[];
 enum status plot_folder(const char *path, const char *plots_directory, const char *name, const char *folder,
                         const char *scene, bool *drawn);
 
-/* A script about one CSV file, into `path`, which ends in .png or .svg. */
-enum status plot_csv(const char *path, const char *plots_directory, const char *script, const char *csv);
+/* A script about one CSV file, into `path`, which ends in .png or .svg; footer: where the file is from. */
+enum status plot_csv(const char *path, const char *plots_directory, const char *script, const char *csv,
+                     const char *footer);
 
 /* What a picture of one setting is called: "bp_linear:beta=8 double". */
 void picture_label(const char *algorithm, const char *options, const char *precision, char *label, size_t size);

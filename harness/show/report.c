@@ -232,7 +232,7 @@ static void measurements_show(struct page *page, const struct folder *folder)
               "against the exact image. Width, PSLR and ISLR: medians over the targets, azimuth, main lobe "
               "from first minimum to first minimum; without targets the image's sharpness.");
     for (int s = 0; s < folder->scene_count; s++) {
-        page_heading(page, 3, NULL, folder->scenes[s]);
+        page_part_begin(page, folder->scenes[s], folder->scene_count > 1);
         const bool sharpness = scene_is_blind(folder, folder->scenes[s]);
         struct page_column columns[MEASUREMENT_COLUMNS];
         memcpy(columns, measurement_columns, sizeof columns);
@@ -243,6 +243,7 @@ static void measurements_show(struct page *page, const struct folder *folder)
             if (strcmp(folder->results.measurements[row].scene, folder->scenes[s]) == 0)
                 measurement_show(page, &folder->results.measurements[row], sharpness);
         page_table_end(page);
+        page_part_end(page, folder->scene_count > 1);
     }
 }
 

@@ -7,16 +7,20 @@
 
 #include "data/published.h"
 #include "data/verdict.h"
+#include "show/report_cheapest.h"
 
 const struct report_table report_tables[REPORT_TABLES] = {
     {.file = "cheapest.csv",
      .id = "cheapest",
      .title = "Cheapest settings",
-     .text = "For each decade of error the setting that reaches it at the least cost, by run time and by counted "
-             "operations; of all algorithms, and of each family. Ties: settings that are as fast within the noise.",
+     .text =
+         "For each decade of error the setting that reaches it at the least cost; for each scene by run time and by "
+         "counted operations, of all algorithms, and of each family. Ties: settings that are as fast within the "
+         "noise.",
      .group = "scene",
      .first = true,
-     .parts = "family",
+     .folded = true,
+     .summary = cheapest_summary_show,
      .columns = {{"error_below", "error below", SHOW_TEXT},
                  {"cost", "cost", SHOW_TEXT},
                  {"family", "of", SHOW_TEXT, .later = true},
@@ -39,6 +43,7 @@ const struct report_table report_tables[REPORT_TABLES] = {
          "the error falls, the finest half of that, and the floor. The residual is the points' rms distance from the "
          "line in log10.",
      .group = "scene",
+     .folded = true,
      .columns = {{"algorithm", "algorithm", SHOW_TEXT},
                  {"options", "options", SHOW_TEXT},
                  {"precision", "precision", SHOW_TEXT},
@@ -55,8 +60,8 @@ const struct report_table report_tables[REPORT_TABLES] = {
      .id = "rules",
      .title = "Upsampling rules",
      .text = "Samples for each one recorded that BP22 Eq. (20) and ZP15's lambda/8 rule ask for, and the constants "
-             "of the "
-             "error laws.",
+             "of the error laws.",
+     .folded = true,
      .columns = {{"scene", "scene", SHOW_TEXT},
                  {"fc_hz", "fc (Hz)", SHOW_NUMBER},
                  {"fs_hz", "fs (Hz)", SHOW_NUMBER},
@@ -169,10 +174,10 @@ static void verdicts_count_show(struct page *page, const struct report_table *ta
     }
 }
 
-/* Empty where there is no such column; `column` may be NULL. */
+/* Empty where there is no such column. */
 static const char *cell_of(const struct csv *csv, int row, const char *column)
 {
-    const int index = column ? csv_column(csv, column) : -1;
+    const int index = csv_column(csv, column);
     return index < 0 ? "" : csv_cell(csv, row, index);
 }
 
@@ -188,9 +193,6 @@ static void rows_show(struct page *page, const struct report_table *table, const
         struct page_cell cells[REPORT_COLUMNS];
         char numbers[REPORT_COLUMNS][32];
         if (group && strcmp(csv_cell(csv, row, csv_column(csv, table->group)), group) != 0)
-            continue;
-        if (page->format == PAGE_MARKDOWN && *cell_of(csv, row, table->parts)
-            && strcmp(cell_of(csv, row, table->parts), "all") != 0)
             continue;
         for (int k = 0; k < count; k++) {
             const char *text = cell_of(csv, row, table->columns[k].name);
@@ -230,11 +232,16 @@ static bool group_seen(const struct csv *csv, int column, int row)
 
 void report_table_show(struct page *page, const struct report_table *table, const struct csv *csv)
 {
-    if (csv->row_count == 0)
+    const bool brief = table->folded && page->format == PAGE_MARKDOWN;
+    if (csv->row_count == 0 || (brief && !table->summary))
         return;
     page_heading(page, 2, table->id, table->title);
     page_paragraph(page, table->text);
     verdicts_count_show(page, table, csv);
+    if (table->summary)
+        table->summary(page, csv);
+    if (brief)
+        return;
     int column = table->group ? csv_column(csv, table->group) : -1;
     if (column < 0)
         rows_show(page, table, csv, NULL);
@@ -242,7 +249,8 @@ void report_table_show(struct page *page, const struct report_table *table, cons
         if (!group_seen(csv, column, row)) {
             char title[400];
             group_title(table, csv_cell(csv, row, column), title, sizeof title);
-            page_heading(page, 3, NULL, title);
+            page_part_begin(page, title, table->folded);
             rows_show(page, table, csv, csv_cell(csv, row, column));
+            page_part_end(page, table->folded);
         }
 }

@@ -13,7 +13,8 @@ struct report_table {
     const char *group; /* column whose values become headings, or NULL */
     bool stack;        /* long texts: rows fall apart on a narrow screen */
     bool first;        /* of the papers: ahead of the measurements that it rests on */
-    const char *parts; /* column of which Markdown shows the rows that say "all" only, or NULL */
+    bool folded;       /* each group is closed until it is asked for, and Markdown has none of them */
+    void (*summary)(struct page *page, const struct csv *csv); /* of all groups, ahead of them; may be NULL */
     struct {
         const char *name, *title;
         enum { SHOW_TEXT, SHOW_NUMBER, SHOW_VERDICT, SHOW_ONCE } show; /* once: not again in the rows below */

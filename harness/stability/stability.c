@@ -8,6 +8,7 @@
 
 #include "data/folder.h"
 #include "data/paths.h"
+#include "measure/provenance.h"
 #include "show/plot.h"
 #include "stability/table.h"
 
@@ -169,7 +170,7 @@ static enum status run_open(const struct stability_request *request, struct run 
 /* The files of the folder. The picture is worth no failure. */
 static enum status run_write(const struct run *run, const char *directory)
 {
-    char measured[4096], expected[4096], picture[4096];
+    char measured[4096], expected[4096], picture[4096], footer[PROVENANCE_LINE];
     int count = run->scene_count * run->spec_count;
     snprintf(measured, sizeof measured, "%s/stability.csv", directory);
     snprintf(expected, sizeof expected, "%s/expected.csv", directory);
@@ -177,7 +178,8 @@ static enum status run_write(const struct run *run, const char *directory)
     enum status status = stability_write(measured, run->mode_count, count, run->rows);
     if (status == STATUS_OK)
         status = stability_expected_write(expected, count, run->rows);
-    if (status == STATUS_OK && plot_csv(picture, PLOT_DIRECTORY, "stability.gp", measured) != STATUS_OK)
+    provenance_line(footer);
+    if (status == STATUS_OK && plot_csv(picture, PLOT_DIRECTORY, "stability.gp", measured, footer) != STATUS_OK)
         fprintf(stderr, "sasbench: %s\n", status_message());
     return status;
 }

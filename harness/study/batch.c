@@ -276,13 +276,16 @@ static bool pictures_missing(const struct batch *batch, const struct scene *scen
            || (images > 0 && scene->point_count > 0 && !picture_exists(batch->directory, scene->name, NULL));
 }
 
-/* What is known to be wrong with the scene, before the work begins. */
+/* What is known to be wrong with the scene, and what any image of it shows, before the work begins. */
 static void warnings_print(const struct scene *scene)
 {
-    struct condition list[SCENE_CONDITIONS];
-    char text[400];
-    for (int k = 0, count = scene_conditions(scene, list); k < count; k++)
-        if (!condition_holds(&list[k])) {
+    const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, PRECISION_DOUBLE};
+    struct condition list[SCENE_CONDITIONS + CONDITIONS_MAX];
+    char text[500];
+    int count = scene_conditions(scene, list);
+    count += conditions_sampled(&problem, list + count, CONDITIONS_MAX);
+    for (int k = 0; k < count; k++)
+        if (list[k].severity == SEVERITY_WARN && !condition_holds(&list[k])) {
             outcome_warning(&list[k], text, sizeof text);
             table_warning(stdout, text);
         }
@@ -363,7 +366,7 @@ enum status batch_open(const char *directory, int rows, bool details, struct bat
     struct provenance provenance;
     *batch = (struct batch){.directory = directory, .threads = omp_get_max_threads(), .details = details, .rows = rows};
     provenance_fill(&provenance, batch->threads);
-    snprintf(batch->footer, sizeof batch->footer, "sasbench %s, %s", provenance.commit, provenance.date);
+    provenance_line(batch->footer);
     batch->begin = batch->told = seconds_now();
     enum status status = results_folder_open(directory, &provenance, &batch->results);
     if (status == STATUS_OK)

@@ -2,13 +2,14 @@
 #ifndef SASBENCH_STUDY_BATCH_H
 #define SASBENCH_STUDY_BATCH_H
 
+#include "measure/provenance.h"
 #include "measure/results_folder.h"
 #include "scene/scene.h"
 #include "measure/spec.h"
 
 struct batch {
-    const char *directory; /* borrowed */
-    char footer[160];      /* of its pictures */
+    const char *directory;        /* borrowed */
+    char footer[PROVENANCE_LINE]; /* of its pictures */
     struct results_folder *results;
     int threads;
     bool details; /* of every scene: draw images and slices, print FLOPs by formula */

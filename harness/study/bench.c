@@ -215,41 +215,48 @@ static enum status bench_case(struct bench *bench, const struct bench_case *one)
     return status;
 }
 
-static enum status measure_cases(struct bench *bench)
+static enum status measure_cases(FILE *file)
 {
     struct provenance provenance;
-    provenance_fill(&provenance, bench->threads);
-    fprintf(bench->file, "# sasbench bench 2\n# machine: %s\n# compiler: %s\n# flags: %s\n# commit: %s\n# date: %s\n",
+    struct bench bench = {.file = file, .threads = omp_get_max_threads()};
+    provenance_fill(&provenance, bench.threads);
+    fprintf(file, "# sasbench bench 2\n# machine: %s\n# compiler: %s\n# flags: %s\n# commit: %s\n# date: %s\n",
             provenance.machine, provenance.compiler, provenance.flags, provenance.commit, provenance.date);
-    fprintf(bench->file, "# isa: %s\n", isa_name(isa_choose()));
-    fprintf(bench->file, "scene,engine,algorithm,precision,threads,rows,runs,pairs,plan_s,run_s,sum_s,pairs_per_s,"
-                         "peak_flops,flops_per_pair,fraction_of_peak,pairs_per_peak_flop,ratio_to_control,run_to_sum,"
-                         "gain_of_threads,plan_bytes,process_bytes\n");
+    fprintf(file, "# isa: %s\n", isa_name(isa_choose()));
+    fprintf(file, "scene,engine,algorithm,precision,threads,rows,runs,pairs,plan_s,run_s,sum_s,pairs_per_s,"
+                  "peak_flops,flops_per_pair,fraction_of_peak,pairs_per_peak_flop,ratio_to_control,run_to_sum,"
+                  "gain_of_threads,plan_bytes,process_bytes\n");
     printf("\n%-17s %-9s %-10s %-6s %s %7s %7s %7s %6s %8s %7s %7s %6s %6s\n", "scene", "engine", "algorithm", "prec.",
            "t", "run s", "sums s", "Gpair/s", "peak", "pair/FL", "control", "run/sum", "gain", "MiB");
     enum status status = STATUS_OK;
     for (size_t k = 0; k < sizeof cases / sizeof *cases && status == STATUS_OK; k++)
-        status = bench_case(bench, &cases[k]);
+        status = bench_case(&bench, &cases[k]);
     return status;
 }
 
-/* Back projection on BP22's full size: bench.csv and its picture. */
+/* Back projection on BP22's full size. */
 static enum status bench_bp(const char *directory)
 {
-    char csv[4096], picture[4096];
+    return bench_file(directory, "bench", measure_cases);
+}
+
+enum status bench_file(const char *directory, const char *name, enum status (*measure_into)(FILE *file))
+{
+    char csv[4096], picture[4096], script[60], footer[PROVENANCE_LINE];
     struct text_file file;
-    snprintf(csv, sizeof csv, "%s/bench.csv", directory);
+    snprintf(csv, sizeof csv, "%s/%s.csv", directory, name);
+    snprintf(script, sizeof script, "%s.gp", name);
     enum status status = text_file_open(csv, &file);
     if (status != STATUS_OK)
         return status;
-    struct bench bench = {.file = file.stream, .threads = omp_get_max_threads()};
-    status = text_file_close(&file, measure_cases(&bench));
+    status = text_file_close(&file, measure_into(file.stream));
+    provenance_line(footer);
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {
-        snprintf(picture, sizeof picture, "%s/bench.%s", directory, k ? "svg" : "png");
-        status = plot_csv(picture, PLOT_DIRECTORY, "bench.gp", csv);
+        snprintf(picture, sizeof picture, "%s/%s.%s", directory, name, k ? "svg" : "png");
+        status = plot_csv(picture, PLOT_DIRECTORY, script, csv, footer);
     }
     if (status == STATUS_OK)
-        printf("\nResults: %s/bench.csv, bench.png, bench.svg\n", directory);
+        printf("\nResults: %s/%s.csv, %s.png, %s.svg\n", directory, name, name, name);
     return status;
 }
 

@@ -7,12 +7,11 @@
 
 #include "data/echo_data.h"
 #include "data/paths.h"
-#include "data/text_file.h"
 #include "measure/imaging.h"
 #include "measure/provenance.h"
 #include "measure/timing.h"
 #include "scene/simulate.h"
-#include "show/plot.h"
+#include "study/bench.h"
 
 static const struct size {
     int columns, rows;
@@ -131,6 +130,7 @@ static enum status growth_measure(FILE *file)
     if (status != STATUS_OK)
         return status;
     provenance_fill(&provenance, omp_get_max_threads());
+    printf("\n");
     fprintf(file,
             "# sasbench growth 1\n# machine: %s\n# compiler: %s\n# flags: %s\n# commit: %s\n# date: %s\n# isa: %s\n"
             "algorithm,options,engine,setting,columns,rows,pairs,run_s,ns_per_pair,plan_bytes\n",
@@ -151,19 +151,5 @@ static enum status growth_measure(FILE *file)
 
 enum status bench_growth(const char *directory)
 {
-    char csv[4096], picture[4096];
-    struct text_file file;
-    snprintf(csv, sizeof csv, "%s/growth.csv", directory);
-    enum status status = text_file_open(csv, &file);
-    if (status != STATUS_OK)
-        return status;
-    printf("\n");
-    status = text_file_close(&file, growth_measure(file.stream));
-    for (int k = 0; k < 2 && status == STATUS_OK; k++) {
-        snprintf(picture, sizeof picture, "%s/growth.%s", directory, k ? "svg" : "png");
-        status = plot_csv(picture, PLOT_DIRECTORY, "growth.gp", csv);
-    }
-    if (status == STATUS_OK)
-        printf("\nResults: %s/growth.csv, growth.png, growth.svg\n", directory);
-    return status;
+    return bench_file(directory, "growth", growth_measure);
 }

@@ -11,19 +11,20 @@
 #include "data/csv.h"
 #include "data/folder.h"
 #include "data/published.h"
+#include "measure/provenance.h"
 #include "show/plot.h"
 #include "data/paths.h"
 #include "data/text_file.h"
 
 static const struct {
-    const char *name, *title;
+    const char *name, *title, *algorithm;
     spectrum_function *function;
 } formulas[] = {
-    {"exact", "exact", spectrum_exact},
-    {"lbf_fc", "LBF (5), theta at fc", spectrum_lbf_printed},
-    {"lbf_F", "LBF (5), theta at F", spectrum_lbf_corrected},
-    {"lbf7_fc", "LBF (7), theta at fc", spectrum_lbf7},
-    {"pca", "PCA (6)", spectrum_pca},
+    {"exact", "exact", "rma_numeric", spectrum_exact},
+    {"lbf_fc", "LBF (5), theta at fc", "rma_lbf", spectrum_lbf_printed},
+    {"lbf_F", "LBF (5), theta at F", "rma_lbf", spectrum_lbf_corrected},
+    {"lbf7_fc", "LBF (7), theta at fc", "rma_lbf", spectrum_lbf7},
+    {"pca", "PCA (6)", "rma_pca", spectrum_pca},
 };
 enum { FORMULAS = sizeof formulas / sizeof *formulas };
 
@@ -125,17 +126,22 @@ static enum status study_write(struct study *study, const char *path)
     return text_file_close(&text, STATUS_OK);
 }
 
-/* What LBF21 prints for a line of the study; empty where it prints nothing. */
-static void printed_show(const struct csv *published, const struct study *study, int receiver, int formula)
+/* What LBF21 prints for a line of the study, and whether it is only a bound; 0 where it prints nothing. */
+static double printed_find(const struct csv *published, const struct study *study, int receiver, int formula,
+                           bool *bound)
 {
     double value;
+    *bound = false;
     for (size_t k = 0; k < sizeof figures / sizeof *figures; k++)
         if (strcmp(figures[k].scene, study->scene) == 0 && figures[k].receiver == receiver
             && strcmp(figures[k].formula, formulas[formula].name) == 0
             && published_values(published, figures[k].table, figures[k].target, figures[k].method, "phase_error_rad",
                                 &value, 1)
-                   == 1)
-            printf("%s%.4g", figures[k].bound ? "< " : "", value);
+                   == 1) {
+            *bound = figures[k].bound;
+            return value;
+        }
+    return 0;
 }
 
 static void study_print(const struct study *study, const struct csv *published)
@@ -151,19 +157,33 @@ static void study_print(const struct study *study, const struct csv *published)
             printf("%8d %7.3f  %-22s", study->receiver[i], study->offset[i], formulas[j].title);
             for (int r = 0; r < RANGES; r++)
                 printf("%9.3g", study->largest[i][j][r]);
-            printf("  ");
-            printed_show(published, study, i, j);
+            bool bound;
+            const double printed = printed_find(published, study, i, j, &bound);
+            if (printed > 0)
+                printf("  %s%.4g", bound ? "< " : "", printed);
             printf("\n");
         }
 }
 
-/* One picture a receiver: a panel a range, a line a formula, the largest of the errors at the three f_tau. */
-static enum status study_draw(const struct study *study, int receiver, const char *path)
+/* The papers' set-ups by their figures. */
+static const char *study_title(const struct study *study)
 {
-    char title[400], texts[RANGES][32];
+    static const char *const titles[PHASE_SETUPS] = {
+        [PHASE_SHORT] = "LBF21 Figs 2 to 5, 66 receivers", [PHASE_LONG] = "LBF21 Figs 6 to 9, 132 receivers"};
+    for (int k = 0; k < PHASE_SETUPS; k++)
+        if (strcmp(study->scene, phase_setups[k]) == 0)
+            return titles[k];
+    return study->scene;
+}
+
+/* One picture a receiver: a panel a range, a line a formula, the largest of the errors at the three f_tau. */
+static enum status study_draw(const struct study *study, const struct csv *published, int receiver, const char *path)
+{
+    char title[400], texts[RANGES][32], footer[PROVENANCE_LINE + 60], line[PROVENANCE_LINE];
     const char *panels[RANGES];
     struct slice_line lines[RANGES][FORMULAS - 1];
     double position[DOPPLERS], values[RANGES][FORMULAS - 1][DOPPLERS];
+    bool bound;
     for (int r = 0; r < RANGES; r++) {
         snprintf(texts[r], sizeof texts[r], "r = %g m", ranges_m[r]);
         panels[r] = texts[r];
@@ -177,12 +197,25 @@ static enum status study_draw(const struct study *study, int receiver, const cha
                 position[n] = nu_at(study, n);
                 values[r][j - 1][n] = largest;
             }
-            lines[r][j - 1] = (struct slice_line){formulas[j].title, position, values[r][j - 1], DOPPLERS};
+            lines[r][j - 1] = (struct slice_line){.label = formulas[j].title,
+                                                  .position_m = position,
+                                                  .power_db = values[r][j - 1],
+                                                  .count = DOPPLERS,
+                                                  .algorithm = formulas[j].algorithm,
+                                                  .printed = printed_find(published, study, receiver, j, &bound)};
         }
     }
-    snprintf(title, sizeof title, "%.300s: phase error of receiver %d (d = %g m)", study->scene,
+    snprintf(title, sizeof title, "%.300s: phase error of receiver %d (d = %g m)", study_title(study),
              study->receiver[receiver], study->offset[receiver]);
-    return plot_phase(path, PLOT_DIRECTORY, title, RANGES, panels, FORMULAS - 1, lines[0]);
+    provenance_line(line);
+    snprintf(footer, sizeof footer, "%.50s, %s", study->scene, line);
+    return plot_phase(path, PLOT_DIRECTORY,
+                      &(struct slices_picture){.title = title,
+                                               .footer = footer,
+                                               .panel_count = RANGES,
+                                               .line_count = FORMULAS - 1,
+                                               .panel_titles = panels,
+                                               .lines = lines[0]});
 }
 
 void phase_path(const char *directory, const char *scene, const char *rest, char *path, size_t size)
@@ -230,7 +263,7 @@ enum status phase_scene_study(const char *name, const char *directory, bool take
     for (int i = 0; status == STATUS_OK && i < RECEIVERS && study.receiver[i] > (i ? 1 : 0); i++) {
         snprintf(rest, sizeof rest, "-receiver%d.png", study.receiver[i]);
         phase_path(directory, scene.name, rest, path, sizeof path);
-        status = study_draw(&study, i, path);
+        status = study_draw(&study, &published, i, path);
     }
     folder_leave(lock);
     csv_free(&published);

@@ -181,12 +181,57 @@ static void redundant_receivers(void **state)
     scene_free(&scene);
 }
 
+/* Phase centres without gaps, one deep or several, make no ghosts; gaps, or a depth that changes from place to place, do,
+   and are told. */
+static void spacing_of_the_pings(void **state)
+{
+    (void)state;
+    static const struct {
+        double spacing;
+        bool ghosts;
+    } cases[] = {{0.16, false}, {0.08, false}, {0.16 / 3, false}, {0.1, true}, {0.12, true}, {0.2, true}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const double spacing = cases[k].spacing, away = 0.01 * 20 / (2 * spacing);
+        char text[1500];
+        snprintf(text, sizeof text,
+                 "sonar = { fc = 150e3; bandwidth = 15e3; fs = 30e3; };\npulse = { kind = \"flat\"; };\n"
+                 "array = { tx_length = 0.08; rx_length = 0.04; receivers = 8; first_offset = 0.04; pitch = 0.04; };\n"
+                 "track = { speed = 2.5; pri = %.17g; pings = %d; x_first = -3; };\n"
+                 "record = { first_sample = 0; samples = 900; };\nbeam = { kind = \"txrx\"; };\n"
+                 "targets = { points = ( { x = 0; r = 20; } ); };\n"
+                 "image = { x = { first = 0; step = %.17g; count = 2; }; r = { first = 20.0; step = 0.1; count = 1; }; "
+                 "};\n",
+                 spacing / 2.5, (int)round(6 / spacing), away);
+        struct scene scene;
+        struct echoes echoes;
+        struct image image;
+        struct condition list[CONDITIONS_MAX];
+        support_write("scene.cfg", text);
+        if (scene_load(path_of("scene.cfg"), SASBENCH_ROOT "/scenes", &scene) != STATUS_OK)
+            fail_msg("%s", status_message());
+        const struct problem problem = {&scene.acquisition, 1, scene.patches, PRECISION_DOUBLE};
+        support_echoes(&scene, &echoes);
+        assert_int_equal(support_image("reference:precision=double", problem, &echoes, &image), STATUS_OK);
+        const double ghost = cabs(image_pixel(&image, 0, 0, 1)) / cabs(image_pixel(&image, 0, 0, 0));
+        int count = conditions_sampled(&problem, list, CONDITIONS_MAX), told = -1;
+        for (int n = 0; n < count; n++)
+            told = strcmp(list[n].name, "ghost") == 0 ? !condition_holds(&list[n]) : told;
+        print_message("pings %.4g m apart: %.1f dB at %.2f m\n", spacing, 20 * log10(ghost), away);
+        assert_int_equal(told, cases[k].ghosts);
+        assert_true(cases[k].ghosts ? ghost > 0.02 : ghost < 0.01);
+        image_free(&image);
+        echoes_free(&echoes);
+        scene_free(&scene);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(refused_or_right, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(within_a_patch, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(rows_beside_the_record, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(spacing_of_the_pings, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(redundant_receivers, folder_make, folder_remove),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -188,16 +188,17 @@ static void slices_are_drawn(void **state)
     }
     struct slice_line lines[4];
     for (int l = 0; l < 4; l++)
-        lines[l] = (struct slice_line){l % 2 ? "bp_'sinc'" : "reference", position, power, 101, l == 3 ? power : NULL};
+        lines[l] = (struct slice_line){
+            l % 2 ? "bp_'sinc'" : "reference", position, power, 101, l == 3 ? power : NULL, NULL, 0};
     lines[1].count = 0;
     const char *titles[] = {"target 0", "target_1"};
     char path[4096];
     path_in(path, "slices.png");
-    assert_drawn(plot_slices(path, real_plots, "two targets", 2, titles, 2, lines));
+    assert_drawn(plot_slices(path, real_plots, &(struct slices_picture){"two targets", "here", 2, 2, titles, lines}));
     assert_png("slices.png");
     for (int l = 0; l < 4; l++)
         lines[l].count = 0;
-    assert_drawn(plot_slices(path, real_plots, "nothing", 2, titles, 2, lines));
+    assert_drawn(plot_slices(path, real_plots, &(struct slices_picture){"nothing", NULL, 2, 2, titles, lines}));
     assert_png("slices.png");
     assert_nothing_left();
 }
@@ -219,7 +220,7 @@ static void families_are_told_by_name(void **state)
     path_in(path, "variables.svg");
     const char *panel = "panel";
     const struct slice_line line = {.label = "reference"};
-    assert_drawn(plot_slices(path, folder, "title", 1, &panel, 1, &line));
+    assert_drawn(plot_slices(path, folder, &(struct slices_picture){"title", NULL, 1, 1, &panel, &line}));
     file_to_text("variables.svg", text, sizeof text);
     assert_string_equal(text, "1 4 4\n0 0 11 18\n18 18 18 18 17\n</svg>\n");
     /* Every algorithm that there is has its own. */
@@ -256,12 +257,12 @@ static void slice_data_are_right(void **state)
     double difference[] = {-41, -INFINITY, -43};
     struct slice_line lines[4];
     for (int l = 0; l < 4; l++)
-        lines[l] =
-            (struct slice_line){l % 2 ? "b" : "a", position, power[l], l == 1 ? 0 : 3, l == 3 ? difference : NULL};
+        lines[l] = (struct slice_line){l % 2 ? "b" : "a",          position, power[l], l == 1 ? 0 : 3,
+                                       l == 3 ? difference : NULL, NULL,     0};
     const char *titles[] = {"t0", "t1"};
     char path[4096], text[400];
     path_in(path, "variables.svg");
-    assert_drawn(plot_slices(path, folder, "title", 2, titles, 2, lines));
+    assert_drawn(plot_slices(path, folder, &(struct slices_picture){"title", NULL, 2, 2, titles, lines}));
     file_to_text("variables.svg", text, sizeof text);
     assert_string_equal(text,
                         "title 2 2 t1 b\n1\n-200.0 3\n3\n0.25 -1.00\n0\n-\n3\n0.25 -2.00\n3\n0.25 -3.00\n</svg>\n");

@@ -97,9 +97,13 @@ static void test_everything_is_on_the_page(void **state)
     assert_non_null(html);
     assert_non_null(markdown);
     struct parser *page = page_parse(html);
-    /* Summary, machine, three scenes, cheapest, slopes, rules, two papers, two reproduced tables. */
-    assert_int_equal(page->tables, 12);
-    assert_int_equal(page->rows, 12 + 14 + 9 + 1 + 1 + 1 + 4 + 3 + 3);
+    /* Summary, machine, three scenes, cheapest of all scenes and of one, slopes, rules, two papers, two reproduced
+       tables. */
+    assert_int_equal(page->tables, 13);
+    assert_int_equal(page->rows, 13 + 14 + 9 + 1 + 1 + 1 + 1 + 4 + 3 + 3);
+    assert_holds(html, "<details>\n<summary>a</summary>");
+    assert_holds(markdown, "|fastest with an error up to|1e-1|\n|---|---|\n|a|bp_linear:beta=8, 30 ms|\n");
+    assert_null(strstr(markdown, "## Slopes"));
     assert_holds(html, "<h2 id=\"summary\">Summary</h2>");
     assert_holds(html, "<a href=\"#summary\">");
     assert_holds(html, "class=\"good\">9.0e-02, 33.3x</td>"); /* of scene a: no other has an error below 0.1 */
@@ -131,8 +135,7 @@ static void test_everything_is_on_the_page(void **state)
         assert_holds(html, parts[k]);
     static const char *const lines[] = {"|machine|a machine &amp; its &lt;cores&gt;|", "|bp_linear:beta=8|30 ms|33.3x|",
                                         "|rma_pca:blocks=2|unsupported: a track of &lt;3 pings \\| none|",
-                                        "|x-2|4.2|second|does not hold|holds|two &amp; three|",
-                                        "|bp_zeropad||float|finest|factor|8|64|4|-1.032|0.1|0.01|0.00123|"};
+                                        "|x-2|4.2|second|does not hold|holds|two &amp; three|", "## Cheapest settings"};
     for (size_t k = 0; k < sizeof lines / sizeof *lines; k++)
         assert_holds(markdown, lines[k]);
     assert_non_null(strstr(html, "the layout is lost"));
@@ -228,10 +231,12 @@ static void test_images_are_thumbnails(void **state)
     (void)state;
     struct measurement row = row_of("a", "bp_nearest", "", 0.1, 0.1);
     double places[] = {-1, 0, 1}, powers[] = {-20, 0, -20};
-    const struct slice_line line = {"bp_nearest", places, powers, 3, NULL};
+    const struct slice_line line = {"bp_nearest", places, powers, 3, NULL, NULL, 0};
     const char *const titles[] = {"one"};
     record_rows(&row, 1);
-    assert_int_equal(plot_slices(path_of("a-slices.png"), SASBENCH_ROOT "/plots", "a", 1, titles, 1, &line), STATUS_OK);
+    assert_int_equal(plot_slices(path_of("a-slices.png"), SASBENCH_ROOT "/plots",
+                                 &(struct slices_picture){"a", NULL, 1, 1, titles, &line}),
+                     STATUS_OK);
     assert_int_equal(report_write(folder), STATUS_OK);
     char *html = support_read("report.html");
     assert_non_null(html);
@@ -251,7 +256,7 @@ static void test_images_beyond_are_links(void **state)
     static struct measurement rows[ROWS];
     static char options[ROWS][24];
     double places[] = {-1, 0, 1}, powers[] = {-20, 0, -20};
-    const struct slice_line line = {"bp_linear", places, powers, 3, NULL};
+    const struct slice_line line = {"bp_linear", places, powers, 3, NULL, NULL, 0};
     const char *const titles[] = {"one"};
     char name[64], path[400];
     for (int k = 0; k < ROWS; k++) {
@@ -260,7 +265,9 @@ static void test_images_beyond_are_links(void **state)
         snprintf(name, sizeof name, "bp_linear:beta=%d.png", k);
         picture_path(folder, "a", name, path, sizeof path);
         if (k == 0)
-            assert_int_equal(plot_slices(path, SASBENCH_ROOT "/plots", "a", 1, titles, 1, &line), STATUS_OK);
+            assert_int_equal(
+                plot_slices(path, SASBENCH_ROOT "/plots", &(struct slices_picture){"a", NULL, 1, 1, titles, &line}),
+                STATUS_OK);
         else
             assert_int_equal(link(path_of("a-bp_linear_beta_0.png"), path), 0);
     }

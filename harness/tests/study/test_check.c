@@ -274,6 +274,7 @@ static void gaps_are_told_of_an_uneven_track(void **state)
     assert_false(acquisition_is_straight(&scene.acquisition, NULL));
     char *printed = checked(&scene, "bp_nearest", &refused);
     assert_close(value_with(printed, "warns", "ghost"), 0.25, 1e-3);
+    assert_non_null(strstr(printed, "pings 0.16 m apart in place of 0.2 m, a PRI of 0.064 s at 2.5 m/s"));
     free(printed);
     /* A transmitter that moves before an array that stands is no track with gaps. */
     for (int p = 0; p < scene.acquisition.pings; p++)
