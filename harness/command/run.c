@@ -7,6 +7,8 @@
 #include "command/task.h"
 #include "measure/timing.h"
 
+enum { ROWS_MANY = 100 }; /* more than that are timed briefly */
+
 /* All algorithms with their defaults. */
 static enum status load_specs(struct spec **specs, int *count)
 {
@@ -32,6 +34,15 @@ static enum status check_twice(const struct task *task)
     return STATUS_OK;
 }
 
+static void time_print(const struct batch *batch)
+{
+    const struct spent *spent = &batch->spent;
+    printf("\nTime: %.3g s, of which imaging %.3g s, planning %.3g s, echoes %.3g s, exact images %.3g s, the scalar "
+           "reference loop %.3g s, pictures %.3g s.\n",
+           seconds_now() - batch->begin, spent->imaging, spent->planning, spent->echoes, spent->reference,
+           spent->control, batch->drawn_s);
+}
+
 enum status command_run(const struct task *task)
 {
     struct scene *scenes = NULL;
@@ -47,11 +58,12 @@ enum status command_run(const struct task *task)
         status = task_scenes("run", task, 0, NULL, &scenes, &scene_count);
     if (status == STATUS_OK)
         status = batch_open(task->output ? task->output : "results/latest", scene_count * spec_count, true, &batch);
+    if (batch.rows > ROWS_MANY)
+        batch.effort = EFFORT_BRIEF;
     for (int k = 0; k < scene_count && status == STATUS_OK; k++)
         status = batch_scene(&batch, &scenes[k], spec_count, task->spec_count ? task->specs : all);
     if (status == STATUS_OK && batch.measured > 0)
-        printf("\nTime: %.3g s, of which measuring %.3g s, echoes and exact images %.3g s, pictures %.3g s.\n",
-               seconds_now() - batch.begin, batch.measured_s, batch.echoes_s, batch.drawn_s);
+        time_print(&batch);
     if (status == STATUS_OK)
         printf(
             "\nThe harness itself takes %.1f ns a run (an algorithm that does nothing). Results: %s/measurements.csv, "

@@ -16,9 +16,9 @@
 static const char pattern[] = ".sasbench-";
 
 /* What exists now, for the signal handler. One that finds no place here is left to the next sweep. */
-enum { NAMES_MAX = 64 };
+enum { NAMES_MAX = 2048 };
 static char *_Atomic names[NAMES_MAX];
-static volatile sig_atomic_t process_group;
+static volatile sig_atomic_t process_groups[PROCESSES_MOST];
 
 static void name_add(const char *path)
 {
@@ -124,16 +124,32 @@ void temporary_sweep(const char *directory)
     closedir(entries);
 }
 
-void temporary_process(pid_t group)
+/* `old` becomes `new` in the list of groups; 0 is a free place. */
+static void group_change(pid_t old, pid_t new)
 {
-    process_group = (sig_atomic_t)group;
+    for (int k = 0; k < PROCESSES_MOST; k++)
+        if (process_groups[k] == old) {
+            process_groups[k] = (sig_atomic_t) new;
+            return;
+        }
+}
+
+void temporary_process_add(pid_t group)
+{
+    group_change(0, group);
+}
+
+void temporary_process_drop(pid_t group)
+{
+    group_change(group, 0);
 }
 
 /* Only what a handler may call: files first, then the folders that held them. */
 static void end(int number)
 {
-    if (process_group > 0)
-        kill(-(pid_t)process_group, SIGKILL);
+    for (int k = 0; k < PROCESSES_MOST; k++)
+        if (process_groups[k] > 0)
+            kill(-(pid_t)process_groups[k], SIGKILL);
     for (int k = 0; k < NAMES_MAX; k++)
         if (names[k])
             unlink(names[k]);

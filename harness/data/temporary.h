@@ -21,8 +21,10 @@ void temporary_remove(const char *made);
 /* What killed programs left in a folder that is ours alone (folder.h). */
 void temporary_sweep(const char *directory);
 
-/* The process group that a signal ends together with the program; 0: none. */
-void temporary_process(pid_t group);
+/* A process group that a signal ends together with the program, until it is dropped; of up to PROCESSES_MOST. */
+enum { PROCESSES_MOST = 16 };
+void temporary_process_add(pid_t group);
+void temporary_process_drop(pid_t group);
 /* From now on, signals that end the program remove first what is on its way. One that is ignored stays so. */
 void temporary_guard(void);
 

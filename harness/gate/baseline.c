@@ -72,11 +72,11 @@ static void round_values(struct measurement *row, enum precision precision)
     }
 }
 
-void baseline_row(const struct session *session, const struct spec *spec, char *reason, size_t reason_size,
+void baseline_row(struct session *session, const struct spec *spec, char *reason, size_t reason_size,
                   struct measurement *row)
 {
     struct outcome outcome;
-    outcome_measure(session, spec, false, NULL, &outcome);
+    outcome_measure(session, spec, EFFORT_NONE, NULL, &outcome);
     snprintf(reason, reason_size, "%s", outcome.reason);
     *row = outcome.row;
     row->reason = reason;

@@ -7,7 +7,7 @@
 
 /* One row of quality and work, formed once and not timed, with numbers rounded to a tenth of what counts as a change.
    What fails or is unsupported becomes a row. Texts point to the session, the spec and `reason`. */
-void baseline_row(const struct session *session, const struct spec *spec, char *reason, size_t reason_size,
+void baseline_row(struct session *session, const struct spec *spec, char *reason, size_t reason_size,
                   struct measurement *row);
 
 /* Measure all scenes of the gate with all algorithms and some of their settings, and write the file. Errors: as

@@ -154,15 +154,17 @@ static void noise_tell(const struct timing *timing, char *text, size_t size)
                  100 * timing->drift);
 }
 
-static enum status image_time(const struct session *session, const struct spec *spec, const struct problem *problem,
-                              struct timing_samples *samples, struct outcome *outcome)
+static enum status image_time(struct session *session, const struct spec *spec, const struct problem *problem,
+                              enum effort effort, struct timing_samples *samples, struct outcome *outcome)
 {
     struct timing timing;
     struct measurement *row = &outcome->row;
-    enum status status = timing_measure(spec, problem, &session->echoes[spec->precision],
-                                        &session->echoes[PRECISION_FLOAT], samples, &outcome->image, &timing);
+    enum status status = timing_measure(spec, problem, &session->echoes[spec->precision], &session->control, effort,
+                                        samples, &outcome->image, &timing);
     if (status == STATUS_OK) {
         outcome->work = timing.work;
+        session->spent.planning += timing.plan_s;
+        session->spent.imaging += timing.spent_s;
         row->plan_s = timing.plan_s;
         row->run_s = timing.run_s;
         row->run_min_s = timing.run_min_s;
@@ -208,19 +210,22 @@ static void warnings_fill(const struct session *session, const struct spec *spec
     warnings_add(list, count, outcome);
 }
 
-void outcome_round(const struct session *session, const struct spec *spec, struct timing_samples *samples)
+void outcome_round(struct session *session, const struct spec *spec, struct timing_samples *samples)
 {
     struct timing timing;
     struct image image;
     const struct problem problem = session_problem(session->scene, spec->algorithm, spec->precision);
-    if (timing_measure(spec, &problem, &session->echoes[spec->precision], &session->echoes[PRECISION_FLOAT], samples,
+    if (timing_measure(spec, &problem, &session->echoes[spec->precision], &session->control, EFFORT_WHOLE, samples,
                        &image, &timing)
-        == STATUS_OK)
-        image_free(&image);
+        != STATUS_OK)
+        return;
+    session->spent.planning += timing.plan_s;
+    session->spent.imaging += timing.spent_s;
+    image_free(&image);
 }
 
-void outcome_measure(const struct session *session, const struct spec *spec, bool timed, struct timing_samples *samples,
-                     struct outcome *outcome)
+void outcome_measure(struct session *session, const struct spec *spec, enum effort effort,
+                     struct timing_samples *samples, struct outcome *outcome)
 {
     *outcome = (struct outcome){
         .row = measurement_empty(session->scene->name, spec->algorithm->name, spec->text, spec->precision)};
@@ -229,8 +234,8 @@ void outcome_measure(const struct session *session, const struct spec *spec, boo
     outcome->row.stages = outcome->stages;
     struct problem problem = session_problem(session->scene, spec->algorithm, spec->precision);
     const struct echoes *echoes = &session->echoes[spec->precision];
-    enum status status = timed ? image_time(session, spec, &problem, samples, outcome)
-                               : imaging_form(spec, &problem, echoes, &outcome->image, &outcome->work);
+    enum status status = effort != EFFORT_NONE ? image_time(session, spec, &problem, effort, samples, outcome)
+                                               : imaging_form(spec, &problem, echoes, &outcome->image, &outcome->work);
     if (status == STATUS_OK) {
         work_fill(session, &problem, outcome);
         status = quality_fill(session, outcome);

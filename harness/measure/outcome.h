@@ -29,12 +29,12 @@ struct outcome {
 void outcome_warning(const struct condition *condition, char *text, size_t size);
 
 /* Measure a SPEC on a session's scene. What fails or is unsupported becomes a row with the reason, so that there is no
-   error. `timed`: measured as timing.h says, `samples` being those of the earlier rounds, or NULL; otherwise formed
-   once, and the row has no times. */
-void outcome_measure(const struct session *session, const struct spec *spec, bool timed, struct timing_samples *samples,
-                     struct outcome *outcome);
+   error. Timed as timing.h says, `samples` being those of the earlier rounds, or NULL; with EFFORT_NONE formed once,
+   and the row has no times. */
+void outcome_measure(struct session *session, const struct spec *spec, enum effort effort,
+                     struct timing_samples *samples, struct outcome *outcome);
 /* One of the earlier rounds: times alone. What fails says so in outcome_measure again. */
-void outcome_round(const struct session *session, const struct spec *spec, struct timing_samples *samples);
+void outcome_round(struct session *session, const struct spec *spec, struct timing_samples *samples);
 void outcome_free(struct outcome *outcome);
 
 #endif

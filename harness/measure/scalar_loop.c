@@ -6,14 +6,14 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { PAIRS = 1 << 20, RUN = 1024 };
+enum { PAIRS = 1 << 18, RUN = 1024 };
 
 /* A pixel and a record, by their numbers. */
-struct choice {
+struct scalar_pair {
     long long pair, pixel;
 };
 
-static double sample_position(const struct acquisition *a, const struct grid *grid, struct choice at, double *tau)
+static double sample_position(const struct acquisition *a, const struct grid *grid, struct scalar_pair at, double *tau)
 {
     const double c = a->sound_speed;
     int ping = (int)(at.pair / a->receivers);
@@ -28,14 +28,14 @@ static double sample_position(const struct acquisition *a, const struct grid *gr
     return (*tau - a->t0[ping]) * a->fs + 0.5;
 }
 
-/* One pixel after another for each of 1024 evenly spaced pairs, as an image is formed; only those whose delay lies in
+/* One pixel after another for each of 256 evenly spaced pairs, as an image is formed; only those whose delay lies in
    the record, which are what an image sums. Returns how many were found. */
-static int choose(const struct acquisition *a, const struct grid *grid, struct choice *chosen)
+static int choose(const struct acquisition *a, const struct grid *grid, struct scalar_pair *chosen)
 {
     long long pairs = (long long)a->pings * a->receivers, pixels = (long long)grid->x_count * grid->r_count;
     int count = 0;
     for (long long n = 0; n < PAIRS; n++) {
-        struct choice at = {n / RUN * pairs / (PAIRS / RUN), n % RUN * pixels / RUN};
+        struct scalar_pair at = {n / RUN * pairs / (PAIRS / RUN), n % RUN * pixels / RUN};
         double tau, position = sample_position(a, grid, at, &tau);
         if (position >= 0 && position < a->samples)
             chosen[count++] = at;
@@ -43,18 +43,33 @@ static int choose(const struct acquisition *a, const struct grid *grid, struct c
     return count;
 }
 
-double control_seconds_per_pair(const struct problem *problem, const struct echoes *echoes)
+struct scalar_loop scalar_loop_choose(const struct problem *problem, const struct echoes *echoes)
 {
-    const struct acquisition *a = problem->acquisition;
-    const struct grid *grid = &problem->patches[problem->patch_count / 2];
-    const float *samples = echoes->samples;
-    struct choice *chosen = malloc(PAIRS * sizeof *chosen);
-    int count = chosen ? choose(a, grid, chosen) : 0;
+    struct scalar_loop loop = {.acquisition = problem->acquisition,
+                               .grid = &problem->patches[problem->patch_count / 2],
+                               .samples = echoes->samples,
+                               .pairs = malloc(PAIRS * sizeof *loop.pairs)};
+    loop.count = loop.pairs ? choose(loop.acquisition, loop.grid, loop.pairs) : 0;
+    return loop;
+}
+
+void scalar_loop_free(struct scalar_loop *loop)
+{
+    free(loop->pairs);
+    *loop = (struct scalar_loop){.count = 0};
+}
+
+double scalar_loop_seconds(const struct scalar_loop *loop)
+{
+    const struct acquisition *a = loop->acquisition;
+    const struct scalar_pair *chosen = loop->pairs;
+    const float *samples = loop->samples;
+    const int count = loop->count;
     volatile float sink;
     float re = 0, im = 0;
     double start = seconds_now();
     for (int n = 0, k = 0; count > 0 && n < PAIRS; n++, k = k + 1 < count ? k + 1 : 0) {
-        double tau, position = sample_position(a, grid, chosen[k], &tau);
+        double tau, position = sample_position(a, loop->grid, chosen[k], &tau);
         if (!(position >= 0 && position < a->samples))
             continue;
         const float *s = samples + 2 * (chosen[k].pair * a->samples + (long long)position);
@@ -66,6 +81,5 @@ double control_seconds_per_pair(const struct problem *problem, const struct echo
     double seconds = seconds_now() - start;
     sink = re + im;
     (void)sink;
-    free(chosen);
     return count > 0 ? seconds / PAIRS : NAN;
 }

@@ -4,11 +4,23 @@
 
 #include "algorithm.h"
 
-/* Seconds that one pixel-pulse pair takes the scalar reference loop: nearest neighbour, one pair at a time, delay by
-   double square roots, phase by libm's sin and cos, float sums, one thread, compiled with -O2 and without
-   vectorisation. Timed over a million pairs (some 30 ms) that are spread evenly over the problem and whose delay lies
-   in the record: what is skipped costs less and is no pair. NAN when there are none, or no memory. `echoes`: float
-   samples, read as they are. */
-double control_seconds_per_pair(const struct problem *problem, const struct echoes *echoes);
+/* The scalar reference loop: nearest neighbour, one pair at a time, delay by double square roots, phase by libm's sin
+   and cos, float sums, one thread, compiled with -O2 and without vectorisation. It is timed over a quarter of a million
+   pairs (some 8 ms) that are spread evenly over the problem and whose delay lies in the record: what is skipped costs
+   less and is no pair. */
+struct scalar_loop {
+    const struct acquisition *acquisition;
+    const struct grid *grid;
+    const float *samples;
+    struct scalar_pair *pairs; /* [count]; NULL where there are none, or no memory */
+    int count;
+};
+
+/* Choose the pairs, freed with scalar_loop_free. The problem and its echoes, float samples that are read as they are,
+   are borrowed; no grid of it is turned. */
+struct scalar_loop scalar_loop_choose(const struct problem *problem, const struct echoes *echoes);
+void scalar_loop_free(struct scalar_loop *loop);
+/* Seconds that one pixel-pulse pair takes; NAN without pairs. */
+double scalar_loop_seconds(const struct scalar_loop *loop);
 
 #endif

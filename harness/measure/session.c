@@ -46,6 +46,7 @@ enum status session_open(const struct scene *scene, struct session *session)
 {
     *session = (struct session){.scene = scene};
     session->condition_count = scene_conditions(scene, session->conditions);
+    const double begin = seconds_now();
     enum status status = scene_echoes(scene, &session->echoes[PRECISION_DOUBLE]);
     if (status == STATUS_OK)
         status = echoes_convert(&session->echoes[PRECISION_DOUBLE], PRECISION_FLOAT, &session->echoes[PRECISION_FLOAT]);
@@ -54,8 +55,13 @@ enum status session_open(const struct scene *scene, struct session *session)
     const int exponent = session->echoes[PRECISION_DOUBLE].exponent;
     session->echoes[PRECISION_DOUBLE].exponent = 0;
     session->echoes[PRECISION_FLOAT].exponent -= exponent;
+    const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, PRECISION_FLOAT};
+    session->control = control_begin(&problem, &session->echoes[PRECISION_FLOAT]);
+    const double made = seconds_now();
+    session->spent.echoes = made - begin;
     if (status == STATUS_OK)
         status = form_reference(session);
+    session->spent.reference = seconds_now() - made;
     if (status != STATUS_OK)
         session_close(session);
     return status;
@@ -63,6 +69,7 @@ enum status session_open(const struct scene *scene, struct session *session)
 
 void session_close(struct session *session)
 {
+    control_end(&session->control);
     image_free(&session->reference);
     echoes_free(&session->echoes[PRECISION_FLOAT]);
     echoes_free(&session->echoes[PRECISION_DOUBLE]);

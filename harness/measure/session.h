@@ -2,9 +2,15 @@
 #ifndef SASBENCH_MEASURE_SESSION_H
 #define SASBENCH_MEASURE_SESSION_H
 
+#include "measure/control.h"
 #include "measure/measurement.h"
 #include "scene/scene.h"
 #include "measure/spec.h"
+
+/* Wall time, s. */
+struct spent {
+    double echoes, reference, planning, imaging, control;
+};
 
 /* Made by session_open, released by session_close. */
 struct session {
@@ -14,6 +20,8 @@ struct session {
     char no_reference[512];    /* why there is none: refused, or no memory; else empty */
     struct condition conditions[SCENE_CONDITIONS]; /* [condition_count] of the scene by itself */
     int condition_count;
+    struct control control; /* beside what is timed */
+    struct spent spent;     /* so far, but for the control, which knows it itself */
 };
 
 /* Make the echoes (scene_echoes) and form the exact image; where there can be none, images are measured without their

@@ -8,12 +8,8 @@
 #include <unistd.h>
 
 #include "backprojection/pairs.h"
-#include "backprojection/turned.h"
 #include "common/clock.h"
 #include "measure/imaging.h"
-#include "measure/scalar_loop.h"
-
-static const double seconds_single = 10;
 
 static int compare_double(const void *a, const void *b)
 {
@@ -76,29 +72,36 @@ static enum status run_once(struct imaging *imaging, const struct echoes *echoes
     return status;
 }
 
-/* How long runs are repeated, alone or in one of several rounds. */
+/* How long runs are repeated: by effort, and in one of several rounds. */
 static const struct budget {
     int runs_fewest, runs_least; /* beyond seconds_most; within */
     double seconds_least, seconds_most;
-} whole = {3, 5, 0.5, 3}, part = {1, 2, 0.5 / TIMING_ROUNDS, 3.0 / TIMING_ROUNDS};
+    double first_counts,
+        single; /* s: a first run as long as that counts, for it warms up in passing; is the only one */
+} budgets[] = {[EFFORT_BRIEF] = {2, 5, 0.06, 0.25, 0.06, 0.5}, [EFFORT_WHOLE] = {3, 5, 0.5, 3, 10, 10}},
+  part = {1, 2, 0.5 / TIMING_ROUNDS, 3.0 / TIMING_ROUNDS, 10, 10};
 
 /* Times of repeated runs, behind those of earlier rounds. */
 static enum status repeat(struct imaging *imaging, const struct echoes *echoes, const struct budget *budget,
                           struct timing_samples *samples)
 {
-    double first;
+    double first, begin = seconds_now(), elapsed = 0, waited = waited_s();
     struct stages stages;
-    enum status status = run_once(imaging, echoes, &stages, &first); /* warms up */
-    double begin = seconds_now(), elapsed = 0, waited = waited_s();
-    const bool single = first >= seconds_single;
-    if (single && samples->runs == 0) { /* so long that it counts itself */
+    int runs = 0;
+    enum status status = run_once(imaging, echoes, &stages, &first);
+    const bool single = first >= budget->single;
+    if (first >= budget->first_counts && samples->runs == 0) {
         samples->seconds[0] = first;
         samples->stages[0] = stages;
-        samples->runs = 1;
+        samples->runs = runs = 1;
+        elapsed = seconds_now() - begin;
+    } else { /* it warmed up */
+        begin = seconds_now();
+        waited = waited_s();
     }
-    for (int runs = 0; status == STATUS_OK && !single && samples->runs < TIMING_RUNS
-                       && (runs < budget->runs_least || elapsed < budget->seconds_least)
-                       && (runs < budget->runs_fewest || elapsed < budget->seconds_most);
+    for (; status == STATUS_OK && !single && samples->runs < TIMING_RUNS
+           && (runs < budget->runs_least || elapsed < budget->seconds_least)
+           && (runs < budget->runs_fewest || elapsed < budget->seconds_most);
          runs++) {
         status = run_once(imaging, echoes, &samples->stages[samples->runs], &samples->seconds[samples->runs]);
         samples->runs++;
@@ -129,30 +132,23 @@ static void samples_evaluate(const struct timing_samples *samples, struct timing
     timing->stages = samples->stages[nearest];
 }
 
-/* The scalar reference loop's seconds for a pair: the faster of two. */
-static double control_measure(const struct problem *problem, const struct echoes *echoes,
-                              struct timing_samples *samples)
+/* The scalar reference loop's times join the samples; *least: the faster one. */
+static enum status control_sample(struct control *control, bool recent, struct timing_samples *samples, double *least)
 {
-    double least = INFINITY;
-    for (int k = 0; k < 2; k++) {
-        const double seconds = control_seconds_per_pair(problem, echoes);
-        least = fmin(least, seconds);
-        if (samples->controls < 4 * TIMING_ROUNDS)
-            samples->control[samples->controls++] = seconds;
-    }
-    return least;
+    enum status status = control_measure(control, recent, least);
+    for (int k = 0; k < CONTROL_RUNS && status == STATUS_OK && samples->controls < TIMING_CONTROLS; k++)
+        samples->control[samples->controls++] = control->seconds[k];
+    return status;
 }
 
 enum status timing_measure(const struct spec *spec, const struct problem *problem, const struct echoes *echoes,
-                           const struct echoes *control_echoes, struct timing_samples *samples, struct image *image,
-                           struct timing *timing)
+                           struct control *control, enum effort effort, struct timing_samples *samples,
+                           struct image *image, struct timing *timing)
 {
     static struct timing_samples own;
-    const struct budget *budget = samples ? &part : &whole;
+    const struct budget *budget = samples ? &part : &budgets[effort];
     struct imaging imaging;
-    struct problem back = *problem; /* the control knows rows and columns along x and r only */
-    struct turned_problem turned;
-    double before = 0;
+    double before = 0, after = 0;
     own = (struct timing_samples){.runs = 0};
     samples = samples ? samples : &own;
     *timing = (struct timing){0};
@@ -160,25 +156,27 @@ enum status timing_measure(const struct spec *spec, const struct problem *proble
     enum status status = imaging_open(spec, problem, &imaging);
     if (status != STATUS_OK)
         return status;
-    status = problem_turn_back(&back, &turned, NULL);
-    if (status == STATUS_OK) {
-        timing->plan_s = imaging.plan_s;
-        timing->work = imaging.algorithm->work(imaging.plan);
-        before = control_measure(&back, control_echoes, samples);
+    timing->plan_s = imaging.plan_s;
+    timing->work = imaging.algorithm->work(imaging.plan);
+    status = control_sample(control, true, samples, &before);
+    const double begin = seconds_now();
+    if (status == STATUS_OK)
         status = repeat(&imaging, echoes, budget, samples);
-    }
+    timing->spent_s = seconds_now() - begin;
+    if (status == STATUS_OK)
+        status = control_sample(control, false, samples, &after);
     if (status == STATUS_OK)
         status = imaging_finish(&imaging, echoes, image);
     imaging_close(&imaging);
     if (status == STATUS_OK) {
-        double pairs = timing->work.pairs > 0 ? timing->work.pairs : pairs_count(&back), sorted[4 * TIMING_ROUNDS];
-        timing->drift = control_measure(&back, control_echoes, samples) / before - 1;
+        double pairs = timing->work.pairs > 0 ? timing->work.pairs : pairs_count(&control->problem);
+        double sorted[TIMING_CONTROLS];
+        timing->drift = after / before - 1;
         for (int k = 0; k < samples->controls; k++)
             sorted[k] = samples->control[k];
         timing->control_s = median(sorted, samples->controls) * pairs;
         samples_evaluate(samples, timing);
     }
-    turned_free(&turned);
     return status;
 }
 
@@ -196,7 +194,7 @@ double timing_floor(void)
     static struct timing_samples samples;
     struct timing timing;
     samples = (struct timing_samples){.runs = 0};
-    repeat(&imaging, NULL, &whole, &samples);
+    repeat(&imaging, NULL, &budgets[EFFORT_WHOLE], &samples);
     samples_evaluate(&samples, &timing);
     return timing.run_s;
 }

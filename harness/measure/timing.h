@@ -2,6 +2,7 @@
 #ifndef SASBENCH_MEASURE_TIMING_H
 #define SASBENCH_MEASURE_TIMING_H
 
+#include "measure/control.h"
 #include "measure/spec.h"
 
 struct timing {
@@ -10,6 +11,7 @@ struct timing {
     double run_q1_s, run_q3_s; /* s, quartiles; NAN for less than 4 runs */
     double waited;             /* threads that were ready to run and had no processor, on the average; NAN: unknown */
     double drift;              /* the scalar reference loop's time after the runs over that before, less 1 */
+    double spent_s;            /* on all runs, also to warm up */
     int runs;                  /* timed runs; 1 when a run is so long that the first counts */
     double control_s;          /* s, the scalar reference loop's time for all pairs of the problem, measured beside */
     struct stages stages;      /* of the median run */
@@ -17,23 +19,28 @@ struct timing {
 };
 
 /* Runs of several rounds, between which others run, so that no setting has a bad minute to itself; zeroed at first. */
-enum { TIMING_ROUNDS = 3, TIMING_RUNS = 1000 };
+enum { TIMING_ROUNDS = 3, TIMING_RUNS = 1000, TIMING_CONTROLS = 2 * CONTROL_RUNS * TIMING_ROUNDS };
 struct timing_samples {
     int runs, controls;
     double seconds[TIMING_RUNS];
     struct stages stages[TIMING_RUNS];
-    double control[4 * TIMING_ROUNDS]; /* s a pair of the scalar reference loop */
-    double waited, elapsed;            /* s */
+    double control[TIMING_CONTROLS]; /* s a pair of the scalar reference loop */
+    double waited, elapsed;          /* s */
 };
 
-/* Plan, run once to warm up, then repeat until five runs and half a second are timed; long runs are repeated less
-   (three at least, and no new run begins after 3 s; a first run of 10 s or more is the only one). The control is timed
-   before and after. `control_echoes`: the same echoes in float. With `samples` this is one of TIMING_ROUNDS rounds,
-   each a part as long; times are of all runs so far. *image is the finished one (imaging_finish), freed by the caller.
-   Errors: as imaging_open, imaging_execute, imaging_finish; *image is then empty. */
+/* How much is put into a time. EFFORT_WHOLE: a run to warm up, then repeated until five runs and half a second are
+   timed; long runs are repeated less (three at least, and no new run begins after 3 s; a first run of 10 s or more is
+   the only one). EFFORT_BRIEF, where hundreds are measured: five runs and 0.06 s (two at least, and no new one after
+   0.25 s; a first run of 0.06 s or more counts, and one of half a second or more is the only one). */
+enum effort { EFFORT_NONE, EFFORT_BRIEF, EFFORT_WHOLE };
+
+/* Plan and run as often as the effort says, which is not EFFORT_NONE. The control is timed before, unless it just was,
+   and after. With `samples` this is one of TIMING_ROUNDS rounds, each a part of EFFORT_WHOLE; times are of all runs so
+   far. *image is the finished one (imaging_finish), freed by the caller. Errors: as imaging_open, imaging_execute,
+   imaging_finish, control_measure; *image is then empty. */
 enum status timing_measure(const struct spec *spec, const struct problem *problem, const struct echoes *echoes,
-                           const struct echoes *control_echoes, struct timing_samples *samples, struct image *image,
-                           struct timing *timing);
+                           struct control *control, enum effort effort, struct timing_samples *samples,
+                           struct image *image, struct timing *timing);
 
 /* Seconds that the harness itself adds to a run: the median time of an algorithm that does nothing. */
 double timing_floor(void);

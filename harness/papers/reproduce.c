@@ -124,7 +124,7 @@ static enum status needs_measure(const char *directory, struct need *needs, int 
 {
     struct batch batch = {0};
     enum status status = batch_open(directory, count, false, &batch);
-    batch.untimed = true;
+    batch.effort = EFFORT_NONE;
     for (int k = 0; k < count && status == STATUS_OK; k++)
         if (needs[k].scene)
             status = scene_measure(&batch, needs + k, count - k);

@@ -45,7 +45,7 @@ void gnuplot_complaint(const char *log, char *text, size_t size)
 }
 
 /* gnuplot in a process group of its own, so that what it starts can be ended with it. */
-static int gnuplot_start(const char *script, const char *log, pid_t *child)
+static int spawn(const char *script, const char *log, pid_t *child)
 {
     /* --default-settings: the user's own gnuplot start-up files stay out. */
     char *arguments[] = {"gnuplot", "--default-settings", (char *)script, NULL};
@@ -76,35 +76,48 @@ static int gnuplot_start(const char *script, const char *log, pid_t *child)
     return error;
 }
 
-/* *exit_status is as waitpid gives it. */
-static enum status gnuplot_wait(pid_t child, int *exit_status)
+enum status gnuplot_start(const char *script, const char *log, struct gnuplot *gnuplot)
 {
-    double begin = seconds_now();
-    for (pid_t ended; (ended = waitpid(child, exit_status, WNOHANG)) != child;) {
-        if (ended < 0 && errno != EINTR)
-            return status_set(STATUS_FAILED, "plot: cannot wait for gnuplot: %s", strerror(errno));
-        if (ended == 0 && seconds_now() - begin > plot_seconds_most) {
-            kill(-child, SIGKILL);
-            waitpid(child, exit_status, 0);
-            hung = true;
-            return status_set(STATUS_FAILED,
-                              "plot: gnuplot did not end within %g s and was stopped; no more pictures "
-                              "are drawn",
-                              plot_seconds_most);
-        }
-        nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL);
-    }
+    *gnuplot = (struct gnuplot){.begin = seconds_now()};
+    int error = spawn(script, log, &gnuplot->process);
+    if (error)
+        return status_set(STATUS_FAILED, "plot: cannot run gnuplot (Debian: gnuplot-nox): %s", strerror(error));
+    temporary_process_add(gnuplot->process);
     return STATUS_OK;
 }
 
-enum status gnuplot_run(const char *script, const char *log, int *exit_status)
+/* The process is gone, or given up. */
+static void forget(struct gnuplot *gnuplot)
 {
-    pid_t child;
-    int error = gnuplot_start(script, log, &child);
-    if (error)
-        return status_set(STATUS_FAILED, "plot: cannot run gnuplot (Debian: gnuplot-nox): %s", strerror(error));
-    temporary_process(child);
-    enum status status = gnuplot_wait(child, exit_status);
-    temporary_process(0);
-    return status;
+    temporary_process_drop(gnuplot->process);
+    gnuplot->process = 0;
+}
+
+enum status gnuplot_poll(struct gnuplot *gnuplot, bool *ended)
+{
+    pid_t found = waitpid(gnuplot->process, &gnuplot->exit_status, WNOHANG);
+    *ended = found == gnuplot->process;
+    if (found < 0 && errno != EINTR) {
+        const int reason = errno;
+        forget(gnuplot);
+        return status_set(STATUS_FAILED, "plot: cannot wait for gnuplot: %s", strerror(reason));
+    }
+    if (found <= 0 && seconds_now() - gnuplot->begin > plot_seconds_most) {
+        kill(-gnuplot->process, SIGKILL);
+        waitpid(gnuplot->process, &gnuplot->exit_status, 0);
+        forget(gnuplot);
+        hung = true;
+        return status_set(STATUS_FAILED,
+                          "plot: gnuplot did not end within %g s and was stopped; no more pictures "
+                          "are drawn",
+                          plot_seconds_most);
+    }
+    if (*ended)
+        forget(gnuplot);
+    return STATUS_OK;
+}
+
+void gnuplot_pause(void)
+{
+    nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL);
 }

@@ -1,15 +1,28 @@
-/* gnuplot as a process that is watched. */
+/* gnuplot as processes that are watched. */
 #ifndef SASBENCH_SHOW_GNUPLOT_H
 #define SASBENCH_SHOW_GNUPLOT_H
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <sys/types.h>
 
 #include "status.h"
 
-/* Run gnuplot on the file `script`; what it prints goes to the file `log`. *exit_status is as waitpid gives it. Errors:
-   STATUS_FAILED where gnuplot is missing, or takes longer than plot_seconds_most (plot.h) and is ended. */
-enum status gnuplot_run(const char *script, const char *log, int *exit_status);
+/* One that runs, from gnuplot_start until gnuplot_poll has found its end or a fault. */
+struct gnuplot {
+    pid_t process;   /* 0: none */
+    double begin;    /* seconds_now() */
+    int exit_status; /* once it has ended, as waitpid gives it */
+};
+
+/* Let gnuplot run the file `script`; what it prints goes to the file `log`. Errors: STATUS_FAILED where gnuplot is
+   missing. */
+enum status gnuplot_start(const char *script, const char *log, struct gnuplot *gnuplot);
+/* Whether it has ended, without waiting for it. Errors: STATUS_FAILED where it takes longer than plot_seconds_most
+   (plot.h) and is ended. */
+enum status gnuplot_poll(struct gnuplot *gnuplot, bool *ended);
+/* What a loop around gnuplot_poll sleeps. */
+void gnuplot_pause(void);
 /* Whether it was ended so: it would hang on every further picture. */
 bool gnuplot_hung(void);
 /* The first line of `log` that says something, for a message. */

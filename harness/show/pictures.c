@@ -26,10 +26,9 @@ bool picture_exists(const char *directory, const char *scene, const char *label)
 }
 
 /* A picture that cannot be drawn is reported, but does not fail what was measured. */
-static void tell(struct pictures *pictures, enum status status)
+static void tell(void *to)
 {
-    if (status == STATUS_OK)
-        return;
+    struct pictures *pictures = to;
     fputs("sasbench: ", stderr);
     shown_write(stderr, status_message());
     fputc('\n', stderr);
@@ -40,7 +39,7 @@ enum status pictures_begin(const char *directory, const char *footer, const stru
                            const struct image *exact, int spec_count, struct pictures *pictures)
 {
     char path[4096];
-    *pictures = (struct pictures){directory, footer, scene, exact, spec_count, NULL, 0};
+    *pictures = (struct pictures){directory, footer, scene, exact, spec_count, NULL, 0, {NULL, 0}};
     pictures->lines = calloc((size_t)scene->point_count * (size_t)spec_count + 1, sizeof *pictures->lines);
     if (!pictures->lines)
         return status_set(STATUS_FAILED, "%s: no memory for slices", scene->name);
@@ -58,6 +57,7 @@ void pictures_free(struct pictures *pictures)
         free(pictures->lines[k].difference_db);
     }
     free(pictures->lines);
+    plot_queue_free(&pictures->queue);
     *pictures = (struct pictures){0};
 }
 
@@ -81,7 +81,10 @@ void pictures_add(struct pictures *pictures, int index, const char *label, const
                                           .footer = pictures->footer,
                                           .targets = scene->targets,
                                           .target_count = scene->point_count};
-    tell(pictures, plot_image(path, PLOT_DIRECTORY, &picture));
+    if (pictures->queue.count == PLOT_QUEUE_MOST)
+        plot_queue_draw(&pictures->queue, tell, pictures);
+    if (plot_image_later(&pictures->queue, path, PLOT_DIRECTORY, &picture) != STATUS_OK)
+        tell(pictures);
     for (int t = 0; t < scene->point_count; t++) {
         struct slice_line *line = &pictures->lines[t * pictures->spec_count + index];
         line->label = strdup(label);
@@ -102,7 +105,7 @@ static bool target_is_imaged(const struct pictures *pictures, int t)
     return false;
 }
 
-void pictures_slices(struct pictures *pictures)
+void pictures_draw(struct pictures *pictures)
 {
     const struct scene *scene = pictures->scene;
     char path[4096], title[600];
@@ -124,14 +127,18 @@ void pictures_slices(struct pictures *pictures)
     if (panels > 0) {
         path_make(pictures->directory, scene->name, NULL, path, sizeof path);
         snprintf(title, sizeof title, "%s: azimuth slices", scene->name);
-        tell(pictures, plot_slices(path, PLOT_DIRECTORY,
-                                   &(struct slices_picture){.title = title,
-                                                            .footer = pictures->footer,
-                                                            .panel_count = panels,
-                                                            .line_count = count / panels,
-                                                            .panel_titles = titles,
-                                                            .lines = lines}));
+        const struct slices_picture picture = {.title = title,
+                                               .footer = pictures->footer,
+                                               .panel_count = panels,
+                                               .line_count = count / panels,
+                                               .panel_titles = titles,
+                                               .lines = lines};
+        if (pictures->queue.count == PLOT_QUEUE_MOST)
+            plot_queue_draw(&pictures->queue, tell, pictures);
+        if (plot_slices_later(&pictures->queue, path, PLOT_DIRECTORY, &picture) != STATUS_OK)
+            tell(pictures);
     }
+    plot_queue_draw(&pictures->queue, tell, pictures);
     free(lines);
     free(texts);
     free(titles);

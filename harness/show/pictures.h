@@ -5,6 +5,7 @@
 #define SASBENCH_SHOW_PICTURES_H
 
 #include "show/plot.h"
+#include "show/plot_queue.h"
 
 struct pictures {
     const char *directory, *footer; /* borrowed, like scene and exact image; footer: where they are from */
@@ -13,6 +14,7 @@ struct pictures {
     int spec_count;
     struct slice_line *lines; /* [point_count][spec_count]; without a label: no image */
     int undrawn;              /* pictures that could not be drawn */
+    struct plot_queue queue;
 };
 
 /* Whether DIR/SCENE-LABEL.png is there, or, with a label of NULL, DIR/SCENE-slices.png. */
@@ -21,11 +23,11 @@ bool picture_exists(const char *directory, const char *scene, const char *label)
 /* Errors: STATUS_FAILED without memory. pictures_free accepts a zeroed struct. */
 enum status pictures_begin(const char *directory, const char *footer, const struct scene *scene,
                            const struct image *exact, int spec_count, struct pictures *pictures);
-/* Draw one algorithm's image (DIR/SCENE-LABEL.png) and keep its slices. index: 0 to spec_count - 1. */
+/* Keep what one algorithm's picture (DIR/SCENE-LABEL.png) and slices are drawn from. index: 0 to spec_count - 1. */
 void pictures_add(struct pictures *pictures, int index, const char *label, const struct image *image);
-/* Draw the azimuth slices of all images added (DIR/SCENE-slices.png), one panel for each target that a
-   patch holds. */
-void pictures_slices(struct pictures *pictures);
+/* Draw what was added, and the azimuth slices of all (DIR/SCENE-slices.png), one panel for each target that a patch
+   holds: after the measurements, on all processors. */
+void pictures_draw(struct pictures *pictures);
 void pictures_free(struct pictures *pictures);
 
 #endif

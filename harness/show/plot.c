@@ -5,8 +5,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "show/plot_script.h"
+#include "show/plot_queue.h"
 
+static const char slices_script[] = "slices.gp";
 static const double floor_db = -200; /* stands for zero power, far below what is shown */
 
 static enum status lines_write(const struct plot *plot, const struct slices_picture *picture)
@@ -69,7 +70,20 @@ static enum status lines_draw(const char *path, const char *plots_directory, con
 
 enum status plot_slices(const char *path, const char *plots_directory, const struct slices_picture *picture)
 {
-    return lines_draw(path, plots_directory, "slices.gp", picture);
+    return lines_draw(path, plots_directory, slices_script, picture);
+}
+
+enum status plot_slices_later(struct plot_queue *queue, const char *path, const char *plots_directory,
+                              const struct slices_picture *picture)
+{
+    struct plot plot;
+    enum status status = plot_begin(&plot, path);
+    if (status == STATUS_OK)
+        status = lines_write(&plot, picture);
+    if (status == STATUS_OK)
+        return plot_queue_add(queue, &plot, plots_directory, slices_script);
+    plot_end(&plot);
+    return status;
 }
 
 enum status plot_phase(const char *path, const char *plots_directory, const struct slices_picture *picture)

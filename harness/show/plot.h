@@ -18,6 +18,10 @@ struct image_picture {
     int target_count;
 };
 enum status plot_image(const char *path, const char *plots_directory, const struct image_picture *picture);
+/* The same, drawn later (plot_queue.h): what is written until then fails here, the rest there. */
+struct plot_queue;
+enum status plot_image_later(struct plot_queue *queue, const char *path, const char *plots_directory,
+                             const struct image_picture *picture);
 
 /* Seconds that gnuplot may take for a picture. After one that took longer nothing is drawn. */
 extern double plot_seconds_most;
@@ -38,6 +42,8 @@ struct slices_picture {
     const struct slice_line *lines;  /* [panel_count][line_count] */
 };
 enum status plot_slices(const char *path, const char *plots_directory, const struct slices_picture *picture);
+enum status plot_slices_later(struct plot_queue *queue, const char *path, const char *plots_directory,
+                              const struct slices_picture *picture);
 /* The same for phase errors: position in cycles a metre, `power_db` holds radians. */
 enum status plot_phase(const char *path, const char *plots_directory, const struct slices_picture *picture);
 

@@ -6,13 +6,14 @@
 
 #include "data/echo_data.h"
 #include "show/plot.h"
-#include "show/plot_script.h"
+#include "show/plot_queue.h"
 
 enum {
     PIXELS_MAX = 900, /* of a panel, along each axis: about what the screen shows */
     THIN = 2,         /* rows or columns that are drawn as curves */
     NAMES_MAX = 30    /* targets of a panel that are named; more would lie on each other */
 };
+static const char image_script[] = "image.gp";
 static const double floor_db = -200; /* stands for zero power, far below what is shown */
 
 /* One axis of a patch as it is drawn: blocks of pixels. */
@@ -270,7 +271,20 @@ enum status plot_image(const char *path, const char *plots_directory, const stru
     if (status == STATUS_OK)
         status = image_write(&plot, picture);
     if (status == STATUS_OK)
-        status = plot_draw(&plot, plots_directory, "image.gp");
+        status = plot_draw(&plot, plots_directory, image_script);
+    plot_end(&plot);
+    return status;
+}
+
+enum status plot_image_later(struct plot_queue *queue, const char *path, const char *plots_directory,
+                             const struct image_picture *picture)
+{
+    struct plot plot;
+    enum status status = plot_begin(&plot, path);
+    if (status == STATUS_OK)
+        status = image_write(&plot, picture);
+    if (status == STATUS_OK)
+        return plot_queue_add(queue, &plot, plots_directory, image_script);
     plot_end(&plot);
     return status;
 }

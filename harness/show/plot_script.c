@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include "data/temporary.h"
-#include "show/gnuplot.h"
 
 void plot_file(const struct plot *plot, const char *name, char path[PATH_MAX + 32])
 {
@@ -57,11 +56,16 @@ static bool is_svg(const char *path)
     return length > 4 && strcmp(path + length - 4, ".svg") == 0;
 }
 
+static enum status hung_status(const char *path)
+{
+    return status_set(STATUS_FAILED, "plot: '%.300s' is not drawn: gnuplot did not end on a picture before", path);
+}
+
 enum status plot_begin(struct plot *plot, const char *path)
 {
     *plot = (struct plot){.path = path};
     if (gnuplot_hung())
-        return status_set(STATUS_FAILED, "plot: '%.300s' is not drawn: gnuplot did not end on a picture before", path);
+        return hung_status(path);
 
     /* gnuplot takes an output that begins with '|' for a command. */
     char beside[PATH_MAX], name[PATH_MAX + 32];
@@ -86,12 +90,10 @@ void plot_end(struct plot *plot)
         temporary_remove(plot->directory);
 }
 
-/* Draw with plots_directory/script. */
-enum status plot_run(struct plot *plot, const char *plots_directory, const char *script)
+enum status plot_prepare(struct plot *plot, const char *plots_directory, const char *script)
 {
-    char preamble[PATH_MAX + 32], log[PATH_MAX + 32];
-    plot_file(plot, "run.gp", preamble);
-    plot_file(plot, "log", log);
+    plot->plots_directory = plots_directory;
+    plot->script = script;
     plot_variable(plot->preamble, "format", is_svg(plot->path) ? "svg" : "png");
     plot_variable(plot->preamble, "output", plot->output);
     plot_variable(plot->preamble, "plots", plots_directory);
@@ -99,20 +101,44 @@ enum status plot_run(struct plot *plot, const char *plots_directory, const char 
     bool written = !ferror(plot->preamble);
     written &= fclose(plot->preamble) == 0;
     plot->preamble = NULL;
-    if (!written)
-        return plot_file_failed(preamble);
+    return written ? STATUS_OK : plot_file_failed(plot->directory);
+}
 
-    int exit_status;
-    enum status status = gnuplot_run(preamble, log, &exit_status);
-    if (status != STATUS_OK)
-        return status;
-    if (exit_status != 0) {
-        char complaint[400];
+enum status plot_start(struct plot *plot)
+{
+    char preamble[PATH_MAX + 32], log[PATH_MAX + 32];
+    if (gnuplot_hung())
+        return hung_status(plot->path);
+    plot_file(plot, "run.gp", preamble);
+    plot_file(plot, "log", log);
+    return gnuplot_start(preamble, log, &plot->gnuplot);
+}
+
+enum status plot_poll(struct plot *plot, bool *ended)
+{
+    enum status status = gnuplot_poll(&plot->gnuplot, ended);
+    if (status == STATUS_OK && *ended && plot->gnuplot.exit_status != 0) {
+        char complaint[400], log[PATH_MAX + 32];
+        plot_file(plot, "log", log);
         gnuplot_complaint(log, complaint, sizeof complaint);
-        return status_set(STATUS_FAILED, "plot: gnuplot failed on '%s' with %s/%s: %s", plot->path, plots_directory,
-                          script, complaint);
+        return status_set(STATUS_FAILED, "plot: gnuplot failed on '%s' with %s/%s: %s", plot->path,
+                          plot->plots_directory, plot->script, complaint);
     }
-    return STATUS_OK;
+    return status;
+}
+
+enum status plot_run(struct plot *plot, const char *plots_directory, const char *script)
+{
+    bool ended = false;
+    enum status status = plot_prepare(plot, plots_directory, script);
+    if (status == STATUS_OK)
+        status = plot_start(plot);
+    while (status == STATUS_OK && !ended) {
+        status = plot_poll(plot, &ended);
+        if (!ended)
+            gnuplot_pause();
+    }
+    return status;
 }
 
 /* Whether a picture reaches its end: gnuplot does not notice a full disk. */

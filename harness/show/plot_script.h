@@ -7,16 +7,19 @@
 #include <limits.h>
 #include <stdio.h>
 
+#include "show/gnuplot.h"
 #include "status.h"
 
 enum { PANELS_MAX = 8 }; /* more do not fit a picture */
 
 /* One picture in the making. */
 struct plot {
-    char directory[PATH_MAX];   /* temporary, with everything in it */
-    char output[PATH_MAX + 32]; /* the picture until it is whole */
-    const char *path;           /* the picture */
-    FILE *preamble;             /* sets the script's variables */
+    char directory[PATH_MAX];             /* temporary, with everything in it */
+    char output[PATH_MAX + 32];           /* the picture until it is whole */
+    const char *path;                     /* the picture */
+    FILE *preamble;                       /* sets the script's variables */
+    const char *plots_directory, *script; /* that it is drawn with, once it is prepared */
+    struct gnuplot gnuplot;
 };
 
 /* Errors: STATUS_FAILED. plot_end removes what is left, and accepts a plot whose beginning failed. */
@@ -35,5 +38,10 @@ void plot_array_write(FILE *file, const char *name, int index, const char *text)
 enum status plot_run(struct plot *plot, const char *plots_directory, const char *script);
 enum status plot_place(const struct plot *plot);
 enum status plot_draw(struct plot *plot, const char *plots_directory, const char *script);
+
+/* plot_run in steps, for several at a time: prepare, start, poll until *ended. */
+enum status plot_prepare(struct plot *plot, const char *plots_directory, const char *script);
+enum status plot_start(struct plot *plot);
+enum status plot_poll(struct plot *plot, bool *ended);
 
 #endif

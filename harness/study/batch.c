@@ -55,10 +55,8 @@ static enum status visit_open(struct batch *batch, const struct scene *scene, in
     task_format(scene, NULL, task, sizeof task);
     const char *crash = supervisor_crash(task);
     supervisor_enter(task);
-    const double begin = seconds_now();
     enum status status = crash ? status_set(STATUS_FAILED, "making the echoes and the exact image %s", crash)
                                : session_open(scene, &visit->session);
-    batch->echoes_s += seconds_now() - begin;
     supervisor_leave();
     if (status != STATUS_OK)
         return status;
@@ -142,19 +140,17 @@ static enum status measure(struct batch *batch, struct visit *visit, int index)
     if (crash)
         return add_crashed(batch, visit->session.scene, &visit->specs[index], crash);
     supervisor_enter(task);
-    const double begin = seconds_now();
-    outcome_measure(&visit->session, &visit->specs[index], !batch->untimed,
+    outcome_measure(&visit->session, &visit->specs[index], batch->effort,
                     visit->samples ? &visit->samples[index - visit->turns_first] : NULL, &outcome);
-    const double measured = seconds_now();
-    batch->measured_s += measured - begin;
     supervisor_leave();
     outcome.row.threads = batch->threads;
     visit->works[index] = outcome.work;
     if (strcmp(outcome.row.status, "ok") == 0) {
         status = results_folder_targets(batch->results, outcome.targets, outcome.target_count);
+        const double begin = seconds_now();
         if (status == STATUS_OK)
             draw(visit, index, &outcome.image);
-        batch->drawn_s += seconds_now() - measured;
+        batch->drawn_s += seconds_now() - begin;
     }
     batch->failed |= strcmp(outcome.row.status, "failed") == 0;
     if (status == STATUS_OK)
@@ -312,6 +308,15 @@ static void heading_print(const struct scene *scene)
     warnings_print(scene);
 }
 
+static void spent_add(struct batch *batch, const struct session *session)
+{
+    batch->spent.echoes += session->spent.echoes;
+    batch->spent.reference += session->spent.reference;
+    batch->spent.planning += session->spent.planning;
+    batch->spent.imaging += session->spent.imaging;
+    batch->spent.control += session->control.spent_s;
+}
+
 enum status batch_scene(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs)
 {
     struct visit visit;
@@ -351,11 +356,12 @@ enum status batch_scene(struct batch *batch, const struct scene *scene, int spec
     if (visited) {
         const double begin = seconds_now();
         if (status == STATUS_OK && batch->details)
-            pictures_slices(&visit.pictures);
+            pictures_draw(&visit.pictures);
         batch->drawn_s += seconds_now() - begin;
         if (status == STATUS_OK && batch->details && missing > 0)
             print_works(&visit);
         batch->undrawn += visit.pictures.undrawn;
+        spent_add(batch, &visit.session);
         visit_close(&visit);
     }
     return status;
@@ -364,7 +370,11 @@ enum status batch_scene(struct batch *batch, const struct scene *scene, int spec
 enum status batch_open(const char *directory, int rows, bool details, struct batch *batch)
 {
     struct provenance provenance;
-    *batch = (struct batch){.directory = directory, .threads = omp_get_max_threads(), .details = details, .rows = rows};
+    *batch = (struct batch){.directory = directory,
+                            .threads = omp_get_max_threads(),
+                            .details = details,
+                            .effort = EFFORT_WHOLE,
+                            .rows = rows};
     provenance_fill(&provenance, batch->threads);
     provenance_line(batch->footer);
     batch->begin = batch->told = seconds_now();

@@ -4,23 +4,25 @@
 
 #include "measure/provenance.h"
 #include "measure/results_folder.h"
+#include "measure/session.h"
 #include "scene/scene.h"
-#include "measure/spec.h"
+#include "measure/timing.h"
 
 struct batch {
     const char *directory;        /* borrowed */
     char footer[PROVENANCE_LINE]; /* of its pictures */
     struct results_folder *results;
     int threads;
-    bool details; /* of every scene: draw images and slices, print FLOPs by formula */
-    bool untimed; /* form each image once: rows have no times */
-    bool in_turn; /* time settings by rounds, so that a bad minute is not one setting's alone */
-    bool failed;  /* a measurement failed */
-    int undrawn;  /* pictures that could not be drawn */
+    bool details;       /* of every scene: draw images and slices, print FLOPs by formula */
+    enum effort effort; /* of times; EFFORT_WHOLE from batch_open on */
+    bool in_turn;       /* time settings by rounds, so that a bad minute is not one setting's alone */
+    bool failed;        /* a measurement failed */
+    int undrawn;        /* pictures that could not be drawn */
     /* For the progress line: */
-    int done, rows, measured;             /* rows behind, rows in all, rows measured now */
-    double begin, told;                   /* monotonic clock, s: at the start, at the last line */
-    double echoes_s, measured_s, drawn_s; /* where the time went: echoes and exact images, measurements, pictures */
+    int done, rows, measured; /* rows behind, rows in all, rows measured now */
+    double begin, told;       /* monotonic clock, s: at the start, at the last line */
+    struct spent spent;       /* where the time went */
+    double drawn_s;
 };
 
 /* Open the folder (results_folder_open: finished rows of an earlier run are kept) and print the table's head.

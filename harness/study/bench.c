@@ -103,7 +103,9 @@ static enum status measure(const struct bench *bench, const struct subject *subj
         return status;
     omp_set_num_threads(line->threads);
     double peak = 0.5 * peak_flops(problem->precision, line->threads);
-    status = timing_measure(&spec, problem, subject->echoes, subject->control_echoes, NULL, &image, &timing);
+    struct control control = control_begin(problem, subject->control_echoes);
+    status = timing_measure(&spec, problem, subject->echoes, &control, EFFORT_WHOLE, NULL, &image, &timing);
+    control_end(&control);
     peak += 0.5 * peak_flops(problem->precision, line->threads);
     image_free(&image);
     spec_free(&spec);

@@ -129,8 +129,10 @@ static enum status line_measure(const struct spec *spec, const struct loaded *lo
     for (int round = 0; round < ROUNDS && status == STATUS_OK; round++) {
         struct image image = {0};
         double peak = peak_flops(spec->precision, threads);
-        status = timing_measure(spec, &problem, &loaded->echoes[spec->precision], &loaded->echoes[PRECISION_FLOAT],
-                                NULL, &image, &line->timing);
+        struct control control = control_begin(&problem, &loaded->echoes[PRECISION_FLOAT]);
+        status = timing_measure(spec, &problem, &loaded->echoes[spec->precision], &control, EFFORT_WHOLE, NULL, &image,
+                                &line->timing);
+        control_end(&control);
         line->peak[round] = (peak + peak_flops(spec->precision, threads)) / 2;
         line->run_s[round] = line->timing.run_s;
         line->plan_s[round] = line->timing.plan_s;

@@ -52,7 +52,9 @@ static enum status image_seconds(const char *text, const struct problem *problem
     if (status != STATUS_OK)
         return status;
     if (repeated) {
-        status = timing_measure(&spec, problem, echoes, echoes, NULL, &image, timing);
+        struct control control = control_begin(problem, echoes);
+        status = timing_measure(&spec, problem, echoes, &control, EFFORT_WHOLE, NULL, &image, timing);
+        control_end(&control);
     } else {
         status = imaging_open(&spec, problem, &imaging);
         if (status == STATUS_OK) {

@@ -27,7 +27,9 @@ static enum status spec_seconds(const char *text, const struct problem *problem,
     enum status status = spec_parse(text, &spec);
     if (status != STATUS_OK)
         return status;
-    status = timing_measure(&spec, problem, echoes, echoes, NULL, &image, &timing);
+    struct control control = control_begin(problem, echoes);
+    status = timing_measure(&spec, problem, echoes, &control, EFFORT_WHOLE, NULL, &image, &timing);
+    control_end(&control);
     if (status == STATUS_OK)
         *seconds = timing.run_s;
     image_free(&image);

@@ -210,7 +210,7 @@ static void coordinates_far_from_zero_are_on_the_raster(void **state)
     struct outcome outcome;
     assert_int_equal(session_open(&scene, &session), STATUS_OK);
     assert_int_equal(spec_parse("bp_nearest", &spec), STATUS_OK);
-    outcome_measure(&session, &spec, false, NULL, &outcome);
+    outcome_measure(&session, &spec, EFFORT_NONE, NULL, &outcome);
     assert_string_equal(outcome.row.status, "ok");
     assert_true(outcome.row.error > 0 && outcome.row.error < 0.5 && outcome.row.phase_rms_rad < 0.5);
     assert_says(outcome.reason, "target 1: the main lobe does not fall to half its peak"); /* 3 mm of image */
@@ -349,14 +349,18 @@ static void control_counts_what_it_sums(void **state)
         for (int k = 0; k < 2; k++) {
             const struct scene *scene = k ? &outside : &inside;
             struct problem problem = {&scene->acquisition, 1, scene->patches, PRECISION_FLOAT};
-            least[k] = fmin(least[k], control_seconds_per_pair(&problem, &echoes));
+            struct scalar_loop loop = scalar_loop_choose(&problem, &echoes);
+            least[k] = fmin(least[k], scalar_loop_seconds(&loop));
+            scalar_loop_free(&loop);
         }
     if (!(least[1] > 0.6 * least[0] && least[1] < 1.7 * least[0]))
         print_error("%g s inside, %g s outside\n", least[0], least[1]);
     assert_true(least[1] > 0.6 * least[0] && least[1] < 1.7 * least[0]);
     struct grid nowhere = {0, 1, 5, 1e5, 1, 5};
     struct problem problem = {&inside.acquisition, 1, &nowhere, PRECISION_FLOAT};
-    assert_true(isnan(control_seconds_per_pair(&problem, &echoes)));
+    struct scalar_loop none = scalar_loop_choose(&problem, &echoes);
+    assert_true(isnan(scalar_loop_seconds(&none)));
+    scalar_loop_free(&none);
     echoes_free(&echoes);
     scene_free(&inside);
     scene_free(&outside);

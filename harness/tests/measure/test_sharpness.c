@@ -117,7 +117,7 @@ static void test_rounds_add_up(void **state)
         assert_true(samples.runs > before && samples.elapsed > 0 && samples.controls == 4 * round);
         before = samples.runs;
     }
-    outcome_measure(&session, &spec, true, &samples, &outcome);
+    outcome_measure(&session, &spec, EFFORT_WHOLE, &samples, &outcome);
     assert_string_equal(outcome.row.status, "ok");
     assert_true(samples.runs > before && outcome.row.runs == samples.runs && samples.controls == 4 * TIMING_ROUNDS);
     double sorted[TIMING_RUNS];

@@ -63,7 +63,7 @@ static void side_lobes_plant(const char *scene, const struct spec *spec, double 
 }
 
 /* Measure SPEC on a session whose scene has a name that claims ask for, with the fault if it concerns SPEC. */
-static void measure(const struct session *session, const char *spec_text)
+static void measure(struct session *session, const char *spec_text)
 {
     struct spec spec, used;
     struct outcome outcome;
@@ -79,7 +79,7 @@ static void measure(const struct session *session, const char *spec_text)
         faulty.execute = spoiled_execute;
         used.algorithm = &faulty;
     }
-    outcome_measure(session, &used, false, NULL, &outcome);
+    outcome_measure(session, &used, EFFORT_NONE, NULL, &outcome);
     assert_string_equal(outcome.row.status, "ok");
     struct measurement row = planted_row(session->scene->name, &spec);
     row.error = outcome.row.error;

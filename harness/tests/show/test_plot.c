@@ -7,6 +7,7 @@
 
 #include "data/echo_data.h"
 #include "show/plot.h"
+#include "show/plot_queue.h"
 #include "tests/assertions.h"
 
 /* SASBENCH_ROOT, the repository, comes from the build. */
@@ -340,6 +341,71 @@ static void cut_pictures_are_told(void **state)
     assert_nothing_left();
 }
 
+struct told {
+    int count;
+    char message[600];
+};
+
+static void tell(void *to)
+{
+    struct told *told = to;
+    told->count++;
+    snprintf(told->message, sizeof told->message, "%s", status_message());
+}
+
+/* Pictures that wait are drawn together, from what they were added with; one that fails leaves the others alone. */
+static void queued_pictures_are_drawn(void **state)
+{
+    (void)state;
+    struct grid patch = {0, 1, 4, 10, 1, 4};
+    struct image image;
+    struct plot_queue queue = {NULL, 0};
+    struct told told = {0, ""};
+    double position[] = {-1, 0, 1}, power[] = {-20, 0, -20};
+    struct slice_line line = {.label = "a", .position_m = position, .power_db = power, .count = 3};
+    const char *panel = "t0";
+    char path[4096], text[10];
+    assert_int_equal(image_allocate(1, &patch, PRECISION_FLOAT, &image), STATUS_OK);
+    text_to_file("image.gp", "nonsense here\n");
+    const struct image_picture picture = {.image = &image, .title = "a"};
+    for (int k = 0; k < 5; k++) {
+        snprintf(text, sizeof text, "q%d.png", k);
+        path_in(path, text);
+        assert_drawn(plot_image_later(&queue, path, k == 2 ? folder : real_plots, &picture));
+        assert_int_not_equal(access(path, F_OK), 0);
+    }
+    path_in(path, "s.png");
+    assert_drawn(
+        plot_slices_later(&queue, path, real_plots, &(struct slices_picture){"title", NULL, 1, 1, &panel, &line}));
+    image_free(&image);
+    line.count = 0;
+    assert_int_equal(queue.count, 6);
+    plot_queue_draw(&queue, tell, &told);
+    assert_int_equal(queue.count, 0);
+    assert_int_equal(told.count, 1);
+    assert_non_null(strstr(told.message, "q2.png"));
+    assert_non_null(strstr(told.message, "nonsense"));
+    for (int k = 0; k < 5; k++) {
+        snprintf(text, sizeof text, "q%d.png", k);
+        path_in(path, text);
+        if (k == 2)
+            assert_int_not_equal(access(path, F_OK), 0);
+        else
+            assert_png(text);
+    }
+    assert_png("s.png");
+    assert_nothing_left();
+
+    /* What is dropped leaves nothing, either. */
+    assert_int_equal(image_allocate(1, &patch, PRECISION_FLOAT, &image), STATUS_OK);
+    path_in(path, "dropped.png");
+    assert_drawn(plot_image_later(&queue, path, real_plots, &(struct image_picture){.image = &image, .title = "a"}));
+    plot_queue_free(&queue);
+    assert_int_not_equal(access(path, F_OK), 0);
+    image_free(&image);
+    assert_nothing_left();
+}
+
 /* The last test: nothing is drawn after it. */
 static void hanging_gnuplot_is_stopped(void **state)
 {
@@ -372,6 +438,7 @@ int main(void)
         cmocka_unit_test(slice_data_are_right),
         cmocka_unit_test(failures_are_told),
         cmocka_unit_test(cut_pictures_are_told),
+        cmocka_unit_test(queued_pictures_are_drawn),
         cmocka_unit_test(hanging_gnuplot_is_stopped),
     };
     return cmocka_run_group_tests_name("plot", tests, set_up, tear_down);
