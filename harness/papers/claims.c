@@ -88,6 +88,7 @@ static enum status cells_check(const struct csv *csv, const struct csv *publishe
         claim->by_scheme = formula.by_scheme;
         claim->measures = formula.measures;
         claim->phases = formula.phases;
+        claim->rules = formula.rules;
     }
     if (status == STATUS_OK && list.failed)
         status = status_set(STATUS_FAILED, "%s: line %d: no memory for %d measurements", csv->path, claim->line,

@@ -19,6 +19,7 @@ struct claim {
     int line;
     bool by_scheme; /* it names LBF: it has a verdict as printed and one corrected (schemes.h) */
     bool phases;    /* it asks for the phase study */
+    bool rules;     /* it asks for the rules' study */
     bool measures;  /* else it is decided by formulas and printed numbers alone */
     int need_count;
     struct need *needs; /* [need_count] the measurements that it asks for; owned */

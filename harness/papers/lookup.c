@@ -11,6 +11,8 @@
 #include "papers/tables.h"
 #include "papers/assumptions.h"
 #include "papers/filtered.h"
+#include "papers/rules.h"
+#include "papers/scene_numbers.h"
 #include "study/phase.h"
 
 /* A call: its texts, where each stands, and the metric that the function's name means. */
@@ -294,65 +296,42 @@ static enum status phase(struct formula *formula, struct call *call, struct valu
     return status;
 }
 
-static double recording_s(const struct acquisition *a)
+/* A rule for the upsampling rate on scenes from seeds. */
+static enum status rule(struct formula *formula, struct call *call, struct values *values)
 {
-    struct straight_track track;
-    return acquisition_is_straight(a, &track) ? a->pings * track.spacing / track.speed : NAN;
-}
-
-static double bin_m(const struct acquisition *a)
-{
-    return a->sound_speed / (2 * a->fs);
-}
-
-static double wavelength_m(const struct acquisition *a)
-{
-    return a->sound_speed / a->fc;
-}
-
-static double speed_m_s(const struct acquisition *a)
-{
-    struct straight_track track;
-    return acquisition_is_straight(a, &track) ? track.speed : NAN;
-}
-
-static double sound_speed_m_s(const struct acquisition *a)
-{
-    return a->sound_speed;
-}
-
-/* What the nearest sample misses at most, half a sample, at the edge of the band. */
-static double edge_phase_rad(const struct acquisition *a)
-{
-    return acos(-1) * a->bandwidth / (2 * a->fs);
-}
-
-static double tx_length_m(const struct acquisition *a)
-{
-    return a->tx_length;
+    double range[2] = {0, 0};
+    char setting[260];
+    enum status status = word_check(formula, call, 0, rule_names);
+    *values = (struct values){.count = 1, .at = {1}};
+    if (status == STATUS_OK)
+        status = word_check(formula, call, 1, rule_quantities);
+    if (status == STATUS_OK)
+        status = range_check(formula, call, 2, 0, 1, range);
+    formula->measures = formula->rules = true;
+    snprintf(setting, sizeof setting, "%s on scenes from seeds", call->text[0]);
+    used(formula, USE_SETTING, setting);
+    if (status == STATUS_OK && formula->measured)
+        values->at[0] = rule_value(formula->measured, call->text[0], call->text[1], range[0]);
+    return status;
 }
 
 static enum status scene_number(struct formula *formula, struct call *call, struct values *values)
 {
-    static const char *const names[] = {"bin_m",     "wavelength_m",    "tx_length_m",    "recording_s",
-                                        "speed_m_s", "sound_speed_m_s", "edge_phase_rad", NULL};
-    static double (*const numbers[])(const struct acquisition *) = {
-        bin_m, wavelength_m, tx_length_m, recording_s, speed_m_s, sound_speed_m_s, edge_phase_rad};
     struct scene scene;
     int k = 0;
     *values = (struct values){.count = 1, .at = {1}};
     enum status status = scene_check(formula, call, 0);
     if (status == STATUS_OK)
-        status = word_check(formula, call, 1, names);
+        status = word_check(formula, call, 1, scene_number_names);
     used(formula, USE_SCENE, call->text[0]);
     if (status != STATUS_OK || !formula->measured)
         return status;
     status = assumed_scene_load(call->text[0], &scene);
     if (status != STATUS_OK)
         return status;
-    while (strcmp(names[k], call->text[1]) != 0)
+    while (strcmp(scene_number_names[k], call->text[1]) != 0)
         k++;
-    values->at[0] = numbers[k](&scene.acquisition);
+    values->at[0] = scene_number_value(k, &scene.acquisition);
     scene_free(&scene);
     return STATUS_OK;
 }
@@ -374,6 +353,7 @@ static const struct lookup lookups[] = {
     {"scene", 2, "scene, number", scene_number},
     {"planned", 3, "scene, SPEC, number", planned},
     {"filtered", 4, "scene, SPEC, quantity, targets", filtered},
+    {"rule", 3, "rule, quantity, number", rule},
 };
 static const struct lookup image_lookup = {"", 2, "scene, SPEC", image_metric};
 static const struct lookup target_lookup = {"", 4, "scene, SPEC, definition, targets", target_metric};

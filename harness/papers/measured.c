@@ -34,6 +34,9 @@ enum status measured_read(const char *directory, struct measured *measured)
         if (access(path, F_OK) == 0)
             status = csv_read(path, CSV_TAIL_KEEP, &measured->phase[k]);
     }
+    snprintf(path, sizeof path, "%s/%s", directory, RULES_FILE);
+    if (status == STATUS_OK && access(path, F_OK) == 0)
+        status = csv_read(path, CSV_TAIL_KEEP, &measured->rules);
     return status;
 }
 
@@ -43,6 +46,7 @@ void measured_free(struct measured *measured)
     results_free(&measured->targets);
     csv_free(&measured->phase[PHASE_SHORT]);
     csv_free(&measured->phase[PHASE_LONG]);
+    csv_free(&measured->rules);
     csv_free(&measured->published);
 }
 

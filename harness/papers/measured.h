@@ -7,6 +7,8 @@
 #include "measure/results.h"
 #include "study/phase.h"
 
+#define RULES_FILE "rules_random.csv" /* of a folder (rules.h) */
+
 /* What a plan counts, by scene and SPEC. */
 struct planned {
     char scene[64], spec[160];
@@ -26,6 +28,7 @@ struct scene_number {
 struct measured {
     struct results measurements, targets; /* as results.h reads them; all zero when there is no file */
     struct csv phase[PHASE_SETUPS];       /* as phase_study writes them */
+    struct csv rules;                     /* as rules_study writes them */
     struct csv published;                 /* results/published.csv */
     struct planned planned[16];           /* work that was asked for */
     int planned_count;

@@ -29,6 +29,7 @@ struct formula {
     enum scheme scheme;        /* what LBF means */
     bool by_scheme;            /* LBF was named: the other scheme may give other numbers */
     bool phases;               /* the phase study was asked for */
+    bool rules;                /* the rules' study was asked for */
     bool measures;             /* something measured was asked for */
     const struct csv *published;
     void (*need)(void *to, const char *scene, const char *spec); /* hears of each measurement; may be NULL */

@@ -12,6 +12,7 @@
 #include "papers/figures.h"
 #include "papers/assumptions.h"
 #include "papers/reproduced.h"
+#include "papers/rules.h"
 #include "papers/sensitivity.h"
 #include "scene/scene.h"
 #include "study/batch.h"
@@ -119,6 +120,14 @@ static bool phases_asked(const struct selection *selection)
     return asked;
 }
 
+static bool rules_asked(const struct selection *selection)
+{
+    bool asked = false;
+    for (int k = 0; k < selection->claims->count; k++)
+        asked |= selection->asked[k] && selection->claims->claims[k].rules;
+    return asked;
+}
+
 /* Needs into a folder, which is made, without times. */
 static enum status needs_measure(const char *directory, struct need *needs, int count)
 {
@@ -165,6 +174,8 @@ enum status papers_reproduce(const char *const *ids, int count, const char *dire
                 status = scene_measure(&batch, needs + k, need_count - k);
         if (status == STATUS_OK && phases_asked(&selection))
             status = phase_study(directory, true);
+        if (status == STATUS_OK && rules_asked(&selection))
+            status = rules_study(directory);
         if (status == STATUS_OK)
             status = figures_draw(directory, figure_asked, &selection, &batch.undrawn);
         if (status == STATUS_OK)

@@ -8,6 +8,7 @@
 #include "data/random.h"
 #include "measure/outcome.h"
 #include "measure/session.h"
+#include "papers/rules.h"
 #include "tests/planted.h"
 
 /* --- Faults --------------------------------------------------------------------------------------------------- */
@@ -275,6 +276,21 @@ static void phases_draw(struct measured *measured)
     }
 }
 
+/* Errors around a tenth on three scenes. */
+static void rules_draw(struct measured *measured)
+{
+    FILE *file = fopen(path_of(RULES_FILE), "w");
+    assert_non_null(file);
+    fputs("seed,rule,algorithm,options,error_gain,rate,rate_enough\n", file);
+    const double size = pow(10, drawn(-1, 1));
+    for (int scene = 0; scene < 3; scene++)
+        for (int k = 0; rule_names[k]; k++)
+            fprintf(file, "%d,%s,a,b=1,%.9g,%.9g,2\n", scene, rule_names[k], size * drawn(1, 0.3), drawn(2, 9));
+    assert_int_equal(fclose(file), 0);
+    csv_free(&measured->rules);
+    assert_int_equal(csv_read(path_of(RULES_FILE), CSV_TAIL_KEEP, &measured->rules), STATUS_OK);
+}
+
 /* Slowest over fastest is 1 at least, and the least noise is above the 3.7 % that Table 4 calls almost the same: this
    can be refuted or left open, and never holds. */
 static const char *const only_refuted = "bp22-4.2-8";
@@ -301,6 +317,8 @@ static void each_verdict_can_flip(void **state)
             numbers_draw(&measured);
             if (claim->phases)
                 phases_draw(&measured);
+            if (claim->rules)
+                rules_draw(&measured);
             seen[claim_judge(&claims, claim, SCHEME_PRINTED, &measured).verdict] = true;
             both = seen[CLAIM_FAILS] && (refuted ? seen[CLAIM_UNDECIDED] : seen[CLAIM_HOLDS] || seen[CLAIM_ASSUMED]);
         }
@@ -337,6 +355,8 @@ static void evidence_is_whole(void **state)
         numbers_draw(&measured);
         if (claim->phases)
             phases_draw(&measured);
+        if (claim->rules)
+            rules_draw(&measured);
         for (enum scheme scheme = 0; scheme < (claim->by_scheme ? SCHEMES : 1); scheme++) {
             const struct judgement found = claim_judge(&claims, claim, scheme, &measured);
             char name[40];
@@ -349,7 +369,7 @@ static void evidence_is_whole(void **state)
                          strstr(found.evidence, ": yes")  ? "; criterion: "
                          : strstr(found.evidence, ": no") ? "; criterion: "
                                                           : ": within the noise");
-            if (claim->need_count > 0 || claim->phases)
+            if (claim->need_count > 0 || claim->phases || claim->rules)
                 contains(claim, found.evidence, "; settings: ");
             if (claim->need_count > 0 || claim->phases || strstr(claim->arguments, "scene("))
                 contains(claim, found.evidence, " (c 1500 m/s, beam ");
