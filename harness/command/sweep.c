@@ -5,6 +5,7 @@
 #include "data/interruption.h"
 #include "study/batch.h"
 #include "study/machine_rates.h"
+#include "study/predicted.h"
 #include "show/plot.h"
 #include "show/plot_points.h"
 #include "study/sweep_settings.h"
@@ -99,6 +100,13 @@ enum status command_sweep(const struct task *task)
         if (status == STATUS_OK)
             batch.undrawn += draw(directory, &scenes[k]);
     }
+    bool predicted = false;
+    if (status == STATUS_OK && !interruption_seen())
+        status = predicted_write(directory, scenes, scene_count, &predicted);
+    if (predicted && status == STATUS_OK && predicted_draw(directory) != STATUS_OK) {
+        fprintf(stderr, "sasbench: %s\n", status_message());
+        batch.undrawn++;
+    }
     if (interruption_seen())
         fprintf(stderr, "sasbench: interrupted; %s holds what was measured, the same command goes on from there\n",
                 directory);
@@ -106,7 +114,7 @@ enum status command_sweep(const struct task *task)
     interruption_end();
     if (status == STATUS_OK)
         printf("\nResults: %s/measurements.csv, targets.csv, fronts.csv, cheapest.csv, slopes.csv, rules.csv, "
-               "points.csv and plots.\n",
+               "points.csv, predicted.csv, predictions.csv and plots.\n",
                directory);
     status = batch_close(&batch, status);
     scenes_free(scenes, scene_count);

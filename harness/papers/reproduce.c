@@ -17,6 +17,7 @@
 #include "scene/scene.h"
 #include "study/batch.h"
 #include "study/phase.h"
+#include "study/predicted.h"
 
 enum { NEEDS_MAX = 256 };
 
@@ -180,6 +181,13 @@ enum status papers_reproduce(const char *const *ids, int count, const char *dire
             status = figures_draw(directory, figure_asked, &selection, &batch.undrawn);
         if (status == STATUS_OK)
             status = reproduced_report(directory, &selection);
+        bool predicted = false;
+        if (status == STATUS_OK && need_count > 0)
+            status = predicted_write(directory, NULL, 0, &predicted);
+        if (predicted && status == STATUS_OK && predicted_draw(directory) != STATUS_OK) {
+            fprintf(stderr, "sasbench: %s\n", status_message());
+            batch.undrawn++;
+        }
         status = batch_close(&batch, status);
     }
     claims_free(&claims);

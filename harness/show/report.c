@@ -35,7 +35,7 @@ struct folder {
     struct csv csvs[REPORT_TABLES]; /* column_count 0: not there */
     struct drawing *drawings;       /* [drawing_count] */
     int drawing_count;
-    struct dirent **files; /* [file_count] PNG files of `phase`, `reproduce` and `stability`, by name */
+    struct dirent **files; /* [file_count] PNG files of `phase`, `reproduce`, `sweep` and `stability`, by name */
     int file_count;
 };
 
@@ -43,11 +43,6 @@ struct folder {
 static bool is_measured(const struct folder *folder)
 {
     return folder->results.csv.column_count > 0;
-}
-
-static const char *figures_title(const struct folder *folder)
-{
-    return is_measured(folder) ? "Papers' figures" : "Figures";
 }
 
 static void folder_free(struct folder *folder)
@@ -65,7 +60,7 @@ static void folder_free(struct folder *folder)
 static int is_figure(const struct dirent *entry)
 {
     size_t length = strlen(entry->d_name);
-    return strcmp(entry->d_name, "stability.png") == 0
+    return strcmp(entry->d_name, "stability.png") == 0 || strcmp(entry->d_name, "predicted.png") == 0
            || ((strncmp(entry->d_name, "phase-", 6) == 0 || strncmp(entry->d_name, "figure-", 7) == 0) && length > 4
                && strcmp(entry->d_name + length - 4, ".png") == 0);
 }
@@ -270,7 +265,7 @@ static enum status plots_show(struct page *page, const struct folder *folder)
     return status;
 }
 
-/* What `phase` and `reproduce` drew as the papers do. */
+/* What `phase` and `reproduce` drew as the papers do, and what `stability` and `sweep` drew of the whole. */
 static enum status figures_show(struct page *page, const struct folder *folder)
 {
     enum status status = STATUS_OK;
@@ -278,7 +273,7 @@ static enum status figures_show(struct page *page, const struct folder *folder)
     struct pictures_count count = {0};
     if (folder->file_count == 0)
         return STATUS_OK;
-    page_heading(page, 2, "figures", figures_title(folder));
+    page_heading(page, 2, "figures", "Figures");
     for (int k = 0; k < folder->file_count && status == STATUS_OK; k++) {
         snprintf(path, sizeof path, "%s/%s", folder->directory, folder->files[k]->d_name);
         status = report_picture_show(page, path, NULL, folder->files[k]->d_name, &count);
@@ -307,7 +302,7 @@ static void contents_show(struct page *page, const struct folder *folder)
             }
         if (first && folder->file_count) {
             ids[count] = "figures";
-            titles[count++] = figures_title(folder);
+            titles[count++] = "Figures";
         }
         for (int k = 0; first && k < (is_measured(folder) ? 2 : 1); k++) {
             ids[count] = k ? "plots" : "machine";

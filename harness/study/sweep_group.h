@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "measure/results.h"
+#include "scene/scene.h"
 #include "show/plot_points.h"
 
 /* A measured setting as a point of its series. */
@@ -26,6 +27,11 @@ struct group {
     int count;
     bool told; /* on the terminal as well */
 };
+
+/* Has a row ahead of this one the same scene? */
+bool scene_seen(const struct results *results, int row);
+/* The scene of a name, or NULL. */
+const struct scene *scene_find(const struct scene *scenes, int count, const char *name);
 
 /* Errors: STATUS_FAILED without memory; *group is to be freed in any case. */
 enum status group_fill(const struct results *results, const char *scene, struct group *group);

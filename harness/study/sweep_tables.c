@@ -97,7 +97,7 @@ static enum status scene_tables(const struct results *results, const char *scene
     return status;
 }
 
-static bool scene_seen(const struct results *results, int row)
+bool scene_seen(const struct results *results, int row)
 {
     for (int k = 0; k < row; k++)
         if (strcmp(results->measurements[k].scene, results->measurements[row].scene) == 0)
@@ -122,7 +122,7 @@ static enum status table_open(const char *directory, int table, const struct csv
     return STATUS_OK;
 }
 
-static const struct scene *scene_find(const struct scene *scenes, int count, const char *name)
+const struct scene *scene_find(const struct scene *scenes, int count, const char *name)
 {
     for (int k = 0; k < count; k++)
         if (strcmp(scenes[k].name, name) == 0)
