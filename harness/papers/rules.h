@@ -9,8 +9,8 @@
    smallest factor of zero padding, 2 fc/fs rounded up. NULL ends the names. */
 extern const char *const rule_names[];
 /* What is known of a rule, by a number: `met`, the share of the scenes with an error after one gain up to it; `error`,
-   the error that this share of the scenes stays below; `overpaid`, the same of the rule's rate over the least one that is
-   predicted to leave an error of 0.1 (of scenes where there is one). NULL ends the names. */
+   the error that this share of the scenes stays below; `overpaid`, the same of the rule's rate over the least one that
+   is predicted to leave an error of 0.1 (of scenes where there is one). NULL ends the names. */
 extern const char *const rule_quantities[];
 
 /* Follow both on 200 scenes, those whose exact image holds anything, into DIRECTORY/rules_random.csv, a row a scene and
