@@ -8,7 +8,7 @@
 # Defines:    pictures; picture_scene[], picture_output[], picture_data[]: what `load` reads for a picture (scene.awk)
 
 load plots."/families.gp"
-quote(text) = strstrt(text, "'") ? text[1:strstrt(text, "'") - 1]."'\\''".quote(text[strstrt(text, "'") + 1:*]) : text
+load plots."/quote.gp"
 # In the C locale numbers have a point, and a text is its bytes.
 read(one) = sprintf("< LC_ALL=C FOLDER='%s' SCENE='%s' awk -f '%s/scene.awk'", quote(folder), quote(one), quote(plots))
 # The name of a picture's file: signs that a path or a shell would take otherwise become '_'.

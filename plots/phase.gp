@@ -14,7 +14,7 @@
 if (!exists("plots")) plots = "plots"
 columns = |panels| == 1 ? 1 : 2
 rows = (|panels| + columns - 1)/columns
-bottom = 170
+bottom = 185
 width = |panels| == 1 ? 1200 : 40 + 600*columns
 height = |panels| == 1 ? 720 + bottom : bottom + 450*rows
 load plots."/style.gp"
@@ -32,8 +32,8 @@ do for [l = 1:|lines|] {
 largest = y_max > printed_most ? y_max : printed_most
 extent = largest > 0 ? 1.1*largest : 1
 colour(l) = family_colour[family_drawn(algorithms[l])]
-dash(l) = member[l]%5 + 1
-label(l) = lines[l].(printed[l] > 0 ? sprintf("; paper: %g rad", printed[l]) : "")
+dash(l) = (family_dash[family_drawn(algorithms[l])] - 1 + member[l])%5 + 1
+label(l) = lines[l].(printed[l] > 0 ? sprintf("; paper: up to %.3g rad", printed[l]) : "")
 
 set multiplot layout rows,columns title title font ",16" offset 0,-0.4 \
     margins screen 110.0/width, screen 1 - 30.0/width, screen 1.0*bottom/height, screen 1 - 90.0/height \

@@ -26,9 +26,13 @@ short(scene) = scene[(strstrt(scene, "extreme/") == 1 ? 9 : 1):*]
 name(algorithm, options, precision) = algorithm.(options eq "" ? "" : ":".options).(precision eq "double" ? " double" : "")
 kind(verdict) = verdict[1:5] eq "works" ? 0 : verdict[1:7] eq "refused" ? 2 : verdict[1:5] eq "fails" ? 3 : 1
 why(verdict) = strstrt(verdict, ": ") ? verdict[strstrt(verdict, ": ") + 2:*] : ""
-set table $cells separator tab                         # options hold commas
-plot csv using (place(strcol("scene"))):(column_now):(strcol("digits") eq "" ? "none" : strcol("digits")):(kind(strcol("verdict"))): \
-    (short(strcol("scene"))):(name(strcol("algorithm"), strcol("options"), strcol("precision"))): \
+# gnuplot ends a quoted field at its first comma: those stand as semicolons until they are drawn.
+load plots."/quote.gp"
+rows_of = sprintf("< LC_ALL=C awk 'BEGIN { FS = OFS = \"\\\"\" } { for (k = 2; k <= NF; k += 2) gsub(/,/, \";\", $k) } 1' <'%s'", quote(csv))
+commas(text) = strstrt(text, ";") ? text[1:strstrt(text, ";") - 1].",".commas(text[strstrt(text, ";") + 1:*]) : text
+set table $cells separator tab
+plot rows_of using (place(strcol("scene"))):(column_now):(strcol("digits") eq "" ? "none" : strcol("digits")):(kind(strcol("verdict"))): \
+    (short(strcol("scene"))):(name(strcol("algorithm"), commas(strcol("options")), strcol("precision"))): \
     (why(strcol("verdict"))):(" ") with table
 unset table
 unset datafile columnheaders
@@ -39,7 +43,7 @@ rows = cells_max_x + 1
 columns = cells_max_y + 1
 
 width = columns < 9 ? 820 : 350 + 52*columns            # room for the title, and for the colour bar's labels
-height = 450 + 22*(rows < 9 ? 9 : rows)
+height = 575 + 22*(rows < 9 ? 9 : rows)
 set terminal pngcairo noenhanced size width,height font "DejaVu Sans,12" background "#ffffff"
 if (svg) { set terminal svg noenhanced size width,height dynamic font "DejaVu Sans,Verdana,sans-serif,12" background "#ffffff" }
 set output output
@@ -48,12 +52,12 @@ set title "Digits lost against the method's own sum in extended precision\n(grey
 set lmargin at screen 190.0/width
 set rmargin at screen 1 - 130.0/width
 set tmargin at screen 1 - 65.0/height
-set bmargin at screen 360.0/height
+set bmargin at screen 485.0/height
 set xrange [-0.5:columns - 0.5]
 set yrange [rows - 0.5:-0.5]
 set cbrange [-3:3]
 set cblabel "digits lost"
-set colorbox user origin screen 1 - 110.0/width, screen 360.0/height size screen 20.0/width, screen 1 - 425.0/height
+set colorbox user origin screen 1 - 110.0/width, screen 485.0/height size screen 20.0/width, screen 1 - 550.0/height
 unset key
 unset grid
 set xtics rotate by 90 right
@@ -65,7 +69,7 @@ plot $cells using 2:1:($2 - 0.48):($2 + 0.48):($1 - 0.46):($1 + 0.46):(column(4)
     "" using 2:(box(2) ? column(1) : NaN):($2 - 0.48):($2 + 0.48):($1 - 0.46):($1 + 0.46) with boxxyerror linecolor rgb "#d8d8d8", \
     "" using 2:(box(3) ? column(1) : NaN):($2 - 0.48):($2 + 0.48):($1 - 0.46):($1 + 0.46) with boxxyerror linecolor rgb "#d00000", \
     "" using 2:(box(1) ? column(1) : NaN):($2 - 0.48):($2 + 0.48):($1 - 0.46):($1 + 0.46) with boxxyerror fillstyle empty \
-        border linecolor rgb "#d00000" linewidth 2 dashtype 1, \
+        border linecolor rgb "#d00000" linecolor rgb "#d00000" linewidth 2 dashtype 1, \
     "" using 2:(column(4) < 2 ? column(1) : NaN):(number(strcol(3))) with labels font ",9" textcolor rgb "#ffffff", \
     "" using 2:(box(2) ? column(1) : NaN):(strcol(7)[1:9]) with labels font ",7" textcolor rgb "#404040", \
     "" using 2:(box(3) ? column(1) : NaN):(strcol(7)[1:9]) with labels font ",7" textcolor rgb "#ffffff", \
