@@ -37,23 +37,27 @@ static enum status memory_parse(const char *text, double *bytes)
                             text);
 }
 
-/* The rates of this machine, measured where the cache has none. */
+/* The rates of this machine, measured where the cache has none. One that cannot be kept is measured again next time. */
 static enum status rates_need(void)
 {
     char path[4096];
-    bool found;
+    bool found, kept = true;
     struct rates rates;
     machine_rates_use(&found);
     if (!found) {
         enum status status = machine_rates_measure(&rates);
-        if (status == STATUS_OK)
-            status = machine_rates_keep(&rates);
         if (status != STATUS_OK)
             return status;
+        kept = machine_rates_keep(&rates) == STATUS_OK;
+        if (!kept)
+            fprintf(stderr, "sasbench: warning: the machine's rates are not kept: %s\n", status_message());
     }
     machine_rates_path(path, sizeof path);
     printf("Rates of this machine, %s; times repeat within %.0f %%: %s\n\n", found ? "measured before" : "measured now",
-           100 * rates_get()->noise, *path ? path : "not kept, for HOME is not set");
+           100 * rates_get()->noise,
+           !*path ? "not kept, for HOME is not set"
+           : kept ? path
+                  : "not kept");
     return STATUS_OK;
 }
 

@@ -137,7 +137,12 @@ static enum status row_read(struct cursor *cursor, struct csv *csv, int *cell_co
     }
     if (header) {
         csv->column_count = count;
-        return STATUS_OK;
+        return count > 1 || !strchr(csv->columns[0], ';')
+                   ? STATUS_OK
+                   : status_set(STATUS_INVALID,
+                                "%s:%d: ';' stands between the names of the columns; ',' is needed, and a point in "
+                                "numbers",
+                                cursor->path, line);
     }
     if (count != csv->column_count)
         return status_set(STATUS_INVALID, "%s:%d: %d fields in the row; the header names %d", cursor->path, line, count,

@@ -59,6 +59,7 @@ static void test_csv_faults(void **state)
         const char *text, *place;
     } faults[] = {
         {"a,b\n1,2\n3\n", ":3: 1 fields"},
+        {"# c\na;b\n1,5;2\n", ":2: ';' stands between"},
         {"a,b\n1,2,3\n", ":2: 3 fields"},
         {"a\n\"x\"z\n", ":2: stray"},
         {"a\n1\n\"x\n2\n", ":3: a quoted field never ends"},

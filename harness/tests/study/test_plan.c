@@ -221,6 +221,8 @@ static void command_writes(void **state)
     assert_int_equal(chosen, 2); /* one in each precision */
     assert_true(csv.row_count > 60);
     csv_free(&csv);
+    setenv("XDG_CACHE_HOME", path_of("plan.csv"), 1); /* no folder: nothing is kept, and the plan is made */
+    assert_int_equal(command_plan(&task), STATUS_OK);
     task.error = "-1";
     assert_int_equal(command_plan(&task), STATUS_INVALID);
     task.error = NULL;
