@@ -4,49 +4,16 @@
 #include <math.h>
 
 #include "common/bessel.h"
-
-enum { MOST = FITTED_TAPS_MOST };
+#include "common/cholesky.h"
+#include "condition.h"
 
 static const double RIDGE = 1e-12;
-
-/* sin(pi x)/(pi x) */
-static double sinc(double x)
-{
-    return fabs(x) < 1e-9 ? 1 : sin(M_PI * x) / (M_PI * x);
-}
-
-/* The lower factor L of R = L L^T, by Cholesky. */
-static void factor(int taps, double band, double lower[MOST][MOST])
-{
-    for (int i = 0; i < taps; i++)
-        for (int j = 0; j <= i; j++) {
-            double left = sinc(band * (i - j)) + (i == j ? RIDGE : 0);
-            for (int k = 0; k < j; k++)
-                left -= lower[i][k] * lower[j][k];
-            lower[i][j] = i == j ? sqrt(left) : left / lower[j][j];
-        }
-}
-
-/* x with R x = right, in its place. */
-static void solve(int taps, double lower[MOST][MOST], double right[MOST])
-{
-    for (int i = 0; i < taps; i++) {
-        for (int k = 0; k < i; k++)
-            right[i] -= lower[i][k] * right[k];
-        right[i] /= lower[i][i];
-    }
-    for (int i = taps - 1; i >= 0; i--) {
-        for (int k = i + 1; k < taps; k++)
-            right[i] -= lower[k][i] * right[k];
-        right[i] /= lower[i][i];
-    }
-}
 
 void fitted_make(int taps, double band, struct fitted *fitted)
 {
     /* Fejer's quadrature over half the band: at Chebyshev points, exact to rounding for so few cycles. */
     enum { POINTS = 48 };
-    double lower[MOST][MOST];
+    double row[FITTED_TAPS_MOST], lower[FITTED_TAPS_MOST * FITTED_TAPS_MOST];
     *fitted = (struct fitted){.taps = taps};
     for (int m = 0; m < POINTS; m++) {
         const double angle = M_PI * (m + 0.5) / POINTS, nu = band / 4 * (1 + cos(angle));
@@ -62,9 +29,11 @@ void fitted_make(int taps, double band, struct fitted *fitted)
             }
         }
     }
-    factor(taps, band, lower);
+    for (int k = 0; k < taps; k++)
+        row[k] = condition_sinc(band * k) + (k == 0 ? RIDGE : 0);
+    cholesky_toeplitz(taps, row, lower);
     for (int n = 0; n < FITTED_TERMS; n++)
-        solve(taps, lower, fitted->terms[n]);
+        cholesky_solve(taps, lower, fitted->terms[n]);
 }
 
 void fitted_weights(const struct fitted *fitted, double fraction, double *w)

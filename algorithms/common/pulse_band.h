@@ -1,4 +1,4 @@
-/* Which part of the sampled band holds the compressed pulse. */
+/* The compressed pulse's spectrum, and which part of the sampled band holds it. */
 #ifndef SASBENCH_COMMON_PULSE_BAND_H
 #define SASBENCH_COMMON_PULSE_BAND_H
 
@@ -13,5 +13,10 @@ struct pulse_band {
    since what was compressed elsewhere may have flanks, and at least 32 bins of the record, whose own ends are in it.
    Errors: STATUS_FAILED without memory. */
 enum status pulse_band_find(const struct acquisition *acquisition, int transform_length, struct pulse_band *band);
+
+/* The energy spectrum of the compressed pulse of raw echoes, |replica's spectrum|^4: energy[length] in FFTW's order,
+   bin k at k fs/length; length >= pulse_length. Returned memory is the caller's to free; NULL without memory, with
+   STATUS_FAILED's message set. */
+double *pulse_energy(const struct acquisition *acquisition, int length);
 
 #endif

@@ -1,11 +1,12 @@
 /* Fractional delays by taps of least squares (delay.h): of all weights those whose error over the compressed pulse's
    own energy spectrum is least. */
-#include <complex.h>
-#include <fftw3.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "common/cholesky.h"
 #include "common/fft_length.h"
+#include "common/pulse_band.h"
 #include "range_migration/delay.h"
 
 static const double FLOOR = 1e-7; /* of the energy lies evenly over all frequencies: weights stay small everywhere */
@@ -25,19 +26,14 @@ static enum status spectrum_fill(const struct acquisition *a, double energy[BINS
         }
     } else {
         int length = fft_length_fast(fmax(2.0 * a->pulse_length, 2.0 * BINS));
-        double complex *work = length > 0 ? fftw_malloc((size_t)length * sizeof *work) : NULL;
-        if (!work)
-            return status_set(STATUS_FAILED, "no memory for the replica's spectrum");
-        memset(work, 0, (size_t)length * sizeof *work);
-        memcpy(work, a->pulse, (size_t)a->pulse_length * sizeof *work);
-        fftw_plan forward = fftw_plan_dft_1d(length, work, work, FFTW_FORWARD, FFTW_ESTIMATE);
-        fftw_execute(forward);
-        fftw_destroy_plan(forward);
+        double *bins = pulse_energy(a, length);
+        if (!bins)
+            return STATUS_FAILED;
         for (int k = 0; k < length; k++) {
             int bin = (int)(((k + length / 2) % length + 0.5) / length * BINS);
-            energy[bin < BINS ? bin : BINS - 1] += pow(cabs(work[k]), 4);
+            energy[bin < BINS ? bin : BINS - 1] += bins[k];
         }
-        fftw_free(work);
+        free(bins);
     }
     for (int k = 0; k < BINS; k++)
         sum += energy[k];
@@ -60,25 +56,10 @@ static double correlation(const double energy[BINS], double x, double *slope)
     return value;
 }
 
-/* Both triangles of Cholesky's factor. */
-static void solve(const double factor[DELAY_TAPS][DELAY_TAPS], int taps, double *x)
-{
-    for (int j = 0; j < taps; j++) {
-        for (int k = 0; k < j; k++)
-            x[j] -= factor[j][k] * x[k];
-        x[j] /= factor[j][j];
-    }
-    for (int j = taps - 1; j >= 0; j--) {
-        for (int k = j + 1; k < taps; k++)
-            x[j] -= factor[k][j] * x[k];
-        x[j] /= factor[j][j];
-    }
-}
-
 /* The taps' correlations with each other, as Cholesky's factor. */
 struct normal {
     int taps;
-    double energy[BINS], factor[DELAY_TAPS][DELAY_TAPS];
+    double energy[BINS], lower[DELAY_TAPS * DELAY_TAPS];
 };
 
 static enum status normal_make(const struct acquisition *acquisition, int taps, struct normal *normal)
@@ -90,13 +71,7 @@ static enum status normal_make(const struct acquisition *acquisition, int taps, 
         return status;
     for (int k = 0; k < taps; k++)
         between[k] = correlation(normal->energy, k, &unused);
-    for (int j = 0; j < taps; j++)
-        for (int k = j; k < taps; k++) {
-            double value = between[k - j];
-            for (int n = 0; n < j; n++)
-                value -= normal->factor[k][n] * normal->factor[j][n];
-            normal->factor[k][j] = k == j ? sqrt(value) : value / normal->factor[j][j];
-        }
+    cholesky_toeplitz(taps, between, normal->lower);
     return STATUS_OK;
 }
 
@@ -108,8 +83,8 @@ static double weights_solve(const struct normal *normal, double fraction, double
     double aims[DELAY_TAPS], left = 1;
     for (int k = 0; k < taps; k++)
         aims[k] = weights[k] = correlation(normal->energy, fraction - (k + 1 - taps / 2), &slopes[k]);
-    solve(normal->factor, taps, weights);
-    solve(normal->factor, taps, slopes);
+    cholesky_solve(taps, normal->lower, weights);
+    cholesky_solve(taps, normal->lower, slopes);
     for (int k = 0; k < taps; k++)
         left -= weights[k] * aims[k];
     return sqrt(fmax(left, 0));
