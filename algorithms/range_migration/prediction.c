@@ -330,7 +330,7 @@ double prediction_error(const struct rma_view *view)
             double r = gaps > 0 ? near * pow(far / near, (double)n / gaps) : (near + far) / 2;
             struct grid row = row_of(patch, far > near ? (r - near) / (far - near) * last : 0);
             double error = row_error(view, &row);
-            worst = error <= worst ? worst : error; /* a NaN is kept */
+            worst = condition_worse(worst, error);
         }
     }
     return worst < 0 ? INFINITY : worst;
