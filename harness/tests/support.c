@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "measure/imaging.h"
+#include "scene/random_scene.h"
 #include "scene/simulate.h"
 
 #define CHECK(status)                                                                                                  \
@@ -18,6 +19,16 @@
 void support_scene(const char *name, struct scene *scene)
 {
     CHECK(scene_load(name, SASBENCH_ROOT "/scenes", scene));
+}
+
+void support_random_scene(int seed, struct scene *scene)
+{
+    const char *path = path_of("random.cfg");
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    random_scene_write(file, (uint64_t)seed);
+    fclose(file);
+    support_scene(path, scene);
 }
 
 void support_echoes(const struct scene *scene, struct echoes *echoes)

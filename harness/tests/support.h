@@ -11,7 +11,9 @@
 
 /* Load a shipped scene; the test fails where that fails. */
 void support_scene(const char *name, struct scene *scene);
-/* Its echoes in double. */
+/* The random scene of a seed (scene/random_scene.h), written into the test's folder. */
+void support_random_scene(int seed, struct scene *scene);
+/* A scene's echoes in double. */
 void support_echoes(const struct scene *scene, struct echoes *echoes);
 /* Compressed echoes' acquisition at 150 kHz, B = 15 kHz, fs = 30 kHz, c = 1500 m/s: all places, velocities and t0 are
    0. To be freed. */

@@ -6,7 +6,6 @@
 #include "measure/metrics.h"
 #include "measure/session.h"
 #include "measure/timing.h"
-#include "scene/random_scene.h"
 #include "tests/support.h"
 
 /* What is forecast of a SPEC on a problem. */
@@ -48,16 +47,6 @@ static void closed_forms(void **state)
     acquisition_free(&a);
 }
 
-static void random_scene(int seed, struct scene *scene)
-{
-    FILE *file = fopen(path_of("random.cfg"), "w");
-    assert_non_null(file);
-    random_scene_write(file, (uint64_t)seed);
-    fclose(file);
-    if (scene_load(path_of("random.cfg"), SASBENCH_ROOT "/scenes", scene) != STATUS_OK)
-        fail_msg("seed %d: %s", seed, status_message());
-}
-
 /* A law is near what is measured, and seldom below it. */
 static void measured(void **state)
 {
@@ -71,7 +60,7 @@ static void measured(void **state)
     for (int seed = FIRST; seed < FIRST + SEEDS; seed++) {
         struct scene scene;
         struct session session;
-        random_scene(seed, &scene);
+        support_random_scene(seed, &scene);
         assert_int_equal(session_open(&scene, &session), STATUS_OK);
         for (int k = 0; k < SPECS; k++) {
             struct image image;

@@ -12,20 +12,9 @@
 #include "measure/timing.h"
 #include "planner/planner.h"
 #include "planner/rates.h"
-#include "scene/random_scene.h"
 #include "study/machine_rates.h"
 #include "study/planned.h"
 #include "tests/support.h"
-
-static void random_scene(int seed, struct scene *scene)
-{
-    FILE *file = fopen(path_of("random.cfg"), "w");
-    assert_non_null(file);
-    random_scene_write(file, (uint64_t)seed);
-    fclose(file);
-    if (scene_load(path_of("random.cfg"), SASBENCH_ROOT "/scenes", scene) != STATUS_OK)
-        fail_msg("seed %d: %s", seed, status_message());
-}
 
 /* Every seed is a scene, and always the same one. */
 static void scenes_are_whole(void **state)
@@ -33,13 +22,13 @@ static void scenes_are_whole(void **state)
     (void)state;
     for (int seed = 0; seed < 200; seed++) {
         struct scene scene;
-        random_scene(seed, &scene);
+        support_random_scene(seed, &scene);
         const struct acquisition *a = &scene.acquisition;
         assert_true(a->pings <= 90 && a->samples <= 1500 && a->receivers >= 1 && a->receivers <= 80);
         assert_true(a->fs >= 1.05 * a->bandwidth * 0.999 && a->fs <= 4.001 * a->bandwidth);
         const uint64_t hash = scene.hash;
         scene_free(&scene);
-        random_scene(seed, &scene);
+        support_random_scene(seed, &scene);
         assert_true(scene.hash == hash);
         scene_free(&scene);
     }
@@ -89,7 +78,7 @@ static void within_budget(void **state)
     for (int seed = FIRST; seed < FIRST + seeds; seed++) {
         struct scene scene;
         struct session session;
-        random_scene(seed, &scene);
+        support_random_scene(seed, &scene);
         assert_int_equal(session_open(&scene, &session), STATUS_OK);
         for (int k = 0; k < BUDGETS; k++)
             choice_measure(&session, seed, budgets[k], &tally);
