@@ -346,8 +346,9 @@ static enum status plan_memory(struct bp *bp, const struct lengths *lengths)
 enum status invariant_plan(struct bp *bp)
 {
     struct straight_track track;
-    struct lengths lengths = {
-        .entries = ENTRIES_LEAST, .taps = (size_t)bp->table.taps, .spread = (size_t)bp_spread(&bp->table)};
+    struct lengths lengths = {.entries = ENTRIES_LEAST,
+                              .taps = (size_t)bp->table.taps,
+                              .spread = (size_t)bp_spread(bp->table.branches > 1, bp->table.taps)};
     bp->state = calloc(1, sizeof(struct invariant));
     if (!bp->state)
         return status_set(STATUS_FAILED, "no memory for the plan");

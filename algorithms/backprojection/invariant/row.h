@@ -166,10 +166,11 @@ struct bp_row_scratch {
     void *wr, *wi; /* real [capacity][taps], or [capacity] where there are more than two */
     void *weights; /* real [capacity][bp_spread] where there are more than two taps */
 };
+
 /* Rows that serve the residues of a group together, at the most: of Farrow branches those of two samples. */
-static inline int bp_spread(const struct bp_table *table)
+static inline int bp_spread(bool branches, int taps)
 {
-    return table->taps + (table->branches > 1 ? table->branches : BP_SPREAD);
+    return taps + (branches ? taps : BP_SPREAD);
 }
 #define BP_ENTRIES(shifts) (((shifts) + BP_LANES_MOST - 1) / BP_LANES_MOST * BP_LANES_MOST)
 

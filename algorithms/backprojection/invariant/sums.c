@@ -155,7 +155,7 @@ INLINE void sum_block(int residues, int width, int taps, const struct chunk *sha
     const struct bp_row_group *groups = scratch->groups;
     const int origin = groups[chunk->begin].first;
     const real *sr = chunk->sr + j, *si = chunk->si + j;
-    const int stride = chunk->slab->ping_stride, spread = bp_spread(chunk->table);
+    const int stride = chunk->slab->ping_stride, spread = bp_spread(chunk->table->branches > 1, taps);
     OPAQUE(sr);
     OPAQUE(si);
     for (int g = chunk->begin; g < chunk->end; g++) {

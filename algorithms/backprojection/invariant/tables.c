@@ -303,10 +303,10 @@ INLINE void tabulate(const struct chunk *chunk)
 }
 
 /* The weights of one entry's taps, from its step and, with cubics and branches, its position u. */
-INLINE void weigh(const struct bp_table *table, int taps, int step, real u, real *restrict weights)
+INLINE void weigh(const struct bp_table *table, bool branches, int taps, int step, real u, real *restrict weights)
 {
     const real *values = table->weights;
-    if (table->reading == BP_BRANCHES) {
+    if (branches) {
         weights[0] = 1;
         for (int t = 1; t < taps; t++)
             weights[t] = weights[t - 1] * u;
@@ -328,7 +328,7 @@ INLINE void join_two(const struct chunk *chunk)
     real *wr = scratch->wr, *wi = scratch->wi;
     for (int e = chunk->entries - 1; e >= 0; e--) {
         real weights[2], cosine = wr[e], sine = wi[e];
-        weigh(chunk->table, 2, scratch->step[e], (real)scratch->q[e], weights);
+        weigh(chunk->table, false, 2, scratch->step[e], (real)scratch->q[e], weights);
         for (int t = 0; t < 2; t++) {
             wr[2 * e + t] = cosine * weights[t];
             wi[2 * e + t] = sine * weights[t];
@@ -337,10 +337,10 @@ INLINE void join_two(const struct chunk *chunk)
 }
 
 /* Many taps: the samples that serve all residues of a group, and each one's weights for them. */
-INLINE void join_many(const struct chunk *chunk, int taps, const struct bp_row_group *group, int first)
+INLINE void join_many(const struct chunk *chunk, bool branches, int taps, const struct bp_row_group *group, int first)
 {
     const struct bp_row_scratch *scratch = chunk->scratch;
-    const int residues = group->residues, n = group->end - group->begin, spread = bp_spread(chunk->table);
+    const int residues = group->residues, n = group->end - group->begin, spread = bp_spread(branches, taps);
     const int *row = scratch->row + first, *step = scratch->step + first;
     const double *u = scratch->q + first;
     int *offset = scratch->offset + first, *rows = scratch->rows + first;
@@ -357,11 +357,22 @@ INLINE void join_many(const struct chunk *chunk, int taps, const struct bp_row_g
             real *w = weights + (e + p) * spread;
             for (int t = 0; t < spread; t++)
                 w[t] = 0;
-            weigh(chunk->table, taps, step[e + p], (real)u[e + p], w + row[e + p] - row[least]);
+            weigh(chunk->table, branches, taps, step[e + p], (real)u[e + p], w + row[e + p] - row[least]);
         }
         rows[i] = taps + row[most] - row[least];
         offset[i] = offset[least]; /* i <= e: what is overwritten has been read */
     }
+}
+
+/* The shipped kernels and Farrow's degrees 3 and 5 unroll, any other length works as well. */
+static void join_group(const struct chunk *chunk, const struct bp_row_group *group, int first)
+{
+    const int taps = chunk->table->taps;
+#define JOIN(branches, taps) join_many(chunk, branches, taps, group, first)
+    if (chunk->table->reading == BP_BRANCHES)
+        taps == 4 ? JOIN(true, 4) : taps == 6 ? JOIN(true, 6) : JOIN(true, taps);
+    else
+        taps == 4 ? JOIN(false, 4) : taps == 6 ? JOIN(false, 6) : taps == 8 ? JOIN(false, 8) : JOIN(false, taps);
 }
 
 void TABLES_MAKE(const struct row_tables *tables, double offset, struct chunk *chunk)
@@ -384,10 +395,6 @@ void TABLES_MAKE(const struct row_tables *tables, double offset, struct chunk *c
     tabulate(chunk);
     if (table->taps == 2)
         join_two(chunk);
-    for (int g = chunk->begin; table->taps > 2 && g < chunk->end; g++) {
-        if (table->taps == 8)
-            join_many(chunk, 8, &groups[g], groups[g].first - first);
-        else
-            join_many(chunk, table->taps, &groups[g], groups[g].first - first);
-    }
+    for (int g = chunk->begin; table->taps > 2 && g < chunk->end; g++)
+        join_group(chunk, &groups[g], groups[g].first - first);
 }
