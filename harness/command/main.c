@@ -16,6 +16,7 @@
 #include "command/task.h"
 #include "measure/provenance.h"
 #include "data/temporary.h"
+#include "show/table.h"
 
 struct command {
     const char *name, *arguments, *summary;
@@ -97,30 +98,35 @@ static const struct {
     {'o', "-o, --output PATH     where the result goes"},
     {'s', "-s, --scene SCENE     a path, or a name below scenes/ without .cfg"},
     {'e', "-e, --echoes FILE     recorded echoes in MATLAB format"},
-    {'a', "-a, --algorithm SPEC  NAME or NAME:key=value,...; every algorithm takes precision=float|double"},
-    {'g', "-g, --grid GRID       xmin:xstep:xcount,rmin:rstep:rcount in metres; ,ANGLE in degrees: turned axes"},
+    {'a', "-a, --algorithm SPEC  NAME or NAME:key=value,...; all take precision=double"},
+    {'g', "-g, --grid GRID       xmin:xstep:xcount,rmin:rstep:rcount[,angle] (m, degrees)"},
     {'t', "-t, --threads N       OpenMP threads, 1 to 1024"},
     {'R', "    --range DB        what a picture shows below its peak, 60 dB unless given"},
-    {'P', "    --precision WHICH one of float and double (both unless given, or a SPEC says which)"},
-    {'E', "    --error E         relative L2 error of the image after one gain, 1e-3 unless given"},
+    {'P', "    --precision WHICH float or double; both unless given, or a SPEC says"},
+    {'E', "    --error E         of the image after one gain (L2), 1e-3 unless given"},
     {'Y', "    --memory BYTES    that a plan may hold, 4G unless given"},
     {'S', "    --seed N          a whole number from 0 to 1e15"},
     {'A', "    --at FILE.csv     points: columns d, r, F, f, fc, v, c"},
     {'B', "    --ab              run two programs side by side and compare their times"},
-    {'Q', "    --quick           one scene of each family, in two of the four rounding modes"},
+    {'Q', "    --quick           one scene of each family, in two rounding modes"},
     {'M', "    --markdown FILE   the findings as a comment for a CI"},
-    {'J', "    --json FILE       the findings as trackers of benchmarks read them: name, unit, value, range"},
+    {'J', "    --json FILE       the findings for trackers of benchmarks"},
 };
 static const char exit_text[] = "\nExit status: 0 done, 1 a run failed or got worse, 2 bad usage or bad input.\n";
 
 static void help(void)
 {
-    printf("sasbench: imaging algorithms for multi-receiver synthetic aperture sonar, compared on identical "
-           "echoes\n\nUsage: sasbench COMMAND [OPTIONS]\n\n");
-    for (size_t k = 0; k < sizeof commands / sizeof *commands; k++)
-        if (!commands[k].hidden)
-            printf("  %s%s%s\n        %s\n", commands[k].name, *commands[k].arguments ? " " : "", commands[k].arguments,
-                   commands[k].summary);
+    char text[300];
+    printf("sasbench: imaging algorithms for multi-receiver synthetic aperture sonar,\n"
+           "compared on identical echoes\n\nUsage: sasbench COMMAND [OPTIONS]\n\n");
+    for (size_t k = 0; k < sizeof commands / sizeof *commands; k++) {
+        if (commands[k].hidden)
+            continue;
+        snprintf(text, sizeof text, "%s%s%s", commands[k].name, *commands[k].arguments ? " " : "",
+                 commands[k].arguments);
+        table_text(stdout, 2, text);
+        table_text(stdout, 8, commands[k].summary);
+    }
     printf("  test\n        verify this build (of the ./sasbench script)\n  help COMMAND, COMMAND --help\n        one "
            "command with its options\n  --version\n        version, commit, compiler, libraries, instruction "
            "set\n\nOptions:\n");
@@ -131,8 +137,13 @@ static void help(void)
 
 static void help_command(const struct command *command)
 {
-    printf("Usage: sasbench %s%s%s\n\n%s.\n", command->name, *command->arguments ? " " : "", command->arguments,
-           command->summary);
+    char text[300];
+    snprintf(text, sizeof text, "Usage: sasbench %s%s%s", command->name, *command->arguments ? " " : "",
+             command->arguments);
+    table_text(stdout, 0, text);
+    snprintf(text, sizeof text, "%s.", command->summary);
+    putchar('\n');
+    table_text(stdout, 0, text);
     for (size_t k = 0, shown = 0; k < sizeof option_texts / sizeof *option_texts; k++)
         if (strchr(command->options, option_texts[k].letter))
             printf("%s  %s\n", shown++ ? "" : "\nOptions:\n", option_texts[k].text);

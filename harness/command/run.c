@@ -6,6 +6,7 @@
 #include "study/machine_rates.h"
 #include "command/task.h"
 #include "measure/timing.h"
+#include "show/table.h"
 
 enum { ROWS_MANY = 100 }; /* more than that are timed briefly */
 
@@ -37,10 +38,14 @@ static enum status check_twice(const struct task *task)
 static void time_print(const struct batch *batch)
 {
     const struct spent *spent = &batch->spent;
-    printf("\nTime: %.3g s, of which imaging %.3g s, planning %.3g s, echoes %.3g s, exact images %.3g s, the scalar "
-           "reference loop %.3g s, pictures %.3g s.\n",
-           seconds_now() - batch->begin, spent->imaging, spent->planning, spent->echoes, spent->reference,
-           spent->control, batch->drawn_s);
+    char text[300];
+    snprintf(text, sizeof text,
+             "Time: %.3g s, of which imaging %.3g s, planning %.3g s, echoes %.3g s, exact images %.3g s, the scalar "
+             "reference loop %.3g s, pictures %.3g s.",
+             seconds_now() - batch->begin, spent->imaging, spent->planning, spent->echoes, spent->reference,
+             spent->control, batch->drawn_s);
+    putchar('\n');
+    table_text(stdout, 0, text);
 }
 
 enum status command_run(const struct task *task)
@@ -65,10 +70,9 @@ enum status command_run(const struct task *task)
     if (status == STATUS_OK && batch.measured > 0)
         time_print(&batch);
     if (status == STATUS_OK)
-        printf(
-            "\nThe harness itself takes %.1f ns a run (an algorithm that does nothing). Results: %s/measurements.csv, "
-            "targets.csv and pictures.\n",
-            1e9 * timing_floor(), batch.directory);
+        printf("\nThe harness itself takes %.1f ns a run (an algorithm that does nothing).\n"
+               "Results: %s/measurements.csv, targets.csv and pictures.\n",
+               1e9 * timing_floor(), batch.directory);
     status = batch_close(&batch, status);
     scenes_free(scenes, scene_count);
     for (int k = 0; k < all_count; k++)

@@ -16,7 +16,7 @@ enum { WIDTH_WIDE = 110, WIDTH_LEAST = 80 };
 /* Titles, units and values alike: algorithm, time, speed-up, rate, three errors, width, PSLR, ISLR; on a narrow
    terminal without rate and gain. */
 #define LAYOUT_WIDE   "  %-34s %8s %8s %9s %7s %7s %7s %6s %6s %6s\n"
-#define LAYOUT_NARROW "  %-24s %7s %8s %7s %7s %6s %6s %6s\n"
+#define LAYOUT_NARROW "  %-23s %8s %8s %7s %7s %6s %6s %6s\n"
 
 /* There is one terminal, and so one table. */
 static struct {
@@ -126,7 +126,7 @@ void table_header(FILE *stream)
 {
     *table.scene = '\0';
     table.width = width_find(stream) < WIDTH_WIDE ? WIDTH_LEAST : WIDTH_WIDE;
-    table.spec_width = table.width == WIDTH_WIDE ? 34 : 24;
+    table.spec_width = table.width == WIDTH_WIDE ? 34 : 23;
     fputs("time      median seconds from the echoes in memory to the complex image; with ~\n"
           "          it is noisy: the middle half of the runs spans more than 10 % of it,\n"
           "          or other work had the processors, or the machine's speed changed\n"
@@ -138,8 +138,8 @@ void table_header(FILE *stream)
               "          (GF/s) a second\n",
               stream);
     fprintf(stream,
-            "error     against the exact image, relative L2;%s phase: rms over\n"
-            "          the strong pixels\n"
+            "error     against the exact image, relative L2;%s\n"
+            "          phase: rms over the strong pixels\n"
             "width     of the targets' main lobes at -3 dB, PSLR and ISLR of their azimuth\n"
             "          slices (medians); where a scene has no targets: the image's entropy,\n"
             "          contrast, and peak over median\n\n",
