@@ -53,6 +53,12 @@
    (float)         fraction along the line, plus the bend in float, 3 n 2^-24 cycles times
                    fs/fc.
 
+   The invariant engine, where polynomials stand for a row's delays (invariant/pieces.c), takes much less of L: its longer
+   polynomials cost nothing, and its image is the exact path's but for rounding.
+
+   1e-4 L (float)  Phases, and positions in cycles of fs: 1e-8 rad and 2e-9 samples at the        invariant/plan.c,
+   2e-7 L (double) default limit in float, below what their rounding adds.                       pieces_plan
+
    harness/tests/algorithms/test_budget.c measures the phases, in all and what float adds alone, test_bp_general.c the
    positions (near_ties). */
 #ifndef SASBENCH_BACKPROJECTION_BUDGET_H
@@ -72,6 +78,13 @@ static inline double budget_limit(double phase_limit, double fc_hz, double fines
 static inline double budget_quintics(double phase_limit, enum precision precision)
 {
     return (precision == PRECISION_FLOAT ? 0.85 : 1) * phase_limit;
+}
+
+/* rad: of the phase, and of a position in cycles of fs, where polynomials stand for a row's delays in the invariant
+   engine. */
+static inline double budget_pieces(double phase_limit, enum precision precision)
+{
+    return (precision == PRECISION_FLOAT ? 1e-4 : 2e-7) * fmin(phase_limit, 1e-4);
 }
 
 /* cycles: the most that a run in float may bend. */

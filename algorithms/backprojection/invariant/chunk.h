@@ -18,6 +18,7 @@ struct delay_terms {
 /* What all receivers share. */
 struct row_tables {
     int group_count; /* in scratch->groups, with their part of the delays and one more group that ends the last */
+    int pieces;      /* in scratch->pieces; 0: each delay is evaluated */
     struct delay_terms terms;
     bool inside_record; /* proved for all of the row's delays */
 };
@@ -38,6 +39,20 @@ struct chunk {
     real *re, *im;       /* sums [residue][stride] */
     size_t stride;
 };
+
+/* How the row's delays are found; the count of their pieces, 0: each by itself. `offset`: of any receiver at the most,
+   INFINITY: each is to be evaluated, as some may lie at the record's ends; entries: of all groups, at present by how far
+   the ping lies ahead of the column in scratch->ahead. */
+#define DELAYS_PLAN REAL_ISA_NAME(bp_delays_plan)
+int DELAYS_PLAN(const struct bp_row *row, const struct delay_terms *terms, double offset, int entries);
+
+/* Where the row has pieces: their polynomials for the receiver that is `offset` metres ahead of the transmitter. */
+#define DELAYS_RECEIVER REAL_ISA_NAME(bp_delays_receiver)
+void DELAYS_RECEIVER(const struct bp_row *row, const struct row_tables *tables, double offset);
+
+/* Sample coordinate (q) and phase factor (wr, wi) of a chunk's entries for this receiver; 0 where the gate is. */
+#define DELAYS_MAKE REAL_ISA_NAME(bp_delays_make)
+void DELAYS_MAKE(const struct row_tables *tables, double offset, const struct chunk *chunk);
 
 /* Divide the row's residues into groups that differ by one at the most, and tabulate what serves all receivers. */
 #define TABLES_BEGIN REAL_ISA_NAME(bp_tables_begin)

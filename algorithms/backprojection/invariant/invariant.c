@@ -7,87 +7,63 @@
 
 #include "backprojection/invariant/plan.h"
 
-enum {
-    ROWS_FILLED = 16, /* rows of the slab that are filled together */
-    ROWS_SUMMED = 4   /* image rows of one task */
+enum { ROWS_SUMMED = 4 /* image rows of one task */ };
+
+/* Where a tile of pings goes in the slab. */
+struct tile_place {
+    int receiver, ping, count;
 };
 
-/* What a tile of compressed pings becomes in the slab: sample i of branch m, complex value i + m `length` of a ping's
-   `pitch`, is row first + (i branches + m) step. */
-struct scattering {
-    size_t pitch, length, branches, rows; /* rows: of all branches */
-    size_t first, step;
-};
-
-/* Pings contiguous; in blocks of rows, so that each cache line of the slab is filled while it is near. */
-#define SCATTER(real)                                                                                                  \
-    do {                                                                                                               \
-        const real *from = (const real *)tile;                                                                         \
-        real *re = (real *)in->slab_re + base, *im = (real *)in->slab_im + base;                                       \
-        for (size_t i = 0, branch = 0, sample = 0; i < s->rows; i += ROWS_FILLED) {                                    \
-            size_t at[ROWS_FILLED], rows = s->rows - i < ROWS_FILLED ? s->rows - i : ROWS_FILLED;                      \
-            for (size_t k = 0; k < rows; k++) {                                                                        \
-                at[k] = branch * s->length + sample;                                                                   \
-                branch = branch + 1 < s->branches ? branch + 1 : 0;                                                    \
-                sample += branch == 0;                                                                                 \
-            }                                                                                                          \
-            for (size_t p = 0; p < (size_t)count; p++)                                                                 \
-                for (size_t k = 0; k < rows; k++) {                                                                    \
-                    const size_t value = 2 * (p * s->pitch + at[k]), to = (i + k) * s->step * stride + p;              \
-                    re[to] = from[value];                                                                              \
-                    im[to] = from[value + 1];                                                                          \
-                }                                                                                                      \
-        }                                                                                                              \
-    } while (0)
-
-static void scatter(const struct bp *bp, const void *tile, const struct scattering *s, int receiver, int ping,
-                    int count)
+/* The record of the raster's ping p to receiver m: pings are taken from the last to the first where they sail back. */
+static size_t record_of(const struct bp *bp, int p, int m)
 {
+    const struct acquisition *a = bp->problem.acquisition;
     const struct invariant *in = bp->state;
-    const size_t stride = (size_t)in->slab.ping_stride;
-    const size_t base =
-        (size_t)receiver * in->slab.receiver_stride + s->first * stride + (size_t)in->slab.lead + (size_t)ping;
-    if (bp->problem.precision == PRECISION_DOUBLE)
-        SCATTER(double);
-    else
-        SCATTER(float);
+    return (size_t)(in->reversed ? a->pings - 1 - p : p) * (size_t)a->receivers + (size_t)m;
 }
 
-/* Compress pings [begin, end) of slab's receiver g, record m, whole rows with their guards. */
-static void fill_rows(const struct bp *bp, const struct echoes *echoes, int m, int g, int begin, int end)
+/* A tile of `count` pings from `ping` on into every `every`-th row of a receiver's part of the slab, from row `first` on:
+   the samples of one branch or fine step. */
+static void scatter(const struct bp *bp, const void *tile, size_t pitch, size_t samples, size_t first, size_t every,
+                    const struct tile_place *place)
 {
     const struct invariant *in = bp->state;
-    const size_t length = (size_t)bp->shape.length, branches = (size_t)bp->shape.branches;
-    const struct scattering whole = {branches * length, length, branches, in->slab_rows, 0, 1};
-    const int pings = bp->problem.acquisition->pings, receivers = bp->problem.acquisition->receivers;
+    const size_t stride = (size_t)in->slab.ping_stride, size = real_size(bp->problem.precision);
+    const size_t at = ((size_t)place->receiver * in->slab.receiver_stride + first * stride + (size_t)in->slab.lead
+                       + (size_t)place->ping)
+                      * size;
+    in->scatter(
+        &(struct bp_scattering){samples, pitch, every * stride, (char *)in->slab_re + at, (char *)in->slab_im + at},
+        tile, place->count);
+}
+
+/* Compress a tile's pings of record m, whole rows with their guards: row i branches + n is sample i of branch n. */
+static void fill_rows(const struct bp *bp, const struct echoes *echoes, int m, const struct tile_place *place)
+{
+    const struct invariant *in = bp->state;
+    const size_t length = (size_t)bp->shape.length, branches = (size_t)bp->shape.branches, pitch = branches * length;
+    const size_t bytes = 2 * real_size(bp->problem.precision);
     const int thread = omp_get_thread_num();
     char *tile = (char *)in->tiles + (size_t)thread * in->tile_bytes;
-    for (int p = begin; p < end; p++) {
-        int ping = in->reversed ? pings - 1 - p : p;
-        bp_fill_row(bp, thread, echoes, (size_t)ping * (size_t)receivers + (size_t)m,
-                    tile + (size_t)(p - begin) * whole.pitch * 2 * real_size(bp->problem.precision));
-    }
-    scatter(bp, tile, &whole, g, begin, end - begin);
+    for (int p = 0; p < place->count; p++)
+        bp_fill_row(bp, thread, echoes, record_of(bp, place->ping + p, m), tile + (size_t)p * pitch * bytes);
+    for (size_t n = 0; n < branches; n++)
+        scatter(bp, tile + n * length * bytes, pitch, length, n, branches, place);
 }
 
-/* The same of the fine steps that the slab holds, each from a transform of its own. */
-static void fill_steps(const struct bp *bp, const struct echoes *echoes, int m, int g, int begin, int end)
+/* The same of the fine steps that the slab holds, each from a transform of its own into rows of its own. */
+static void fill_steps(const struct bp *bp, const struct echoes *echoes, int m, const struct tile_place *place)
 {
     const struct invariant *in = bp->state;
-    const int pings = bp->problem.acquisition->pings, receivers = bp->problem.acquisition->receivers;
     const size_t pitch = bp->shape.pitch, bytes = pitch * 2 * real_size(bp->problem.precision);
     const size_t samples = (size_t)bp->shape.samples;
     char *spectra = (char *)in->tiles + (size_t)omp_get_thread_num() * in->tile_bytes, *tile = spectra + TILE * bytes;
-    for (int p = begin; p < end; p++) {
-        int ping = in->reversed ? pings - 1 - p : p;
-        bp_fill_spectrum(bp, echoes, (size_t)ping * (size_t)receivers + (size_t)m,
-                         spectra + (size_t)(p - begin) * bytes);
-    }
+    for (int p = 0; p < place->count; p++)
+        bp_fill_spectrum(bp, echoes, record_of(bp, place->ping + p, m), spectra + (size_t)p * bytes);
     for (int k = 0; k < in->slab.step_count && in->slab.step_first + k < bp->table.upsample; k++) {
-        const struct scattering step = {pitch, 0, 1, samples, (size_t)k, (size_t)in->slab.step_count};
-        for (int p = 0; p < end - begin; p++)
+        for (int p = 0; p < place->count; p++)
             bp_fill_plane(bp, spectra + (size_t)p * bytes, in->slab.step_first + k, tile + (size_t)p * bytes);
-        scatter(bp, tile, &step, g, begin, end - begin);
+        scatter(bp, tile, pitch, samples, (size_t)k * samples, 1, place);
     }
 }
 
@@ -98,8 +74,9 @@ static void fill_slab(const struct bp *bp, const struct echoes *echoes, int firs
     int tiles = (pings + TILE - 1) / TILE;
 #pragma omp parallel for schedule(dynamic)
     for (int n = 0; n < count * tiles; n++) {
-        int g = n / tiles, begin = n % tiles * TILE, end = begin + TILE < pings ? begin + TILE : pings;
-        (bp_whole(&bp->table) ? fill_rows : fill_steps)(bp, echoes, first + g, g, begin, end);
+        const int g = n / tiles, ping = n % tiles * TILE, left = pings - ping;
+        const struct tile_place place = {g, ping, left < TILE ? left : TILE};
+        (bp_whole(&bp->table) ? fill_rows : fill_steps)(bp, echoes, first + g, &place);
     }
 }
 

@@ -7,6 +7,8 @@
 #include <omp.h>
 #include <stdlib.h>
 
+#include "backprojection/budget.h"
+
 enum {
     SLAB_BYTES = 64 << 20, /* receivers are taken together up to this: the image is read and written for each slab */
     READ_BYTES = 4 << 20,  /* and as long as what one row of the image reads of them stays in the shared cache */
@@ -19,6 +21,14 @@ static bp_row_function *const row_functions[][2] = {
 #ifdef SASBENCH_X86_64
     [ISA_V3] = {bp_row_float_v3, bp_row_double_v3},
     [ISA_V4] = {bp_row_float_v4, bp_row_double_v4},
+#endif
+};
+
+static bp_scatter_function *const scatter_functions[][2] = {
+    [ISA_BASELINE] = {bp_scatter_float_baseline, bp_scatter_double_baseline},
+#ifdef SASBENCH_X86_64
+    [ISA_V3] = {bp_scatter_float_v3, bp_scatter_double_v3},
+    [ISA_V4] = {bp_scatter_float_v4, bp_scatter_double_v4},
 #endif
 };
 
@@ -204,9 +214,10 @@ static void plan_slab(struct bp *bp, double read)
 {
     struct invariant *in = bp->state;
     /* Vectors of columns are read that have a ping, and so up to their width less one before the first ping and behind
-       the last. Room is made for the widest vectors, so that a plan needs the same memory on every machine. */
+       the last. Room is made for the widest vectors, so that a plan needs the same memory on every machine; rows are
+       whole ones, so that a tile of pings fills whole cache lines. */
     const int lead = BP_LANES_MOST * (int)sizeof(float) / (int)real_size(bp->problem.precision);
-    const int ping_stride = round_up(bp->problem.acquisition->pings + 2 * lead, 8);
+    const int ping_stride = round_up(bp->problem.acquisition->pings + 2 * lead, lead);
     int upsample = bp->table.upsample, samples = bp->shape.samples;
     size_t row_bytes = (size_t)ping_stride * 2 * real_size(bp->problem.precision);
     int width = upsample;
@@ -218,7 +229,8 @@ static void plan_slab(struct bp *bp, double read)
     in->slab = (struct bp_slab){.receiver_stride = in->slab_rows * (size_t)ping_stride,
                                 .ping_stride = ping_stride,
                                 .lead = lead,
-                                .step_count = width};
+                                .step_count = width,
+                                .step_rows = samples};
     double fitting = fmin((double)SLAB_BYTES / (double)(in->slab_rows * row_bytes),
                           (double)READ_BYTES / (read * width * (double)row_bytes));
     in->receivers = (int)fmin(bp->problem.acquisition->receivers, fmax(1, floor(fitting)));
@@ -248,10 +260,17 @@ struct lengths {
 static struct bp_row_scratch scratch_take(struct arena *arena, const struct lengths *lengths, size_t real_bytes)
 {
     const size_t row = lengths->row, entries = lengths->entries, taps = lengths->taps;
+    const size_t nodes = (size_t)PIECES_MOST * PIECE_POWERS;
     const size_t few = taps < 3 ? taps : 1, many = taps < 3 ? 0 : lengths->spread;
     return (struct bp_row_scratch){.groups = take(arena, lengths->residues + 1, sizeof(struct bp_row_group)),
                                    .leg = take(arena, row, sizeof(double)),
                                    .ahead = take(arena, row, sizeof(double)),
+                                   .piece = take(arena, row, sizeof(int)),
+                                   .pieces = take(arena, PIECES_MOST, sizeof(struct bp_piece)),
+                                   .polynomials = take(arena, PIECES_MOST, sizeof(struct bp_polynomial)),
+                                   .node_leg = take(arena, nodes, sizeof(double)),
+                                   .node_ahead = take(arena, nodes, sizeof(double)),
+                                   .node_q = take(arena, nodes, sizeof(double)),
                                    .shift = take(arena, row, sizeof(int)),
                                    .gate = take(arena, row, real_bytes),
                                    .capacity = (int)entries,
@@ -274,6 +293,8 @@ static enum status plan_track(struct bp *bp, const struct straight_track *track)
     struct invariant *in = bp->state;
     double *bytes = &bp->work.bytes;
     in->row = row_functions[isa_choose()][problem->precision];
+    in->scatter = scatter_functions[isa_choose()][problem->precision];
+    piece_fit_make(&in->fit);
     in->reversed = track->spacing < 0;
     in->patch_count = problem->patch_count;
     in->rasters = allocate((size_t)problem->patch_count * sizeof *in->rasters, bytes);
@@ -287,6 +308,18 @@ static enum status plan_track(struct bp *bp, const struct straight_track *track)
     return STATUS_OK;
 }
 
+/* How long pieces may be; a phase is counted from a piece's middle on, whose cycles fit 18 bits. */
+static void pieces_plan(const struct bp *bp, struct bp_raster *raster)
+{
+    const struct invariant *in = bp->state;
+    const struct bp_medium *medium = &bp->medium;
+    const double c = medium->sound_speed, mach = fabs(raster->speed) / c, frequency = fmax(medium->fc, medium->fs);
+    const double limit = budget_pieces(medium->phase_limit, bp->problem.precision);
+    raster->fit = &in->fit;
+    raster->longest = 0x1p17 * (1 - mach) * c / frequency;
+    raster->reach = limit > 0 && mach <= BP_SLOW ? piece_reach(mach, limit * c / (2 * M_PI * frequency)) : 0;
+}
+
 /* Raster and sums of patch k; what it needs goes into the lengths. */
 static enum status plan_patch(struct bp *bp, const struct straight_track *track, int k, struct lengths *lengths)
 {
@@ -295,6 +328,7 @@ static enum status plan_patch(struct bp *bp, const struct straight_track *track,
     struct bp_raster *raster = &in->rasters[k];
     raster_make(bp, track, grid, raster);
     raster->together = residues_together(bp, steepness(bp, raster, grid));
+    pieces_plan(bp, raster);
     in->strides[k] = round_up(raster->residue_columns + BP_LANES_MOST, 8);
     const size_t residues = (size_t)raster_residues(raster);
     in->sums[k] =

@@ -32,6 +32,7 @@ void BP_ROW(const struct bp_row *row)
                               .re = row->re,
                               .im = row->im,
                               .stride = (size_t)row->stride};
+        DELAYS_RECEIVER(row, &tables, row->offsets[m]);
         for (; chunk.begin < tables.group_count; chunk.begin = chunk.end) {
             chunk.end = chunk_end(row->scratch, chunk.begin, tables.group_count);
             TABLES_MAKE(&tables, row->offsets[m], &chunk);

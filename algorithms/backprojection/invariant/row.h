@@ -1,4 +1,4 @@
-/* The inner sums of the translation-invariant engine: one image row from tables. tables.c, sums.c and row.c are built
+/* The inner sums of the translation-invariant engine: one image row from tables. delays.c, tables.c, sums.c and row.c are built
    for each precision and instruction set; plan.c chooses one build at run time.
 
    WHY DELAYS REPEAT. The ping spacing is `ratio` azimuth steps. A pixel `ratio` columns further on sees the next ping
@@ -13,7 +13,8 @@
        image[rho + ratio j] += w(s) trace[sample(s)][ping j + s]   for all j with 0 <= j + s < pings
 
    For one shift this is a constant times contiguous pings: no gather, no trigonometry, 4 multiply-adds a pair. It is
-   exact: the same pairs, samples and weights as the general engine with exact=true, in another order.
+   exact but for the polynomials that stand for a row's delays (pieces.h): the same pairs, samples and weights as the
+   general engine with exact=true, in another order. With exact=true it has roots for all delays.
 
    PINGS BY COLUMNS. One residue with 8 columns, 5 pings, and the block of columns j = 2 to 5 in brackets. The numbers
    are the pings p = j + s that each shift brings to the columns. All pairs form a parallelogram. An aperture limit
@@ -50,7 +51,7 @@
              receiver of the slab                               row.c        BP_ROW
                groups of neighbouring residues, as many as                   the same
                `capacity` holds: a chunk
-                 tables of the chunk                            tables.c     TABLES_MAKE
+                 tables of the chunk                            tables.c     TABLES_MAKE, DELAYS_MAKE (delays.c)
                  block of columns                               sums.c       SUMS_ADD
                    shifts that bring pings to the same vectors               sum_columns
                    of the block: one region
@@ -66,7 +67,8 @@
    (`leg`), metres along the track (`ahead`), the shift, and a gate of 1 or 0 for the aperture of this residue. Made
    once for a receiver: the place in the slab (`row`, `offset`) and the weights.
      - One or two taps: complex weights, phase factor times tap. In groups of two residues, an entry of the second that
-       reads another sample than the first is summed by itself (sum_entry, listed in `rows`), and its weight becomes 0.
+       reads another sample than the first takes a branch with loads of its own (AVX-512), or is summed by itself
+       (sum_entry, listed in `rows`), and its weight becomes 0.
      - More taps: phase factors (`wr`, `wi`) and real tap weights stand apart. A group reads the `rows` samples that any
        of its residues needs. The weights of a residue are 0 for samples that are not its own.
 
@@ -91,12 +93,13 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "backprojection/invariant/pieces.h"
 #include "backprojection/pairs.h"
 #include "backprojection/reading.h"
 
 /* A block of columns is 1 to BP_BLOCK_VECTORS vectors of 16 bytes (baseline), 32 (v3) or 64 (v4); a row of sums has
    room for BP_LANES_MOST values beyond its last column. */
-enum { BP_BLOCK_VECTORS = 3, BP_LANES_MOST = 16 };
+enum { BP_BLOCK_VECTORS = 5, BP_LANES_MOST = 16 };
 
 /* At most BP_TOGETHER residues are summed together; their samples of one shift lie at most BP_SPREAD apart where a
    value has more than two taps. */
@@ -111,7 +114,7 @@ struct bp_slab {
     const void *re, *im; /* real; 0 in the lead and as far behind the last ping */
     size_t receiver_stride;
     int ping_stride, lead;
-    int step_first, step_count;
+    int step_first, step_count, step_rows;
 };
 
 /* Are traces in the slab from guard to guard, with all their fine steps? */
@@ -132,6 +135,8 @@ struct bp_raster {
     int residue_columns;          /* of one residue at the most: ceil(columns/ratio) */
     double limit;                 /* aperture limit */
     int together; /* residues summed together at most, 2 for up to two taps, 1 for the nearest fine step */
+    const struct piece_fit *fit;
+    double reach, longest; /* of pieces: piece_reach, 0: each delay is evaluated; half length in m at the most */
 };
 
 static inline int raster_residues(const struct bp_raster *raster)
@@ -147,15 +152,29 @@ struct bp_row_group {
     int from, to; /* of these, what is inside the present receiver's record: shifts counted from `begin` */
 };
 
+/* The distances ahead, in m, that share a polynomial of one receiver: from -1 to 1 the sample coordinate is sum c[m]
+   place^m, and the phase fc/fs of that plus `cycles`. */
+struct bp_piece {
+    double begin, end;
+};
+struct bp_polynomial {
+    double c[PIECE_POWERS], cycles;
+};
+
 /* Scratch of one thread. Entries of a row: of all residues = min(ratio, columns), each BP_ENTRIES(pings +
    residue_columns) at the most; of one receiver and as many groups as fit into `capacity` >= BP_TOGETHER
    BP_ENTRIES(pings + residue_columns). */
 struct bp_row_scratch {
     struct bp_row_group *groups; /* [residues + 1], the last for its `first` */
-    double *leg;                 /* [row's entries] s, from the transmitter */
-    double *ahead; /* [row's entries] m, of the transmitter from the column when the echo leaves the pixel */
-    int *shift;    /* [row's entries] p - n div ratio */
-    void *gate;    /* real [row's entries] 1 inside the aperture of the entry's residue, else 0 */
+    double *leg;                 /* [row's entries] s, from the transmitter; not where there are pieces */
+    double *ahead; /* [row's entries] m, of the transmitter from the column when the echo leaves the pixel; where there
+                      are pieces, the place in its piece, -1 to 1 */
+    int *piece;    /* [row's entries] of each vector, by number of vector */
+    struct bp_piece *pieces;                /* [PIECES_MOST] */
+    struct bp_polynomial *polynomials;      /* [PIECES_MOST] of one receiver */
+    double *node_leg, *node_ahead, *node_q; /* [PIECES_MOST PIECE_POWERS] leg, ahead, q of the pieces' nodes */
+    int *shift;                             /* [row's entries] p - n div ratio */
+    void *gate; /* real [row's entries] 1 inside the aperture of the entry's residue, else 0 */
     int capacity;
     double *q;     /* [capacity] sample coordinate; then, with cubics, the position inside their interval */
     int *kept;     /* [capacity] `shift` of entries that are kept, where some are not */

@@ -13,6 +13,10 @@ struct part {
     size_t stride;
 };
 
+/* Where 32 registers hold a block of all columns, an entry of two residues that read other samples costs a branch; where
+   the columns take several blocks, and the branch is mispredicted in each, it is summed by itself (sum_apart). */
+#define APART_INSIDE (VECTOR_BYTES == 64)
+
 /* A vector of samples, loaded once for all its products: loads are the limit. */
 #define LOAD(name, pointer)                                                                                            \
     vector_real name = *(const vector_real *)(pointer);                                                                \
@@ -49,40 +53,62 @@ INLINE void sum_one(int width, int taps, int stride, const struct part *part, co
     }
 }
 
-/* The same of two residues that read the same samples. */
-INLINE void sum_two(int width, int taps, int stride, const struct part *part, const real *sr, const real *si)
+/* Two residues' values of one entry, of which `second` has other samples only where it is asked for. */
+INLINE void add_two(bool apart, int width, int taps, int stride, const real *const first[2],
+                    const real *const second[2], const real *r, const real *m, vector_real *sums)
 {
-    vector_real a[BP_BLOCK_VECTORS] = {{0}}, b[BP_BLOCK_VECTORS] = {{0}};
-    vector_real a2[BP_BLOCK_VECTORS] = {{0}}, b2[BP_BLOCK_VECTORS] = {{0}};
-    const int *offset = part->offset, end = part->end;
-    const real *wr = part->wr, *wi = part->wi;
-    for (int i = part->begin; i < end; i++) {
-        const real *x = sr + offset[2 * i], *y = si + offset[2 * i];
-        for (int t = 0; t < taps; t++) {
-            const real *r = wr + 2 * i * taps + t, *m = wi + 2 * i * taps + t;
-            real cosine = r[0], sine = m[0], cosine2 = r[taps], sine2 = m[taps];
-            for (int k = 0; k < width; k++) {
-                LOAD(v, x + t * stride + k * LANES);
-                a[k] += v * cosine;
-                b[k] += v * sine;
+    vector_real *a = sums, *b = a + BP_BLOCK_VECTORS, *a2 = b + BP_BLOCK_VECTORS, *b2 = a2 + BP_BLOCK_VECTORS;
+    for (int t = 0; t < taps; t++) {
+        const real cosine = r[t], sine = m[t], cosine2 = r[taps + t], sine2 = m[taps + t];
+        for (int k = 0; k < width; k++) {
+            LOAD(v, first[0] + t * stride + k * LANES);
+            a[k] += v * cosine;
+            b[k] += v * sine;
+            if (apart) {
+                LOAD(w, second[0] + t * stride + k * LANES);
+                a2[k] += w * cosine2;
+                b2[k] += w * sine2;
+            } else {
                 a2[k] += v * cosine2;
                 b2[k] += v * sine2;
             }
-            for (int k = 0; k < width; k++) {
-                LOAD(v, y + t * stride + k * LANES);
-                a[k] -= v * sine;
-                b[k] += v * cosine;
+        }
+        for (int k = 0; k < width; k++) {
+            LOAD(v, first[1] + t * stride + k * LANES);
+            a[k] -= v * sine;
+            b[k] += v * cosine;
+            if (apart) {
+                LOAD(w, second[1] + t * stride + k * LANES);
+                a2[k] -= w * sine2;
+                b2[k] += w * cosine2;
+            } else {
                 a2[k] -= v * sine2;
                 b2[k] += v * cosine2;
             }
         }
     }
-    for (int k = 0; k < width; k++) {
-        *(vector_real *)(part->re + k * LANES) += a[k];
-        *(vector_real *)(part->im + k * LANES) += b[k];
-        *(vector_real *)(part->re + part->stride + k * LANES) += a2[k];
-        *(vector_real *)(part->im + part->stride + k * LANES) += b2[k];
+}
+
+/* The same of two residues, most of whose entries read the same samples. */
+INLINE void sum_two(int width, int taps, int stride, const struct part *part, const real *sr, const real *si)
+{
+    vector_real sums[4 * BP_BLOCK_VECTORS] = {{0}};
+    const int *offset = part->offset, end = part->end;
+    for (int i = part->begin; i < end; i++) {
+        const int at = offset[2 * i], at2 = offset[2 * i + 1];
+        const real *const first[2] = {sr + at, si + at}, *const second[2] = {sr + at2, si + at2};
+        const real *r = part->wr + 2 * i * taps, *m = part->wi + 2 * i * taps;
+        if (!APART_INSIDE || __builtin_expect(at == at2, 1))
+            add_two(false, width, taps, stride, first, second, r, m, sums);
+        else
+            add_two(true, width, taps, stride, first, second, r, m, sums);
     }
+    for (int k = 0; k < width; k++)
+        for (int n = 0; n < 2; n++) {
+            *(vector_real *)(part->re + (size_t)n * part->stride + k * LANES) += sums[2 * n * BP_BLOCK_VECTORS + k];
+            *(vector_real *)(part->im + (size_t)n * part->stride + k * LANES) +=
+                sums[(2 * n + 1) * BP_BLOCK_VECTORS + k];
+        }
 }
 
 /* Some residues, many samples with real weights, whose sum is rotated. rows[i] >= taps samples serve all residues of
@@ -194,15 +220,22 @@ INLINE void sum_block(int residues, int width, int taps, const struct chunk *sha
         sum_block(residues, width, taps, chunk, j);                                                                    \
     }
 /* clang-format off */
+#if VECTOR_BYTES == 64
+#define BLOCKS_FEW(name, taps) \
+    BLOCK(name, taps, 1, 1) BLOCK(name, taps, 1, 2) BLOCK(name, taps, 1, 3) BLOCK(name, taps, 1, 4) BLOCK(name, taps, 1, 5) \
+    BLOCK(name, taps, 2, 1) BLOCK(name, taps, 2, 2) BLOCK(name, taps, 2, 3) BLOCK(name, taps, 2, 4) BLOCK(name, taps, 2, 5)
+#define TABLE_FEW(name) {{name##_1_1, name##_1_2, name##_1_3, name##_1_4, name##_1_5}, {name##_2_1, name##_2_2, name##_2_3, name##_2_4, name##_2_5}}
+#else
 #define BLOCKS_FEW(name, taps) \
     BLOCK(name, taps, 1, 1) BLOCK(name, taps, 1, 2) BLOCK(name, taps, 1, 3) \
     BLOCK(name, taps, 2, 1) BLOCK(name, taps, 2, 2)
+#define TABLE_FEW(name) {{name##_1_1, name##_1_2, name##_1_3}, {name##_2_1, name##_2_2}}
+#endif
 #define BLOCKS_MANY(name, taps) \
     BLOCK(name, taps, 1, 1) BLOCK(name, taps, 1, 2) BLOCK(name, taps, 1, 3) \
     BLOCK(name, taps, 2, 1) BLOCK(name, taps, 2, 2) BLOCK(name, taps, 2, 3) \
     BLOCK(name, taps, 3, 1) BLOCK(name, taps, 3, 2) \
     BLOCK(name, taps, 4, 1) BLOCK(name, taps, 5, 1) BLOCK(name, taps, 6, 1)
-#define TABLE_FEW(name) {{name##_1_1, name##_1_2, name##_1_3}, {name##_2_1, name##_2_2}}
 #define TABLE_MANY(name) \
     {{name##_1_1, name##_1_2, name##_1_3}, {name##_2_1, name##_2_2, name##_2_3}, {name##_3_1, name##_3_2}, \
      {name##_4_1}, {name##_5_1}, {name##_6_1}}
@@ -269,6 +302,7 @@ static void sum_columns(const struct kernel *kernel, struct chunk *chunk)
     }
 }
 
+#if !APART_INSIDE
 /* One entry, with one or two complex weights, onto all columns that have a ping. */
 INLINE void sum_entry(const struct chunk *chunk, int taps, int residue, int entry, const real *wr, const real *wi)
 {
@@ -317,6 +351,7 @@ INLINE void sum_apart(const struct chunk *chunk, int taps)
             r[t] = m[t] = 0;
     }
 }
+#endif
 
 void SUMS_ADD(struct chunk *chunk)
 {
@@ -324,11 +359,13 @@ void SUMS_ADD(struct chunk *chunk)
     const struct kernel *kernel = kernels;
     while (kernel->taps != 0 && kernel->taps != taps)
         kernel++;
+#if !APART_INSIDE
     if (taps <= 2 && chunk->scratch->groups[chunk->begin].residues == 2) {
         if (taps == 1)
             sum_apart(chunk, 1);
         else
             sum_apart(chunk, 2);
     }
+#endif
     sum_columns(kernel, chunk);
 }

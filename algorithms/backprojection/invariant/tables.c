@@ -5,7 +5,6 @@
 #include <math.h>
 
 #include "backprojection/invariant/chunk.h"
-#include "common/phasor.h"
 
 /* `value`, a whole number, inside [least, most]: fmin and fmax are calls. */
 static int clamp(double value, int least, int most)
@@ -53,16 +52,15 @@ struct shifts {
     int begin, end;
 };
 
-/* A group's entries, by shift and then residue, padded to whole vectors by the last. Those outside their residue's
-   aperture have gate 0, all others 1. */
+/* A group's entries, by shift and then residue, padded to whole vectors by the last: how far the ping lies ahead of the
+   column. Those outside their residue's aperture have gate 0, all others 1. */
 static void group_places(const struct bp_row *row, const struct bp_row_group *group, const struct shifts *inside)
 {
     const struct bp_raster *raster = row->raster;
     const struct bp_row_scratch *scratch = row->scratch;
-    double *restrict leg = scratch->leg + group->first, *restrict ahead = scratch->ahead + group->first;
+    double *restrict ahead = scratch->ahead + group->first;
     int *restrict shift = scratch->shift + group->first;
     real *restrict gate = (real *)scratch->gate + group->first;
-    const double one_c = 1 / row->medium->sound_speed, v = raster->speed, r2 = row->r * row->r;
     const int residues = group->residues, n = (group->end - group->begin) * residues, whole = whole_vectors(n);
     for (int k = 0; k < residues; k++) {
         const double x = raster->x_first - (raster->grid_first + (group->residue + k) * raster->grid_step);
@@ -76,12 +74,6 @@ static void group_places(const struct bp_row *row, const struct bp_row_group *gr
         ahead[i] = ahead[n - 1];
         shift[i] = shift[n - 1];
         gate[i] = 0;
-    }
-#pragma omp simd
-    for (int i = 0; i < whole; i++) {
-        double u = ahead[i], seconds = sqrt(u * u + r2) * one_c;
-        leg[i] = seconds;
-        ahead[i] = u + v * seconds;
     }
 }
 
@@ -101,7 +93,7 @@ static bool inside_record(const struct bp_row *row, const struct delay_terms *te
     const double b = furthest + offset + v * leg;
     const double least = fabs(r) / c + (sqrt(terms->er2) - v * b) * terms->one_e;
     const double most = leg + (v * b + sqrt(terms->c2 * b * b + terms->er2)) * terms->one_e;
-    const double slack = 1e-9 / medium->fs, last = t0 + (medium->samples - 1) / medium->fs;
+    const double slack = 1e-8 / medium->fs, last = t0 + (medium->samples - 1) / medium->fs;
     return least >= t0 + slack && most <= last - slack;
 }
 
@@ -154,41 +146,13 @@ struct row_tables TABLES_BEGIN(const struct bp_row *row) {
     for (int m = 0; m < row->receivers; m++)
         offset = fmax(offset, fabs(row->offsets[m]));
     const struct delay_terms terms = delay_terms_make(row);
-    return (struct row_tables){group_count, terms, inside_record(row, &terms, offset, furthest)};
-}
-
-/* Sample coordinate and weight exp(j 2 pi fc tau) of a chunk's entries; weight 0 where the gate is. Two loops, so that
-   several of each one's chains are under way at once. `slow` is a constant where this is inlined. */
-INLINE void
-delays(bool slow, const struct chunk *chunk, const struct delay_terms *terms, double offset)
-{
-    const struct bp_row_scratch *scratch = chunk->scratch;
-    const int n = chunk->entries, first = scratch->groups[chunk->begin].first;
-    const double *restrict leg = scratch->leg + first, *restrict ahead = scratch->ahead + first;
-    const real *restrict gate = (const real *)scratch->gate + first;
-    double *restrict q = scratch->q;
-    real *restrict wr = scratch->wr, *restrict wi = scratch->wi;
-    const double v = terms->v, c2 = terms->c2, r2 = terms->r2, er2 = terms->er2, one_e = terms->one_e;
-    const double fc = chunk->medium->fc, fs = chunk->medium->fs, t0 = chunk->raster->t0;
-#pragma omp simd
-    for (int i = 0; i < n; i++) {
-        double b = ahead[i] + offset, p = b * v, s = sqrt(c2 * (b * b) + er2);
-        double tau = leg[i] + (slow || p >= 0 ? (p + s) * one_e : (b * b + r2) / (s - p));
-        double cycles = fc * tau;
-        q[i] = (tau - t0) * fs;
-        wr[i] = (real)(cycles - floor(cycles + 0.5));
-    }
-#pragma omp simd
-    for (int i = 0; i < n; i++) {
-        real cosine, sine;
-        phasor(wr[i], &cosine, &sine);
-        wr[i] = cosine * gate[i];
-        wi[i] = sine * gate[i];
-    }
+    const bool inside = inside_record(row, &terms, offset, furthest);
+    return (struct row_tables){group_count, DELAYS_PLAN(row, &terms, inside ? offset : INFINITY, total), terms, inside};
 }
 
 /* The sample at or before q and the nearest of `steps` steps from there on to the next. */
-INLINE void nearest_step(double q, int steps, int *sample, int *step)
+INLINE void
+nearest_step(double q, int steps, int *sample, int *step)
 {
     int whole = (int)q, near = (int)((q - whole) * steps + 0.5), next = near == steps; /* q >= 0: the cast is floor */
     *sample = whole + next;
@@ -257,8 +221,7 @@ INLINE void tabulate(const struct chunk *chunk)
     const int n = chunk->entries, *restrict shift = chunk->shift;
     double *restrict q = scratch->q;
     int *restrict row = scratch->row, *restrict offset = scratch->offset, *restrict step = scratch->step;
-    const int first = bp_whole(table) ? table->guard + table->first : -slab->step_first;
-    const int width = slab->step_count, stride = slab->ping_stride;
+    const int first = bp_whole(table) ? table->guard + table->first : 0, stride = slab->ping_stride;
     if (table->reading == BP_CUBICS) {
 #pragma omp simd
         for (int i = 0; i < n; i++) {
@@ -291,12 +254,13 @@ INLINE void tabulate(const struct chunk *chunk)
         }
         return;
     }
-    const int fine = table->upsample > 1, steps = fine ? table->upsample : table->steps;
+    const bool fine = table->upsample > 1;
+    const int steps = fine ? table->upsample : table->steps, rows = fine ? slab->step_rows : 0;
 #pragma omp simd
     for (int i = 0; i < n; i++) {
         int sample, near;
         nearest_step(q[i], steps, &sample, &near);
-        row[i] = sample * width + (fine ? near : 0) + first;
+        row[i] = sample + (near - slab->step_first) * rows + first;
         offset[i] = row[i] * stride + shift[i];
         step[i] = near;
     }
@@ -382,10 +346,7 @@ void TABLES_MAKE(const struct row_tables *tables, double offset, struct chunk *c
     struct bp_row_group *groups = scratch->groups;
     const int first = groups[chunk->begin].first;
     chunk->entries = groups[chunk->end].first - first;
-    if (tables->terms.slow)
-        delays(true, chunk, &tables->terms, offset);
-    else
-        delays(false, chunk, &tables->terms, offset);
+    DELAYS_MAKE(tables, offset, chunk);
     for (int g = chunk->begin; g < chunk->end; g++)
         if (chunk->sparse)
             keep(chunk, &groups[g], groups[g].first - first);

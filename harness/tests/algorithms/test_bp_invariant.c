@@ -11,6 +11,8 @@
 #include <unistd.h>
 
 #include "backprojection/invariant/plan.h"
+#include "common/delay.h"
+#include "common/isa.h"
 #include "data/random.h"
 #include "tests/support.h"
 
@@ -328,6 +330,81 @@ static void auto_falls_back(void **state)
     acquisition_free(&a);
 }
 
+static double uniform(struct random *random, double low, double high)
+{
+    return low + (high - low) * random_uniform(random);
+}
+
+/* A polynomial through exact delays of a piece as long as it may be, at all speeds, offsets and distances: it errs by no
+   more than what its length was asked for, and by not much less where the track lies nearest. */
+static void pieces_keep_their_error(void **state)
+{
+    (void)state;
+    const double c = 1500, error = 1e-6;
+    struct random random = random_seed(20, 0);
+    struct piece_fit fit;
+    double largest = 0;
+    piece_fit_make(&fit);
+    for (int n = 0; n < 300; n++) {
+        const double mach = n % 3 ? uniform(&random, 0, n % 3 == 1 ? 0.125 : 2e-3) : 0, r = uniform(&random, 1, 300);
+        const double offset = n % 2 ? uniform(&random, -2, 2) : 0, middle = n % 4 < 2 ? 0 : uniform(&random, -3, 3) * r;
+        const double half = piece_half(piece_reach(mach, error), r);
+        double q[PIECE_POWERS], power[PIECE_POWERS] = {0}, worst = 0;
+#define PATH(u)                                                                                                        \
+    (c                                                                                                                 \
+     * delay_exact((struct vector){(u), 0, 0}, (struct vector){(u) + offset, 0, 0}, (struct vector){mach * c, 0, 0},   \
+                   (struct vector){0, r, 0}, c))
+        for (int k = 0; k < PIECE_POWERS; k++)
+            q[k] = PATH(middle + half * fit.node[k]);
+        for (int k = 0; k < PIECE_POWERS; k++)
+            for (int m = 0; m < PIECE_POWERS; m++)
+                power[m] += (q[k] - q[0]) * fit.power[k][m];
+        for (int i = -200; i <= 200; i++) {
+            double value = 0;
+            for (int m = PIECE_POWERS - 1; m >= 0; m--)
+                value = value * (i / 200.0) + power[m];
+            worst = worse_of(worst, fabs(value + q[0] - PATH(middle + half * i / 200)));
+        }
+#undef PATH
+        if (!(worst <= error))
+            fail_msg("case %d, mach %g, r %g, offset %g, at %g: errs by %g m of %g", n, mach, r, offset, middle, worst,
+                     error);
+        largest = worse_of(largest, worst);
+    }
+    print_message("largest error over the bound: %.2f\n", largest / error);
+    assert_true(largest > 0.2 * error);
+}
+
+/* Polynomials do stand for the delays of a row, and exact=true keeps the roots: else nothing above would test them. */
+static void exact_keeps_the_roots(void **state)
+{
+    (void)state;
+    struct acquisition a;
+    struct grid grid;
+    struct echoes echoes;
+    double difference[2];
+    make_invariant_case(&invariant_cases[0], &a, &grid, &echoes);
+    struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+    for (int n = 0; n < 2; n++) {
+        struct image image, roots;
+        assert_int_equal(
+            support_image("bp_sinc:precision=double,engine=invariant,exact=true", problem, &echoes, &roots), STATUS_OK);
+        assert_int_equal(support_image(n ? "bp_sinc:precision=double,engine=invariant,exact=true"
+                                         : "bp_sinc:precision=double,engine=invariant,phase_limit=1e-5",
+                                       problem, &echoes, &image),
+                         STATUS_OK);
+        difference[n] = support_difference(&image, &roots);
+        image_free(&image);
+        image_free(&roots);
+    }
+    print_message("by polynomials: %.1e; by roots: %.1e\n", difference[0], difference[1]);
+    assert_true(difference[1] == 0);
+    if (isa_choose() > ISA_BASELINE)
+        assert_true(difference[0] > 0 && difference[0] < 1e-11);
+    echoes_free(&echoes);
+    acquisition_free(&a);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -335,6 +412,8 @@ int main(void)
         cmocka_unit_test(long_records_take_several_passes),
         cmocka_unit_test(rows_cross_the_track),
         cmocka_unit_test(spread_is_asserted),
+        cmocka_unit_test(pieces_keep_their_error),
+        cmocka_unit_test(exact_keeps_the_roots),
         cmocka_unit_test(jitter_takes_the_general_engine),
         cmocka_unit_test(auto_falls_back),
     };

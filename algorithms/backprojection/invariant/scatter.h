@@ -1,0 +1,21 @@
+/* From records, one behind the other, to the invariant engine's slab, whose pings lie side by side (row.h). */
+#ifndef SASBENCH_BACKPROJECTION_INVARIANT_SCATTER_H
+#define SASBENCH_BACKPROJECTION_INVARIANT_SCATTER_H
+
+#include <stddef.h>
+
+/* Where values go: sample i of ping p, complex value p pitch + i of a tile, to [i step + p] of re and of im. */
+struct bp_scattering {
+    size_t samples, pitch, step;
+    void *re, *im; /* real */
+};
+
+/* Scatter the first `count` pings of a tile. Up to the next whole vector more values are written behind them, zeros:
+   rows have that room. */
+typedef void bp_scatter_function(const struct bp_scattering *scattering, const void *tile, int count);
+
+bp_scatter_function bp_scatter_float_baseline, bp_scatter_double_baseline;
+bp_scatter_function bp_scatter_float_v3, bp_scatter_double_v3;
+bp_scatter_function bp_scatter_float_v4, bp_scatter_double_v4;
+
+#endif
