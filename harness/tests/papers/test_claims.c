@@ -18,7 +18,7 @@ static void all_claims_are_read(void **state)
     static const struct {
         const char *paper;
         int count;
-    } papers[] = {{"BP22", 40}, {"ZP15", 15}, {"LBF21", 73}, {"SQ18", 16}, {"PF05", 15}};
+    } papers[] = {{"BP22", 41}, {"ZP15", 15}, {"LBF21", 73}, {"SQ18", 16}, {"PF05", 15}};
     struct claims claims;
     int row = 0;
     assert_int_equal(claims_read(CLAIMS_FILE, &claims), STATUS_OK);
@@ -303,7 +303,7 @@ static void verdicts_are_counted(void **state)
     assert_int_equal(verdicts_write(path_of("verdicts.md"), "today", &verdicts), STATUS_OK);
     char wanted[4][200];
     snprintf(wanted[0], sizeof wanted[0],
-             "\n| all, as printed | %d | %d | 0 | 0 | 0 | 3 |\n| BP22 | 40 | 37 | 0 | 0 | 0 | 3 |\n", claims.count,
+             "\n| all, as printed | %d | %d | 0 | 0 | 0 | 3 |\n| BP22 | 41 | 38 | 0 | 0 | 0 | 3 |\n", claims.count,
              claims.count - 3);
     snprintf(wanted[1], sizeof wanted[1], "scheme, corrected | %d | 0 | 0 | 0 | %d | 0 |\n", by_scheme, by_scheme);
     snprintf(wanted[2], sizeof wanted[2], "\n1 of those that cannot be decided are times");
