@@ -11,7 +11,7 @@ if (!exists("csv")) csv = ARGC >= 1 ? ARG1 : "results/bench/bench.csv"
 if (csv[1:1] ne "/") csv = "./".csv                    # one that begins with '<' would be a command
 if (!exists("output")) output = csv[1:strlen(csv) - 4].".png"
 if (!exists("footer")) footer = ""
-width = 1400
+width = 1500
 height = 620
 load plots."/style.gp"
 set datafile separator comma
@@ -24,6 +24,9 @@ plot csv using (label(strcol("algorithm"), strcol("precision"), strcol("scene"))
     (1e-9*column("pairs_per_s")):(column("fraction_of_peak")):(column("ratio_to_control")):(" ") \
     with table if (column("threads") == threads_max)
 unset table
+height = 210 + 24*|$rows|
+load plots."/style.gp"
+set datafile separator comma
 
 array title[3] = ["rate (1e9 pairs/s)", "fraction of the multiply-add peak", "times the scalar reference loop's rate"]
 array engine[2] = ["invariant", "general"]
@@ -35,17 +38,17 @@ set yrange [|$rows| - 0.3:-0.7]
 set label 1 footer at screen 0.5,14.0/height center font ",10" textcolor "#606060"
 set multiplot title sprintf("Back projection of BP22's full size, %d thread%s", threads_max, threads_max > 1 ? "s" : "")
 set tmargin at screen 1 - 60.0/height
-set bmargin at screen 125.0/height
+set bmargin at screen 150.0/height
 do for [k = 1:3] {
-    set lmargin at screen (345 + 350*(k - 1))/real(width)
-    set rmargin at screen (660 + 350*(k - 1))/real(width)
+    set lmargin at screen (420 + 360*(k - 1))/real(width)
+    set rmargin at screen (740 + 360*(k - 1))/real(width)
     set xlabel title[k]
     low = k == 3 ? 1 : 0
     if (k == 3) { set logscale x }
     set xrange [low:*]
-    if (k == 2) { set xtics 0.1 } else { set xtics auto }
+    if (k == 2) { set xtics 0.2 } else { set xtics auto }
     if (k > 1) { set format y "" }
-    if (k == 3) { set key at screen 0.5,50.0/height center top } else { unset key }
+    if (k == 3) { set key at screen 0.5,80.0/height center top } else { unset key }
     plot for [e = 1:2] $rows using (low):0:(low):(strstrt(strcol(2), engine[e]) ? column(k + 2) : NaN):($0 - 0.35):($0 + 0.35): \
         ytic(k == 1 ? 1 : 6) with boxxyerror linecolor rgb colour[e] title engine[e]." engine"
     unset label 1

@@ -45,7 +45,7 @@ plot for [k = 1:|timed|] csv using (column("columns")*column("rows")): \
     with linespoints linecolor rgb colour(timed[k]) pointtype point(timed[k]) dashtype dash(timed[k]) \
     linewidth (strstrt(timed[k], "degree 5") ? 1 : 2) title timed[k]
 unset label 1
-set lmargin at screen 0.56
+set lmargin at screen 0.58
 set rmargin at screen 1 - 25.0/width
 set format x "%g"
 set logscale x 2

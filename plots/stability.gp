@@ -63,6 +63,7 @@ unset grid
 set xtics rotate by 90 right
 set style fill solid 1 noborder
 box(k) = column(4) == k
+# A label that is not wanted is empty: gnuplot crashes where a plot has none at all.
 number(text) = text[1:1] eq "n" ? "" : sprintf("%.1f", real(text))
 plot $cells using 2:1:($2 - 0.48):($2 + 0.48):($1 - 0.46):($1 + 0.46):(column(4) < 2 ? digits(strcol(3)) : NaN) \
         with boxxyerror linecolor palette, \
@@ -70,8 +71,8 @@ plot $cells using 2:1:($2 - 0.48):($2 + 0.48):($1 - 0.46):($1 + 0.46):(column(4)
     "" using 2:(box(3) ? column(1) : NaN):($2 - 0.48):($2 + 0.48):($1 - 0.46):($1 + 0.46) with boxxyerror linecolor rgb "#d00000", \
     "" using 2:(box(1) ? column(1) : NaN):($2 - 0.48):($2 + 0.48):($1 - 0.46):($1 + 0.46) with boxxyerror fillstyle empty \
         border linecolor rgb "#d00000" linecolor rgb "#d00000" linewidth 2 dashtype 1, \
-    "" using 2:(column(4) < 2 ? column(1) : NaN):(number(strcol(3))) with labels font ",9" textcolor rgb "#ffffff", \
-    "" using 2:(box(2) ? column(1) : NaN):(strcol(7)[1:9]) with labels font ",7" textcolor rgb "#404040", \
-    "" using 2:(box(3) ? column(1) : NaN):(strcol(7)[1:9]) with labels font ",7" textcolor rgb "#ffffff", \
+    "" using 2:1:(column(4) < 2 ? number(strcol(3)) : "") with labels font ",9" textcolor rgb "#ffffff", \
+    "" using 2:1:(box(2) ? strcol(7)[1:9] : "") with labels font ",7" textcolor rgb "#404040", \
+    "" using 2:1:(box(3) ? strcol(7)[1:9] : "") with labels font ",7" textcolor rgb "#ffffff", \
     "" using 2:1:(" "):xtic(6):ytic(5) with labels
 unset output

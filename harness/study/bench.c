@@ -28,12 +28,12 @@
 
 /* FLOPs of one pair are those of the method's own sums, without delays and phases: what the inner loop cannot avoid. */
 static const struct method {
-    const char *name, *settings;
+    const char *name, *settings; /* settings: ":key=value", or empty */
     double pair_flops;
 } methods[] = {
-    {"bp_nearest", "", 8},          {"bp_linear", "beta=8,", 16},   {"bp_sinc", "taps=8,", 40},
-    {"bp_zeropad", "factor=8,", 8}, {"bp_farrow", "degree=3,", 20}, {"bp_farrow", "degree=5,", 28},
-    {"bp_fitted", "taps=6,", 32},
+    {"bp_nearest", "", 8},          {"bp_linear", ":beta=8", 16},   {"bp_sinc", ":taps=8", 40},
+    {"bp_zeropad", ":factor=8", 8}, {"bp_farrow", ":degree=3", 20}, {"bp_farrow", ":degree=5", 28},
+    {"bp_fitted", ":taps=6", 32},
 };
 enum { METHODS = sizeof methods / sizeof *methods };
 
@@ -96,8 +96,8 @@ static enum status measure(const struct bench *bench, const struct subject *subj
     struct spec spec;
     struct image image;
     struct timing timing;
-    snprintf(text, sizeof text, "%s:%sengine=%s,precision=%s", method->name, method->settings, subject->one->engine,
-             precision_name(problem->precision));
+    snprintf(text, sizeof text, "%s%s%sengine=%s,precision=%s", method->name, method->settings,
+             *method->settings ? "," : ":", subject->one->engine, precision_name(problem->precision));
     enum status status = spec_parse(text, &spec);
     if (status != STATUS_OK)
         return status;
@@ -155,13 +155,13 @@ static void report(const struct bench *bench, const struct bench_case *one, cons
         v[k] = median(line->value[k], ROUNDS);
     if (line->threads > 1 && !isnan(v[GAIN]))
         snprintf(gain, sizeof gain, "%.3f", v[GAIN]);
-    fprintf(bench->file, "%s,%s,%s,%s,%d,%d,%d,%.9g,%.4g,%.4g,%.4g,%.4g,%.4g,%g,%.4g,%.4g,%.4g,%.4g,%s,%.6g,%.6g\n",
-            one->scene, one->engine, method->name, precision, line->threads, problem->patches[0].r_count, line->runs,
-            line->pairs, v[PLAN_S], v[RUN_S], v[SUM_S], v[RATE], peak, method->pair_flops,
-            method->pair_flops * v[RATE] / peak, v[RATE] / peak, v[CONTROL], v[RUN_TO_SUM], gain, line->plan_bytes,
-            line->process_bytes);
-    printf("%-17s %-9s %-10s %-6s %d %7.3f %7.3f %7.3f %6.3f %8.5f %7.1f %7.2f %6s %6.0f\n", one->scene, one->engine,
-           method->name, precision, line->threads, v[RUN_S], v[SUM_S], 1e-9 * v[RATE],
+    fprintf(bench->file, "%s,%s,%s%s,%s,%d,%d,%d,%.9g,%.4g,%.4g,%.4g,%.4g,%.4g,%g,%.4g,%.4g,%.4g,%.4g,%s,%.6g,%.6g\n",
+            one->scene, one->engine, method->name, method->settings, precision, line->threads,
+            problem->patches[0].r_count, line->runs, line->pairs, v[PLAN_S], v[RUN_S], v[SUM_S], v[RATE], peak,
+            method->pair_flops, method->pair_flops * v[RATE] / peak, v[RATE] / peak, v[CONTROL], v[RUN_TO_SUM], gain,
+            line->plan_bytes, line->process_bytes);
+    printf("%-17s %-9s %-10s%-9s %-6s %d %7.3f %7.3f %7.3f %6.3f %8.5f %7.1f %7.2f %6s %6.0f\n", one->scene,
+           one->engine, method->name, method->settings, precision, line->threads, v[RUN_S], v[SUM_S], 1e-9 * v[RATE],
            method->pair_flops * v[RATE] / peak, v[RATE] / peak, v[CONTROL], v[RUN_TO_SUM], *gain ? gain : "-",
            line->process_bytes / 0x1p20);
     fflush(stdout);
@@ -222,13 +222,13 @@ static enum status measure_cases(FILE *file)
     struct provenance provenance;
     struct bench bench = {.file = file, .threads = omp_get_max_threads()};
     provenance_fill(&provenance, bench.threads);
-    fprintf(file, "# sasbench bench 2\n# machine: %s\n# compiler: %s\n# flags: %s\n# commit: %s\n# date: %s\n",
+    fprintf(file, "# sasbench bench 3\n# machine: %s\n# compiler: %s\n# flags: %s\n# commit: %s\n# date: %s\n",
             provenance.machine, provenance.compiler, provenance.flags, provenance.commit, provenance.date);
     fprintf(file, "# isa: %s\n", isa_name(isa_choose()));
     fprintf(file, "scene,engine,algorithm,precision,threads,rows,runs,pairs,plan_s,run_s,sum_s,pairs_per_s,"
                   "peak_flops,flops_per_pair,fraction_of_peak,pairs_per_peak_flop,ratio_to_control,run_to_sum,"
                   "gain_of_threads,plan_bytes,process_bytes\n");
-    printf("\n%-17s %-9s %-10s %-6s %s %7s %7s %7s %6s %8s %7s %7s %6s %6s\n", "scene", "engine", "algorithm", "prec.",
+    printf("\n%-17s %-9s %-19s %-6s %s %7s %7s %7s %6s %8s %7s %7s %6s %6s\n", "scene", "engine", "algorithm", "prec.",
            "t", "run s", "sums s", "Gpair/s", "peak", "pair/FL", "control", "run/sum", "gain", "MiB");
     enum status status = STATUS_OK;
     for (size_t k = 0; k < sizeof cases / sizeof *cases && status == STATUS_OK; k++)

@@ -222,8 +222,8 @@ static void control_characters_are_refused(void **state)
 static void paths_are_no_pipes(void **state)
 {
     (void)state;
-    static const char *const names[] = {"<touch PWNED;#", "|touch PWNED;#"};
-    for (int k = 0; k < 2; k++) {
+    static const char *const names[] = {"<touch PWNED;#", "|touch PWNED;#", "a'; touch PWNED; '"};
+    for (int k = 0; k < 3; k++) {
         char csv[100], picture[100];
         assert_int_equal(mkdir(names[k], 0777), 0);
         FILE *file = file_begin(names[k], "bench.csv");
@@ -239,6 +239,16 @@ static void paths_are_no_pipes(void **state)
         assert_int_equal(access(picture, R_OK), 0);
         plot_by_hand("bench", csv);
         assert_no_canary("bench", csv);
+        file = file_begin(names[k], "stability.csv");
+        fputs("scene,algorithm,options,precision,verdict,digits\n"
+              "a,b,\"c;touch PWNED,d='`touch PWNED`'\",float,works,1\n",
+              file);
+        assert_int_equal(fclose(file), 0);
+        snprintf(csv, sizeof csv, "%s/stability.csv", names[k]);
+        plot_by_hand("stability", csv);
+        snprintf(picture, sizeof picture, "%s/stability.png", names[k]);
+        assert_int_equal(access(picture, R_OK), 0);
+        assert_no_canary("stability", csv);
     }
 }
 
