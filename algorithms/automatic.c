@@ -54,6 +54,19 @@ static enum status nothing_fits(const struct options *options, const struct choi
         options->error, options->memory, best->error, name);
 }
 
+static struct {
+    void (*hear)(void *to, const struct problem *problem, const struct budget *budget, const struct choice *choice);
+    void *to;
+} listener;
+
+void automatic_tell(void (*hear)(void *to, const struct problem *problem, const struct budget *budget,
+                                 const struct choice *choice),
+                    void *to)
+{
+    listener.hear = hear;
+    listener.to = to;
+}
+
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
     const struct options *o = options;
@@ -68,6 +81,8 @@ static enum status plan(const struct problem *problem, const void *options, void
     status = planner_choose(problem, &budget, &choice);
     if (status != STATUS_OK)
         return status;
+    if (listener.hear)
+        listener.hear(listener.to, problem, &budget, &choice);
     struct automatic *automatic = choice.found ? malloc(sizeof *automatic) : NULL;
     if (automatic) {
         *automatic = (struct automatic){.algorithm = choice.list[0].algorithm,

@@ -42,6 +42,11 @@ struct budget {
 enum status planner_choose(const struct problem *problem, const struct budget *budget, struct choice *choice);
 void choice_free(struct choice *choice);
 
+/* From now on `hear` is told of each choice that `auto` makes, before it is freed; NULL: nobody is. For one thread. */
+void automatic_tell(void (*hear)(void *to, const struct problem *problem, const struct budget *budget,
+                                 const struct choice *choice),
+                    void *to);
+
 /* "bp_farrow:degree=4": as the column `engine` holds it. */
 enum { CANDIDATE_NAME = 32 };
 void candidate_name(const struct candidate *candidate, char text[CANDIDATE_NAME]);

@@ -74,3 +74,12 @@ void session_close(struct session *session)
     echoes_free(&session->echoes[PRECISION_FLOAT]);
     echoes_free(&session->echoes[PRECISION_DOUBLE]);
 }
+
+void session_spent(const struct session *session, struct spent *sum)
+{
+    sum->echoes += session->spent.echoes;
+    sum->reference += session->spent.reference;
+    sum->planning += session->spent.planning;
+    sum->imaging += session->spent.imaging;
+    sum->control += session->control.spent_s;
+}

@@ -21,7 +21,7 @@ struct session {
     struct condition conditions[SCENE_CONDITIONS]; /* [condition_count] of the scene by itself */
     int condition_count;
     struct control control; /* beside what is timed */
-    struct spent spent;     /* so far, but for the control, which knows it itself */
+    struct spent spent;     /* so far, but for the control */
 };
 
 /* Make the echoes (scene_echoes) and form the exact image; where there can be none, images are measured without their
@@ -29,6 +29,8 @@ struct session {
    close. */
 enum status session_open(const struct scene *scene, struct session *session);
 void session_close(struct session *session);
+/* Add what was spent on it. */
+void session_spent(const struct session *session, struct spent *sum);
 
 /* What an algorithm images: the scene's patches, or, when it is exact and so too slow for a whole swath, only what is
    compared. Points into the scene. */

@@ -7,7 +7,45 @@
 
 #include "data/published.h"
 #include "data/verdict.h"
+#include "show/plot.h"
 #include "show/report_cheapest.h"
+
+/* Empty where there is no such column. */
+static const char *cell_of(const struct csv *csv, int row, const char *column)
+{
+    const int index = csv_column(csv, column);
+    return index < 0 ? "" : csv_cell(csv, row, index);
+}
+
+/* What was chosen, a line an image. */
+static void plans_summary_show(struct page *page, const struct csv *csv)
+{
+    enum { COLUMNS = 6 };
+    static const char *const names[COLUMNS] = {"scene", "options", "algorithm", "seconds", "error", "text"};
+    static const struct page_column columns[COLUMNS] = {{"scene", false},  {"budget", false},
+                                                        {"chosen", false}, {"time (s)", true},
+                                                        {"error", true},   {"what is left out", false}};
+    page_table_begin(page, COLUMNS, columns, false);
+    for (int row = 0; row < csv->row_count; row++) {
+        struct page_cell cells[COLUMNS];
+        char label[160], numbers[COLUMNS][32];
+        if (strcmp(cell_of(csv, row, "verdict"), "chosen") != 0)
+            continue;
+        for (int k = 0; k < COLUMNS; k++) {
+            double value;
+            cells[k] = (struct page_cell){cell_of(csv, row, names[k]), k < COLUMNS - 1 ? NULL : "long"};
+            if (columns[k].number && csv_number(cells[k].text, &value) && isfinite(value)) {
+                snprintf(numbers[k], sizeof numbers[k], "%.2g", value);
+                cells[k].text = numbers[k];
+            }
+        }
+        picture_label(cells[2].text, cell_of(csv, row, "settings"), cell_of(csv, row, "precision"), label,
+                      sizeof label);
+        cells[2].text = label;
+        page_row(page, cells);
+    }
+    page_table_end(page);
+}
 
 const struct report_table report_tables[REPORT_TABLES] = {
     {.file = "cheapest.csv",
@@ -56,6 +94,23 @@ const struct report_table report_tables[REPORT_TABLES] = {
                  {"error_first", "error from", SHOW_NUMBER},
                  {"error_last", "error to", SHOW_NUMBER},
                  {"residual_log10", "residual", SHOW_NUMBER}}},
+    {.file = "plans.csv",
+     .id = "plans",
+     .title = "Plans",
+     .text =
+         "What auto chose before it formed an image, and why not others: of each algorithm the fastest setting that is "
+         "within the error, or the nearest to it. Times and errors are predicted; the measured ones are below.",
+     .group = "scene",
+     .folded = true,
+     .summary = plans_summary_show,
+     .columns = {{"options", "budget", SHOW_ONCE},
+                 {"precision", "precision", SHOW_ONCE},
+                 {"algorithm", "algorithm", SHOW_TEXT},
+                 {"settings", "settings", SHOW_TEXT},
+                 {"verdict", "verdict", SHOW_TEXT},
+                 {"seconds", "time (s)", SHOW_NUMBER},
+                 {"error", "error", SHOW_NUMBER},
+                 {"text", "why, or what is left out", SHOW_TEXT}}},
     {.file = "predictions.csv",
      .id = "predictions",
      .title = "Predicted errors",
@@ -186,13 +241,6 @@ static void verdicts_count_show(struct page *page, const struct report_table *ta
         }
         page_paragraph(page, text);
     }
-}
-
-/* Empty where there is no such column. */
-static const char *cell_of(const struct csv *csv, int row, const char *column)
-{
-    const int index = csv_column(csv, column);
-    return index < 0 ? "" : csv_cell(csv, row, index);
 }
 
 static void rows_show(struct page *page, const struct report_table *table, const struct csv *csv, const char *group)

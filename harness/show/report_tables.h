@@ -21,7 +21,7 @@ struct report_table {
         bool later;                                                    /* files of an older version have none */
     } columns[REPORT_COLUMNS];                                         /* title NULL ends */
 };
-enum { REPORT_TABLES = 7, REPORT_STABILITY = 6 };
+enum { REPORT_TABLES = 8, REPORT_STABILITY = 7 };
 extern const struct report_table report_tables[REPORT_TABLES];
 
 /* The file in DIR, into a zeroed *csv, which stays so where there is none. Errors: as csv_read; STATUS_INVALID naming

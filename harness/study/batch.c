@@ -15,6 +15,7 @@
 #include "show/table.h"
 #include "data/paths.h"
 #include "data/supervisor.h"
+#include "study/plans.h"
 
 /* One scene while its algorithms run. */
 struct visit {
@@ -133,6 +134,7 @@ static enum status add_crashed(struct batch *batch, const struct scene *scene, c
 static enum status measure(struct batch *batch, struct visit *visit, int index)
 {
     struct outcome outcome;
+    struct plans plans;
     char task[700];
     enum status status = STATUS_OK;
     task_format(visit->session.scene, &visit->specs[index], task, sizeof task);
@@ -140,12 +142,14 @@ static enum status measure(struct batch *batch, struct visit *visit, int index)
     if (crash)
         return add_crashed(batch, visit->session.scene, &visit->specs[index], crash);
     supervisor_enter(task);
+    plans_listen(visit->session.scene, &visit->specs[index], &plans);
     outcome_measure(&visit->session, &visit->specs[index], batch->effort,
                     visit->samples ? &visit->samples[index - visit->turns_first] : NULL, &outcome);
     supervisor_leave();
+    status = plans_keep(batch->directory, &plans);
     outcome.row.threads = batch->threads;
     visit->works[index] = outcome.work;
-    if (strcmp(outcome.row.status, "ok") == 0) {
+    if (status == STATUS_OK && strcmp(outcome.row.status, "ok") == 0) {
         status = results_folder_targets(batch->results, outcome.targets, outcome.target_count);
         const double begin = seconds_now();
         if (status == STATUS_OK)
@@ -308,15 +312,6 @@ static void heading_print(const struct scene *scene)
     warnings_print(scene);
 }
 
-static void spent_add(struct batch *batch, const struct session *session)
-{
-    batch->spent.echoes += session->spent.echoes;
-    batch->spent.reference += session->spent.reference;
-    batch->spent.planning += session->spent.planning;
-    batch->spent.imaging += session->spent.imaging;
-    batch->spent.control += session->control.spent_s;
-}
-
 enum status batch_scene(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs)
 {
     struct visit visit;
@@ -361,7 +356,7 @@ enum status batch_scene(struct batch *batch, const struct scene *scene, int spec
         if (status == STATUS_OK && batch->details && missing > 0)
             print_works(&visit);
         batch->undrawn += visit.pictures.undrawn;
-        spent_add(batch, &visit.session);
+        session_spent(&visit.session, &batch->spent);
         visit_close(&visit);
     }
     return status;

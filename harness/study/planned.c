@@ -9,11 +9,11 @@
 #include "data/echo_data.h"
 #include "show/table.h"
 
-static const char *const verdict_names[] = {[VERDICT_CHOSEN] = "chosen",
-                                            [VERDICT_SLOWER] = "slower",
-                                            [VERDICT_ERROR] = "error",
-                                            [VERDICT_MEMORY] = "memory",
-                                            [VERDICT_REFUSED] = "refused"};
+const char *const plan_verdict_names[] = {[VERDICT_CHOSEN] = "chosen",
+                                          [VERDICT_SLOWER] = "slower",
+                                          [VERDICT_ERROR] = "error",
+                                          [VERDICT_MEMORY] = "memory",
+                                          [VERDICT_REFUSED] = "refused"};
 
 enum status planned_make(const struct scene *scene, const struct budget *budget, struct planned *planned)
 {
@@ -61,20 +61,25 @@ static void candidate_print(FILE *stream, const struct candidate *candidate)
     fprintf(stream, " %9s\n", cell_significant(1e-9 * candidate->flops, " GF").text);
 }
 
-/* Of those that are over the budget or refused: the nearest of each algorithm, with its reason. */
+bool planned_nearest(const struct choice *choice, int k)
+{
+    const struct candidate *c = &choice->list[k];
+    bool nearest = c->verdict > VERDICT_SLOWER;
+    for (int n = 0; n < choice->count && nearest; n++) {
+        const struct candidate *other = &choice->list[n];
+        if (n == k || other->algorithm != c->algorithm)
+            continue;
+        const bool refused = isinf(c->error), better = other->error < c->error;
+        nearest = other->verdict > VERDICT_SLOWER && !better && !(refused && isinf(other->error) && n < k);
+    }
+    return nearest;
+}
+
 static void rejected_print(FILE *stream, const struct choice *choice)
 {
     for (int k = 0; k < choice->count; k++) {
         const struct candidate *c = &choice->list[k];
-        bool nearest = c->verdict > VERDICT_SLOWER;
-        for (int n = 0; n < choice->count && nearest; n++) {
-            const struct candidate *other = &choice->list[n];
-            if (n == k || other->algorithm != c->algorithm)
-                continue;
-            const bool refused = isinf(c->error), better = other->error < c->error;
-            nearest = other->verdict > VERDICT_SLOWER && !better && !(refused && isinf(other->error) && n < k);
-        }
-        if (nearest) {
+        if (planned_nearest(choice, k)) {
             char text[600], name[CANDIDATE_NAME];
             candidate_name(c, name);
             snprintf(text, sizeof text, "%s: %s", name, c->reason);
@@ -83,38 +88,40 @@ static void rejected_print(FILE *stream, const struct choice *choice)
     }
 }
 
-/* What the chosen way does not do, and what each of these adds to the error. */
-static void left_out_print(FILE *stream, const struct planned *planned, int precision)
+void planned_left_out(const struct problem *problem, const struct candidate *chosen,
+                      void (*line)(void *to, const char *text), void *to)
 {
-    const struct candidate *chosen = &planned->choices[precision].list[0];
-    const struct acquisition *a = &planned->scene->acquisition;
-    const struct problem problem = {a, planned->scene->patch_count, planned->scene->patches, (enum precision)precision};
+    const struct acquisition *a = problem->acquisition;
     const struct forecast *f = &chosen->forecast;
     char text[400];
-    fprintf(stream, "\nLeft out, and the error that it adds:\n");
     if (f->sums_pairs) {
-        const double all = (double)a->pings * a->receivers * problem_pixels(&problem);
+        const double all = (double)a->pings * a->receivers * problem_pixels(problem);
         if (chosen->pairs < all) {
             snprintf(text, sizeof text, "%.3g %% of the pairs of pixels and records, which meet no sample%s: 0",
                      100 * (1 - chosen->pairs / all), a->aperture_limit < 1 ? " inside the aperture limit" : "");
-            table_text(stream, 2, text);
+            line(to, text);
         }
         snprintf(text, sizeof text, "exact values between samples: %.2g", f->error[CAUSE_INTERPOLATION]);
-        table_text(stream, 2, text);
+        line(to, text);
         snprintf(text, sizeof text,
                  f->tables ? "delays of all pings but one, which repeat from ping to ping: %.2g"
                            : "delays of all pixels but those between which they are interpolated: %.2g",
                  f->error[CAUSE_DELAYS]);
-        table_text(stream, 2, text);
+        line(to, text);
     } else {
         snprintf(text, sizeof text, "the sum over pairs: %.2g by the spectrum, %.2g by blocks or terms, %.2g by Stolt",
                  f->error[CAUSE_SPECTRUM], f->error[CAUSE_BLOCKS], f->error[CAUSE_STOLT]);
-        table_text(stream, 2, text);
+        line(to, text);
     }
-    if (precision == PRECISION_FLOAT) {
+    if (problem->precision == PRECISION_FLOAT) {
         snprintf(text, sizeof text, "double precision: %.2g", f->error[CAUSE_FLOAT]);
-        table_text(stream, 2, text);
+        line(to, text);
     }
+}
+
+static void line_print(void *stream, const char *text)
+{
+    table_text(stream, 2, text);
 }
 
 void planned_print(FILE *stream, const struct planned *planned)
@@ -138,7 +145,11 @@ void planned_print(FILE *stream, const struct planned *planned)
     if (choice->found) {
         const struct candidate *best = &choice->list[0];
         char name[CANDIDATE_NAME];
-        left_out_print(stream, planned, precision);
+        const struct scene *scene = planned->scene;
+        const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches,
+                                        (enum precision)precision};
+        fprintf(stream, "\nLeft out, and the error that it adds:\n");
+        planned_left_out(&problem, best, line_print, stream);
         candidate_name(best, name);
         fprintf(stream, "\nChosen: %s%s%s, some %s, %s of memory\n", name,
                 precision == PRECISION_FLOAT ? ""
@@ -161,7 +172,7 @@ void planned_write(FILE *stream, const struct planned *planned)
             csv_write_text(stream, planned->scene->name);
             fprintf(stream, ",%s,", c->algorithm->name);
             csv_write_text(stream, c->settings);
-            fprintf(stream, ",%s,%s,", precision_name((enum precision)precision), verdict_names[c->verdict]);
+            fprintf(stream, ",%s,%s,", precision_name((enum precision)precision), plan_verdict_names[c->verdict]);
             csv_write_number(stream, isinf(c->seconds) ? NAN : c->seconds);
             fputc(',', stream);
             csv_write_number(stream, isinf(c->error) ? NAN : c->error);

@@ -20,6 +20,13 @@ void planned_free(struct planned *planned);
 /* The precision that is chosen: float, unless only double fits the budget; -1 where nothing does. */
 int planned_precision(const struct planned *planned);
 
+extern const char *const plan_verdict_names[]; /* by enum verdict */
+/* Is candidate k, over the budget or refused, the nearest of an algorithm none of whose candidates fits? */
+bool planned_nearest(const struct choice *choice, int k);
+/* What the chosen way does not do, and what each of these adds to the error: a line each. */
+void planned_left_out(const struct problem *problem, const struct candidate *chosen,
+                      void (*line)(void *to, const char *text), void *to);
+
 /* The candidates of the precision that is chosen, the chosen one first, and what it leaves out. */
 void planned_print(FILE *stream, const struct planned *planned);
 /* All of both as CSV. */

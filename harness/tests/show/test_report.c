@@ -54,6 +54,12 @@ static void folder_fill(void)
                                 "a,bp_zeropad,,float,factor,finest,8,64,8,64,4,-1.0321,0.1,0.01,0.00123\n");
     support_write("rules.csv", "scene,fc_hz,fs_hz,bandwidth_hz,bp22_eq20_rate,zp15_rate,edge_phase_rad,linear_floor\n"
                                "a,150000,30000,15000,3.125,10,0.785,0.0685\n");
+    support_write("plans.csv",
+                  "scene,options,precision,algorithm,settings,verdict,seconds,error,text\n"
+                  "a,error=0.01,float,bp_fitted,taps=4,chosen,0.02,0.0051,left out: double precision: 3e-07\n"
+                  "a,error=0.01,float,bp_nearest,,error,0.01,0.2,error 0.2 is over the budget\n");
+    support_write("predictions.csv", "algorithm,images,least,lower_quartile,median,upper_quartile,largest\n"
+                                     "bp_linear,3,1.0625,1.1,1.25,1.3,1.75\n");
     support_write("claims.csv", "id,paper,section,claim,verdict,corrected,evidence\n"
                                 "x-1,BP22,4.1,\"linear, at <beta> = 2\",holds,,1 < 2\n"
                                 "x-2,BP22,4.2,second,does not hold,holds,two & three\n"
@@ -97,13 +103,17 @@ static void test_everything_is_on_the_page(void **state)
     assert_non_null(html);
     assert_non_null(markdown);
     struct parser *page = page_parse(html);
-    /* Summary, machine, three scenes, cheapest of all scenes and of one, slopes, rules, two papers, two reproduced
-       tables. */
-    assert_int_equal(page->tables, 13);
-    assert_int_equal(page->rows, 13 + 14 + 9 + 1 + 1 + 1 + 1 + 4 + 3 + 3);
+    /* Summary, machine, three scenes, cheapest of all scenes and of one, slopes, choices of all scenes and plans of
+       one, predictions, rules, two papers, two reproduced tables. */
+    assert_int_equal(page->tables, 16);
+    assert_int_equal(page->rows, 16 + 14 + 9 + 1 + 1 + 1 + 1 + 2 + 1 + 1 + 4 + 3 + 3);
     assert_holds(html, "<details>\n<summary>a</summary>");
     assert_holds(markdown, "|fastest with an error up to|1e-1|\n|---|---|\n|a|bp_linear:beta=8, 30 ms|\n");
     assert_null(strstr(markdown, "## Slopes"));
+    assert_holds(markdown, "|a|error=0.01|bp_fitted:taps=4|0.02|0.0051|left out: double precision: 3e-07|");
+    assert_true(!strstr(markdown, "over the budget"));
+    assert_holds(html, "error 0.2 is over the budget");
+    assert_holds(markdown, "|bp_linear|3|1.062|1.1|1.25|1.3|1.75|");
     assert_holds(html, "<h2 id=\"summary\">Summary</h2>");
     assert_holds(html, "<a href=\"#summary\">");
     assert_holds(html, "class=\"good\">9.0e-02, 33.3x</td>"); /* of scene a: no other has an error below 0.1 */

@@ -279,6 +279,32 @@ static char *rows_read(void)
     return text;
 }
 
+/* Every setting but the reference is predicted, hardly ever too low; the summary is of these rows. */
+static void predictions_check(void)
+{
+    struct csv csv;
+    double least = INFINITY, largest = 0;
+    assert_int_equal(csv_read(path_of("out/predicted.csv"), CSV_TAIL_KEEP, &csv), STATUS_OK);
+    assert_int_equal(csv.row_count, 7 + 7);
+    for (int row = 0; row < csv.row_count; row++) {
+        const double ratio = cell(&csv, row, "ratio");
+        assert_close(ratio, cell(&csv, row, "predicted") / cell(&csv, row, "error_gain"), 1e-6 * ratio);
+        assert_true(ratio > 0.95 && ratio < 20);
+        least = fmin(least, ratio);
+        largest = fmax(largest, ratio);
+    }
+    csv_free(&csv);
+    assert_int_equal(csv_read(path_of("out/predictions.csv"), CSV_TAIL_KEEP, &csv), STATUS_OK);
+    assert_int_equal(csv.row_count, 3);
+    assert_string_equal(csv_cell(&csv, 0, 0), "all");
+    assert_close(cell(&csv, 0, "images"), 14, 0);
+    assert_close(cell(&csv, 0, "least"), least, 1e-6);
+    assert_close(cell(&csv, 0, "largest"), largest, 1e-6);
+    assert_true(cell(&csv, 0, "median") >= least && cell(&csv, 0, "median") <= largest);
+    csv_free(&csv);
+    assert_int_equal(files_count("out/predicted.png"), 1);
+}
+
 static void test_speckle_sweep_is_resumed_and_shows_the_laws(void **state)
 {
     (void)state;
@@ -334,6 +360,7 @@ static void test_speckle_sweep_is_resumed_and_shows_the_laws(void **state)
     assert_close(cell(&csv, 0, "zp15_rate"), 10, 1e-6);
     assert_close(floor_error, cell(&csv, 0, "linear_floor"), 0.03);
     csv_free(&csv);
+    predictions_check();
     free(first);
     free(second);
 }
