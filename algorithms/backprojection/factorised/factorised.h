@@ -1,0 +1,57 @@
+/* Factorised back projection (bp_factorised.c): the plan of one tree, its images and its execution. */
+#ifndef SASBENCH_BACKPROJECTION_FACTORISED_FACTORISED_H
+#define SASBENCH_BACKPROJECTION_FACTORISED_FACTORISED_H
+
+#include "backprojection/factorised/trace.h"
+#include "backprojection/factorised/tree.h"
+#include "backprojection/general/lines.h"
+
+/* What one thread needs to itself. */
+struct factorised_scratch {
+    void *interleaved;            /* complex [bp_record_values] */
+    struct vector *tx, *velocity; /* [base] pings of a subaperture in the axes of a ray */
+    struct vector *rx;            /* [base][receivers] */
+    struct ping_box *boxes;       /* [base] */
+    void *trace, *row;            /* trace.h */
+};
+
+struct factorised {
+    struct tree tree;
+    struct bp bp; /* the problem, its records and how they are read; no engine */
+    bp_sum_function *sum;
+    polar_trace_function *trace;
+    struct bp_layout layout, polar_layout; /* of records, of traces */
+    struct bp_table polar_table;
+    size_t trace_pitch;
+    double reach, longest;     /* of a trace's ping_box */
+    struct vector *normal;     /* [pings] acquisition_normal */
+    struct ping_box *boxes;    /* [pings] */
+    void *rows;                /* real [base receivers][layout.record]; one value more may be read */
+    void *images[STAGES_MOST]; /* real [slots][slot] of a level: the parts of one subaperture, or one image */
+    size_t slot[STAGES_MOST];
+    void **phasors; /* [stages][views] real [cosines, sines][count]: exp(-j 4 pi fc rho/c) */
+    void **sums;    /* [patch_count]: re then im, real [lines][pixels of a line] */
+    bool *needed;   /* [subapertures][patch_count]: are pixels read from it, or summed from its records? */
+    struct factorised_scratch *scratch; /* [threads] */
+    int threads;
+    double flops;  /* but for pixels summed from records */
+    double direct; /* pixels times records that are summed so, if all of them count */
+};
+
+/* What some settings cost, in pairs of the general engine, and what back projection itself does: to be compared.
+   Errors: as tree_make; STATUS_UNSUPPORTED where patches are turned by different angles. */
+enum status factorised_cost(const struct problem *problem, const struct tree_settings *settings, double *cost);
+enum status factorised_cost_direct(const struct problem *problem, double *cost);
+
+/* stages >= 1. Errors: as factorised_cost, and STATUS_UNSUPPORTED for records too long. *out is NULL then. */
+enum status factorised_plan(const struct problem *problem, const struct tree_settings *settings,
+                            struct factorised **out);
+/* Fill needed, direct and add to flops, line by line; false without memory. The images' part of factorised_plan. */
+bool factorised_count(struct factorised *plan);
+void factorised_execute(struct factorised *plan, const struct echoes *echoes, struct image *image,
+                        struct stages *stages);
+/* FLOPs; bytes; pairs are 0. */
+struct work factorised_work(const struct factorised *plan);
+void factorised_destroy(struct factorised *plan);
+
+#endif

@@ -1,0 +1,128 @@
+/* The tree of subapertures of factorised back projection, and the polar grids of their images.
+
+   A subaperture is a stretch of pings with all their receivers. Its image, of the pairs that it holds, is kept on a
+   polar grid about its centre C: places C + rho (s b + sqrt(1 - s^2) a), rho m from C and s the sine off the axis a,
+   the direction of the patch's lines (or against it: the other side), b across. What is kept is
+
+       f(rho, s) = image exp(-j 4 pi fc rho/c),
+
+   of which a pair's part is band limited in both coordinates: at the delay tau of a pair and d = tau - 2 rho/c its
+   frequencies are at most B/c + fc |dd/drho| cycles a metre and (fc + B/2) |dd/ds| cycles. Both are measured from
+   exact delays of the subaperture's pairs, whatever its track: ends of the grid, and places between them. Steps follow
+   from the frequencies and the taps' oversampling (taps.h). Where dd/drho takes more than RESIDUAL_MOST of the signal's
+   band B/c, a place is too near: it is not read from this image, but from those of the subaperture's parts.
+
+   An image of level 0 is summed from the records, one of a higher level from the images of its parts, a line of equal s
+   at a time; pixels, line by line, from the largest subapertures that may be read there. Where all of a subaperture's
+   pairs do not count at a pixel, because of the records' ends or of the aperture limit, its image is not read either.
+   What no image can give is summed from the records: nothing is approximated but the interpolations. */
+#ifndef SASBENCH_BACKPROJECTION_FACTORISED_TREE_H
+#define SASBENCH_BACKPROJECTION_FACTORISED_TREE_H
+
+#include "algorithm.h"
+#include "backprojection/factorised/taps.h"
+#include "backprojection/pairs.h"
+
+enum { STAGES_MOST = 6 }; /* levels of images */
+
+/* Of one subaperture, one patch and one side of its lines. */
+struct polar {
+    int line_first, lines;   /* line n lies at s = (line_first + n) step; lines 0: there is no image */
+    int place_first, places; /* place j at rho = (place_first + j) step */
+    double near, far;        /* m: rho at which it may be read */
+    double low, high;        /* s at which it may be read */
+    size_t offset;           /* of its values in the subaperture's, real */
+};
+
+/* Values of a line's real parts, and of its imaginary ones behind them: whole vectors, and one more. */
+static inline size_t polar_pitch(const struct polar *polar)
+{
+    return ((size_t)polar->places + 15) / 16 * 16 + 16;
+}
+
+struct subaperture {
+    int ping, pings;      /* first one, count */
+    int level;            /* 0: of records */
+    int parent;           /* -1: none */
+    int child, children;  /* its parts */
+    double x, y, radius;  /* m: centre, and how far transmitters and receivers are from it */
+    struct vector tx;     /* m: the transmitters' mean */
+    double tx_radius;     /* m: how far they are from it */
+    struct vector normal; /* the mean of acquisition_normal */
+    double normal_radius; /* rad: how far those turn from it */
+    size_t values;        /* of its images, real */
+    struct polar *polars; /* [views] in the tree's */
+};
+
+/* Of all grids of a level, one patch and one side. */
+struct polar_step {
+    double rho, sine;       /* m, 1 */
+    int place_first, count; /* places of any subaperture */
+    double tangent;         /* of the greatest angle between a ray and a line that is read */
+};
+
+struct tree_settings {
+    double error;             /* the relative L2 error of the image that the interpolations may make */
+    int base, factor, stages; /* pings of the smallest subapertures, parts of the larger ones; levels of images */
+};
+
+struct tree {
+    struct problem problem;
+    struct tree_settings settings;
+    struct polar_taps range, angle;
+    double band;                /* Hz: of the compressed echoes, but for as little energy as the error allows */
+    int views;                  /* two a patch: patch 2 + side */
+    bool *along_x;              /* [patch_count] the lines' direction */
+    int first[STAGES_MOST + 1]; /* of a level's subapertures; behind the last level, their number */
+    struct subaperture *subapertures;
+    struct polar *polars;     /* [subapertures][views] */
+    struct polar_step *steps; /* [stages][views] */
+    double bytes;
+};
+
+/* Errors: STATUS_FAILED without memory, STATUS_UNSUPPORTED for an error that cannot be kept. *tree is to be freed all
+   the same, by tree_free, which accepts a zeroed struct. */
+enum status tree_make(const struct problem *problem, const struct tree_settings *settings, struct tree *tree);
+void tree_free(struct tree *tree);
+
+/* (along, across) of a vector in the axes a, b of a view. */
+struct polar_axes {
+    bool along_x;
+    double sign;
+};
+static inline struct polar_axes polar_axes(const struct tree *tree, int view)
+{
+    return (struct polar_axes){tree->along_x[view / 2], view % 2 ? -1 : 1};
+}
+static inline void polar_turn(struct polar_axes axes, double x, double y, double *along, double *across)
+{
+    *along = axes.sign * (axes.along_x ? x : y);
+    *across = axes.along_x ? y : x;
+}
+static inline void polar_turn_back(struct polar_axes axes, double along, double across, double *x, double *y)
+{
+    *x = axes.along_x ? axes.sign * along : across;
+    *y = axes.along_x ? across : axes.sign * along;
+}
+static inline struct polar_step *polar_step(const struct tree *tree, int level, int view)
+{
+    return &tree->steps[level * tree->views + view];
+}
+
+/* Stretches of a line of pixels, apart and in rising order. */
+enum { SPANS_MOST = 8 * (STAGES_MOST + 2) };
+struct spans {
+    int count;
+    struct pair_span span[SPANS_MOST];
+};
+
+/* Pixels of a line that are read from a subaperture's image of one view: its image may be read there, those of
+   larger subapertures may not. */
+void tree_pixels(const struct tree *tree, int subaperture, int view, const struct pixel_line *line,
+                 struct spans *spans);
+/* Pixels of a line of a patch for which a subaperture of level 0 is summed from its records, those left out that no
+   aperture limit of its pings holds. */
+void tree_direct(const struct tree *tree, int subaperture, int patch, const struct pixel_line *line,
+                 struct spans *spans);
+
+#endif

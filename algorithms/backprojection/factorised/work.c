@@ -1,0 +1,188 @@
+/* What factorised back projection does: counted work, and its cost, by which the number of levels is chosen. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "backprojection/factorised/factorised.h"
+
+/* What lines of places or pixels take: pairs of a pixel and a record, of a pixel and an image, samples of traces,
+   lines. */
+struct amounts {
+    double records, images, traces, lines;
+};
+
+static void add_span(const struct tree *tree, const struct polar_step *step, double metres, double pixels,
+                     struct amounts *sum)
+{
+    sum->images += pixels;
+    sum->traces += metres / step->rho + tree->range.taps + 2;
+    sum->lines++;
+}
+
+/* Images of a subaperture. */
+static void count_images(const struct tree *tree, const struct subaperture *part, struct amounts *sum)
+{
+    for (int v = 0; v < tree->views; v++) {
+        const struct polar *polar = &part->polars[v];
+        const double places = (double)polar->lines * polar->places;
+        if (part->level == 0) {
+            sum->records += places * part->pings * tree->problem.acquisition->receivers;
+            sum->lines += (double)polar->lines * part->pings;
+            continue;
+        }
+        const double rho = polar_step(tree, part->level, v)->rho;
+        for (int n = 0; n < part->children * polar->lines; n++)
+            add_span(tree, polar_step(tree, part->level - 1, v), polar->places * rho, polar->places, sum);
+    }
+}
+
+/* Every `stride`th line of a patch, for one subaperture: what is read from its images; *direct: pixels times records
+   that are summed from its records. */
+static void count_pixels(const struct tree *tree, int subaperture, int patch, int stride, struct amounts *sum,
+                         double *direct)
+{
+    const struct subaperture *part = &tree->subapertures[subaperture];
+    const struct grid *grid = &tree->problem.patches[patch];
+    const bool along_x = tree->along_x[patch];
+    const double metres = along_x ? grid->x_step : grid->r_step;
+    const double records = (double)part->pings * tree->problem.acquisition->receivers;
+    struct spans spans;
+    for (int n = 0; n < grid_line_count(grid, along_x); n += stride) {
+        const struct pixel_line line = grid_line(grid, along_x, n);
+        for (int view = 2 * patch; view < 2 * patch + 2; view++) {
+            tree_pixels(tree, subaperture, view, &line, &spans);
+            for (int k = 0; k < spans.count; k++) {
+                const double pixels = spans.span[k].end - spans.span[k].begin;
+                add_span(tree, polar_step(tree, part->level, view), pixels * metres, pixels, sum);
+            }
+        }
+        if (part->level > 0)
+            continue;
+        tree_direct(tree, subaperture, patch, &line, &spans);
+        for (int k = 0; k < spans.count; k++)
+            *direct += (spans.span[k].end - spans.span[k].begin) * records;
+    }
+}
+
+static int stride_of(const struct tree *tree, int patch)
+{
+    const int lines = grid_line_count(&tree->problem.patches[patch], tree->along_x[patch]);
+    return lines > 64 ? lines / 32 : 1;
+}
+
+/* In pairs of the general engine, measured: what an image takes for each pixel, a trace for each sample, a line. */
+static double cost_of(const struct tree *tree, const struct amounts *sum)
+{
+    static const double IMAGE = 1.2, TRACE = 1, TAP = 0.1, BRANCH = 0.05, LINE = 300;
+    const double trace = TRACE + TAP * tree->angle.taps + BRANCH * tree->range.taps * tree->range.branches;
+    return sum->records + IMAGE * sum->images + trace * sum->traces + LINE * sum->lines;
+}
+
+static double tree_cost(const struct tree *tree)
+{
+    struct amounts all = {0};
+    double cost = 0;
+    for (int n = 0; n < tree->first[tree->settings.stages]; n++) {
+        count_images(tree, &tree->subapertures[n], &all);
+        for (int k = 0; k < tree->problem.patch_count; k++) {
+            struct amounts some = {0};
+            double direct = 0;
+            count_pixels(tree, n, k, stride_of(tree, k), &some, &direct);
+            cost += stride_of(tree, k) * (cost_of(tree, &some) + direct);
+        }
+    }
+    return cost + cost_of(tree, &all);
+}
+
+enum status factorised_cost(const struct problem *problem, const struct tree_settings *settings, double *cost)
+{
+    struct problem seen = *problem;
+    struct turned_problem turned;
+    struct tree tree = {.views = 0};
+    enum status status = problem_turn_back(&seen, &turned, NULL);
+    if (status == STATUS_OK)
+        status = tree_make(&seen, settings, &tree);
+    if (status == STATUS_OK)
+        *cost = tree_cost(&tree);
+    tree_free(&tree);
+    turned_free(&turned);
+    return status;
+}
+
+/* Pairs inside the aperture limit, of some lines and pings. */
+static double pairs_about(const struct problem *problem)
+{
+    enum { LINES = 32, PINGS = 64 };
+    const struct acquisition *a = problem->acquisition;
+    double pairs = 0;
+    for (int k = 0; k < problem->patch_count; k++) {
+        const struct grid *grid = &problem->patches[k];
+        const int stride = grid->x_count > LINES ? grid->x_count / LINES : 1;
+        const int every = a->pings > PINGS ? a->pings / PINGS : 1;
+        for (int n = 0; n < grid->x_count; n += stride)
+            for (int p = 0; p < a->pings; p += every) {
+                struct pair_span spans[2];
+                const struct pixel_line line = grid_line(grid, false, n);
+                const int count = pair_spans(a, p, acquisition_normal(a, p), &line, spans);
+                for (int i = 0; i < count; i++)
+                    pairs += (double)stride * every * (spans[i].end - spans[i].begin);
+            }
+    }
+    return pairs * a->receivers;
+}
+
+enum status factorised_cost_direct(const struct problem *problem, double *cost)
+{
+    static const double INVARIANT = 0.3; /* of a pair of the general engine */
+    const struct condition invariant = invariant_condition(problem, SEVERITY_INFORM);
+    struct problem seen = *problem;
+    struct turned_problem turned;
+    enum status status = problem_turn_back(&seen, &turned, NULL);
+    if (status == STATUS_OK)
+        *cost = pairs_about(&seen) * (condition_holds(&invariant) ? INVARIANT : 1);
+    turned_free(&turned);
+    return status;
+}
+
+bool factorised_count(struct factorised *plan)
+{
+    const struct tree *tree = &plan->tree;
+    const int patches = tree->problem.patch_count, count = tree->first[tree->settings.stages];
+    struct amounts all = {0};
+    plan->needed = malloc((size_t)(count * patches) * sizeof *plan->needed);
+    if (!plan->needed)
+        return false;
+    plan->bp.work.bytes += (double)(count * patches) * sizeof *plan->needed;
+    for (int n = 0; n < count; n++) {
+        count_images(tree, &tree->subapertures[n], &all);
+        plan->flops += 6 * (double)tree->subapertures[n].values / 2;
+        for (int k = 0; k < patches; k++) {
+            struct amounts some = {0};
+            double direct = 0;
+            count_pixels(tree, n, k, 1, &some, &direct);
+            plan->needed[n * patches + k] = some.lines > 0 || direct > 0;
+            plan->direct += direct;
+            all.images += some.images;
+            all.traces += some.traces;
+        }
+    }
+    const struct polar_taps *range = &tree->range;
+    const double pair = 4.0 * (plan->bp.table.branches - 1) + 8;
+    plan->flops += all.records * pair + all.images * (4.0 * (range->branches - 1) + 8)
+                   + all.traces * 4 * (tree->angle.taps + (double)range->taps * range->branches);
+    return true;
+}
+
+struct work factorised_work(const struct factorised *plan)
+{
+    const struct tree *tree = &plan->tree;
+    struct work work = plan->bp.work;
+    const double all = (double)plan->bp.problem.acquisition->pings * plan->bp.problem.acquisition->receivers
+                       * problem_pixels(&plan->bp.problem);
+    work.flops = plan->flops + plan->direct * (4.0 * (plan->bp.table.branches - 1) + 8);
+    snprintf(work.engine, sizeof work.engine, "%d stages of %d", tree->settings.stages, tree->settings.factor);
+    if (plan->direct > 0)
+        snprintf(work.skipped, sizeof work.skipped, "%.3g %% of the pairs are summed from records, not from images",
+                 100 * plan->direct / all);
+    return work;
+}

@@ -1,0 +1,179 @@
+/* Lines of pixels and batches of records (general/lines.h). */
+#include "backprojection/general/lines.h"
+
+#include <omp.h>
+#include <string.h>
+
+static bp_sum_function *const sum_functions[][2] = {
+    [ISA_BASELINE] = {bp_sum_float_baseline, bp_sum_double_baseline},
+#ifdef SASBENCH_X86_64
+    [ISA_V3] = {bp_sum_float_v3, bp_sum_double_v3},
+    [ISA_V4] = {bp_sum_float_v4, bp_sum_double_v4},
+#endif
+};
+
+bp_sum_function *bp_sum_choose(enum precision precision)
+{
+    return sum_functions[isa_choose()][precision];
+}
+
+size_t bp_branch_length(const struct bp *bp)
+{
+    return (size_t)(bp->shape.length + 2 * (bp->table.guard - bp->shape.guard));
+}
+
+size_t bp_record_values(const struct bp *bp)
+{
+    const size_t trace = (size_t)bp->shape.branches * (size_t)bp->shape.length;
+    return trace + (bp->table.branches > bp->shape.branches ? (size_t)bp->table.branches * bp_branch_length(bp) : 0);
+}
+
+/* One block more than a record has: windows are two. Rounded up, so that a plan needs the same memory everywhere. */
+struct bp_layout bp_layout_make(enum precision precision, size_t length, int branches, bool in_blocks)
+{
+    const size_t parts = 2 * (size_t)branches, vector = 64 / real_size(precision);
+    const size_t blocks = (length + vector - 1) / vector + 1;
+    struct bp_layout layout = {.apart = in_blocks ? blocks * vector : length, .blocks = 1};
+#ifdef SASBENCH_X86_64
+    if (in_blocks && isa_choose() == ISA_V4)
+        layout = (struct bp_layout){.apart = vector, .blocks = (int)blocks};
+#endif
+    layout.record = (size_t)layout.blocks * parts * layout.apart;
+    return layout;
+}
+
+/* Add some receivers to pixels `within` of a line. */
+static void sum_span(const struct bp_lines *lines, const struct ping_box *box, const struct bp_ping *ping,
+                     const struct pixel_line *line, struct pair_span within, void *re, void *im)
+{
+    struct bp_block blocks[BP_BLOCKS];
+    struct pair_span left = within;
+    for (int count; (count = blocks_make(box, line, &left, blocks)) > 0;)
+        lines->sum(&lines->bp->medium, &lines->bp->table, ping, line, count, blocks, re, im);
+}
+
+/* Is the delay of every pixel of `within` inside every receiver's record, by the least and the longest way there is? */
+static bool inside_record(const struct bp_lines *lines, int p, const struct pixel_line *line, struct pair_span within)
+{
+    const struct acquisition *a = lines->acquisition;
+    double c = a->sound_speed, first = a->t0[p], last = first + (a->samples - 1) / a->fs, slack = 1e-9 / a->fs;
+    double least = 2 * ping_box_clearance(&lines->boxes[p], line, within.begin, within.end) / c;
+    double most = 2 * ping_box_extent(&lines->boxes[p], line, within.begin, within.end) / c;
+    return least >= first + slack && most <= last - slack;
+}
+
+void bp_lines_add(const struct bp_lines *lines, const struct pixel_line *line, size_t first, int count, void *re,
+                  void *im)
+{
+    const struct acquisition *a = lines->acquisition;
+    size_t row_bytes = lines->layout.record * real_size(lines->bp->problem.precision), end = first + (size_t)count;
+    for (size_t index = first; index < end;) {
+        int p = (int)(index / (size_t)a->receivers), m = (int)(index % (size_t)a->receivers);
+        struct bp_ping ping = {a->tx[p],      a->velocity[p],
+                               a->t0[p],      a->receivers - m,
+                               a->rx + index, (const char *)lines->rows + (index - first) * row_bytes,
+                               lines->layout};
+        if (end - index < (size_t)ping.receivers)
+            ping.receivers = (int)(end - index);
+        struct pair_span aperture[2], record[2];
+        int spans = pair_spans(a, p, lines->normal[p], line, aperture);
+        for (int s = 0; s < spans; s++) {
+            if (inside_record(lines, p, line, aperture[s])) {
+                sum_span(lines, &lines->boxes[p], &ping, line, aperture[s], re, im);
+                continue;
+            }
+            struct bp_ping one = ping;
+            one.receivers = 1;
+            for (int n = 0; n < ping.receivers; n++) {
+                int parts = record_spans(a, p, m + n, line, aperture[s], record);
+                one.rx = ping.rx + n;
+                one.rows = (const char *)ping.rows + (size_t)n * row_bytes;
+                for (int i = 0; i < parts; i++)
+                    sum_span(lines, &lines->boxes[p], &one, line, record[i], re, im);
+            }
+        }
+        index += (size_t)ping.receivers;
+    }
+}
+
+void bp_lines_store(enum precision precision, const struct grid *grid, bool along_x, const void *sums, void *pixels)
+{
+    size_t nx = (size_t)grid->x_count, nr = (size_t)grid->r_count, count = nx * nr;
+    size_t row = along_x ? nx : 1, column = along_x ? 1 : nr;
+    bool is_double = precision == PRECISION_DOUBLE;
+#pragma omp parallel for schedule(static)
+    for (size_t i = 0; i < nr; i++)
+        for (size_t j = 0; j < nx; j++) {
+            size_t from = i * row + j * column, to = 2 * (i * nx + j);
+            if (is_double) {
+                ((double *)pixels)[to] = ((const double *)sums)[from];
+                ((double *)pixels)[to + 1] = ((const double *)sums)[count + from];
+            } else {
+                ((float *)pixels)[to] = ((const float *)sums)[from];
+                ((float *)pixels)[to + 1] = ((const float *)sums)[count + from];
+            }
+        }
+}
+
+/* One branch, complex [length], into its blocks. */
+#define SPREAD(real)                                                                                                   \
+    do {                                                                                                               \
+        const real *values = (const real *)from + 2 * branch * length;                                                 \
+        real *to = (real *)row + 2 * branch * block;                                                                   \
+        for (size_t left = length, k = 0; k < (size_t)layout->blocks; k++, to += step) {                               \
+            const size_t count = left < block ? left : block;                                                          \
+            for (size_t i = 0; i < count; i++) {                                                                       \
+                to[i] = values[2 * i];                                                                                 \
+                to[block + i] = values[2 * i + 1];                                                                     \
+            }                                                                                                          \
+            for (size_t i = count; i < block; i++)                                                                     \
+                to[i] = to[block + i] = 0;                                                                             \
+            values += 2 * count;                                                                                       \
+            left -= count;                                                                                             \
+        }                                                                                                              \
+    } while (0)
+
+/* A kernel's branches of a trace, complex [branches][length], which follow it; 0 beyond the record's ends. */
+#define FILTER(real)                                                                                                   \
+    do {                                                                                                               \
+        const size_t count = 2 * (length - 2 * guard);                                                                 \
+        for (size_t m = 0; m < branches; m++) {                                                                        \
+            real *to = (real *)trace + 2 * ((size_t)bp->shape.length + m * length);                                    \
+            memset(to, 0, 2 * length * sizeof *to);                                                                    \
+            to += 2 * guard;                                                                                           \
+            for (int t = 0; t < kernel->taps; t++) {                                                                   \
+                const real weight = (real)kernel->coefficients[m * (size_t)kernel->taps + (size_t)t];                  \
+                const real *values = (const real *)trace + 2 * (bp->shape.guard + kernel->first + t);                  \
+                for (size_t i = 0; i < count; i++)                                                                     \
+                    to[i] += weight * values[i];                                                                       \
+            }                                                                                                          \
+        }                                                                                                              \
+    } while (0)
+
+static void filter(const struct bp *bp, void *trace)
+{
+    const struct bp_kernel *kernel = &bp->kernel;
+    const size_t branches = (size_t)bp->table.branches, length = bp_branch_length(bp), guard = (size_t)bp->table.guard;
+    if (bp->problem.precision == PRECISION_DOUBLE)
+        FILTER(double);
+    else
+        FILTER(float);
+}
+
+void bp_record_fill(const struct bp *bp, const struct bp_layout *layout, const struct echoes *echoes, size_t index,
+                    void *scratch, void *row)
+{
+    const size_t branches = (size_t)bp->table.branches, length = bp_branch_length(bp);
+    const size_t block = layout->apart, step = 2 * branches * block, size = real_size(bp->problem.precision);
+    char *from = scratch;
+    bp_fill_row(bp, omp_get_thread_num(), echoes, index, from);
+    if (bp->table.branches > bp->shape.branches) {
+        filter(bp, from);
+        from += 2 * (size_t)bp->shape.length * size;
+    }
+    for (size_t branch = 0; branch < branches; branch++)
+        if (bp->problem.precision == PRECISION_DOUBLE)
+            SPREAD(double);
+        else
+            SPREAD(float);
+}

@@ -1,0 +1,149 @@
+/* Fast factorised back projection (Ulander, Hellsten, Stenstroem, IEEE TAES 39, 2003), of any track, bistatic, with exact
+   delays. Pings are divided into subapertures of `base` pings, whose images, of few directions, are summed from the
+   records on polar grids about their centres; `factor` of them are merged at a time into an image of more directions,
+   `stages` levels of images in all, and pixels are interpolated from the last. backprojection/factorised/tree.h has the
+   grids and their sampling.
+
+   Cost: a pixel reads the images of the largest subapertures, P/(base factor^(stages-1)) of them, in place of the
+   records of P pings: of n pings, n^(1/stages) or so for each stage. Images have about as many samples as the records.
+
+   Error, relative L2: each time that an image is read, it is interpolated along range and across directions, each to
+   e = error/sqrt(2 stages + 1), and the records as well: together `error` at most, for a flat spectrum. Taps and
+   oversampling are chosen for e with the least work (factorised/taps.h), the records' polynomials as well. Whatever
+   cannot be read from an image is summed from the records (near pixels, ends of records, edges of the aperture
+   limit). */
+#include <math.h>
+#include <stdlib.h>
+
+#include "backprojection/factorised/factorised.h"
+#include "backprojection/farrow.h"
+
+struct options {
+    double error;
+    int base, factor, stages;
+};
+
+enum { STAGES_AUTO }; /* of `stage_names`: the others are one more than their number */
+static const char *const stage_names[] = {"auto", "0", "1", "2", "3", "4", "5", "6", NULL};
+
+static const struct param params[] = {
+    {PARAM(struct options, error), .summary = "relative L2 error that the interpolations may make together",
+     .initial = 1e-2, .min = 1e-5, .max = 0.3, .sweep = "1e-1 3e-2 1e-2 3e-3 1e-3 1e-4"},
+    {PARAM(struct options, base), .summary = "pings of the smallest subapertures", .initial = 16, .min = 1, .max = 4096,
+     .terse = true},
+    {PARAM(struct options, factor), .summary = "subapertures that are merged into one", .initial = 8, .min = 2,
+     .max = 64, .terse = true},
+    {PARAM_NAMED(struct options, stages, stage_names),
+     .summary = "levels of images; 0: none, direct back projection; auto: as many as take the least work",
+     .initial = STAGES_AUTO, .max = 1 + STAGES_MOST, .terse = true},
+    {.name = NULL},
+};
+
+struct planned {
+    void *direct; /* of back projection, or */
+    struct factorised *tree;
+};
+
+static int conditions(const struct problem *problem, const void *options, struct condition *list, int room)
+{
+    (void)options;
+    return conditions_sampled(problem, list, room);
+}
+
+static enum status plan_direct(const struct problem *problem, double error, void **plan)
+{
+    const struct acquisition *a = problem->acquisition;
+    const struct interpolator branches = {
+        .upsample = 1, .taps = 1, .degree = farrow_degree(error, a->bandwidth / a->fs)};
+    const struct bp_options options = {BP_ENGINE_AUTO, 0, 1e-4};
+    return bp_plan(problem, &branches, &options, plan);
+}
+
+/* The number of levels that takes the least work; 0 where back projection itself does. */
+static enum status choose_stages(const struct problem *problem, struct tree_settings *settings)
+{
+    double least;
+    enum status status = factorised_cost_direct(problem, &least);
+    struct tree_settings tried = *settings;
+    settings->stages = 0;
+    double pings = tried.base;
+    for (tried.stages = 1; status == STATUS_OK && tried.stages <= STAGES_MOST; tried.stages++) {
+        double cost;
+        status = factorised_cost(problem, &tried, &cost);
+        if (status == STATUS_OK && cost < least) {
+            least = cost;
+            settings->stages = tried.stages;
+        }
+        if (pings >= problem->acquisition->pings)
+            break;
+        pings *= tried.factor;
+    }
+    return status;
+}
+
+static enum status plan(const struct problem *problem, const void *given, void **out)
+{
+    const struct options *options = given;
+    struct tree_settings settings = {options->error, options->base, options->factor, options->stages - 1};
+    struct condition list[CONDITIONS_MAX];
+    *out = NULL;
+    enum status status = conditions_check("bp_factorised", list, conditions(problem, options, list, CONDITIONS_MAX));
+    if (status == STATUS_OK && options->stages == STAGES_AUTO)
+        status = choose_stages(problem, &settings);
+    if (status != STATUS_OK)
+        return status;
+    struct planned *planned = calloc(1, sizeof *planned);
+    if (!planned)
+        return status_set(STATUS_FAILED, "no memory for the plan");
+    if (settings.stages == 0)
+        status = plan_direct(problem, options->error, &planned->direct);
+    else
+        status = factorised_plan(problem, &settings, &planned->tree);
+    if (status != STATUS_OK) {
+        free(planned);
+        return status;
+    }
+    *out = planned;
+    return STATUS_OK;
+}
+
+static enum status execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages)
+{
+    const struct planned *planned = plan;
+    if (planned->direct)
+        return bp_execute(planned->direct, echoes, image, stages);
+    factorised_execute(planned->tree, echoes, image, stages);
+    return STATUS_OK;
+}
+
+static struct work work(const void *plan)
+{
+    const struct planned *planned = plan;
+    struct work work = planned->direct ? bp_work(planned->direct) : factorised_work(planned->tree);
+    work.bytes += sizeof *planned;
+    return work;
+}
+
+static void destroy(void *plan)
+{
+    struct planned *planned = plan;
+    if (!planned)
+        return;
+    bp_destroy(planned->direct);
+    factorised_destroy(planned->tree);
+    free(planned);
+}
+
+const struct algorithm bp_factorised = {
+    .name = "bp_factorised",
+    .summary = "fast factorised back projection, subapertures on polar grids",
+    .reference = "Ulander, Hellsten, Stenstrom, IEEE TAES 39 (2003)",
+    .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT,
+    .options_size = sizeof(struct options),
+    .params = params,
+    .conditions = conditions,
+    .plan = plan,
+    .execute = execute,
+    .work = work,
+    .destroy = destroy,
+};
