@@ -8,7 +8,7 @@
    records of P pings: of n pings, n^(1/stages) or so for each stage. Images have about as many samples as the records.
 
    Error, relative L2: each time that an image is read, it is interpolated along range and across directions, each to
-   e = error/sqrt(2 stages + 1), and the records as well: together `error` at most, for a flat spectrum. Taps and
+   e = 0.85 error/sqrt(2 stages + 1), and the records as well: together `error` at most. Taps and
    oversampling are chosen for e with the least work (factorised/taps.h), the records' polynomials as well. Whatever
    cannot be read from an image is summed from the records (near pixels, ends of records, edges of the aperture
    limit). */

@@ -199,6 +199,8 @@ void sector_rates(const struct tree *tree, const struct subaperture *part, int v
 {
     enum { PLACES = 5 };
     const struct acquisition *a = tree->problem.acquisition;
+    /* The law is of a flat band: the outermost pairs stand for stretches of the aperture, not for their ends. */
+    const double pairs = (double)part->pings * a->receivers, cells = pairs > 1 ? pairs / (pairs - 1) : 1;
     for (int k = 0; k < PLACES * PLACES; k++) {
         const double rho = sector.rho_low * pow(sector.rho_high / sector.rho_low, (double)(k / PLACES) / (PLACES - 1));
         const double s = sector.low + (sector.high - sector.low) * (k % PLACES) / (PLACES - 1);
@@ -206,10 +208,10 @@ void sector_rates(const struct tree *tree, const struct subaperture *part, int v
         const double cosine = sqrt(fmax(1e-2, 1 - s * s));
         double along, across;
         slopes(tree, part, place_at(tree, part, view, rho, s), &along, &across);
-        const double rho_most = band(tree) + a->fc * (along + across * tangent);
-        const double sine_most = (a->fc + 0.5 * tree->band) * across * rho / cosine;
+        const double highest = a->fc + 0.5 * tree->band, rho_most = band(tree) + highest * (along + across * tangent);
+        const double sine_most = highest * across * rho / cosine;
         step->rho = fmax(step->rho, 2 * rho_most * tree->range.oversampling);
-        step->sine = fmax(step->sine, 2 * sine_most * tree->angle.oversampling);
+        step->sine = fmax(step->sine, 2 * sine_most * cells * tree->angle.oversampling);
         step->tangent = fmax(step->tangent, tangent);
     }
 }
@@ -240,7 +242,7 @@ void grid_cover(const struct tree *tree, const struct polar_step *step, struct s
         polar->places -= 1 - polar->place_first;
         polar->place_first = 1;
     }
-    const int widest = (int)floor(0.99 / step->sine); /* lines have a direction */
+    const int widest = (int)floor(SINE_WIDEST / step->sine);
     if (polar->line_first + polar->lines - 1 > widest)
         polar->lines = widest - polar->line_first + 1;
     if (polar->line_first < -widest) {

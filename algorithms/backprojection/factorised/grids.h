@@ -4,6 +4,8 @@
 
 #include "backprojection/factorised/tree.h"
 
+#define SINE_WIDEST 0.99 /* of a line: it has a direction */
+
 /* Part of a polar plane, rho_low > rho_high: none. */
 struct sector {
     double rho_low, rho_high; /* m */
@@ -19,7 +21,8 @@ struct sector sector_of_grid(const struct tree *tree, const struct subaperture *
 /* Both. */
 struct sector sector_join(struct sector a, struct sector b);
 
-/* Highest frequencies in a sector, times the oversampling: *rho, *sine samples a metre and a unit of s. */
+/* Raise step->rho and step->sine to the samples a metre and a unit of s that a sector's highest frequencies take, and
+   step->tangent to its greatest. */
 void sector_rates(const struct tree *tree, const struct subaperture *part, int view, struct sector sector,
                   struct polar_step *step);
 /* The grid that interpolates all of a sector. */

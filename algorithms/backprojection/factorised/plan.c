@@ -29,7 +29,7 @@ static double phase_limit_of(const struct tree *tree, double fs)
 static int degree_of(const struct tree *tree)
 {
     const struct acquisition *a = tree->problem.acquisition;
-    return farrow_degree(tree->settings.error / sqrt(2 * tree->settings.stages + 1), a->bandwidth / a->fs);
+    return farrow_degree(tree_error_each(&tree->settings), a->bandwidth / a->fs);
 }
 
 static void *allocate(struct factorised *plan, size_t bytes)

@@ -11,6 +11,7 @@
 /* Steps of range, over a record's samples c/(2 fs), at most: runs of pixels are fastest below one sample a pixel
    (general/run.h), of a level's image as of the one that it is made of. */
 static const double STEP_MOST = 0.93, STEP_NEXT = 0.975;
+static const double RATE_LEAST = 10;   /* lines a unit of s: a single ping would need hardly any */
 static const double ANGLE_LEAST = 1.1; /* oversampling */
 static const double RANGE_MOST = 3;    /* oversampling by small steps of a record that is sampled far finer */
 
@@ -138,6 +139,22 @@ static double step_most(const struct tree *tree, int level)
     return pow(STEP_NEXT, level) * fmax(sample, a->sound_speed / (2 * tree->band * RANGE_MOST));
 }
 
+/* Lines a unit of s, no fewer than in the margins that the taps need, where frequencies may be higher. */
+static double rate_with_margins(const struct tree *tree, int level, int view, const struct sector *sectors,
+                                const struct polar_step *step)
+{
+    const double margin = (0.5 * tree->angle.taps + 1) / fmax(step->sine, RATE_LEAST);
+    struct polar_step wide = {.sine = fmax(step->sine, RATE_LEAST)};
+    for (int n = tree->first[level]; n < tree->first[level + 1]; n++) {
+        struct sector sector = sectors[n];
+        sector.low = fmax(sector.low - margin, -SINE_WIDEST);
+        sector.high = fmin(sector.high + margin, SINE_WIDEST);
+        if (sector.rho_low <= sector.rho_high)
+            sector_rates(tree, &tree->subapertures[n], view, sector, &wide);
+    }
+    return wide.sine;
+}
+
 /* Steps and grids of a level, those of the level above being made. */
 static void level_cover(struct tree *tree, int level, struct sector *sectors)
 {
@@ -149,8 +166,9 @@ static void level_cover(struct tree *tree, int level, struct sector *sectors)
             if (sectors[n].rho_low <= sectors[n].rho_high)
                 sector_rates(tree, &tree->subapertures[n], v, sectors[n], step);
         }
+        step->sine = rate_with_margins(tree, level, v, sectors, step);
         step->rho = 1 / step->rho;
-        step->sine = step->sine > 10 ? 1 / step->sine : 0.1; /* a single ping has hardly an angle */
+        step->sine = 1 / step->sine;
         for (int n = tree->first[level]; n < tree->first[level + 1]; n++)
             grid_cover(tree, step, sectors[n], &tree->subapertures[n].polars[v]);
     }
@@ -206,9 +224,8 @@ static double band_of(const struct acquisition *a, double most)
 
 static enum status taps_make(struct tree *tree)
 {
-    /* The root of the sum of squares of the records' error and of two errors each time that an image is read. */
     const struct acquisition *a = tree->problem.acquisition;
-    const double each = tree->settings.error / sqrt(2 * tree->settings.stages + 1);
+    const double each = tree_error_each(&tree->settings);
     tree->band = band_of(a, each * each);
     const double least = 0.8 * a->sound_speed / (2 * tree->band * step_most(tree, 0)); /* what that leaves at least */
     enum status status = polar_taps_choose(each, fmax(ANGLE_LEAST, least), &tree->range);
