@@ -56,7 +56,7 @@ struct method method_of(const struct spec *spec, const char *engine, const struc
             method.reading.kind = laws[k].kind;
             method.error_most = laws[k].error_most;
         }
-    if (strcmp(spec->algorithm->name, "auto") == 0) /* its own promise, with room */
+    if (!method.has_reading) /* what is asked for, where that is a setting, with room */
         method.error_most = fmin(1.5 * option_value(spec, "error", ERROR_MOST), ERROR_MOST);
     if (option_value(spec, "preemphasis", 0) != 0)
         method.has_reading = false; /* no filter in extended precision */

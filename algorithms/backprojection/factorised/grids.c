@@ -9,6 +9,7 @@ static const double RESIDUAL_MOST = 1; /* frequencies of d along rho and along a
 static const double SINE_MOST = 0.9;   /* off the axis */
 static const double RADII_LEAST = 3;   /* rho over the subaperture's radius */
 enum { PINGS_MOST = 64, BISECTIONS = 12, EDGE = 9, CLIPS = 8 };
+enum { PLACES_MOST = 1 << 28, LINES_MOST = 1 << 20 }; /* of a grid: beyond, there is none */
 
 static struct sector sector_none(void)
 {
@@ -225,13 +226,14 @@ static int margin_places(const struct tree *tree)
 /* Lines: at the margin's places, a line that is read lies at other s. */
 static int margin_lines(const struct tree *tree, const struct polar_step *step, double rho)
 {
-    return tree->angle.taps / 2 + 1 + (int)ceil(margin_places(tree) * step->rho * step->tangent / rho / step->sine);
+    const double turned = ceil(margin_places(tree) * step->rho * step->tangent / rho / step->sine);
+    return tree->angle.taps / 2 + 1 + (int)fmin(turned, LINES_MOST);
 }
 
 void grid_cover(const struct tree *tree, const struct polar_step *step, struct sector sector, struct polar *polar)
 {
     *polar = (struct polar){.lines = 0};
-    if (sector_is_empty(sector))
+    if (sector_is_empty(sector) || !(sector.rho_high < PLACES_MOST * step->rho && 1 < LINES_MOST * step->sine))
         return;
     const int places = margin_places(tree), lines = margin_lines(tree, step, sector.rho_low);
     polar->place_first = (int)floor(sector.rho_low / step->rho) - places;

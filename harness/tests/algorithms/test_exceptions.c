@@ -29,6 +29,8 @@ static const char *const specs[] = {
     "bp_farrow:degree=9,factor=2,engine=general,exact=true",
     "bp_fitted",
     "bp_fitted:factor=4,engine=general",
+    "bp_factorised",
+    "bp_factorised:stages=2,base=4",
     "rma_lbf",
     "rma_lbf:variant=printed,blocks=2,spacing=uniform,blend=off,stolt=direct,sum=after",
     "rma_pca",
