@@ -1,8 +1,8 @@
-/* Fast factorised back projection (Ulander, Hellsten, Stenstroem, IEEE TAES 39, 2003), of any track, bistatic, with exact
-   delays. Pings are divided into subapertures of `base` pings, whose images, of few directions, are summed from the
-   records on polar grids about their centres; `factor` of them are merged at a time into an image of more directions,
-   `stages` levels of images in all, and pixels are interpolated from the last. backprojection/factorised/tree.h has the
-   grids and their sampling.
+/* Fast factorised back projection (Ulander, Hellsten, Stenstrom, IEEE TAES 39, 2003), of any track, bistatic, with
+   exact delays. Pings are divided into subapertures of `base` pings, whose images, of few directions, are summed from
+   the records on polar grids about their centres; `factor` of them are merged at a time into an image of more
+   directions, `stages` levels of images in all, and pixels are interpolated from the last.
+   backprojection/factorised/tree.h has the grids and their sampling.
 
    Cost: a pixel reads the images of the largest subapertures, P/(base factor^(stages-1)) of them, in place of the
    records of P pings: of n pings, n^(1/stages) or so for each stage. Images have about as many samples as the records.

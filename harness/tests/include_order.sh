@@ -9,7 +9,7 @@ find algorithms harness -name '*.[ch]' | sort | xargs awk '
         # A folder, and what it may include beside itself. What contributors read ("algorithm.h") lies in algorithms/
         # beside the algorithms, which nobody includes.
         order = "algorithms algorithms/common algorithms/backprojection algorithms/backprojection/general " \
-                "algorithms/backprojection/invariant algorithms/range_migration " \
+                "algorithms/backprojection/invariant algorithms/backprojection/factorised algorithms/range_migration " \
                 "algorithms/range_migration/delay algorithms/wavenumber algorithms/planner harness/data harness/scene " \
                 "harness/measure harness/show harness/study harness/stability harness/gate harness/papers " \
                 "harness/command harness/tests " \
@@ -21,6 +21,10 @@ find algorithms harness -name '*.[ch]' | sort | xargs awk '
             rank[folder[k]] = k
         # Neighbours that must not know each other.
         apart["algorithms/backprojection/general", "algorithms/backprojection/invariant"] = 1
+        apart["algorithms/backprojection/factorised", "algorithms/backprojection/invariant"] = 1
+        apart["algorithms/backprojection/factorised", "algorithms/range_migration"] = 1
+        apart["algorithms/backprojection/factorised", "algorithms/range_migration/delay"] = 1
+        apart["algorithms/backprojection/factorised", "algorithms/wavenumber"] = 1
         apart["algorithms/backprojection", "algorithms/range_migration"] = 1
         apart["algorithms/backprojection/general", "algorithms/range_migration"] = 1
         apart["algorithms/backprojection/invariant", "algorithms/range_migration"] = 1

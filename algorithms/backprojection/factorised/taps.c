@@ -11,7 +11,7 @@ static void weights(const void *fitted, double fraction, double *w)
     fitted_weights(fitted, fraction, w);
 }
 
-/* Root mean square over fractions of |H - 1| over a flat band: 1 - 2 w.s + w.R w with the sinc functions of fitted.h. */
+/* Root mean square over fractions of |H - 1| over a flat band: 1 - 2 w.s + w.R w with fitted.h's sinc functions. */
 static double error_of(int taps, double oversampling, struct fitted *fitted)
 {
     const double band = 1 / oversampling;

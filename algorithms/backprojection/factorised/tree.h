@@ -68,8 +68,8 @@ struct tree_settings {
     int base, factor, stages; /* pings of the smallest subapertures, parts of the larger ones; levels of images */
 };
 
-/* The error of one interpolation. An image's is the root of the sum of squares of the records' and of two each time that
-   images are read; a sixth is left for echoes that crowd at a band's edge, where the law is of a flat band. */
+/* The error of one interpolation. An image's is the root of the sum of squares of the records' and of two each time
+   that images are read; a sixth is left for echoes that crowd at a band's edge: the law is of a flat band. */
 static inline double tree_error_each(const struct tree_settings *settings)
 {
     return 0.85 * settings->error / sqrt(2 * settings->stages + 1);

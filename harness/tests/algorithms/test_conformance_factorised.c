@@ -1,6 +1,6 @@
-/* Factorised back projection with a tree, which small scenes are not given by default: its errors against the settings
-   and the records it falls back on, for noise of a flat spectrum, which comes from everywhere; bits, precisions, memory,
-   refusals. */
+/* Factorised back projection with a tree, which small scenes are not given by default: its errors against what is
+   asked for, and the pixels that it sums from records, for noise of a flat spectrum, which comes from everywhere; bits,
+   instruction sets, memory. */
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
