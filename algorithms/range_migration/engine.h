@@ -54,12 +54,12 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "common/fit.h"
 #include "range_migration/delay.h"
 #include "range_migration/rma.h"
 
 enum {
     RMA_ALIGNMENT = 64,   /* bytes: a vector, and a line of the cache */
-    RMA_DEGREE = 5,       /* of the phases' polynomials in frequency */
     RMA_SPAN = 256,       /* bins that go through all corrections together, in the cache */
     RMA_GROUP = 24,       /* receivers of one recurrence: float loses some 1e-6 over it */
     RMA_TILE = 8,         /* neighbouring wavenumbers whose rows are stored together */
@@ -93,7 +93,7 @@ enum rma_buffer {
    polynomial in y = (F - middle)/half, lowest power first. */
 struct rma_ramp {
     int begin, count; /* receivers */
-    double first[RMA_DEGREE + 1], step[RMA_DEGREE + 1], curve[RMA_DEGREE + 1];
+    double first[FIT_DEGREE + 1], step[FIT_DEGREE + 1], curve[FIT_DEGREE + 1];
 };
 
 /* One wavenumber: what of its band exists, and how far ranges are delayed. */
@@ -214,8 +214,7 @@ struct rma {
     struct rma_patch *patches; /* [patch_count] by range */
     struct rma_swath *swaths;  /* [swath_count] */
 
-    double nodes[RMA_DEGREE + 1];                  /* Chebyshev's, of the phases' polynomials */
-    double powers[RMA_DEGREE + 1][RMA_DEGREE + 1]; /* takes values at the nodes to coefficients */
+    struct fit_nodes fit; /* of the phases' polynomials in frequency */
 
     int threads;
     size_t scratch_at[RMA_BUFFERS]; /* bytes: where each buffer of a thread begins */
@@ -266,7 +265,6 @@ double rma_correction(const struct rma *rma, int receiver, double r, double freq
 struct rma_line rma_line(const struct rma *rma, const struct rma_swath *swath, int q);
 /* Fit the correction at `r` less the one at `less` (0: nothing is taken off) for all groups. */
 void rma_ramps(const struct rma *rma, const struct rma_line *line, double r, double less, struct rma_ramp *ramps);
-void rma_nodes(struct rma *rma); /* fills nodes and powers */
 /* Range of a block's centre, m. */
 double rma_block_range(const struct rma *rma, int block);
 

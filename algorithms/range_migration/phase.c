@@ -56,9 +56,9 @@ void rma_ramps(const struct rma *rma, const struct rma_line *line, double r, dou
 {
     for (int begin = 0; begin < rma->receivers; begin += RMA_GROUP, ramps++) {
         int count = rma->receivers - begin < RMA_GROUP ? rma->receivers - begin : RMA_GROUP;
-        double values[3][RMA_DEGREE + 1];
-        for (int n = 0; n <= RMA_DEGREE; n++) {
-            double frequency = line->middle + line->half * rma->nodes[n], at[3] = {0, 0, 0};
+        double values[3][FIT_DEGREE + 1];
+        for (int n = 0; n <= FIT_DEGREE; n++) {
+            double frequency = line->middle + line->half * rma->fit.nodes[n], at[3] = {0, 0, 0};
             int end = count - 1, middle = end / 2, points[3] = {0, end, middle};
             for (int k = 0; k < count && k < 3; k++) {
                 at[k] = rma_correction(rma, begin + points[k], r, frequency, line->nu);
@@ -76,35 +76,13 @@ void rma_ramps(const struct rma *rma, const struct rma_line *line, double r, dou
         ramps->begin = begin;
         ramps->count = count;
         for (int k = 0; k < 3; k++)
-            for (int power = 0; power <= RMA_DEGREE; power++) {
+            for (int power = 0; power <= FIT_DEGREE; power++) {
                 polynomials[k][power] = 0;
-                for (int n = 0; n <= RMA_DEGREE; n++)
-                    polynomials[k][power] += rma->powers[power][n] * values[k][n];
+                for (int n = 0; n <= FIT_DEGREE; n++)
+                    polynomials[k][power] += rma->fit.powers[power][n] * values[k][n];
                 same = same && (k < 2 || fabs(ramps->curve[power] - ramps[-1].curve[power]) < SAME_CURVE);
             }
         if (same || count < 3) /* one or two receivers have none of their own */
             memcpy(ramps->curve, begin > 0 ? ramps[-1].curve : ramps->curve, sizeof ramps->curve);
-    }
-}
-
-/* Nodes, and the inverse of their Vandermonde matrix: coefficients of Lagrange's polynomials. */
-void rma_nodes(struct rma *rma)
-{
-    enum { NODES = RMA_DEGREE + 1 };
-    for (int n = 0; n < NODES; n++)
-        rma->nodes[n] = cos(M_PI * (2 * n + 1) / (2 * NODES));
-    for (int n = 0; n < NODES; n++) {
-        double c[NODES] = {1}, scale = 1;
-        int degree = 0;
-        for (int k = 0; k < NODES; k++) {
-            if (k == n)
-                continue;
-            scale *= rma->nodes[n] - rma->nodes[k];
-            degree++;
-            for (int power = degree; power >= 0; power--)
-                c[power] = (power > 0 ? c[power - 1] : 0) - rma->nodes[k] * (power < degree ? c[power] : 0);
-        }
-        for (int power = 0; power < NODES; power++)
-            rma->powers[power][n] = c[power] / scale;
     }
 }

@@ -197,7 +197,7 @@ enum status rma_plan(const struct problem *problem, const struct rma_method *met
     rma->options = *options;
     rma->threads = omp_get_max_threads();
     rma->work.bytes = sizeof *rma;
-    rma_nodes(rma);
+    fit_nodes_fill(FIT_DEGREE + 1, rma->fit.nodes, rma->fit.powers);
     enum status status = rma_layout(rma);
     if (status == STATUS_OK)
         status = count_work(rma);

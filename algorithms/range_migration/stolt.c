@@ -7,10 +7,6 @@
 enum { SPAN = RMA_SPAN, EIGHT = 8 };
 typedef real vec8 __attribute__((vector_size(EIGHT * sizeof(real)), aligned(sizeof(real)), may_alias));
 
-/* Where the fits are held against the closed forms, and how far they may be off: bins, cycles, relative. */
-static const double checks[] = {-1, -0.7, 0.3, 1};
-static const double close_to[3] = {1e-6, 1e-7, 1e-6};
-
 /* Bins of K at one wavenumber and patch: K = j step. */
 struct bins {
     double fc, half, beta, b1; /* Hz; half: c nu/2 */
@@ -20,74 +16,13 @@ struct bins {
     double weight;             /* of the cell: everything that does not change along K */
 };
 
-/* What stands at bin j: the place in the spectrum, the phase in cycles (whole turns included), the weight. */
-static inline __attribute__((always_inline)) void bin_exact(const struct bins *b, double j, double *position,
-                                                            double *cycles, double *weight)
+static inline __attribute__((always_inline)) struct fit_cell bin_exact(const void *of, double j)
 {
+    const struct bins *b = of;
     double kappa = b->to_kappa * j, root = sqrt(b->half * b->half + b->b1 * kappa * kappa);
     double frequency = b->beta * b->half + root, offset = frequency - b->fc;
-    *position = offset * b->to_position + b->to_fc;
-    *cycles = j * b->to_row - offset * b->to_centre;
-    *weight = b->weight * frequency / (root * sqrt(kappa)); /* F/(kappa^1.5) dF/dK */
-}
-
-/* Polynomials of these three over the bins, in y = (j - middle)/half. */
-struct fit {
-    double middle, half, values[3][RMA_DEGREE + 1];
-};
-
-static inline __attribute__((always_inline)) double polynomial(const double *c, double y)
-{
-    return c[0] + y * (c[1] + y * (c[2] + y * (c[3] + y * (c[4] + y * c[5]))));
-}
-
-/* False where they are not close enough: wide bands at grazing angles. */
-static bool fit_make(const struct rma *rma, const struct bins *b, long long first, long long last, struct fit *fit)
-{
-    double at[3][RMA_DEGREE + 1];
-    fit->middle = (double)(first + last) / 2;
-    fit->half = fmax((double)(last - first) / 2, 1);
-    for (int n = 0; n <= RMA_DEGREE; n++)
-        bin_exact(b, fit->middle + fit->half * rma->nodes[n], &at[0][n], &at[1][n], &at[2][n]);
-    for (int k = 0; k < 3; k++)
-        for (int power = 0; power <= RMA_DEGREE; power++) {
-            fit->values[k][power] = 0;
-            for (int n = 0; n <= RMA_DEGREE; n++)
-                fit->values[k][power] += rma->powers[power][n] * at[k][n];
-        }
-    for (size_t n = 0; n < sizeof checks / sizeof *checks; n++) {
-        double exact[3];
-        bin_exact(b, fit->middle + fit->half * checks[n], &exact[0], &exact[1], &exact[2]);
-        for (int k = 0; k < 3; k++)
-            if (!(fabs(polynomial(fit->values[k], checks[n]) - exact[k]) <= close_to[k] * (k < 2 ? 1 : exact[k])))
-                return false;
-    }
-    return true;
-}
-
-/* `count` bins from j on; cycles are reduced. Without a fit by the closed forms. */
-static void places(const struct bins *b, const struct fit *fit, double j, int count, double *restrict position,
-                   double *restrict cycles, real *restrict weight)
-{
-    if (fit) {
-        const double step = 1 / fit->half, from = (j - fit->middle) * step;
-#pragma omp simd
-        for (int i = 0; i < count; i++) {
-            double y = from + i * step, f = polynomial(fit->values[1], y) + 0.125;
-            position[i] = polynomial(fit->values[0], y);
-            cycles[i] = f - floor(f + 0.5);
-            weight[i] = (real)polynomial(fit->values[2], y);
-        }
-        return;
-    }
-#pragma omp simd
-    for (int i = 0; i < count; i++) {
-        double f, value;
-        bin_exact(b, j + i, &position[i], &f, &value);
-        f += 0.125;
-        cycles[i] = f - floor(f + 0.5);
-        weight[i] = (real)value;
-    }
+    return (struct fit_cell){offset * b->to_position + b->to_fc, j * b->to_row - offset * b->to_centre,
+                             b->weight * frequency / (root * sqrt(kappa))}; /* F/(kappa^1.5) dF/dK */
 }
 
 /* Values of the spectrum between its bins; position counts from the first guard bin. `taps` is a constant where
@@ -159,14 +94,15 @@ void REAL_ISA_NAME(rma_stolt)(struct workspace *w, const struct rma_patch *patch
     const int length = w->swath->stolt_length;
     long long first, last;
     const struct bins bins = bins_of(w, patch, &first, &last);
-    struct fit made, *fit = last > first && fit_make(rma, &bins, first, last, &made) ? &made : NULL;
+    struct fit made,
+        *fit = last > first && fit_make(&rma->fit, bin_exact, &bins, (double)first, (double)last, &made) ? &made : NULL;
     real *wave = buffer(w, RMA_WAVE);
     memset(wave, 0, 2 * (size_t)patch->length * sizeof *wave);
-    double position[SPAN], cycles[SPAN];
-    real weight[SPAN], re[SPAN], im[SPAN], wr[SPAN], wi[SPAN];
+    double position[SPAN], cycles[SPAN], weight[SPAN];
+    real re[SPAN], im[SPAN], wr[SPAN], wi[SPAN];
     for (long long j0 = first; j0 <= last; j0 += SPAN) {
         const int n = last - j0 + 1 < SPAN ? (int)(last - j0 + 1) : SPAN;
-        places(&bins, fit, (double)j0, n, position, cycles, weight);
+        fit_cells(fit, bin_exact, &bins, (double)j0, n, position, cycles, weight);
         switch (rma->taps) {
         case 4: interpolate(rma, z, length, 4, n, position, re, im); break;
         case 8: interpolate(rma, z, length, 8, n, position, re, im); break;
@@ -176,8 +112,8 @@ void REAL_ISA_NAME(rma_stolt)(struct workspace *w, const struct rma_patch *patch
 #pragma omp simd
         for (int i = 0; i < n; i++) {
             phasor((real)cycles[i], &wr[i], &wi[i]);
-            wr[i] *= weight[i];
-            wi[i] *= weight[i];
+            wr[i] *= (real)weight[i];
+            wi[i] *= (real)weight[i];
         }
         int at = (int)(j0 % patch->length);
         for (int i = 0; i < n; i++) {
