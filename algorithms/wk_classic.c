@@ -7,7 +7,7 @@
        baseband   the carrier's centroid taken off first, then zeros: twice
        support    only the wavenumbers in which the beam has cells: 1.4 times
 
-   Error: that of the method of stationary phase, and of the Stolt interpolation, 1e-4 with 8 taps. */
+   Error: that of the method of stationary phase, and of the Stolt interpolation, 2e-4 with 8 taps. */
 #include "wavenumber/wk.h"
 
 static const struct param params[] = {

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -43,4 +45,16 @@ enum status memory_check(double bytes, const char *what)
         return STATUS_OK;
     return status_set(STATUS_FAILED, "no memory for %s: %.3g GB are needed, %.3g GB are free", what, bytes / 1e9,
                       free_bytes / 1e9);
+}
+
+void *memory_aligned(size_t alignment, size_t bytes)
+{
+    static const size_t huge = 1 << 21;
+    const bool large = bytes >= 4 * huge;
+    void *memory = aligned_alloc(large ? huge : alignment, bytes);
+#ifdef MADV_HUGEPAGE
+    if (memory && large)
+        madvise(memory, bytes, MADV_HUGEPAGE); /* advice: without it the pages are small */
+#endif
+    return memory;
 }

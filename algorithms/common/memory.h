@@ -2,11 +2,17 @@
 #ifndef SASBENCH_COMMON_MEMORY_H
 #define SASBENCH_COMMON_MEMORY_H
 
+#include <stddef.h>
+
 #include "status.h"
 
 /* STATUS_FAILED when `bytes` more are not to be had by this process (its limit on address space, or what the machine
    has free): "no memory for WHAT: 12.3 GB are needed, 4.5 GB are free". Small needs are not looked at. FFTW ends the
    program when it finds no memory for a plan, and the system may end it when it takes more than there is. */
 enum status memory_check(double bytes, const char *what);
+
+/* aligned_alloc; what is large lies on huge pages where the system gives them, for what walks through columns meets
+   another page at each row. NULL without memory. */
+void *memory_aligned(size_t alignment, size_t bytes);
 
 #endif

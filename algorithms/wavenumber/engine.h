@@ -1,5 +1,6 @@
 /* The plan of an omega-k imager (wk.h). layout.c lays it out, transform.c transforms along range and azimuth (for each
-   precision), line.c works on one azimuth wavenumber (for each precision and instruction set), wk.c puts them in order.
+   precision), record.c, line.c and row.c work on one record, one azimuth wavenumber and one image row (for each
+   precision and instruction set), wk.c puts them in order.
    Pointers without a type hold values of the plan's precision; all are complex unless said otherwise, the last
    dimension is contiguous.
 
@@ -16,6 +17,7 @@
 
 #include <math.h>
 
+#include "common/fit.h"
 #include "wavenumber/wk.h"
 
 struct polar_filter;
@@ -24,19 +26,30 @@ struct traces;
 enum {
     WK_ALIGNMENT = 64,   /* bytes */
     WK_GUARD = 16,       /* zeros beside the band: the longest kernel */
-    WK_INTERVALS = 1024, /* of a kernel's table, linear inside each */
+    WK_INTERVALS = 1024, /* of the range kernel's table, linear inside each */
+    WK_POWERS = 10,      /* of the azimuth kernel's polynomials: within 1e-6 of it */
     WK_SPAN = 256,       /* bins that go through the interpolations together, in the cache */
     WK_TILE = 8          /* neighbouring lines whose rows are stored together */
 };
-#define WK_WIDEST_SINE  0.98 /* of the angles that are imaged: nearer to the track nothing is resolved in range */
-#define WK_OVERSAMPLING 1.5  /* of the record by the range transform, and of an image that is resampled */
+#define WK_WIDEST_SINE 0.98 /* of the angles that are imaged: nearer to the track nothing is resolved in range */
+/* Of an image that is resampled, and of the record by the range transform. With 8 taps the lesser one is enough: fewer
+   interpolate worse there, and what more of them miss beyond the band's edges grows with the weights of the record's ends. */
+#define WK_OVERSAMPLING       1.5
+#define WK_OVERSAMPLING_LEAST 1.25
 
-/* A kernel, tap after tap: values[tap][interval], real [taps][WK_INTERVALS + 2]. */
+/* A kernel. Range: its weights for each fraction of a bin, each of them twice, for real and imaginary parts, zeros
+   behind them: real [WK_INTERVALS + 2][wk_kernel_width]. Azimuth: those of the first half of the taps as polynomials in
+   u - 1/2, lowest power first: real [taps/2][WK_POWERS]. */
 struct wk_kernel {
     int taps;
     double shape;
     void *values;
 };
+
+static inline int wk_kernel_width(int taps)
+{
+    return 2 * ((taps + 7) / 8 * 8);
+}
 
 struct wk_patch {
     struct grid grid; /* as wanted */
@@ -50,10 +63,31 @@ struct wk_patch {
     int columns;
     void *before, *kernel, *after; /* [lines], [columns] (chirp only), [own.x_count] */
     void *wide;                    /* [own.r_count][own.x_count]: resampled only */
+    void *taper;                   /* real [length]: weights of the wave's bins; resampled only */
     void *focus_plan, *azimuth_forward, *azimuth_inverse;
 };
 
 enum wk_stage { WK_ROTATE, WK_STOLT, WK_FOCUS, WK_STAGES };
+
+struct wk;
+
+/* ---- the loops of each instruction set ---- */
+/* record.c: the spectrum of ping n's record, weighted, the centroid taken off, into its row of `data`. `wave`:
+   [range_length], as FFTW was told. */
+typedef void wk_record_function(const struct wk *wk, int n, const void *record, void *wave);
+/* line.c: lines from `first` to first + WK_TILE - 1, all rows, into `focused`; seconds of each stage are added. */
+typedef void wk_line_function(const struct wk *wk, int thread, int first, double seconds[WK_STAGES]);
+/* row.c: row i of a patch, from `focused` onto its columns. `wave`: [columns], as FFTW was told. */
+typedef void wk_row_function(const struct wk *wk, const struct wk_patch *patch, int i, void *wave, void *pixels);
+wk_record_function wk_record_float_baseline, wk_record_double_baseline;
+wk_record_function wk_record_float_v3, wk_record_double_v3;
+wk_record_function wk_record_float_v4, wk_record_double_v4;
+wk_line_function wk_line_float_baseline, wk_line_double_baseline;
+wk_line_function wk_line_float_v3, wk_line_double_v3;
+wk_line_function wk_line_float_v4, wk_line_double_v4;
+wk_row_function wk_row_float_baseline, wk_row_double_baseline;
+wk_row_function wk_row_float_v3, wk_row_double_v3;
+wk_row_function wk_row_float_v4, wk_row_double_v4;
 
 struct wk {
     struct problem problem;
@@ -72,7 +106,9 @@ struct wk {
     /* range: bin k of the band is at fc + (band_first + k) fs/range_length; the sample `centre` is the origin */
     int range_length, centre;
     int band_first, band, row; /* row: bins of a stored row */
-    double record_pad;         /* samples by which centroids shift a record to either side */
+    double oversampling;       /* of the records, with what centroids add, by the range transform */
+    double record_pad;         /* samples by which turned axes shift a record to either side */
+    double drift;              /* of it: half the way over X, positive where echoes come earlier */
 
     /* azimuth: the transform's bins are 2 pi/(azimuth_length spacing/stuffed) apart, pings every `stuffed` */
     int stuffed, azimuth_length;
@@ -84,12 +120,19 @@ struct wk {
 
     int taps;
     struct wk_kernel range_kernel, azimuth_kernel;
-    void *range_weights;   /* real [WK_WEIGHTS + 2]: 1/transform of the kernel over |t|/half the transform */
+    void *
+        range_weights; /* real [samples + 2 weights_beside + 1]: 1/transform of the kernel, of samples around `centre` */
+    int weights_beside;    /* record_pad, and one */
     void *azimuth_weights; /* real [pings] */
+    struct fit_nodes fit;
 
     int patch_count;
     struct wk_patch *patches;
     size_t rows; /* of all patches */
+
+    wk_record_function *record_loop;
+    wk_line_function *line_loop;
+    wk_row_function *row_loop;
 
     struct polar_filter *filter;
     struct traces *traces;
@@ -102,7 +145,6 @@ struct wk {
     void *focused; /* [rows][line_stride] */
     void *range_forward, *azimuth_forward;
 };
-enum { WK_WEIGHTS = 8192 };
 
 /* Own wavenumbers to frequency: F (Hz) of Kx, Ky (rad/m) in the track's axes. */
 static inline double wk_frequency(const struct wk *wk, double kx, double ky)
@@ -139,12 +181,5 @@ struct wk_transform {
     void (*resample)(const struct wk *wk, const struct wk_patch *patch, void *pixels);
 };
 extern const struct wk_transform wk_transform_float, wk_transform_double;
-
-/* ---- line.c ---- */
-/* Lines from `first` to first + WK_TILE - 1, all rows, into `focused`; seconds of each stage are added. */
-typedef void wk_line_function(const struct wk *wk, int thread, int first, double seconds[WK_STAGES]);
-wk_line_function wk_line_float_baseline, wk_line_double_baseline;
-wk_line_function wk_line_float_v3, wk_line_double_v3;
-wk_line_function wk_line_float_v4, wk_line_double_v4;
 
 #endif

@@ -96,20 +96,28 @@ static enum status lay_range(struct wk *wk)
     enum status status = pulse_band_find(a, pulse, &band);
     if (status != STATUS_OK)
         return status;
-    wk->record_pad = fmax(-wk->x_end[0], wk->x_end[1]) * fabs(sin(wk->angle)) * 2 * wk->fs / wk->sound_speed;
-    double length = WK_OVERSAMPLING * (wk->samples + 2 * wk->record_pad + WK_GUARD);
-    wk->range_length = length < INT_MAX / 64 ? fft_length_fast((long long)length) : 0;
+    const double reach =
+        fmax(-wk->x_end[0], wk->x_end[1]) * 2 * wk->fs / wk->sound_speed; /* samples, along the track */
+    /* A point on the beam's axis at r' is heard after 2 (r' - X sin) (1 + beta sin)/(c (1 - beta^2)). */
+    const double sine = sin(wk->angle), beta = wk->speed / wk->sound_speed;
+    wk->drift = sine * (1 + beta * sine) / ((1 - beta) * (1 + beta));
+    wk->record_pad = reach * fabs(wk->drift);
+    double length = wk->samples + 2 * wk->record_pad;
+    length = fmax(wk->oversampling * length, length + 4 * WK_GUARD); /* short records: a band of several kernels */
+    wk->range_length = length < INT_MAX / 64 ? fft_length_fast((long long)whole_above(length)) : 0;
     if (wk->range_length == 0)
         return status_set(STATUS_UNSUPPORTED,
                           "%s: condition transform_length: the samples of a record with what the turned axes add are "
                           "%.3g; at most %d is needed (cure: shorter records or tracks, or back projection)",
                           wk->method.name, length, INT_MAX / 64);
+    wk->weights_beside = (int)ceil(wk->record_pad) + 1;
     double half = fmin(whole_above(band.half_hz / wk->fs * wk->range_length), (wk->range_length - 1) / 2);
     double lowest = (wk->fc - wk->fs / 2 > 0 ? wk->fs / 2 : wk->fc * (1 - 1e-6)) / wk->fs * wk->range_length;
     wk->band_first = -(int)fmin(half, floor(lowest)); /* F > 0 */
     wk->band = (int)half - wk->band_first + 1;
-    int lanes = WK_ALIGNMENT / (wk->problem.precision == PRECISION_DOUBLE ? 8 : 4);
-    wk->row = (wk->band + lanes - 1) / lanes * lanes;
+    /* An odd number of pairs of the cache's lines, so that rows do not lie on top of each other in it. */
+    int pair = 2 * WK_ALIGNMENT / (wk->problem.precision == PRECISION_DOUBLE ? 16 : 8);
+    wk->row = ((wk->band + pair - 1) / pair | 1) * pair;
     return STATUS_OK;
 }
 
@@ -215,7 +223,7 @@ static enum status lay_rotated(struct wk *wk)
     double half = M_PI / wk->spacing, low = INFINITY, high = -INFINITY, period = own_period(wk);
     double padded = whole_above(wk->options.pad * wk->pings);
     int length = period / wk->spacing < 1e8 ? fft_length((long long)whole_above(period / wk->spacing) + 1) : 0;
-    wk->azimuth_length = padded < INT_MAX / 8 ? fft_length((long long)padded) : 0;
+    wk->azimuth_length = padded < INT_MAX / 8 ? fft_length_fast((long long)padded) : 0;
     if (length == 0 || wk->azimuth_length == 0)
         return too_long(wk, fmax(period, padded * wk->spacing));
     for (int k = 0; k < 4; k++) {
@@ -351,14 +359,15 @@ enum status wk_layout(struct wk *wk)
     static enum status (*const steps[])(struct wk *) = {lay_track, lay_range, lay_patches};
     enum status status = STATUS_OK;
     wk->taps = tap_counts[wk->options.taps];
+    wk->oversampling = wk->taps == 8 ? WK_OVERSAMPLING_LEAST : WK_OVERSAMPLING;
     for (size_t k = 0; status == STATUS_OK && k < sizeof steps / sizeof *steps; k++)
         status = steps[k](wk);
     if (status == STATUS_OK)
         status = wk->angle != 0 ? lay_rotated(wk) : lay_unfolded(wk);
     if (status == STATUS_OK)
         status = lay_steps(wk);
-    wk->line_stride = (size_t)(wk->lines + WK_TILE - 1) / WK_TILE * WK_TILE;
-    wk->range_kernel = (struct wk_kernel){wk->taps, kaiser_shape(wk->taps, WK_OVERSAMPLING), NULL};
+    wk->line_stride = ((size_t)(wk->lines + WK_TILE - 1) / WK_TILE | 1) * WK_TILE;
+    wk->range_kernel = (struct wk_kernel){wk->taps, kaiser_shape(wk->taps, wk->oversampling), NULL};
     double padded = wk->pings > 0 ? (double)wk->azimuth_length / wk->pings : 1;
     wk->azimuth_kernel = (struct wk_kernel){wk->taps, kaiser_shape(wk->taps, fmax(padded, 1.0)), NULL};
     return status;

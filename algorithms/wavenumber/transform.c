@@ -7,12 +7,13 @@
 #include "backprojection/traces.h"
 #include "common/kaiser.h"
 #include "common/memory.h"
-#include "common/phasor.h"
+#include "common/real.h"
 #include "wavenumber/engine.h"
 #include "wavenumber/filter.h"
 
 enum {
-    STRIP = 128 / sizeof(complex_real), /* bins that go through the azimuth FFT together: two lines of the cache */
+    STRIP = 2 * WK_ALIGNMENT / sizeof(complex_real), /* bins that go through the azimuth FFT together */
+    STRIP_AHEAD = 16,
     TAPS_MOST = 16
 };
 
@@ -20,7 +21,7 @@ enum {
 static void *take(struct wk *wk, size_t count, size_t size, double share)
 {
     size_t bytes = (count * size + WK_ALIGNMENT - 1) / WK_ALIGNMENT * WK_ALIGNMENT;
-    void *memory = aligned_alloc(WK_ALIGNMENT, bytes ? bytes : WK_ALIGNMENT);
+    void *memory = memory_aligned(WK_ALIGNMENT, bytes ? bytes : WK_ALIGNMENT);
     if (memory)
         memset(memory, 0, bytes);
     wk->work.bytes += share * (double)bytes;
@@ -44,13 +45,36 @@ static void *plan_line(int length, void *memory, int sign)
     return FFTW(plan_dft_1d)(length, memory, memory, sign, FFTW_ESTIMATE);
 }
 
-static bool kernel_fill(struct wk *wk, struct wk_kernel *kernel)
+/* A kernel's tap t for a cell that lies u beyond the last bin ahead of it. */
+static double tap_value(const struct wk_kernel *kernel, int t, double u)
 {
-    real *values = kernel->values = take(wk, (size_t)kernel->taps * (WK_INTERVALS + 2), sizeof(real), 1);
-    for (int t = 0; values && t < kernel->taps; t++)
-        for (int i = 0; i < WK_INTERVALS + 2; i++)
-            *values++ =
-                (real)kaiser_value(kernel->taps, kernel->shape, (double)i / WK_INTERVALS - (1 - kernel->taps / 2 + t));
+    return kaiser_value(kernel->taps, kernel->shape, u - (1 - kernel->taps / 2 + t));
+}
+
+static bool range_kernel_fill(struct wk *wk)
+{
+    struct wk_kernel *kernel = &wk->range_kernel;
+    const size_t width = (size_t)wk_kernel_width(kernel->taps);
+    real *values = kernel->values = take(wk, width * (WK_INTERVALS + 2), sizeof(real), 1);
+    for (int i = 0; values && i < WK_INTERVALS + 2; i++, values += width)
+        for (int t = 0; t < kernel->taps; t++)
+            values[2 * t] = values[2 * t + 1] = (real)tap_value(kernel, t, (double)i / WK_INTERVALS);
+    return kernel->values;
+}
+
+static bool azimuth_kernel_fill(struct wk *wk)
+{
+    double nodes[WK_POWERS], powers[WK_POWERS][WK_POWERS];
+    struct wk_kernel *kernel = &wk->azimuth_kernel;
+    real *values = kernel->values = take(wk, (size_t)(kernel->taps / 2) * WK_POWERS, sizeof(real), 1);
+    fit_nodes_fill(WK_POWERS, nodes, powers);
+    for (int t = 0; values && t < kernel->taps / 2; t++)
+        for (int power = 0; power < WK_POWERS; power++) {
+            double sum = 0;
+            for (int n = 0; n < WK_POWERS; n++)
+                sum += powers[power][n] * tap_value(kernel, t, 0.5 + 0.5 * nodes[n]);
+            *values++ = (real)ldexp(sum, power); /* nodes are in [-1, 1], u - 1/2 is in half of it */
+        }
     return kernel->values;
 }
 
@@ -62,12 +86,15 @@ static double weight_at(const struct wk_kernel *kernel, double place, double mos
 
 static bool weights_fill(struct wk *wk)
 {
-    real *range = wk->range_weights = take(wk, WK_WEIGHTS + 2, sizeof(real), 1);
+    const int count = wk->samples + 2 * wk->weights_beside + 1;
+    real *range = wk->range_weights = take(wk, (size_t)count, sizeof(real), 1);
     real *azimuth = wk->azimuth_weights = take(wk, (size_t)wk->pings, sizeof(real), 1);
     if (!range || !azimuth)
         return false;
-    for (int i = 0; i < WK_WEIGHTS + 2; i++)
-        range[i] = (real)weight_at(&wk->range_kernel, 0.5 * i / WK_WEIGHTS, 0.5 / WK_OVERSAMPLING);
+    for (int i = 0; i < count; i++) {
+        double place = (double)(i - wk->weights_beside - wk->centre) / wk->range_length;
+        range[i] = (real)weight_at(&wk->range_kernel, place, 0.5 / wk->oversampling);
+    }
     for (int n = 0; n < wk->pings; n++)
         azimuth[n] = wk->angle != 0
                          ? (real)weight_at(&wk->azimuth_kernel, (double)(n - wk->middle) / wk->azimuth_length, 0.45)
@@ -107,11 +134,19 @@ static bool azimuth_fill(struct wk *wk, struct wk_patch *patch)
     return true;
 }
 
+/* Values from one column of a strip to the next: an odd number of the cache's lines, so that they do not lie on top of
+   each other in it. */
+static size_t column_stride(const struct wk *wk)
+{
+    const size_t line = WK_ALIGNMENT / sizeof(complex_real);
+    return (((size_t)wk->azimuth_length + line - 1) / line | 1) * line;
+}
+
 /* What a thread needs in turn: a record and its transform; a strip of the azimuth transform; a line with its rows. */
 static size_t scratch_size(const struct wk *wk)
 {
-    size_t complex_count = (size_t)wk->samples + (size_t)wk->range_length, strip = STRIP * (size_t)wk->azimuth_length;
-    size_t line = (size_t)wk->row + (size_t)wk->band + 2 * WK_GUARD + wk->rows * WK_TILE, most = 0;
+    size_t complex_count = (size_t)wk->samples + (size_t)wk->range_length, strip = STRIP * column_stride(wk);
+    size_t line = (size_t)wk->band + 2 * WK_GUARD + wk->rows * WK_TILE, most = 0;
     for (int k = 0; k < wk->patch_count; k++) {
         size_t length = (size_t)wk->patches[k].length, columns = (size_t)wk->patches[k].columns;
         most = length > most ? length : most;
@@ -127,8 +162,13 @@ static bool plan_patch(struct wk *wk, struct wk_patch *patch)
 {
     if (patch->resampled) {
         patch->wide = take(wk, (size_t)patch->own.r_count * (size_t)patch->own.x_count, sizeof(complex_real), 1);
-        if (!patch->wide)
+        real *taper = patch->taper = take(wk, (size_t)patch->length, sizeof(real), 1);
+        if (!patch->wide || !taper)
             return false;
+        for (int k = 0; k < patch->length; k++) {
+            double place = (double)(k < patch->length / 2 ? k : k - patch->length) / patch->length;
+            taper[k] = (real)weight_at(&wk->range_kernel, place, 0.5 / WK_OVERSAMPLING);
+        }
     }
     patch->focus_plan = plan_line(patch->length, wk->scratch, FFTW_BACKWARD);
     return patch->focus_plan && azimuth_fill(wk, patch);
@@ -136,15 +176,14 @@ static bool plan_patch(struct wk *wk, struct wk_patch *patch)
 
 static bool plan_all(struct wk *wk)
 {
-    wk->data = take(wk, (size_t)wk->azimuth_length, (size_t)wk->row * sizeof(complex_real), 1);
+    wk->data = take(wk, (size_t)wk->azimuth_length * (size_t)wk->row + WK_GUARD, sizeof(complex_real), 1);
     wk->focused = take(wk, wk->rows * wk->line_stride, sizeof(complex_real), 1);
     wk->scratch = take(wk, (size_t)wk->threads, wk->scratch_bytes, 1.0 / wk->threads);
-    if (!wk->data || !wk->focused || !wk->scratch || !weights_fill(wk) || !kernel_fill(wk, &wk->range_kernel)
-        || (wk->angle != 0 && !kernel_fill(wk, &wk->azimuth_kernel)))
+    if (!wk->data || !wk->focused || !wk->scratch || !weights_fill(wk) || !range_kernel_fill(wk)
+        || (wk->angle != 0 && !azimuth_kernel_fill(wk)))
         return false;
     wk->range_forward = plan_line(wk->range_length, wk->scratch, FFTW_FORWARD);
-    wk->azimuth_forward = FFTW(plan_many_dft)(1, &wk->azimuth_length, STRIP, wk->scratch, NULL, STRIP, 1, wk->scratch,
-                                              NULL, STRIP, 1, FFTW_FORWARD, FFTW_ESTIMATE);
+    wk->azimuth_forward = plan_line(wk->azimuth_length, wk->scratch, FFTW_FORWARD);
     bool complete = wk->range_forward && wk->azimuth_forward;
     for (int k = 0; complete && k < wk->patch_count; k++)
         complete = plan_patch(wk, &wk->patches[k]);
@@ -211,6 +250,7 @@ static void destroy(struct wk *wk)
         free(patch->after);
         free(patch->kernel);
         free(patch->wide);
+        free(patch->taper);
     }
     plan_destroy(wk->range_forward);
     plan_destroy(wk->azimuth_forward);
@@ -224,47 +264,6 @@ static void destroy(struct wk *wk)
     free(wk->data);
     free(wk->focused);
     free(wk->scratch);
-}
-
-/* The weight of a sample `place` transforms from the middle, |place| <= 1/2. */
-static inline real range_weight(const real *weights, double place)
-{
-    double at = fmin(fabs(place) * 2, 1) * WK_WEIGHTS;
-    int i = (int)at;
-    real u = (real)(at - i);
-    return weights[i] + u * (weights[i + 1] - weights[i]);
-}
-
-/* The spectrum of ping n's record, the centroid taken off, into a row of the band. */
-static void range_record(const struct wk *wk, int n, const real *record, real *wave, real *row)
-{
-    const int length = wk->range_length, samples = wk->samples, centre = wk->centre;
-    const double x = (n - wk->middle) * wk->spacing, way = wk->angle != 0 ? 2 * wk->slope * x / wk->sound_speed : 0;
-    const double from = -centre + way * wk->fs;
-    const real *weights = wk->range_weights, azimuth = ((const real *)wk->azimuth_weights)[n];
-    memset(wave + 2 * (samples - centre), 0, 2 * (size_t)(length - samples) * sizeof *wave);
-    for (int i = 0; i < samples; i++) {
-        real weight = azimuth * range_weight(weights, (from + i) / length);
-        size_t to = 2 * (size_t)(i < centre ? i - centre + length : i - centre);
-        wave[to] = record[2 * i] * weight;
-        wave[to + 1] = record[2 * i + 1] * weight;
-    }
-    FFTW(execute_dft)(wk->range_forward, (complex_real *)wave, (complex_real *)wave);
-    const double bin = wk->fs / length, base = wk->kx_base * x / (2 * M_PI);
-    const int below = -wk->band_first;
-    memcpy(row, wave + 2 * (length - below), 2 * (size_t)below * sizeof *row);
-    memcpy(row + 2 * below, wave, 2 * (size_t)(wk->band - below) * sizeof *row);
-    memset(row + 2 * wk->band, 0, 2 * (size_t)(wk->row - wk->band) * sizeof *row);
-    if (way == 0 && base == 0)
-        return;
-#pragma omp simd
-    for (int k = 0; k < wk->band; k++) {
-        double cycles = -(wk->fc + (k - below) * bin) * way - base;
-        real c, s, re = row[2 * k], im = row[2 * k + 1];
-        phasor((real)(cycles - floor(cycles + 0.5)), &c, &s);
-        row[2 * k] = re * c - im * s;
-        row[2 * k + 1] = re * s + im * c;
-    }
 }
 
 /* Records through the matched filter and the polar-format filter. */
@@ -295,80 +294,66 @@ static void range(const struct wk *wk, const void *samples)
             (wk->traces, omp_get_thread_num(), (const complex_real *)from, (complex_real *)scratch + wk->range_length);
             from = scratch + 2 * (size_t)wk->range_length;
         }
-        range_record(wk, n, from, scratch, (real *)wk->data + 2 * (size_t)wk->row * (size_t)n);
+        wk->record_loop(wk, n, from, scratch);
     }
 }
 
-/* Azimuth FFT over the pings, which stand in rows 0 to pings - 1, and the zeros between and after them. */
+/* Rows lie too far apart for the processor to see that they follow each other: the strip of one some `left` rows ahead. */
+static inline void strip_fetch(const complex_real *strip, size_t row, int left)
+{
+    const char *ahead = (const char *)(strip + STRIP_AHEAD * row);
+    if (left <= STRIP_AHEAD)
+        return;
+    __builtin_prefetch(ahead);
+    __builtin_prefetch(ahead + WK_ALIGNMENT);
+}
+
+/* Azimuth FFT over the pings, which stand in rows 0 to pings - 1, and the zeros between and after them. Column by
+   column: FFTW's estimate is several times slower for columns side by side. */
 static void azimuth(const struct wk *wk)
 {
-    const int strips = (wk->row + STRIP - 1) / STRIP;
-    const size_t row = 2 * (size_t)wk->row, length = (size_t)wk->azimuth_length;
+    const int strips = wk->row / STRIP;
+    const size_t row = (size_t)wk->row, length = (size_t)wk->azimuth_length, pings = (size_t)wk->pings;
+    const size_t behind = wk->stuffed == 1 ? pings - (size_t)wk->middle : 0; /* the first of the zeros */
+    const size_t zeros = wk->stuffed == 1 ? length - pings : length, column = column_stride(wk);
 #pragma omp parallel for schedule(static) num_threads(wk->threads)
     for (int s = 0; s < strips; s++) {
-        const size_t width = 2 * (size_t)(wk->row - s * STRIP < STRIP ? wk->row - s * STRIP : STRIP);
-        real *lines = scratch_of(wk), *data = (real *)wk->data + (size_t)s * 2 * STRIP;
-        memset(lines, 0, 2 * STRIP * length * sizeof *lines);
+        complex_real *columns = (complex_real *)scratch_of(wk), *data = (complex_real *)wk->data + (size_t)s * STRIP;
+        for (size_t j = 0; j < STRIP; j++)
+            memset(columns + j * column + behind, 0, zeros * sizeof *columns);
         for (int n = 0; n < wk->pings; n++) {
             long long at = (long long)(n - wk->middle) * wk->stuffed;
-            size_t to = at < 0 ? (size_t)(at + wk->azimuth_length) : (size_t)at;
-            memcpy(lines + 2 * STRIP * to, data + (size_t)n * row, width * sizeof *lines);
+            complex_real *to = columns + (at < 0 ? (size_t)(at + wk->azimuth_length) : (size_t)at);
+            strip_fetch(data + (size_t)n * row, row, wk->pings - n);
+            for (size_t j = 0; j < STRIP; j++)
+                memcpy(to + j * column, data + (size_t)n * row + j, sizeof *to);
         }
-        FFTW(execute_dft)(wk->azimuth_forward, (complex_real *)lines, (complex_real *)lines);
-        for (size_t p = 0; p < length; p++)
-            memcpy(data + p * row, lines + 2 * STRIP * p, width * sizeof *lines);
-    }
-}
-
-/* a[k] *= b[k], written out: a complex product would check for NaN. */
-static inline void multiply(real *restrict a, const real *restrict b, int count)
-{
-    for (int k = 0; k < 2 * count; k += 2) {
-        real re = a[k] * b[k] - a[k + 1] * b[k + 1];
-        a[k + 1] = a[k] * b[k + 1] + a[k + 1] * b[k];
-        a[k] = re;
+        for (size_t j = 0; j < STRIP; j++)
+            FFTW(execute_dft)(wk->azimuth_forward, columns + j * column, columns + j * column);
+        for (size_t p = 0; p < length; p++) {
+            strip_fetch(data + p * row, row, wk->azimuth_length - (int)p);
+            for (size_t j = 0; j < STRIP; j++)
+                memcpy(data + p * row + j, columns + j * column + p, sizeof *columns);
+        }
     }
 }
 
 static void inverse(const struct wk *wk, const struct wk_patch *patch, void *pixels)
 {
-    const struct grid *g = &patch->own;
-    const size_t x_count = (size_t)g->x_count;
-    const int length = patch->columns;
-    const real *before = patch->before;
+    const size_t columns = (size_t)patch->own.x_count;
 #pragma omp parallel for schedule(static) num_threads(wk->threads)
-    for (int i = 0; i < g->r_count; i++) {
-        real *wave = scratch_of(wk), *out = (real *)pixels + 2 * x_count * (size_t)i;
-        const real *from = (const real *)wk->focused + 2 * wk->line_stride * (patch->row + (size_t)i);
-        memset(wave, 0, 2 * (size_t)length * sizeof *wave);
-        for (int n = 0, at = 0; n < wk->lines; n++) {
-            wave[2 * at] += from[2 * n] * before[2 * n] - from[2 * n + 1] * before[2 * n + 1];
-            wave[2 * at + 1] += from[2 * n] * before[2 * n + 1] + from[2 * n + 1] * before[2 * n];
-            at = at + 1 < length ? at + 1 : 0;
-        }
-        if (!patch->folds) {
-            FFTW(execute_dft)(patch->azimuth_forward, (complex_real *)wave, (complex_real *)wave);
-            multiply(wave, patch->kernel, length);
-        }
-        FFTW(execute_dft)(patch->azimuth_inverse, (complex_real *)wave, (complex_real *)wave);
-        multiply(wave, patch->after, g->x_count);
-        for (int j = 0; j < g->x_count; j++) {
-            real root = patch->resampled ? 1 : (real)sqrt(grid_point(&patch->grid, i, j).y);
-            out[2 * j] = wave[2 * j] * root;
-            out[2 * j + 1] = wave[2 * j + 1] * root;
-        }
-    }
+    for (int i = 0; i < patch->own.r_count; i++)
+        wk->row_loop(wk, patch, i, scratch_of(wk), (complex_real *)pixels + columns * (size_t)i);
 }
 
 /* `taps` weights of a kernel at a fraction of a step. */
 static inline void kernel_at(const struct wk_kernel *kernel, double fraction, real *weight)
 {
-    const real *values = kernel->values;
-    double at = fraction * WK_INTERVALS;
-    int i = (int)at;
-    real u = (real)(at - i);
-    for (int t = 0; t < kernel->taps; t++, values += WK_INTERVALS + 2)
-        weight[t] = values[i] + u * (values[i + 1] - values[i]);
+    const int width = wk_kernel_width(kernel->taps), i = (int)(fraction * WK_INTERVALS);
+    const real *low = (const real *)kernel->values + (size_t)i * (size_t)width, *high = low + width;
+    const real u = (real)(fraction * WK_INTERVALS - i);
+    for (int t = 0; t < kernel->taps; t++)
+        weight[t] = low[2 * t] + u * (high[2 * t] - low[2 * t]);
 }
 
 /* A pixel of the image at (u, w) columns and rows of the finer grid. */

@@ -17,11 +17,18 @@ const char *const wk_unfold_names[] = {"stuff", "baseband", "support", NULL};
 
 static const char *const stage_names[WK_STAGES] = {"rotate", "stolt", "focus"};
 
-static wk_line_function *const line_functions[][2] = {
-    [ISA_BASELINE] = {wk_line_float_baseline, wk_line_double_baseline},
+static const struct {
+    wk_record_function *record;
+    wk_line_function *line;
+    wk_row_function *row;
+} loops[][2] = {
+    [ISA_BASELINE] = {{wk_record_float_baseline, wk_line_float_baseline, wk_row_float_baseline},
+                      {wk_record_double_baseline, wk_line_double_baseline, wk_row_double_baseline}},
 #ifdef SASBENCH_X86_64
-    [ISA_V3] = {wk_line_float_v3, wk_line_double_v3},
-    [ISA_V4] = {wk_line_float_v4, wk_line_double_v4},
+    [ISA_V3] = {{wk_record_float_v3, wk_line_float_v3, wk_row_float_v3},
+                {wk_record_double_v3, wk_line_double_v3, wk_row_double_v3}},
+    [ISA_V4] = {{wk_record_float_v4, wk_line_float_v4, wk_row_float_v4},
+                {wk_record_double_v4, wk_line_double_v4, wk_row_double_v4}},
 #endif
 };
 
@@ -95,6 +102,10 @@ enum status wk_plan(const struct problem *problem, const struct wk_method *metho
     wk->method = *method;
     wk->options = *options;
     wk->threads = omp_get_max_threads();
+    wk->record_loop = loops[isa_choose()][problem->precision].record;
+    wk->line_loop = loops[isa_choose()][problem->precision].line;
+    wk->row_loop = loops[isa_choose()][problem->precision].row;
+    fit_nodes_fill(FIT_DEGREE + 1, wk->fit.nodes, wk->fit.powers);
     wk->work.bytes = sizeof *wk + (double)problem->patch_count * sizeof *wk->patches;
     status = wk_layout(wk);
     if (status == STATUS_OK)
@@ -111,10 +122,9 @@ enum status wk_plan(const struct problem *problem, const struct wk_method *metho
 static void focus_lines(const struct wk *wk, struct stages *stages)
 {
     double seconds[WK_STAGES] = {0}, sum = 0;
-    wk_line_function *line = line_functions[isa_choose()][wk->problem.precision];
 #pragma omp parallel for schedule(static) num_threads(wk->threads) reduction(+ : seconds[:WK_STAGES])
     for (int first = 0; first < wk->lines; first += WK_TILE)
-        line(wk, omp_get_thread_num(), first, seconds);
+        wk->line_loop(wk, omp_get_thread_num(), first, seconds);
     /* The threads' time in each stage, as shares of the time that passed. */
     for (int k = 0; k < WK_STAGES; k++)
         sum += seconds[k];

@@ -24,7 +24,7 @@
        range      FFT of each record, the centroid taken off
        azimuth    FFT over the pings
        rotate     azimuth interpolation (rotated axes only)
-       stolt      range interpolation onto Ky
+       stolt      range interpolation onto Ky, phases and weights
        focus      range IFFT onto the rows
        inverse    azimuth IFFT onto the columns
        resample   two-dimensional interpolation, for a grid that lies in other axes */

@@ -149,3 +149,20 @@ void exact_image(const struct scene *scene, const struct echoes *echoes, double 
     }
     fftw_free(spectra);
 }
+
+void make_imaged(const struct squint_sonar *sonar, double squint_rad, double angle_rad, struct imaged *out)
+{
+    scene_sq18(sonar, squint_rad, &out->scene);
+    support_echoes(&out->scene, &out->echoes);
+    patches_around(&out->scene, angle_rad, 0.04, 7, out->patches);
+    out->problem = (struct problem){&out->scene.acquisition, out->scene.point_count, out->patches, PRECISION_DOUBLE};
+    assert_int_equal(image_allocate(out->scene.point_count, out->patches, PRECISION_DOUBLE, &out->exact), STATUS_OK);
+    exact_image(&out->scene, &out->echoes, 0.01 / (4 * 0.04), &out->exact);
+}
+
+void free_imaged(struct imaged *imaged)
+{
+    image_free(&imaged->exact);
+    echoes_free(&imaged->echoes);
+    squint_scene_free(&imaged->scene);
+}

@@ -31,4 +31,16 @@ double complex echo_spectrum(const struct scene *scene, const struct echoes *ech
    squint| <= gate only. */
 void exact_image(const struct scene *scene, const struct echoes *echoes, double gate, struct image *image);
 
+/* A scene with its echoes, and the exact image of patches of 0.56 m about the targets in axes turned by angle_rad. Freed
+   with free_imaged. */
+struct imaged {
+    struct scene scene;
+    struct echoes echoes;
+    struct grid patches[9];
+    struct problem problem;
+    struct image exact;
+};
+void make_imaged(const struct squint_sonar *sonar, double squint_rad, double angle_rad, struct imaged *out);
+void free_imaged(struct imaged *imaged);
+
 #endif

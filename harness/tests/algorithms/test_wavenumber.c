@@ -5,9 +5,11 @@
 
 #include <math.h>
 #include <omp.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/kaiser.h"
 #include "scene/simulate.h"
 #include "wavenumber/engine.h"
 
@@ -96,6 +98,20 @@ static void exact_images(void **state)
     squint_scene_free(&scene);
 }
 
+static void *planned(const char *text, const struct problem *problem, struct spec *spec)
+{
+    void *plan;
+    assert_int_equal(spec_parse(text, spec), STATUS_OK);
+    assert_int_equal(spec->algorithm->plan(problem, spec->options, &plan), STATUS_OK);
+    return plan;
+}
+
+static void plan_free(struct spec *spec, void *plan)
+{
+    spec->algorithm->destroy(plan);
+    spec_free(spec);
+}
+
 /* A plan's line at kx0, focused onto as many rows from r' = 0 as its range transform has, holds its Stolt-interpolated
    cells: their transform at ky0, the weight taken off. */
 static double complex rotated_cell(struct wk *wk, const struct rotated_number *number)
@@ -126,7 +142,6 @@ static void rotated_spectrum(void **state)
     struct scene scene;
     struct echoes echoes;
     struct spec spec;
-    void *plan;
     struct squint_sonar sonar = sonar_sq18; /* a longer record: cut off sidelobes are in no number */
     sonar.samples = 2048;
     sonar.first_sample = 476;
@@ -135,9 +150,7 @@ static void rotated_spectrum(void **state)
     const struct grid grid = {0, 0.04, 2, 15, 0.03, 1024, radians(20)};
     const struct problem problem = {a, 1, &grid, PRECISION_DOUBLE};
     support_echoes(&scene, &echoes);
-    assert_int_equal(spec_parse("wk_squint:pad=2", &spec), STATUS_OK);
-    assert_int_equal(spec.algorithm->plan(&problem, spec.options, &plan), STATUS_OK);
-    struct wk *wk = plan;
+    struct wk *wk = planned("wk_squint:pad=2", &problem, &spec);
     wk_transform_double.range(wk, echoes.samples);
     wk_transform_double.azimuth(wk);
     for (size_t k = 0; k < sizeof sq18_rotated / sizeof *sq18_rotated; k++) {
@@ -148,8 +161,7 @@ static void rotated_spectrum(void **state)
                       cabs(value - expected) / cabs(expected));
         assert_true(cabs(value - expected) <= 5e-3 * cabs(expected));
     }
-    spec.algorithm->destroy(plan);
-    spec_free(&spec);
+    plan_free(&spec, wk);
     echoes_free(&echoes);
     squint_scene_free(&scene);
 }
@@ -165,32 +177,6 @@ static double error_of(const char *spec, const struct problem *problem, const st
     print_message("  %s: %.2e\n", spec, error);
     image_free(&image);
     return error;
-}
-
-struct imaged {
-    struct scene scene;
-    struct echoes echoes;
-    struct grid patches[9];
-    struct problem problem;
-    struct image exact;
-};
-
-/* Patches of 0.56 m about the targets in axes turned by angle_rad, imaged exactly. */
-static void make_imaged(const struct squint_sonar *sonar, double squint_rad, double angle_rad, struct imaged *out)
-{
-    scene_sq18(sonar, squint_rad, &out->scene);
-    support_echoes(&out->scene, &out->echoes);
-    patches_around(&out->scene, angle_rad, 0.04, 7, out->patches);
-    out->problem = (struct problem){&out->scene.acquisition, out->scene.point_count, out->patches, PRECISION_DOUBLE};
-    assert_int_equal(image_allocate(out->scene.point_count, out->patches, PRECISION_DOUBLE, &out->exact), STATUS_OK);
-    exact_image(&out->scene, &out->echoes, 0.01 / (4 * SPACING_M), &out->exact);
-}
-
-static void free_imaged(struct imaged *imaged)
-{
-    image_free(&imaged->exact);
-    echoes_free(&imaged->echoes);
-    squint_scene_free(&imaged->scene);
 }
 
 /* At each of SQ18's angles, in turned axes: within 0.3 % with 8 taps and the azimuth padded twice. What the padding is
@@ -273,6 +259,74 @@ static void reversed(void **state)
     free_imaged(&s);
 }
 
+static struct image executed(const struct spec *spec, void *plan, const struct imaged *s)
+{
+    struct image image;
+    struct stages stages = {0};
+    support_image_make(s->patches, s->problem.patch_count, PRECISION_DOUBLE, &image);
+    assert_int_equal(spec->algorithm->execute(plan, &s->echoes, &image, &stages), STATUS_OK);
+    return image;
+}
+
+/* Places, phases and weights of cells by polynomials make the image of the closed forms, which stand where the
+   polynomials are off: without nodes they always are. Twice the taps change little. */
+static void fits(void **state)
+{
+    (void)state;
+    static const char *const specs[] = {"wk_classic", "wk_squint"};
+    static const char *const longer[] = {"wk_classic:taps=16,precision=double", "wk_squint:taps=16,precision=double"};
+    for (int k = 0; k < 6; k++) {
+        struct imaged s;
+        struct spec spec;
+        make_imaged(&sonar_sq18, radians(k / 2 * 22.5), radians(k / 2 * 22.5), &s);
+        struct wk *plan = planned(specs[k % 2], &s.problem, &spec);
+        struct image more, exact, fitted = executed(&spec, plan, &s);
+        plan->fit = (struct fit_nodes){0};
+        exact = executed(&spec, plan, &s);
+        assert_int_equal(support_image(longer[k % 2], s.problem, &s.echoes, &more), STATUS_OK);
+        double error = support_difference(&fitted, &exact), taps = support_difference(&fitted, &more);
+        print_message("%s, %g degrees: %.1e, taps %.1e\n", specs[k % 2], k / 2 * 22.5, error, taps);
+        assert_true(error > 0 && error <= 1e-6);
+        assert_true(taps > 0 && taps <= 2e-4);
+        image_free(&fitted);
+        image_free(&exact);
+        image_free(&more);
+        plan_free(&spec, plan);
+        free_imaged(&s);
+    }
+}
+
+/* The azimuth kernel's polynomials are the kernel, whatever its taps and padding. */
+static void azimuth_kernels(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct grid patches[5];
+    scene_sq18(&sonar_sq18, radians(20), &scene);
+    patches_around(&scene, radians(20), 0.04, 7, patches);
+    const struct problem problem = {&scene.acquisition, 5, patches, PRECISION_DOUBLE};
+    double worst = 0;
+    for (int k = 0; k < 20; k++) {
+        static const char *const taps[] = {"4", "6", "8", "12", "16"};
+        char text[100];
+        struct spec spec;
+        snprintf(text, sizeof text, "wk_squint:taps=%s,pad=%d", taps[k % 5], 1 + k / 5);
+        struct wk *plan = planned(text, &problem, &spec);
+        const struct wk_kernel *kernel = &plan->azimuth_kernel;
+        for (int i = 0; i < kernel->taps / 2 * 65; i++) {
+            const double *c = (const double *)kernel->values + WK_POWERS * (i / 65), u = i % 65 / 64.0;
+            double value = 0, exact = kaiser_value(kernel->taps, kernel->shape, u - (1 - kernel->taps / 2 + i / 65));
+            for (int power = WK_POWERS - 1; power >= 0; power--)
+                value = value * (u - 0.5) + c[power];
+            worst = fmax(worst, fabs(value - exact));
+        }
+        plan_free(&spec, plan);
+    }
+    print_message("off by %.1e\n", worst);
+    assert_true(worst <= 1e-6);
+    squint_scene_free(&scene);
+}
+
 /* Azimuth samples over those recorded at 20 degrees: SQ18's zeros. */
 static void sizes(void **state)
 {
@@ -293,14 +347,11 @@ static void sizes(void **state)
     double flops[5];
     for (int k = 0; k < 5; k++) {
         struct spec spec;
-        void *plan;
-        assert_int_equal(spec_parse(cases[k].spec, &spec), STATUS_OK);
-        assert_int_equal(spec.algorithm->plan(&problem, spec.options, &plan), STATUS_OK);
+        void *plan = planned(cases[k].spec, &problem, &spec);
         print_message("%s: %.3f\n", cases[k].spec, wk_size_factor(plan));
         assert_true(fabs(wk_size_factor(plan) - cases[k].size) <= 0.02 * cases[k].size);
         flops[k] = spec.algorithm->work(plan).flops;
-        spec.algorithm->destroy(plan);
-        spec_free(&spec);
+        plan_free(&spec, plan);
     }
     assert_true(flops[0] > flops[1] && flops[1] > flops[2]);
     squint_scene_free(&scene);
@@ -367,10 +418,12 @@ static void refusals(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(spectra),          cmocka_unit_test(behind_the_beam), cmocka_unit_test(exact_images),
-        cmocka_unit_test(rotated_spectrum), cmocka_unit_test(squints),         cmocka_unit_test(ways),
-        cmocka_unit_test(motion),           cmocka_unit_test(reversed),        cmocka_unit_test(sizes),
-        cmocka_unit_test(refusals),
+        cmocka_unit_test(spectra),      cmocka_unit_test(behind_the_beam),
+        cmocka_unit_test(exact_images), cmocka_unit_test(rotated_spectrum),
+        cmocka_unit_test(squints),      cmocka_unit_test(ways),
+        cmocka_unit_test(motion),       cmocka_unit_test(reversed),
+        cmocka_unit_test(sizes),        cmocka_unit_test(refusals),
+        cmocka_unit_test(fits),         cmocka_unit_test(azimuth_kernels),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
