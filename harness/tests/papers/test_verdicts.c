@@ -109,6 +109,9 @@ static void faults_change_verdicts(void **state)
         {"lbf21/table3_far", {LBF_16, PCA_16}},
         {"lbf21/table4_near", {LBF_16, PCA_16}},
         {"lbf21/table4_far", {LBF_16, PCA_16}},
+        {"lbf21/table3_near_middle", {LBF_16, PCA_16}},
+        {"lbf21/table3_far_middle", {LBF_16, PCA_16}},
+        {"lbf21/table4_near_middle", {LBF_16, PCA_16}},
     };
     static const struct {
         const char *claim;
