@@ -2,12 +2,14 @@
 
 #include <signal.h>
 #include <stddef.h>
+#include <time.h>
 
 static const int numbers[] = {SIGINT, SIGTERM};
 enum { NUMBERS = sizeof numbers / sizeof *numbers };
 
 static struct sigaction before[NUMBERS];
 static volatile sig_atomic_t noted;
+static struct timespec first; /* when it was noted */
 
 static void restore(void)
 {
@@ -15,10 +17,18 @@ static void restore(void)
         sigaction(numbers[k], &before[k], NULL);
 }
 
+/* A terminal signals the supervisor as well, which hands it on: what comes at once is the same signal. */
 static void note(int number)
 {
-    noted = number;
-    restore();
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    if (!noted) {
+        first = now;
+        noted = number;
+    } else if ((double)(now.tv_sec - first.tv_sec) + 1e-9 * (double)(now.tv_nsec - first.tv_nsec) > 1) {
+        restore();
+        raise(number);
+    }
 }
 
 void interruption_hold(void)

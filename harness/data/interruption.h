@@ -1,4 +1,5 @@
-/* A signal that asks to end, held until what is measured can be written down; the second one ends at once. */
+/* A signal that asks to end, held until what is measured can be written down; one that comes more than a second
+   after it ends at once. */
 #ifndef SASBENCH_DATA_INTERRUPTION_H
 #define SASBENCH_DATA_INTERRUPTION_H
 

@@ -118,6 +118,7 @@ const struct report_table report_tables[REPORT_TABLES] = {
          "Errors as predicted before any plan, over the measured ones after one gain: of all images of an algorithm. "
          "Below 1 the prediction is too low.",
      .first = true,
+     .folded = true,
      .columns = {{"algorithm", "algorithm", SHOW_TEXT},
                  {"images", "images", SHOW_NUMBER},
                  {"least", "least", SHOW_NUMBER},

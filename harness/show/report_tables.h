@@ -13,7 +13,7 @@ struct report_table {
     const char *group; /* column whose values become headings, or NULL */
     bool stack;        /* long texts: rows fall apart on a narrow screen */
     bool first;        /* of the papers: ahead of the measurements that it rests on */
-    bool folded;       /* each group is closed until it is asked for, and Markdown has none of them */
+    bool folded;       /* each group is closed until it is asked for, and Markdown has only the summary */
     void (*summary)(struct page *page, const struct csv *csv); /* of all groups, ahead of them; may be NULL */
     struct {
         const char *name, *title;

@@ -164,7 +164,8 @@ static void killed_sweep_resumes(void **state)
     check_resumed("sweep", SWEEP("sweep"), SWEEP("sweep-killed"));
 }
 
-/* An interrupted sweep ends by the signal, but first writes what its rows say. */
+/* An interrupted sweep ends by the signal, which a terminal sends to all of its processes, but first writes what its rows
+   say. */
 static void interrupted_sweep_leaves_tables(void **state)
 {
     (void)state;
@@ -184,7 +185,7 @@ static void interrupted_sweep_leaves_tables(void **state)
             csv_free(&csv);
         }
     }
-    kill(child, SIGINT);
+    assert_int_equal(kill(-child, SIGINT), 0); /* its group */
     assert_int_equal(waitpid(child, &status, 0), child);
     fclose(sink);
     assert_true(WIFSIGNALED(status) && WTERMSIG(status) == SIGINT);
