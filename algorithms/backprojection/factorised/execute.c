@@ -112,9 +112,17 @@ static void line_from_records(const struct factorised *plan, int subaperture, in
     polar_line_end(plan, subaperture, view, &to);
 }
 
-/* Add a subaperture's image to pixels of a line. `centre`: of the subaperture in the line's axes. */
-static void line_add(const struct factorised *plan, int subaperture, int view, const struct polar_crossing *crossing,
-                     struct vector centre, const struct pixel_line *line, struct pair_span span, void *re, void *im)
+/* Pixels or places on a line, and how it runs through a subaperture's image. */
+struct crossed {
+    const struct pixel_line *line;
+    struct vector centre; /* of the subaperture, in the line's axes */
+    struct polar_crossing crossing;
+    void *re, *im; /* sums of the line's pixel 0 */
+};
+
+/* Add a subaperture's image to pixels of a line. */
+static void line_add(const struct factorised *plan, int subaperture, int view, const struct crossed *to,
+                     struct pair_span span)
 {
     const struct subaperture *part = &plan->tree.subapertures[subaperture];
     const struct polar *polar = &part->polars[view];
@@ -133,10 +141,12 @@ static void line_add(const struct factorised *plan, int subaperture, int view, c
                                       step->sine,
                                       &plan->tree.range,
                                       &plan->tree.angle};
-    const struct vector from = line_pixel(line, span.begin), to = line_pixel(line, span.end - 1);
-    const double a = hypot(from.x - centre.x, from.y - centre.y), b = hypot(to.x - centre.x, to.y - centre.y);
+    const struct vector centre = to->centre, p = line_pixel(to->line, span.begin),
+                        q = line_pixel(to->line, span.end - 1);
+    const double a = hypot(p.x - centre.x, p.y - centre.y), b = hypot(q.x - centre.x, q.y - centre.y);
     const int first = (int)floor(fmin(a, b) / step->rho) - 1, count = (int)floor(fmax(a, b) / step->rho) + 3 - first;
-    plan->trace(&image, crossing, first, count, scratch->trace, plan->trace_pitch, &plan->polar_layout, scratch->row);
+    plan->trace(&image, &to->crossing, first, count, scratch->trace, plan->trace_pitch, &plan->polar_layout,
+                scratch->row);
     struct bp_medium medium = plan->bp.medium;
     medium.fs = c / (2 * step->rho);
     medium.samples = count;
@@ -144,8 +154,8 @@ static void line_add(const struct factorised *plan, int subaperture, int view, c
                                  &centre, scratch->row, plan->polar_layout};
     const struct ping_box box = {centre, centre, plan->reach, plan->longest};
     struct bp_block blocks[BP_BLOCKS];
-    for (int n; (n = blocks_make(&box, line, &span, blocks)) > 0;)
-        plan->sum(&medium, &plan->polar_table, &ping, line, n, blocks, re, im);
+    for (int n; (n = blocks_make(&box, to->line, &span, blocks)) > 0;)
+        plan->sum(&medium, &plan->polar_table, &ping, to->line, n, blocks, to->re, to->im);
 }
 
 /* The images of its parts onto a line of a subaperture's. */
@@ -158,9 +168,8 @@ static void line_from_parts(const struct factorised *plan, int subaperture, int 
         double dx, dy;
         polar_turn(polar_axes(&plan->tree, view), part->x - child->x, part->y - child->y, &dx, &dy);
         const double offset = dy * to.cosine - dx * to.sine, along = dx * to.cosine + dy * to.sine;
-        const struct polar_crossing crossing = {offset, to.sine, to.cosine};
-        line_add(plan, n, view, &crossing, (struct vector){-offset, -along, 0}, &to.line,
-                 (struct pair_span){0, to.line.count}, to.re, to.im);
+        const struct crossed crossed = {&to.line, {-offset, -along, 0}, {offset, to.sine, to.cosine}, to.re, to.im};
+        line_add(plan, n, view, &crossed, (struct pair_span){0, to.line.count});
     }
     polar_line_end(plan, subaperture, view, &to);
 }
@@ -181,11 +190,10 @@ static void line_of_pixels(const struct factorised *plan, int subaperture, int p
         const int view = 2 * patch + side;
         double along, across;
         polar_turn(polar_axes(tree, view), line.x_first - part->x, line.r_first - part->y, &along, &across);
-        const struct polar_crossing crossing = {across, 0, 1};
+        const struct crossed crossed = {&line, {part->x, part->y, 0}, {across, 0, 1}, re, im};
         tree_pixels(tree, subaperture, view, &line, &spans);
         for (int k = 0; k < spans.count; k++)
-            line_add(plan, subaperture, view, &crossing, (struct vector){part->x, part->y, 0}, &line, spans.span[k], re,
-                     im);
+            line_add(plan, subaperture, view, &crossed, spans.span[k]);
     }
     if (part->level > 0)
         return;
