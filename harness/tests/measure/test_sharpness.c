@@ -1,6 +1,7 @@
 /* Sharpness of images, differences of slices, spread of times. */
 #include <math.h>
 #include <stdlib.h>
+#include <time.h>
 
 #include "measure/metrics.h"
 #include "measure/outcome.h"
@@ -134,6 +135,73 @@ static void test_rounds_add_up(void **state)
     scene_free(&scene);
 }
 
+/* A method that takes as long as is asked for. */
+static double pause_s;
+static int plan_made;
+
+static enum status pause_plan(const struct problem *problem, const void *options, void **plan)
+{
+    (void)problem, (void)options;
+    *plan = &plan_made;
+    return STATUS_OK;
+}
+
+static enum status pause_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages)
+{
+    (void)plan, (void)echoes, (void)image;
+    nanosleep(&(struct timespec){.tv_nsec = (long)(1e9 * pause_s)}, NULL);
+    stages_end(stages, "focus");
+    return STATUS_OK;
+}
+
+static struct work pause_work(const void *plan)
+{
+    (void)plan;
+    return (struct work){.pairs = 1};
+}
+
+static void pause_destroy(void *plan)
+{
+    (void)plan;
+}
+
+/* Where hundreds are measured, a long run is not repeated, and a short one as often as quartiles need. */
+static void test_effort_follows_the_run(void **state)
+{
+    (void)state;
+    static const struct {
+        double pause_s;
+        enum effort effort;
+        int least, most;
+    } cases[] = {{0.41, EFFORT_BRIEF, 1, 1},
+                 {0.11, EFFORT_BRIEF, 2, 2},
+                 {0, EFFORT_BRIEF, 5, TIMING_RUNS},
+                 {0.11, EFFORT_WHOLE, 3, 5},
+                 {0, EFFORT_WHOLE, 5, TIMING_RUNS}};
+    const struct algorithm pause = {
+        .name = "pause", .plan = pause_plan, .execute = pause_execute, .work = pause_work, .destroy = pause_destroy};
+    const struct spec spec = {.algorithm = &pause};
+    struct scene scene;
+    struct session session;
+    support_scene("study/quick", &scene);
+    assert_int_equal(session_open(&scene, &session), STATUS_OK);
+    const struct problem problem = session_problem(&scene, &pause, PRECISION_FLOAT);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct image image;
+        struct timing timing;
+        pause_s = cases[k].pause_s;
+        assert_int_equal(timing_measure(&spec, &problem, &session.echoes[PRECISION_FLOAT], &session.control,
+                                        cases[k].effort, NULL, &image, &timing),
+                         STATUS_OK);
+        assert_in_range(timing.runs, cases[k].least, cases[k].most);
+        assert_true(timing.run_s >= pause_s && timing.spent_s >= timing.runs * pause_s && timing.control_s > 0);
+        assert_true(isfinite(timing.run_q1_s) == (timing.runs >= 4));
+        image_free(&image);
+    }
+    session_close(&session);
+    scene_free(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -141,6 +209,7 @@ int main(void)
         cmocka_unit_test(test_sharpness),
         cmocka_unit_test(test_quartiles),
         cmocka_unit_test(test_rounds_add_up),
+        cmocka_unit_test(test_effort_follows_the_run),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
