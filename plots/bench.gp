@@ -30,7 +30,7 @@ set datafile separator comma
 
 array title[3] = ["rate (1e9 pairs/s)", "fraction of the multiply-add peak", "times the scalar reference loop's rate"]
 array engine[2] = ["invariant", "general"]
-array colour[2] = ["#0072b2", "#d55e00"]
+array colour[2] = ["#0072b2", "#f0b040"]                # dark and light in grey as well
 set output output
 set style fill solid 0.9 noborder
 set grid noytics
