@@ -10,63 +10,7 @@
 #include <unistd.h>
 
 #include "data/shown_text.h"
-
-static const char style[] =
-    "<style>\n"
-    "body { font: 16px/1.45 system-ui, 'DejaVu Sans', sans-serif; color: #1a1a1a; background: #fff;\n"
-    "  margin: 0 auto; padding: 0 1rem 3rem; max-width: 76rem; }\n"
-    "h1 { font-size: 1.6rem; overflow-wrap: anywhere; }\n"
-    "h2 { font-size: 1.3rem; margin-top: 2.5rem; border-bottom: 1px solid #ccc; }\n"
-    "h3 { font-size: 1.05rem; margin-top: 1.8rem; overflow-wrap: anywhere; }\n"
-    "summary { margin: .6rem 0; font-weight: bold; cursor: pointer; overflow-wrap: anywhere; }\n"
-    "nav a { margin-right: 1rem; white-space: nowrap; }\n"
-    "a { color: #005a9c; }\n"
-    ".scroll, .drawing { overflow-x: auto; }\n"
-    "table { border-spacing: 0; font-size: .85rem; }\n"
-    "th, td { padding: .25rem .6rem; border-bottom: 1px solid #e4e4e4; text-align: left; vertical-align: top; }\n"
-    "thead th { background: #f2f4f6; vertical-align: bottom; }\n"
-    "tbody th { font-weight: normal; background: #fff; }\n"
-    ".scroll th:first-child { position: sticky; left: 0; box-shadow: 1px 0 #ddd; }\n"
-    ".number { text-align: right; font-variant-numeric: tabular-nums; }\n"
-    "td.number { white-space: nowrap; }\n"
-    "td.long { min-width: 12rem; }\n"
-    ".note { color: #8a4b00; }\n"
-    ".good { background: #d9f0e0; }\n"
-    ".soft { background: #fdf1cd; }\n"
-    ".bad { background: #f9d9d4; }\n"
-    ".open { background: #e6e6ea; }\n"
-    "figure { margin: 1rem 0; break-inside: avoid; }\n"
-    "figcaption { font-size: .85rem; color: #444; overflow-wrap: anywhere; }\n"
-    ".drawing { margin: 1rem 0; break-inside: avoid; }\n"
-    ".drawing svg { display: block; width: 100%; height: auto; min-width: 36rem; max-width: 62rem; }\n"
-    ".gallery { display: grid; gap: 0 1.2rem;\n"
-    "  grid-template-columns: repeat(auto-fill, minmax(min(100%, 21rem), 1fr)); }\n"
-    "img { width: 100%; max-width: 62rem; height: auto; }\n"
-    "@media (max-width: 44rem) {\n"
-    "  .stack thead { display: none; }\n"
-    "  .stack, .stack tbody, .stack tr, .stack td, .stack tbody th { display: block; }\n"
-    "  .stack tr { border: 1px solid #ccc; margin-bottom: .8rem; }\n"
-    "  .stack tbody th { font-weight: bold; }\n"
-    "  .stack td { text-align: left; white-space: normal; overflow-wrap: anywhere; }\n"
-    "  .stack td:empty { display: none; }\n"
-    "  .stack td::before { content: attr(data-label) \": \"; color: #666; }\n"
-    "}\n"
-    "@media print {\n"
-    "  @page { size: A4 landscape; margin: 10mm; }\n"
-    "  body { max-width: none; padding: 0; font-size: 10pt; }\n"
-    "  nav { display: none; }\n"
-    "  details::details-content { content-visibility: visible; block-size: auto; }\n"
-    "  .scroll, .drawing { overflow: visible; }\n"
-    "  table { font-size: 7pt; }\n"
-    "  th, td { padding: .1rem .3rem; }\n"
-    "  tr { break-inside: avoid; }\n"
-    "  thead { display: table-header-group; }\n"
-    "  .scroll th:first-child { position: static; }\n"
-    "  .drawing svg { min-width: 0; max-height: 140mm; }\n"
-    "  h2, h3 { break-after: avoid; }\n"
-    "  .good, .soft, .bad, .open, thead th { print-color-adjust: exact; -webkit-print-color-adjust: exact; }\n"
-    "}\n"
-    "</style>\n";
+#include "show/page_style.h"
 
 /* --- Text ------------------------------------------------------------------------------------------------------ */
 
@@ -127,7 +71,7 @@ void page_begin(struct page *page, const char *title)
           "  <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n  ",
           page->stream);
     element_write(page, "title", NULL, NULL, title);
-    fprintf(page->stream, "\n%s</head>\n<body>\n", style);
+    fprintf(page->stream, "\n%s</head>\n<body>\n", page_style);
     element_write(page, "h1", NULL, NULL, title);
     fputc('\n', page->stream);
 }
