@@ -17,12 +17,16 @@ load plots."/style.gp"
 set datafile separator comma
 
 stats csv using (column("threads")) name "threads" nooutput
+set table $sets separator comma                        # the best instruction set is that of the first line below the head
+plot csv using (strcol("isa")) with table
+unset table
+best = $sets[2]
 label(method, precision, scene) = method.(precision eq "double" ? " double" : "") \
     .(scene eq "bp22/full" ? " (whole aperture)" : "")
 set table $rows separator comma
 plot csv using (label(strcol("algorithm"), strcol("precision"), strcol("scene"))):(strcol("engine")): \
     (1e-9*column("pairs_per_s")):(column("fraction_of_peak")):(column("ratio_to_control")):(" ") \
-    with table if (column("threads") == threads_max)
+    with table if (column("threads") == threads_max && strcol("isa") eq best)
 unset table
 height = 210 + 24*|$rows|
 load plots."/style.gp"

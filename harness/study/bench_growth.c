@@ -4,14 +4,15 @@
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "data/echo_data.h"
 #include "data/paths.h"
 #include "measure/imaging.h"
 #include "measure/provenance.h"
-#include "measure/timing.h"
 #include "scene/simulate.h"
 #include "study/bench.h"
+#include "study/bench_once.h"
 
 static const struct size {
     int columns, rows;
@@ -58,47 +59,49 @@ static struct grid middle_of(const struct grid *grid, const struct size *size)
     return cut;
 }
 
-/* One line: planned, and where there are echoes, run: once, or three times where that is short. setting < 0: none. */
-static enum status line_measure(FILE *file, const char *text, const struct problem *problem,
-                                const struct echoes *echoes, int setting)
+/* A plan alone. */
+static enum status plan_measure(const char *text, const struct problem *problem, struct work *work)
 {
-    enum { RUNS = 3 };
-    const struct grid *grid = problem->patches;
-    double seconds[RUNS];
     struct spec spec;
     struct imaging imaging;
-    struct stages stages;
-    int runs = 0;
     enum status status = spec_parse(text, &spec);
     if (status != STATUS_OK)
         return status;
     status = imaging_open(&spec, problem, &imaging);
     if (status == STATUS_OK) {
-        const struct work work = spec.algorithm->work(imaging.plan);
-        while (echoes && status == STATUS_OK && runs < RUNS && !(runs > 0 && seconds[0] > 2)) {
-            const double begin = seconds_now();
-            status = imaging_execute(&imaging, echoes, &stages);
-            seconds[runs++] = seconds_now() - begin;
-        }
-        if (status == STATUS_OK) {
-            fprintf(file, "%s,\"%s\",%s,", spec.algorithm->name, spec.text, work.engine);
-            if (setting >= 0)
-                fprintf(file, "%d", setting);
-            fprintf(file, ",%d,%d,%.9g,", grid->x_count, grid->r_count, work.pairs);
-            if (runs > 0)
-                fprintf(file, "%.4g,%.4g", median(seconds, runs), 1e9 * median(seconds, runs) / work.pairs);
-            else
-                fprintf(file, ",");
-            fprintf(file, ",%.6g\n", work.bytes);
-            if (runs > 0)
-                printf("%-38s %5d x %-5d %8.3f ns a pair %8.0f MiB\n", text, grid->x_count, grid->r_count,
-                       1e9 * median(seconds, runs) / work.pairs, work.bytes / 0x1p20);
-            fflush(stdout);
-        }
+        *work = spec.algorithm->work(imaging.plan);
         imaging_close(&imaging);
     }
     spec_free(&spec);
     return status;
+}
+
+/* One line: planned, and where there are echoes, run. setting < 0: none. */
+static enum status line_measure(FILE *file, const char *text, const struct problem *problem,
+                                const struct echoes *echoes, int setting)
+{
+    const struct grid *grid = problem->patches;
+    struct bench_sample sample = {0};
+    struct work work;
+    const enum status status = echoes ? bench_once(text, problem, echoes, omp_get_max_threads(), NULL, &work, &sample)
+                                      : plan_measure(text, problem, &work);
+    if (status != STATUS_OK)
+        return status;
+    const int name = (int)strcspn(text, ":");
+    fprintf(file, "%.*s,\"%s\",%s,", name, text, text + name + (text[name] == ':'), work.engine);
+    if (setting >= 0)
+        fprintf(file, "%d", setting);
+    fprintf(file, ",%d,%d,%.9g,", grid->x_count, grid->r_count, work.pairs);
+    if (sample.runs > 0)
+        fprintf(file, "%.4g,%.4g", sample.run_s, 1e9 * sample.run_s / work.pairs);
+    else
+        fprintf(file, ",");
+    fprintf(file, ",%.6g\n", work.bytes);
+    if (sample.runs > 0)
+        printf("%-38s %5d x %-5d %8.3f ns a pair %8.0f MiB\n", text, grid->x_count, grid->r_count,
+               1e9 * sample.run_s / work.pairs, work.bytes / 0x1p20);
+    fflush(stdout);
+    return STATUS_OK;
 }
 
 static enum status lines_measure(FILE *file, const struct scene *scene, const struct echoes *echoes)
@@ -121,8 +124,9 @@ static enum status lines_measure(FILE *file, const struct scene *scene, const st
     return status;
 }
 
-static enum status growth_measure(FILE *file)
+static enum status growth_measure(FILE *file, struct bench_goals *goals)
 {
+    (void)goals; /* none */
     struct provenance provenance;
     struct scene scene;
     struct echoes recorded, echoes;
@@ -151,5 +155,5 @@ static enum status growth_measure(FILE *file)
 
 enum status bench_growth(const char *directory)
 {
-    return bench_file(directory, "growth", growth_measure);
+    return bench_file(directory, "growth", growth_measure, NULL);
 }

@@ -31,13 +31,16 @@ enum {
 static const char *const phase_stages[] = {"bulk", "differential", NULL};
 static const char *const later_stages[] = {"reconstruct", "stolt", "focus", "inverse", NULL};
 
+/* Of stages of these names; NULL: of all. */
 static double stages_seconds(const struct stages *stages, const char *const *names)
 {
     double sum = 0;
-    for (; *names; names++)
-        for (int k = 0; k < stages->count; k++)
-            if (strcmp(stages->stage[k].name, *names) == 0)
-                sum += stages->stage[k].seconds;
+    for (int k = 0; k < stages->count; k++) {
+        bool counts = !names;
+        for (const char *const *name = names; name && *name; name++)
+            counts = counts || strcmp(stages->stage[k].name, *name) == 0;
+        sum += counts ? stages->stage[k].seconds : 0;
+    }
     return sum;
 }
 
@@ -94,14 +97,17 @@ static void sincos_seconds(double seconds[2])
     (void)used;
 }
 
-static enum status measure(const struct problem *problem, const struct echoes *echoes, FILE *file)
+static enum status measure(const struct problem *problem, const struct echoes *echoes, FILE *file,
+                           struct bench_goals *goals)
 {
-    struct timing eight = {0}, one = {0}, libm = {0};
+    struct timing eight = {0}, one = {0}, libm = {0}, delay = {0};
     enum status status = image_seconds("rma_lbf:blocks=8", problem, echoes, true, &eight);
     if (status == STATUS_OK)
         status = image_seconds("rma_lbf:blocks=1", problem, echoes, true, &one);
     if (status == STATUS_OK)
         status = image_seconds("rma_lbf:blocks=1,phases=libm", problem, echoes, false, &libm);
+    if (status == STATUS_OK)
+        status = image_seconds("rma_delay", problem, echoes, true, &delay);
     if (status != STATUS_OK)
         return status;
     const int threads = omp_get_max_threads();
@@ -111,6 +117,8 @@ static enum status measure(const struct problem *problem, const struct echoes *e
     const double libm_phase = stages_seconds(&libm.stages, phase_stages);
     struct fft_seconds fft;
     double cells[2];
+    static const char *const compression[] = {"compress", NULL};
+    const double delay_share = 1 - stages_seconds(&delay.stages, compression) / stages_seconds(&delay.stages, NULL);
     status = fft_seconds(AZIMUTH, RANGE, threads, &fft);
     if (status != STATUS_OK)
         return status;
@@ -134,19 +142,30 @@ static enum status measure(const struct problem *problem, const struct echoes *e
          cells[PRECISION_DOUBLE] / one_phase},
         {"fft2", "s", "FFTW, 2-D forward and inverse of 3840 x 4096 by one plan, best of five", fft.plan},
         {"fft2_strips", "s", "the same by rows, and by columns in copied strips", fft.strips},
-        {"run_ratio", "1", "run in the faster of these transforms (12 at most)", run / fft.best},
+        {"run_ratio", "1", "run in the faster of these transforms", run / fft.best},
+        {"delay_run", "s", "rma_delay, median", delay.run_s},
+        {"delay_ratio", "1", "rma_delay's run in the faster of these transforms", delay.run_s / fft.best},
+        {"delay_after_ratio", "1", "and what follows its range compression", delay_share * delay.run_s / fft.best},
     };
-    fprintf(file, "# sasbench bench_rma 1\n# threads: %d\nscene,algorithm,precision,quantity,unit,value\n", threads);
+    fprintf(file, "# sasbench bench_rma 2\n# threads: %d\nscene,algorithm,precision,quantity,unit,value\n", threads);
     printf("\nRange migration of LBF21's real-data size, float, %d threads\n", threads);
+    bench_goal(goals, GOAL_AT_MOST, 12, run / fft.best,
+               "rma_lbf, 8 blocks, run over FFTW's transforms: lbf21/real_size");
+    bench_goal(goals, GOAL_AT_MOST, 4, delay.run_s / fft.best,
+               "rma_delay, run over FFTW's transforms: lbf21/real_size");
+    bench_goal(goals, GOAL_AT_MOST, 2, delay_share * delay.run_s / fft.best,
+               "rma_delay, after range compression, over FFTW's transforms: lbf21/real_size");
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        fprintf(file, "lbf21/real_size,rma_lbf,float,%s,%s,%.6g\n", rows[k].name, rows[k].unit, rows[k].value);
+        fprintf(file, "lbf21/real_size,%s,float,%s,%s,%.6g\n",
+                strncmp(rows[k].name, "delay", 5) == 0 ? "rma_delay" : "rma_lbf", rows[k].name, rows[k].unit,
+                rows[k].value);
         printf("%9.4g %-2s %s\n", rows[k].value, strcmp(rows[k].unit, "s") == 0 ? "s" : "", rows[k].meaning);
     }
     fflush(stdout);
     return STATUS_OK;
 }
 
-enum status bench_rma(const char *directory)
+enum status bench_rma(const char *directory, struct bench_goals *goals)
 {
     char path[4096];
     struct scene scene;
@@ -165,7 +184,7 @@ enum status bench_rma(const char *directory)
         }
         if (status == STATUS_OK) {
             struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
-            status = measure(&problem, &echoes, file.stream);
+            status = measure(&problem, &echoes, file.stream, goals);
             echoes_free(&echoes);
         }
         scene_free(&scene);

@@ -3,9 +3,9 @@
 #ifndef SASBENCH_STUDY_BENCH_WK_H
 #define SASBENCH_STUDY_BENCH_WK_H
 
-#include "status.h"
+#include "study/bench_goals.h"
 
 /* Prints, and writes bench_wk.csv into the folder. Errors: STATUS_FAILED. */
-enum status bench_wk(const char *directory);
+enum status bench_wk(const char *directory, struct bench_goals *goals);
 
 #endif
