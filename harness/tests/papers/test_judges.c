@@ -1,9 +1,10 @@
-/* The language of results/claims.csv: its arithmetic, and each judge on planted numbers. */
+/* The language of results/claims.csv: its arithmetic, each judge on planted numbers, what is known of the rules. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "measure/session.h"
+#include "papers/rules.h"
 #include "tests/planted.h"
 
 /* Two lone numbers and a list that arguments can ask for: errors A and B in speckle, ISLR of three targets. */
@@ -244,6 +245,27 @@ static void judges_are_joined(void **state)
     planted_clear(&measured);
 }
 
+/* Shares and quantiles over the scenes of a rule; a refused setting meets no budget. */
+static void rules_are_counted(void **state)
+{
+    (void)state;
+    struct measured measured;
+    support_write(RULES_FILE, "seed,rule,algorithm,options,error_gain,rate,rate_enough\n"
+                              "1,bp22_eq20,bp_linear,beta=3,0.05,4,2\n1,zp15_eighth,bp_zeropad,factor=8,0.01,8,4\n"
+                              "2,bp22_eq20,bp_linear,beta=0,0.3,1,4\n2,zp15_eighth,bp_zeropad,factor=6,0.02,6,6\n"
+                              "3,bp22_eq20,bp_linear,beta=7,0.1,8,\n3,zp15_eighth,bp_zeropad,factor=2,,2,1\n");
+    assert_int_equal(measured_read(folder, &measured), STATUS_OK);
+    assert_close(rule_value(&measured, "bp22_eq20", "met", 0.1), 2.0 / 3, 1e-12);
+    assert_close(rule_value(&measured, "bp22_eq20", "met", 0.04), 0, 0);
+    assert_close(rule_value(&measured, "zp15_eighth", "met", 0.1), 2.0 / 3, 1e-12);
+    assert_close(rule_value(&measured, "bp22_eq20", "error", 0.5), 0.1, 1e-12);
+    assert_close(rule_value(&measured, "bp22_eq20", "overpaid", 0), 0.25, 1e-12);
+    assert_close(rule_value(&measured, "bp22_eq20", "overpaid", 1), 2, 1e-12);
+    assert_close(rule_value(&measured, "zp15_eighth", "overpaid", 0.5), 1.5, 1e-12);
+    assert_true(!*measured.missing && isnan(rule_value(&measured, "none", "met", 0.1)) && *measured.missing);
+    measured_free(&measured);
+}
+
 #define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, folder_make, folder_remove)
 
 int main(void)
@@ -253,6 +275,7 @@ int main(void)
         IN_FOLDER(judges_compare),
         IN_FOLDER(judges_compare_lists),
         IN_FOLDER(judges_are_joined),
+        IN_FOLDER(rules_are_counted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -10,7 +10,6 @@
 
 #include "command/task.h"
 #include "measure/outcome.h"
-#include "papers/rules.h"
 #include "tests/planted.h"
 
 /* --- Tables and claims as such -------------------------------------------------------------------------------- */
@@ -364,27 +363,6 @@ static void unknown_table_is_refused(void **state)
     assert_int_not_equal(access(results, F_OK), 0);
 }
 
-/* Shares and quantiles over the scenes of a rule; a refused setting meets no budget. */
-static void rules_are_counted(void **state)
-{
-    (void)state;
-    struct measured measured;
-    support_write(RULES_FILE, "seed,rule,algorithm,options,error_gain,rate,rate_enough\n"
-                              "1,bp22_eq20,bp_linear,beta=3,0.05,4,2\n1,zp15_eighth,bp_zeropad,factor=8,0.01,8,4\n"
-                              "2,bp22_eq20,bp_linear,beta=0,0.3,1,4\n2,zp15_eighth,bp_zeropad,factor=6,0.02,6,6\n"
-                              "3,bp22_eq20,bp_linear,beta=7,0.1,8,\n3,zp15_eighth,bp_zeropad,factor=2,,2,1\n");
-    assert_int_equal(measured_read(folder, &measured), STATUS_OK);
-    assert_close(rule_value(&measured, "bp22_eq20", "met", 0.1), 2.0 / 3, 1e-12);
-    assert_close(rule_value(&measured, "bp22_eq20", "met", 0.04), 0, 0);
-    assert_close(rule_value(&measured, "zp15_eighth", "met", 0.1), 2.0 / 3, 1e-12);
-    assert_close(rule_value(&measured, "bp22_eq20", "error", 0.5), 0.1, 1e-12);
-    assert_close(rule_value(&measured, "bp22_eq20", "overpaid", 0), 0.25, 1e-12);
-    assert_close(rule_value(&measured, "bp22_eq20", "overpaid", 1), 2, 1e-12);
-    assert_close(rule_value(&measured, "zp15_eighth", "overpaid", 0.5), 1.5, 1e-12);
-    assert_true(!*measured.missing && isnan(rule_value(&measured, "none", "met", 0.1)) && *measured.missing);
-    measured_free(&measured);
-}
-
 /* Times that were measured on a busy machine stay noisy when they are judged again on a quiet one. */
 static void load_is_kept(void **state)
 {
@@ -463,7 +441,6 @@ int main(void)
         IN_FOLDER(unknown_table_is_refused),
         IN_FOLDER(finished_measurements_are_kept),
         IN_FOLDER(load_is_kept),
-        IN_FOLDER(rules_are_counted),
         IN_FOLDER(layouts_are_drawn),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
