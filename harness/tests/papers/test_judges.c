@@ -271,11 +271,8 @@ static void rules_are_counted(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        IN_FOLDER(arithmetic_is_right),
-        IN_FOLDER(judges_compare),
-        IN_FOLDER(judges_compare_lists),
-        IN_FOLDER(judges_are_joined),
-        IN_FOLDER(rules_are_counted),
+        IN_FOLDER(arithmetic_is_right), IN_FOLDER(judges_compare),    IN_FOLDER(judges_compare_lists),
+        IN_FOLDER(judges_are_joined),   IN_FOLDER(rules_are_counted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
