@@ -9,7 +9,8 @@ static const double RESIDUAL_MOST = 1; /* frequencies of d along rho and along a
 static const double SINE_MOST = 0.9;   /* off the axis */
 static const double RADII_LEAST = 3;   /* rho over the subaperture's radius */
 enum { PINGS_MOST = 64, BISECTIONS = 12, EDGE = 9, CLIPS = 8 };
-enum { PLACES_MOST = 1 << 28, LINES_MOST = 1 << 20 }; /* of a grid: beyond, there is none */
+/* Of a grid, and of one that is summed from records, whose every line is looked at: beyond, there is none. */
+enum { PLACES_MOST = 1 << 28, LINES_MOST = 1 << 20, RECORD_LINES_MOST = 1 << 13 };
 
 static struct sector sector_none(void)
 {
@@ -287,7 +288,7 @@ void grid_clip_records(const struct tree *tree, const struct subaperture *part, 
     const struct acquisition *a = tree->problem.acquisition;
     const struct polar_step *step = polar_step(tree, part->level, view);
     const double length = (a->samples - 1) / a->fs, slack = 1e-6 / a->fs;
-    for (int n = 0; n < CLIPS && polar->lines > 0; n++) {
+    for (int n = 0; n < CLIPS && polar->lines > 0 && polar->lines <= RECORD_LINES_MOST; n++) {
         const double near = polar->place_first * step->rho, far = near + (polar->places - 1) * step->rho;
         double before = 0, behind = 0; /* s that the worst delays lie outside of the records */
         for (int k = 0; k < polar->lines; k++) {

@@ -11,12 +11,13 @@ struct amounts {
     double records, images, traces, lines;
 };
 
-static void add_span(const struct tree *tree, const struct polar_step *step, double metres, double pixels,
-                     struct amounts *sum)
+/* `count` stretches of lines that are read from images of a level. */
+static void add_spans(const struct tree *tree, const struct polar_step *step, double metres, double pixels,
+                      double count, struct amounts *sum)
 {
-    sum->images += pixels;
-    sum->traces += metres / step->rho + tree->range.taps + 2;
-    sum->lines++;
+    sum->images += count * pixels;
+    sum->traces += count * (metres / step->rho + tree->range.taps + 2);
+    sum->lines += count;
 }
 
 /* Images of a subaperture. */
@@ -31,8 +32,8 @@ static void count_images(const struct tree *tree, const struct subaperture *part
             continue;
         }
         const double rho = polar_step(tree, part->level, v)->rho;
-        for (int n = 0; n < part->children * polar->lines; n++)
-            add_span(tree, polar_step(tree, part->level - 1, v), polar->places * rho, polar->places, sum);
+        add_spans(tree, polar_step(tree, part->level - 1, v), polar->places * rho, polar->places,
+                  (double)part->children * polar->lines, sum);
     }
 }
 
@@ -53,7 +54,7 @@ static void count_pixels(const struct tree *tree, int subaperture, int patch, in
             tree_pixels(tree, subaperture, view, &line, &spans);
             for (int k = 0; k < spans.count; k++) {
                 const double pixels = spans.span[k].end - spans.span[k].begin;
-                add_span(tree, polar_step(tree, part->level, view), pixels * metres, pixels, sum);
+                add_spans(tree, polar_step(tree, part->level, view), pixels * metres, pixels, 1, sum);
             }
         }
         if (part->level > 0)
