@@ -1,11 +1,11 @@
 /* Fast factorised back projection (Ulander, Hellsten, Stenstrom, IEEE TAES 39, 2003), of any track, bistatic, with
-   exact delays. Pings are divided into subapertures of `base` pings, whose images, of few directions, are summed from
-   the records on polar grids about their centres; `factor` of them are merged at a time into an image of more
+   exact delays. Pings are divided into subapertures of some `base` records, whose images, of few directions, are summed
+   from the records on polar grids about their centres; `factor` of them are merged at a time into an image of more
    directions, `stages` levels of images in all, and pixels are interpolated from the last.
    backprojection/factorised/tree.h has the grids and their sampling.
 
-   Cost: a pixel reads the images of the largest subapertures, P/(base factor^(stages-1)) of them, in place of the
-   records of P pings: of n pings, n^(1/stages) or so for each stage. Images have about as many samples as the records.
+   Cost: a pixel reads the images of the largest subapertures, one for base factor^(stages-1) records, in place of all
+   records: of n, n^(1/stages) or so for each stage. Images have about as many samples as the records.
 
    Error, relative L2: each time that an image is read, it is interpolated along range and across directions, each to
    e = 0.85 error/sqrt(2 stages + 1), and the records as well: together `error` at most. Taps and
@@ -29,8 +29,8 @@ static const char *const stage_names[] = {"auto", "0", "1", "2", "3", "4", "5", 
 static const struct param params[] = {
     {PARAM(struct options, error), .summary = "relative L2 error that the interpolations may make together",
      .initial = 1e-2, .min = 1e-5, .max = 0.3, .sweep = "1e-1 3e-2 1e-2 3e-3 1e-3 1e-4"},
-    {PARAM(struct options, base), .summary = "pings of the smallest subapertures", .initial = 16, .min = 1, .max = 4096,
-     .terse = true},
+    {PARAM(struct options, base), .summary = "records of the smallest subapertures, about: those of whole pings",
+     .initial = 16, .min = 1, .max = 4096, .terse = true},
     {PARAM(struct options, factor), .summary = "subapertures that are merged into one", .initial = 8, .min = 2,
      .max = 64, .terse = true},
     {PARAM_NAMED(struct options, stages, stage_names),
@@ -84,7 +84,8 @@ static enum status choose_stages(const struct problem *problem, struct tree_sett
 static enum status plan(const struct problem *problem, const void *given, void **out)
 {
     const struct options *options = given;
-    struct tree_settings settings = {options->error, options->base, options->factor, options->stages - 1};
+    const int receivers = problem->acquisition->receivers, base = options->base / receivers;
+    struct tree_settings settings = {options->error, base > 1 ? base : 1, options->factor, options->stages - 1};
     struct condition list[CONDITIONS_MAX];
     *out = NULL;
     enum status status = conditions_check("bp_factorised", list, conditions(problem, options, list, CONDITIONS_MAX));

@@ -236,7 +236,8 @@ void grid_cover(const struct tree *tree, const struct polar_step *step, struct s
     *polar = (struct polar){.lines = 0};
     if (sector_is_empty(sector) || !(sector.rho_high < PLACES_MOST * step->rho && 1 < LINES_MOST * step->sine))
         return;
-    const int places = margin_places(tree), lines = margin_lines(tree, step, sector.rho_low);
+    /* One more than is read, so that rounding does not decide whether the sector's edges are. */
+    const int places = margin_places(tree) + 1, lines = margin_lines(tree, step, sector.rho_low) + 1;
     polar->place_first = (int)floor(sector.rho_low / step->rho) - places;
     polar->places = (int)ceil(sector.rho_high / step->rho) + places - polar->place_first + 1;
     polar->line_first = (int)floor(sector.low / step->sine) - lines;
