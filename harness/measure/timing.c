@@ -78,7 +78,7 @@ static const struct budget {
     double seconds_least, seconds_most;
     double first_counts,
         single; /* s: a first run as long as that counts, for it warms up in passing; is the only one */
-} budgets[] = {[EFFORT_BRIEF] = {2, 5, 0.05, 0.2, 0.05, 0.4}, [EFFORT_WHOLE] = {3, 5, 0.5, 3, 10, 10}},
+} budgets[] = {[EFFORT_BRIEF] = {2, 5, 0.04, 0.15, 0.04, 0.3}, [EFFORT_WHOLE] = {3, 5, 0.5, 3, 10, 10}},
   part = {1, 2, 0.5 / TIMING_ROUNDS, 3.0 / TIMING_ROUNDS, 10, 10};
 
 /* Times of repeated runs, behind those of earlier rounds. */

@@ -173,8 +173,8 @@ static void test_effort_follows_the_run(void **state)
         double pause_s;
         enum effort effort;
         int least, most;
-    } cases[] = {{0.41, EFFORT_BRIEF, 1, 1},
-                 {0.11, EFFORT_BRIEF, 2, 2},
+    } cases[] = {{0.31, EFFORT_BRIEF, 1, 1},
+                 {0.06, EFFORT_BRIEF, 2, 3},
                  {0, EFFORT_BRIEF, 5, TIMING_RUNS},
                  {0.11, EFFORT_WHOLE, 3, 5},
                  {0, EFFORT_WHOLE, 5, TIMING_RUNS}};
