@@ -7,6 +7,7 @@ const char *const cause_names[CAUSES] = {[CAUSE_INTERPOLATION] = "interpolation"
                                          [CAUSE_SPECTRUM] = "spectrum",
                                          [CAUSE_BLOCKS] = "blocks",
                                          [CAUSE_STOLT] = "stolt",
+                                         [CAUSE_APERTURE] = "aperture",
                                          [CAUSE_FLOAT] = "float"};
 
 double forecast_error(const struct forecast *forecast)

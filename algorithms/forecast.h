@@ -12,6 +12,7 @@ enum cause {
     CAUSE_SPECTRUM,      /* the two-dimensional spectrum: stationary phase, sampling in azimuth, the formula */
     CAUSE_BLOCKS,        /* ranges that share a conversion, and receivers that share its terms */
     CAUSE_STOLT,         /* the interpolation of the spectrum */
+    CAUSE_APERTURE,      /* pairs that an aperture limit leaves out */
     CAUSE_FLOAT,         /* rounding */
     CAUSES
 };
@@ -25,9 +26,14 @@ struct forecast {
     bool sums_pairs;      /* back projection: what follows is of its pairs, and of its records */
     bool tables;          /* by the invariant engine */
     enum reading_kind kind;
-    int values;          /* that a pair reads */
-    double pair_flops;   /* of a pair */
-    double record_flops; /* of range compression, all records together */
+    int values;        /* that a pair reads */
+    double units;      /* that are made for them: entries of tables, or blocks of pixels */
+    double pair_flops; /* of a pair */
+    /* Of all records together: */
+    double record_flops;  /* of the transforms of range compression */
+    double slowness;      /* of their length: times the seconds a FLOP of the lengths that FFTW is fast at */
+    double kernel_flops;  /* of branches that stand for a kernel's taps */
+    double record_values; /* complex ones that are put where pairs read them */
 };
 
 /* Of all causes: the root of the sum of squares. */

@@ -8,6 +8,7 @@
 #include "backprojection/budget.h"
 #include "backprojection/kernel.h"
 #include "backprojection/law.h"
+#include "backprojection/omission.h"
 #include "common/fft_length.h"
 #include "backprojection/pairs.h"
 
@@ -128,6 +129,14 @@ static enum status tabulate(struct bp *bp, const struct interpolator *in, const 
     return complete ? STATUS_OK : status_set(STATUS_FAILED, "no memory for interpolation weights");
 }
 
+static int met_count(const struct bp *bp)
+{
+    int count = 0;
+    for (int p = 0; p < bp->problem.acquisition->pings; p++)
+        count += bp_met(bp, p);
+    return count;
+}
+
 /* The counted and the published work, but for the pairs. BP22 Eq. (11) has N_a records, N_r samples and N_a N_r pixels,
    every pixel summed over every record; here the pixels are counted as they are. LBF21 Eq. (23) lacks the sum over
    records and contradicts it. Its interpolation factor, and BP22's points beta between two samples, follow from how a
@@ -136,9 +145,9 @@ static void count_work(struct bp *bp, const struct interpolator *in)
 {
     const struct acquisition *a = bp->problem.acquisition;
     struct work *work = &bp->work;
-    double na = (double)a->pings * a->receivers, nr = a->samples, pixels = problem_pixels(&bp->problem);
+    const double na = (double)a->pings * a->receivers, nr = a->samples, pixels = problem_pixels(&bp->problem);
     double all = na * pixels, transforms = na * (fft_flops(nr) + fft_flops(in->upsample * nr) + 6 * nr);
-    work->flops = na * bp->shape.flops;
+    work->flops = (double)met_count(bp) * a->receivers * bp->shape.flops;
     if (in->in_papers) {
         const bool kernel = in->steps == 0; /* each value is summed over one */
         const double beta = kernel ? 0 : in->steps - 1, points = kernel ? in->taps : in->steps;
@@ -217,6 +226,31 @@ static enum status engine_plan(struct bp *bp, const struct bp_options *options)
     return status;
 }
 
+/* Let the problem be that of the aperture which the settings ask for, where it is the smaller one. */
+static void aperture_take(struct bp *bp, const struct bp_options *options)
+{
+    if (!(options->aperture > 0 && options->aperture < fmin(1, bp->problem.acquisition->aperture_limit)))
+        return;
+    bp->limited = *bp->problem.acquisition;
+    bp->limited.aperture_limit = options->aperture;
+    bp->problem.acquisition = &bp->limited;
+}
+
+static enum status met_find(struct bp *bp)
+{
+    const int pings = bp->problem.acquisition->pings;
+    bp->met = malloc((size_t)pings * sizeof *bp->met);
+    if (!bp->met)
+        return status_set(STATUS_FAILED, "no memory for %d pings", pings);
+    if (pings_met(&bp->problem, bp->met) < pings) {
+        bp->work.bytes += (double)pings * sizeof *bp->met;
+    } else {
+        free(bp->met);
+        bp->met = NULL;
+    }
+    return STATUS_OK;
+}
+
 enum status bp_plan(const struct problem *problem, const struct interpolator *interpolator, const void *options,
                     void **plan)
 {
@@ -231,7 +265,10 @@ enum status bp_plan(const struct problem *problem, const struct interpolator *in
     bp->problem = *problem;
     bp->medium = (struct bp_medium){a->sound_speed, a->fc, a->fs, a->samples, 0};
     bp->work.bytes = offsetof(struct bp, turned); /* the rest is for turned grids alone, counted there */
+    aperture_take(bp, options);
     enum status status = problem_turn_back(&bp->problem, &bp->turned, &bp->work.bytes);
+    if (status == STATUS_OK)
+        status = met_find(bp);
     if (status == STATUS_OK)
         status = tabulate(bp, interpolator, options);
     if (status == STATUS_OK)
@@ -263,9 +300,13 @@ struct work bp_work(const void *plan)
     double all = (double)a->pings * a->receivers * problem_pixels(&bp->problem);
     work.pairs = pairs_count(&bp->problem);
     work.flops += work.pairs * (4.0 * (bp->table.taps == 1 ? 0 : bp->table.taps - (bp->table.branches > 1)) + 8);
+    int length = 0;
     if (work.pairs < all)
-        snprintf(work.skipped, sizeof work.skipped, "%.3g %% of the pairs: outside the record%s",
-                 100 * (1 - work.pairs / all), a->aperture_limit < 1 ? " or the aperture limit" : "");
+        length = snprintf(work.skipped, sizeof work.skipped, "%.3g %% of the pairs: outside the record%s",
+                          100 * (1 - work.pairs / all), a->aperture_limit < 1 ? " or the aperture limit" : "");
+    if (bp->met)
+        snprintf(work.skipped + length, sizeof work.skipped - (size_t)length, "%s%d of %d pings, which no pixel meets",
+                 length > 0 ? "; " : "", a->pings - met_count(bp), a->pings);
     return work;
 }
 
@@ -280,7 +321,7 @@ static enum status forecast_reading(const struct bp *bp, const struct interpolat
 {
     struct bp kernel = {.problem = bp->problem};
     kernel.problem.precision = PRECISION_FLOAT; /* so that both precisions are forecast alike */
-    const bool line = in->taps == 2 && in->steps > 0;
+    const bool line = in->taps == 2 && (in->steps > 0 || bp->engine == &bp_invariant);
     forecast->kind = in->degree > 0 ? READ_BRANCHES : line ? READ_LINE : in->taps > 1 ? READ_TAPS : READ_NEAREST;
     forecast->values = in->degree > 0 ? in->degree + 1 : in->taps;
     if (bp->engine == &bp_invariant || in->degree > 0 || in->taps == 1 || in->steps > 0)
@@ -294,44 +335,74 @@ static enum status forecast_reading(const struct bp *bp, const struct interpolat
     return made ? STATUS_OK : status_set(STATUS_FAILED, "no memory for interpolation weights");
 }
 
+/* Who does the sums, and which records are read, without a plan: of *bp only `met` is to be freed. */
+static enum status forecast_begin(const struct problem *problem, const struct interpolator *in,
+                                  const struct bp_options *options, struct bp *bp)
+{
+    const struct acquisition *a = problem->acquisition;
+    *bp = (struct bp){.problem = *problem, .medium = {a->sound_speed, a->fc, a->fs, a->samples, 0}};
+    bp->table = (struct bp_table){.reading = in->degree > 0  ? BP_BRANCHES
+                                             : in->taps == 1 ? BP_NEAREST
+                                             : in->steps > 0 ? BP_STEPS
+                                                             : BP_CUBICS,
+                                  .upsample = in->upsample,
+                                  .steps = in->steps,
+                                  .taps = in->degree > 0 ? in->degree + 1 : in->taps,
+                                  .branches = in->degree > 0 ? in->degree + 1 : 1};
+    struct condition list[CONDITIONS_MAX];
+    enum status status =
+        conditions_check("back projection", list, bp_conditions(problem, options, list, CONDITIONS_MAX));
+    aperture_take(bp, options);
+    if (status == STATUS_OK)
+        status = choose_engine(bp, options);
+    return status == STATUS_OK ? met_find(bp) : status;
+}
+
+/* The work besides pairs. */
+static void forecast_records(const struct bp *bp, const struct interpolator *in, struct forecast *forecast)
+{
+    const struct acquisition *a = bp->problem.acquisition;
+    const struct traces_form form = {.upsample = in->upsample, .degree = in->degree, .preemphasis = in->preemphasis};
+    const double records = (double)met_count(bp) * a->receivers, fine = (a->samples - 1.0) * in->upsample + 1;
+    const int taps = forecast->kind == READ_BRANCHES && in->degree == 0 ? in->taps : 0; /* of a kernel's branches */
+    forecast->units = bp->engine->units(bp);
+    forecast->pair_flops =
+        4.0 * (in->taps == 1 && in->degree == 0 ? 0 : forecast->values - (forecast->kind == READ_BRANCHES)) + 8;
+    forecast->record_flops = records * traces_flops_double(a, &form);
+    forecast->slowness = fft_slowness(traces_period_double(a));
+    forecast->kernel_flops = records * 4.0 * forecast->values * taps * fine;
+    forecast->record_values = records * fine * (forecast->kind == READ_BRANCHES ? forecast->values : 1);
+}
+
 enum status bp_forecast(const struct problem *problem, const struct interpolator *in, const void *options,
                         struct forecast *forecast)
 {
+    const struct bp_options *given = options;
     const struct acquisition *a = problem->acquisition;
-    struct bp bp = {.problem = *problem, .medium = {a->sound_speed, a->fc, a->fs, a->samples, 0}};
-    bp.table = (struct bp_table){.reading = in->degree > 0  ? BP_BRANCHES
-                                            : in->taps == 1 ? BP_NEAREST
-                                            : in->steps > 0 ? BP_STEPS
-                                                            : BP_CUBICS,
-                                 .upsample = in->upsample,
-                                 .steps = in->steps,
-                                 .taps = in->degree > 0 ? in->degree + 1 : in->taps,
-                                 .branches = in->degree > 0 ? in->degree + 1 : 1};
-    struct condition list[CONDITIONS_MAX];
+    struct bp bp;
     *forecast = (struct forecast){.sums_pairs = true};
-    enum status status =
-        conditions_check("back projection", list, bp_conditions(problem, options, list, CONDITIONS_MAX));
-    if (status == STATUS_OK)
-        status = choose_engine(&bp, options);
+    enum status status = forecast_begin(problem, in, given, &bp);
     if (status == STATUS_OK)
         status = forecast_reading(&bp, in, options, forecast);
-    if (status != STATUS_OK)
-        return status;
-    const bool general = bp.engine == &bp_general;
-    const struct traces_form form = {.upsample = in->upsample, .degree = in->degree, .preemphasis = in->preemphasis};
-    struct law_spectrum spectrum;
-    law_spectrum(a, &spectrum);
-    const double law = interpolation_error(in, options, &spectrum);
-    if (isnan(law))
-        return status_set(STATUS_FAILED, "no memory for an error law");
-    forecast->tables = !general;
-    /* At fs = B the bin at fs/2 stands for both ends of the band. */
-    forecast->error[CAUSE_INTERPOLATION] = hypot(law, a->bandwidth < a->fs ? 0 : 1.0 / a->samples);
-    forecast->error[CAUSE_DELAYS] = general ? DELAYS_SHARE * bp.medium.phase_limit : 1e-7;
-    forecast->error[CAUSE_FLOAT] = ROUNDING[general][problem->precision];
-    forecast->pair_flops = 4.0 * (in->degree > 0 ? in->degree : in->taps == 1 ? 0 : in->taps) + 8;
-    forecast->record_flops = (double)a->pings * a->receivers * traces_flops_double(a, &form);
-    return STATUS_OK;
+    if (status == STATUS_OK) {
+        const bool general = bp.engine == &bp_general;
+        struct law_spectrum spectrum;
+        law_spectrum(a, &spectrum);
+        const double law = interpolation_error(in, options, &spectrum);
+        forecast->tables = !general;
+        /* At fs = B the bin at fs/2 stands for both ends of the band. */
+        forecast->error[CAUSE_INTERPOLATION] = hypot(law, a->bandwidth < a->fs ? 0 : 1.0 / a->samples);
+        forecast->error[CAUSE_DELAYS] = general ? DELAYS_SHARE * bp.medium.phase_limit : 1e-7;
+        forecast->error[CAUSE_FLOAT] = ROUNDING[general][problem->precision];
+        if (bp.problem.acquisition == &bp.limited) {
+            forecast->error[CAUSE_APERTURE] = aperture_planned(problem, given->aperture);
+        }
+        forecast_records(&bp, in, forecast);
+        if (isnan(law))
+            status = status_set(STATUS_FAILED, "no memory for an error law");
+    }
+    free(bp.met);
+    return status;
 }
 
 void bp_destroy(void *plan)
@@ -342,6 +413,7 @@ void bp_destroy(void *plan)
     engine_discard(bp);
     free(bp->weights);
     free(bp->kernel.coefficients);
+    free(bp->met);
     turned_free(&bp->turned);
     free(bp);
 }

@@ -31,6 +31,7 @@ struct bp_options {
     int engine;         /* enum bp_engine_choice */
     int exact;          /* 1: the general engine evaluates every delay; 0: it interpolates them */
     double phase_limit; /* rad: what the interpolated delays may change a pair's phase by */
+    double aperture;    /* > 0: only pairs with |sin theta_t| <= this are summed, beside the acquisition's own limit */
 };
 enum bp_engine_choice { BP_ENGINE_AUTO, BP_ENGINE_GENERAL, BP_ENGINE_INVARIANT };
 extern const char *const bp_engine_names[], *const bp_exact_names[];
@@ -41,10 +42,15 @@ extern const char *const bp_engine_names[], *const bp_exact_names[];
         {PARAM_NAMED(struct bp_options, exact, bp_exact_names),                                                        \
          .summary = "general engine, every delay evaluated: the plain path that tests compare with", .max = 1,         \
          .terse = true},                                                                                               \
+        {PARAM(struct bp_options, phase_limit),                                                                        \
+         .summary = "rad: most that the general engine's interpolated delays change a pair's phase by",                \
+         .initial = 1e-4,                                                                                              \
+         .min = 1e-8,                                                                                                  \
+         .max = 0.1,                                                                                                   \
+         .terse = true},                                                                                               \
     {                                                                                                                  \
-        PARAM(struct bp_options, phase_limit),                                                                         \
-            .summary = "rad: most that the general engine's interpolated delays change a pair's phase by",             \
-            .initial = 1e-4, .min = 1e-8, .max = 0.1, .terse = true                                                    \
+        PARAM(struct bp_options, aperture), .summary = "only pairs with |sin theta_t| up to this are summed; 1: all",  \
+                                            .initial = 1, .min = 1e-6, .max = 1, .terse = true                         \
     }
 
 /* The callbacks of struct algorithm, for an interpolator. `options` begins with a struct bp_options and is only used

@@ -26,6 +26,8 @@ struct bp {
     void *state; /* the engine's own */
     struct work work;
     struct turned_problem turned; /* what `problem` points to where grids are turned */
+    struct acquisition limited;   /* and where the settings limit the aperture */
+    bool *met;                    /* [pings] pings_met: records of others are not read; NULL: all are met */
 };
 
 /* One way of doing the sums. */
@@ -33,6 +35,9 @@ struct bp_engine {
     const char *name;
     /* Can it do the problem of bp->problem? When not, the reason is the status message (STATUS_UNSUPPORTED). */
     enum status (*applicable)(const struct bp *bp);
+    /* What a plan would make for the pairs to read by, all records together: entries of tables, or blocks of pixels.
+       Known from bp->problem, medium and table, before any plan; of a problem that is applicable. */
+    double (*units)(const struct bp *bp);
     /* Make bp->state and bp->traces; adds to bp->work.bytes. */
     enum status (*plan)(struct bp *bp);
     void (*execute)(struct bp *bp, const struct echoes *echoes, struct image *image, struct stages *stages);
@@ -44,6 +49,11 @@ extern const struct bp_engine bp_invariant; /* uniform straight track on the pix
 
 /* What the second one needs of a problem. */
 struct condition invariant_condition(const struct problem *problem, enum severity severity);
+
+static inline bool bp_met(const struct bp *bp, int ping)
+{
+    return !bp->met || bp->met[ping];
+}
 
 static inline size_t real_size(enum precision precision)
 {

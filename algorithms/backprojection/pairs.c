@@ -200,6 +200,70 @@ int record_spans(const struct acquisition *a, int ping, int receiver, const stru
     return count;
 }
 
+/* m: the largest distance of a ping's receivers from its transmitter. */
+static double receivers_apart(const struct acquisition *a, int ping)
+{
+    const struct vector tx = a->tx[ping], *rx = a->rx + (size_t)ping * (size_t)a->receivers;
+    double most = 0;
+    for (int m = 0; m < a->receivers; m++) {
+        const double x = rx[m].x - tx.x, y = rx[m].y - tx.y, z = rx[m].z - tx.z;
+        most = fmax(most, sqrt(x * x + y * y + z * z));
+    }
+    return most;
+}
+
+/* May any delay between `line` and a ping lie inside its records? By the nearest and the furthest pixel: a path is twice
+   the transmitter's distance, but for what the receiver is away from the transmitter, `apart` m and the way since. */
+static bool record_reached(const struct acquisition *a, int ping, double apart, const struct pixel_line *line)
+{
+    const struct vector tx = a->tx[ping], v = a->velocity[ping];
+    const double first = a->t0[ping], last = first + (a->samples - 1) / a->fs, slack = 1e-6 / a->fs;
+    const double length = line->count - 1.0, x = line->x_first - tx.x, r = line->r_first - tx.y;
+    const double end_x = x + length * line->x_step, end_r = r + length * line->r_step;
+    const double near_x = x > 0 ? x : fmin(end_x, 0), near_r = r > 0 ? r : fmin(end_r, 0);
+    const double far_x = fmax(fabs(x), fabs(end_x)), far_r = fmax(fabs(r), fabs(end_r));
+    const double near = sqrt(near_x * near_x + near_r * near_r + tx.z * tx.z);
+    const double far = sqrt(far_x * far_x + far_r * far_r + tx.z * tx.z),
+                 speed = sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+    return !((2 * near - apart) / (a->sound_speed + speed) > last + slack
+             || (2 * far + apart) / (a->sound_speed - speed) < first - slack);
+}
+
+static bool ping_met(const struct problem *problem, int ping)
+{
+    const struct acquisition *a = problem->acquisition;
+    const struct vector normal = acquisition_normal(a, ping);
+    const double apart = receivers_apart(a, ping);
+    for (int k = 0; k < problem->patch_count; k++) {
+        const struct grid *grid = &problem->patches[k];
+        const bool along_x = grid->x_count > grid->r_count;
+        for (int n = grid_line_count(grid, along_x) - 1; n >= 0; n--) { /* the aperture widens with the range */
+            const struct pixel_line line = grid_line(grid, along_x, n);
+            struct pair_span spans[2];
+            if (record_reached(a, ping, apart, &line) && pair_spans(a, ping, normal, &line, spans) > 0)
+                return true;
+        }
+    }
+    return false;
+}
+
+/* A ping beside one that is met counts as met: engines round apertures in different ways. */
+int pings_met(const struct problem *problem, bool *met)
+{
+    const int pings = problem->acquisition->pings;
+    int count = 0;
+#pragma omp parallel for schedule(dynamic, 16)
+    for (int p = 0; p < pings; p++)
+        met[p] = ping_met(problem, p);
+    for (int p = 0, before = 0; p < pings; p++) {
+        const bool now = met[p];
+        met[p] = now || before || (p + 1 < pings && met[p + 1]);
+        before = now;
+        count += met[p];
+    }
+    return count;
+}
+
 double pairs_count(const struct problem *problem)
 {
     const struct acquisition *a = problem->acquisition;

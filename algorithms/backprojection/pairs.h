@@ -41,6 +41,10 @@ int pair_spans(const struct acquisition *acquisition, int ping, struct vector no
 int record_spans(const struct acquisition *acquisition, int ping, int receiver, const struct pixel_line *line,
                  struct pair_span within, struct pair_span spans[2]);
 
+/* Fill met[pings]: false where a ping is in no pair for sure, for its aperture holds no pixel, nor that of the pings
+   beside it, or all delays are outside its records. Returns how many are met. */
+int pings_met(const struct problem *problem, bool *met);
+
 /* All pairs of a problem inside its records and its aperture limit: what a back projection sums. Exact, and the same on
    every machine. */
 double pairs_count(const struct problem *problem);

@@ -115,8 +115,7 @@ static enum status transforms_plan(struct traces *traces, const struct acquisiti
     return STATUS_OK;
 }
 
-/* The period of the transformed signal; 0 where it is too long. */
-static int period(const struct acquisition *acquisition)
+int REAL_NAME(traces_period)(const struct acquisition *acquisition)
 {
     const int n = acquisition->samples;
     return acquisition->compressed ? n : fft_length_fast((long long)n + acquisition->pulse_length - 1);
@@ -129,7 +128,7 @@ static bool transforms(const struct acquisition *acquisition, const struct trace
 
 double REAL_NAME(traces_flops)(const struct acquisition *acquisition, const struct traces_form *form)
 {
-    const double length = period(acquisition), planes = (form->degree + 1.0) * form->upsample;
+    const double length = REAL_NAME(traces_period)(acquisition), planes = (form->degree + 1.0) * form->upsample;
     if (!transforms(acquisition, form))
         return 0;
     return (planes + 1) * fft_flops(length) + 6 * length + (planes > 1 ? 6 * planes * length : 0);
@@ -140,7 +139,7 @@ enum status REAL_NAME(traces_plan)(const struct acquisition *acquisition, const 
 {
     *out = NULL;
     const int n = acquisition->samples, upsample = form->upsample, branches = form->degree + 1;
-    const int length = period(acquisition);
+    const int length = REAL_NAME(traces_period)(acquisition);
     long long fine = (long long)length * upsample, row = (long long)(n - 1) * upsample + 1 + 2LL * form->guard;
     if (length == 0 || fine * branches > INT_MAX / 4 || row * branches > INT_MAX / 4)
         return status_set(STATUS_UNSUPPORTED,

@@ -34,6 +34,9 @@ struct traces_shape {
     double bytes; /* held with one thread */
 };
 
+/* `period` of the shape without a plan; 0 where it is too long. */
+int traces_period_float(const struct acquisition *acquisition);
+int traces_period_double(const struct acquisition *acquisition);
 /* `flops` of the shape without a plan. */
 double traces_flops_float(const struct acquisition *acquisition, const struct traces_form *form);
 double traces_flops_double(const struct acquisition *acquisition, const struct traces_form *form);

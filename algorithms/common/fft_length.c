@@ -35,6 +35,18 @@ int fft_length_fast(long long n)
     return 0;
 }
 
+double fft_slowness(int n)
+{
+    int rest = n, largest = 1, two = 1;
+    for (int prime = 2; prime <= rest / prime; prime++)
+        for (; rest % prime == 0; rest /= prime) {
+            largest = prime;
+            two *= prime == 2 ? 2 : 1;
+        }
+    largest = rest > largest ? rest : largest;
+    return largest > 31 ? 6 : largest > 13 ? 3.5 : largest > 7 || n / two > 4 * two ? 1.8 : 1;
+}
+
 double fft_flops(double n)
 {
     return 5 * n * log2(n);

@@ -8,18 +8,20 @@
 
 /* THE list: an algorithm with a forecast, what is fixed, and the values that one parameter takes. */
 static const struct {
-    const char *algorithm, *fixed, *varied, *values; /* "key=value", "key", "value value" */
+    const char *algorithm, *fixed, *varied, *values; /* "key=value,key=value", "key", "value value" */
 } families[] = {
     {"bp_nearest", "", "", ""},
-    {"bp_linear", "", "beta", "1 2 8 32"},
+    {"bp_linear", "", "beta", "1 2 4 8 16 32"},
+    {"bp_linear", "preemphasis=on", "beta", "2 4 8 16 32"},
     {"bp_zeropad", "", "factor", "2 4 8 16 32 64"},
     {"bp_farrow", "", "degree", "2 3 4 5 6 7 8 9"},
-    {"bp_farrow", "factor=2", "degree", "2 3 4 5 6 7 8 9"},
-    {"bp_sinc", "window=none", "taps", "4 8 16 32"},
+    {"bp_farrow", "factor=2", "degree", "2 3 4 5 6"},
+    {"bp_sinc", "window=none", "taps", "4 8 16"},
     {"bp_sinc", "window=kaiser", "taps", "4 8 16 32"},
-    {"bp_fitted", "", "taps", "4 6 8 12"},
-    {"bp_fitted", "factor=2", "taps", "4 6 8 12"},
-    {"bp_fitted", "factor=4", "taps", "4 6 8"},
+    {"bp_sinc", "window=kaiser_band", "taps", "4 6 8 10 12 16 32"},
+    {"bp_fitted", "", "taps", "2 4 6 8 10 12 16"},
+    {"bp_fitted", "factor=2", "taps", "2 4 6 8 12"},
+    {"bp_fitted", "factor=4", "taps", "2 4 6 8"},
     {"rma_delay", "", "terms", "1 2"},
     {"rma_delay", "taps=24", "terms", "2 3"},
     {"rma_lbf", "", "limit", "0.785 0.1 0.01"},
@@ -42,24 +44,30 @@ static bool setting_store(const struct algorithm *algorithm, void *options, cons
     return false;
 }
 
+bool candidate_set(struct candidate *candidate, const char *key, const char *value)
+{
+    char *settings = candidate->settings;
+    const size_t length = strlen(settings), room = sizeof candidate->settings - length;
+    if (!setting_store(candidate->algorithm, candidate->options, key, value))
+        return false;
+    return (size_t)snprintf(settings + length, room, "%s%s=%s", length > 0 ? "," : "", key, value) < room;
+}
+
 /* One candidate of a family; false where the algorithm does not take its settings. */
 static bool candidate_fill(int family, const char *value, struct candidate *candidate)
 {
     const struct algorithm *algorithm = algorithm_find(families[family].algorithm);
-    const char *fixed = families[family].fixed, *varied = families[family].varied, *equals = strchr(fixed, '=');
+    const char *varied = families[family].varied;
+    char fixed[48], *key, *rest = fixed;
     if (!algorithm || !algorithm->forecast || algorithm->options_size > sizeof candidate->options)
         return false;
     *candidate = (struct candidate){.algorithm = algorithm};
     options_fill(algorithm, candidate->options);
-    snprintf(candidate->settings, sizeof candidate->settings, "%s%s%s%s%s", fixed, *fixed && *varied ? "," : "", varied,
-             *varied ? "=" : "", value);
-    if (equals) {
-        char key[32];
-        snprintf(key, sizeof key, "%.*s", (int)(equals - fixed), fixed);
-        if (!setting_store(algorithm, candidate->options, key, equals + 1))
+    snprintf(fixed, sizeof fixed, "%s", families[family].fixed);
+    while ((key = strsep(&rest, "=")) && *key)
+        if (!candidate_set(candidate, key, strsep(&rest, ",")))
             return false;
-    }
-    return !*varied || setting_store(algorithm, candidate->options, varied, value);
+    return !*varied || candidate_set(candidate, varied, value);
 }
 
 int candidates_fill(struct candidate *list)

@@ -10,4 +10,7 @@ enum { CANDIDATES_MAX = 128 };
    is zero. Returns their number. */
 int candidates_fill(struct candidate *list);
 
+/* One more setting of a candidate; false where its algorithm has no such parameter or does not take the value. */
+bool candidate_set(struct candidate *candidate, const char *key, const char *value);
+
 #endif

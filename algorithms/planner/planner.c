@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "backprojection/omission.h"
 #include "backprojection/pairs.h"
 #include "common/fft_length.h"
 #include "planner/candidates.h"
@@ -14,13 +15,15 @@
 
 /* Forecasts are means over scenes: what is planned with lies above. */
 static const double MARGIN = 1.12;
+/* Of a candidate's time, what an aperture limit leaves at most, where it is looked at. */
+static const double LIMIT_PAYS = 0.95;
 
 /* What all candidates of a problem share. */
 struct setting {
     const struct problem *problem;
     const struct budget *budget;
-    double pairs, entries; /* of back projection; of the invariant engine's tables */
-    double transforms;     /* FLOPs: range and azimuth transforms of all records */
+    double pairs;      /* of back projection */
+    double transforms; /* FLOPs: range and azimuth transforms of all records */
 };
 
 void candidate_name(const struct candidate *candidate, char text[CANDIDATE_NAME])
@@ -32,14 +35,8 @@ void candidate_name(const struct candidate *candidate, char text[CANDIDATE_NAME]
 static struct setting setting_of(const struct problem *problem, const struct budget *budget)
 {
     const struct acquisition *a = problem->acquisition;
-    const double spacing = a->pings > 1 ? fabs(a->tx[1].x - a->tx[0].x) : 0, receivers = a->receivers;
-    struct setting setting = {problem, budget, pairs_count(problem), 0, 0};
-    for (int k = 0; k < problem->patch_count; k++) {
-        const struct grid *g = &problem->patches[k];
-        setting.entries += g->r_count * receivers * (g->x_count + a->pings * fmax(1, spacing / g->x_step));
-    }
-    setting.transforms = receivers * (a->pings * fft_flops(a->samples) + (double)a->samples * fft_flops(a->pings));
-    return setting;
+    const double transforms = a->pings * fft_flops(a->samples) + (double)a->samples * fft_flops(a->pings);
+    return (struct setting){problem, budget, pairs_count(problem), a->receivers * transforms};
 }
 
 /* Over the budget, or not. */
@@ -67,10 +64,17 @@ static enum status refused(struct candidate *candidate, enum status status)
 
 static void sums_fill(const struct setting *setting, struct candidate *candidate)
 {
+    const struct forecast *f = &candidate->forecast;
+    struct problem problem = *setting->problem;
+    struct acquisition limited = *problem.acquisition;
     candidate->pairs = setting->pairs;
-    candidate->flops = setting->pairs * candidate->forecast.pair_flops + candidate->forecast.record_flops;
-    candidate->seconds =
-        rates_sums(&candidate->forecast, setting->problem->precision, setting->pairs, setting->entries);
+    if (candidate->sine < 1) {
+        limited.aperture_limit = candidate->sine;
+        problem.acquisition = &limited;
+        candidate->pairs = pairs_count(&problem);
+    }
+    candidate->flops = candidate->pairs * f->pair_flops + f->record_flops + f->kernel_flops;
+    candidate->seconds = rates_sums(f, problem.precision, candidate->pairs);
 }
 
 /* Its FLOPs are counted by its own plan, which is made where the error allows it. */
@@ -115,21 +119,91 @@ static double fastest(const struct choice *choice)
     return least;
 }
 
+/* ---- an aperture limit ---- */
+
+/* The share of the pings that a sine keeps, of those that an image's middle has. */
+static double share_kept(const struct problem *problem, double sine)
+{
+    const struct acquisition *a = problem->acquisition;
+    const struct grid *g = &problem->patches[problem->patch_count / 2];
+    const struct vector pixel = grid_point(g, (g->r_count - 1) / 2.0, (g->x_count - 1) / 2.0);
+    double all = 0, kept = 0;
+    for (int p = 0; p < a->pings; p++) {
+        const double x = a->tx[p].x - pixel.x, at = fabs(x) / hypot(x, hypot(a->tx[p].y - pixel.y, a->tx[p].z));
+        all += at <= a->aperture_limit;
+        kept += at <= fmin(sine, a->aperture_limit);
+    }
+    return all > 0 ? kept / all : 1;
+}
+
+/* The least sine that an error leaves room for; a little more, so that its three digits say it. */
+static double sine_of(const struct problem *problem, double error)
+{
+    const double sine = aperture_least(problem, error);
+    const double unit = sine < 1 ? pow(10, floor(log10(sine)) - 2) : 1;
+    return fmin(ceil(sine / unit) * unit, 1);
+}
+
+/* What is left of the budget beside a candidate's own error. */
+static double error_left(const struct setting *setting, const struct candidate *candidate)
+{
+    return sqrt(fmax(pow(setting->budget->error, 2) - pow(candidate->error, 2), 0)) / MARGIN;
+}
+
+/* One candidate more: whichever is the fastest with as small an aperture as its error leaves room for. */
+static enum status limit_try(const struct setting *setting, struct choice *choice)
+{
+    const struct problem *problem = setting->problem;
+    const double most = share_kept(problem, sine_of(problem, setting->budget->error / MARGIN));
+    const struct candidate *from = NULL;
+    double least = LIMIT_PAYS * fastest(choice), sine = 1;
+    for (int k = 0; k < choice->count; k++) {
+        const struct candidate *c = &choice->list[k];
+        if (c->verdict != VERDICT_SLOWER || !c->forecast.sums_pairs || !(most * c->seconds < least))
+            continue;
+        const double own = sine_of(problem, error_left(setting, c));
+        const double seconds = own < 1 ? c->seconds * share_kept(problem, own) : INFINITY;
+        if (seconds < least) {
+            least = seconds;
+            from = c;
+            sine = own;
+        }
+    }
+    if (!from || choice->count == CANDIDATES_MAX)
+        return STATUS_OK;
+    struct candidate *limited = &choice->list[choice->count];
+    char text[16];
+    *limited = *from;
+    limited->sine = sine;
+    snprintf(text, sizeof text, "%.3g", sine);
+    if (!candidate_set(limited, "aperture", text))
+        return STATUS_OK;
+    choice->count++;
+    return candidate_forecast(setting, limited);
+}
+
 static enum status forecast_all(const struct setting *setting, struct choice *choice)
 {
     const double floor_s = rates_migration(setting->problem->precision, setting->transforms);
     enum status status = STATUS_OK;
     for (int k = 0; k < choice->count; k++) { /* no verdict yet */
         struct candidate *c = &choice->list[k];
+        c->sine = 1;
         c->verdict = VERDICT_REFUSED;
         c->error = c->seconds = INFINITY; /* numbers, for they are compared, which of a NAN would raise FE_INVALID */
         c->flops = c->pairs = c->bytes = NAN;
     }
+    for (int k = 0; k < choice->count && status == STATUS_OK; k++)
+        if (choice->list[k].algorithm->traits & TRAIT_ANY_TRACK)
+            status = candidate_forecast(setting, &choice->list[k]);
+    if (status == STATUS_OK)
+        status = limit_try(setting, choice);
+    const double best = fastest(choice);
     for (int k = 0; k < choice->count && status == STATUS_OK; k++) {
         struct candidate *c = &choice->list[k];
-        const bool sums = c->algorithm->traits & TRAIT_ANY_TRACK;
-        const double best = sums ? INFINITY : fastest(choice);
-        if (sums || setting->budget->thorough || floor_s < best) {
+        if (c->algorithm->traits & TRAIT_ANY_TRACK)
+            continue;
+        if (setting->budget->thorough || floor_s < best) {
             status = candidate_forecast(setting, c);
         } else {
             c->verdict = VERDICT_SLOWER;

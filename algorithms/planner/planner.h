@@ -11,8 +11,9 @@ enum verdict { VERDICT_CHOSEN, VERDICT_SLOWER, VERDICT_MEMORY, VERDICT_ERROR, VE
 
 struct candidate {
     const struct algorithm *algorithm;
-    char settings[24];        /* as in a SPEC: "degree=4", may be empty */
+    char settings[48];        /* as in a SPEC: "degree=4", may be empty */
     max_align_t options[8];   /* the algorithm's options struct */
+    double sine;              /* up to which it sums pairs, beside the acquisition's own limit; 1: all */
     struct forecast forecast; /* zero where refused, and where it is too slow in any case */
     double error;             /* relative L2 that is planned with; INFINITY where there is no forecast */
     double seconds;           /* of a run; a lower bound where it is too slow in any case; INFINITY where unknown */
@@ -48,7 +49,7 @@ void automatic_tell(void (*hear)(void *to, const struct problem *problem, const 
                     void *to);
 
 /* "bp_farrow:degree=4": as the column `engine` holds it. */
-enum { CANDIDATE_NAME = 32 };
+enum { CANDIDATE_NAME = 64 };
 void candidate_name(const struct candidate *candidate, char text[CANDIDATE_NAME]);
 
 #endif

@@ -4,11 +4,15 @@
 
 #include "algorithm.h"
 
-/* Seconds of one thread, in float. A pair takes `pair`, and `value` for each value that it reads. */
+/* Seconds of one thread, in float; [general and invariant engine]. A pair takes `pair`, and `value` for each value that
+   it reads. */
 struct rates {
-    double pair[2][READ_KINDS], value[2][READ_KINDS]; /* general and invariant engine, how values are read */
-    double entry[READ_KINDS];                         /* of the invariant engine's tables */
-    double compress, migrate;                         /* a FLOP of range compression, of range migration */
+    double pair[2][READ_KINDS], value[2][READ_KINDS];
+    double unit[2][READ_KINDS]; /* a block of pixels; an entry of the tables */
+    double compress;            /* a FLOP of range compression's transforms */
+    double filter;              /* a FLOP of branches that stand for taps */
+    double put[2];              /* a value of a record, put where pairs read it */
+    double migrate;             /* a FLOP of range migration */
     double doubled; /* factor for double, the same for all, so that both precisions choose alike */
     double noise;   /* relative: by how much the same time was off when it was measured again */
 };
@@ -18,9 +22,9 @@ struct rates {
 const struct rates *rates_get(void);
 void rates_set(const struct rates *rates);
 
-/* With all threads that OpenMP has: the seconds that a forecast's sums take of `pairs` pairs, from tables of `entries`
-   entries; those of a range migration of `flops`. */
-double rates_sums(const struct forecast *forecast, enum precision precision, double pairs, double entries);
+/* With all threads that OpenMP has: the seconds that a forecast's sums take of `pairs` pairs; those of a range
+   migration of `flops`. */
+double rates_sums(const struct forecast *forecast, enum precision precision, double pairs);
 double rates_migration(enum precision precision, double flops);
 
 #endif

@@ -33,6 +33,7 @@ static enum status acquisition_fill(struct reading *reading)
     a->area.x += a->area.half_x > 0 ? reading->x_offset_m : 0;
     a->echo_sine = beam_sine(scene);
     a->echo_tapers = scene->beam.kind == BEAM_TXRX;
+    a->noisy = scene->noise_std > 0;
     status = track_fill(reading);
     return status == STATUS_OK ? acquisition_check(a, reading->path) : status;
 }

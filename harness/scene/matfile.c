@@ -252,6 +252,7 @@ static enum status acquisition_fill(const char *path, const struct variable *v, 
     a->aperture_limit = scalar_or(&v[BEAM_LIMIT], INFINITY);
     a->echo_sine = scalar_or(&v[ECHO_SINE], 0);
     a->echo_tapers = scalar_or(&v[ECHO_TAPERS], 0) == 1;
+    a->noisy = true;
     a->echo_squint = scalar_or(&v[ECHO_SQUINT], 0);
     if (v[AREA].values) {
         const double complex *area = v[AREA].values;

@@ -30,23 +30,26 @@ static double *rate_at(struct rates *rates, int k, char name[48])
     const struct {
         const char *name;
         double *rate;
-    } others[] = {{"entry_nearest", &rates->entry[READ_NEAREST]},
-                  {"entry_line", &rates->entry[READ_LINE]},
-                  {"entry_taps", &rates->entry[READ_TAPS]},
-                  {"entry_branches", &rates->entry[READ_BRANCHES]},
-                  {"compress", &rates->compress},
+    } others[] = {{"compress", &rates->compress},
+                  {"filter", &rates->filter},
+                  {"general_put", &rates->put[0]},
+                  {"invariant_put", &rates->put[1]},
                   {"migrate", &rates->migrate},
                   {"doubled", &rates->doubled},
                   {"noise", &rates->noise}};
-    const int pairs = 4 * READ_KINDS, engine = k / (2 * READ_KINDS), kind = k / 2 % READ_KINDS;
-    if (k < pairs) {
-        snprintf(name, 48, "%s_%s_%s", engines[engine], kinds[kind], k % 2 ? "value" : "pair");
-        return k % 2 ? &rates->value[engine][kind] : &rates->pair[engine][kind];
+    const struct {
+        const char *name;
+        double (*rates)[READ_KINDS]; /* [2] */
+    } pairs[] = {{"pair", rates->pair}, {"value", rates->value}, {"unit", rates->unit}};
+    const int of_pairs = 3 * 2 * READ_KINDS, engine = k / (3 * READ_KINDS), kind = k / 3 % READ_KINDS;
+    if (k < of_pairs) {
+        snprintf(name, 48, "%s_%s_%s", engines[engine], kinds[kind], pairs[k % 3].name);
+        return &pairs[k % 3].rates[engine][kind];
     }
-    if (k - pairs >= (int)(sizeof others / sizeof *others))
+    if (k - of_pairs >= (int)(sizeof others / sizeof *others))
         return NULL;
-    snprintf(name, 48, "%s", others[k - pairs].name);
-    return others[k - pairs].rate;
+    snprintf(name, 48, "%s", others[k - of_pairs].name);
+    return others[k - of_pairs].rate;
 }
 
 /* The least of some runs: what other work on the machine takes only adds. */
@@ -118,26 +121,23 @@ static const char *const specs[] = {"bp_nearest:engine=",
                                     "bp_nearest:precision=double,engine="};
 enum { NEAREST, LINE, FEW_TAPS, MANY_TAPS, FEW_BRANCHES, MANY_BRANCHES, DOUBLE, PROBES };
 
-/* The rates of a kind. Tables are told from pairs by two widths of the image: focus = pairs p + entries e, twice. */
-static void kind_fill(int tables, enum reading_kind kind, const struct probe *few, const struct probe *many,
-                      const struct probe *narrow, const double entries[2], struct rates *rates)
+/* The rates of a kind. Units are told from pairs by two widths of the image: focus = pairs p + units u, twice. */
+static void kind_fill(int engine, enum reading_kind kind, const struct probe *few, const struct probe *many,
+                      const struct probe *narrow, struct rates *rates)
 {
-    double entries_s = 0;
-    if (tables) {
-        const double share = narrow->work.pairs / few->work.pairs;
-        const double entry = (narrow->focus - share * few->focus) / (entries[1] - share * entries[0]);
-        entries_s = fmin(fmax(entry, 0) * entries[0], 0.9 * few->focus);
-        rates->entry[kind] = entries_s / entries[0];
-    }
-    const double a = (few->focus - entries_s) / few->work.pairs, b = (many->focus - entries_s) / many->work.pairs;
+    const double share = narrow->work.pairs / few->work.pairs, units = few->forecast.units;
+    const double unit = fmax((narrow->focus - share * few->focus) / (narrow->forecast.units - share * units), 0);
+    const double units_s = fmin(unit * units, 0.9 * few->focus);
+    const double a = (few->focus - units_s) / few->work.pairs, b = (many->focus - units_s) / many->work.pairs;
     const int more = many->forecast.values - few->forecast.values;
     const double value = more > 0 ? fmax(b - a, 0) / more : 0;
-    rates->value[tables][kind] = value;
-    rates->pair[tables][kind] = fmax(a - value * few->forecast.values, 0);
+    rates->unit[engine][kind] = units_s / units;
+    rates->value[engine][kind] = value;
+    rates->pair[engine][kind] = fmax(a - value * few->forecast.values, 0);
 }
 
 struct probes {
-    struct probe of[2][PROBES], narrow[PROBES], migration; /* by engine; invariant on the narrow image */
+    struct probe of[2][PROBES], narrow[2][PROBES], migration; /* by engine; on the narrow image */
     double nearest[ROUNDS];                                /* s: of the general engine, in each round */
     double noise;
 };
@@ -145,16 +145,40 @@ struct probes {
 static enum status round_run(const struct bench *bench, struct probes *probes)
 {
     enum status status = STATUS_OK;
-    for (int k = 0; k < 3 * PROBES && status == STATUS_OK; k++) {
+    for (int k = 0; k < 4 * PROBES && status == STATUS_OK; k++) {
         char text[80];
-        const int way = k / PROBES, n = k % PROBES;
-        snprintf(text, sizeof text, "%s%s", specs[n], way > 0 ? "invariant" : "general");
-        status = probe_spec(bench, text, way == 2, way == 2 ? &probes->narrow[n] : &probes->of[way][n]);
+        const int engine = k / PROBES % 2, n = k % PROBES;
+        const bool narrow = k >= 2 * PROBES;
+        snprintf(text, sizeof text, "%s%s", specs[n], engine ? "invariant" : "general");
+        status = probe_spec(bench, text, narrow, narrow ? &probes->narrow[engine][n] : &probes->of[engine][n]);
     }
     return status == STATUS_OK ? probe_spec(bench, "rma_lbf", false, &probes->migration) : status;
 }
 
-static void rates_fill(const struct bench *bench, struct probes *probes, struct rates *rates)
+/* What the records take: compress = FLOPs c + values p, of one value and of many. */
+static void records_fill(const struct probes *probes, struct rates *rates)
+{
+    double sum = 0;
+    for (int engine = 0; engine < 2; engine++) {
+        const struct probe *one = &probes->of[engine][NEAREST], *many = &probes->of[engine][MANY_BRANCHES];
+        const double ratio = many->forecast.record_values / one->forecast.record_values;
+        sum += fmax((many->compress - ratio * one->compress)
+                        / (many->forecast.record_flops - ratio * one->forecast.record_flops),
+                    0);
+    }
+    rates->compress = sum / 2;
+    for (int engine = 0; engine < 2; engine++) {
+        const struct probe *many = &probes->of[engine][MANY_BRANCHES];
+        rates->put[engine] =
+            fmax(many->compress - rates->compress * many->forecast.record_flops, 0) / many->forecast.record_values;
+    }
+    const struct probe *taps = &probes->of[0][MANY_TAPS];
+    const double rest = taps->compress - rates->compress * taps->forecast.record_flops
+                        - rates->put[0] * taps->forecast.record_values;
+    rates->filter = taps->forecast.kernel_flops > 0 ? fmax(rest, 0) / taps->forecast.kernel_flops : rates->compress;
+}
+
+static void rates_fill(const struct probes *probes, struct rates *rates)
 {
     static const struct {
         enum reading_kind kind;
@@ -163,19 +187,11 @@ static void rates_fill(const struct bench *bench, struct probes *probes, struct 
                  {READ_LINE, LINE, LINE},
                  {READ_TAPS, FEW_TAPS, MANY_TAPS},
                  {READ_BRANCHES, FEW_BRANCHES, MANY_BRANCHES}};
-    const struct acquisition *a = &bench->scene.acquisition;
-    const double ratio = fabs(a->tx[1].x - a->tx[0].x) / bench->narrow.x_step;
-    double entries[2];
-    for (int k = 0; k < 2; k++) {
-        const struct grid *grid = k ? &bench->narrow : &bench->wide;
-        entries[k] = (double)grid->r_count * a->receivers * (grid->x_count + a->pings * ratio);
-    }
-    for (int tables = 0; tables < 2; tables++)
+    for (int engine = 0; engine < 2; engine++)
         for (int k = 0; k < READ_KINDS; k++)
-            kind_fill(tables, kinds[k].kind, &probes->of[tables][kinds[k].few], &probes->of[tables][kinds[k].many],
-                      &probes->narrow[kinds[k].few], entries, rates);
-    const struct probe *branches = &probes->of[1][MANY_BRANCHES];
-    rates->compress = branches->compress / branches->forecast.record_flops;
+            kind_fill(engine, kinds[k].kind, &probes->of[engine][kinds[k].few], &probes->of[engine][kinds[k].many],
+                      &probes->narrow[engine][kinds[k].few], rates);
+    records_fill(probes, rates);
     rates->migrate = probes->migration.total / probes->migration.work.flops;
     rates->doubled = sqrt(probes->of[0][DOUBLE].total / probes->of[0][NEAREST].total * probes->of[1][DOUBLE].total
                           / probes->of[1][NEAREST].total);
@@ -186,9 +202,9 @@ static void rates_fill(const struct bench *bench, struct probes *probes, struct 
 static enum status rounds_run(const struct bench *bench, struct probes *probes)
 {
     const struct probe none = {.total = INFINITY, .compress = INFINITY, .focus = INFINITY};
-    struct probe *const all[] = {probes->of[0], probes->of[1], probes->narrow};
+    struct probe *const all[] = {probes->of[0], probes->of[1], probes->narrow[0], probes->narrow[1]};
     enum status status = STATUS_OK;
-    for (int k = 0; k < 3 * PROBES; k++)
+    for (int k = 0; k < 4 * PROBES; k++)
         all[k / PROBES][k % PROBES] = none;
     probes->migration = none;
     for (int number = 0; number < ROUNDS && status == STATUS_OK; number++) {
@@ -224,7 +240,7 @@ enum status machine_rates_measure(struct rates *rates)
     clock_set(clock_monotonic);
     omp_set_num_threads(threads);
     if (status == STATUS_OK)
-        rates_fill(&bench, &probes, rates);
+        rates_fill(&probes, rates);
     echoes_free(&bench.echoes[0]);
     echoes_free(&bench.echoes[1]);
     scene_free(&bench.scene);

@@ -96,11 +96,17 @@ void planned_left_out(const struct problem *problem, const struct candidate *cho
     char text[400];
     if (f->sums_pairs) {
         const double all = (double)a->pings * a->receivers * problem_pixels(problem);
-        if (chosen->pairs < all) {
-            snprintf(text, sizeof text, "%.3g %% of the pairs of pixels and records, which meet no sample%s: 0",
-                     100 * (1 - chosen->pairs / all), a->aperture_limit < 1 ? " inside the aperture limit" : "");
+        const double left = 100 * (1 - chosen->pairs / all);
+        if (chosen->sine < 1)
+            snprintf(text, sizeof text,
+                     "%.3g %% of the pairs of pixels and records, which meet no sample or lie beyond "
+                     "|sin theta| = %.3g: %.2g",
+                     left, chosen->sine, f->error[CAUSE_APERTURE]);
+        else
+            snprintf(text, sizeof text, "%.3g %% of the pairs of pixels and records, which meet no sample%s: 0", left,
+                     a->aperture_limit < 1 ? " inside the aperture limit" : "");
+        if (left > 0)
             line(to, text);
-        }
         snprintf(text, sizeof text, "exact values between samples: %.2g", f->error[CAUSE_INTERPOLATION]);
         line(to, text);
         snprintf(text, sizeof text,
@@ -131,8 +137,8 @@ void planned_print(FILE *stream, const struct planned *planned)
     int shown = 0;
     fprintf(stream, "Within the error of %.2g after one gain, in %s:\n", planned->budget.error,
             precision_name((enum precision)precision));
-    fprintf(stream, "  %-30s %9s %8s %8s %8s %8s %8s %8s %8s %9s\n", "candidate", "time", "error", "interp.", "delays",
-            "spectrum", "blocks", "stolt", "float", "work");
+    fprintf(stream, "  %-30s %9s %8s %8s %8s %8s %8s %8s %8s %8s %9s\n", "candidate", "time", "error", "interp.",
+            "delays", "spectrum", "blocks", "stolt", "aperture", "float", "work");
     for (int k = 0; k < choice->count; k++)
         if (choice->list[k].verdict <= VERDICT_SLOWER) {
             candidate_print(stream, &choice->list[k]);

@@ -52,23 +52,76 @@ static void general_destroy(void *state)
     free(general);
 }
 
-/* What a patch's lines cost for one ping, in pixels of a block: measured, a block's quintic takes as long as 30 pixels,
-   an exact delay as long as three. */
-static double lines_cost(const struct ping_box *box, const struct grid *grid, bool along_x)
+/* Measured, in pixels of a block: a block's quintic takes as long as 30, an exact delay as long as three. */
+enum { BLOCK_COST = 30, EXACT_COST = 3, VECTOR = 16 };
+
+/* Whole numbers, in which the order of sums does not matter. */
+struct line_counts {
+    double blocks, pixels, exact; /* pixels of whole vectors; and of exact delays */
+};
+
+static void span_count(const struct ping_box *box, const struct pixel_line *line, struct pair_span left,
+                       struct line_counts *counts)
 {
-    enum { BLOCK_COST = 30, EXACT_COST = 3, VECTOR = 16 };
-    double cost = 0;
-    for (int n = 0; n < grid_line_count(grid, along_x); n++) {
-        struct pixel_line line = grid_line(grid, along_x, n);
-        struct pair_span left = {0, line.count};
-        struct bp_block blocks[BP_BLOCKS];
-        for (int count; (count = blocks_make(box, &line, &left, blocks)) > 0;)
-            for (int b = 0; b < count; b++) {
-                int pixels = (blocks[b].end - blocks[b].begin + VECTOR - 1) / VECTOR * VECTOR;
-                cost += blocks[b].exact ? EXACT_COST * pixels : BLOCK_COST + pixels;
-            }
+    struct bp_block blocks[BP_BLOCKS];
+    for (int count; (count = blocks_make(box, line, &left, blocks)) > 0;)
+        for (int b = 0; b < count; b++) {
+            const int pixels = (blocks[b].end - blocks[b].begin + VECTOR - 1) / VECTOR * VECTOR;
+            counts->blocks += !blocks[b].exact;
+            *(blocks[b].exact ? &counts->exact : &counts->pixels) += pixels;
+        }
+}
+
+/* What a patch's lines, of which each `step`-th is looked at, cost for one ping. */
+static double lines_cost(const struct ping_box *box, const struct grid *grid, bool along_x, int step)
+{
+    struct line_counts counts = {0};
+    for (int n = 0; n < grid_line_count(grid, along_x); n += step) {
+        const struct pixel_line line = grid_line(grid, along_x, n);
+        span_count(box, &line, (struct pair_span){0, line.count}, &counts);
     }
-    return cost;
+    return BLOCK_COST * counts.blocks + counts.pixels + EXACT_COST * counts.exact;
+}
+
+/* The steps between some of `count` things, evenly spaced. */
+static int step_of(int count)
+{
+    enum { LOOKED_AT = 8 };
+    return (count + LOOKED_AT - 1) / LOOKED_AT;
+}
+
+/* Blocks of some pings and lines, times all of them. Exact delays count as the blocks that last as long. */
+static double general_units(const struct bp *bp)
+{
+    const struct problem *problem = &bp->problem;
+    const struct acquisition *a = problem->acquisition;
+    const double quintics = budget_quintics(bp->medium.phase_limit, problem->precision);
+    const int pings = step_of(a->pings);
+    double units = 0;
+    for (int p = pings / 2; p < a->pings; p += pings) {
+        if (!bp_met(bp, p))
+            continue;
+        const struct ping_box box = ping_box_make(a, p, problem->patch_count, problem->patches, quintics);
+        const struct vector normal = acquisition_normal(a, p);
+        for (int k = 0; k < problem->patch_count; k++) {
+            const struct grid *grid = &problem->patches[k];
+            const int steps[] = {step_of(grid_line_count(grid, false)), step_of(grid_line_count(grid, true))};
+            const bool along_x =
+                steps[1] * lines_cost(&box, grid, true, steps[1]) < steps[0] * lines_cost(&box, grid, false, steps[0]);
+            struct line_counts counts = {0};
+            for (int n = 0; n < grid_line_count(grid, along_x); n += steps[along_x]) {
+                const struct pixel_line line = grid_line(grid, along_x, n);
+                struct pair_span spans[2];
+                const int count = pair_spans(a, p, normal, &line, spans);
+                for (int s = 0; s < count; s++)
+                    span_count(&box, &line, spans[s], &counts);
+            }
+            const double looked = ceil((double)grid_line_count(grid, along_x) / steps[along_x]);
+            units += (counts.blocks + counts.exact * EXACT_COST / BLOCK_COST) * grid_line_count(grid, along_x) / looked;
+        }
+    }
+    const double looked = ceil((a->pings - pings / 2) / (double)pings);
+    return units * a->receivers * a->pings / looked;
 }
 
 /* A kernel's branches in place of its taps. */
@@ -127,7 +180,7 @@ static enum status general_plan(struct bp *bp)
         const struct grid *grid = &problem->patches[k];
         const struct ping_box *box = &general->boxes[a->pings / 2];
         size_t pixels = (size_t)grid->x_count * (size_t)grid->r_count;
-        general->along_x[k] = lines_cost(box, grid, true) < lines_cost(box, grid, false);
+        general->along_x[k] = lines_cost(box, grid, true, 1) < lines_cost(box, grid, false, 1);
         general->sums[k] = malloc(2 * pixels * size);
         if (!general->sums[k])
             return status_set(STATUS_FAILED, "no memory for the sums of %zu pixels", pixels);
@@ -164,9 +217,10 @@ static void general_execute(struct bp *bp, const struct echoes *echoes, struct i
         int count = pairs - first < (size_t)general->batch ? (int)(pairs - first) : general->batch;
 #pragma omp parallel for schedule(static)
         for (int n = 0; n < count; n++)
-            bp_record_fill(bp, &general->layout, echoes, first + (size_t)n,
-                           (char *)general->interleaved + (size_t)omp_get_thread_num() * scratch,
-                           (char *)general->rows + (size_t)n * general->layout.record * size);
+            if (bp_met(bp, (int)((first + (size_t)n) / (size_t)problem->acquisition->receivers)))
+                bp_record_fill(bp, &general->layout, echoes, first + (size_t)n,
+                               (char *)general->interleaved + (size_t)omp_get_thread_num() * scratch,
+                               (char *)general->rows + (size_t)n * general->layout.record * size);
         stages_end(stages, "compress");
         for (int k = 0; k < problem->patch_count; k++) {
 #pragma omp parallel for schedule(dynamic)
@@ -184,6 +238,7 @@ static void general_execute(struct bp *bp, const struct echoes *echoes, struct i
 const struct bp_engine bp_general = {
     .name = "general",
     .applicable = general_applicable,
+    .units = general_units,
     .plan = general_plan,
     .execute = general_execute,
     .destroy = general_destroy,

@@ -37,6 +37,16 @@ static void scatter(const struct bp *bp, const void *tile, size_t pitch, size_t 
         tile, place->count);
 }
 
+/* Does any pixel meet one of `count` pings of the raster from `ping` on? Of others the slab stays zero. */
+static bool tile_met(const struct bp *bp, int ping, int count)
+{
+    const int receivers = bp->problem.acquisition->receivers;
+    bool met = false;
+    for (int p = ping; p < ping + count && !met; p++)
+        met = bp_met(bp, (int)(record_of(bp, p, 0) / (size_t)receivers));
+    return met;
+}
+
 /* Compress a tile's pings of record m, whole rows with their guards: row i branches + n is sample i of branch n. */
 static void fill_rows(const struct bp *bp, const struct echoes *echoes, int m, const struct tile_place *place)
 {
@@ -45,8 +55,13 @@ static void fill_rows(const struct bp *bp, const struct echoes *echoes, int m, c
     const size_t bytes = 2 * real_size(bp->problem.precision);
     const int thread = omp_get_thread_num();
     char *tile = (char *)in->tiles + (size_t)thread * in->tile_bytes;
-    for (int p = 0; p < place->count; p++)
-        bp_fill_row(bp, thread, echoes, record_of(bp, place->ping + p, m), tile + (size_t)p * pitch * bytes);
+    for (int p = 0; p < place->count; p++) {
+        char *row = tile + (size_t)p * pitch * bytes;
+        if (tile_met(bp, place->ping + p, 1))
+            bp_fill_row(bp, thread, echoes, record_of(bp, place->ping + p, m), row);
+        else
+            memset(row, 0, pitch * bytes);
+    }
     for (size_t n = 0; n < branches; n++)
         scatter(bp, tile + n * length * bytes, pitch, length, n, branches, place);
 }
@@ -59,10 +74,14 @@ static void fill_steps(const struct bp *bp, const struct echoes *echoes, int m, 
     const size_t samples = (size_t)bp->shape.samples;
     char *spectra = (char *)in->tiles + (size_t)omp_get_thread_num() * in->tile_bytes, *tile = spectra + TILE * bytes;
     for (int p = 0; p < place->count; p++)
-        bp_fill_spectrum(bp, echoes, record_of(bp, place->ping + p, m), spectra + (size_t)p * bytes);
+        if (tile_met(bp, place->ping + p, 1))
+            bp_fill_spectrum(bp, echoes, record_of(bp, place->ping + p, m), spectra + (size_t)p * bytes);
     for (int k = 0; k < in->slab.step_count && in->slab.step_first + k < bp->table.upsample; k++) {
         for (int p = 0; p < place->count; p++)
-            bp_fill_plane(bp, spectra + (size_t)p * bytes, in->slab.step_first + k, tile + (size_t)p * bytes);
+            if (tile_met(bp, place->ping + p, 1))
+                bp_fill_plane(bp, spectra + (size_t)p * bytes, in->slab.step_first + k, tile + (size_t)p * bytes);
+            else
+                memset(tile + (size_t)p * bytes, 0, bytes);
         scatter(bp, tile, pitch, samples, (size_t)k * samples, 1, place);
     }
 }
@@ -76,7 +95,8 @@ static void fill_slab(const struct bp *bp, const struct echoes *echoes, int firs
     for (int n = 0; n < count * tiles; n++) {
         const int g = n / tiles, ping = n % tiles * TILE, left = pings - ping;
         const struct tile_place place = {g, ping, left < TILE ? left : TILE};
-        (bp_whole(&bp->table) ? fill_rows : fill_steps)(bp, echoes, first + g, &place);
+        if (tile_met(bp, ping, place.count))
+            (bp_whole(&bp->table) ? fill_rows : fill_steps)(bp, echoes, first + g, &place);
     }
 }
 
@@ -164,6 +184,7 @@ static void invariant_execute(struct bp *bp, const struct echoes *echoes, struct
 const struct bp_engine bp_invariant = {
     .name = "invariant",
     .applicable = invariant_applicable,
+    .units = invariant_units,
     .plan = invariant_plan,
     .execute = invariant_execute,
     .destroy = invariant_destroy,

@@ -158,6 +158,27 @@ static double reach(const struct bp_raster *raster, const struct grid *grid, dou
     return limit < 1 ? fmin(most, r * limit / sqrt((1 - limit) * (1 + limit))) : most;
 }
 
+/* Of each residue, the shifts that bring a ping inside the aperture to any of its columns. */
+double invariant_units(const struct bp *bp)
+{
+    const struct problem *problem = &bp->problem;
+    struct straight_track track;
+    struct bp_raster raster = {0};
+    double units = 0;
+    if (!acquisition_is_straight(problem->acquisition, &track))
+        return INFINITY;
+    for (int k = 0; k < problem->patch_count; k++) {
+        const struct grid *grid = &problem->patches[k];
+        const double r = fabs(grid->r_first + (grid->r_count - 1) * grid->r_step / 2);
+        if (raster_make(bp, &track, grid, &raster) != STATUS_OK)
+            return INFINITY;
+        const double shifts =
+            fmin(raster.pings + raster.residue_columns - 1, 2 * reach(&raster, grid, r) / raster.spacing + 1);
+        units += (double)grid->r_count * raster_residues(&raster) * shifts;
+    }
+    return units * problem->acquisition->receivers;
+}
+
 /* The least and the largest distance between a row of the grid and the track, whose side is no matter. */
 static void row_ranges(const struct grid *grid, double r[2])
 {

@@ -5,7 +5,8 @@
 #include <string.h>
 
 #include "measure/metrics.h"
-#include "planner/omission.h"
+#include "backprojection/omission.h"
+#include "backprojection/pairs.h"
 #include "tests/support.h"
 
 /* Speckle before an array whose pings lie half of it apart. */
@@ -124,6 +125,70 @@ static void laws_hold(void **state)
     }
 }
 
+static struct work work_of(const char *text, const struct problem *problem)
+{
+    struct spec spec;
+    void *plan;
+    assert_int_equal(spec_parse(text, &spec), STATUS_OK);
+    if (spec.algorithm->plan(problem, spec.options, &plan) != STATUS_OK)
+        fail_msg("%s: %s", text, status_message());
+    const struct work work = spec.algorithm->work(plan);
+    spec.algorithm->destroy(plan);
+    spec_free(&spec);
+    return work;
+}
+
+/* Settings may limit the aperture: the image is that of an acquisition with the limit, to the last bit; records of pings
+   that then meet no pixel are not read, for they may hold anything, and their transforms are not counted. */
+static void pings_left_out(void **state)
+{
+    (void)state;
+    static const char *const engines[] = {"general", "invariant"};
+    struct scene scene;
+    struct echoes echoes;
+    scene_make(&setups[0], &scene);
+    support_echoes(&scene, &echoes);
+    const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE};
+    struct acquisition limited = scene.acquisition;
+    limited.aperture_limit = 0.1;
+    const struct problem less = {&limited, scene.patch_count, scene.patches, PRECISION_DOUBLE};
+    bool met[200];
+    const int pings = limited.pings, count = pings_met(&less, met);
+    assert_true(pings <= 200 && count < pings && count > pings / 4);
+    assert_int_equal(pings_met(&problem, met), pings);
+    pings_met(&less, met);
+    for (size_t k = 0; k < sizeof engines / sizeof *engines; k++) {
+        char all[80], some[100];
+        struct image by_scene, by_setting, unread;
+        snprintf(all, sizeof all, "bp_zeropad:factor=2,precision=double,engine=%s", engines[k]);
+        snprintf(some, sizeof some, "%s,aperture=0.1", all);
+        assert_int_equal(support_image(all, less, &echoes, &by_scene), STATUS_OK);
+        assert_int_equal(support_image(some, problem, &echoes, &by_setting), STATUS_OK);
+        assert_true(support_difference(&by_setting, &by_scene) == 0);
+        struct echoes spoilt;
+        support_echoes(&scene, &spoilt);
+        const int values = limited.receivers * limited.samples;
+        for (int n = 0; n < pings * values; n++)
+            if (!met[n / values])
+                ((double complex *)spoilt.samples)[n] = NAN;
+        assert_int_equal(support_image(some, problem, &spoilt, &unread), STATUS_OK);
+        assert_true(support_difference(&unread, &by_scene) == 0);
+        const struct work whole = work_of(all, &problem), part = work_of(some, &problem);
+        const double records = (part.flops - 8 * part.pairs) / (whole.flops - 8 * whole.pairs);
+        print_message("%s: %.3f of the pairs, %.3f of the records' FLOPs for %d of %d pings\n", engines[k],
+                      part.pairs / whole.pairs, records, count, pings);
+        assert_true(part.pairs < 0.9 * whole.pairs);
+        assert_close(records, (double)count / pings, 1e-9);
+        assert_non_null(strstr(part.skipped, "which no pixel meets"));
+        echoes_free(&spoilt);
+        image_free(&by_scene);
+        image_free(&by_setting);
+        image_free(&unread);
+    }
+    echoes_free(&echoes);
+    scene_free(&scene);
+}
+
 /* Few pings have no law. */
 static void few_pings(void **state)
 {
@@ -140,6 +205,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(laws_hold, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(pings_left_out, folder_make, folder_remove),
         cmocka_unit_test(few_pings),
     };
     return cmocka_run_group_tests_name("omission", tests, NULL, NULL);

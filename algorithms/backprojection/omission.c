@@ -1,4 +1,4 @@
-#include "planner/omission.h"
+#include "backprojection/omission.h"
 
 #include <math.h>
 
@@ -25,21 +25,47 @@ static double ping_weight(const struct acquisition *a, int p, struct vector pixe
     return amplitude * amplitude * pow(1 - *sine * *sine, -1.5);
 }
 
-double aperture_error(const struct problem *problem, double sine)
+/* The energy that pings bring to a pixel, adding to `all`, and to `beyond` from outside `sine`. Returns how many. */
+static int pings_weigh(const struct acquisition *a, struct vector pixel, double sine, double *all, double *beyond)
 {
-    const struct acquisition *a = problem->acquisition;
-    double all = 0, beyond = 0, at, width;
-    const struct vector pixel = middle_of(problem, &width);
     int seeing = 0;
     for (int p = 0; p < a->pings; p++) {
+        double at;
         const double weight = ping_weight(a, p, pixel, &at);
         if (!(fabs(at) <= a->aperture_limit))
             continue;
         seeing += weight > 0;
-        all += weight;
-        beyond += fabs(at) > sine ? weight : 0;
+        *all += weight;
+        *beyond += fabs(at) > sine ? weight : 0;
     }
-    return seeing >= PINGS_LEAST ? sqrt(beyond / all) : NAN;
+    return seeing;
+}
+
+/* The law, and the fewest pings that see one of the places; NAN without a law. */
+static double aperture_law(const struct problem *problem, double sine, int *fewest)
+{
+    enum { PLACES = 3 };
+    const struct acquisition *a = problem->acquisition;
+    double all = 0, beyond = 0;
+    *fewest = a->pings;
+    if (a->echo_squint != 0 || a->noisy || !(a->echo_sine > 0 && condition_seen_sine(a) < INFINITY))
+        return NAN;
+    for (int k = 0; k < problem->patch_count; k++) {
+        const struct grid *g = &problem->patches[k];
+        for (int n = 0; n < PLACES * PLACES; n++) {
+            const double i = (g->r_count - 1.0) * (n / PLACES) / (PLACES - 1);
+            const double j = (g->x_count - 1.0) * (n % PLACES) / (PLACES - 1);
+            const int seeing = pings_weigh(a, grid_point(g, i, j), sine, &all, &beyond);
+            *fewest = seeing < *fewest ? seeing : *fewest;
+        }
+    }
+    return *fewest >= PINGS_LEAST ? sqrt(beyond / all) : NAN;
+}
+
+double aperture_error(const struct problem *problem, double sine)
+{
+    int fewest;
+    return aperture_law(problem, sine, &fewest);
 }
 
 double aperture_sine(const struct problem *problem, double error)
@@ -47,11 +73,32 @@ double aperture_sine(const struct problem *problem, double error)
     double low = 0, high = 1;
     if (isnan(aperture_error(problem, 1)))
         return INFINITY;
-    for (int k = 0; k < 40; k++) {
+    for (int k = 0; k < 24; k++) {
         const double middle = (low + high) / 2;
         *(aperture_error(problem, middle) <= error ? &high : &low) = middle;
     }
     return high;
+}
+
+/* Of what is planned with: times the law; and over the fewest pings. */
+static const double SHARE = 1.25, EDGES = 4;
+
+double aperture_planned(const struct problem *problem, double sine)
+{
+    struct condition list[CONDITIONS_MAX];
+    const int count = conditions_sampled(problem, list, CONDITIONS_MAX);
+    bool repeats = false;
+    int fewest;
+    for (int k = 0; k < count; k++)
+        repeats |= list[k].severity == SEVERITY_WARN && !condition_holds(&list[k]);
+    const double law = aperture_law(problem, sine, &fewest);
+    return isnan(law) || repeats ? INFINITY : hypot(SHARE * law, EDGES / fewest);
+}
+
+double aperture_least(const struct problem *problem, double error)
+{
+    const double least = aperture_planned(problem, 1); /* of the edges alone */
+    return error > least ? aperture_sine(problem, sqrt(error * error - least * least) / SHARE) : 1;
 }
 
 /* Seconds by which a pair's delay is off. */
