@@ -256,13 +256,15 @@ static void slices_draw(const struct drawing *drawing, const char *id, double mo
     }
     picture_name(drawing, id, NULL, NULL, path, sizeof path);
     snprintf(title, sizeof title, "%s: azimuth slices%s", drawing->set->title, isfinite(most_m) ? ", close" : "");
-    report(drawing, plot_slices(path, PLOT_DIRECTORY,
-                                &(struct slices_picture){.title = title,
-                                                         .footer = drawing->footer,
-                                                         .panel_count = drawing->panel_count,
-                                                         .line_count = drawing->method_count,
-                                                         .panel_titles = titles,
-                                                         .lines = shown}));
+    const struct slices_picture picture = {.title = title,
+                                           .footer = drawing->footer,
+                                           .panel_count = drawing->panel_count,
+                                           .line_count = drawing->method_count,
+                                           .panel_titles = titles,
+                                           .lines = shown};
+    report(drawing, plot_slices(path, PLOT_DIRECTORY, &picture));
+    plot_path_svg(path);
+    report(drawing, plot_slices(path, PLOT_DIRECTORY, &picture));
 }
 
 static enum status set_draw(struct drawing *drawing)
@@ -318,6 +320,9 @@ static enum status layout_draw(struct drawing *drawing)
             scene_free(&scene);
     }
     status = text_file_close(&file, status);
+    if (status == STATUS_OK)
+        report(drawing, plot_csv(picture, PLOT_DIRECTORY, "layout.gp", csv, drawing->footer));
+    plot_path_svg(picture);
     if (status == STATUS_OK)
         report(drawing, plot_csv(picture, PLOT_DIRECTORY, "layout.gp", csv, drawing->footer));
     return status;

@@ -134,6 +134,11 @@ void picture_label(const char *algorithm, const char *options, const char *preci
              strcmp(precision, "double") == 0 ? " double" : "");
 }
 
+void plot_path_svg(char *path)
+{
+    memcpy(path + strlen(path) - strlen("png"), "svg", strlen("svg"));
+}
+
 void picture_path(const char *directory, const char *scene, const char *rest, char *path, size_t size)
 {
     int used = snprintf(path, size, "%s/", directory);

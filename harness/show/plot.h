@@ -60,6 +60,8 @@ enum status plot_csv(const char *path, const char *plots_directory, const char *
 
 /* What a picture of one setting is called: "bp_linear:beta=8 double". */
 void picture_label(const char *algorithm, const char *options, const char *precision, char *label, size_t size);
+/* A PNG picture's path becomes that of the SVG beside it. */
+void plot_path_svg(char *path);
 /* "DIR/bp22_table3-error_time.png" for bp22/table3 and error_time.png: signs that a shell would take become '_'. */
 void picture_path(const char *directory, const char *scene, const char *rest, char *path, size_t size);
 

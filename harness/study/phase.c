@@ -176,7 +176,7 @@ static const char *study_title(const struct study *study)
     return study->scene;
 }
 
-/* One picture a receiver: a panel a range, a line a formula, the largest of the errors at the three f_tau. */
+/* One picture a receiver, PNG or SVG: a panel a range, a line a formula, the largest of the errors at the three f_tau. */
 static enum status study_draw(const struct study *study, const struct csv *published, int receiver, const char *path)
 {
     char title[400], texts[RANGES][32], footer[PROVENANCE_LINE + 60], line[PROVENANCE_LINE];
@@ -264,6 +264,9 @@ enum status phase_scene_study(const char *name, const char *directory, bool take
         snprintf(rest, sizeof rest, "-receiver%d.png", study.receiver[i]);
         phase_path(directory, scene.name, rest, path, sizeof path);
         status = study_draw(&study, &published, i, path);
+        plot_path_svg(path);
+        if (status == STATUS_OK)
+            status = study_draw(&study, &published, i, path);
     }
     folder_leave(lock);
     csv_free(&published);

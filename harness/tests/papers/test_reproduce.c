@@ -389,6 +389,7 @@ static void layouts_are_drawn(void **state)
                                                            ",13.5,95,1\nPT9,14,225,0\nPT10,16,260,0\n,15,245,1\n"
                                                            ",13.5,270,1\n");
     assert_int_equal(access(path_of("figure-lbf21_f16.png"), F_OK), 0);
+    assert_int_equal(access(path_of("figure-lbf21_f16.svg"), F_OK), 0);
 }
 
 /* A finished measurement is not made again, and what is said comes from it. */
