@@ -13,8 +13,8 @@ struct rates {
     double filter;              /* a FLOP of branches that stand for taps */
     double put[2];              /* a value of a record, put where pairs read it */
     double migrate;             /* a FLOP of range migration */
-    double doubled; /* factor for double, the same for all, so that both precisions choose alike */
-    double noise;   /* relative: by how much the same time was off when it was measured again */
+    double doubled;             /* factor for double, the same for all, so that both precisions choose alike */
+    double noise;               /* relative: by how much the same time was off when it was measured again */
 };
 
 /* Those in use: of the machine that the program was written on, until others are set, so that choices are the same
