@@ -390,8 +390,9 @@ enum status bp_forecast(const struct problem *problem, const struct interpolator
         law_spectrum(a, &spectrum);
         const double law = interpolation_error(in, options, &spectrum);
         forecast->tables = !general;
+        const double ends = in->upsample == 1 && in->degree == 0 && in->taps > 1 ? law_ends(problem, in->taps) : 0;
         /* At fs = B the bin at fs/2 stands for both ends of the band. */
-        forecast->error[CAUSE_INTERPOLATION] = hypot(law, a->bandwidth < a->fs ? 0 : 1.0 / a->samples);
+        forecast->error[CAUSE_INTERPOLATION] = hypot(hypot(law, ends), a->bandwidth < a->fs ? 0 : 1.0 / a->samples);
         forecast->error[CAUSE_DELAYS] = general ? DELAYS_SHARE * bp.medium.phase_limit : 1e-7;
         forecast->error[CAUSE_FLOAT] = ROUNDING[general][problem->precision];
         if (bp.problem.acquisition == &bp.limited) {

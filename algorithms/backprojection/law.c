@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "backprojection/farrow.h"
+#include "common/delay.h"
 
 enum { GAUSS = 8, BINS = 48, FRACTIONS = 256, IN_A_STEP = 8 };
 /* The positive half of Gauss and Legendre's 16 points. */
@@ -109,4 +110,59 @@ double interpolation_error(const struct interpolator *in, const void *options, c
     }
     variance -= mean * mean;
     return sqrt(fmax(variance, 0) / ((1 + mean) * (1 + mean) + variance)); /* <|H|^2> = |<H>|^2 + variance */
+}
+
+/* A pulse sinc(B t) at d samples from a record's end is 1/(pi rho d), rho = B/fs, where the first tap reads zero, whose
+   weight is 1/(pi d). The integral of the square of their product, at most 1, from the end to d. */
+static double end_energy(double rho, double d)
+{
+    const double share = 1 / (M_PI * M_PI * rho), whole = sqrt(share);
+    return d < whole ? d : whole + share * share / 3 * (1 / pow(whole, 3) - 1 / pow(d, 3));
+}
+
+/* Its mean over distances between a and b, of which those below 0 are left out and those beyond `reach` add nothing. */
+static double end_mean(double rho, double reach, double a, double b)
+{
+    const double near = fmax(fmin(a, b), 0), far = fmax(fmax(a, b), near + 1e-3);
+    return near < reach ? (end_energy(rho, fmin(far, reach)) - end_energy(rho, near)) / (far - near) : 0;
+}
+
+/* The mean over column j of a patch, as one pair sees it. */
+static double column_ends(const struct acquisition *a, const struct grid *g, double reach, double j, int ping,
+                          int receiver)
+{
+    enum { ROWS = 9 };
+    const double last = a->samples - 1, rho = a->bandwidth / a->fs;
+    const struct vector rx = a->rx[(size_t)ping * (size_t)a->receivers + (size_t)receiver];
+    double sum = 0, before = 0;
+    int inside = 0;
+    for (int i = 0; i < ROWS; i++) {
+        const struct vector place = grid_point(g, i * (g->r_count - 1.0) / (ROWS - 1), j);
+        const double delay = delay_exact(a->tx[ping], rx, a->velocity[ping], place, a->sound_speed);
+        const double q = (delay - a->t0[ping]) * a->fs;
+        if (i > 0 && fmax(q, before) > 0 && fmin(q, before) < last) {
+            sum += end_mean(rho, reach, before, q) + end_mean(rho, reach, last - before, last - q);
+            inside++;
+        }
+        before = q;
+    }
+    return inside ? sum / inside : 0;
+}
+
+double law_ends(const struct problem *problem, int taps)
+{
+    enum { COLUMNS = 3, PINGS = 5, RECEIVERS = 2, TERMS = COLUMNS * PINGS * RECEIVERS };
+    const struct acquisition *a = problem->acquisition;
+    double sum = 0, pixels = 0;
+    for (int k = 0; k < problem->patch_count; k++) {
+        const struct grid *g = &problem->patches[k];
+        const double own = (double)g->r_count * g->x_count;
+        for (int n = 0; n < TERMS; n++)
+            sum += own / TERMS
+                   * column_ends(a, g, taps / 2.0, n % COLUMNS * (g->x_count - 1.0) / (COLUMNS - 1),
+                                 n / COLUMNS % PINGS * (a->pings - 1) / (PINGS - 1),
+                                 n / COLUMNS / PINGS * (a->receivers - 1));
+        pixels += own;
+    }
+    return sqrt(fmin(sum / pixels, 1));
 }

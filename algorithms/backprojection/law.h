@@ -30,4 +30,8 @@ void law_spectrum(const struct acquisition *acquisition, struct law_spectrum *sp
 double interpolation_error(const struct interpolator *interpolator, const void *options,
                            const struct law_spectrum *spectrum);
 
+/* The error by taps that read zero beyond the records' ends, relative L2 over an image of echoes that come from every
+   pixel alike: 0 where no pixel lies within taps/2 samples of an end. */
+double law_ends(const struct problem *problem, int taps);
+
 #endif
