@@ -263,6 +263,53 @@ static void verdict_follows_the_threshold(void **state)
     }
 }
 
+/* "falls slightly with range": behind else, from 135 m on and by pi/40 at most, not by any amount. */
+static void slight_is_asked_for(void **state)
+{
+    (void)state;
+    static const struct {
+        double at_300_rad;
+        enum claim_verdict verdict;
+    } cases[] = {{0.301, CLAIM_ASSUMED}, {0.200, CLAIM_FAILS}, {0.345, CLAIM_FAILS}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const double range_m[] = {50, 135, 220, 300}, eq_7_rad[] = {0.650, 0.340, 0.299, cases[k].at_300_rad};
+        struct measured measured;
+        planted_begin();
+        FILE *file = fopen(path_of("phase-lbf21__phase_long.csv"), "w");
+        assert_non_null(file);
+        fputs("receiver,r_m,nu_per_m,lbf_fc_error_rad,lbf_F_error_rad,lbf7_fc_error_rad,pca_error_rad\n", file);
+        for (int receiver = 1; receiver <= 132; receiver += 131)
+            for (int r = 0; r < 4; r++)
+                fprintf(file, "%d,%g,10,%g,0.01,%g,0.1\n", receiver, range_m[r], 0.02 * (r + 1), eq_7_rad[r]);
+        assert_int_equal(fclose(file), 0);
+        planted_end(&measured);
+        expect(&measured, "lbf21-3D-5", cases[k].verdict);
+        planted_clear(&measured);
+    }
+}
+
+/* Memory is not movement of data: that it stands for it is assumed, however much less it is. */
+static void memory_stands_for_movement(void **state)
+{
+    (void)state;
+    static const char *const others[] = {"wk_classic:unfold=stuff", "wk_classic:unfold=baseband", "wk_classic"};
+    for (int more = 0; more < 2; more++) {
+        struct measured measured;
+        planted_begin();
+        for (int k = 0; k < 4; k++) {
+            struct spec spec;
+            assert_int_equal(spec_parse(k < 3 ? others[k] : "wk_squint", &spec), STATUS_OK);
+            struct measurement row = planted_row("sq18/squint_20", &spec);
+            row.bytes = k < 3 ? 1e7 : more ? 2e7 : 1e4;
+            assert_int_equal(results_folder_add(rows, &row), STATUS_OK);
+            spec_free(&spec);
+        }
+        planted_end(&measured);
+        expect(&measured, "sq18-4-2", more ? CLAIM_FAILS : CLAIM_ASSUMED);
+        planted_clear(&measured);
+    }
+}
+
 /* What failed or is unsupported decides nothing. */
 static void failures_decide_nothing(void **state)
 {
@@ -328,7 +375,8 @@ int main(void)
         IN_FOLDER(all_claims_are_read),           IN_FOLDER(bad_rows_are_refused),
         IN_FOLDER(needs_are_collected),           IN_FOLDER(needs_are_accepted),
         IN_FOLDER(bad_files_are_refused),         IN_FOLDER(the_list_is_not_written_over),
-        IN_FOLDER(verdict_follows_the_threshold), IN_FOLDER(failures_decide_nothing),
+        IN_FOLDER(verdict_follows_the_threshold), IN_FOLDER(slight_is_asked_for),
+        IN_FOLDER(memory_stands_for_movement),    IN_FOLDER(failures_decide_nothing),
         IN_FOLDER(verdicts_are_counted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
