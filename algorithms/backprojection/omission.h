@@ -1,5 +1,5 @@
-/* What an image loses where something is left out of the geometry: laws from the acquisition alone. Relative L2 errors of
-   the complex image after one best complex gain.
+/* What an image loses where something is left out of the geometry: laws from the acquisition alone. Relative L2
+   errors of the complex image after one best complex gain.
 
    Both are means over the pings that see a pixel, weighted by the energy that each brings into the image's azimuth
    spectrum: by stationary phase A^2 (1 - s^2)^(-3/2) a ping, s the sine of its angle off broadside and A the echo's
@@ -9,13 +9,13 @@
 
 #include "algorithm.h"
 
-/* Pairs with |sin theta_t| > sine: the share of the energy that they bring to middles, edges and corners of the patches.
-   NAN where there is no law: fewer than 10 pings see one of these, the beam is unknown or squinted, or noise comes
-   from all sides. */
+/* Pairs with |sin theta_t| > sine: the share of the energy that they bring to middles, edges and corners of the
+   patches. NAN where there is no law: fewer than 10 pings see one of these, the beam is unknown or squinted, or
+   noise comes from all sides. */
 double aperture_error(const struct problem *problem, double sine);
-/* What is planned with: more than the law says, for it is up to 15 % below what is measured, and what the edges of the cut
-   make of neighbouring targets, up to 4 over the pings that see a pixel. INFINITY where there is no law, and where
-   pings lie so far apart that targets repeat: what an aperture leaves out is then seen beside them. */
+/* What is planned with: more than the law says, for it is up to 15 % below what is measured, and what the edges of
+   the cut make of neighbouring targets, up to 4 over the pings that see a pixel. INFINITY where there is no law, and
+   where pings lie so far apart that targets repeat: what an aperture leaves out is then seen beside them. */
 double aperture_planned(const struct problem *problem, double sine);
 /* Its inverse: the least sine that loses at most `error`; 1 where none below does. */
 double aperture_least(const struct problem *problem, double error);

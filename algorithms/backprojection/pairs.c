@@ -212,8 +212,9 @@ static double receivers_apart(const struct acquisition *a, int ping)
     return most;
 }
 
-/* May any delay between `line` and a ping lie inside its records? By the nearest and the furthest pixel: a path is twice
-   the transmitter's distance, but for what the receiver is away from the transmitter, `apart` m and the way since. */
+/* May any delay between `line` and a ping lie inside its records? By the nearest and the furthest pixel: a path is
+   twice the transmitter's distance, but for what the receiver is away from the transmitter, `apart` m and the way
+   since. */
 static bool record_reached(const struct acquisition *a, int ping, double apart, const struct pixel_line *line)
 {
     const struct vector tx = a->tx[ping], v = a->velocity[ping];

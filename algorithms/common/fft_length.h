@@ -8,8 +8,8 @@ int fft_length(long long n);
    to three times faster where FFTW plans by estimate. 0 when it exceeds INT_MAX. */
 int fft_length_fast(long long n);
 
-/* Seconds a FLOP of a transform of n, over those of fft_length_fast: 1, 1.8, 3.5 or 6 by its prime factors. Measured where
-   FFTW plans by estimate; of one length they may be 1.6 times less or more. */
+/* Seconds a FLOP of a transform of n, over those of fft_length_fast: 1, 1.8, 3.5 or 6 by its prime factors. Measured
+   where FFTW plans by estimate; of one length they may be 1.6 times less or more. */
 double fft_slowness(int n);
 
 /* FLOPs of one complex transform, 5 n log2 n: the count that both papers and FFTW's own benchmark use. */

@@ -33,7 +33,8 @@ enum {
 };
 #define WK_WIDEST_SINE 0.98 /* of the angles that are imaged: nearer to the track nothing is resolved in range */
 /* Of an image that is resampled, and of the record by the range transform. With 8 taps the lesser one is enough: fewer
-   interpolate worse there, and what more of them miss beyond the band's edges grows with the weights of the record's ends. */
+   interpolate worse there, and what more of them miss beyond the band's edges grows with the weights of the record's
+   ends. */
 #define WK_OVERSAMPLING       1.5
 #define WK_OVERSAMPLING_LEAST 1.25
 
@@ -120,8 +121,7 @@ struct wk {
 
     int taps;
     struct wk_kernel range_kernel, azimuth_kernel;
-    void *
-        range_weights; /* real [samples + 2 weights_beside + 1]: 1/transform of the kernel, of samples around `centre` */
+    void *range_weights;   /* real [samples + 2 weights_beside + 1]: 1/transform of the kernel, around `centre` */
     int weights_beside;    /* record_pad, and one */
     void *azimuth_weights; /* real [pings] */
     struct fit_nodes fit;

@@ -1,12 +1,12 @@
-/* Omega-k: one record to its spectrum (range of wk.h). Compiled once for each precision and instruction set (BP_ISA names
-   it). */
+/* Omega-k: one record to its spectrum (range of wk.h). Compiled once for each precision and instruction set (BP_ISA
+   names it). */
 #include <string.h>
 
 #include "common/phasor.h"
 #include "wavenumber/engine.h"
 
-/* Samples times their weights, from weights[i] on and `u` of the way to the next: these change so slowly that a shift by
-   part of a sample is linear. */
+/* Samples times their weights, from weights[i] on and `u` of the way to the next: these change so slowly that a
+   shift by part of a sample is linear. */
 static void weighted(const real *restrict record, const real *restrict weights, real u, real factor, int count,
                      real *restrict out)
 {

@@ -298,7 +298,8 @@ static void range(const struct wk *wk, const void *samples)
     }
 }
 
-/* Rows lie too far apart for the processor to see that they follow each other: the strip of one some `left` rows ahead. */
+/* Rows lie too far apart for the processor to see that they follow each other: the strip of one some `left` rows
+   ahead. */
 static inline void strip_fetch(const complex_real *strip, size_t row, int left)
 {
     const char *ahead = (const char *)(strip + STRIP_AHEAD * row);

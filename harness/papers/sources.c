@@ -26,9 +26,9 @@ static const struct place {
     {"sq18_f3a", "T5", "sq18/squint_20", 4},     {"sq18_f3b", "T1", "sq18/squint_20", 0},
 };
 
-/* Plain engines are timed on a part of the task, and each stage scaled to all of it: back projection on some columns, of
-   which the sums depend and the compression does not; range migration with a sixth of the receivers, on which the
-   conversion depends twice (receivers and wavenumbers) and all else once. */
+/* Plain engines are timed on a part of the task, and each stage scaled to all of it: back projection on some
+   columns, of which the sums depend and the compression does not; range migration with a sixth of the receivers, on
+   which the conversion depends twice (receivers and wavenumbers) and all else once. */
 static const struct scaling bp22_columns = {48, "focus", 1}, lbf21_columns = {40, "focus", 1};
 static const struct scaling lbf21_part = {36, "bulk differential reconstruct", 6};
 

@@ -5,8 +5,8 @@
 #include "data/csv.h"
 #include "show/page.h"
 
-/* Of cheapest.csv: a row for each scene, a column for each decade of error: the fastest setting of all algorithms, and its
-   run time. Nothing where there is no such row. */
+/* Of cheapest.csv: a row for each scene, a column for each decade of error: the fastest setting of all algorithms,
+   and its run time. Nothing where there is no such row. */
 void cheapest_summary_show(struct page *page, const struct csv *csv);
 
 #endif

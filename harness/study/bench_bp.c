@@ -1,5 +1,5 @@
-/* Back projection on BP22's full size in `bench` (bench_bp.h). Each line is measured in several rounds, a minute and more
-   apart, since what else the machine does lasts for seconds to minutes; printed are medians of the rounds. */
+/* Back projection on BP22's full size in `bench` (bench_bp.h). Each line is measured in several rounds, a minute and
+   more apart, since what else the machine does lasts for seconds to minutes; printed are medians of the rounds. */
 #define _GNU_SOURCE /* strdup, setenv */
 #include "study/bench_bp.h"
 
@@ -183,7 +183,7 @@ static enum status case_measure(struct bench *bench, const struct bench_case *on
     enum status status = STATUS_OK;
     for (int round = 0; round < ROUNDS; round++)
         for (int m = 0; m < one->methods; m++)
-            for (int p = 0; p <= (m < one->doubles); p++)
+            for (int p = 0; p < 1 + (m < one->doubles); p++)
                 for (int n = 0; n < 2 && status == STATUS_OK; n++) {
                     const struct problem problem = {&scene->acquisition, 1, grid, (enum precision)p};
                     lines[m][p][n].threads = n == 0 ? 1 : bench->threads;

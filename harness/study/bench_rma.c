@@ -97,32 +97,43 @@ static void sincos_seconds(double seconds[2])
     (void)used;
 }
 
-static enum status measure(const struct problem *problem, const struct echoes *echoes, FILE *file,
-                           struct bench_goals *goals)
-{
-    struct timing eight = {0}, one = {0}, libm = {0}, delay = {0};
-    enum status status = image_seconds("rma_lbf:blocks=8", problem, echoes, true, &eight);
-    if (status == STATUS_OK)
-        status = image_seconds("rma_lbf:blocks=1", problem, echoes, true, &one);
-    if (status == STATUS_OK)
-        status = image_seconds("rma_lbf:blocks=1,phases=libm", problem, echoes, false, &libm);
-    if (status == STATUS_OK)
-        status = image_seconds("rma_delay", problem, echoes, true, &delay);
-    if (status != STATUS_OK)
-        return status;
-    const int threads = omp_get_max_threads();
-    const double run = eight.run_s, phase = stages_seconds(&eight.stages, phase_stages);
-    const double later = stages_seconds(&eight.stages, later_stages);
-    const double one_phase = stages_seconds(&one.stages, phase_stages);
-    const double libm_phase = stages_seconds(&libm.stages, phase_stages);
+struct measured {
+    struct timing eight, one, libm, delay; /* rma_lbf with as many blocks, and one by libm; rma_delay */
     struct fft_seconds fft;
-    double cells[2];
+    double cells[2];    /* s, by precision: sincos_seconds */
+    double delay_share; /* of rma_delay's time: after its range compression */
+};
+
+static enum status measure(const struct problem *problem, const struct echoes *echoes, struct measured *m)
+{
     static const char *const compression[] = {"compress", NULL};
-    const double delay_share = 1 - stages_seconds(&delay.stages, compression) / stages_seconds(&delay.stages, NULL);
-    status = fft_seconds(AZIMUTH, RANGE, threads, &fft);
+    *m = (struct measured){.delay_share = 1};
+    enum status status = image_seconds("rma_lbf:blocks=8", problem, echoes, true, &m->eight);
+    if (status == STATUS_OK)
+        status = image_seconds("rma_lbf:blocks=1", problem, echoes, true, &m->one);
+    if (status == STATUS_OK)
+        status = image_seconds("rma_lbf:blocks=1,phases=libm", problem, echoes, false, &m->libm);
+    if (status == STATUS_OK)
+        status = image_seconds("rma_delay", problem, echoes, true, &m->delay);
+    if (status == STATUS_OK)
+        status = fft_seconds(AZIMUTH, RANGE, omp_get_max_threads(), &m->fft);
     if (status != STATUS_OK)
         return status;
-    sincos_seconds(cells);
+    m->delay_share -= stages_seconds(&m->delay.stages, compression) / stages_seconds(&m->delay.stages, NULL);
+    sincos_seconds(m->cells);
+    return STATUS_OK;
+}
+
+static void report(const struct measured *m, FILE *file, struct bench_goals *goals)
+{
+    const int threads = omp_get_max_threads();
+    const double run = m->eight.run_s, phase = stages_seconds(&m->eight.stages, phase_stages);
+    const double later = stages_seconds(&m->eight.stages, later_stages);
+    const double one_phase = stages_seconds(&m->one.stages, phase_stages);
+    const double libm_phase = stages_seconds(&m->libm.stages, phase_stages);
+    const double delay = m->delay.run_s, delay_later = m->delay_share * delay;
+    const struct fft_seconds fft = m->fft;
+    const double *const cells = m->cells;
     const struct {
         const char *name, *unit, *meaning;
         double value;
@@ -143,17 +154,16 @@ static enum status measure(const struct problem *problem, const struct echoes *e
         {"fft2", "s", "FFTW, 2-D forward and inverse of 3840 x 4096 by one plan, best of five", fft.plan},
         {"fft2_strips", "s", "the same by rows, and by columns in copied strips", fft.strips},
         {"run_ratio", "1", "run in the faster of these transforms", run / fft.best},
-        {"delay_run", "s", "rma_delay, median", delay.run_s},
-        {"delay_ratio", "1", "rma_delay's run in the faster of these transforms", delay.run_s / fft.best},
-        {"delay_after_ratio", "1", "and what follows its range compression", delay_share * delay.run_s / fft.best},
+        {"delay_run", "s", "rma_delay, median", delay},
+        {"delay_ratio", "1", "rma_delay's run in the faster of these transforms", delay / fft.best},
+        {"delay_after_ratio", "1", "and what follows its range compression", delay_later / fft.best},
     };
     fprintf(file, "# sasbench bench_rma 2\n# threads: %d\nscene,algorithm,precision,quantity,unit,value\n", threads);
     printf("\nRange migration of LBF21's real-data size, float, %d threads\n", threads);
     bench_goal(goals, GOAL_AT_MOST, 12, run / fft.best,
                "rma_lbf, 8 blocks, run over FFTW's transforms: lbf21/real_size");
-    bench_goal(goals, GOAL_AT_MOST, 4, delay.run_s / fft.best,
-               "rma_delay, run over FFTW's transforms: lbf21/real_size");
-    bench_goal(goals, GOAL_AT_MOST, 2, delay_share * delay.run_s / fft.best,
+    bench_goal(goals, GOAL_AT_MOST, 4, delay / fft.best, "rma_delay, run over FFTW's transforms: lbf21/real_size");
+    bench_goal(goals, GOAL_AT_MOST, 2, delay_later / fft.best,
                "rma_delay, after range compression, over FFTW's transforms: lbf21/real_size");
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         fprintf(file, "lbf21/real_size,%s,float,%s,%s,%.6g\n",
@@ -162,7 +172,6 @@ static enum status measure(const struct problem *problem, const struct echoes *e
         printf("%9.4g %-2s %s\n", rows[k].value, strcmp(rows[k].unit, "s") == 0 ? "s" : "", rows[k].meaning);
     }
     fflush(stdout);
-    return STATUS_OK;
 }
 
 enum status bench_rma(const char *directory, struct bench_goals *goals)
@@ -184,7 +193,10 @@ enum status bench_rma(const char *directory, struct bench_goals *goals)
         }
         if (status == STATUS_OK) {
             struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
-            status = measure(&problem, &echoes, file.stream, goals);
+            struct measured measured;
+            status = measure(&problem, &echoes, &measured);
+            if (status == STATUS_OK)
+                report(&measured, file.stream, goals);
             echoes_free(&echoes);
         }
         scene_free(&scene);

@@ -30,12 +30,8 @@ static double *rate_at(struct rates *rates, int k, char name[48])
     const struct {
         const char *name;
         double *rate;
-    } others[] = {{"compress", &rates->compress},
-                  {"filter", &rates->filter},
-                  {"general_put", &rates->put[0]},
-                  {"invariant_put", &rates->put[1]},
-                  {"migrate", &rates->migrate},
-                  {"doubled", &rates->doubled},
+    } others[] = {{"compress", &rates->compress},    {"filter", &rates->filter},   {"general_put", &rates->put[0]},
+                  {"invariant_put", &rates->put[1]}, {"migrate", &rates->migrate}, {"doubled", &rates->doubled},
                   {"noise", &rates->noise}};
     const struct {
         const char *name;
@@ -138,7 +134,7 @@ static void kind_fill(int engine, enum reading_kind kind, const struct probe *fe
 
 struct probes {
     struct probe of[2][PROBES], narrow[2][PROBES], migration; /* by engine; on the narrow image */
-    double nearest[ROUNDS];                                /* s: of the general engine, in each round */
+    double nearest[ROUNDS];                                   /* s: of the general engine, in each round */
     double noise;
 };
 
@@ -173,8 +169,8 @@ static void records_fill(const struct probes *probes, struct rates *rates)
             fmax(many->compress - rates->compress * many->forecast.record_flops, 0) / many->forecast.record_values;
     }
     const struct probe *taps = &probes->of[0][MANY_TAPS];
-    const double rest = taps->compress - rates->compress * taps->forecast.record_flops
-                        - rates->put[0] * taps->forecast.record_values;
+    const double rest =
+        taps->compress - rates->compress * taps->forecast.record_flops - rates->put[0] * taps->forecast.record_values;
     rates->filter = taps->forecast.kernel_flops > 0 ? fmax(rest, 0) / taps->forecast.kernel_flops : rates->compress;
 }
 

@@ -176,7 +176,8 @@ static const char *study_title(const struct study *study)
     return study->scene;
 }
 
-/* One picture a receiver, PNG or SVG: a panel a range, a line a formula, the largest of the errors at the three f_tau. */
+/* One picture a receiver, PNG or SVG: a panel a range, a line a formula, the largest of the errors at the three
+   f_tau. */
 static enum status study_draw(const struct study *study, const struct csv *published, int receiver, const char *path)
 {
     char title[400], texts[RANGES][32], footer[PROVENANCE_LINE + 60], line[PROVENANCE_LINE];

@@ -41,8 +41,8 @@ struct chunk {
 };
 
 /* How the row's delays are found; the count of their pieces, 0: each by itself. `offset`: of any receiver at the most,
-   INFINITY: each is to be evaluated, as some may lie at the record's ends; entries: of all groups, at present by how far
-   the ping lies ahead of the column in scratch->ahead. */
+   INFINITY: each is to be evaluated, as some may lie at the record's ends; entries: of all groups, at present by how
+   far the ping lies ahead of the column in scratch->ahead. */
 #define DELAYS_PLAN REAL_ISA_NAME(bp_delays_plan)
 int DELAYS_PLAN(const struct bp_row *row, const struct delay_terms *terms, double offset, int entries);
 

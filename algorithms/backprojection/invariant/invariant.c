@@ -22,8 +22,8 @@ static size_t record_of(const struct bp *bp, int p, int m)
     return (size_t)(in->reversed ? a->pings - 1 - p : p) * (size_t)a->receivers + (size_t)m;
 }
 
-/* A tile of `count` pings from `ping` on into every `every`-th row of a receiver's part of the slab, from row `first` on:
-   the samples of one branch or fine step. */
+/* A tile of `count` pings from `ping` on into every `every`-th row of a receiver's part of the slab, from row
+   `first` on: the samples of one branch or fine step. */
 static void scatter(const struct bp *bp, const void *tile, size_t pitch, size_t samples, size_t first, size_t every,
                     const struct tile_place *place)
 {

@@ -4,12 +4,12 @@
    /(1 - B^2), b = u + offset + B D, the way back (delay.h), B = v/c. Interpolation at the n Chebyshev points of [-h, h]
    errs by at most max|L^(n)|/n! h^n/2^(n-1). Bounds on the Taylor coefficients L^(n)/n!, in three steps:
 
-     1. sqrt(1 + 2 s x + x^2) with |s| <= 1 is sqrt(1 - x e) sqrt(1 - x/e), |e| = 1. With 1 - sqrt(1 - x) = sum b_n x^n, all
-        b_n > 0, its coefficients are at most 2 b_n + sum b_k b_(n-k) = 4 b_n from n = 2 on, since the square of sqrt(1 - x)
-        has none there; that of n = 1 is s. So the D of a distance R errs from a line by coefficients
+     1. sqrt(1 + 2 s x + x^2) with |s| <= 1 is sqrt(1 - x e) sqrt(1 - x/e), |e| = 1. With 1 - sqrt(1 - x) = sum b_n
+        x^n, all b_n > 0, its coefficients are at most 2 b_n + sum b_k b_(n-k) = 4 b_n from n = 2 on, since the square
+        of sqrt(1 - x) has none there; that of n = 1 is s. So the D of a distance R errs from a line by coefficients
         below R^(1-n) p_n, p_1 = 1, p_n = 4 b_n.
-     2. The way back is such a root of b, which in turn has coefficients below 1 + B p_1, B p_2 R^-1, ...: the root's series
-        with them put in bounds the composition's (Faa di Bruno's formula has no negative terms).
+     2. The way back is such a root of b, which in turn has coefficients below 1 + B p_1, B p_2 R^-1, ...: the
+        root's series with them put in bounds the composition's (Faa di Bruno's formula has no negative terms).
      3. R^(1-n) at the least distance R bounds all others.
 
    The sum of both bounds, T_n, is computed as power series. Hence h^n = error 2^(n-1) R^(n-1)/T_n. */

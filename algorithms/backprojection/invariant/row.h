@@ -1,5 +1,5 @@
-/* The inner sums of the translation-invariant engine: one image row from tables. delays.c, tables.c, sums.c and row.c are built
-   for each precision and instruction set; plan.c chooses one build at run time.
+/* The inner sums of the translation-invariant engine: one image row from tables. delays.c, tables.c, sums.c and
+   row.c are built for each precision and instruction set; plan.c chooses one build at run time.
 
    WHY DELAYS REPEAT. The ping spacing is `ratio` azimuth steps. A pixel `ratio` columns further on sees the next ping
    as this pixel sees this ping. Write column n as n = rho + ratio j. Here rho = n mod ratio is its residue, j = n div

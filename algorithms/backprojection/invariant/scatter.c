@@ -1,5 +1,5 @@
-/* A tile of compressed pings into the slab (scatter.h): squares of as many values as a vector has lanes are transposed in
-   registers. This file is compiled once for each precision and instruction set (BP_ISA names it). */
+/* A tile of compressed pings into the slab (scatter.h): squares of as many values as a vector has lanes are
+   transposed in registers. This file is compiled once for each precision and instruction set (BP_ISA names it). */
 #include "backprojection/invariant/scatter.h"
 
 #include "common/lanes.h"
@@ -22,7 +22,8 @@
 #define HIGHS 1, 3
 #endif
 
-/* Each round takes vectors k and k + LANES/2 by turns: after as many rounds as LANES has bits the square is transposed. */
+/* Each round takes vectors k and k + LANES/2 by turns: after as many rounds as LANES has bits the square is
+   transposed. */
 INLINE void transpose(vector_real *v)
 {
     vector_real w[LANES];

@@ -13,8 +13,8 @@ struct part {
     size_t stride;
 };
 
-/* Where 32 registers hold a block of all columns, an entry of two residues that read other samples costs a branch; where
-   the columns take several blocks, and the branch is mispredicted in each, it is summed by itself (sum_apart). */
+/* Where 32 registers hold a block of all columns, an entry of two residues that read other samples costs a branch;
+   where the columns take several blocks, and the branch is mispredicted in each, it is summed by itself (sum_apart). */
 #define APART_INSIDE (VECTOR_BYTES == 64)
 
 /* A vector of samples, loaded once for all its products: loads are the limit. */
@@ -53,10 +53,12 @@ INLINE void sum_one(int width, int taps, int stride, const struct part *part, co
     }
 }
 
-/* Two residues' values of one entry, of which `second` has other samples only where it is asked for. */
+/* Two residues' values of one entry, of which `second` has other samples only where it is asked for; real and imaginary
+   parts of samples and weights. */
 INLINE void add_two(bool apart, int width, int taps, int stride, const real *const first[2],
-                    const real *const second[2], const real *r, const real *m, vector_real *sums)
+                    const real *const second[2], const real *const weights[2], vector_real *sums)
 {
+    const real *r = weights[0], *m = weights[1];
     vector_real *a = sums, *b = a + BP_BLOCK_VECTORS, *a2 = b + BP_BLOCK_VECTORS, *b2 = a2 + BP_BLOCK_VECTORS;
     for (int t = 0; t < taps; t++) {
         const real cosine = r[t], sine = m[t], cosine2 = r[taps + t], sine2 = m[taps + t];
@@ -97,11 +99,11 @@ INLINE void sum_two(int width, int taps, int stride, const struct part *part, co
     for (int i = part->begin; i < end; i++) {
         const int at = offset[2 * i], at2 = offset[2 * i + 1];
         const real *const first[2] = {sr + at, si + at}, *const second[2] = {sr + at2, si + at2};
-        const real *r = part->wr + 2 * i * taps, *m = part->wi + 2 * i * taps;
+        const real *const weights[2] = {part->wr + 2 * i * taps, part->wi + 2 * i * taps};
         if (!APART_INSIDE || __builtin_expect(at == at2, 1))
-            add_two(false, width, taps, stride, first, second, r, m, sums);
+            add_two(false, width, taps, stride, first, second, weights, sums);
         else
-            add_two(true, width, taps, stride, first, second, r, m, sums);
+            add_two(true, width, taps, stride, first, second, weights, sums);
     }
     for (int k = 0; k < width; k++)
         for (int n = 0; n < 2; n++) {
@@ -222,9 +224,13 @@ INLINE void sum_block(int residues, int width, int taps, const struct chunk *sha
 /* clang-format off */
 #if VECTOR_BYTES == 64
 #define BLOCKS_FEW(name, taps) \
-    BLOCK(name, taps, 1, 1) BLOCK(name, taps, 1, 2) BLOCK(name, taps, 1, 3) BLOCK(name, taps, 1, 4) BLOCK(name, taps, 1, 5) \
-    BLOCK(name, taps, 2, 1) BLOCK(name, taps, 2, 2) BLOCK(name, taps, 2, 3) BLOCK(name, taps, 2, 4) BLOCK(name, taps, 2, 5)
-#define TABLE_FEW(name) {{name##_1_1, name##_1_2, name##_1_3, name##_1_4, name##_1_5}, {name##_2_1, name##_2_2, name##_2_3, name##_2_4, name##_2_5}}
+    BLOCK(name, taps, 1, 1) BLOCK(name, taps, 1, 2) BLOCK(name, taps, 1, 3) \
+    BLOCK(name, taps, 1, 4) BLOCK(name, taps, 1, 5) \
+    BLOCK(name, taps, 2, 1) BLOCK(name, taps, 2, 2) BLOCK(name, taps, 2, 3) \
+    BLOCK(name, taps, 2, 4) BLOCK(name, taps, 2, 5)
+#define TABLE_FEW(name) \
+    {{name##_1_1, name##_1_2, name##_1_3, name##_1_4, name##_1_5}, \
+     {name##_2_1, name##_2_2, name##_2_3, name##_2_4, name##_2_5}}
 #else
 #define BLOCKS_FEW(name, taps) \
     BLOCK(name, taps, 1, 1) BLOCK(name, taps, 1, 2) BLOCK(name, taps, 1, 3) \

@@ -31,8 +31,8 @@ double complex echo_spectrum(const struct scene *scene, const struct echoes *ech
    squint| <= gate only. */
 void exact_image(const struct scene *scene, const struct echoes *echoes, double gate, struct image *image);
 
-/* A scene with its echoes, and the exact image of patches of 0.56 m about the targets in axes turned by angle_rad. Freed
-   with free_imaged. */
+/* A scene with its echoes, and the exact image of patches of 0.56 m about the targets in axes turned by angle_rad.
+   Freed with free_imaged. */
 struct imaged {
     struct scene scene;
     struct echoes echoes;

@@ -335,8 +335,8 @@ static double uniform(struct random *random, double low, double high)
     return low + (high - low) * random_uniform(random);
 }
 
-/* A polynomial through exact delays of a piece as long as it may be, at all speeds, offsets and distances: it errs by no
-   more than what its length was asked for, and by not much less where the track lies nearest. */
+/* A polynomial through exact delays of a piece as long as it may be, at all speeds, offsets and distances: it errs
+   by no more than what its length was asked for, and by not much less where the track lies nearest. */
 static void pieces_keep_their_error(void **state)
 {
     (void)state;

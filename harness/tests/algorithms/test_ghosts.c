@@ -181,8 +181,8 @@ static void redundant_receivers(void **state)
     scene_free(&scene);
 }
 
-/* Phase centres without gaps, one deep or several, make no ghosts; gaps, or a depth that changes from place to place, do,
-   and are told. */
+/* Phase centres without gaps, one deep or several, make no ghosts; gaps, or a depth that changes from place to
+   place, do, and are told. */
 static void spacing_of_the_pings(void **state)
 {
     (void)state;

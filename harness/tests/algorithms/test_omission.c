@@ -138,8 +138,8 @@ static struct work work_of(const char *text, const struct problem *problem)
     return work;
 }
 
-/* Settings may limit the aperture: the image is that of an acquisition with the limit, to the last bit; records of pings
-   that then meet no pixel are not read, for they may hold anything, and their transforms are not counted. */
+/* Settings may limit the aperture: the image is that of an acquisition with the limit, to the last bit; records of
+   pings that then meet no pixel are not read, for they may hold anything, and their transforms are not counted. */
 static void pings_left_out(void **state)
 {
     (void)state;

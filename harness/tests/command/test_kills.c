@@ -164,8 +164,8 @@ static void killed_sweep_resumes(void **state)
     check_resumed("sweep", SWEEP("sweep"), SWEEP("sweep-killed"));
 }
 
-/* An interrupted sweep ends by the signal, which a terminal sends to all of its processes, but first writes what its rows
-   say. */
+/* An interrupted sweep ends by the signal, which a terminal sends to all of its processes, but first writes what its
+   rows say. */
 static void interrupted_sweep_leaves_tables(void **state)
 {
     (void)state;
