@@ -51,7 +51,8 @@ void *memory_aligned(size_t alignment, size_t bytes)
 {
     static const size_t huge = 1 << 21;
     const bool large = bytes >= 4 * huge;
-    void *memory = aligned_alloc(large ? huge : alignment, bytes);
+    const size_t unit = large ? huge : alignment;
+    void *memory = aligned_alloc(unit, (bytes + unit - 1) / unit * unit);
 #ifdef MADV_HUGEPAGE
     if (memory && large)
         madvise(memory, bytes, MADV_HUGEPAGE); /* advice: without it the pages are small */
