@@ -55,40 +55,30 @@ static enum status lines_write(const struct plot *plot, const struct slices_pict
     return written ? STATUS_OK : plot_file_failed(path);
 }
 
-static enum status lines_draw(const char *path, const char *plots_directory, const char *script,
-                              const struct slices_picture *picture)
+static enum status lines_draw(struct plot_queue *queue, const char *path, const char *plots_directory,
+                              const char *script, const struct slices_picture *picture)
 {
     struct plot plot;
     enum status status = plot_begin(&plot, path);
     if (status == STATUS_OK)
         status = lines_write(&plot, picture);
-    if (status == STATUS_OK)
-        status = plot_draw(&plot, plots_directory, script);
-    plot_end(&plot);
-    return status;
+    return plot_finish(&plot, status, queue, plots_directory, script);
 }
 
 enum status plot_slices(const char *path, const char *plots_directory, const struct slices_picture *picture)
 {
-    return lines_draw(path, plots_directory, slices_script, picture);
+    return lines_draw(NULL, path, plots_directory, slices_script, picture);
 }
 
 enum status plot_slices_later(struct plot_queue *queue, const char *path, const char *plots_directory,
                               const struct slices_picture *picture)
 {
-    struct plot plot;
-    enum status status = plot_begin(&plot, path);
-    if (status == STATUS_OK)
-        status = lines_write(&plot, picture);
-    if (status == STATUS_OK)
-        return plot_queue_add(queue, &plot, plots_directory, slices_script);
-    plot_end(&plot);
-    return status;
+    return lines_draw(queue, path, plots_directory, slices_script, picture);
 }
 
 enum status plot_phase(const char *path, const char *plots_directory, const struct slices_picture *picture)
 {
-    return lines_draw(path, plots_directory, "phase.gp", picture);
+    return lines_draw(NULL, path, plots_directory, "phase.gp", picture);
 }
 
 const char *const folder_plots[] = {"error_time", "error_flops", "lobes_time", "upsampling", NULL};
@@ -122,10 +112,8 @@ enum status plot_csv(const char *path, const char *plots_directory, const char *
     if (status == STATUS_OK) {
         plot_variable(plot.preamble, "csv", csv);
         plot_variable(plot.preamble, "footer", footer);
-        status = plot_draw(&plot, plots_directory, script);
     }
-    plot_end(&plot);
-    return status;
+    return plot_finish(&plot, status, NULL, plots_directory, script);
 }
 
 void picture_label(const char *algorithm, const char *options, const char *precision, char *label, size_t size)

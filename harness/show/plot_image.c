@@ -264,27 +264,23 @@ static enum status image_write(const struct plot *plot, const struct image_pictu
     return status;
 }
 
-enum status plot_image(const char *path, const char *plots_directory, const struct image_picture *picture)
+static enum status image_draw(struct plot_queue *queue, const char *path, const char *plots_directory,
+                              const struct image_picture *picture)
 {
     struct plot plot;
     enum status status = plot_begin(&plot, path);
     if (status == STATUS_OK)
         status = image_write(&plot, picture);
-    if (status == STATUS_OK)
-        status = plot_draw(&plot, plots_directory, image_script);
-    plot_end(&plot);
-    return status;
+    return plot_finish(&plot, status, queue, plots_directory, image_script);
+}
+
+enum status plot_image(const char *path, const char *plots_directory, const struct image_picture *picture)
+{
+    return image_draw(NULL, path, plots_directory, picture);
 }
 
 enum status plot_image_later(struct plot_queue *queue, const char *path, const char *plots_directory,
                              const struct image_picture *picture)
 {
-    struct plot plot;
-    enum status status = plot_begin(&plot, path);
-    if (status == STATUS_OK)
-        status = image_write(&plot, picture);
-    if (status == STATUS_OK)
-        return plot_queue_add(queue, &plot, plots_directory, image_script);
-    plot_end(&plot);
-    return status;
+    return image_draw(queue, path, plots_directory, picture);
 }

@@ -18,7 +18,8 @@ static void queued_end(struct queued_plot *queued)
     free((char *)queued->plot.path);
 }
 
-enum status plot_queue_add(struct plot_queue *queue, struct plot *plot, const char *plots_directory, const char *script)
+/* Takes over the plot, even on failure. */
+static enum status add(struct plot_queue *queue, struct plot *plot, const char *plots_directory, const char *script)
 {
     if (!queue->list)
         queue->list = malloc(PLOT_QUEUE_MOST * sizeof *queue->list);
@@ -34,6 +35,17 @@ enum status plot_queue_add(struct plot_queue *queue, struct plot *plot, const ch
     *queued = (struct queued_plot){.plot = *plot};
     queued->plot.path = path;
     return STATUS_OK;
+}
+
+enum status plot_finish(struct plot *plot, enum status status, struct plot_queue *queue, const char *plots_directory,
+                        const char *script)
+{
+    if (status == STATUS_OK && queue)
+        return add(queue, plot, plots_directory, script);
+    if (status == STATUS_OK)
+        status = plot_draw(plot, plots_directory, script);
+    plot_end(plot);
+    return status;
 }
 
 /* One step of a picture: it is started, asked whether it is ready, put into its place. */
