@@ -13,9 +13,9 @@ struct plot_queue {
     int count;
 };
 
-/* End a plot whose data and variables were written with `status`: without a queue it is drawn, else taken over and drawn
-   later; `plots_directory` and `script` are borrowed until then. The queue must hold fewer than PLOT_QUEUE_MOST. Errors:
-   `status`; as plot_draw; STATUS_FAILED for a full disk or no memory. */
+/* End a plot whose data and variables were written with `status`: without a queue it is drawn, else taken over and
+   drawn later; `plots_directory` and `script` are borrowed until then. The queue must hold fewer than PLOT_QUEUE_MOST.
+   Errors: `status`; as plot_draw; STATUS_FAILED for a full disk or no memory. */
 enum status plot_finish(struct plot *plot, enum status status, struct plot_queue *queue, const char *plots_directory,
                         const char *script);
 /* Draw all, as many at a time as OpenMP has threads. `failed` is called for each that cannot be drawn, with
