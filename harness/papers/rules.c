@@ -18,7 +18,7 @@
 #include "scene/random_scene.h"
 
 enum { SCENES = 200, SEED_FIRST = 7001, SEEDS_MOST = 300 }; /* other seeds than the planner was made with */
-static const double budget = 0.1;
+static const double budget = 0.1, twice = 2; /* error; f_s over the bandwidth, as BP22 section 3.3 takes it */
 
 /* ---- the rules ---- */
 
@@ -40,11 +40,11 @@ static const struct {
 enum { RULES = sizeof rules / sizeof *rules };
 
 const char *const rule_names[] = {"bp22_eq20", "zp15_eighth", NULL};
-const char *const rule_quantities[] = {"met", "error", "overpaid", NULL};
+const char *const rule_quantities[] = {"met", "met_2b", "error", "overpaid", NULL};
 
 /* ---- following them ---- */
 
-static const char header[] = "seed,rule,algorithm,options,error_gain,rate,rate_enough";
+static const char header[] = "seed,rule,algorithm,options,oversampling,error_gain,rate,rate_enough";
 
 /* "beta=7" for so many samples in place of one. */
 static void options_format(int rule, int rate, char *text, size_t size)
@@ -114,7 +114,8 @@ static enum status rule_follow(const struct session *session, int seed, int rule
     spec_free(&spec);
     if (status == STATUS_FAILED)
         return status;
-    fprintf(file, "%d,%s,%s,%s,", seed, rule_names[rule], rules[rule].algorithm, options);
+    fprintf(file, "%d,%s,%s,%s,%.6g,", seed, rule_names[rule], rules[rule].algorithm, options,
+            scene->acquisition.fs / scene->acquisition.bandwidth);
     csv_write_number(file, error);
     fprintf(file, ",%d,", rate);
     csv_write_number(file, rate_enough(&problem, rule));
@@ -180,14 +181,17 @@ static int compare(const void *a, const void *b)
 double rule_value(struct measured *measured, const char *rule, const char *quantity, double number)
 {
     const struct csv *csv = &measured->rules;
-    double values[SCENES], error, rate, enough;
+    double values[SCENES], error, rate, enough, oversampling;
     const int column = csv_column(csv, "rule"), error_column = csv_column(csv, "error_gain");
     const int rate_column = csv_column(csv, "rate"), enough_column = csv_column(csv, "rate_enough");
+    const int oversampling_column = csv_column(csv, "oversampling");
+    const bool of_2b = strcmp(quantity, "met_2b") == 0, share = of_2b || strcmp(quantity, "met") == 0;
     int count = 0, scenes = 0, met = 0;
-    if (column < 0 || error_column < 0 || rate_column < 0 || enough_column < 0)
+    if (column < 0 || error_column < 0 || rate_column < 0 || enough_column < 0 || oversampling_column < 0)
         return measured_missing(measured, "the rules were not followed on scenes from seeds");
     for (int row = 0; row < csv->row_count && scenes < SCENES; row++) {
-        if (strcmp(csv_cell(csv, row, column), rule) != 0)
+        if (strcmp(csv_cell(csv, row, column), rule) != 0
+            || (of_2b && (!csv_number(csv_cell(csv, row, oversampling_column), &oversampling) || oversampling < twice)))
             continue;
         scenes++;
         if (!csv_number(csv_cell(csv, row, error_column), &error) || !isfinite(error))
@@ -202,5 +206,5 @@ double rule_value(struct measured *measured, const char *rule, const char *quant
     if (count == 0)
         return measured_missing(measured, "no scene from a seed has %s of %s", quantity, rule);
     qsort(values, (size_t)count, sizeof *values, compare);
-    return strcmp(quantity, "met") == 0 ? (double)met / scenes : quantile(values, count, number);
+    return share ? (double)met / scenes : quantile(values, count, number);
 }

@@ -250,14 +250,18 @@ static void rules_are_counted(void **state)
 {
     (void)state;
     struct measured measured;
-    support_write(RULES_FILE, "seed,rule,algorithm,options,error_gain,rate,rate_enough\n"
-                              "1,bp22_eq20,bp_linear,beta=3,0.05,4,2\n1,zp15_eighth,bp_zeropad,factor=8,0.01,8,4\n"
-                              "2,bp22_eq20,bp_linear,beta=0,0.3,1,4\n2,zp15_eighth,bp_zeropad,factor=6,0.02,6,6\n"
-                              "3,bp22_eq20,bp_linear,beta=7,0.1,8,\n3,zp15_eighth,bp_zeropad,factor=2,,2,1\n");
+    support_write(RULES_FILE, "seed,rule,algorithm,options,oversampling,error_gain,rate,rate_enough\n"
+                              "1,bp22_eq20,bp_linear,beta=3,2,0.05,4,2\n1,zp15_eighth,bp_zeropad,factor=8,2,0.01,8,4\n"
+                              "2,bp22_eq20,bp_linear,beta=0,1.9,0.3,1,4\n"
+                              "2,zp15_eighth,bp_zeropad,factor=6,1.9,0.02,6,6\n"
+                              "3,bp22_eq20,bp_linear,beta=7,3,0.1,8,\n3,zp15_eighth,bp_zeropad,factor=2,3,,2,1\n");
     assert_int_equal(measured_read(folder, &measured), STATUS_OK);
     assert_close(rule_value(&measured, "bp22_eq20", "met", 0.1), 2.0 / 3, 1e-12);
     assert_close(rule_value(&measured, "bp22_eq20", "met", 0.04), 0, 0);
     assert_close(rule_value(&measured, "zp15_eighth", "met", 0.1), 2.0 / 3, 1e-12);
+    assert_close(rule_value(&measured, "bp22_eq20", "met_2b", 0.1), 1, 1e-12);
+    assert_close(rule_value(&measured, "bp22_eq20", "met_2b", 0.05), 0.5, 1e-12);
+    assert_close(rule_value(&measured, "zp15_eighth", "met_2b", 0.1), 0.5, 1e-12);
     assert_close(rule_value(&measured, "bp22_eq20", "error", 0.5), 0.1, 1e-12);
     assert_close(rule_value(&measured, "bp22_eq20", "overpaid", 0), 0.25, 1e-12);
     assert_close(rule_value(&measured, "bp22_eq20", "overpaid", 1), 2, 1e-12);

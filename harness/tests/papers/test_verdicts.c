@@ -223,7 +223,7 @@ static void numbers_draw(struct measured *measured)
     assert_true(images->csv.row_count <= 64);
     for (int k = 0; k < images->csv.row_count; k++) {
         struct measurement *m = &images->measurements[k];
-        m->error = 0.05 * exp(drawn(-5, 4));
+        m->error = m->error_gain = 0.05 * exp(drawn(-5, 4));
         m->phase_rms_rad = 0.1 * exp(drawn(-3, 3));
         m->run_s = m->run_min_s = slowness * exp(times * drawn(-1, 1));
         snprintf(stages[k], sizeof *stages, "compress=1;focus=%.9g;bulk=0;differential=0;reconstruct=0", m->run_s);
@@ -284,11 +284,12 @@ static void rules_draw(struct measured *measured)
 {
     FILE *file = fopen(path_of(RULES_FILE), "w");
     assert_non_null(file);
-    fputs("seed,rule,algorithm,options,error_gain,rate,rate_enough\n", file);
+    fputs("seed,rule,algorithm,options,oversampling,error_gain,rate,rate_enough\n", file);
     const double size = pow(10, drawn(-1, 1));
     for (int scene = 0; scene < 3; scene++)
         for (int k = 0; rule_names[k]; k++)
-            fprintf(file, "%d,%s,a,b=1,%.9g,%.9g,2\n", scene, rule_names[k], size * drawn(1, 0.3), drawn(2, 9));
+            fprintf(file, "%d,%s,a,b=1,%d,%.9g,%.9g,2\n", scene, rule_names[k], 1 + scene, size * drawn(1, 0.3),
+                    drawn(2, 9));
     assert_int_equal(fclose(file), 0);
     csv_free(&measured->rules);
     assert_int_equal(csv_read(path_of(RULES_FILE), CSV_TAIL_KEEP, &measured->rules), STATUS_OK);
