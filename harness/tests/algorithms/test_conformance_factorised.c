@@ -1,121 +1,38 @@
-/* Factorised back projection with a tree, which small scenes are not given by default: its errors against what is
-   asked for, and the pixels that it sums from records, for noise of a flat spectrum, which comes from everywhere; bits,
-   instruction sets, memory. */
-#include <math.h>
+/* Factorised back projection with a tree: the pixels that it sums from records; bits, instruction sets, memory. */
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "backprojection/factorised/factorised.h"
-#include "backprojection/factorised/taps.h"
-#include "measure/metrics.h"
+#include "tests/algorithms/factorised_scenes.h"
 #include "tests/allocations.h"
 #include "tests/support.h"
 
-enum { PINGS = 96, SAMPLES = 240 };
-
-/* What is seen, and how. */
-enum kind { STRAIGHT, CURVED, LIMITED, SQUINTED, SIDES, ENDED, TURNED, ENDFIRE, KINDS };
-static const char *const names[KINDS] = {"straight",   "curved, 4 receivers", "aperture limit", "squinted limit",
-                                         "both sides", "records end",         "turned",         "along x"};
-static const struct grid grids[KINDS] = {
-    {-1.0, 0.05, 41, 11.0, 0.03, 61, 0},  {-1.0, 0.05, 41, 11.0, 0.03, 61, 0},  {-1.0, 0.05, 41, 11.0, 0.03, 61, 0},
-    {1.0, 0.05, 41, 11.0, 0.03, 61, 0},   {-0.6, 0.1, 13, -8.0, 0.125, 129, 0}, {-1.0, 0.05, 41, 7.5, 0.03, 61, 0},
-    {3.0, 0.05, 41, 10.0, 0.03, 61, 0.3}, {11.0, 0.03, 61, -1.0, 0.05, 41, 0},
-};
-
-/* Places of the sonar; records whose bins up to the band's edge are noise. */
-static void make(enum kind kind, struct acquisition *a, struct echoes *echoes)
-{
-    struct random random = random_seed(7, 1);
-    static double complex turns[SAMPLES];
-    const int receivers = kind == CURVED ? 4 : 1, edge = SAMPLES / 4 - 1;
-    *a = support_acquisition(PINGS, receivers, SAMPLES);
-    a->fc = 60e3;
-    a->fs = 20e3;
-    a->bandwidth = 10e3;
-    a->aperture_limit = kind == LIMITED ? 0.1 : kind == SQUINTED ? 0.15 : INFINITY;
-    a->echo_squint = kind == SQUINTED ? 0.15 : 0;
-    for (int p = 0; p < PINGS; p++) {
-        const double bend = kind == CURVED ? 0.3 * sin(0.08 * p) : 0, deep = kind == CURVED ? 0.2 * cos(0.05 * p) : 0;
-        a->t0[p] = (kind == SIDES ? 0 : 200 + (kind == CURVED ? p % 3 : 0)) / a->fs;
-        a->tx[p] = (struct vector){(p - PINGS / 2) * 0.05, bend, deep};
-        a->velocity[p] = (struct vector){1.5, kind == CURVED ? 0.4 : 0, 0};
-        for (int m = 0; m < receivers; m++)
-            a->rx[p * receivers + m] = (struct vector){a->tx[p].x + 0.05 + 0.02 * m, bend + 0.01 * m, deep};
-    }
-    assert_int_equal(acquisition_check(a, names[kind]), STATUS_OK);
-    assert_int_equal(echoes_allocate(a, PRECISION_DOUBLE, echoes), STATUS_OK);
-    for (int n = 0; n < SAMPLES; n++)
-        turns[n] = cexp(2 * M_PI * I * n / SAMPLES);
-    double complex *s = (double complex *)echoes->samples;
-    for (int record = 0; record < PINGS * receivers; record++) {
-        double complex bins[SAMPLES];
-        for (int k = -edge; k <= edge; k++)
-            bins[(k + SAMPLES) % SAMPLES] = random_normal(&random);
-        for (int n = 0; n < SAMPLES; n++, s++) {
-            *s = 0;
-            for (int k = -edge; k <= edge; k++) {
-                const int bin = (k + SAMPLES) % SAMPLES;
-                *s += bins[bin] * turns[bin * n % SAMPLES];
-            }
-        }
-    }
-}
-
-static double error_of(const char *spec, struct problem problem, const struct echoes *echoes, const struct image *exact)
-{
-    struct image image;
-    if (support_image(spec, problem, echoes, &image) != STATUS_OK)
-        fail_msg("%s: %s", spec, status_message());
-    const double error = metrics_error(&image, exact).error;
-    image_free(&image);
-    return error;
-}
-
-/* Errors stay below what is asked for, and not far: by a factor of ten at most. */
-static void errors_are_as_asked_for(void **state)
+/* Every kind of scene once; all errors and trees: test_factorised_errors. */
+static void every_kind_is_imaged(void **state)
 {
     (void)state;
-    static const double errors[] = {1e-1, 1e-2, 1e-3, 1e-4};
-    for (int kind = 0; kind < KINDS; kind++) {
-        struct acquisition a;
-        struct echoes echoes;
-        struct image exact;
-        make((enum kind)kind, &a, &echoes);
-        const struct problem problem = {&a, 1, &grids[kind], PRECISION_DOUBLE};
-        assert_int_equal(support_image("reference:precision=double", problem, &echoes, &exact), STATUS_OK);
-        for (int stages = 1; stages <= 3; stages++)
-            for (size_t k = 0; k < sizeof errors / sizeof *errors; k++) {
-                char spec[120];
-                snprintf(spec, sizeof spec, "bp_factorised:stages=%d,base=4,factor=4,error=%g,precision=double", stages,
-                         errors[k]);
-                const double error = error_of(spec, problem, &echoes, &exact);
-                print_message("%s, %s: error %.2e\n", names[kind], spec, error);
-                if (!(error <= errors[k] && error >= errors[k] / 30))
-                    fail_msg("%s, %s: error is %g", names[kind], spec, error);
-            }
-        image_free(&exact);
-        echoes_free(&echoes);
-        acquisition_free(&a);
-    }
+    const double error = 1e-2;
+    for (int kind = 0; kind < FACTORISED_KINDS; kind++)
+        factorised_check((enum factorised_kind)kind, 2, 1, &error);
 }
 
 /* Pixels are read from images, and all of them where nothing prevents it. */
 static void images_are_read(void **state)
 {
     (void)state;
-    for (int kind = 0; kind < KINDS; kind++) {
+    for (int kind = 0; kind < FACTORISED_KINDS; kind++) {
         struct acquisition a;
         struct echoes echoes;
         struct factorised *plan;
-        make((enum kind)kind, &a, &echoes);
-        const struct problem problem = {&a, 1, &grids[kind], PRECISION_DOUBLE};
+        factorised_scene((enum factorised_kind)kind, &a, &echoes);
+        const struct problem problem = {&a, 1, &factorised_grids[kind], PRECISION_DOUBLE};
         const struct tree_settings settings = {1e-2, 4, 4, 2};
         assert_int_equal(factorised_plan(&problem, &settings, &plan), STATUS_OK);
-        const double all = (double)grids[kind].x_count * grids[kind].r_count * a.pings * a.receivers,
+        const double all = (double)factorised_grids[kind].x_count * factorised_grids[kind].r_count * a.pings
+                           * a.receivers,
                      direct = plan->direct / all;
-        print_message("%s: %.3g of the pairs are summed from records\n", names[kind], direct);
+        print_message("%s: %.3g of the pairs are summed from records\n", factorised_names[kind], direct);
         if (kind == SIDES) /* near pixels, seen far off the axis */
             assert_true(direct > 0 && direct < 0.95);
         else if (kind == LIMITED || kind == SQUINTED || kind == ENDED)
@@ -138,8 +55,8 @@ static void bits_and_precisions(void **state)
                                         "bp_factorised:stages=2,base=4,factor=4,error=1e-3,precision=double"};
     struct acquisition a;
     struct echoes echoes;
-    make(CURVED, &a, &echoes);
-    const struct grid *grid = &grids[CURVED];
+    factorised_scene(CURVED, &a, &echoes);
+    const struct grid *grid = &factorised_grids[CURVED];
     const struct problem problem = {&a, 1, grid, PRECISION_DOUBLE};
     struct image first[2];
     for (int precision = 0; precision < 2; precision++)
@@ -182,10 +99,10 @@ static void memory(void **state)
     struct image image;
     struct stages stages;
     struct factorised *plan;
-    make(LIMITED, &a, &echoes);
-    const struct problem problem = {&a, 1, &grids[LIMITED], PRECISION_DOUBLE};
+    factorised_scene(LIMITED, &a, &echoes);
+    const struct problem problem = {&a, 1, &factorised_grids[LIMITED], PRECISION_DOUBLE};
     const struct tree_settings settings = {1e-2, 4, 4, 2};
-    support_image_make(&grids[LIMITED], 1, PRECISION_DOUBLE, &image);
+    support_image_make(&factorised_grids[LIMITED], 1, PRECISION_DOUBLE, &image);
     omp_set_num_threads(1);
     allocations_begin(-1);
     assert_int_equal(factorised_plan(&problem, &settings, &plan), STATUS_OK);
@@ -221,42 +138,13 @@ static void memory(void **state)
     acquisition_free(&a);
 }
 
-/* The taps' own error, against the exponential at random frequencies of the band. */
-static void taps_have_their_error(void **state)
-{
-    (void)state;
-    static const double errors[] = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5};
-    struct random random = random_seed(11, 1);
-    for (size_t k = 0; k < sizeof errors / sizeof *errors; k++) {
-        enum { DRAWS = 20000 };
-        struct polar_taps taps;
-        double sum = 0;
-        assert_int_equal(polar_taps_choose(errors[k], 1.1, &taps), STATUS_OK);
-        for (int n = 0; n < DRAWS; n++) {
-            const double nu = (random_uniform(&random) - 0.5) / taps.oversampling, u = random_uniform(&random) - 0.5;
-            double complex value = 0;
-            for (int t = 0; t < taps.taps; t++) {
-                double weight = 0;
-                for (int m = taps.branches - 1; m >= 0; m--)
-                    weight = weight * u + taps.coefficients[m * taps.taps + t];
-                value += weight * cexp(2 * M_PI * I * nu * (t - 0.5 * (taps.taps - 1)));
-            }
-            const double off = cabs(value - cexp(2 * M_PI * I * nu * u));
-            sum += off * off / DRAWS;
-        }
-        print_message("%d taps, %.2f times oversampled, asked for %g: error %.2e, by the law %.2e\n", taps.taps,
-                      taps.oversampling, errors[k], sqrt(sum), taps.error);
-        assert_close(sqrt(sum) / taps.error, 1, 0.15);
-        assert_true(taps.error <= errors[k] && taps.error > 0.5 * errors[k]);
-    }
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(errors_are_as_asked_for), cmocka_unit_test(images_are_read),
-        cmocka_unit_test(bits_and_precisions),     cmocka_unit_test(memory),
-        cmocka_unit_test(taps_have_their_error),
+        cmocka_unit_test(every_kind_is_imaged),
+        cmocka_unit_test(images_are_read),
+        cmocka_unit_test(bits_and_precisions),
+        cmocka_unit_test(memory),
     };
     return cmocka_run_group_tests_name("conformance_factorised", tests, NULL, NULL);
 }

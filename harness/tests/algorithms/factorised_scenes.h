@@ -1,0 +1,23 @@
+/* Small scenes for factorised back projection with a tree, which small scenes are not given by default. */
+#ifndef SASBENCH_TESTS_FACTORISED_SCENES_H
+#define SASBENCH_TESTS_FACTORISED_SCENES_H
+
+#include "acquisition.h"
+#include "algorithm.h"
+
+enum { FACTORISED_PINGS = 96 };
+
+/* What is seen, and how. */
+enum factorised_kind { STRAIGHT, CURVED, LIMITED, SQUINTED, SIDES, ENDED, TURNED, ENDFIRE, FACTORISED_KINDS };
+extern const char *const factorised_names[FACTORISED_KINDS];
+extern const struct grid factorised_grids[FACTORISED_KINDS];
+
+/* Places of the sonar, and records of noise of a flat spectrum up to the band's edge, which comes from everywhere; both
+   are freed by the caller. */
+void factorised_scene(enum factorised_kind kind, struct acquisition *a, struct echoes *echoes);
+
+/* The errors of trees of `stages` for each of the `count` errors asked for stay below, and not far: by a factor of 30
+   at most. */
+void factorised_check(enum factorised_kind kind, int stages, int count, const double *errors);
+
+#endif
