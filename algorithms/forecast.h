@@ -22,7 +22,8 @@ extern const char *const cause_names[CAUSES];
 enum reading_kind { READ_NEAREST, READ_LINE, READ_TAPS, READ_BRANCHES, READ_KINDS };
 
 struct forecast {
-    double error[CAUSES]; /* relative L2 of the complex image after one best complex gain, root mean square */
+    double error[CAUSES]; /* relative L2 of the complex image after one best complex gain, root mean square;
+                             INFINITY: no law */
     bool sums_pairs;      /* back projection: what follows is of its pairs, and of its records */
     bool tables;          /* by the invariant engine */
     enum reading_kind kind;

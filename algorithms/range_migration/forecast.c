@@ -38,10 +38,9 @@ enum status rma_forecast(const struct problem *problem, const struct rma_method 
     forecast->error[CAUSE_DELAYS] = taps;
     if (!(problem->acquisition->bandwidth < problem->acquisition->fs))
         forecast->error[CAUSE_SPECTRUM] = INFINITY; /* the bin at fs/2 stands for both ends of the band: no law */
-    /* Blocks that are asked for by number have no law. */
-    forecast->error[CAUSE_BLOCKS] = method->terms > 0 ? terms
-                                    : options->blocks ? INFINITY
-                                                      : BLOCK_SHARE * options->limit;
+    /* Blocks that are asked for by number, or have hard edges, have no law. */
+    const bool lawless = options->blocks || !options->blend;
+    forecast->error[CAUSE_BLOCKS] = method->terms > 0 ? terms : lawless ? INFINITY : BLOCK_SHARE * options->limit;
     if (stolt_taps[options->stolt] > 0)
         forecast->error[CAUSE_STOLT] = STOLT_SHARE * exp(-M_PI * STOLT_SLOPE * stolt_taps[options->stolt]);
     forecast->error[CAUSE_FLOAT] = ROUNDING[problem->precision];

@@ -114,8 +114,8 @@ enum status command_sweep(const struct task *task)
     interruption_end();
     if (status == STATUS_OK)
         printf("\nResults: %s/measurements.csv, targets.csv, fronts.csv, cheapest.csv, slopes.csv, rules.csv, "
-               "points.csv, predicted.csv, predictions.csv and plots.\n",
-               directory);
+               "points.csv%s and plots.\n",
+               directory, predicted ? ", predicted.csv, predictions.csv" : "");
     status = batch_close(&batch, status);
     scenes_free(scenes, scene_count);
     settings_free(&settings);

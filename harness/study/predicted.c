@@ -54,7 +54,7 @@ static enum status row_predict(const struct scene *scene, const struct measureme
     enum status status = STATUS_UNSUPPORTED;
     if (spec.algorithm->forecast)
         status = spec.algorithm->forecast(&problem, spec.options, &forecast);
-    if (status == STATUS_OK) {
+    if (status == STATUS_OK && isfinite(forecast_error(&forecast))) {
         const double error = forecast_error(&forecast);
         predictions->list[predictions->count++] =
             (struct prediction){row, spec.algorithm, error, error / row->error_gain, forecast_cause(&forecast)};

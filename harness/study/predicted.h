@@ -4,7 +4,7 @@
 
 #include "scene/scene.h"
 
-/* Read DIR/measurements.csv, predict each of its images whose algorithm has a forecast, and write beside it
+/* Read DIR/measurements.csv, predict each of its images whose settings a law covers, and write beside it
    predicted.csv (a row an image: predicted error, measured one after one gain, ratio, main cause) and predictions.csv
    (a row an algorithm: how many, and the ratio's least, quartiles, median and largest), which is printed. `scenes` are
    those that were measured; others are looked for by name, and one that is no longer there as it was measured is left
