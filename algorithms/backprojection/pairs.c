@@ -76,8 +76,11 @@ static int pixel_between(double value, int least, int most)
     return !(value > least) ? least : value < most ? (int)value : most;
 }
 
-/* Pixels beside a root are asked one by one, so that none is lost where the cone meets it exactly; what lies between is
-   all inside or all outside. */
+/* In pixels, far more than a root errs by: from a pixel, or from the other root, where it errs most. */
+static const double NEAR_PIXEL = 0.125, APART = 8;
+
+/* Pixels beside a root that is near one of them, or near the other root, are asked one by one, so that none is lost
+   where the cone meets it exactly; what lies between is all inside or all outside. */
 int pair_spans(const struct acquisition *a, int ping, struct vector h, const struct pixel_line *line,
                struct pair_span spans[2])
 {
@@ -94,8 +97,10 @@ int pair_spans(const struct acquisition *a, int ping, struct vector h, const str
         const bool met = k < 2 && root[k] > -2 && root[k] < n + 1.0;
         if (k < 2 && !met)
             continue;
-        const int begin = met ? pixel_between(floor(root[k]) - 1, next, n) : n;
-        const int end = met ? pixel_between(floor(root[k]) + 3, begin, n) : n;
+        const double whole = floor(root[k]), rest = root[k] - whole;
+        const bool clear = rest > NEAR_PIXEL && rest < 1 - NEAR_PIXEL && root[1] - root[0] > APART;
+        const int begin = met ? pixel_between(clear ? whole + 1 : whole - 1, next, n) : n;
+        const int end = met ? pixel_between(clear ? whole + 1 : whole + 3, begin, n) : n;
         if (next < begin && inside_cone(&cone, line, next + (begin - next) / 2))
             count = span_add(spans, count, next, begin);
         for (next = begin; next < end; next++)

@@ -151,11 +151,12 @@ static void line_add(const struct factorised *plan, int subaperture, int view, c
     medium.fs = c / (2 * step->rho);
     medium.samples = count;
     const struct bp_ping ping = {centre,  {0, 0, 0},    2 * first * step->rho / c, 1,
-                                 &centre, scratch->row, plan->polar_layout};
+                                 &centre, scratch->row, plan->polar_layout,        span};
+    const struct bp_pings alone = {1, &ping};
     const struct ping_box box = {centre, centre, plan->reach, plan->longest};
     struct bp_block blocks[BP_BLOCKS];
     for (int n; (n = blocks_make(&box, to->line, &span, blocks)) > 0;)
-        plan->sum(&medium, &plan->polar_table, &ping, to->line, n, blocks, to->re, to->im);
+        plan->sum(&medium, &plan->polar_table, &alone, to->line, n, blocks, to->re, to->im);
 }
 
 /* The images of its parts onto a line of a subaperture's. */

@@ -12,16 +12,27 @@
 
 enum { EXACT = 64 }; /* pixels that are evaluated one by one before a block is tried again */
 
+/* fmin and fmax are calls. */
+static double lesser(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static double greater(double a, double b)
+{
+    return a > b ? a : b;
+}
+
 /* Distance between two intervals. */
 static double gap(double low_a, double high_a, double low_b, double high_b)
 {
-    return fmax(0, fmax(low_b - high_a, low_a - high_b));
+    return greater(0, greater(low_b - high_a, low_a - high_b));
 }
 
 /* Largest distance between a point and an interval. */
 static double span(double low, double high, double point)
 {
-    return fmax(fabs(point - low), fabs(point - high));
+    return greater(fabs(point - low), fabs(point - high));
 }
 
 static double length(double x, double y, double z)
@@ -44,13 +55,13 @@ static double extent(const struct ping_box *box, struct vector p)
 
 double ping_box_extent(const struct ping_box *box, const struct pixel_line *line, int begin, int end)
 {
-    return fmax(extent(box, line_pixel(line, begin)), extent(box, line_pixel(line, end - 1)));
+    return greater(extent(box, line_pixel(line, begin)), extent(box, line_pixel(line, end - 1)));
 }
 
 static void include(struct ping_box *box, struct vector p)
 {
-    box->low = (struct vector){fmin(box->low.x, p.x), fmin(box->low.y, p.y), fmin(box->low.z, p.z)};
-    box->high = (struct vector){fmax(box->high.x, p.x), fmax(box->high.y, p.y), fmax(box->high.z, p.z)};
+    box->low = (struct vector){lesser(box->low.x, p.x), lesser(box->low.y, p.y), lesser(box->low.z, p.z)};
+    box->high = (struct vector){greater(box->high.x, p.x), greater(box->high.y, p.y), greater(box->high.z, p.z)};
 }
 
 struct ping_box ping_box_make(const struct acquisition *a, int ping, int patch_count, const struct grid *patches,
@@ -73,6 +84,14 @@ struct ping_box ping_box_make(const struct acquisition *a, int ping, int patch_c
         include(&box, (struct vector){rx[m].x + v.x * longest, rx[m].y + v.y * longest, rx[m].z + v.z * longest});
     box.reach = pow(256 * phase_limit * c / (2 * M_PI * a->fc) * pow((1 - mach) / (1 + mach), 4), 1.0 / 6);
     box.longest = 0x1p18 * (1 - mach) * c / a->fc;
+    return box;
+}
+
+struct ping_box ping_box_join(const struct ping_box *a, const struct ping_box *b)
+{
+    struct ping_box box = {a->low, a->high, lesser(a->reach, b->reach), lesser(a->longest, b->longest)};
+    include(&box, b->low);
+    include(&box, b->high);
     return box;
 }
 

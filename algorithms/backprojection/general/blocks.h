@@ -23,6 +23,9 @@ enum { BP_BLOCKS = 16, BP_BLOCK_LEAST = 16 }; /* blocks made at a time; pixels b
 struct ping_box ping_box_make(const struct acquisition *acquisition, int ping, int patch_count,
                               const struct grid *patches, double phase_limit);
 
+/* The box of two pings: its blocks are such for both. */
+struct ping_box ping_box_join(const struct ping_box *a, const struct ping_box *b);
+
 /* m: least and largest distance from any point of the box to any pixel of [begin, end). */
 double ping_box_clearance(const struct ping_box *box, const struct pixel_line *line, int begin, int end);
 double ping_box_extent(const struct ping_box *box, const struct pixel_line *line, int begin, int end);

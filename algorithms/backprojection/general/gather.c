@@ -215,11 +215,12 @@ INLINE void take(struct taking taking, struct record record, size_t apart, const
 
 /* One run of each of a group's records; `receivers` is the group's, as a constant where this is inlined. */
 INLINE void add_taken(struct taking taking, int receivers, const struct receiver_group *group, struct run *runs,
-                      int count, real *re, real *im)
+                      struct pair_span pixels, real *re, real *im)
 {
     struct record from[GROUP_RECEIVERS];
     const struct bp_layout layout = group->layout;
-    int i = 0;
+    const int count = pixels.end;
+    int i = pixels.begin;
     for (int g = 0; g < receivers; g++) {
         const int place = group->table->guard + group->table->first + runs[g].base;
         const bool whole = taking.branches > 1;
@@ -251,52 +252,52 @@ INLINE void add_taken(struct taking taking, int receivers, const struct receiver
 }
 
 /* `taking` is a constant where this is inlined. */
-INLINE void add_group(struct taking taking, const struct receiver_group *group, struct run *runs, int count, real *re,
-                      real *im)
+INLINE void add_group(struct taking taking, const struct receiver_group *group, struct run *runs,
+                      struct pair_span pixels, real *re, real *im)
 {
     if (group->receivers == GROUP_RECEIVERS) {
-        add_taken(taking, GROUP_RECEIVERS, group, runs, count, re, im);
+        add_taken(taking, GROUP_RECEIVERS, group, runs, pixels, re, im);
         return;
     }
     struct receiver_group one = *group;
     one.receivers = 1;
     for (int g = 0; g < group->receivers; g++, one.row += one.layout.record)
-        add_taken(taking, 1, &one, &runs[g], count, re, im);
+        add_taken(taking, 1, &one, &runs[g], pixels, re, im);
 }
 
-INLINE void add_all(enum loading loading, const struct receiver_group *group, struct run *runs, int count, real *re,
-                    real *im)
+INLINE void add_all(enum loading loading, const struct receiver_group *group, struct run *runs, struct pair_span pixels,
+                    real *re, real *im)
 {
     if (group->table->reading == BP_LINE)
-        add_group((struct taking){true, 1, loading}, group, runs, count, re, im);
+        add_group((struct taking){true, 1, loading}, group, runs, pixels, re, im);
     else
-        add_group((struct taking){false, 1, loading}, group, runs, count, re, im);
+        add_group((struct taking){false, 1, loading}, group, runs, pixels, re, im);
 }
 
 /* The usual degrees unroll, any other one works as well. */
-INLINE void add_branches(enum loading loading, const struct receiver_group *group, struct run *runs, int count,
-                         real *re, real *im)
+INLINE void add_branches(enum loading loading, const struct receiver_group *group, struct run *runs,
+                         struct pair_span pixels, real *re, real *im)
 {
     const int branches = group->table->branches;
     switch (branches) {
-    case 4: add_group((struct taking){false, 4, loading}, group, runs, count, re, im); break;
-    case 5: add_group((struct taking){false, 5, loading}, group, runs, count, re, im); break;
-    case 6: add_group((struct taking){false, 6, loading}, group, runs, count, re, im); break;
-    default: add_group((struct taking){false, branches, loading}, group, runs, count, re, im); break;
+    case 4: add_group((struct taking){false, 4, loading}, group, runs, pixels, re, im); break;
+    case 5: add_group((struct taking){false, 5, loading}, group, runs, pixels, re, im); break;
+    case 6: add_group((struct taking){false, 6, loading}, group, runs, pixels, re, im); break;
+    default: add_group((struct taking){false, branches, loading}, group, runs, pixels, re, im); break;
     }
 }
 
 /* Many weights, from a table of steps or from cubics in the fraction; the record's parts lie apart. `taps` is a
    constant where this is inlined, so that the loops over it unroll. */
-INLINE void add_taps(const struct bp_table *table, int taps, const real *row_re, const real *row_im, int count,
-                     const struct run *run, real *re, real *im)
+INLINE void add_taps(const struct bp_table *table, int taps, const real *row_re, const real *row_im,
+                     struct pair_span pixels, const struct run *run, real *re, real *im)
 {
     const real *weights = table->weights;
     real wr[RUN_PIXELS], wi[RUN_PIXELS];
 #pragma omp simd
-    for (int i = 0; i < count; i++)
+    for (int i = pixels.begin; i < pixels.end; i++)
         phasor(run->cycles[i], &wr[i], &wi[i]);
-    for (int i = 0; i < count; i++) {
+    for (int i = pixels.begin; i < pixels.end; i++) {
         const real *x = row_re + run->sample[i], *y = row_im + run->sample[i];
         real vr = 0, vi = 0;
         if (table->steps > 0) {
@@ -320,23 +321,23 @@ INLINE void add_taps(const struct bp_table *table, int taps, const real *row_re,
     }
 }
 
-void BP_GATHER(const struct receiver_group *group, enum loading loading, int count, struct run *runs, real *re,
-               real *im)
+void BP_GATHER(const struct receiver_group *group, enum loading loading, struct pair_span pixels, struct run *runs,
+               real *re, real *im)
 {
     const struct bp_table *table = group->table;
     if (table->reading == BP_NEAREST || table->reading == BP_LINE) {
         switch (loading) {
-        case APART: add_all(APART, group, runs, count, re, im); break;
-        case FOURS: add_all(FOURS, group, runs, count, re, im); break;
-        case TOGETHER: add_all(TOGETHER, group, runs, count, re, im); break;
+        case APART: add_all(APART, group, runs, pixels, re, im); break;
+        case FOURS: add_all(FOURS, group, runs, pixels, re, im); break;
+        case TOGETHER: add_all(TOGETHER, group, runs, pixels, re, im); break;
         }
         return;
     }
     if (table->reading == BP_BRANCHES) {
         if (PERMUTES && loading == TOGETHER)
-            add_branches(TOGETHER, group, runs, count, re, im);
+            add_branches(TOGETHER, group, runs, pixels, re, im);
         else
-            add_branches(APART, group, runs, count, re, im);
+            add_branches(APART, group, runs, pixels, re, im);
         return;
     }
     const size_t length = group->layout.apart;
@@ -344,10 +345,10 @@ void BP_GATHER(const struct receiver_group *group, enum loading loading, int cou
     for (int g = 0; g < group->receivers; g++, row += group->layout.record) {
         const real *from = row + runs[g].base;
         switch (table->taps) { /* the shipped kernels unroll, any other length works as well */
-        case 8: add_taps(table, 8, from, from + length, count, &runs[g], re, im); break;
-        case 16: add_taps(table, 16, from, from + length, count, &runs[g], re, im); break;
-        case 20: add_taps(table, 20, from, from + length, count, &runs[g], re, im); break;
-        default: add_taps(table, table->taps, from, from + length, count, &runs[g], re, im); break;
+        case 8: add_taps(table, 8, from, from + length, pixels, &runs[g], re, im); break;
+        case 16: add_taps(table, 16, from, from + length, pixels, &runs[g], re, im); break;
+        case 20: add_taps(table, 20, from, from + length, pixels, &runs[g], re, im); break;
+        default: add_taps(table, table->taps, from, from + length, pixels, &runs[g], re, im); break;
         }
     }
 }

@@ -42,58 +42,132 @@ struct bp_layout bp_layout_make(enum precision precision, size_t length, int bra
     return layout;
 }
 
-/* Add some receivers to pixels `within` of a line. */
-static void sum_span(const struct bp_lines *lines, const struct ping_box *box, const struct bp_ping *ping,
+/* Add pings to a line's pixels `within`, which hold those of all of them. */
+static void sum_span(const struct bp_lines *lines, const struct ping_box *box, const struct bp_pings *pings,
                      const struct pixel_line *line, struct pair_span within, void *re, void *im)
 {
     struct bp_block blocks[BP_BLOCKS];
-    struct pair_span left = within;
-    for (int count; (count = blocks_make(box, line, &left, blocks)) > 0;)
-        lines->sum(&lines->bp->medium, &lines->bp->table, ping, line, count, blocks, re, im);
+    for (int count; (count = blocks_make(box, line, &within, blocks)) > 0;)
+        lines->sum(&lines->bp->medium, &lines->bp->table, pings, line, count, blocks, re, im);
 }
 
-/* Is the delay of every pixel of `within` inside every receiver's record, by the least and the longest way there is? */
-static bool inside_record(const struct bp_lines *lines, int p, const struct pixel_line *line, struct pair_span within)
+/* Is the delay of every pixel of `within` inside every receiver's record that begins at t0, by the least and the
+   longest way there is? */
+static bool inside_record(const struct bp_lines *lines, const struct ping_box *box, double t0,
+                          const struct pixel_line *line, struct pair_span within)
 {
     const struct acquisition *a = lines->acquisition;
-    double c = a->sound_speed, first = a->t0[p], last = first + (a->samples - 1) / a->fs, slack = 1e-9 / a->fs;
-    double least = 2 * ping_box_clearance(&lines->boxes[p], line, within.begin, within.end) / c;
-    double most = 2 * ping_box_extent(&lines->boxes[p], line, within.begin, within.end) / c;
-    return least >= first + slack && most <= last - slack;
+    double c = a->sound_speed, last = t0 + (a->samples - 1) / a->fs, slack = 1e-9 / a->fs;
+    double least = 2 * ping_box_clearance(box, line, within.begin, within.end) / c;
+    double most = 2 * ping_box_extent(box, line, within.begin, within.end) / c;
+    return least >= t0 + slack && most <= last - slack;
+}
+
+/* Where a line's sums are. */
+struct line_sums {
+    const struct pixel_line *line;
+    void *re, *im;
+};
+
+/* Add ping p, or some of its receivers, to the pixels of ping->within. */
+static void add_alone(const struct bp_lines *lines, const struct line_sums *to, int p, const struct bp_ping *ping)
+{
+    const struct acquisition *a = lines->acquisition;
+    const struct ping_box *box = &lines->boxes[p];
+    const struct pixel_line *line = to->line;
+    if (inside_record(lines, box, ping->t0, line, ping->within)) {
+        sum_span(lines, box, &(struct bp_pings){1, ping}, line, ping->within, to->re, to->im);
+        return;
+    }
+    const size_t row_bytes = lines->layout.record * real_size(lines->bp->problem.precision);
+    struct bp_ping one = *ping;
+    one.receivers = 1;
+    for (int n = 0; n < ping->receivers; n++) {
+        struct pair_span record[2];
+        const int m = (int)(ping->rx - a->rx) + n - p * a->receivers;
+        const int parts = record_spans(a, p, m, line, ping->within, record);
+        one.rx = ping->rx + n;
+        one.rows = (const char *)ping->rows + (size_t)n * row_bytes;
+        for (int i = 0; i < parts; i++) {
+            one.within = record[i];
+            sum_span(lines, box, &(struct bp_pings){1, &one}, line, record[i], to->re, to->im);
+        }
+    }
+}
+
+/* Neighbouring pings that wait to be summed together, the first of them p. */
+struct waiting {
+    int p, count;
+    struct bp_ping ping[BP_RECORDS];
+};
+
+static struct pair_span span_of_both(struct pair_span a, struct pair_span b)
+{
+    return (struct pair_span){a.begin < b.begin ? a.begin : b.begin, a.end > b.end ? a.end : b.end};
+}
+
+static void waiting_add(const struct bp_lines *lines, const struct line_sums *to, struct waiting *waiting)
+{
+    const int count = waiting->count;
+    struct ping_box box = lines->boxes[waiting->p];
+    struct pair_span all = waiting->ping[0].within;
+    for (int n = 1; n < count; n++) {
+        box = ping_box_join(&box, &lines->boxes[waiting->p + n]);
+        all = span_of_both(all, waiting->ping[n].within);
+    }
+    waiting->count = 0;
+    if (count > 1 && inside_record(lines, &box, waiting->ping[0].t0, to->line, all)) {
+        sum_span(lines, &box, &(struct bp_pings){count, waiting->ping}, to->line, all, to->re, to->im);
+        return;
+    }
+    for (int n = 0; n < count; n++)
+        add_alone(lines, to, waiting->p + n, &waiting->ping[n]);
+}
+
+/* Can a ping's records be summed with those that wait? They share blocks of pixels, which pays where most of the
+   pixels are all pings'; where each delay is evaluated there are none. */
+static bool joins(const struct bp_lines *lines, const struct waiting *waiting, int p, const struct bp_ping *ping)
+{
+    const struct bp_ping *first = &waiting->ping[0];
+    const struct pair_span all = span_of_both(first->within, ping->within);
+    const int pixels = ping->within.end - ping->within.begin, firsts = first->within.end - first->within.begin;
+    return p == waiting->p + waiting->count && (waiting->count + 1) * ping->receivers <= BP_RECORDS
+           && ping->receivers == first->receivers && ping->t0 == first->t0 && lines->boxes[p].reach > 0
+           && 2 * (all.end - all.begin) <= 3 * (pixels < firsts ? pixels : firsts);
 }
 
 void bp_lines_add(const struct bp_lines *lines, const struct pixel_line *line, size_t first, int count, void *re,
                   void *im)
 {
     const struct acquisition *a = lines->acquisition;
+    const struct line_sums to = {line, re, im};
     size_t row_bytes = lines->layout.record * real_size(lines->bp->problem.precision), end = first + (size_t)count;
+    struct waiting waiting = {.count = 0};
     for (size_t index = first; index < end;) {
         int p = (int)(index / (size_t)a->receivers), m = (int)(index % (size_t)a->receivers);
-        struct bp_ping ping = {a->tx[p],      a->velocity[p],
-                               a->t0[p],      a->receivers - m,
-                               a->rx + index, (const char *)lines->rows + (index - first) * row_bytes,
-                               lines->layout};
+        struct bp_ping ping = {.tx = a->tx[p],
+                               .velocity = a->velocity[p],
+                               .t0 = a->t0[p],
+                               .receivers = a->receivers - m,
+                               .rx = a->rx + index,
+                               .rows = (const char *)lines->rows + (index - first) * row_bytes,
+                               .layout = lines->layout};
         if (end - index < (size_t)ping.receivers)
             ping.receivers = (int)(end - index);
-        struct pair_span aperture[2], record[2];
-        int spans = pair_spans(a, p, lines->normal[p], line, aperture);
+        struct pair_span aperture[2];
+        const int spans = pair_spans(a, p, lines->normal[p], line, aperture);
         for (int s = 0; s < spans; s++) {
-            if (inside_record(lines, p, line, aperture[s])) {
-                sum_span(lines, &lines->boxes[p], &ping, line, aperture[s], re, im);
-                continue;
-            }
-            struct bp_ping one = ping;
-            one.receivers = 1;
-            for (int n = 0; n < ping.receivers; n++) {
-                int parts = record_spans(a, p, m + n, line, aperture[s], record);
-                one.rx = ping.rx + n;
-                one.rows = (const char *)ping.rows + (size_t)n * row_bytes;
-                for (int i = 0; i < parts; i++)
-                    sum_span(lines, &lines->boxes[p], &one, line, record[i], re, im);
-            }
+            ping.within = aperture[s];
+            if (waiting.count > 0 && !(spans == 1 && joins(lines, &waiting, p, &ping)))
+                waiting_add(lines, &to, &waiting);
+            if (waiting.count == 0)
+                waiting.p = p;
+            waiting.ping[waiting.count++] = ping;
         }
         index += (size_t)ping.receivers;
     }
+    if (waiting.count > 0)
+        waiting_add(lines, &to, &waiting);
 }
 
 void bp_lines_store(enum precision precision, const struct grid *grid, bool along_x, const void *sums, void *pixels)

@@ -93,9 +93,10 @@
 #define INLINE static inline __attribute__((always_inline))
 
 enum {
-    NODES = 6,           /* of a quintic */
-    RUN_PIXELS = 256,    /* pixels at a time: a group's runs stay in the first-level cache */
-    GROUP_RECEIVERS = 4, /* receivers that are summed together: sums are loaded and stored once for all */
+    NODES = 6,                     /* of a quintic */
+    RUN_PIXELS = 256,              /* pixels at a time: a group's runs stay in the first-level cache */
+    RUN_ROOM = RUN_PIXELS + LANES, /* of a run: its last vector may begin at any pixel */
+    GROUP_RECEIVERS = BP_RECORDS,  /* that are summed together: sums are loaded and stored once for all */
     PARTS = LANES * sizeof(double) / VECTOR_BYTES /* vectors of doubles to a vector of `real` */
 };
 
@@ -112,12 +113,12 @@ enum loading {
 
 /* Where a run of pixels reads a record. */
 struct run {
-    int base; /* sample of the upsampled record from which the others are counted */
-    _Alignas(VECTOR_BYTES) int sample[RUN_PIXELS];  /* on from which the taps are counted */
-    _Alignas(VECTOR_BYTES) int step[RUN_PIXELS];    /* row of the table of weights; where one is used */
-    _Alignas(VECTOR_BYTES) real rest[RUN_PIXELS];   /* position in the interval of a cubic, a line's fraction, or the
+    int base;                                     /* sample of the upsampled record from which the others are counted */
+    _Alignas(VECTOR_BYTES) int sample[RUN_ROOM];  /* on from which the taps are counted */
+    _Alignas(VECTOR_BYTES) int step[RUN_ROOM];    /* row of the table of weights; where one is used */
+    _Alignas(VECTOR_BYTES) real rest[RUN_ROOM];   /* position in the interval of a cubic, a line's fraction, or the
                                                        distance from the sample whose branches are read */
-    _Alignas(VECTOR_BYTES) real cycles[RUN_PIXELS]; /* phase, |cycles| <= 1/2 */
+    _Alignas(VECTOR_BYTES) real cycles[RUN_ROOM]; /* phase, |cycles| <= 1/2 */
 };
 
 /* From a delay to a point, point = (tau - t0) fs fine + shift, whose whole part is a sample or one of a cubic's
@@ -126,7 +127,7 @@ struct scale {
     double t0, fs, fine, shift, ratio, base;
 };
 
-/* Neighbouring receivers of a ping that are summed together. */
+/* Neighbouring receivers of a ping, or of several pings, that are summed together. */
 struct receiver_group {
     const struct bp_table *table;
     const struct scale *scale;
@@ -134,7 +135,8 @@ struct receiver_group {
     int receivers;      /* 1 to GROUP_RECEIVERS */
     const real *row;    /* their records (struct bp_ping) */
     struct bp_layout layout;
-    real *re, *im; /* sums of the line's pixel 0 */
+    real *re, *im;                  /* sums of the line's pixel 0 */
+    const struct pair_span *within; /* [receivers] pixels that each is added to; NULL: all of a block */
 };
 
 /* Add a group to the pixels of a block, by quintics through its delays at the block's Chebyshev points, tau
@@ -142,11 +144,11 @@ struct receiver_group {
 #define BP_RUNS REAL_ISA_NAME(bp_runs)
 void BP_RUNS(const struct receiver_group *group, const struct bp_block *block, double (*tau)[GROUP_RECEIVERS]);
 
-/* Add one run of each of the group's records to `count` pixels, re[0] the first one's. Changes what the runs hold
-   behind them. */
+/* Add pixels [begin, end) of one run of each of the group's records to the sums, re[0] of the run's first pixel.
+   Changes what the runs hold behind them. */
 #define BP_GATHER REAL_ISA_NAME(bp_gather)
-void BP_GATHER(const struct receiver_group *group, enum loading loading, int count, struct run *runs, real *re,
-               real *im);
+void BP_GATHER(const struct receiver_group *group, enum loading loading, struct pair_span pixels, struct run *runs,
+               real *re, real *im);
 
 /* Chebyshev points of a block: its middle -+ these half lengths. */
 static const double node[NODES] = {-0.96592582628906829, -0.70710678118654752, -0.25881904510252076,

@@ -270,6 +270,73 @@ INLINE void runs_fixed(const struct receiver_group *group, double (*quintic)[GRO
     }
 }
 
+/* The part of a run's `count` pixels, from pixel `first` of the line on, that is within some others. */
+INLINE struct pair_span part_within(struct pair_span within, int first, int count)
+{
+    const int begin = within.begin - first, end = within.end - first;
+    return (struct pair_span){begin < 0 ? 0 : begin < count ? begin : count, end > count ? count : end < 0 ? 0 : end};
+}
+
+/* Records of several pings are added together to the pixels that all of them have, and one by one to those on either
+   side. */
+static void gather_parts(const struct receiver_group *group, enum loading loading, int first, int count,
+                         struct run *runs)
+{
+    real *re = group->re + first, *im = group->im + first;
+    struct pair_span common = {0, count}, own[GROUP_RECEIVERS];
+    for (int g = 0; g < group->receivers; g++) {
+        own[g] = part_within(group->within[g], first, count);
+        common.begin = own[g].begin > common.begin ? own[g].begin : common.begin;
+        common.end = own[g].end < common.end ? own[g].end : common.end;
+    }
+    if (!(common.begin < common.end))
+        common.begin = common.end = count;
+    struct receiver_group one = *group;
+    one.receivers = 1;
+    /* From the run's end on, for what lies behind a part may change. */
+    for (int part = 0; part < 3; part++) {
+        if (part == 1 && common.begin < common.end)
+            BP_GATHER(group, loading, common, runs, re, im);
+        one.row = group->row;
+        for (int g = 0; part != 1 && g < group->receivers; g++, one.row += one.layout.record) {
+            struct pair_span pixels = own[g];
+            if (part == 0)
+                pixels.begin = common.end;
+            else
+                pixels.end = pixels.end < common.begin ? pixels.end : common.begin;
+            if (pixels.begin < pixels.end)
+                BP_GATHER(&one, loading, pixels, &runs[g], re, im);
+        }
+    }
+}
+
+/* The most points between neighbouring pixels that a group's records are added to: as delays are convex along a line,
+   at one of either end of a block, or of a record's own pixels in it. */
+INLINE double slope_within(const struct receiver_group *group, const struct bp_block *block, double middle,
+                           double (*c)[GROUP_RECEIVERS])
+{
+    double slope = 0;
+    for (int end = 0; end < 2; end++) {
+        double u[GROUP_RECEIVERS], slopes[GROUP_RECEIVERS];
+        for (int g = 0; g < GROUP_RECEIVERS; g++) {
+            int pixel = end ? block->end - 1 : block->begin;
+            if (group->within && g < group->receivers) {
+                const struct pair_span within = group->within[g];
+                pixel = pixel > within.begin ? pixel : within.begin;
+                pixel = pixel < within.end ? pixel : within.end - 1;
+            }
+            u[g] = pixel - middle;
+        }
+#pragma omp simd
+        for (int g = 0; g < GROUP_RECEIVERS; g++)
+            slopes[g] =
+                fabs(c[1][g] + u[g] * (2 * c[2][g] + u[g] * (3 * c[3][g] + u[g] * (4 * c[4][g] + u[g] * 5 * c[5][g]))));
+        for (int g = 0; g < group->receivers; g++)
+            slope = slopes[g] > slope ? slopes[g] : slope;
+    }
+    return slope;
+}
+
 void BP_RUNS(const struct receiver_group *group, const struct bp_block *block, double (*tau)[GROUP_RECEIVERS])
 {
     struct run runs[GROUP_RECEIVERS];
@@ -277,7 +344,7 @@ void BP_RUNS(const struct receiver_group *group, const struct bp_block *block, d
     const double half = 0.5 * (block->end - 1 - block->begin), middle = block->begin + half;
     double slope, bend;
     quintics(tau, group->scale, half, c, &slope, &bend);
-    const enum loading loading = loading_choose(group->table->reading, slope);
+    const enum loading loading = loading_choose(group->table->reading, slope_within(group, block, middle, c));
     /* Cubics have 32 bits for the whole part of a point. */
     const bool fits = group->table->reading == BP_CUBICS || slope * RUN_PIXELS <= POINTS_MOST;
     int longest = fits ? RUN_PIXELS : (int)fmax(1, POINTS_MOST / slope);
@@ -293,6 +360,9 @@ void BP_RUNS(const struct receiver_group *group, const struct bp_block *block, d
         else
 #endif
             runs_fixed(group, c, first - middle, count, runs);
-        BP_GATHER(group, loading, count, runs, group->re + first, group->im + first);
+        if (group->within)
+            gather_parts(group, loading, first, count, runs);
+        else
+            BP_GATHER(group, loading, (struct pair_span){0, count}, runs, group->re + first, group->im + first);
     }
 }

@@ -41,9 +41,8 @@ struct motion {
     bool slow;
 };
 
-static struct motion motion_make(const struct bp_medium *medium, const struct bp_ping *ping)
+static struct motion motion_make(const struct bp_medium *medium, struct vector v)
 {
-    const struct vector v = ping->velocity;
     const double c = medium->sound_speed, e = delay_margin(v, c);
     return (struct motion){v, e, 1 / e, v.x * v.x + v.y * v.y + v.z * v.z <= BP_SLOW * c * (BP_SLOW * c)};
 }
@@ -97,7 +96,7 @@ static void sum_exact(const struct line_sum *sum, const struct bp_ping *ping, in
     struct places places;
     struct run run;
     double tau[RUN_PIXELS];
-    const struct motion motion = motion_make(medium, ping);
+    const struct motion motion = motion_make(medium, ping->velocity);
     const bool cubics = table->reading == BP_CUBICS, branches = table->reading == BP_BRANCHES;
     const double one = cubics ? BP_INTERVALS : table->steps, last = (medium->samples - 1.0) * table->upsample;
     run.base = 0;
@@ -134,8 +133,18 @@ static void sum_exact(const struct line_sum *sum, const struct bp_ping *ping, in
                                                         .row =
                                                             (const real *)ping->rows + (size_t)m * ping->layout.record,
                                                         .layout = ping->layout};
-            BP_GATHER(&one_receiver, APART, count, &run, sum->re + first, sum->im + first);
+            BP_GATHER(&one_receiver, APART, (struct pair_span){0, count}, &run, sum->re + first, sum->im + first);
         }
+    }
+}
+
+/* Every delay of a block evaluated, of each ping for its own pixels. */
+static void sum_block_exact(const struct line_sum *sum, const struct bp_pings *pings, const struct bp_block *block)
+{
+    for (int p = 0; p < pings->count; p++) {
+        const struct pair_span within = pings->ping[p].within;
+        sum_exact(sum, &pings->ping[p], block->begin > within.begin ? block->begin : within.begin,
+                  block->end < within.end ? block->end : within.end);
     }
 }
 
@@ -229,43 +238,116 @@ static struct scale scale_make(const struct bp_medium *medium, const struct bp_t
                           .base = cycles - floor(cycles)};
 }
 
-void BP_SUM(const struct bp_medium *medium, const struct bp_table *table, const struct bp_ping *ping,
+/* Transmitters, receivers and motion of the records of several pings; those that there are not repeat the last one. */
+struct together {
+    double tx[3][GROUP_RECEIVERS], rx[3][GROUP_RECEIVERS], v[3][GROUP_RECEIVERS];
+    double e[GROUP_RECEIVERS], one_e[GROUP_RECEIVERS];
+    struct pair_span within[GROUP_RECEIVERS];
+    int records;
+    bool slow; /* all of them */
+};
+
+static void together_set(struct together *all, int g, const struct motion *motion, struct vector tx, struct vector rx)
+{
+    const struct vector vectors[] = {tx, rx, motion->v};
+    double(*const to[])[GROUP_RECEIVERS] = {all->tx, all->rx, all->v};
+    for (int k = 0; k < 3; k++) {
+        to[k][0][g] = vectors[k].x;
+        to[k][1][g] = vectors[k].y;
+        to[k][2][g] = vectors[k].z;
+    }
+    all->e[g] = motion->e;
+    all->one_e[g] = motion->one_e;
+    all->slow = all->slow && motion->slow;
+}
+
+static void together_make(const struct bp_medium *medium, const struct bp_pings *pings, struct together *all)
+{
+    all->records = 0;
+    all->slow = true;
+    for (const struct bp_ping *ping = pings->ping; ping < pings->ping + pings->count; ping++) {
+        const struct motion motion = motion_make(medium, ping->velocity);
+        const bool last = ping == pings->ping + pings->count - 1;
+        for (int m = 0; m < ping->receivers; m++) {
+            all->within[all->records] = ping->within;
+            together_set(all, all->records++, &motion, ping->tx, ping->rx[m]);
+        }
+        for (int g = all->records; last && g < GROUP_RECEIVERS; g++)
+            together_set(all, g, &motion, ping->tx, ping->rx[ping->receivers - 1]);
+    }
+}
+
+/* Delays of their records from and to all places; `slow` is a constant where this is inlined. */
+INLINE void together_delays(bool slow, double one_c, const struct together *all, const struct places *places,
+                            double (*tau)[GROUP_RECEIVERS])
+{
+    for (int i = 0; i < places->count; i++) {
+        const double x = places->x[i], r = places->r[i];
+#pragma omp simd
+        for (int g = 0; g < GROUP_RECEIVERS; g++) {
+            const struct motion motion = {{all->v[0][g], all->v[1][g], all->v[2][g]}, all->e[g], all->one_e[g], slow};
+            const double ax = all->tx[0][g] - x, ay = all->tx[1][g] - r, az = all->tx[2][g];
+            const double leg = sqrt(ax * ax + ay * ay + az * az) * one_c;
+            tau[i][g] = leg_back(slow, &motion, leg, all->rx[0][g] + (motion.v.x * leg - x),
+                                 all->rx[1][g] + (motion.v.y * leg - r), all->rx[2][g] + motion.v.z * leg);
+        }
+    }
+}
+
+/* Add the records of some pings to blocks, by their delays at the blocks' Chebyshev points. */
+static void sum_blocks(const struct line_sum *sum, const struct bp_pings *pings, struct receiver_group group,
+                       double (*tau)[GROUP_RECEIVERS], int block_count, const struct bp_block *blocks)
+{
+    const double last = (sum->medium->samples - 1.0) * sum->table->upsample;
+    bool readable[BP_BLOCKS];
+    group.table = sum->table;
+    group.scale = sum->scale;
+    group.phase_limit = sum->medium->phase_limit;
+    group.row = pings->ping->rows;
+    group.layout = pings->ping->layout;
+    group.re = sum->re;
+    group.im = sum->im;
+    for (int b = 0; b < block_count; b++)
+        readable[b] = !blocks[b].exact && reads_inside(&group, tau + b * NODES, last);
+    for (int b = 0; b < block_count; b++)
+        if (readable[b])
+            BP_RUNS(&group, &blocks[b], tau + b * NODES);
+        else if (!blocks[b].exact)
+            sum_block_exact(sum, pings, &blocks[b]);
+}
+
+void BP_SUM(const struct bp_medium *medium, const struct bp_table *table, const struct bp_pings *pings,
             const struct pixel_line *line, int block_count, const struct bp_block *blocks, void *re, void *im)
 {
     struct places places; /* not cleared: it is large */
     _Alignas(64) double tau[DELAYS][GROUP_RECEIVERS];
-    const struct motion motion = motion_make(medium, ping);
+    const struct bp_ping *ping = pings->ping;
     const struct scale scale = scale_make(medium, table, ping->t0);
     const struct line_sum sum = {medium, table, line, &scale, re, im};
-    const double last = (medium->samples - 1.0) * table->upsample;
     nodes_place(line, block_count, blocks, &places);
-    legs_out(medium, ping, &places);
-    for (int m = 0; m < ping->receivers; m += GROUP_RECEIVERS) {
-        const struct receiver_group group = {.table = table,
-                                             .scale = &scale,
-                                             .phase_limit = medium->phase_limit,
-                                             .receivers = ping->receivers - m < GROUP_RECEIVERS ? ping->receivers - m
-                                                                                                : GROUP_RECEIVERS,
-                                             .row = (const real *)ping->rows + (size_t)m * ping->layout.record,
-                                             .layout = ping->layout,
-                                             .re = re,
-                                             .im = im};
-        group_delays(&motion, &places, ping->rx + m, group.receivers, tau);
-        bool readable[BP_BLOCKS];
-        for (int b = 0; b < block_count; b++)
-            readable[b] = !blocks[b].exact && reads_inside(&group, tau + b * NODES, last);
-        for (int b = 0; b < block_count; b++)
-            if (readable[b]) {
-                BP_RUNS(&group, &blocks[b], tau + b * NODES);
-            } else if (!blocks[b].exact) {
-                struct bp_ping some = *ping;
-                some.receivers = group.receivers;
-                some.rx += m;
-                some.rows = group.row;
-                sum_exact(&sum, &some, blocks[b].begin, blocks[b].end);
-            }
+    if (pings->count > 1) {
+        struct together all;
+        together_make(medium, pings, &all);
+        if (all.slow)
+            together_delays(true, 1 / medium->sound_speed, &all, &places, tau);
+        else
+            together_delays(false, 1 / medium->sound_speed, &all, &places, tau);
+        const struct receiver_group group = {.receivers = all.records, .within = all.within};
+        sum_blocks(&sum, pings, group, tau, block_count, blocks);
+    } else {
+        const struct motion motion = motion_make(medium, ping->velocity);
+        legs_out(medium, ping, &places);
+        for (int m = 0; m < ping->receivers; m += GROUP_RECEIVERS) {
+            struct bp_ping some = *ping;
+            some.receivers = ping->receivers - m < GROUP_RECEIVERS ? ping->receivers - m : GROUP_RECEIVERS;
+            some.rx += m;
+            some.rows = (const real *)ping->rows + (size_t)m * ping->layout.record;
+            group_delays(&motion, &places, some.rx, some.receivers, tau);
+            sum_blocks(&sum, &(struct bp_pings){1, &some}, (struct receiver_group){.receivers = some.receivers}, tau,
+                       block_count, blocks);
+        }
     }
     for (int b = 0; b < block_count; b++)
         if (blocks[b].exact)
-            sum_exact(&sum, ping, blocks[b].begin, blocks[b].end);
+            sum_block_exact(&sum, pings, &blocks[b]);
 }

@@ -32,6 +32,7 @@ static const struct image_case {
     double x_first, x_step, r_first, r_step; /* of the grid */
     double first_offset, wobble, speed, limit;
     int first_sample, samples;
+    bool together; /* all records begin alike, so that pings may be summed together */
 } image_cases[] = {
     {"odd sizes, long rows", 7, 3, 331, 9, -2.013, 0.02, 19.87, 0.31, 0.04, 0, 2.5, INFINITY, 700, 400},
     {"one receiver, long columns", 13, 1, 9, 305, -1.2, 0.31, 17.03, 0.0251, 0, 0, 2.5, INFINITY, 600, 600},
@@ -42,6 +43,10 @@ static const struct image_case {
     {"pixels near and on the track", 6, 3, 91, 87, -1.1, 0.02, -0.4, 0.05, 0.04, 0.05, 2.5, INFINITY, 0, 400},
     {"far away, 120 samples from pixel to pixel", 3, 2, 5, 101, -6.1, 3, 1803.7, 3, 0.04, 0, 2.5, INFINITY, 72100,
      12200},
+    {"one receiver, aperture limit", 14, 1, 401, 7, -4.0127, 0.02, 16.3, 0.4, 0, 0, 2.5, 0.2, 500, 600, true},
+    {"two receivers, sways, aperture limit", 9, 2, 453, 5, -4.5, 0.02, 15.1, 0.7, 0.04, 0.2, 2.5, 0.21, 450, 600, true},
+    {"one receiver, records end inside the lines", 10, 1, 301, 7, -4.5, 0.03, 18.1, 0.4, 0.04, 0.1, 75, 0.3, 740, 110,
+     true},
     {"v/c = 0.05, stands oblique", 7, 3, 121, 33, -1.3, 0.03, 15.2, 0.09, -0.04, 0.3, 75, INFINITY, 500, 600},
 };
 
@@ -52,7 +57,7 @@ static void make_image_case(const struct image_case *c, struct acquisition *a, s
     a->aperture_limit = c->limit;
     for (int p = 0; p < a->pings; p++) {
         struct vector sway = vector_random(&random, c->wobble);
-        a->t0[p] = (c->first_sample + (c->wobble > 0 ? p % 3 : 0)) / a->fs;
+        a->t0[p] = (c->first_sample + (c->wobble > 0 && !c->together ? p % 3 : 0)) / a->fs;
         a->tx[p] = (struct vector){(p - a->pings / 2) * 0.173 + sway.x, sway.y, sway.z};
         a->velocity[p] = (struct vector){c->speed, c->wobble * c->speed / 3, 0};
         for (int m = 0; m < a->receivers; m++)
