@@ -5,12 +5,13 @@
 #             title    above the picture
 #             panels   array: title of each panel
 #             lines    array: label of each line; algorithms: whose colour it has; footer: below the picture
-#             data     text file: for each panel, for each line a block of "position (m)  power (dB)  difference (dB)", blocks
-#                      separated by two empty lines
-#             has_differences   whether there are any
+#             data     array: for each panel, for each line a text file of "position (m)  power (dB)  difference (dB)"
+#             has_differences   whether there are any; difference_top: the upper end of their axis (dB)
+#             extent   what is shown on either side of a target (m); point_interval: places of a line for each point
 #             plots    folder of style.gp (default "plots")
 # By hand:    gnuplot -e "output='a.png'; title='A'; array panels[1] = ['target 0']; array lines[1] = ['bp_sinc']; \
-#                         array algorithms[1] = ['bp_sinc']; footer=''; has_differences=0; data='a.txt'" plots/slices.gp
+#                         array algorithms[1] = ['bp_sinc']; footer=''; has_differences=0; difference_top=0; extent=1; \
+#                         point_interval=50; array data[1] = ['a.txt']" plots/slices.gp
 
 if (!exists("plots")) plots = "plots"
 columns = |panels| == 1 ? 1 : |panels| <= 4 ? 2 : |panels| <= 6 ? 3 : 4
@@ -28,13 +29,6 @@ height = 85 + rows*panel_height + (rows - 1)*115 + bottom
 load plots."/style.gp"
 set output output
 
-# Show what matters: all panels out to the last place where a line is above -30 dB, with a dozen points a line.
-stats data using ($2 > -30 ? abs($1) : NaN) name "shown" nooutput
-extent = exists("shown_max") && shown_max > 0 ? 1.15*shown_max : 1
-stats data using (abs($1) <= extent && $2 == $2 ? 1 : NaN) name "sample" nooutput
-point_interval = (exists("sample_records") ? sample_records : 0)/(12*|panels|*|lines|)
-stats data using (abs($1) <= extent && $3 == $3 ? $3 : NaN) name "off" nooutput
-off_top = exists("off_max") ? 10*ceil(off_max/10.0) : 0
 # The lines of an algorithm's further settings, and those that no algorithm has.
 array kind[|lines|]
 array member[|lines|]
@@ -65,7 +59,7 @@ do for [p = 1:|panels|] {
     set ylabel "power relative to peak (dB)"
     if (has_differences) { unset xlabel; set format x "" } else { set xlabel "azimuth from target (m)" }
     if (p == 1) { set key at screen 0.5, screen 30.0/height center bottom maxrows key_rows } else { unset key }   # one legend for all
-    plot for [l = 1:|lines|] data index (p - 1)*|lines| + l - 1 using 1:2 with linespoints linecolor rgb colour(l) \
+    plot for [l = 1:|lines|] data[(p - 1)*|lines| + l] using 1:2 with linespoints linecolor rgb colour(l) \
         linewidth wide(l) dashtype dash(l) pointtype point(l) pointsize 1.2 pointinterval point_interval + l title lines[l]
     unset label 1
     if (has_differences) {
@@ -76,9 +70,9 @@ do for [p = 1:|panels|] {
         set ylabel "difference (dB)"
         set tmargin at screen 1 - (top + upper + between)/(1.0*height)
         set bmargin at screen 1 - (top + panel_height)/(1.0*height)
-        set yrange [off_top - 80:off_top]
+        set yrange [difference_top - 80:difference_top]
         set ytics 20
-        plot for [l = 1:|lines|] data index (p - 1)*|lines| + l - 1 using 1:3 with linespoints linecolor rgb colour(l) \
+        plot for [l = 1:|lines|] data[(p - 1)*|lines| + l] using 1:3 with linespoints linecolor rgb colour(l) \
             linewidth wide(l) dashtype dash(l) pointtype point(l) pointsize 1.2 pointinterval point_interval + l notitle
     }
 }

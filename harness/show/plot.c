@@ -10,19 +10,72 @@
 static const char slices_script[] = "slices.gp";
 static const double floor_db = -200; /* stands for zero power, far below what is shown */
 
-static enum status lines_write(const struct plot *plot, const struct slices_picture *picture)
+/* What slices show: all lines out to the last place where one is above -30 dB, with a dozen points a line. */
+static double slices_extent(const struct slice_line *lines, int count)
+{
+    double reach = 0;
+    for (int b = 0; b < count; b++)
+        for (int k = 0; k < lines[b].count; k++)
+            if (lines[b].power_db[k] > -30)
+                reach = fmax(reach, fabs(lines[b].position_m[k]));
+    return reach > 0 ? 1.15 * reach : 1;
+}
+
+static void extent_write(FILE *preamble, const struct slice_line *lines, int count, double extent)
+{
+    double top = floor_db;
+    long places = 0;
+    bool differences = false;
+    for (int b = 0; b < count; b++) {
+        differences |= lines[b].count > 0 && lines[b].difference_db;
+        for (int k = 0; k < lines[b].count; k++)
+            if (fabs(lines[b].position_m[k]) <= extent) {
+                places++;
+                top = lines[b].difference_db ? fmax(top, lines[b].difference_db[k]) : top;
+            }
+    }
+    fprintf(preamble, "extent = %.9g\npoint_interval = %ld\nhas_differences = %d\ndifference_top = %g\n", extent,
+            places / (12 * count), differences, differences ? 10 * ceil(top / 10) : 0);
+}
+
+/* A file for each line, out to the first place beyond the extent: gnuplot would read one of all from its beginning for
+   each. */
+static enum status line_write(const struct plot *plot, const struct slice_line *line, int index, double extent)
+{
+    char name[32], path[PATH_MAX + 32];
+    snprintf(name, sizeof name, "line%d", index);
+    plot_file(plot, name, path);
+    plot_array_write(plot->preamble, "data", index, path);
+    FILE *file = fopen(path, "w");
+    if (!file)
+        return plot_file_failed(path);
+    fprintf(file, "0 NaN NaN\n"); /* gnuplot refuses a file without a row */
+    for (int k = 0; k < line->count; k++) {
+        const bool near = fabs(line->position_m[k]) <= extent;
+        if (near || (k > 0 && fabs(line->position_m[k - 1]) <= extent)
+            || (k + 1 < line->count && fabs(line->position_m[k + 1]) <= extent))
+            fprintf(file, "%.9g %.6g %.6g\n", line->position_m[k], fmax(line->power_db[k], floor_db),
+                    line->difference_db ? fmax(line->difference_db[k], floor_db) : NAN);
+    }
+    bool written = !ferror(file);
+    written &= fclose(file) == 0;
+    return written ? STATUS_OK : plot_file_failed(path);
+}
+
+/* `slices`: they are cut to what they show. */
+static enum status lines_write(const struct plot *plot, const struct slices_picture *picture, bool slices)
 {
     const int shown = picture->panel_count < PANELS_MAX ? picture->panel_count : PANELS_MAX;
+    const int count = shown * picture->line_count;
     const struct slice_line *lines = picture->lines;
-    char title[600], path[PATH_MAX + 32];
+    const double extent = slices ? slices_extent(lines, count) : INFINITY;
+    char title[600];
     int length = snprintf(title, sizeof title, "%.500s", picture->title);
     if (shown < picture->panel_count)
         snprintf(title + length, sizeof title - (size_t)length, " (first %d of %d panels)", shown,
                  picture->panel_count);
-    plot_file(plot, "slices", path);
     plot_variable(plot->preamble, "title", title);
     plot_variable(plot->preamble, "footer", picture->footer ? picture->footer : "");
-    plot_variable(plot->preamble, "data", path);
     plot_array(plot->preamble, "panels", shown);
     for (int p = 0; p < shown; p++)
         plot_array_write(plot->preamble, "panels", p, picture->panel_titles[p]);
@@ -34,25 +87,13 @@ static enum status lines_write(const struct plot *plot, const struct slices_pict
         plot_array_write(plot->preamble, "algorithms", l, lines[l].algorithm ? lines[l].algorithm : lines[l].label);
         fprintf(plot->preamble, "printed[%d] = %.9g\n", l + 1, lines[l].printed);
     }
-
-    bool differences = false;
-    for (int b = 0; b < shown * picture->line_count; b++)
-        differences |= lines[b].count > 0 && lines[b].difference_db;
-    fprintf(plot->preamble, "has_differences = %d\n", differences);
-    FILE *file = fopen(path, "w");
-    if (!file)
-        return plot_file_failed(path);
-    for (int b = 0; b < shown * picture->line_count; b++) {
-        /* A block without a row would not count, and shift the ones behind it. */
-        fprintf(file, "0 NaN NaN\n");
-        for (int k = 0; k < lines[b].count; k++)
-            fprintf(file, "%.9g %.6g %.6g\n", lines[b].position_m[k], fmax(lines[b].power_db[k], floor_db),
-                    lines[b].difference_db ? fmax(lines[b].difference_db[k], floor_db) : NAN);
-        fprintf(file, "\n\n");
-    }
-    bool written = !ferror(file);
-    written &= fclose(file) == 0;
-    return written ? STATUS_OK : plot_file_failed(path);
+    if (slices)
+        extent_write(plot->preamble, lines, count, extent);
+    plot_array(plot->preamble, "data", count);
+    enum status status = STATUS_OK;
+    for (int b = 0; b < count && status == STATUS_OK; b++)
+        status = line_write(plot, &lines[b], b, extent);
+    return status;
 }
 
 static enum status lines_draw(struct plot_queue *queue, const char *path, const char *plots_directory,
@@ -61,7 +102,7 @@ static enum status lines_draw(struct plot_queue *queue, const char *path, const 
     struct plot plot;
     enum status status = plot_begin(&plot, path);
     if (status == STATUS_OK)
-        status = lines_write(&plot, picture);
+        status = lines_write(&plot, picture, script == slices_script);
     return plot_finish(&plot, status, queue, plots_directory, script);
 }
 

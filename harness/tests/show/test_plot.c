@@ -238,27 +238,28 @@ static void families_are_told_by_name(void **state)
     }
 }
 
-/* An empty line must not shift the ones behind it. */
+/* A file for each line, without what lies beyond those that are shown; an empty line has one, too. */
 static void slice_data_are_right(void **state)
 {
     (void)state;
-    text_to_file("slices.gp", "set print output\n"
-                              "print title, |panels|, |lines|, panels[2], lines[2]\n"
-                              "print has_differences\n"
-                              "stats data index 3 using 3 name 'e' nooutput\n"
-                              "print sprintf('%.1f %d', e_min, e_records)\n"
-                              "do for [b = 0:3] {\n"
-                              "    stats data index b using ($2 == $2 ? $1 : NaN) name 'x' nooutput\n"
-                              "    print sprintf('%d', exists('x_records') ? x_records : 0)\n"
-                              "    stats data index b using ($2 == $2 ? $2 : NaN) name 'p' nooutput\n"
-                              "    print exists('p_max') && b != 1 ? sprintf('%.2f %.2f', x_max, p_max) : '-'\n"
-                              "}\n"
-                              "print '</svg>'\n");
-    double position[] = {-0.5, 0, 0.25}, power[4][3] = {{-9, -1, -9}, {0}, {-9, -2, -9}, {-9, -3, -9}};
-    double difference[] = {-41, -INFINITY, -43};
+    text_to_file("slices.gp",
+                 "set print output\n"
+                 "print title, |panels|, |lines|, panels[2], lines[2]\n"
+                 "print sprintf('%d %.3f %d %g', has_differences, extent, point_interval, difference_top)\n"
+                 "stats data[4] using 3 name 'e' nooutput\n"
+                 "print sprintf('%.1f %d', e_min, e_records)\n"
+                 "do for [b = 1:4] {\n"
+                 "    stats data[b] using ($2 == $2 ? $1 : NaN) name 'x' nooutput\n"
+                 "    print sprintf('%d', exists('x_records') ? x_records : 0)\n"
+                 "    stats data[b] using ($2 == $2 ? $2 : NaN) name 'p' nooutput\n"
+                 "    print exists('p_max') && b != 2 ? sprintf('%.2f %.2f', x_max, p_max) : '-'\n"
+                 "}\n"
+                 "print '</svg>'\n");
+    double position[] = {-9, -0.5, 0, 0.25, 7, 8}, difference[] = {-12, -41, -INFINITY, -43, -12, -12};
+    double power[4][6] = {{-40, -9, -1, -9, -40, -40}, {0}, {-40, -9, -2, -9, -40, -40}, {-40, -9, -3, -9, -40, -40}};
     struct slice_line lines[4];
     for (int l = 0; l < 4; l++)
-        lines[l] = (struct slice_line){l % 2 ? "b" : "a",          position, power[l], l == 1 ? 0 : 3,
+        lines[l] = (struct slice_line){l % 2 ? "b" : "a",          position, power[l], l == 1 ? 0 : 6,
                                        l == 3 ? difference : NULL, NULL,     0};
     const char *titles[] = {"t0", "t1"};
     char path[4096], text[400];
@@ -266,7 +267,8 @@ static void slice_data_are_right(void **state)
     assert_drawn(plot_slices(path, folder, &(struct slices_picture){"title", NULL, 2, 2, titles, lines}));
     file_to_text("variables.svg", text, sizeof text);
     assert_string_equal(text,
-                        "title 2 2 t1 b\n1\n-200.0 3\n3\n0.25 -1.00\n0\n-\n3\n0.25 -2.00\n3\n0.25 -3.00\n</svg>\n");
+                        "title 2 2 t1 b\n1 0.575 0 -40\n-200.0 5\n5\n7.00 -1.00\n0\n-\n5\n7.00 -2.00\n5\n7.00 -3.00\n"
+                        "</svg>\n");
     assert_nothing_left();
 }
 
