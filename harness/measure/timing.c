@@ -164,7 +164,7 @@ enum status timing_measure(const struct spec *spec, const struct problem *proble
         status = repeat(&imaging, echoes, budget, samples);
     timing->spent_s = seconds_now() - begin;
     if (status == STATUS_OK)
-        status = control_sample(control, false, samples, &after);
+        status = control_sample(control, effort == EFFORT_BRIEF, samples, &after);
     if (status == STATUS_OK)
         status = imaging_finish(&imaging, echoes, image);
     imaging_close(&imaging);

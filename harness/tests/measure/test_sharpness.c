@@ -165,7 +165,8 @@ static void pause_destroy(void *plan)
     (void)plan;
 }
 
-/* Where hundreds are measured, a long run is not repeated, and a short one as often as quartiles need. */
+/* Where hundreds are measured, a long run is not repeated, a short one as often as quartiles need, and the scalar
+   reference loop is timed once a second. */
 static void test_effort_follows_the_run(void **state)
 {
     (void)state;
@@ -189,6 +190,7 @@ static void test_effort_follows_the_run(void **state)
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         struct image image;
         struct timing timing;
+        const double measured = session.control.measured;
         pause_s = cases[k].pause_s;
         assert_int_equal(timing_measure(&spec, &problem, &session.echoes[PRECISION_FLOAT], &session.control,
                                         cases[k].effort, NULL, &image, &timing),
@@ -196,6 +198,10 @@ static void test_effort_follows_the_run(void **state)
         assert_in_range(timing.runs, cases[k].least, cases[k].most);
         assert_true(timing.run_s >= pause_s && timing.spent_s >= timing.runs * pause_s && timing.control_s > 0);
         assert_true(isfinite(timing.run_q1_s) == (timing.runs >= 4));
+        if (cases[k].effort == EFFORT_BRIEF)
+            assert_true(session.control.measured == measured || session.control.measured - measured > 1);
+        else
+            assert_true(session.control.measured > measured);
         image_free(&image);
     }
     session_close(&session);
