@@ -13,7 +13,7 @@ void fitted_make(int taps, double band, struct fitted *fitted)
 {
     /* Fejer's quadrature over half the band: at Chebyshev points, exact to rounding for so few cycles. */
     enum { POINTS = 48 };
-    double row[FITTED_TAPS_MOST], lower[FITTED_TAPS_MOST * FITTED_TAPS_MOST];
+    double wave[2][FITTED_TAPS_MOST], row[FITTED_TAPS_MOST], lower[FITTED_TAPS_MOST * FITTED_TAPS_MOST];
     *fitted = (struct fitted){.taps = taps};
     for (int m = 0; m < POINTS; m++) {
         const double angle = M_PI * (m + 0.5) / POINTS, nu = band / 4 * (1 + cos(angle));
@@ -21,12 +21,15 @@ void fitted_make(int taps, double band, struct fitted *fitted)
         for (int j = 1; j <= POINTS / 2; j++)
             weight -= 2 * cos(2 * j * angle) / (4.0 * j * j - 1);
         weight /= POINTS;
+        for (int k = 0; k < taps; k++) {
+            const double cycles = nu * (k - 0.5 * (taps - 1));
+            wave[0][k] = cos(2 * M_PI * cycles);
+            wave[1][k] = sin(2 * M_PI * cycles);
+        }
         for (int n = 0; n < FITTED_TERMS; n++) {
             const double value = weight * (n / 2 % 2 ? -1 : 1) * (2 * n + 1) * bessel_spherical(n, M_PI * nu);
-            for (int k = 0; k < taps; k++) {
-                const double cycles = nu * (k - 0.5 * (taps - 1));
-                fitted->terms[n][k] += value * (n % 2 ? sin(2 * M_PI * cycles) : cos(2 * M_PI * cycles));
-            }
+            for (int k = 0; k < taps; k++)
+                fitted->terms[n][k] += value * wave[n % 2][k];
         }
     }
     for (int k = 0; k < taps; k++)

@@ -2,6 +2,7 @@
 #include "backprojection/factorised/taps.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 enum { TAPS_MOST = 12, FRACTIONS = 16, HALVINGS = 40 }; /* as fine, rounding moves no place that matters */
 static const double OVERSAMPLING_MOST = 6;
@@ -15,8 +16,10 @@ static void weights(const void *fitted, double fraction, double *w)
 static double error_of(int taps, double oversampling, struct fitted *fitted)
 {
     const double band = 1 / oversampling;
-    double sum = 0, w[FITTED_TAPS_MOST];
+    double sum = 0, w[FITTED_TAPS_MOST], r[TAPS_MOST];
     fitted_make(taps, band, fitted);
+    for (int k = 0; k < taps; k++)
+        r[k] = condition_sinc(band * k);
     for (int k = 0; k < FRACTIONS; k++) {
         const double u = (k + 0.5) / FRACTIONS - 0.5;
         fitted_weights(fitted, u + 0.5, w);
@@ -24,7 +27,7 @@ static double error_of(int taps, double oversampling, struct fitted *fitted)
         for (int i = 0; i < taps; i++) {
             square -= 2 * w[i] * condition_sinc(band * (i - 0.5 * (taps - 1) - u));
             for (int j = 0; j < taps; j++)
-                square += w[i] * w[j] * condition_sinc(band * (i - j));
+                square += w[i] * w[j] * r[abs(i - j)];
         }
         sum += fmax(square, 0);
     }
@@ -43,11 +46,11 @@ enum status polar_taps_choose(double error, double least, struct polar_taps *cho
     struct fitted fitted;
     for (int taps = 2; taps <= TAPS_MOST; taps += 2) {
         double low = least, high = OVERSAMPLING_MOST;
-        if (!(low < high) || !(error_of(taps, high, &fitted) <= error))
+        if (!(low < high && cost_of(taps, low) < cheapest) || !(error_of(taps, high, &fitted) <= error))
             continue;
         if (error_of(taps, low, &fitted) <= error)
             high = low;
-        for (int n = 0; n < HALVINGS && high > low; n++) {
+        for (int n = 0; n < HALVINGS && high > low && cost_of(taps, low) < cheapest; n++) {
             const double middle = 0.5 * (low + high);
             if (error_of(taps, middle, &fitted) <= error)
                 high = middle;
