@@ -217,13 +217,16 @@ static double receivers_apart(const struct acquisition *a, int ping)
     return most;
 }
 
-/* May any delay between `line` and a ping lie inside its records? By the nearest and the furthest pixel: a path is
-   twice the transmitter's distance, but for what the receiver is away from the transmitter, `apart` m and the way
-   since. */
-static bool record_reached(const struct acquisition *a, int ping, double apart, const struct pixel_line *line)
+/* Bounds of the delays between `line` and a ping, by the nearest and the furthest pixel: a path is twice the
+   transmitter's distance, but for what the receiver is away from the transmitter, `apart` m and the way since. */
+struct delay_bounds {
+    double least, most; /* s */
+};
+
+static struct delay_bounds line_delays(const struct acquisition *a, int ping, double apart,
+                                       const struct pixel_line *line)
 {
     const struct vector tx = a->tx[ping], v = a->velocity[ping];
-    const double first = a->t0[ping], last = first + (a->samples - 1) / a->fs, slack = 1e-6 / a->fs;
     const double length = line->count - 1.0, x = line->x_first - tx.x, r = line->r_first - tx.y;
     const double end_x = x + length * line->x_step, end_r = r + length * line->r_step;
     const double near_x = x > 0 ? x : fmin(end_x, 0), near_r = r > 0 ? r : fmin(end_r, 0);
@@ -231,8 +234,23 @@ static bool record_reached(const struct acquisition *a, int ping, double apart, 
     const double near = sqrt(near_x * near_x + near_r * near_r + tx.z * tx.z);
     const double far = sqrt(far_x * far_x + far_r * far_r + tx.z * tx.z),
                  speed = sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-    return !((2 * near - apart) / (a->sound_speed + speed) > last + slack
-             || (2 * far + apart) / (a->sound_speed - speed) < first - slack);
+    return (struct delay_bounds){(2 * near - apart) / (a->sound_speed + speed),
+                                 speed < a->sound_speed ? (2 * far + apart) / (a->sound_speed - speed) : INFINITY};
+}
+
+/* May any delay lie inside a ping's records? */
+static bool record_reached(const struct acquisition *a, int ping, struct delay_bounds delays)
+{
+    const double first = a->t0[ping], last = first + (a->samples - 1) / a->fs, slack = 1e-6 / a->fs;
+    return !(delays.least > last + slack || delays.most < first - slack);
+}
+
+/* Do all lie inside, for sure? */
+static bool record_holds(const struct acquisition *a, int ping, struct delay_bounds delays)
+{
+    const double first = a->t0[ping], last = first + (a->samples - 1) / a->fs;
+    const double slack = 1e-3 / a->fs + 1e-9 * fabs(last);
+    return delays.least > first + slack && delays.most < last - slack;
 }
 
 static bool ping_met(const struct problem *problem, int ping)
@@ -246,7 +264,8 @@ static bool ping_met(const struct problem *problem, int ping)
         for (int n = grid_line_count(grid, along_x) - 1; n >= 0; n--) { /* the aperture widens with the range */
             const struct pixel_line line = grid_line(grid, along_x, n);
             struct pair_span spans[2];
-            if (record_reached(a, ping, apart, &line) && pair_spans(a, ping, normal, &line, spans) > 0)
+            if (record_reached(a, ping, line_delays(a, ping, apart, &line))
+                && pair_spans(a, ping, normal, &line, spans) > 0)
                 return true;
         }
     }
@@ -270,25 +289,38 @@ int pings_met(const struct problem *problem, bool *met)
     return count;
 }
 
+/* Pairs of a ping along a line. Most lines lie inside the records as a whole, which spares the receivers. */
+static double line_pairs(const struct acquisition *a, int ping, double apart, const struct pixel_line *line)
+{
+    struct pair_span aperture[2], record[2];
+    const int count = pair_spans(a, ping, acquisition_normal(a, ping), line, aperture);
+    const bool held = record_holds(a, ping, line_delays(a, ping, apart, line));
+    double pairs = 0;
+    for (int s = 0; s < count; s++) {
+        if (held)
+            pairs += (double)a->receivers * (aperture[s].end - aperture[s].begin);
+        for (int m = 0; m < a->receivers && !held; m++) {
+            const int parts = record_spans(a, ping, m, line, aperture[s], record);
+            for (int i = 0; i < parts; i++)
+                pairs += record[i].end - record[i].begin;
+        }
+    }
+    return pairs;
+}
+
 double pairs_count(const struct problem *problem)
 {
     const struct acquisition *a = problem->acquisition;
     double pairs = 0;
-    for (int k = 0; k < problem->patch_count; k++) {
-        const struct grid *grid = &problem->patches[k];
-        const bool along_x = grid->x_count > grid->r_count; /* few long lines: a search costs the same on any */
 #pragma omp parallel for schedule(dynamic) reduction(+ : pairs)
-        for (int n = 0; n < grid_line_count(grid, along_x); n++) {
-            struct pixel_line line = grid_line(grid, along_x, n);
-            for (int p = 0; p < a->pings; p++) {
-                struct pair_span aperture[2], record[2];
-                int count = pair_spans(a, p, acquisition_normal(a, p), &line, aperture);
-                for (int m = 0; m < a->receivers; m++)
-                    for (int s = 0; s < count; s++) {
-                        int parts = record_spans(a, p, m, &line, aperture[s], record);
-                        for (int i = 0; i < parts; i++) /* whole numbers below 2^53: the order does not matter */
-                            pairs += record[i].end - record[i].begin;
-                    }
+    for (int p = 0; p < a->pings; p++) {
+        const double apart = receivers_apart(a, p);
+        for (int k = 0; k < problem->patch_count; k++) {
+            const struct grid *grid = &problem->patches[k];
+            const bool along_x = grid->x_count > grid->r_count; /* few long lines: a search costs the same on any */
+            for (int n = grid_line_count(grid, along_x) - 1; n >= 0; n--) {
+                const struct pixel_line line = grid_line(grid, along_x, n);
+                pairs += line_pairs(a, p, apart, &line); /* whole numbers below 2^53: the order does not matter */
             }
         }
     }
