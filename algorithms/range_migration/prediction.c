@@ -54,8 +54,7 @@ struct kernel {
     int length;            /* of a table: places from axis - length/2 step on */
     double step;           /* m */
     double offset[TABLES]; /* m: of the receivers */
-    double complex *error; /* [TABLES][length][FREQUENCIES] */
-    double complex *wave;  /* [length] */
+    double complex *error; /* [TABLES][FREQUENCIES][length]: the axis first, then places ahead, then those behind */
     fftw_plan transform;
 };
 
@@ -89,17 +88,18 @@ static bool is_focused(const struct kernel *kernel, double place)
 
 static double complex turns(double cycles)
 {
-    return cexp(2 * I * M_PI * (cycles - floor(cycles)));
+    const double angle = 2 * M_PI * (cycles - floor(cycles));
+    return cos(angle) + I * sin(angle);
 }
 
-/* h of a receiver at offset d and one frequency, less the centroid's own turns, into `wave`, the axis first. */
-static void kernel_transform(const struct kernel *kernel, double d, double frequency)
+/* h of a receiver at offset d and one frequency, less the centroid's own turns. */
+static void kernel_transform(const struct kernel *kernel, double d, double frequency, double complex *wave)
 {
     const struct rma_view *view = kernel->view;
     const struct spectrum_setting *setting = &view->setting;
     const double c = setting->sound_speed, r = kernel->r, beta = setting->speed / c;
     const double f = frequency / ((1 - beta) * (1 + beta)), centroid = -kernel->centroid * frequency / setting->fc;
-    memset(kernel->wave, 0, (size_t)kernel->length * sizeof *kernel->wave);
+    memset(wave, 0, (size_t)kernel->length * sizeof *wave);
     for (int k = -kernel->count / 2; k <= kernel->count / 2; k++) {
         double nu = centroid + k * kernel->nu_step, monostatic = spectrum_monostatic(setting, frequency, nu);
         if (isnan(monostatic))
@@ -110,27 +110,53 @@ static void kernel_transform(const struct kernel *kernel, double d, double frequ
         double phase = view->converts ? view->method->spectrum(setting, d, r, frequency, nu) : -r * monostatic;
         double weight = f * sqrt(c * r / (2 * kappa * kappa * kappa)) * kernel->nu_step * taper(kernel, place - d / 2);
         if (weight > 0 && !isnan(phase))
-            kernel->wave[k < 0 ? kernel->length + k : k] = (2 * abs(k) == kernel->count ? 0.5 : 1) * weight
-                                                           * turns(0.125 - phase / (2 * M_PI) - nu * kernel->axis);
+            wave[k < 0 ? kernel->length + k : k] = (2 * abs(k) == kernel->count ? 0.5 : 1) * weight
+                                                   * turns(0.125 - phase / (2 * M_PI) - nu * kernel->axis);
     }
-    fftw_execute(kernel->transform);
+    fftw_execute_dft(kernel->transform, wave, wave);
 }
 
-static void kernel_fill(const struct kernel *kernel, double d, double complex *error)
+static double complex *table_at(const struct kernel *kernel, int table, int n)
+{
+    return kernel->error + (size_t)(table * FREQUENCIES + n) * (size_t)kernel->length;
+}
+
+/* e of a table at all frequencies: those beside the carrier turn by as much more and less. */
+static void table_fill(const struct kernel *kernel, int table)
 {
     const struct acquisition *a = kernel->view->problem->acquisition;
-    for (int n = 0; n < FREQUENCIES; n++) {
-        double frequency = a->fc + abscissas[n] * a->bandwidth / 2;
-        kernel_transform(kernel, d, frequency);
-        for (int i = 0; i < kernel->length; i++) {
-            int k = i - kernel->length / 2;
-            double place = k * kernel->step, centroid = -kernel->centroid * frequency / a->fc;
-            double cycles = frequency * spectrum_delay(&kernel->view->setting, d, kernel->r, kernel->axis + place)
-                            + centroid * place;
-            double complex h = kernel->wave[k < 0 ? kernel->length + k : k];
-            error[i * FREQUENCIES + n] = h * turns(-cycles) - 1;
-        }
+    const double d = kernel->offset[table], beside = abscissas[FREQUENCIES - 1] * a->bandwidth / 2;
+    double complex *low = table_at(kernel, table, 0), *middle = table_at(kernel, table, 1);
+    double complex *high = table_at(kernel, table, 2);
+    for (int n = 0; n < FREQUENCIES; n++)
+        kernel_transform(kernel, d, a->fc + abscissas[n] * a->bandwidth / 2, table_at(kernel, table, n));
+    for (int i = 0; i < kernel->length; i++) {
+        const double place = (i < kernel->length - kernel->length / 2 ? i : i - kernel->length) * kernel->step;
+        const double delay = spectrum_delay(&kernel->view->setting, d, kernel->r, kernel->axis + place);
+        const double late = delay - kernel->centroid / a->fc * place;
+        const double complex turn = turns(-a->fc * late), more = turns(-beside * late);
+        low[i] = low[i] * (turn * conj(more)) - 1;
+        middle[i] = middle[i] * turn - 1;
+        high[i] = high[i] * (turn * more) - 1;
     }
+}
+
+static bool table_repeats(const struct kernel *kernel, int table)
+{
+    return table > 0 && kernel->offset[table] == kernel->offset[table - 1];
+}
+
+/* Tables of all offsets; one that repeats is copied. */
+static void tables_fill(const struct kernel *kernel)
+{
+#pragma omp parallel for schedule(dynamic)
+    for (int t = 0; t < TABLES; t++)
+        if (!table_repeats(kernel, t))
+            table_fill(kernel, t);
+    const size_t size = (size_t)kernel->length * FREQUENCIES;
+    for (int t = 0; t < TABLES; t++)
+        if (table_repeats(kernel, t))
+            memcpy(table_at(kernel, t, 0), table_at(kernel, t - 1, 0), size * sizeof *kernel->error);
 }
 
 static void kernel_free(struct kernel *kernel)
@@ -138,7 +164,6 @@ static void kernel_free(struct kernel *kernel)
     if (kernel->transform)
         fftw_destroy_plan(kernel->transform);
     fftw_free(kernel->error);
-    fftw_free(kernel->wave);
 }
 
 /* Azimuth wavenumbers, cycles/m, within which places up to `far` on either side of the axis lie. */
@@ -175,35 +200,29 @@ static bool kernel_make(const struct rma_view *view, double r, double reach, str
     kernel->length = fft_length_fast(FINER * ((long long)kernel->count + 2));
     kernel->nu_step = fmax(band / kernel->count, 0);
     kernel->step = 1 / (kernel->nu_step * kernel->length);
-    const size_t size = (size_t)kernel->length * FREQUENCIES;
-    kernel->wave = fftw_malloc((size_t)kernel->length * sizeof *kernel->wave);
-    kernel->error = fftw_malloc(TABLES * size * sizeof *kernel->error);
-    if (!kernel->wave || !kernel->error)
+    kernel->error = fftw_malloc(TABLES * FREQUENCIES * (size_t)kernel->length * sizeof *kernel->error);
+    if (!kernel->error)
         return false;
-    kernel->transform = fftw_plan_dft_1d(kernel->length, kernel->wave, kernel->wave, FFTW_FORWARD, FFTW_ESTIMATE);
+    kernel->transform = fftw_plan_dft_1d(kernel->length, kernel->error, kernel->error, FFTW_FORWARD, FFTW_ESTIMATE);
     if (!kernel->transform)
         return false;
-    for (int t = 0; t < TABLES; t++) {
+    for (int t = 0; t < TABLES; t++)
         kernel->offset[t] = offset_of(view, receiver_of(view, t, TABLES));
-        double complex *error = kernel->error + (size_t)t * size;
-        if (t > 0 && kernel->offset[t] == kernel->offset[t - 1])
-            memcpy(error, error - size, size * sizeof *error);
-        else
-            kernel_fill(kernel, kernel->offset[t], error);
-    }
+    tables_fill(kernel);
     return true;
 }
 
-/* e at all frequencies; NULL where the tables do not reach. */
+/* e at the first frequency, those of the others a table's length behind each other; NULL where the tables do not
+   reach. */
 static const double complex *kernel_error(const struct kernel *kernel, double d, double u)
 {
     int table = 0;
     for (int t = 1; t < TABLES; t++)
         table = fabs(kernel->offset[t] - d) < fabs(kernel->offset[table] - d) ? t : table;
-    double place = floor((u - kernel->axis) / kernel->step + 0.5) + kernel->length / 2;
-    if (!(place >= 0 && place < kernel->length))
+    const double place = floor((u - kernel->axis) / kernel->step + 0.5), behind = kernel->length / 2;
+    if (!(place >= -behind && place < kernel->length - behind))
         return NULL;
-    return &kernel->error[((size_t)table * (size_t)kernel->length + (size_t)place) * FREQUENCIES];
+    return table_at(kernel, table, 0) + (size_t)(place < 0 ? place + kernel->length : place);
 }
 
 /* Energies of an image and of its error. */
@@ -240,7 +259,7 @@ static void pixel_add(const struct kernel *kernel, const struct target *target, 
             double complex pair = seen * condition_sinc(a->bandwidth * late) * turns(cycles);
             image += summed ? pair : 0;
             for (int n = 0; n < FREQUENCIES; n++)
-                errors[n] += pair * (summed ? error[n] : error[n] + 1);
+                errors[n] += pair * (error[(size_t)n * (size_t)kernel->length] + (summed ? 0 : 1));
         }
     }
     energies->image += weight * creal(image * conj(image));
