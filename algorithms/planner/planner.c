@@ -1,5 +1,6 @@
 /* Choosing among candidates (planner.h). Back projections are forecast first: their forecasts are cheap. Range
-   migration is forecast where the FFTs alone that it cannot do without are faster than the fastest of those. */
+   migration is forecast where the FFTs alone that it cannot do without are faster than the fastest of those, and, in any
+   case, where nothing else fits. */
 #include "planner/planner.h"
 
 #include <math.h>
@@ -182,9 +183,64 @@ static enum status limit_try(const struct setting *setting, struct choice *choic
     return candidate_forecast(setting, limited);
 }
 
-static enum status forecast_all(const struct setting *setting, struct choice *choice)
+/* ---- range migration ---- */
+
+/* Whether another setting of the algorithm is over the budget by what all its settings have: its spectrum's error. */
+static bool spectrum_fails(const struct setting *setting, const struct choice *choice,
+                           const struct candidate *candidate)
+{
+    for (int k = 0; k < choice->count; k++) {
+        const struct candidate *other = &choice->list[k];
+        if (other->algorithm == candidate->algorithm
+            && MARGIN * other->forecast.error[CAUSE_SPECTRUM] > setting->budget->error)
+            return true;
+    }
+    return false;
+}
+
+static bool has_forecast(const struct candidate *candidate)
+{
+    return candidate->error < INFINITY || candidate->verdict == VERDICT_REFUSED;
+}
+
+/* Where a candidate cannot be the choice, no forecast is made, unless all are asked for. */
+static enum status migration_forecast(const struct setting *setting, const struct choice *choice, double best, bool all,
+                                      struct candidate *c)
 {
     const double floor_s = rates_migration(setting->problem->precision, setting->transforms);
+    if (!all && !(floor_s < best)) {
+        c->verdict = VERDICT_SLOWER;
+        c->seconds = floor_s;
+        snprintf(c->reason, sizeof c->reason,
+                 "%.1f times the chosen one's time or more: its transforms alone take %.2g s", floor_s / best, floor_s);
+        return STATUS_OK;
+    }
+    if (!all && spectrum_fails(setting, choice, c)) {
+        c->verdict = VERDICT_ERROR;
+        snprintf(c->reason, sizeof c->reason,
+                 "over the budget of %.2g by the error of its spectrum, as with other settings",
+                 setting->budget->error);
+        return STATUS_OK;
+    }
+    *c->reason = '\0';
+    return candidate_forecast(setting, c);
+}
+
+/* All that have none yet. */
+static enum status migrations_forecast(const struct setting *setting, bool all, struct choice *choice)
+{
+    const double best = fastest(choice);
+    enum status status = STATUS_OK;
+    for (int k = 0; k < choice->count && status == STATUS_OK; k++) {
+        struct candidate *c = &choice->list[k];
+        if (!(c->algorithm->traits & TRAIT_ANY_TRACK) && !(all && has_forecast(c)))
+            status = migration_forecast(setting, choice, best, all, c);
+    }
+    return status;
+}
+
+static enum status forecast_all(const struct setting *setting, struct choice *choice)
+{
     enum status status = STATUS_OK;
     for (int k = 0; k < choice->count; k++) { /* no verdict yet */
         struct candidate *c = &choice->list[k];
@@ -198,22 +254,10 @@ static enum status forecast_all(const struct setting *setting, struct choice *ch
             status = candidate_forecast(setting, &choice->list[k]);
     if (status == STATUS_OK)
         status = limit_try(setting, choice);
-    const double best = fastest(choice);
-    for (int k = 0; k < choice->count && status == STATUS_OK; k++) {
-        struct candidate *c = &choice->list[k];
-        if (c->algorithm->traits & TRAIT_ANY_TRACK)
-            continue;
-        if (setting->budget->thorough || floor_s < best) {
-            status = candidate_forecast(setting, c);
-        } else {
-            c->verdict = VERDICT_SLOWER;
-            c->seconds = floor_s;
-            snprintf(c->reason, sizeof c->reason,
-                     "%.1f times the chosen one's time or more: its transforms alone take %.2g s", floor_s / best,
-                     floor_s);
-        }
-    }
-    return status;
+    for (int k = 0; k < choice->count; k++)
+        if (!(choice->list[k].algorithm->traits & TRAIT_ANY_TRACK))
+            choice->list[k].verdict = VERDICT_SLOWER; /* has no forecast */
+    return status == STATUS_OK ? migrations_forecast(setting, setting->budget->thorough, choice) : status;
 }
 
 /* Plan the fastest that is left; false without one. One that its plan refuses, or whose memory is too much, is out. */
@@ -245,6 +289,15 @@ static enum status plan_fastest(const struct setting *setting, struct choice *ch
     return STATUS_OK;
 }
 
+/* One after the other, from the fastest on, until one is found. */
+static enum status plan_first(const struct setting *setting, struct choice *choice)
+{
+    enum status status = STATUS_OK;
+    for (bool tried = true; status == STATUS_OK && tried && !choice->found;)
+        status = plan_fastest(setting, choice, &tried);
+    return status;
+}
+
 static int compare(const void *a, const void *b)
 {
     const struct candidate *one = a, *other = b;
@@ -271,8 +324,12 @@ enum status planner_choose(const struct problem *problem, const struct budget *b
         return status_set(STATUS_FAILED, "no memory for the candidates of a plan");
     choice->count = candidates_fill(choice->list);
     enum status status = forecast_all(&setting, choice);
-    for (bool tried = true; status == STATUS_OK && tried && !choice->found;)
-        status = plan_fastest(&setting, choice, &tried);
+    if (status == STATUS_OK)
+        status = plan_first(&setting, choice);
+    if (status == STATUS_OK && !choice->found)
+        status = migrations_forecast(&setting, true, choice); /* of those, too, that seemed too slow */
+    if (status == STATUS_OK && !choice->found)
+        status = plan_first(&setting, choice);
     if (status != STATUS_OK) {
         choice_free(choice);
         return status;

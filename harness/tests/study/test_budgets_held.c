@@ -12,6 +12,7 @@
 struct tally {
     double used[4000]; /* measured error over the budget */
     int count, refused;
+    int zero; /* choices on images of zeros, which have no error */
 };
 
 /* Measure what `auto` chooses for one scene and budget. */
@@ -62,11 +63,13 @@ static void within_budget(void **state)
         session_close(&session);
         scene_free(&scene);
     }
+    assert_true(tally.count > 0);
     const double middle = median(tally.used, tally.count); /* sorts them */
     for (int k = 0; k < tally.count; k++)
         over += tally.used[k] > 1;
-    print_message("%d choices on %d scenes, %d refused: %d over the budget, at most %.2f of it, median %.2f\n",
-                  tally.count, seeds, tally.refused, over, tally.used[tally.count - 1], middle);
+    print_message("%d choices on %d scenes, %d refused, %d on images of zeros: %d over the budget, at most %.2f of it, "
+                  "median %.2f\n",
+                  tally.count, seeds, tally.refused, tally.zero, over, tally.used[tally.count - 1], middle);
     if (over > tally.count / 100 || tally.used[tally.count - 1] > 1.5)
         fail_msg("%d of %d choices are over the budget, the worst %g times", over, tally.count,
                  tally.used[tally.count - 1]);
