@@ -169,7 +169,7 @@ static void evidence_begin(struct judgement *judgement, const struct formula *fo
 
 /* What a verdict rests on: settings, scenes and printed tables, each named once. */
 struct basis {
-    char settings[900], scenes[1200], tables[200];
+    char settings[900], scenes[1200], slices[40], tables[200];
 };
 
 /* A SPEC may go on behind a comma; one that ends has a blank behind it. */
@@ -232,6 +232,7 @@ static void basis_use(void *to, enum use use, const char *text)
     switch (use) {
     case USE_SCENE: text_add(basis->scenes, sizeof basis->scenes, text, scene_described(text)); break;
     case USE_SETTING: text_add(basis->settings, sizeof basis->settings, text, text); break;
+    case USE_SLICE: text_add(basis->slices, sizeof basis->slices, text, text); break;
     case USE_TABLE: text_add(basis->tables, sizeof basis->tables, text, text); break;
     }
 }
@@ -242,13 +243,16 @@ static void basis_add(void *to, const char *scene, const char *spec)
     basis_use(to, USE_SETTING, spec);
 }
 
-/* "; settings: ...; scenes: ...; printed numbers: ..." */
+/* "; settings: ...; scenes: ...; azimuth slices: ...; printed numbers: ..." */
 static void basis_append(char *evidence, size_t size, const struct basis *basis)
 {
     const struct {
         const char *title, *list;
-    } parts[] = {{"settings", basis->settings}, {"scenes", basis->scenes}, {"printed numbers", basis->tables}};
-    for (int k = 0; k < 3; k++)
+    } parts[] = {{"settings", basis->settings},
+                 {"scenes", basis->scenes},
+                 {"azimuth slices", basis->slices},
+                 {"printed numbers", basis->tables}};
+    for (int k = 0; k < 4; k++)
         if (*parts[k].list)
             text_append(evidence, size, "; %s: %s", parts[k].title, parts[k].list);
 }

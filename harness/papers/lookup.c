@@ -123,6 +123,8 @@ static enum status image_metric(struct formula *formula, struct call *call, stru
     if (strncmp(call->metric->name, "flops", 5) == 0)
         return flops_metric(formula, call, values);
     enum status status = measurement_need(formula, call);
+    if (strcmp(call->metric->name, "pslr_db") == 0 || strcmp(call->metric->name, "islr_db") == 0)
+        used(formula, USE_SLICE, "null"); /* an image's are medians of these */
     *values = (struct values){.count = 1, .at = {1}, .timed = strcmp(call->metric->unit, "s") == 0};
     if (status == STATUS_OK && formula->measured)
         values->at[0] =
@@ -156,6 +158,7 @@ static enum status target_metric(struct formula *formula, struct call *call, str
     values->count = 0;
     if (status == STATUS_OK)
         status = targets_read(formula, call, definitions, values, &first);
+    used(formula, USE_SLICE, call->text[2]);
     for (int k = 0; formula->measured && k < values->count; k++)
         values->at[k] = measured_target(formula->measured, call->text[0], call->text[1], first + k, call->text[2],
                                         call->metric->offset, call->metric->name);

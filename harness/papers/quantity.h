@@ -19,8 +19,8 @@ struct values {
 };
 
 /* What numbers rest on beside measurements: a scene, a setting (a formula of the phase study, a SPEC that is planned),
-   a table of published.csv. */
-enum use { USE_SCENE, USE_SETTING, USE_TABLE };
+   the definition by which an azimuth slice is measured, a table of published.csv. */
+enum use { USE_SCENE, USE_SETTING, USE_SLICE, USE_TABLE };
 
 /* Where the reading of a claim stands, and the names that it has defined. */
 enum { NAMES_MAX = 32 };

@@ -341,7 +341,7 @@ static void contains(const struct claim *claim, const char *evidence, const char
 }
 
 /* The evidence of each claim says what was compared with what: numbers by name, criterion, answers, settings, scenes
-   with what these assume, printed tables. */
+   with what these assume, how slices are measured, printed tables. */
 static void evidence_is_whole(void **state)
 {
     (void)state;
@@ -377,6 +377,8 @@ static void evidence_is_whole(void **state)
                 contains(claim, found.evidence, "; settings: ");
             if (claim->need_count > 0 || claim->phases || strstr(claim->arguments, "scene("))
                 contains(claim, found.evidence, " (c 1500 m/s, beam ");
+            if (strstr(claim->arguments, "target_pslr_db(") || strstr(claim->arguments, "target_islr_db("))
+                contains(claim, found.evidence, "; azimuth slices: ");
             if (strstr(claim->arguments, " published(") || strstr(claim->arguments, "(published("))
                 contains(claim, found.evidence, "; printed numbers: ");
         }
