@@ -176,16 +176,11 @@ static enum status check_claim(const char *path, const struct wanted *wanted, co
     *variable = (struct variable){.is_complex = matvar->isComplex != 0, .dims = {1, 1, 1}};
     size_t bytes = 16; /* at most, for one number */
     for (int i = 0; i < matvar->rank; i++) {
-        if (i >= 3 && matvar->dims[i] != 1) {
-            return status_set(STATUS_INVALID, "%s: variable `%s` has %d dimensions; %s is needed", path, wanted->name,
-                              matvar->rank, wanted->accepted);
-        }
         if (i < 3) {
             variable->dims[i] = matvar->dims[i];
-        }
-        if (matvar->dims[i] == 0) {
-            return status_set(STATUS_INVALID, "%s: variable `%s` is empty; %s is needed", path, wanted->name,
-                              wanted->accepted);
+        } else if (matvar->dims[i] != 1) {
+            return status_set(STATUS_INVALID, "%s: variable `%s` has %d dimensions; %s is needed", path, wanted->name,
+                              matvar->rank, wanted->accepted);
         }
         if (__builtin_mul_overflow(bytes, matvar->dims[i], &bytes) || bytes / 16 / 1032 > file_size) {
             return status_set(STATUS_INVALID,
@@ -199,14 +194,21 @@ static enum status check_claim(const char *path, const struct wanted *wanted, co
     return STATUS_OK;
 }
 
+static bool is_empty(const matvar_t *matvar)
+{
+    bool empty = false;
+    for (int i = 0; i < matvar->rank; i++) {
+        empty = empty || matvar->dims[i] == 0;
+    }
+    return empty;
+}
+
 /* Where the numbers of a variable are once it has been read: libmatio reports success for some that are not there. */
 static bool variable_parts(const matvar_t *matvar, size_t count, mat_complex_split_t *parts)
 {
     size_t type = (size_t)matvar->data_type;
-    *parts = (mat_complex_split_t){matvar->data, NULL};
-    if (matvar->data && matvar->isComplex) {
-        *parts = *(const mat_complex_split_t *)matvar->data;
-    }
+    *parts = matvar->data && matvar->isComplex ? *(const mat_complex_split_t *)matvar->data
+                                               : (mat_complex_split_t){matvar->data, NULL};
     return parts->Re && (parts->Im || !matvar->isComplex) && type < sizeof number_types / sizeof *number_types
            && number_types[type].load && matvar->nbytes / number_types[type].size >= count;
 }
@@ -239,6 +241,12 @@ static enum status send_variable(const char *path, const struct wanted *wanted, 
         bool is_known = class < sizeof class_names / sizeof *class_names;
         return status_set(STATUS_INVALID, "%s: variable `%s` is %s; %s is needed", path, name,
                           is_known ? class_names[class] : "of unknown class", wanted[index].accepted);
+    }
+    if (is_empty(matvar)) {
+        return is_text && wanted[index].is_optional
+                   ? STATUS_OK /* as if it were not there */
+                   : status_set(STATUS_INVALID, "%s: variable `%s` is empty; %s is needed", path, name,
+                                wanted[index].accepted);
     }
     struct packet packet;
     memset(&packet, 0, sizeof packet);

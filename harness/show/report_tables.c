@@ -265,9 +265,9 @@ static void rows_show(struct page *page, const struct report_table *table, const
                 cells[k].class = verdict_class(text);
             if (table->columns[k].show == SHOW_ONCE && above[k] && strcmp(above[k], text) == 0)
                 cells[k].text = "";
-            if (table->columns[k].show == SHOW_NUMBER && csv_number(text, &value) && isfinite(value)) {
+            if (table->columns[k].show == SHOW_NUMBER && csv_number(text, &value)) {
                 snprintf(numbers[k], sizeof numbers[k], "%.4g", value);
-                cells[k].text = numbers[k];
+                cells[k].text = isnan(value) ? "" : numbers[k];
             }
             above[k] = text;
         }

@@ -178,6 +178,11 @@ static void all_patches_come_back(void **state)
     assert_string_equal(file.options, "beta=8");
     assert_string_equal(file.scene, "of/here");
     image_file_close(&file);
+    assert_ok(image_file_write(path, &image, "bp_nearest", "", "of/here")); /* an algorithm without options */
+    assert_ok(image_file_open(path, &file));
+    assert_string_equal(file.algorithm, "bp_nearest");
+    assert_string_equal(file.options, "");
+    image_file_close(&file);
     image_free(&image);
 
     static const char *const names[] = {"image", "x", "r", "image_2", "x_2"};
