@@ -5,12 +5,14 @@
 #             name, plots  as in folder.gp
 
 width = 1000
-height = 800
 load plots."/folder.gp"
 do for [picture = 1:pictures] {
     load read(picture_scene[picture])
     if (!has_points) { continue }
     output = picture_output[picture]
+    others = cost == 2 ? 4 : 2
+    load plots."/legend.gp"
+    height = int(690 + legend_px)
     load plots."/style.gp"
     set output output
     set logscale xy
@@ -30,8 +32,8 @@ do for [picture = 1:pictures] {
     set lmargin at screen 110.0/width
     set rmargin at screen 1 - 25.0/width
     set tmargin at screen 1 - 45.0/height
-    set bmargin at screen 235.0/height
-    set key at screen 0.5,160.0/height center top maxrows 5 samplen 2.5 font ",12"
+    set bmargin at screen (125 + legend_px)/height
+    set key at screen 0.5,(50 + legend_px)/height center top maxrows legend_rows samplen 2.5 font ",12"
     set label 1 caption at screen 0.5,12.0/height center font ",10" textcolor "#606060"
     front = cost == 2 ? "$front_run_s" : "$front_flops"
     if (cost == 2) { set arrow 1 from control_max,graph 0 to control_max,graph 1 nohead dashtype 3 linewidth 1.5 }
@@ -47,7 +49,7 @@ do for [picture = 1:pictures] {
         keyentry with points pointtype 6 linewidth 1 pointsize 1.2 linecolor rgb "#000000" \
             title "open, thin: in double", \
         keyentry with lines linewidth 1.5 dashtype 3 linecolor rgb "#000000" \
-            title (cost == 2 ? "time of the scalar reference loop" : ""), \
+            title (cost == 2 ? "dots: scalar reference loop" : ""), \
         keyentry with lines linewidth 1 dashtype 1 linecolor rgb "#000000" \
             title (cost == 2 ? "bars: quartiles of the runs" : "")
     unset output

@@ -7,13 +7,15 @@ if (!exists("plots")) plots = "plots"
 if (!exists("folder")) folder = ARGC >= 1 ? ARG1 : "results/latest"
 name = "lobes_time"
 width = 1000
-height = 1050
 load plots."/folder.gp"
 array quantity[2] = ["PSLR", "ISLR"]
 do for [picture = 1:pictures] {
     load read(picture_scene[picture])
     if (!has_lobes) { continue }
     output = picture_output[picture]
+    others = 1
+    load plots."/legend.gp"
+    height = int(940 + legend_px)
     load plots."/style.gp"
     set output output
     set label 1 caption at screen 0.5,12.0/height center font ",10" textcolor "#606060"
@@ -39,7 +41,7 @@ do for [picture = 1:pictures] {
         set title (panel == 1 ? \
             picture_scene[picture].": side lobes against run time, median over the targets, azimuth" : "")
         if (panel == 1) { unset key } else {
-            set key at screen 0.5,145.0/height center top maxrows 5 samplen 2.5 font ",12"
+            set key at screen 0.5,(35 + legend_px)/height center top maxrows legend_rows samplen 2.5 font ",12"
         }
         plot for [k = 1:|series|] $rows index k - 1 using 2:(shown(abs(column(4 + panel) - exact[panel]))) \
             with linespoints linecolor rgb family_colour[family[k]] \
