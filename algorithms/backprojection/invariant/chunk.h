@@ -8,6 +8,11 @@
 
 #define INLINE static inline __attribute__((always_inline))
 
+/* A vector of samples, loaded once for all its products: loads are the limit. */
+#define LOAD(name, pointer)                                                                                            \
+    vector_real name = *(const vector_real *)(pointer);                                                                \
+    HOLD(name)
+
 /* Delay from transmission to a receiver `offset` ahead of the transmitter (delay.h): with b = ahead + offset,
    tau = leg + (v b + s)/(c^2 - v^2) = leg + (b^2 + r^2)/(s - v b), s = sqrt(c^2 b^2 + (c^2 - v^2) r^2). */
 struct delay_terms {
@@ -66,6 +71,10 @@ void TABLES_MAKE(const struct row_tables *tables, double offset, struct chunk *c
 /* Add a chunk with its tables to all columns of its residues. */
 #define SUMS_ADD REAL_ISA_NAME(bp_sums_add)
 void SUMS_ADD(struct chunk *chunk);
+
+/* The same of Farrow branches. */
+#define BRANCHES_ADD REAL_ISA_NAME(bp_branches_add)
+void BRANCHES_ADD(const struct chunk *chunk);
 
 /* `count` rounded up to whole vectors. */
 static inline int whole_vectors(int count)

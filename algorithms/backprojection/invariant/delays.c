@@ -26,15 +26,25 @@ struct extent {
     double low, high, vector;
 };
 
+/* The least and the largest of a vector of places. */
+INLINE void vector_extent(const double *ahead, double *low, double *high)
+{
+    double least = ahead[0], most = ahead[0];
+#pragma omp simd reduction(min : least) reduction(max : most)
+    for (int k = 0; k < LANES; k++) {
+        least = ahead[k] < least ? ahead[k] : least;
+        most = ahead[k] > most ? ahead[k] : most;
+    }
+    *low = least;
+    *high = most;
+}
+
 static struct extent extent_of(const double *ahead, int entries)
 {
     struct extent extent = {INFINITY, -INFINITY, 0};
     for (int i = 0; i < entries; i += LANES) {
-        double low = ahead[i], high = ahead[i];
-        for (int k = 1; k < LANES; k++) {
-            low = ahead[i + k] < low ? ahead[i + k] : low;
-            high = ahead[i + k] > high ? ahead[i + k] : high;
-        }
+        double low, high;
+        vector_extent(ahead + i, &low, &high);
         extent.low = low < extent.low ? low : extent.low;
         extent.high = high > extent.high ? high : extent.high;
         extent.vector = high - low > extent.vector ? high - low : extent.vector;
@@ -74,12 +84,9 @@ static void pieces_place(const struct bp_row *row, int count, int entries)
     const struct bp_row_scratch *scratch = row->scratch;
     const double *node = row->raster->fit->node;
     for (int i = 0; i < entries; i += LANES) {
-        double *ahead = scratch->ahead + i, low = ahead[0], high = ahead[0];
+        double *restrict ahead = scratch->ahead + i, low, high;
         int n = 0;
-        for (int k = 1; k < LANES; k++) {
-            low = ahead[k] < low ? ahead[k] : low;
-            high = ahead[k] > high ? ahead[k] : high;
-        }
+        vector_extent(ahead, &low, &high);
         while (n < count - 1 && !(low >= scratch->pieces[n].begin && high <= scratch->pieces[n].end))
             n++;
         const struct bp_piece *piece = &scratch->pieces[n];

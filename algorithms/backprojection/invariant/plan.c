@@ -215,13 +215,12 @@ static double steepness(const struct bp *bp, const struct bp_raster *raster, con
 }
 
 /* Neighbouring residues that are summed together. Of up to two taps, two where they mostly read the same samples; of
-   more taps, as many as keep their samples within BP_SPREAD, rounding included; of branches, as many as read the same
-   sample or, at the most in one shift of two, the next. */
+   more taps, as many as keep their samples within BP_SPREAD, rounding included; of branches, any. */
 static int residues_together(const struct bp *bp, double steepness)
 {
     steepness *= bp->table.upsample;
     if (bp->table.branches > 1)
-        return (int)fmin(BP_TOGETHER, 1 + floor(0.5 / steepness));
+        return BP_TOGETHER_BRANCHES;
     if (!bp_whole(&bp->table))
         return 1;
     if (bp->table.taps < 3)
@@ -350,7 +349,8 @@ static enum status plan_patch(struct bp *bp, const struct straight_track *track,
     raster_make(bp, track, grid, raster);
     raster->together = residues_together(bp, steepness(bp, raster, grid));
     pieces_plan(bp, raster);
-    in->strides[k] = round_up(raster->residue_columns + BP_LANES_MOST, 8);
+    /* Sums of branches are read and written for each shift: no vector of them crosses a cache line. */
+    in->strides[k] = round_up(raster->residue_columns + BP_LANES_MOST, bp->table.branches > 1 ? BP_LANES_MOST : 8);
     const size_t residues = (size_t)raster_residues(raster);
     in->sums[k] =
         allocate(2 * (size_t)grid->r_count * residues * (size_t)in->strides[k] * real_size(bp->problem.precision),
@@ -360,7 +360,8 @@ static enum status plan_patch(struct bp *bp, const struct straight_track *track,
     const size_t shifts = (size_t)BP_ENTRIES(raster->pings + raster->residue_columns);
     lengths->residues = residues > lengths->residues ? residues : lengths->residues;
     lengths->row = residues * shifts > lengths->row ? residues * shifts : lengths->row;
-    lengths->entries = BP_TOGETHER * shifts > lengths->entries ? BP_TOGETHER * shifts : lengths->entries;
+    const size_t group = (bp->table.branches > 1 ? BP_TOGETHER_BRANCHES : BP_TOGETHER) * shifts;
+    lengths->entries = group > lengths->entries ? group : lengths->entries;
     lengths->samples = fmax(lengths->samples, samples_read(bp, raster, grid));
     return STATUS_OK;
 }
@@ -403,7 +404,7 @@ enum status invariant_plan(struct bp *bp)
     struct straight_track track;
     struct lengths lengths = {.entries = ENTRIES_LEAST,
                               .taps = (size_t)bp->table.taps,
-                              .spread = (size_t)bp_spread(bp->table.branches > 1, bp->table.taps)};
+                              .spread = bp->table.branches > 1 ? 1 : (size_t)bp->table.taps + BP_SPREAD};
     bp->state = calloc(1, sizeof(struct invariant));
     if (!bp->state)
         return status_set(STATUS_FAILED, "no memory for the plan");

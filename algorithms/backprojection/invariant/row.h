@@ -1,5 +1,5 @@
-/* The inner sums of the translation-invariant engine: one image row from tables. delays.c, tables.c, sums.c and
-   row.c are built for each precision and instruction set; plan.c chooses one build at run time.
+/* The inner sums of the translation-invariant engine: one image row from tables. delays.c, tables.c, sums.c,
+   branches.c and row.c are built for each precision and instruction set; plan.c chooses one build at run time.
 
    WHY DELAYS REPEAT. The ping spacing is `ratio` azimuth steps. A pixel `ratio` columns further on sees the next ping
    as this pixel sees this ping. Write column n as n = rho + ratio j. Here rho = n mod ratio is its residue, j = n div
@@ -57,10 +57,15 @@
                    of the block: one region
                      group of residues                                       sum_block
                        shift, tap, vector of columns                         sum_one, sum_two, sum_taps
+                 of Farrow branches:                          branches.c   BRANCHES_ADD
+                   shift; residues that read one sample: a run
+                     vector of columns, residue, branch                      add_run
 
    Loads of the traces are the limit, half of which cross a cache line. Neighbouring residues mostly read the same
    samples: they are summed together and share the loads. Tables and sums take turns, so that both stay in the cache. Up
-   to two taps, and single residues of more taps, keep the sums of a block in registers over all shifts of a region.
+   to two taps, and single residues of more taps, keep the sums of a block in registers over all shifts of a region. Of
+   Farrow branches a vector of a sample's values stays in registers for all residues of a run, whose sums are read and
+   written for each shift: Horner's rule and the phase factor are 2 branches + 2 multiply-adds between a load and a store.
 
    THE TABLES. An entry is one shift of one residue. A group's entries are ordered by shift and then residue, and are
    padded to whole vectors. Made once for a row and the receivers of the slab (TABLES_BEGIN): seconds on the way out
@@ -71,6 +76,7 @@
        (sum_entry, listed in `rows`), and its weight becomes 0.
      - More taps: phase factors (`wr`, `wi`) and real tap weights stand apart. A group reads the `rows` samples that any
        of its residues needs. The weights of a residue are 0 for samples that are not its own.
+     - Farrow branches: phase factors, and in place of weights the distance from the sample.
 
    WHAT THE LOOPS RELY ON. They check nothing but BP_SPREAD; this code sees to it:
 
@@ -84,7 +90,7 @@
        BP_SPREAD                 residues_together: groups are so small that, by steepness(), the samples of one shift
                                  lie at most BP_SPREAD apart; join_many asserts it, as it would write beyond its
                                  table else
-       capacity                  plan_patch: the largest group, BP_TOGETHER residues with all shifts, always fits
+       capacity                  plan_patch: the largest group with all shifts always fits
        int indices               raster_make, plan_slab: larger tables and slabs are unsupported
        same bits                 sum_rows: one thread sums a row, in an order that does not depend on the threads */
 #ifndef SASBENCH_BACKPROJECTION_INVARIANT_ROW_H
@@ -102,14 +108,15 @@
 enum { BP_BLOCK_VECTORS = 5, BP_LANES_MOST = 16 };
 
 /* At most BP_TOGETHER residues are summed together; their samples of one shift lie at most BP_SPREAD apart where a
-   value has more than two taps. */
-enum { BP_TOGETHER = 6, BP_SPREAD = 4 };
+   value has more than two taps. Of Farrow branches, BP_TOGETHER_BRANCHES, of which those that read the same sample are
+   summed together. */
+enum { BP_TOGETHER = 6, BP_SPREAD = 4, BP_TOGETHER_BRANCHES = 40 };
 
 /* Compressed traces of some receivers, pings contiguous: value (receiver g, row i, ping p) at
    [g receiver_stride + i ping_stride + lead + p]. Row i is the trace's sample i - guard, a fine one where it is
    upsampled (bp_whole); upsampled traces whose nearest value is read keep step_count of their `upsample` fine steps a
    sample, from step_first on: fine sample f is in row (f / upsample) step_count + f % upsample - step_first. Of Farrow
-   branches row i branches + m is branch m of sample i - guard, so that the sums take them for taps. */
+   branches row i branches + m is branch m of sample i - guard. */
 struct bp_slab {
     const void *re, *im; /* real; 0 in the lead and as far behind the last ping */
     size_t receiver_stride;
@@ -162,8 +169,8 @@ struct bp_polynomial {
 };
 
 /* Scratch of one thread. Entries of a row: of all residues = min(ratio, columns), each BP_ENTRIES(pings +
-   residue_columns) at the most; of one receiver and as many groups as fit into `capacity` >= BP_TOGETHER
-   BP_ENTRIES(pings + residue_columns). */
+   residue_columns) at the most; of one receiver and as many groups as fit into `capacity` >= the
+   most residues of a group times BP_ENTRIES(pings + residue_columns). */
 struct bp_row_scratch {
     struct bp_row_group *groups; /* [residues + 1], the last for its `first` */
     double *leg;                 /* [row's entries] s, from the transmitter; not where there are pieces */
@@ -183,14 +190,10 @@ struct bp_row_scratch {
     int *step;     /* [capacity] fine step or interval between two samples */
     int *rows;     /* [capacity] samples that a shift of a group reads */
     void *wr, *wi; /* real [capacity][taps], or [capacity] where there are more than two */
-    void *weights; /* real [capacity][bp_spread] where there are more than two taps */
+    void *weights; /* real [capacity][taps + BP_SPREAD] where there are more than two taps; with branches [capacity],
+                      the distance from the sample */
 };
 
-/* Rows that serve the residues of a group together, at the most: of Farrow branches those of two samples. */
-static inline int bp_spread(bool branches, int taps)
-{
-    return taps + (branches ? taps : BP_SPREAD);
-}
 #define BP_ENTRIES(shifts) (((shifts) + BP_LANES_MOST - 1) / BP_LANES_MOST * BP_LANES_MOST)
 
 /* One image row of a patch, and the receivers of the slab that are added to it. */

@@ -17,11 +17,6 @@ struct part {
    where the columns take several blocks, and the branch is mispredicted in each, it is summed by itself (sum_apart). */
 #define APART_INSIDE (VECTOR_BYTES == 64)
 
-/* A vector of samples, loaded once for all its products: loads are the limit. */
-#define LOAD(name, pointer)                                                                                            \
-    vector_real name = *(const vector_real *)(pointer);                                                                \
-    HOLD(name)
-
 /* One residue, one or two samples with complex weights, `width` vectors of columns. Real and imaginary weights have
    accumulators of their own, so that enough independent chains hide the latency of multiply-adds; all real parts come
    before the imaginary ones, so that these chains and what they need fit 16 registers. */
@@ -58,12 +53,16 @@ INLINE void sum_one(int width, int taps, int stride, const struct part *part, co
 INLINE void add_two(bool apart, int width, int taps, int stride, const real *const first[2],
                     const real *const second[2], const real *const weights[2], vector_real *sums)
 {
-    const real *r = weights[0], *m = weights[1];
+    const real *r = weights[0], *m = weights[1], *x = first[0], *y = first[1];
     vector_real *a = sums, *b = a + BP_BLOCK_VECTORS, *a2 = b + BP_BLOCK_VECTORS, *b2 = a2 + BP_BLOCK_VECTORS;
+    if (apart) { /* else the compiler loads for both branches ahead of them, and runs out of registers */
+        OPAQUE(x);
+        OPAQUE(y);
+    }
     for (int t = 0; t < taps; t++) {
         const real cosine = r[t], sine = m[t], cosine2 = r[taps + t], sine2 = m[taps + t];
         for (int k = 0; k < width; k++) {
-            LOAD(v, first[0] + t * stride + k * LANES);
+            LOAD(v, x + t * stride + k * LANES);
             a[k] += v * cosine;
             b[k] += v * sine;
             if (apart) {
@@ -76,7 +75,7 @@ INLINE void add_two(bool apart, int width, int taps, int stride, const real *con
             }
         }
         for (int k = 0; k < width; k++) {
-            LOAD(v, first[1] + t * stride + k * LANES);
+            LOAD(v, y + t * stride + k * LANES);
             a[k] -= v * sine;
             b[k] += v * cosine;
             if (apart) {
@@ -116,9 +115,10 @@ INLINE void sum_two(int width, int taps, int stride, const struct part *part, co
 /* Some residues, many samples with real weights, whose sum is rotated. rows[i] >= taps samples serve all residues of
    the group; a residue's weights are 0 for those that are not its own. Registers hold the block's sums of one
    residue, not of more. */
-INLINE void sum_taps(int residues, int width, int taps, int spread, int stride, const struct part *part, const real *sr,
+INLINE void sum_taps(int residues, int width, int taps, int stride, const struct part *part, const real *sr,
                      const real *si)
 {
+    const int spread = taps + BP_SPREAD;
     vector_real sum_re[BP_BLOCK_VECTORS] = {{0}}, sum_im[BP_BLOCK_VECTORS] = {{0}};
     for (int i = part->begin; i < part->end; i++) {
         const real *x = sr + part->offset[i], *y = si + part->offset[i], *w = part->weights + i * residues * spread;
@@ -183,7 +183,7 @@ INLINE void sum_block(int residues, int width, int taps, const struct chunk *sha
     const struct bp_row_group *groups = scratch->groups;
     const int origin = groups[chunk->begin].first;
     const real *sr = chunk->sr + j, *si = chunk->si + j;
-    const int stride = chunk->slab->ping_stride, spread = bp_spread(chunk->table->branches > 1, taps);
+    const int stride = chunk->slab->ping_stride;
     OPAQUE(sr);
     OPAQUE(si);
     for (int g = chunk->begin; g < chunk->end; g++) {
@@ -194,7 +194,7 @@ INLINE void sum_block(int residues, int width, int taps, const struct chunk *sha
                             .rows = scratch->rows + first,
                             .wr = (const real *)scratch->wr + first * complex_taps,
                             .wi = (const real *)scratch->wi + first * complex_taps,
-                            .weights = (const real *)scratch->weights + first * (size_t)spread,
+                            .weights = (const real *)scratch->weights + first * (size_t)(taps + BP_SPREAD),
                             .re = chunk->re + at,
                             .im = chunk->im + at,
                             .stride = chunk->stride};
@@ -206,7 +206,7 @@ INLINE void sum_block(int residues, int width, int taps, const struct chunk *sha
             part.end = between(chunk->to - group->begin, group->from, group->to);
         }
         if (taps > 2)
-            sum_taps(residues, width, taps, spread, stride, &part, sr, si);
+            sum_taps(residues, width, taps, stride, &part, sr, si);
         else if (residues == 2)
             sum_two(width, taps, stride, &part, sr, si);
         else
@@ -263,18 +263,29 @@ static const struct kernel {
     {6, TABLE_MANY(six)},    {8, TABLE_MANY(eight)}, {0, TABLE_MANY(any)},
 };
 
-/* The shifts [from, to) of those that the row has, for a block of columns from j on. */
-INLINE void sum_shifts(block_function *block, struct chunk *chunk, int least, int most, int from, int to, int j)
+/* Shifts below `end` bring pings to the same vectors of a block: `width` of them from column j on. */
+struct region {
+    int j, width, end;
+};
+
+/* The region that begins with shift s of a block's columns [j, last), of which some have pings. Vectors begin at whole
+   ones of the block; where it lacks pings before its first columns alone, they end with its last column: of 72 columns
+   four vectors of 16 hold the last 64. */
+INLINE struct region region_from(int s, int pings, int j, int last)
 {
-    chunk->from = from > least ? from : least;
-    chunk->to = to < most ? to : most;
-    if (chunk->from < chunk->to)
-        block(chunk, j);
+    const int low = -s > j ? -s : j, high = pings - s < last ? pings - s : last;
+    const int short_by = low - j, ending = (last - low + LANES - 1) / LANES;
+    if (high == last && last - ending * LANES > j) {
+        const int begin = last - ending * LANES, more = 1 - begin, fewer = pings - last + 1;
+        return (struct region){begin, ending, more < fewer ? more : fewer};
+    }
+    const int begin = j + short_by / LANES * LANES, width = (high - begin + LANES - 1) / LANES;
+    const int more = 1 - begin, fewer = pings - begin - (width - 1) * LANES;
+    return (struct region){begin, width, begin > j && more < fewer ? more : fewer};
 }
 
-/* All columns, in blocks as wide as each other. Vector v of one has pings for the shifts [FIRST(v), END(v)). Where the
-   lead is as wide as a block, a shift that has pings for some of its vectors is summed for all, for the others zeros;
-   else for those only that have some. */
+/* All columns, in blocks as wide as each other. Where the lead is as wide as a block, a shift that has pings for some of
+   its vectors is summed for all, for the others zeros; else for those only that have some. */
 static void sum_columns(const struct kernel *kernel, struct chunk *chunk)
 {
     const int columns = chunk->raster->residue_columns, pings = chunk->raster->pings;
@@ -288,23 +299,18 @@ static void sum_columns(const struct kernel *kernel, struct chunk *chunk)
         most = groups[g].end > most ? groups[g].end : most;
     }
     for (int j = 0, width; j < columns; j += width * LANES) {
-        int left = (columns - j + LANES - 1) / LANES, parts = (left + widest - 1) / widest;
+        const int left = (columns - j + LANES - 1) / LANES, parts = (left + widest - 1) / widest;
         width = (left + parts - 1) / parts;
-#define FIRST(v) (1 - j - ((v) + 1) * LANES)
-#define END(v)   (pings - j - (v)*LANES)
-        if (width * LANES <= chunk->slab->lead) {
-            sum_shifts(block[width - 1], chunk, least, most, FIRST(width - 1), END(0), j);
-            continue;
+        const int last = columns < j + width * LANES ? columns : j + width * LANES;
+        const int stop = most < pings - j ? most : pings - j;
+        for (int s = least > 1 - last ? least : 1 - last; s < stop; s = chunk->to) {
+            struct region region = {j, width, stop};
+            if (width * LANES > chunk->slab->lead)
+                region = region_from(s, pings, j, last);
+            chunk->from = s;
+            chunk->to = region.end < stop ? region.end : stop;
+            block[region.width - 1](chunk, region.j);
         }
-        for (int v = 0; v < width; v++)
-            for (int end = width; end > v; end--) {
-                int from = FIRST(v), to = END(end - 1);
-                if (end < width && from < END(end))
-                    from = END(end);
-                if (v > 0 && to > FIRST(v - 1))
-                    to = FIRST(v - 1);
-                sum_shifts(block[end - v - 1], chunk, least, most, from, to, j + v * LANES);
-            }
     }
 }
 
@@ -363,6 +369,10 @@ void SUMS_ADD(struct chunk *chunk)
 {
     const int taps = chunk->table->taps;
     const struct kernel *kernel = kernels;
+    if (chunk->table->reading == BP_BRANCHES) {
+        BRANCHES_ADD(chunk);
+        return;
+    }
     while (kernel->taps != 0 && kernel->taps != taps)
         kernel++;
 #if !APART_INSIDE

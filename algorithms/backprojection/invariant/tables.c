@@ -47,27 +47,33 @@ static void shift_bounds(const struct bp_raster *raster, double edge, double x, 
     *end = high;
 }
 
-/* The shifts [begin, end) of one residue inside the aperture. */
+/* The shifts [begin, end) of each residue of a group inside the aperture. */
 struct shifts {
-    int begin, end;
+    int begin[BP_TOGETHER_BRANCHES], end[BP_TOGETHER_BRANCHES];
 };
 
 /* A group's entries, by shift and then residue, padded to whole vectors by the last: how far the ping lies ahead of the
    column. Those outside their residue's aperture have gate 0, all others 1. */
-static void group_places(const struct bp_row *row, const struct bp_row_group *group, const struct shifts *inside)
+INLINE void group_places(int residues, const struct bp_row *row, const struct bp_row_group *group,
+                         const struct shifts *inside)
 {
     const struct bp_raster *raster = row->raster;
     const struct bp_row_scratch *scratch = row->scratch;
     double *restrict ahead = scratch->ahead + group->first;
     int *restrict shift = scratch->shift + group->first;
     real *restrict gate = (real *)scratch->gate + group->first;
-    const int residues = group->residues, n = (group->end - group->begin) * residues, whole = whole_vectors(n);
-    for (int k = 0; k < residues; k++) {
-        const double x = raster->x_first - (raster->grid_first + (group->residue + k) * raster->grid_step);
-        for (int s = group->begin, i = k; s < group->end; s++, i += residues) {
-            ahead[i] = x + s * raster->spacing;
-            shift[i] = s;
-            gate[i] = s >= inside[k].begin && s < inside[k].end;
+    const int n = (group->end - group->begin) * residues, whole = whole_vectors(n);
+    const double spacing = raster->spacing;
+    double x[BP_TOGETHER_BRANCHES];
+    for (int k = 0; k < residues; k++)
+        x[k] = raster->x_first - (raster->grid_first + (group->residue + k) * raster->grid_step);
+    for (int s = group->begin, i = 0; s < group->end; s++, i += residues) {
+        const double along = s * spacing;
+#pragma omp simd
+        for (int k = 0; k < residues; k++) {
+            ahead[i + k] = x[k] + along;
+            shift[i + k] = s;
+            gate[i + k] = (real)((s >= inside->begin[k]) & (s < inside->end[k]));
         }
     }
     for (int i = n; i < whole; i++) {
@@ -103,7 +109,7 @@ static double group_make(const struct bp_row *row, int first, int count, struct 
     const struct bp_raster *raster = row->raster;
     const double limit = raster->limit;
     const double edge = limit < 1 ? fabs(row->r) * limit / sqrt((1 - limit) * (1 + limit)) : INFINITY;
-    struct shifts inside[BP_TOGETHER];
+    struct shifts inside;
     double furthest = 0;
     group->residue = first;
     group->residues = count;
@@ -113,7 +119,8 @@ static double group_make(const struct bp_row *row, int first, int count, struct 
         int begin = 1 - (raster->columns - p + raster->ratio - 1) / raster->ratio, end = raster->pings;
         if (limit < 1)
             shift_bounds(raster, edge, x, row->r, &begin, &end);
-        inside[k] = (struct shifts){begin, end};
+        inside.begin[k] = begin;
+        inside.end[k] = end;
         if (begin == end)
             continue;
         bool empty = group->begin == group->end;
@@ -123,7 +130,7 @@ static double group_make(const struct bp_row *row, int first, int count, struct 
     }
     group->to = group->end - group->begin;
     if (group->to > 0)
-        group_places(row, group, inside);
+        count == 2 ? group_places(2, row, group, &inside) : group_places(count, row, group, &inside);
     return furthest;
 }
 
@@ -212,7 +219,7 @@ static void keep(const struct chunk *chunk, struct bp_row_group *group, int firs
 
 /* Where a chunk's entries read the slab: the first tap's row, and its value for ping `shift`. What their weights are
    made of: the fine step from the sample to the next one, or the interval, and with cubics the position inside it, in
-   place of q; with branches the distance from the sample. */
+   place of q. With branches the distance from the sample is all that their sum needs. */
 INLINE void tabulate(const struct chunk *chunk)
 {
     const struct bp_table *table = chunk->table;
@@ -222,31 +229,34 @@ INLINE void tabulate(const struct chunk *chunk)
     double *restrict q = scratch->q;
     int *restrict row = scratch->row, *restrict offset = scratch->offset, *restrict step = scratch->step;
     const int first = bp_whole(table) ? table->guard + table->first : 0, stride = slab->ping_stride;
+    const int upsample = table->upsample; /* the loops below vectorise where they read nothing through `table` */
     if (table->reading == BP_CUBICS) {
 #pragma omp simd
         for (int i = 0; i < n; i++) {
-            double place = q[i] * table->upsample;
-            int sample = (int)place;
-            double interval = (place - sample) * BP_INTERVALS;
+            const double place = q[i] * upsample;
+            const int sample = (int)place;
+            const double interval = (place - sample) * BP_INTERVALS;
+            const int whole = (int)interval;
             row[i] = sample + first;
-            offset[i] = row[i] * stride + shift[i];
-            step[i] = (int)interval;
-            q[i] = interval - step[i];
+            offset[i] = (sample + first) * stride + shift[i];
+            step[i] = whole;
+            q[i] = interval - whole;
         }
         return;
     }
     if (table->reading == BP_BRANCHES) {
+        real *restrict weights = scratch->weights;
+        const int pitch = table->branches * stride, origin = table->guard * pitch;
 #pragma omp simd
         for (int i = 0; i < n; i++) {
-            double place = q[i] * table->upsample;
-            int sample = (int)(place + 0.5);
-            row[i] = (sample + table->guard) * table->branches;
-            offset[i] = row[i] * stride + shift[i];
-            q[i] = place - sample;
+            const double place = q[i] * upsample;
+            const int sample = (int)(place + 0.5);
+            offset[i] = sample * pitch + origin + shift[i];
+            weights[i] = (real)(place - sample);
         }
         return;
     }
-    if (table->taps == 1 && table->upsample == 1) {
+    if (table->taps == 1 && upsample == 1) {
 #pragma omp simd
         for (int i = 0; i < n; i++) {
             row[i] = (int)(q[i] + 0.5) + first;
@@ -254,27 +264,23 @@ INLINE void tabulate(const struct chunk *chunk)
         }
         return;
     }
-    const bool fine = table->upsample > 1;
-    const int steps = fine ? table->upsample : table->steps, rows = fine ? slab->step_rows : 0;
+    const bool fine = upsample > 1;
+    const int steps = fine ? upsample : table->steps, rows = fine ? slab->step_rows : 0, step_first = slab->step_first;
 #pragma omp simd
     for (int i = 0; i < n; i++) {
         int sample, near;
         nearest_step(q[i], steps, &sample, &near);
-        row[i] = sample + (near - slab->step_first) * rows + first;
-        offset[i] = row[i] * stride + shift[i];
+        const int at = sample + (near - step_first) * rows + first;
+        row[i] = at;
+        offset[i] = at * stride + shift[i];
         step[i] = near;
     }
 }
 
-/* The weights of one entry's taps, from its step and, with cubics and branches, its position u. */
-INLINE void weigh(const struct bp_table *table, bool branches, int taps, int step, real u, real *restrict weights)
+/* The weights of one entry's taps, from its step and, with cubics, its position u. */
+INLINE void weigh(bool cubics, int taps, const real *values, int step, real u, real *restrict weights)
 {
-    const real *values = table->weights;
-    if (branches) {
-        weights[0] = 1;
-        for (int t = 1; t < taps; t++)
-            weights[t] = weights[t - 1] * u;
-    } else if (table->reading == BP_CUBICS) {
+    if (cubics) {
         const real *w = values + step * 4 * taps;
 #pragma omp simd
         for (int t = 0; t < taps; t++)
@@ -289,10 +295,11 @@ INLINE void weigh(const struct bp_table *table, bool branches, int taps, int ste
 INLINE void join_two(const struct chunk *chunk)
 {
     const struct bp_row_scratch *scratch = chunk->scratch;
+    const bool cubics = chunk->table->reading == BP_CUBICS;
     real *wr = scratch->wr, *wi = scratch->wi;
     for (int e = chunk->entries - 1; e >= 0; e--) {
         real weights[2], cosine = wr[e], sine = wi[e];
-        weigh(chunk->table, false, 2, scratch->step[e], (real)scratch->q[e], weights);
+        weigh(cubics, 2, chunk->table->weights, scratch->step[e], (real)scratch->q[e], weights);
         for (int t = 0; t < 2; t++) {
             wr[2 * e + t] = cosine * weights[t];
             wi[2 * e + t] = sine * weights[t];
@@ -301,42 +308,51 @@ INLINE void join_two(const struct chunk *chunk)
 }
 
 /* Many taps: the samples that serve all residues of a group, and each one's weights for them. */
-INLINE void join_many(const struct chunk *chunk, bool branches, int taps, const struct bp_row_group *group, int first)
+INLINE void join_many(bool cubics, int taps, const struct chunk *chunk, const struct bp_row_group *group, int first)
 {
     const struct bp_row_scratch *scratch = chunk->scratch;
-    const int residues = group->residues, n = group->end - group->begin, spread = bp_spread(branches, taps);
-    const int *row = scratch->row + first, *step = scratch->step + first;
+    const int residues = group->residues, n = group->end - group->begin, stride = chunk->slab->ping_stride;
+    const int *row = scratch->row + first, *step = scratch->step + first, *shift = chunk->shift + first;
+    const real *values = chunk->table->weights;
     const double *u = scratch->q + first;
     int *offset = scratch->offset + first, *rows = scratch->rows + first;
-    real *weights = (real *)scratch->weights + (size_t)first * (size_t)spread;
+    real *weights = (real *)scratch->weights + (size_t)first * (size_t)(taps + BP_SPREAD);
     for (int i = 0; i < n; i++) {
-        const int e = i * residues;
-        int least = e, most = e;
+        int least = *row, most = *row;
         for (int p = 1; p < residues; p++) {
-            least = row[e + p] < row[least] ? e + p : least;
-            most = row[e + p] > row[most] ? e + p : most;
+            least = row[p] < least ? row[p] : least;
+            most = row[p] > most ? row[p] : most;
         }
-        assert(row[most] - row[least] <= spread - taps);
+        assert(most - least <= BP_SPREAD);
         for (int p = 0; p < residues; p++) {
-            real *w = weights + (e + p) * spread;
-            for (int t = 0; t < spread; t++)
-                w[t] = 0;
-            weigh(chunk->table, branches, taps, step[e + p], (real)u[e + p], w + row[e + p] - row[least]);
+            for (int t = 0; t < taps + BP_SPREAD; t++)
+                weights[t] = 0;
+            weigh(cubics, taps, values, step[p], (real)u[p], weights + (row[p] - least));
+            weights += taps + BP_SPREAD;
         }
-        rows[i] = taps + row[most] - row[least];
-        offset[i] = offset[least]; /* i <= e: what is overwritten has been read */
+        rows[i] = taps + most - least;
+        offset[i] = least * stride + *shift; /* i <= the first of these residues' entries: it has been read */
+        row += residues;
+        step += residues;
+        shift += residues;
+        u += residues;
     }
 }
 
-/* The shipped kernels and Farrow's degrees 3 and 5 unroll, any other length works as well. */
+/* The shipped kernels unroll, any other length works as well. */
 static void join_group(const struct chunk *chunk, const struct bp_row_group *group, int first)
 {
     const int taps = chunk->table->taps;
-#define JOIN(branches, taps) join_many(chunk, branches, taps, group, first)
-    if (chunk->table->reading == BP_BRANCHES)
-        taps == 4 ? JOIN(true, 4) : taps == 6 ? JOIN(true, 6) : JOIN(true, taps);
+    const bool cubics = chunk->table->reading == BP_CUBICS;
+#define JOIN(taps) cubics ? join_many(true, taps, chunk, group, first) : join_many(false, taps, chunk, group, first)
+    if (taps == 4)
+        JOIN(4);
+    else if (taps == 6)
+        JOIN(6);
+    else if (taps == 8)
+        JOIN(8);
     else
-        taps == 4 ? JOIN(false, 4) : taps == 6 ? JOIN(false, 6) : taps == 8 ? JOIN(false, 8) : JOIN(false, taps);
+        JOIN(taps);
 }
 
 void TABLES_MAKE(const struct row_tables *tables, double offset, struct chunk *chunk)
@@ -356,6 +372,6 @@ void TABLES_MAKE(const struct row_tables *tables, double offset, struct chunk *c
     tabulate(chunk);
     if (table->taps == 2)
         join_two(chunk);
-    for (int g = chunk->begin; table->taps > 2 && g < chunk->end; g++)
+    for (int g = chunk->begin; table->taps > 2 && table->reading != BP_BRANCHES && g < chunk->end; g++)
         join_group(chunk, &groups[g], groups[g].first - first);
 }
