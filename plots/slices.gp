@@ -33,7 +33,7 @@ set output output
 array kind[|lines|]
 array member[|lines|]
 do for [l = 1:|lines|] {
-    kind[l] = family_number(algorithms[l]) > 0 ? family_number(algorithms[l]) : (l - 1)%17 + 1
+    kind[l] = family_number(algorithms[l]) > 0 ? family_number(algorithms[l]) : (l - 1)%|family_names| + 1
     member[l] = 0
     do for [k = 1:l - 1] { if (kind[k] == kind[l]) { member[l] = member[l] + 1 } }
 }
@@ -45,7 +45,7 @@ point(l) = kind[l] == 1 ? 0 : family_open[kind[l]]
 set multiplot title title font ",16" offset 0,-0.4
 set label 1 footer at screen 0.5, screen 14.0/height center font ",10" textcolor "#606060"
 set xrange [-extent:extent]
-set xtics tic_step(1.5*extent)
+set xtics tic_apart(1.5*extent, 2*extent, panel_width)
 do for [p = 1:|panels|] {
     left = 105 + ((p - 1)%columns)*(panel_width + 95)
     top = 85 + ((p - 1)/columns)*(panel_height + 115)

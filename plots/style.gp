@@ -42,6 +42,13 @@ set key Left reverse samplen 4 spacing 1.2
 tic_decade(extent) = 10**floor(log10(extent/5.0))
 tic_step(extent) = tic_decade(extent)*(extent < 7.5*tic_decade(extent) ? 1 : extent < 15*tic_decade(extent) ? 2 : \
     extent < 37.5*tic_decade(extent) ? 5 : 10)
+# As many digits as tell tics apart: six, more far from the origin.
+tic_digits(farthest, step) = farthest < 1e5*step ? 6 : ceil(log10(farthest/step)) + 1
+tic_format(low, high, step) = sprintf("%%.%dg", tic_digits(abs(low) > abs(high) ? abs(low) : abs(high), step))
+# tic_step(extent), or the next longer one where its labels would collide on an axis of `span` drawn on so many pixels.
+tic_decimals(step) = step < 1 ? ceil(-log10(step) - 1e-9) : 0
+tic_collide(step, span, pixels) = span/step*(8*(tic_decimals(step) + 3) + 12) > pixels
+tic_apart(extent, span, pixels) = tic_step(tic_collide(tic_step(extent), span, pixels) ? 2*extent : extent)
 # Decimal tics at 1, 2 and 5 of each decade.
 log_tics = "do for [decade = -9:15] { set xtics add (10.0**decade, 2*10.0**decade, 5*10.0**decade) }"
 # The same on a short axis of powers of ten, which would have one label or none: eval short_tics(least, most).

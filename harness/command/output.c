@@ -10,6 +10,7 @@
 #include "measure/provenance.h"
 #include "scene/matfile.h"
 #include "show/plot.h"
+#include "show/table.h"
 
 bool has_extension(const char *path, const char *extension)
 {
@@ -72,8 +73,11 @@ void image_describe(const struct image *image)
     const struct sharpness sharpness = metrics_sharpness(image);
     for (int p = 0; p < image->patch_count && p < 8; p++) {
         const struct grid *g = &image->patches[p];
-        printf("  %d x %d pixels, x %g to %g m, r %g to %g m%s\n", g->x_count, g->r_count, g->x_first,
-               g->x_first + (g->x_count - 1) * g->x_step, g->r_first, g->r_first + (g->r_count - 1) * g->r_step,
+        const double x_last = g->x_first + (g->x_count - 1) * g->x_step;
+        const double r_last = g->r_first + (g->r_count - 1) * g->r_step;
+        printf("  %d x %d pixels, x %s to %s m, r %s to %s m%s\n", g->x_count, g->r_count,
+               cell_place(g->x_first, g->x_step).text, cell_place(x_last, g->x_step).text,
+               cell_place(g->r_first, g->r_step).text, cell_place(r_last, g->r_step).text,
                g->angle_rad != 0 ? " (turned axes)" : "");
     }
     if (image->patch_count > 8)
@@ -82,7 +86,8 @@ void image_describe(const struct image *image)
         printf("  all pixels are zero\n");
         return;
     }
-    printf("  peak %.4g at (%g, %g) m", brightest.magnitude, brightest.x, brightest.r);
+    printf("  peak %.4g at (%s, %s) m", brightest.magnitude, cell_place(brightest.x, image->patches[0].x_step).text,
+           cell_place(brightest.r, image->patches[0].r_step).text);
     if (isfinite(sharpness.peak_over_median))
         printf(", %.4g times the median", sharpness.peak_over_median);
     printf("\n");

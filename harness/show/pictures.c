@@ -116,7 +116,7 @@ void pictures_draw(struct pictures *pictures)
     for (int t = 0; lines && texts && titles && t < scene->point_count; t++) {
         if (!target_is_imaged(pictures, t))
             continue;
-        snprintf(texts[panels], sizeof texts[panels], "T%d: x = %g m, r = %g m", t + 1, scene->targets[t].x,
+        snprintf(texts[panels], sizeof texts[panels], "T%d: x = %.10g m, r = %.10g m", t + 1, scene->targets[t].x,
                  scene->targets[t].r);
         titles[panels] = texts[panels];
         panels++;

@@ -99,18 +99,26 @@ static float block_db(const struct layer *layer, int patch, const struct drawn_a
     return (float)decibels(layer, largest);
 }
 
+/* What is taken off the places of an axis, which gnuplot's matrices hold as floats: 0 unless these lose pixels. */
+static double axis_origin(const struct drawn_axis *axis)
+{
+    const double farthest = fmax(fabs(axis->first), fabs(axis->first + axis->count * axis->step));
+    return farthest > 0x1p18 * axis->step ? axis->first : 0;
+}
+
 /* As gnuplot's `binary matrix`. */
 static void matrix_write(FILE *file, const struct layer *layer, int patch)
 {
     const struct grid *grid = &layer->image->patches[patch];
     struct drawn_axis x = axis_reduce(grid->x_first, grid->x_step, grid->x_count);
     struct drawn_axis r = axis_reduce(grid->r_first, grid->r_step, grid->r_count);
+    const double x_first = x.first - axis_origin(&x), r_first = r.first - axis_origin(&r);
     float row[PIXELS_MAX + 1] = {(float)x.count};
     for (int j = 0; j < x.count; j++)
-        row[j + 1] = (float)(x.first + j * x.step);
+        row[j + 1] = (float)(x_first + j * x.step);
     fwrite(row, sizeof *row, (size_t)x.count + 1, file);
     for (int i = 0; i < r.count; i++) {
-        row[0] = (float)(r.first + i * r.step);
+        row[0] = (float)(r_first + i * r.step);
         for (int j = 0; j < x.count; j++)
             row[j + 1] = block_db(layer, patch, &r, i, &x, j);
         fwrite(row, sizeof *row, (size_t)x.count + 1, file);
@@ -137,7 +145,8 @@ static void curves_write(FILE *file, const struct layer *layer, int patch)
     for (int c = 0; c < curves; c++) {
         for (int k = 0; k < places; k++) {
             const double place = rows ? grid->x_first + k * grid->x_step : grid->r_first + k * grid->r_step;
-            fprintf(file, "%.9g %.6g\n", place, decibels(layer, pixel_power(layer, patch, rows ? c : k, rows ? k : c)));
+            fprintf(file, "%.15g %.6g\n", place,
+                    decibels(layer, pixel_power(layer, patch, rows ? c : k, rows ? k : c)));
         }
         fprintf(file, "\n\n");
     }
@@ -183,7 +192,7 @@ static enum status targets_write(const struct plot *plot, const struct image_pic
         const double x = share(at.x, grid->x_first, grid->x_step, grid->x_count);
         const double r = share(at.y, grid->r_first, grid->r_step, grid->r_count);
         if (x >= 0 && x <= 1 && r >= 0 && r <= 1) {
-            fprintf(file, "%.9g %.9g T%d\n", at.x, at.y, t + 1);
+            fprintf(file, "%.15g %.15g T%d\n", at.x, at.y, t + 1);
             ++*written;
         }
     }
@@ -192,10 +201,12 @@ static enum status targets_write(const struct plot *plot, const struct image_pic
     return good ? STATUS_OK : plot_file_failed(path);
 }
 
-/* The numbers of a patch: its edges in m, how many curves, how many targets. */
+/* The numbers of a patch: its edges in m, what is taken off its places, how many curves, how many targets. */
 static void numbers_write(FILE *preamble, const struct grid *grid, int patch, int target_count)
 {
     const enum shape shape = shape_of(grid);
+    const struct drawn_axis x = axis_reduce(grid->x_first, grid->x_step, grid->x_count);
+    const struct drawn_axis r = axis_reduce(grid->r_first, grid->r_step, grid->r_count);
     const struct {
         const char *array;
         double value;
@@ -204,6 +215,8 @@ static void numbers_write(FILE *preamble, const struct grid *grid, int patch, in
         {"x_high", grid->x_first + (grid->x_count - 0.5) * grid->x_step},
         {"r_low", grid->r_first - 0.5 * grid->r_step},
         {"r_high", grid->r_first + (grid->r_count - 0.5) * grid->r_step},
+        {"x_origin", axis_origin(&x)},
+        {"r_origin", axis_origin(&r)},
         {"curves", shape == SHAPE_ROWS      ? grid->r_count
                    : shape == SHAPE_COLUMNS ? grid->x_count
                                             : 0},
@@ -235,8 +248,9 @@ static void title_write(const struct plot *plot, const struct image_picture *pic
 
 static enum status image_write(const struct plot *plot, const struct image_picture *picture)
 {
-    static const char *const arrays[] = {"panels", "differences", "targets", "shapes",       "x_low", "x_high",
-                                         "r_low",  "r_high",      "curves",  "target_count", "turned"};
+    static const char *const arrays[] = {"panels", "differences",  "targets", "shapes",   "x_low",
+                                         "x_high", "r_low",        "r_high",  "x_origin", "r_origin",
+                                         "curves", "target_count", "turned"};
     struct layer image = {.image = picture->image}, difference = {picture->image, picture->reference, 0};
     long not_finite, ignored;
     const int shown = image.image->patch_count < PANELS_MAX ? image.image->patch_count : PANELS_MAX;

@@ -43,6 +43,14 @@ struct cell cell_time(double seconds)
     return seconds < 0.9995 ? cell_significant(1e3 * seconds, " ms") : cell_significant(seconds, " s");
 }
 
+struct cell cell_place(double place, double step)
+{
+    const double digits = place == 0 ? 0 : ceil(log10(fabs(place) / step)) + 2;
+    struct cell cell;
+    snprintf(cell.text, sizeof cell.text, "%.*g", (int)fmin(fmax(digits, 6), 15), place);
+    return cell;
+}
+
 /* Algorithms that sum pairs are rated by pairs, the others by operations. */
 static struct cell cell_rate(const struct measurement *row)
 {

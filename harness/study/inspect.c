@@ -3,10 +3,13 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
+#include "algorithm.h"
 #include "condition.h"
 #include "data/echo_data.h"
 #include "scene/matfile.h"
+#include "show/table.h"
 
 enum { PIXELS_MOST = 1000 };
 
@@ -59,6 +62,17 @@ static double azimuth_resolution(const struct acquisition *a, double range)
     return half_angle > 0 ? fmax(wavelength / 4, wavelength / (4 * sin(half_angle))) : wavelength;
 }
 
+/* How much too coarse a grid's step is, by the condition of this name. */
+static double step_over_resolution(const struct acquisition *a, const struct grid *grid, const char *name)
+{
+    struct condition list[CONDITIONS_SCENE];
+    const int count = conditions_scene(&(struct problem){a, 1, grid, PRECISION_DOUBLE}, list);
+    for (int k = 0; k < count; k++)
+        if (strcmp(list[k].name, name) == 0)
+            return list[k].value;
+    return 1;
+}
+
 bool inspect_grid(const struct acquisition *a, struct grid *grid, bool *cut)
 {
     struct straight_track track;
@@ -97,9 +111,16 @@ bool inspect_grid(const struct acquisition *a, struct grid *grid, bool *cut)
         r_low = fmax(nearest, range_resolution);
         r_high = farthest;
     }
-    axis_make(x_low, x_high, resolution_x, &grid->x_first, &grid->x_step, &grid->x_count, cut);
-    axis_make(r_low, r_high, resolution_r, &grid->r_first, &grid->r_step, &grid->r_count, cut);
-    return grid_check(grid, "grid") == STATUS_OK && grid_meets_records(a, 1, grid, "grid") == STATUS_OK;
+    for (int round = 0; round < 2; round++) {
+        *cut = false;
+        axis_make(x_low, x_high, resolution_x, &grid->x_first, &grid->x_step, &grid->x_count, cut);
+        axis_make(r_low, r_high, resolution_r, &grid->r_first, &grid->r_step, &grid->r_count, cut);
+        if (grid_check(grid, "grid") != STATUS_OK || grid_meets_records(a, 1, grid, "grid") != STATUS_OK)
+            return false;
+        resolution_x = fmin(resolution_x, 2 * grid->x_step / step_over_resolution(a, grid, "pixel_x"));
+        resolution_r = fmin(resolution_r, 2 * grid->r_step / step_over_resolution(a, grid, "pixel_r"));
+    }
+    return true;
 }
 
 static void samples_print(const struct acquisition *a, const double complex *samples)
@@ -126,13 +147,22 @@ static void samples_print(const struct acquisition *a, const double complex *sam
         printf("             NO IMAGINARY PART: is this passband? Complex baseband is needed (docs/baseband.md)\n");
 }
 
+static void vector_print(const struct vector *v, double step)
+{
+    printf("(%s, %s, %s)", cell_place(v->x, step).text, cell_place(v->y, step).text, cell_place(v->z, step).text);
+}
+
 static void track_print(const struct acquisition *a)
 {
     struct straight_track track;
     const struct vector *first = &a->tx[0], *last = &a->tx[a->pings - 1], *v = &a->velocity[0];
     const bool straight = acquisition_is_straight(a, &track);
-    printf("track        from (%g, %g, %g) to (%g, %g, %g) m; ", first->x, first->y, first->z, last->x, last->y,
-           last->z);
+    const double wavelength = a->sound_speed / a->fc;
+    printf("track        from ");
+    vector_print(first, wavelength);
+    printf(" to ");
+    vector_print(last, wavelength);
+    printf(" m; ");
     if (straight && a->pings > 1)
         printf("uniform and straight, %g m from ping to ping\n", track.spacing);
     else
@@ -167,11 +197,13 @@ static void grid_print(const struct acquisition *a)
     struct grid grid;
     bool cut;
     if (!inspect_grid(a, &grid, &cut)) {
-        printf("grid         none suits this geometry by itself; name the places that you know\n");
+        printf("grid         none found: no pixel (x, r, 0) beside the track is at a range that all records hold. "
+               "Check t0 (s)\n"
+               "             and the positions (m): of a map projection, take off an origin near the track\n");
         return;
     }
-    printf("grid to try  --grid=%.6g:%g:%d,%.6g:%g:%d\n", grid.x_first, grid.x_step, grid.x_count, grid.r_first,
-           grid.r_step, grid.r_count);
+    printf("grid to try  --grid=%s:%g:%d,%s:%g:%d\n", cell_place(grid.x_first, grid.x_step).text, grid.x_step,
+           grid.x_count, cell_place(grid.r_first, grid.r_step).text, grid.r_step, grid.r_count);
     if (cut)
         printf("             (the middle of what was recorded: at most %d pixels along each axis)\n", PIXELS_MOST);
 }

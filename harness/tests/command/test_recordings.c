@@ -108,6 +108,36 @@ static void assert_holds(const char *text, const char *part)
         fail_msg("no '%s' in: %s", part, text);
 }
 
+/* Coordinates of a map projection keep their digits, and what `info` proposes is fine enough for `image`. */
+static void far_recordings_are_told(void **state)
+{
+    (void)state;
+    static const char *const simulate[ARGUMENTS_MAX] = {"simulate", "far.cfg", "-o", "far.mat"};
+    static const char *const info[ARGUMENTS_MAX] = {"info", "far.mat"};
+    char grid[200];
+    text_write("far.cfg", "base = {\n@include \"study/quick.cfg\"\n};\nx_offset = 4000123.4;\n"
+                          "track = { speed = 0.0; spacing = 0.15; pri = 0.064; pings = 80; x_first = -6.0; };\n"
+                          "beam = { kind = \"rect\"; truncation = \"none\"; };\n"
+                          "array = { receivers = 3; pitch = 0.1; };\n");
+    program_good(simulate);
+    char *told = program_output(info);
+    assert_holds(told, "track        from (4000117.4, 0, 0) to (4000129.25, 0, 0) m");
+    const char *proposed = strstr(told, "--grid=");
+    assert_non_null(proposed);
+    snprintf(grid, sizeof grid, "%.*s", (int)strcspn(proposed, "\n"), proposed);
+    free(told);
+    const char *const image[ARGUMENTS_MAX] = {"image", "--echoes", "far.mat", grid, "-a", "bp_sinc", "-o", "far.png"};
+    struct outcome outcome = program_run(image);
+    assert_int_equal(outcome.status, 0);
+    assert_null(strstr(outcome.err, "pixel_"));
+    double x, r;
+    const char *peak = strstr(outcome.out, "peak ");
+    assert_non_null(peak);
+    assert_int_equal(sscanf(peak, "peak %*f at (%lf, %lf) m", &x, &r), 2);
+    assert_true(fabs(x - 4000123.4) < 0.05 && fabs(r - 20) < 0.05);
+    outcome_free(&outcome);
+}
+
 /* What `info` proposes is imaged, drawn, shown again and told. */
 static void files_are_told_and_shown(void **state)
 {
@@ -311,6 +341,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(file_measures_as_the_scene_does),
         cmocka_unit_test(echoes_alone_are_a_scene),
+        cmocka_unit_test(far_recordings_are_told),
         cmocka_unit_test(files_are_told_and_shown),
         cmocka_unit_test(content_tells_scenes_apart),
         cmocka_unit_test(mixtures_are_refused),

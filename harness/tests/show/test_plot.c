@@ -9,73 +9,7 @@
 #include "show/plot.h"
 #include "show/plot_queue.h"
 #include "tests/assertions.h"
-
-/* SASBENCH_ROOT, the repository, comes from the build. */
-static const char *const real_plots = SASBENCH_ROOT "/plots";
-
-static char folder[4000]; /* temporary: pictures, and our own scripts */
-
-static void path_in(char path[4096], const char *name)
-{
-    snprintf(path, 4096, "%s/%s", folder, name);
-}
-
-static int set_up(void **state)
-{
-    (void)state;
-    const char *temporary = getenv("TMPDIR");
-    snprintf(folder, sizeof folder, "%s/it's a sasbench-test-XXXXXX", temporary && *temporary ? temporary : "/tmp");
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    char command[4096];
-    snprintf(command, sizeof command, "rm -r \"%.4000s\"", folder);
-    return system(command);
-}
-
-static void text_to_file(const char *name, const char *text)
-{
-    char path[4096];
-    path_in(path, name);
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    fputs(text, file);
-    fclose(file);
-}
-
-static void file_to_text(const char *name, char *text, size_t size)
-{
-    char path[4096];
-    path_in(path, name);
-    FILE *file = fopen(path, "r");
-    assert_non_null(file);
-    text[fread(text, 1, size - 1, file)] = '\0';
-    fclose(file);
-}
-
-static void assert_png(const char *name)
-{
-    char start[10] = "";
-    file_to_text(name, start, 9);
-    assert_memory_equal(start, "\x89PNG\r\n\x1a\n", 8);
-}
-
-static void assert_drawn(enum status status)
-{
-    if (status != STATUS_OK)
-        fail_msg("%s", status_message());
-}
-
-/* Nothing temporary is left behind. */
-static void assert_nothing_left(void)
-{
-    char command[4096];
-    snprintf(command, sizeof command, "ls -A \"%.4000s\" | grep -q '^[.]'", folder);
-    assert_int_not_equal(system(command), 0);
-}
+#include "tests/show/plot_fixture.h"
 
 static void image_is_drawn(void **state)
 {
@@ -130,6 +64,36 @@ static void image_data_are_right(void **state)
     assert_string_equal(text, "it's a_title (1 pixel not finite) (first 8 of 9 patches)\n8\n"
                               "2700 1.000 2698.000 10.000 11.000\n"
                               "1 301.000 11.000 -20.00\nimage -0.5 2699.5 9.75 11.25\n0 60 0\n</svg>\n");
+    image_free(&image);
+    assert_nothing_left();
+}
+
+/* Pixels of 2 cm at the coordinates of a map projection: places and labels keep their digits. */
+static void far_pixels_are_told_apart(void **state)
+{
+    (void)state;
+    text_to_file("image.gp", "set print output\n"
+                             "stats panels[1] binary matrix using 1 name 'sx' nooutput\n"
+                             "stats panels[1] binary matrix using 2 name 'sr' nooutput\n"
+                             "print sprintf('%.3f %.3f', x_origin[1] + sx_min, x_origin[1] + sx_max)\n"
+                             "print sprintf('%.3f %.3f', r_origin[1] + sr_min, r_origin[1] + sr_max)\n"
+                             "print '</svg>'\n");
+    const struct grid patch = {4000003, 0.02, 101, 500019.5, 0.02, 51, 0};
+    struct image image;
+    assert_int_equal(image_allocate(1, &patch, PRECISION_DOUBLE, &image), STATUS_OK);
+    ((double complex *)image.pixels[0])[25 * 101 + 50] = 1;
+    char path[4096], text[400];
+    const struct image_picture picture = {.image = &image, .title = "a"};
+    path_in(path, "variables.svg");
+    assert_drawn(plot_image(path, folder, &picture));
+    file_to_text("variables.svg", text, sizeof text);
+    assert_string_equal(text, "4000003.000 4000005.000\n500019.500 500020.500\n</svg>\n");
+    path_in(path, "far.svg");
+    assert_drawn(plot_image(path, real_plots, &picture));
+    static char whole[400000];
+    file_to_text("far.svg", whole, sizeof whole);
+    assert_non_null(strstr(whole, "4000003.5"));
+    assert_non_null(strstr(whole, "500020.5"));
     image_free(&image);
     assert_nothing_left();
 }
@@ -231,11 +195,30 @@ static void families_are_told_by_name(void **state)
     whole[fread(whole, 1, sizeof whole - 1, families)] = '\0';
     fclose(families);
     for (int k = 0; algorithms[k]; k++) {
-        char quoted[80];
-        snprintf(quoted, sizeof quoted, "\"%s\"", algorithms[k]->name);
-        if (!strstr(whole, quoted))
-            fail_msg("%s is not in family_names of plots/families.gp", algorithms[k]->name);
+        char row[80];
+        snprintf(row, sizeof row, "\n%s ", algorithms[k]->name);
+        if (!strstr(whole, row))
+            fail_msg("%s has no row in plots/families.gp", algorithms[k]->name);
     }
+}
+
+/* Labels of short slices are farther apart: "-0.004" is longer than "-1". */
+static void labels_do_not_collide(void **state)
+{
+    (void)state;
+    char script[5000], path[4096], text[400];
+    snprintf(script, sizeof script,
+             "plots = '%s'; name = output; format = 'svg'; load plots.'/style.gp'; set print name\n"
+             "print tic_apart(1.5*0.00465, 2*0.00465, 500), tic_apart(1.5*1.2, 2*1.2, 500), tic_step(1.5*0.00465)\n"
+             "print tic_format(0, 80, 10), ' ', tic_format(4000003, 4000005, 0.5)\nprint '</svg>'\n",
+             real_plots);
+    text_to_file("slices.gp", script);
+    path_in(path, "variables.svg");
+    const char *panel = "panel";
+    const struct slice_line line = {.label = "reference"};
+    assert_drawn(plot_slices(path, folder, &(struct slices_picture){"title", NULL, 1, 1, &panel, &line}));
+    file_to_text("variables.svg", text, sizeof text);
+    assert_string_equal(text, "0.002 0.5 0.001\n%.6g   %.8g\n</svg>\n");
 }
 
 /* A file for each line, without what lies beyond those that are shown; an empty line has one, too. */
@@ -292,6 +275,7 @@ static void failures_are_told(void **state)
     assert_int_equal(plot_image(path, folder, &(struct image_picture){.image = &image, .title = "a"}), STATUS_FAILED);
     assert_non_null(strstr(status_message(), "old.png"));
     assert_non_null(strstr(status_message(), "nonsense"));
+    assert_non_null(strstr(status_message(), ": line 1: invalid command"));
     char text[10];
     file_to_text("old.png", text, sizeof text);
     assert_string_equal(text, "old");
@@ -434,14 +418,16 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(image_is_drawn),
         cmocka_unit_test(image_data_are_right),
+        cmocka_unit_test(far_pixels_are_told_apart),
         cmocka_unit_test(differences_curves_and_targets),
         cmocka_unit_test(slices_are_drawn),
         cmocka_unit_test(families_are_told_by_name),
+        cmocka_unit_test(labels_do_not_collide),
         cmocka_unit_test(slice_data_are_right),
         cmocka_unit_test(failures_are_told),
         cmocka_unit_test(cut_pictures_are_told),
         cmocka_unit_test(queued_pictures_are_drawn),
         cmocka_unit_test(hanging_gnuplot_is_stopped),
     };
-    return cmocka_run_group_tests_name("plot", tests, set_up, tear_down);
+    return cmocka_run_group_tests_name("plot", tests, plot_set_up, plot_tear_down);
 }
