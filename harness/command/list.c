@@ -1,5 +1,6 @@
 /* The commands `list` and `info`: what the algorithm tables say of themselves. */
 #include <stdio.h>
+#include <unistd.h>
 
 #include "command/task.h"
 #include "scene/matfile.h"
@@ -77,7 +78,7 @@ enum status command_info(const struct task *task)
 {
     const struct algorithm *algorithm = algorithm_find(task->names[0]);
     struct spec spec;
-    if (has_extension(task->names[0], ".mat"))
+    if (has_extension(task->names[0], ".mat") || (!algorithm && access(task->names[0], F_OK) == 0))
         return file_info(task->names[0]);
     if (!algorithm) {
         enum status status = spec_parse(task->names[0], &spec); /* says what is accepted */

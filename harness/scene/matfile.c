@@ -116,6 +116,13 @@ static enum status check_echo_shapes(const char *path, const struct variable *v)
         {PULSE, pulse_fits},
         {AREA, area_fits},
     };
+    const size_t *tx = v[TX].dims, *rx = v[RX].dims;
+    if ((rx[1] != receivers || rx[2] != pings) && tx[0] == 3 && rx[0] == 3 && rx[2] == tx[1] && tx[2] == 1) {
+        return status_set(
+            STATUS_INVALID,
+            "%s: variable `samples` is [%zu x %zu x %zu], `tx` and `rx` have %zu receivers and %zu pings; %s is needed",
+            path, samples->dims[0], receivers, pings, rx[1], tx[1], echo_variables[SAMPLES].accepted);
+    }
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
         const struct wanted *wanted = &echo_variables[shapes[i].variable];
         const size_t *dims = v[shapes[i].variable].dims;
@@ -188,6 +195,10 @@ static enum status check_echo_values(const char *path, const struct variable *v)
     enum status status = check_echo_scalars(path, v);
     if (status != STATUS_OK) {
         return status;
+    }
+    if (scalar_or(&v[COMPRESSED], 1) == 0 && !v[PULSE].values) {
+        return status_set(STATUS_INVALID, "%s: variable `pulse` is missing; raw echoes (compressed 0) need %s", path,
+                          echo_variables[PULSE].accepted);
     }
     size_t count = variable_count(samples);
     for (size_t i = 0; i < count; i++) {
@@ -305,6 +316,13 @@ enum status echo_file_read(const char *path, struct acquisition *acquisition, st
         status = acquisition_fill(path, variables, acquisition);
     }
     if (status == STATUS_OK) {
+        const double wavelength = acquisition->sound_speed / acquisition->fc;
+        status = positions_check(path, echo_variables[TX].name, &variables[TX], wavelength);
+        if (status == STATUS_OK) {
+            status = positions_check(path, echo_variables[RX].name, &variables[RX], wavelength);
+        }
+    }
+    if (status == STATUS_OK) {
         *echoes = (struct echoes){acquisition, PRECISION_DOUBLE, variables[SAMPLES].values, 0};
         variables[SAMPLES].values = NULL;
     } else {
@@ -316,13 +334,14 @@ enum status echo_file_read(const char *path, struct acquisition *acquisition, st
 
 enum status echo_file_is(const char *path, bool *is)
 {
-    struct wanted format = echo_variables[FORMAT];
-    struct variable variable;
-    format.is_optional = true;
-    enum status status = variables_read(path, &format, 1, &variable);
-    *is = status == STATUS_OK && variable.values;
+    /* What lacks its format but has `t0` is one, whose reader says what is missing. */
+    struct wanted either[] = {echo_variables[FORMAT], echo_variables[T0]};
+    struct variable variables[2];
+    either[0].is_optional = either[1].is_optional = true;
+    enum status status = variables_read(path, either, 2, variables);
+    *is = status == STATUS_OK && (variables[0].values || variables[1].values);
     if (status == STATUS_OK) {
-        variables_free(&variable, 1);
+        variables_free(variables, 2);
     }
     return status;
 }

@@ -173,7 +173,8 @@ static bool write_fully(int descriptor, const void *data, size_t size)
 static enum status check_claim(const char *path, const struct wanted *wanted, const matvar_t *matvar, size_t file_size,
                                struct variable *variable)
 {
-    *variable = (struct variable){.is_complex = matvar->isComplex != 0, .dims = {1, 1, 1}};
+    *variable = (struct variable){
+        .is_complex = matvar->isComplex != 0, .is_single = matvar->class_type == MAT_C_SINGLE, .dims = {1, 1, 1}};
     size_t bytes = 16; /* at most, for one number */
     for (int i = 0; i < matvar->rank; i++) {
         if (i < 3) {

@@ -1,6 +1,7 @@
 /* Variables of MATLAB files once they are read (matvar.h). */
 #include "scene/matvar.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -46,6 +47,23 @@ enum status variables_check(const char *path, const struct wanted *wanted, int c
                               wanted[i].name, variable->dims[0], variable->dims[1], variable->dims[2],
                               wanted[i].accepted);
         }
+    }
+    return STATUS_OK;
+}
+
+enum status positions_check(const char *path, const char *name, const struct variable *positions, double wavelength)
+{
+    double farthest = 0;
+    for (size_t i = 0; positions->is_single && i < variable_count(positions); i++) {
+        farthest = fmax(farthest, fabs(creal(positions->values[i])));
+    }
+    const double raster = farthest > 0 ? ldexp(1, ilogb(farthest) - 23) : 0;
+    if (50 * raster > wavelength) {
+        return status_set(
+            STATUS_INVALID,
+            "%s: variable `%s` is of class single, whose values at %.7g m lie %.3g wavelengths apart; class "
+            "double is needed, or a nearer origin, so that these are at most 0.02",
+            path, name, farthest, raster / wavelength);
     }
     return STATUS_OK;
 }

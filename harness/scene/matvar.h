@@ -20,9 +20,9 @@ enum { WANTED_MAX = 20 };
 
 /* A variable as read: complex doubles whatever its class, text as character codes, MATLAB's order. */
 struct variable {
-    bool is_complex;
-    size_t dims[3];         /* trailing dimensions of 1 filled in; never 0 */
-    double complex *values; /* 64-byte aligned, free(); NULL: the file does not have it */
+    bool is_complex, is_single; /* of MATLAB's class single */
+    size_t dims[3];             /* trailing dimensions of 1 filled in; never 0 */
+    double complex *values;     /* 64-byte aligned, free(); NULL: the file does not have it */
 };
 
 /* Read the wanted variables of a file (count <= WANTED_MAX) into variables[count], freed with variables_free. Other
@@ -32,6 +32,9 @@ enum status variables_read(const char *path, const struct wanted *wanted, int co
 void variables_free(struct variable *variables, int count);
 /* What the table of wanted variables says of them: there, real, a scalar. Errors: STATUS_INVALID. */
 enum status variables_check(const char *path, const struct wanted *wanted, int count, const struct variable *variables);
+/* Of class single, positions lie on a raster that is coarser the farther they are from the origin, all in m. Errors:
+   STATUS_INVALID where it is more than a fiftieth of a wavelength. */
+enum status positions_check(const char *path, const char *name, const struct variable *positions, double wavelength);
 /* [rows x columns] to [columns x rows]. Errors: STATUS_FAILED without memory. */
 enum status variable_transpose(struct variable *variable);
 size_t variable_count(const struct variable *variable);

@@ -32,12 +32,13 @@ static const struct wrong {
     {"samples", MAT_C_DOUBLE, N, M, P, true, NAN, "`samples` at (1, 1, 1) is nan"},
     {"samples", MAT_C_DOUBLE, N, M, P, true, INFINITY, "`samples` at (1, 1, 1) is inf"},
     {"samples", MAT_C_DOUBLE, 1, M, P, true, 1, "samples is 1; at least 2"},
-    {"samples", MAT_C_DOUBLE, N, P, M, true, 1, "samples [5 x 3 x 2]"},
+    {"samples", MAT_C_DOUBLE, N, P, M, true, 1,
+     "`samples` is [5 x 3 x 2], `tx` and `rx` have 2 receivers and 3 pings; a complex array [N x M x P]"},
     {"compressed", MAT_C_EMPTY, 0, 0, 0, false, 0, "`compressed` is missing"},
     {"compressed", MAT_C_DOUBLE, 1, 1, 1, false, 2, "`compressed` is 2; 0 (raw) or 1"},
     {"compressed", MAT_C_DOUBLE, 1, 1, 1, false, NAN, "`compressed` is nan"},
     {"compressed", MAT_C_DOUBLE, 1, 1, 1, false, 1, "pulse has 4 samples; compressed echoes have none"},
-    {"pulse", MAT_C_EMPTY, 0, 0, 0, false, 0, "pulse has 0 samples; raw echoes need"},
+    {"pulse", MAT_C_EMPTY, 0, 0, 0, false, 0, "`pulse` is missing; raw echoes (compressed 0) need a complex array"},
     {"pulse", MAT_C_DOUBLE, 2, 2, 1, true, 1, "`pulse` is [2 x 2 x 1]"},
     {"pulse", MAT_C_DOUBLE, 4, 1, 1, true, 0, "energy of pulse is 0"},
     {"fs", MAT_C_DOUBLE, 1, 1, 1, false, 10e3, "at most fs = 10000 Hz"},
@@ -119,6 +120,38 @@ static void each_wrong_variable_is_refused(void **state)
         wrong_write(mat, &wrongs[k], values, text);
         Mat_Close(mat);
         assert_echoes_invalid(wrongs[k].says);
+    }
+}
+
+/* At 4000 km float's numbers are 0.25 m apart, at 8 m 5e-7 m: the wavelength is 15 mm. */
+static void coarse_positions_are_refused(void **state)
+{
+    (void)state;
+    const enum mat_ft versions[] = {MAT_FT_MAT5, MAT_FT_MAT73};
+    static const char *const names[] = {"tx", "rx"};
+    for (int i = 0; i < 8; i++) {
+        const size_t receivers = i & 2 ? M : 1;
+        const bool is_far = i & 4;
+        float places[3 * M * P] = {0};
+        for (size_t k = 0; k < 3 * receivers * P; k += 3)
+            places[k] = is_far ? 4e6f : 8;
+        mat_t *mat = file_begin(versions[i & 1], true, names[receivers == M]);
+        const struct mat_values tx = {"tx", MAT_C_SINGLE, MAT_T_SINGLE, {3, P, 1}, places, NULL};
+        const struct mat_values rx = {"rx", MAT_C_SINGLE, MAT_T_SINGLE, {3, M, P}, places, NULL};
+        variable_add(mat, receivers == M ? &rx : &tx, true);
+        Mat_Close(mat);
+        struct acquisition a;
+        struct echoes echoes;
+        const enum status status = echo_file_read(path, &a, &echoes);
+        assert_int_equal(status, is_far ? STATUS_INVALID : STATUS_OK);
+        if (is_far) {
+            assert_non_null(strstr(status_message(), names[receivers == M]));
+            assert_non_null(
+                strstr(status_message(), "is of class single, whose values at 4000000 m lie 16.7 wavelengths"));
+        } else {
+            acquisition_free(&a);
+            echoes_free(&echoes);
+        }
     }
 }
 
@@ -360,10 +393,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_wrong_variable_is_refused), cmocka_unit_test(other_files_are_refused),
-        cmocka_unit_test(other_formats_are_named),        cmocka_unit_test(absurd_sizes_are_refused),
-        cmocka_unit_test(truncated_files_are_refused),    cmocka_unit_test(damaged_files_do_no_harm),
-        cmocka_unit_test(wrong_images_are_refused),       cmocka_unit_test(unwritable_places_are_refused),
-        cmocka_unit_test(full_disk_is_noticed),
+        cmocka_unit_test(coarse_positions_are_refused),   cmocka_unit_test(other_formats_are_named),
+        cmocka_unit_test(absurd_sizes_are_refused),       cmocka_unit_test(truncated_files_are_refused),
+        cmocka_unit_test(damaged_files_do_no_harm),       cmocka_unit_test(wrong_images_are_refused),
+        cmocka_unit_test(unwritable_places_are_refused),  cmocka_unit_test(full_disk_is_noticed),
     };
     return cmocka_run_group_tests(tests, directory_make, directory_remove);
 }
