@@ -1,5 +1,6 @@
 #include "common/isa.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,4 +28,15 @@ enum isa isa_choose(void)
         if (strcmp(wanted, names[isa]) == 0)
             return isa;
     return best;
+}
+
+enum status isa_check(void)
+{
+    const char *wanted = getenv("SASBENCH_ISA");
+    bool known = !wanted || !*wanted;
+    for (size_t k = 0; !known && k < sizeof names / sizeof *names; k++)
+        known = strcmp(wanted, names[k]) == 0;
+    return known ? STATUS_OK
+                 : status_set(STATUS_INVALID, "SASBENCH_ISA=%s: accepted are baseline, v3 and v4, or to leave it unset",
+                              wanted);
 }

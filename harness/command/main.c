@@ -9,13 +9,14 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "command/task.h"
+#include "common/isa.h"
 #include "data/number.h"
 #include "data/shown_text.h"
 #include "data/suggestion.h"
 #include "data/supervisor.h"
-#include "command/task.h"
-#include "measure/provenance.h"
 #include "data/temporary.h"
+#include "measure/provenance.h"
 #include "show/table.h"
 
 struct command {
@@ -317,10 +318,10 @@ int main(int argc, char **argv)
     signal(SIGXFSZ, SIG_IGN); /* a file beyond the limit is an error where it is written */
     temporary_guard();
     const bool versioned = strcmp(name, "--version") == 0;
-    enum status status = STATUS_OK;
-    if (strcmp(name, "help") == 0 && argc > 2)
+    enum status status = isa_check();
+    if (status == STATUS_OK && strcmp(name, "help") == 0 && argc > 2)
         status = command_find(argv[2], &command);
-    else if (!helped && !versioned)
+    else if (status == STATUS_OK && !helped && !versioned)
         status = command_find(name, &command);
     if (status == STATUS_OK && command && !helped)
         status = parse(command, argc - 1, argv + 1, &task, &helped);

@@ -206,11 +206,24 @@ static void bad_places_are_refused(void **state)
     assert_all_refused(places, COUNT_OF(places));
 }
 
+static void unknown_instruction_sets_are_refused(void **state)
+{
+    (void)state;
+    static const char *const list[ARGUMENTS_MAX] = {"list"};
+    static const char *const says[SAYS_MAX] = {"SASBENCH_ISA=avx2", "baseline, v3 and v4"};
+    setenv("SASBENCH_ISA", "avx2", 1);
+    assert_true(is_refused(list, says));
+    setenv("SASBENCH_ISA", "v3", 1);
+    free(program_output(list));
+    unsetenv("SASBENCH_ISA");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bad_usage_is_refused),
         cmocka_unit_test(bad_places_are_refused),
+        cmocka_unit_test(unknown_instruction_sets_are_refused),
     };
     return cmocka_run_group_tests(tests, inputs_make, folder_remove);
 }
