@@ -1,5 +1,7 @@
 /* Command lines that are refused: each with exit status 2 and one line that names what is wrong and what is accepted;
    nothing is written. */
+#include <stdlib.h>
+
 #include "tests/command/program.h"
 
 /* --- Bad command lines ----------------------------------------------------------------------------------------- */
