@@ -343,7 +343,7 @@ static void test_speckle_sweep_is_resumed_and_shows_the_laws(void **state)
     assert_true(strncmp(first, second, kept) == 0);
     struct results results;
     assert_int_equal(results_read(path_of("out/measurements.csv"), &results), STATUS_OK);
-    assert_int_equal(results.csv.row_count, 1 + 7 + 7);
+    assert_int_equal(results.csv.row_count, 1 + 7 + 7 + 6);
     results_free(&results);
 
     /* Zero padding is of first order in 1/K; linear upsampling stops at a floor that beta = 4 nearly reaches, and
