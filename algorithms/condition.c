@@ -298,8 +298,8 @@ struct condition condition_ghost(const struct acquisition *a, double spacing)
                               1e-3,
                               false,
                               SEVERITY_WARN,
-                              "how far the ping spacing is from half the array or a whole part of it, which makes "
-                              "ghosts (relative)",
+                              "gaps or overlaps from ping to ping, which make ghosts: the spacing over half the array, "
+                              "or over a whole part of it, less 1",
                               ""};
     condition_cure_add(&ghost, "pings %.5g m apart in place of %.5g m", even, fabs(spacing));
     if (speed > 0)

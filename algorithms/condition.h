@@ -52,9 +52,10 @@ int conditions_general(const struct problem *problem, struct condition *list, in
    have. */
 int conditions_sampled(const struct problem *problem, struct condition *list, int room);
 
-enum { CONDITIONS_SCENE = 7 };
+enum { CONDITIONS_SCENE = 8 };
 /* Fill `list` with what the scene must fulfil whichever algorithm images it, and return the number: units, pixels as
-   fine as the image's resolution, pixels, patches and beam within the records. All of them warn. */
+   fine as the image's resolution, pixels and patches within the records, pixels within the beam, the beam within the
+   records. All of them warn. */
 int conditions_scene(const struct problem *problem, struct condition list[CONDITIONS_SCENE]);
 
 /* The ghosts of a straight track of several receivers, `spacing` m from ping to ping. */

@@ -12,11 +12,12 @@ enum {
 
 /* Of the shortest an element, a pitch or a pixel is, and the widest a band: what lies beyond was typed in kHz. */
 static const double WAVELENGTH_MOST = 10, CARRIER_MOST = 2000;
-static const double CUT_PIXELS_MOST = 20; /* %: a swath may end with the records */
+static const double CUT_PIXELS_MOST = 20; /* %: a swath may end with the records, or with the track */
 static const double CUT_MOST = 0.05;      /* of a place's echoes, before it counts as cut */
 
 struct survey {
     double places, unmet; /* pixels, by the lattice */
+    double unseen;        /* pixels outside of the beam of every ping, where it is known */
     double cut;           /* pixels met of whose echoes from inside the beam the records hold not all */
     int patches_unmet;
     struct steps {
@@ -64,7 +65,7 @@ static void spread_add(const struct acquisition *a, const struct grid *g, struct
 
 /* Of a patch. */
 struct counts {
-    int places, met, cut;
+    int places, met, unseen, cut;
 };
 
 static void steps_add(double step, int count, double least, double greatest, struct steps *steps)
@@ -100,6 +101,7 @@ static void place_survey(const struct acquisition *a, const struct grid *g, stru
     }
     counts->places++;
     counts->met += met;
+    counts->unseen += beam_known && seen == 0;
     counts->cut += met && beam_known && cut > CUT_MOST * seen;
     steps_add(g->x_step, g->x_count, spread.least[0], spread.greatest[0], &survey->x);
     steps_add(g->r_step, g->r_count, spread.least[1], spread.greatest[1], &survey->r);
@@ -130,7 +132,7 @@ static struct survey survey_make(const struct problem *problem)
     for (int k = 0; k < problem->patch_count; k++) {
         const struct grid *g = &problem->patches[k];
         const int rows = nodes_of(g->r_count, most), columns = nodes_of(g->x_count, most);
-        struct counts counts = {0, 0, 0};
+        struct counts counts = {0, 0, 0, 0};
         for (int n = 0; n < rows * columns; n++)
             place_survey(a, g,
                          grid_point(g, node(n / columns, rows, g->r_count), node(n % columns, columns, g->x_count)),
@@ -138,6 +140,7 @@ static struct survey survey_make(const struct problem *problem)
         const double pixels = (double)g->r_count * g->x_count;
         survey.places += pixels;
         survey.unmet += pixels * (counts.places - counts.met) / counts.places;
+        survey.unseen += pixels * counts.unseen / counts.places;
         survey.cut += pixels * counts.cut / counts.places;
         if (counts.met == 0) {
             for (int n = 0; n < 4; n++)
@@ -163,7 +166,7 @@ static double longest_step(const struct problem *problem)
     return longest;
 }
 
-enum { WAVELENGTH, NARROW_BAND, PIXEL_X, PIXEL_R, PIXELS_MET, PATCHES_MET, BEAM_IN_RECORD };
+enum { WAVELENGTH, NARROW_BAND, PIXEL_X, PIXEL_R, PIXELS_MET, PATCHES_MET, PIXELS_SEEN, BEAM_IN_RECORD };
 
 int conditions_scene(const struct problem *problem, struct condition list[CONDITIONS_SCENE])
 {
@@ -186,6 +189,10 @@ int conditions_scene(const struct problem *problem, struct condition list[CONDIT
                         "a grid within the records"},
         [PATCHES_MET] = {"patches_met", survey.patches_unmet, 0, false, SEVERITY_WARN,
                          "the number of patches that no record meets", "patches within the records"},
+        [PIXELS_SEEN] = {"pixels_seen", 100 * survey.unseen / survey.places, CUT_PIXELS_MOST, false, SEVERITY_WARN,
+                         "how many of the pixels lie outside the beam of every ping, so that they show side lobes at "
+                         "most (%)",
+                         "a grid beside the track"},
         [BEAM_IN_RECORD] = {"beam_in_record", 100 * survey.cut / survey.places, CUT_PIXELS_MOST, false, SEVERITY_WARN,
                             "how many of the pixels lose echoes from inside the beam at the ends of the records (%)",
                             "longer records, or a grid farther from their ends"},
@@ -196,6 +203,8 @@ int conditions_scene(const struct problem *problem, struct condition list[CONDIT
                                condition_at_most(k == PIXEL_X ? survey.x.most : survey.r.most));
     for (int k = PIXELS_MET; k <= PATCHES_MET; k++)
         condition_cure_add(&all[k], ", which hold ranges of %.4g to %.4g m", survey.nearest, survey.farthest);
+    condition_cure_add(&all[PIXELS_SEEN], ", which runs from x = %.4g to %.4g m%s", a->tx[0].x, a->tx[a->pings - 1].x,
+                       a->echo_squint != 0 ? ", the beam squinted" : "");
     for (int k = 0; k < CONDITIONS_SCENE; k++)
         list[k] = all[k];
     return CONDITIONS_SCENE;

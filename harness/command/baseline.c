@@ -9,6 +9,7 @@ enum status command_baseline(const struct task *task)
     const char *path = task->output ? task->output : BASELINE_PATH;
     enum status status = baseline_write(path);
     if (status == STATUS_OK)
-        printf("%s is written; review it with git diff.\n", path);
+        printf("%s is written; %s.\n", path,
+               task->output ? "hold it against another by compare OLD NEW" : "review it with git diff");
     return status;
 }

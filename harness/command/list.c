@@ -33,7 +33,7 @@ enum status command_list(const struct task *task)
 {
     (void)task;
     for (int k = 0; algorithms[k]; k++) {
-        printf("%-12s %s\n%-12s %s; ", algorithms[k]->name, algorithms[k]->summary, "", algorithms[k]->reference);
+        printf("%-13s %s\n%-13s %s; ", algorithms[k]->name, algorithms[k]->summary, "", algorithms[k]->reference);
         print_traits(algorithms[k]);
     }
     return STATUS_OK;

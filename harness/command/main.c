@@ -163,7 +163,7 @@ static enum status threads_parse(const char *text)
 
 static enum status option_unknown(const struct command *command, const char *option, const char *fault)
 {
-    char accepted[160] = "", meant[80];
+    char accepted[160] = "", meant[80] = ";";
     struct suggestion suggestion = suggestion_begin(option + strspn(option, "-"));
     for (const struct option *o = long_options; o->name; o++)
         if (strchr(command->options, o->val)) {
@@ -171,7 +171,8 @@ static enum status option_unknown(const struct command *command, const char *opt
             size_t used = strlen(accepted);
             snprintf(accepted + used, sizeof accepted - used, "%s--%s", used ? ", " : "", o->name);
         }
-    suggestion_text(&suggestion, meant, sizeof meant);
+    if (suggestion.best)
+        snprintf(meant, sizeof meant, "; did you mean '--%s'?", suggestion.best);
     return status_set(STATUS_INVALID, "%s: option '%s' %s%s accepted: %s", command->name, option, fault, meant,
                       *accepted ? accepted : "none");
 }
@@ -283,6 +284,7 @@ static enum status command_find(const char *name, const struct command **found)
 /* One line, whatever the arguments that it quotes hold. */
 static void print_error(const char *message)
 {
+    fflush(stdout); /* what it is about stands ahead of it where both go to one place */
     fputs("sasbench: ", stderr);
     shown_write(stderr, message);
     fputc('\n', stderr);

@@ -7,6 +7,7 @@
 #include "data/number.h"
 #include "data/text_file.h"
 #include "study/batch.h"
+#include "study/check.h"
 #include "study/machine_rates.h"
 #include "study/planned.h"
 
@@ -65,9 +66,10 @@ static enum status plan_scene(const struct task *task, const struct scene *scene
 {
     struct planned planned;
     struct text_file file;
+    printf("%s\n", scene->name);
+    check_warnings(stdout, scene);
     enum status status = planned_make(scene, budget, &planned);
     if (status == STATUS_OK) {
-        printf("%s\n", scene->name);
         planned_print(stdout, &planned);
     }
     if (status == STATUS_OK && task->output)
@@ -77,9 +79,11 @@ static enum status plan_scene(const struct task *task, const struct scene *scene
         status = text_file_close(&file, STATUS_OK);
     }
     if (status == STATUS_OK && planned_precision(&planned) < 0)
-        status = status_set(STATUS_FAILED,
-                            "plan: nothing images %s within an error of %.3g and %.3g MB; the least predicted is %.3g",
-                            scene->name, budget->error, budget->bytes / 1e6, planned.choices[PRECISION_DOUBLE].least);
+        status =
+            status_set(STATUS_FAILED,
+                       "plan: nothing images %s within an error of %.3g and %.6g MB; the least predicted is %.3g (the "
+                       "exact image is `reference` with precision=double)",
+                       scene->name, budget->error, budget->bytes / 1e6, planned.choices[PRECISION_DOUBLE].least);
     planned_free(&planned);
     return status;
 }

@@ -148,13 +148,18 @@ enum status header_check(const struct csv *csv, const struct row_kind *kind)
     while (kind->columns[count].name && kind->columns[count].since <= version)
         count++;
     for (int k = 0; k < count || k < csv->column_count; k++) {
-        const char *needed = k < count ? kind->columns[k].name : "no more";
-        const char *found = k < csv->column_count ? csv->columns[k] : "missing";
-        if (strcmp(needed, found) != 0)
+        const char *found = k < csv->column_count ? csv->columns[k] : NULL;
+        if (csv->column_count == 0)
+            return status_set(STATUS_INVALID, "%s: no line names the columns; %d names from '%s' on are needed",
+                              csv->path, count, kind->columns[0].name);
+        if (k >= count)
             return status_set(STATUS_INVALID,
-                              "%s: the header line names '%.60s' as column %d; '%s' is needed (another "
-                              "version?)",
-                              csv->path, found, k + 1, needed);
+                              "%s: column %d is '%.60s'; version %d, which the first line says, has %d columns",
+                              csv->path, k + 1, found, version, count);
+        if (!found || strcmp(kind->columns[k].name, found) != 0)
+            return status_set(STATUS_INVALID, "%s: column %d is %s%.60s%s; '%s' is needed (another version?)",
+                              csv->path, k + 1, found ? "'" : "", found ? found : "missing", found ? "'" : "",
+                              kind->columns[k].name);
     }
     return STATUS_OK;
 }

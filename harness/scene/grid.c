@@ -155,6 +155,6 @@ enum status grid_meets_records(const struct acquisition *acquisition, int patch_
     }
     return status_set(STATUS_INVALID,
                       "%s: no pixel meets any record: delays of about %.6g to %.6g s, must lie in "
-                      "the records' %.6g to %.6g s after emission",
+                      "the records' %.6g to %.6g s after emission (ranges in m, fs in Hz)",
                       place, search.shortest_s, search.longest_s, first_s, last_s);
 }

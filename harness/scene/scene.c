@@ -27,7 +27,7 @@ static enum status file_read(struct reading *reading, const char *scene_director
         place_format(reading, (unsigned)config_error_line(&config), place, sizeof place);
         status = status_set(STATUS_INVALID,
                             "%s: %s; must be libconfig text, each key once in its group, arrays of "
-                            "one type",
+                            "one type, numbers with a decimal point",
                             place, config_error_text(&config));
     }
     config_destroy(&config);

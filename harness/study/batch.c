@@ -15,6 +15,7 @@
 #include "show/table.h"
 #include "data/paths.h"
 #include "data/supervisor.h"
+#include "study/check.h"
 #include "study/plans.h"
 
 /* One scene while its algorithms run. */
@@ -276,22 +277,6 @@ static bool pictures_missing(const struct batch *batch, const struct scene *scen
            || (images > 0 && scene->point_count > 0 && !picture_exists(batch->directory, scene->name, NULL));
 }
 
-/* What is known to be wrong with the scene, and what any image of it shows, before the work begins. */
-static void warnings_print(const struct scene *scene)
-{
-    const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, PRECISION_DOUBLE};
-    struct condition list[SCENE_CONDITIONS + CONDITIONS_MAX];
-    char text[500];
-    int count = scene_conditions(scene, list);
-    count += conditions_sampled(&problem, list + count, CONDITIONS_MAX);
-    for (int k = 0; k < count; k++)
-        if (list[k].severity == SEVERITY_WARN && !condition_holds(&list[k])) {
-            outcome_warning(&list[k], text, sizeof text);
-            table_warning(stdout, text);
-        }
-    fflush(stdout);
-}
-
 /* A patch costs back projection little and range migration as much as the whole swath: the heading says which it is. */
 static void heading_print(const struct scene *scene)
 {
@@ -309,7 +294,7 @@ static void heading_print(const struct scene *scene)
     snprintf(what, sizeof what, "%s, %.2g %% of the recorded ranges, %s echoes", size,
              100 * fmin(imaged_m / recorded_m, 1), a->compressed ? "compressed" : "raw");
     table_scene(stdout, scene->name, what);
-    warnings_print(scene);
+    check_warnings(stdout, scene);
 }
 
 enum status batch_scene(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs)

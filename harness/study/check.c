@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "common/delay.h"
+#include "measure/outcome.h"
 #include "measure/session.h"
 #include "show/table.h"
 
@@ -62,6 +63,21 @@ static bool condition_print(FILE *stream, const struct condition *c)
     if (!one_line)
         table_text(stream, 11, words);
     return holds || c->severity != SEVERITY_REFUSE;
+}
+
+void check_warnings(FILE *stream, const struct scene *scene)
+{
+    const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, PRECISION_DOUBLE};
+    struct condition list[SCENE_CONDITIONS + CONDITIONS_MAX];
+    char text[500];
+    int count = scene_conditions(scene, list);
+    count += conditions_sampled(&problem, list + count, CONDITIONS_MAX);
+    for (int k = 0; k < count; k++)
+        if (list[k].severity == SEVERITY_WARN && !condition_holds(&list[k])) {
+            outcome_warning(&list[k], text, sizeof text);
+            table_warning(stream, text);
+        }
+    fflush(stream);
 }
 
 void check_scene(FILE *stream, const struct scene *scene)

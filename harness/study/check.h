@@ -8,6 +8,8 @@
 #include "measure/spec.h"
 #include "scene/scene.h"
 
+/* Print what is known to be wrong with a scene, and what any image of it shows, before any work. */
+void check_warnings(FILE *stream, const struct scene *scene);
 /* Print the conditions of the scene by itself. */
 void check_scene(FILE *stream, const struct scene *scene);
 

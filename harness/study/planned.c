@@ -75,15 +75,28 @@ bool planned_nearest(const struct choice *choice, int k)
     return nearest;
 }
 
+/* A reason that several algorithms share is told once. */
 static void rejected_print(FILE *stream, const struct choice *choice)
 {
+    const char *said = "", *by = "";
     for (int k = 0; k < choice->count; k++) {
         const struct candidate *c = &choice->list[k];
         if (planned_nearest(choice, k)) {
             char text[600], name[CANDIDATE_NAME];
+            const size_t own = strlen(c->algorithm->name);
+            const char *reason = c->reason;
+            if (strncmp(reason, c->algorithm->name, own) == 0 && strncmp(reason + own, ": ", 2) == 0)
+                reason += own + 2;
             candidate_name(c, name);
-            snprintf(text, sizeof text, "%s: %s", name, c->reason);
+            if (strcmp(reason, said) == 0)
+                snprintf(text, sizeof text, "%s: as %s", name, by);
+            else
+                snprintf(text, sizeof text, "%s: %s", name, reason);
             table_text(stream, 2, text);
+            if (strcmp(reason, said) != 0) {
+                said = reason;
+                by = c->algorithm->name;
+            }
         }
     }
 }
@@ -130,6 +143,23 @@ static void line_print(void *stream, const char *text)
     table_text(stream, 2, text);
 }
 
+/* Does the image keep up with the platform? Said of one grid: patches are only places of an image. */
+static void passage_print(FILE *stream, const struct scene *scene, double seconds)
+{
+    const struct grid *g = &scene->patches[0];
+    const double speed = fabs(scene->acquisition.velocity[0].x);
+    double least = INFINITY, most = -INFINITY;
+    for (int k = 0; k < 4; k++) {
+        const double x = grid_point(g, k / 2 * (g->r_count - 1), k % 2 * (g->x_count - 1)).x;
+        least = fmin(least, x);
+        most = fmax(most, x);
+    }
+    if (scene->patch_count == 1 && most > least && speed > 0)
+        fprintf(stream, "The platform passes the %s of the image along its track in %s, %.3g times the imaging time.\n",
+                cell_significant(most - least, " m").text, cell_time((most - least) / speed).text,
+                (most - least) / speed / seconds);
+}
+
 void planned_print(FILE *stream, const struct planned *planned)
 {
     const int chosen = planned_precision(planned), precision = chosen >= 0 ? chosen : PRECISION_DOUBLE;
@@ -157,12 +187,13 @@ void planned_print(FILE *stream, const struct planned *planned)
         fprintf(stream, "\nLeft out, and the error that it adds:\n");
         planned_left_out(&problem, best, line_print, stream);
         candidate_name(best, name);
-        fprintf(stream, "\nChosen: %s%s%s, some %s, %s of memory\n", name,
+        fprintf(stream, "\nChosen: %s%s%s, about %s, %s of memory\n", name,
                 precision == PRECISION_FLOAT ? ""
                 : *best->settings            ? ","
                                              : ":",
                 precision == PRECISION_FLOAT ? "" : "precision=double", cell_time(best->seconds).text,
                 cell_significant(1e-6 * best->bytes, " MB").text);
+        passage_print(stream, scene, best->seconds);
     }
 }
 

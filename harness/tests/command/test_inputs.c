@@ -31,6 +31,8 @@ static const struct {
     {"fc = 150e3", "fc = -150e3", {"key 'sonar.fc' is -150000", "a number > 0 Hz"}},
     {"fc = 150e3", "fc = 1e999", {"key 'sonar.fc' is inf", "a number > 0 Hz"}},
     {"fc = 150e3", "fc = nan", {"bad.cfg:1:", "must be libconfig text"}},
+    {"fc = 150e3", "fc = 150,5e3", {"bad.cfg:1:", "numbers with a decimal point"}},
+    {"fc = 150e3; bandwidth = 15e3; fs = 30e3", "fc = 150; bandwidth = 15; fs = 30", {"meets any record", "fs in Hz"}},
     {"fc = 150e3", "fc = \"high\"", {"key 'sonar.fc' is \"high\"", "a number > 0 Hz"}},
     {"fc = 150e3", "fc = 1e15", {"bad.cfg", "phase error"}},
     {"fs = 30e3", "fs = 10e3", {"key 'sonar.fs' is 10000", "at least sonar.bandwidth (15000 Hz)"}},

@@ -28,7 +28,7 @@ static const struct refusal usages[] = {
     {{"rnu"}, {"'rnu' is not a command; did you mean 'run'?", "accepted: list"}},
     {{"simulat", "study/quick"}, {"did you mean 'simulate'?"}},
     {{"run", "study/quik", "-o", "r"}, {"study/quik.cfg: there is no such scene", "did you mean 'study/quick'?"}},
-    {{"run", "study/quick", "--algoritm", "bp_sinc"}, {"'--algoritm'", "did you mean 'algorithm'?"}},
+    {{"run", "study/quick", "--algoritm", "bp_sinc"}, {"'--algoritm'", "did you mean '--algorithm'?"}},
     {{"info", "bp_sicn"}, {"unknown algorithm 'bp_sicn'; did you mean 'bp_sinc'?"}},
     {{"two\nlines"}, {"'two?lines' is not a command"}},
     {{"--threads"}, {"'--threads' is not a command"}},

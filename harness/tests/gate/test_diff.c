@@ -295,7 +295,7 @@ static void malformed_and_mixed_files_are_refused(void **state)
         {"", {"new.csv:1", "# sasbench measurements 1"}},
         {"scene,algorithm\n", {"new.csv:1", "the first line is ''", "is needed"}},
         {"# sasbench measurements 3\nscene\n", {"new.csv:1", "sasbench measurements 3", "is needed"}},
-        {"# sasbench measurements 1\nscene,algorithm,settings\n", {"new.csv", "'settings' as column 3", "'options'"}},
+        {"# sasbench measurements 1\nscene,algorithm,settings\n", {"new.csv", "column 3 is 'settings'", "'options'"}},
         {HEAD "s,a,\n", {"new.csv:4", "3 fields", "25"}},
         {HEAD ROW "\"s,a", {"new.csv:5", "never ends"}},
         {HEAD "s,a,,float,2,,ok,,,x,,,,,,,,,,,,,,,\n", {"new.csv:4", "plan_s is 'x'", "a number"}},

@@ -42,7 +42,14 @@ static void test_foreign_files(void **state)
     file_write(targets_path, "w", "# sasbench targets 1\n" PROVENANCE TARGET_HEADER);
     check_refused("measurements.csv:9: runs is 'x'");
     file_write(measurements_path, "w", "# sasbench measurements 2\n" PROVENANCE "scene,algorithm\n");
-    check_refused("measurements.csv: the header line");
+    check_refused("measurements.csv: column 3 is missing; 'options' is needed");
+    struct results read;
+    file_write(measurements_path, "w", "# sasbench measurements 2\n" PROVENANCE);
+    assert_int_equal(results_read(measurements_path, &read), STATUS_INVALID);
+    assert_non_null(strstr(status_message(), "no line names the columns; 30 names from 'scene' on are needed"));
+    file_write(measurements_path, "w", "# sasbench measurements 1\n" PROVENANCE MEASUREMENT_HEADER);
+    assert_int_equal(results_read(measurements_path, &read), STATUS_INVALID);
+    assert_non_null(strstr(status_message(), "column 26 is 'run_q1_s'; version 1, which the first line says, has 25"));
     remove(measurements_path);
     results_folder_close(open_ok("c1", 2));
     file_write(targets_path, "w", "notes\n");

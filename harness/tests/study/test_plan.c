@@ -1,8 +1,10 @@
 /* Planning: the fastest choice, refusals with the best that there is, and what the command prints and writes. */
+#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "command/task.h"
 #include "data/csv.h"
@@ -126,6 +128,48 @@ static void rates_are_kept(void **state)
     rates_set(&before);
 }
 
+/* What `plan` prints of a scene, for the caller to free. */
+static char *plan_printed(const char *scene, const char *error)
+{
+    const char *names[] = {scene};
+    struct task task = {.names = names, .name_count = 1, .error = error};
+    fflush(stdout);
+    const int kept = dup(STDOUT_FILENO), file = open(path_of("printed"), O_CREAT | O_TRUNC | O_WRONLY, 0600);
+    assert_true(kept >= 0 && file >= 0 && dup2(file, STDOUT_FILENO) >= 0);
+    const enum status status = command_plan(&task);
+    fflush(stdout);
+    assert_true(dup2(kept, STDOUT_FILENO) >= 0 && close(kept) == 0 && close(file) == 0);
+    assert_int_equal(status, STATUS_OK);
+    char *text = support_read("printed");
+    assert_non_null(text);
+    return text;
+}
+
+/* What is wrong with a scene is told ahead of the choice; of one that is right, whether the image keeps up with the
+   platform: it passes 1.0 m at 2.5 m/s. A reason of several algorithms is told once. */
+static void scene_is_judged(void)
+{
+    support_write("wrong.cfg", "base = {\n@include \"study/quick.cfg\"\n};\n"
+                               "track = { speed = -2.5; pri = 0.128; pings = 18; x_first = -5.0; };\n"
+                               "image = { angle = 5; x = { first = -0.5; step = 0.02; count = 51; };\n"
+                               "r = { first = 19.5; step = 0.025; count = 41; }; };\n");
+    char *text = plan_printed(path_of("wrong.cfg"), "1e-2");
+    const char *chosen = strstr(text, "candidate"), *ghost = strstr(text, "condition ghost"),
+               *unseen = strstr(text, "condition pixels_seen");
+    assert_true(chosen && ghost && unseen && ghost < chosen && unseen < chosen);
+    assert_null(strstr(text, "rma_lbf: condition"));
+    assert_non_null(strstr(text, "rma_delay:terms=1: condition axes"));
+    assert_non_null(strstr(text, ": as rma_delay\n"));
+    free(text);
+    support_write("right.cfg", "base = {\n@include \"study/quick.cfg\"\n};\n"
+                               "image = { x = { first = -0.5; step = 0.02; count = 51; };\n"
+                               "r = { first = 19.5; step = 0.025; count = 41; }; };\n");
+    text = plan_printed(path_of("right.cfg"), "1e-2");
+    assert_null(strstr(text, "warning"));
+    assert_non_null(strstr(text, "The platform passes the 1 m of the image along its track in 400 ms, "));
+    free(text);
+}
+
 static void command_writes(void **state)
 {
     (void)state;
@@ -146,6 +190,7 @@ static void command_writes(void **state)
     assert_int_equal(chosen, 2); /* one in each precision */
     assert_true(csv.row_count > 60);
     csv_free(&csv);
+    scene_is_judged();
     task.error = "-1";
     assert_int_equal(command_plan(&task), STATUS_INVALID);
     task.error = NULL;
