@@ -51,7 +51,7 @@ do for [k = 1:3] {
     if (k == 3) { set logscale x }
     set xrange [low:*]
     if (k == 2) { set xtics 0.2 } else { set xtics auto }
-    if (k > 1) { set format y "" }
+    if (k > 1) { set format y ""; set ytics scale 0 }
     if (k == 3) { set key at screen 0.5,80.0/height center top } else { unset key }
     plot for [e = 1:2] $rows using (low):0:(low):(strstrt(strcol(2), engine[e]) ? column(k + 2) : NaN):($0 - 0.35):($0 + 0.35): \
         ytic(k == 1 ? 1 : 6) with boxxyerror linecolor rgb colour[e] title engine[e]." engine"

@@ -39,7 +39,7 @@ do for [picture = 1:pictures] {
     if (cost == 2) { set arrow 1 from control_max,graph 0 to control_max,graph 1 nohead dashtype 3 linewidth 1.5 }
     plot front using 1:2 with lines linetype 1 linewidth 7 title "Pareto front", \
         for [k = 1:|series|] $rows index k - 1 using cost:4 with linespoints \
-            linecolor rgb family_colour[family[k]] linewidth (precise[k] ? 1 : 1.8) dashtype 1 + (member[k] > 1) \
+            linecolor rgb family_colour[family[k]] linewidth (precise[k] ? 1 : 1.8) dashtype 1 + (member[k] - 1)%5 \
             pointtype (precise[k] ? family_open[family[k]] : family_filled[family[k]]) \
             pointsize (precise[k] ? 1 : 1.4) title (precise[k] ? "" : series[k]), \
         for [k = 1:cost == 2 ? |series| : 0] $rows index k - 1 using 2:4:9:10 with xerrorbars pointtype 0 \

@@ -33,7 +33,7 @@ set multiplot
 set tmargin at screen 1 - 50.0/height
 set bmargin at screen 205.0/height
 set key at screen 0.5,115.0/height center top maxrows 4 samplen 4 font ",12"
-set lmargin at screen 90.0/width
+set lmargin at screen 125.0/width
 set rmargin at screen 0.49
 set logscale xy
 set xlabel "pixels of the image"
@@ -46,10 +46,10 @@ plot for [k = 1:|timed|] csv using (column("columns")*column("rows")): \
     linewidth (strstrt(timed[k], "degree 5") ? 1 : 2) title timed[k]
 unset label 1
 set lmargin at screen 0.58
-set rmargin at screen 1 - 25.0/width
+set rmargin at screen 1 - 40.0/width
 set format x "%g"
 set logscale x 2
-set key at graph 0.03,0.97 left top maxrows 4
+set key at graph 0.97,0.03 right bottom maxrows 4    # below the curves, whose axis begins at a power of ten
 set xlabel "setting"
 set ylabel "memory of the plan (MiB)"
 set title "memory, 400 x 700 pixels"

@@ -45,7 +45,7 @@ do for [picture = 1:pictures] {
         }
         plot for [k = 1:|series|] $rows index k - 1 using 2:(shown(abs(column(4 + panel) - exact[panel]))) \
             with linespoints linecolor rgb family_colour[family[k]] \
-            linewidth (precise[k] ? 1 : 1.8) dashtype 1 + (member[k] > 1) \
+            linewidth (precise[k] ? 1 : 1.8) dashtype 1 + (member[k] - 1)%5 \
             pointtype (precise[k] ? family_open[family[k]] : family_filled[family[k]]) pointsize (precise[k] ? 1 : 1.4) \
             title (precise[k] ? "" : series[k]), \
             for [k = 1:|series|] $rows index k - 1 using 2:(shown(abs(column(4 + panel) - exact[panel]))):9:10 \

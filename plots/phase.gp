@@ -23,11 +23,11 @@ x_low = 0
 x_high = 0
 largest = 0
 do for [b = 1:|data|] {
-    stats data[b] using 1 name "x" nooutput
-    stats data[b] using ($2 == $2 ? abs($2) : 0) name "y" nooutput
-    if (x_min < x_low) { x_low = x_min }
-    if (x_max > x_high) { x_high = x_max }
-    if (y_max > largest) { largest = y_max }
+    stats data[b] using 1 name "place" nooutput         # which forgets all variables place_*
+    stats data[b] using ($2 == $2 ? abs($2) : 0) name "error" nooutput
+    if (place_min < x_low) { x_low = place_min }
+    if (place_max > x_high) { x_high = place_max }
+    if (error_max > largest) { largest = error_max }
 }
 array member[|lines|]
 do for [l = 1:|lines|] {

@@ -48,7 +48,7 @@ do for [picture = 1:pictures] {
         for [once = 1:has_rules] linear_floor with lines linewidth 1 dashtype 5 linecolor rgb "#000000" \
             title "linear's floor, pi^2 (B/fs)^2/(12 sqrt 5)", \
         for [n = 1:|rated|] k = rated[n] $rows index k - 1 using 1:4 with linespoints \
-            linecolor rgb family_colour[family[k]] linewidth (precise[k] ? 1 : 1.8) dashtype 1 + (member[k] > 1) \
+            linecolor rgb family_colour[family[k]] linewidth (precise[k] ? 1 : 1.8) dashtype 1 + (member[k] - 1)%5 \
             pointtype (precise[k] ? family_open[family[k]] : family_filled[family[k]]) \
             pointsize (precise[k] ? 2.2 : 1.4) title (precise[k] ? "" : series[k]), \
         for [once = 1:has_slopes] $slopes using 1:2 with lines linewidth 1 dashtype 1 linecolor rgb "#000000" \
@@ -70,7 +70,7 @@ do for [picture = 1:pictures] {
         set bmargin at screen 1 - 820.0/height
         plot reference_islr with lines linetype 1, \
             for [n = 1:|rated|] k = rated[n] $rows index k - 1 using 1:6 with linespoints \
-                linecolor rgb family_colour[family[k]] linewidth (precise[k] ? 1 : 1.8) dashtype 1 + (member[k] > 1) \
+                linecolor rgb family_colour[family[k]] linewidth (precise[k] ? 1 : 1.8) dashtype 1 + (member[k] - 1)%5 \
                 pointtype (precise[k] ? family_open[family[k]] : family_filled[family[k]]) \
                 pointsize (precise[k] ? 2.2 : 1.4)
     }

@@ -168,6 +168,18 @@ static void slices_are_drawn(void **state)
     assert_nothing_left();
 }
 
+static void phase_errors_are_drawn(void **state)
+{
+    (void)state;
+    double place[] = {-2, 0, 1}, error[] = {0.1, 0, 0.2};
+    const struct slice_line line = {"LBF", place, error, 3, NULL, "rma_lbf", 0.15};
+    const char *panel = "r = 50 m";
+    char path[4096];
+    path_in(path, "phase.png");
+    assert_drawn(plot_phase(path, real_plots, &(struct slices_picture){"title", "here", 1, 1, &panel, &line}));
+    assert_png("phase.png");
+}
+
 /* An algorithm has its number by its name, whatever its settings. */
 static void families_are_told_by_name(void **state)
 {
@@ -421,6 +433,7 @@ int main(void)
         cmocka_unit_test(far_pixels_are_told_apart),
         cmocka_unit_test(differences_curves_and_targets),
         cmocka_unit_test(slices_are_drawn),
+        cmocka_unit_test(phase_errors_are_drawn),
         cmocka_unit_test(families_are_told_by_name),
         cmocka_unit_test(labels_do_not_collide),
         cmocka_unit_test(slice_data_are_right),
