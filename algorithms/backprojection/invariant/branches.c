@@ -3,7 +3,7 @@
 #include "backprojection/farrow.h"
 #include "backprojection/invariant/chunk.h"
 
-enum { BRANCHES_MOST = FARROW_MOST + 1 };
+enum { BRANCHES_MOST = FARROW_MOST + 1, BLOCK_VECTORS = 320 / VECTOR_BYTES };
 
 /* Residues that read the same sample in one shift: polynomials of its branches, a vector of columns at a time whose
    branches stay in registers for all of them. */
@@ -49,20 +49,18 @@ INLINE void add_run(int branches, const struct run *run, int branch_stride, size
         add_vectors(branches, 1, run, branch_stride, stride, j);
 }
 
-/* All shifts and columns of the groups. */
-INLINE void sum_branches(int branches, const struct chunk *shared)
+/* A block's columns [j, end), all shifts of the groups. */
+INLINE void sum_block(int branches, const struct chunk *chunk, const struct bp_row_scratch *scratch, int j, int end)
 {
-    const struct chunk own_chunk = *shared, *chunk = &own_chunk;
-    const struct bp_row_scratch own_scratch = *chunk->scratch, *scratch = &own_scratch;
-    const int pings = chunk->raster->pings, columns = chunk->raster->residue_columns;
-    const int origin = scratch->groups[chunk->begin].first;
+    const int pings = chunk->raster->pings, origin = scratch->groups[chunk->begin].first, *offset = scratch->offset;
     for (int g = chunk->begin; g < chunk->end; g++) {
         const struct bp_row_group group = scratch->groups[g];
         for (int i = group.from; i < group.to; i++) {
             const int first = group.first - origin + i * group.residues, last = first + group.residues;
-            const int shift = group.begin + i, *offset = scratch->offset;
-            struct run run = {.begin = shift < 0 ? -shift / LANES * LANES : 0,
-                              .end = pings - shift < columns ? pings - shift : columns};
+            const int shift = group.begin + i, low = -shift > j ? -shift : j;
+            struct run run = {.begin = j + (low - j) / LANES * LANES, .end = pings - shift < end ? pings - shift : end};
+            if (low >= run.end)
+                continue;
             for (int e = first; e < last; e += run.count) {
                 run.count = 1;
                 while (e + run.count < last && offset[e + run.count] == offset[e])
@@ -78,6 +76,17 @@ INLINE void sum_branches(int branches, const struct chunk *shared)
             }
         }
     }
+}
+
+/* All columns, in blocks as wide as each other whose sums stay in the cache. */
+INLINE void sum_branches(int branches, const struct chunk *shared)
+{
+    const struct chunk own_chunk = *shared, *chunk = &own_chunk;
+    const struct bp_row_scratch own_scratch = *chunk->scratch, *scratch = &own_scratch;
+    const int columns = chunk->raster->residue_columns, vectors = (columns + LANES - 1) / LANES;
+    const int parts = (vectors + BLOCK_VECTORS - 1) / BLOCK_VECTORS, width = (vectors + parts - 1) / parts * LANES;
+    for (int j = 0; j < columns; j += width)
+        sum_block(branches, chunk, scratch, j, columns < j + width ? columns : j + width);
 }
 
 /* Of each count of branches a function of its own. */

@@ -57,9 +57,10 @@
                    of the block: one region
                      group of residues                                       sum_block
                        shift, tap, vector of columns                         sum_one, sum_two, sum_taps
-                 of Farrow branches:                          branches.c   BRANCHES_ADD
-                   shift; residues that read one sample: a run
-                     vector of columns, residue, branch                      add_run
+                 of Farrow branches, block of columns         branches.c   BRANCHES_ADD
+                   shift of a group                                          sum_block
+                     residues that read one sample: a run                    add_run
+                       vector of columns, residue, branch                    add_vectors
 
    Loads of the traces are the limit, half of which cross a cache line. Neighbouring residues mostly read the same
    samples: they are summed together and share the loads. Tables and sums take turns, so that both stay in the cache. Up
