@@ -110,6 +110,8 @@ static void flips_are_marked(void **state)
         {"identity above(c, 1500.5)", "c = scene(bp22/table3, sound_speed_m_s)", 0,
          "| does not hold | same | **identity** | same | same | same | same |\n"},
         {"above(x, 0)", "x = error(bp22/full, bp_nearest)", 0, "Of 0 verdicts"}, /* a scene for times */
+        {"above(x, 0)", "x = rule(bp22_eq20, met, 0.1); y = error(bp22/speckle, bp_nearest)", 0,
+         "Of 0 verdicts"}, /* scenes from seeds */
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         struct claims claims;
