@@ -31,8 +31,8 @@ set format y "1e%T"
 set xlabel "time on one core, raw echoes to image (s)"
 set key at screen 0.5,50.0/height center top maxrows 2 samplen 4 font ",12"
 do for [n = 1:2] {
-    set lmargin at screen (n == 1 ? 90.0/width : 0.53)
-    set rmargin at screen (n == 1 ? 0.49 : 1 - 25.0/width)
+    set lmargin at screen (n == 1 ? 115.0/width : 0.56)
+    set rmargin at screen (n == 1 ? 0.50 : 1 - 25.0/width)
     set ylabel (n == 1 ? "relative L2 error of the complex image" : "")
     set title titles[n].": 2048 pings, 2048 x 2048 pixels"
     plot for [k = 1:|names|] csv using (column("cpu_s")): \

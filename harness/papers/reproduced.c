@@ -10,6 +10,7 @@
 #include "data/csv.h"
 #include "data/text_file.h"
 #include "papers/verdicts.h"
+#include "show/table.h"
 
 enum { COLUMNS_MAX = 12 };
 
@@ -96,6 +97,7 @@ static bool table_has_lines(const struct paper_table *table, const struct reprod
 static void table_print(const struct paper_table *table, const struct reproduced *lines, int count)
 {
     const char *definitions[COLUMNS_MAX];
+    char assumed[1000];
     int columns = 0;
     for (int k = 0; k < count; k++) {
         int c = 0;
@@ -107,7 +109,9 @@ static void table_print(const struct paper_table *table, const struct reproduced
     printf("\n%s  %s\n", table->id, table->title);
     for (int c = 0; c < columns; c++)
         printf("  (%d) %s\n", c + 1, definitions[c]);
-    printf("  assumed: %s\n  %-36s %-15s %10s", table->assumption, "", "", "paper");
+    snprintf(assumed, sizeof assumed, "assumed: %s", table->assumption);
+    table_text(stdout, 2, assumed);
+    printf("  %-36s %-15s %10s", "", "", "paper");
     for (int c = 0; c < columns; c++)
         printf(" %10s %-10s", (char[]){'(', (char)('1' + c), ')', '\0'}, "");
     printf("\n");

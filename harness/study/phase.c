@@ -144,10 +144,21 @@ static double printed_find(const struct csv *published, const struct study *stud
     return 0;
 }
 
+/* The papers' set-ups by their figures. */
+static const char *study_title(const struct study *study)
+{
+    static const char *const titles[PHASE_SETUPS] = {
+        [PHASE_SHORT] = "LBF21 Figs 2 to 5, 66 receivers", [PHASE_LONG] = "LBF21 Figs 6 to 9, 132 receivers"};
+    for (int k = 0; k < PHASE_SETUPS; k++)
+        if (strcmp(study->scene, phase_setups[k]) == 0)
+            return titles[k];
+    return study->scene;
+}
+
 static void study_print(const struct study *study, const struct csv *published)
 {
-    printf("%s: largest phase error in rad, |f/v| <= %.4g/m (|f| <= %.4g Hz), f_tau = -B/2, 0, B/2\n", study->scene,
-           study->nu_max, study->nu_max * fabs(study->setting.speed));
+    printf("%s: largest phase error in rad, |f/v| <= %.4g/m (|f| <= %.4g Hz), f_tau = -B/2, 0, B/2\n",
+           study_title(study), study->nu_max, study->nu_max * fabs(study->setting.speed));
     printf("%8s %7s  %-22s", "receiver", "d (m)", "formula");
     for (int r = 0; r < RANGES; r++)
         printf("%7g m", ranges_m[r]);
@@ -165,22 +176,11 @@ static void study_print(const struct study *study, const struct csv *published)
         }
 }
 
-/* The papers' set-ups by their figures. */
-static const char *study_title(const struct study *study)
-{
-    static const char *const titles[PHASE_SETUPS] = {
-        [PHASE_SHORT] = "LBF21 Figs 2 to 5, 66 receivers", [PHASE_LONG] = "LBF21 Figs 6 to 9, 132 receivers"};
-    for (int k = 0; k < PHASE_SETUPS; k++)
-        if (strcmp(study->scene, phase_setups[k]) == 0)
-            return titles[k];
-    return study->scene;
-}
-
 /* One picture a receiver, PNG or SVG: a panel a range, a line a formula, the largest of the errors at the three
    f_tau. */
 static enum status study_draw(const struct study *study, const struct csv *published, int receiver, const char *path)
 {
-    char title[400], texts[RANGES][32], footer[PROVENANCE_LINE + 60], line[PROVENANCE_LINE];
+    char title[400], texts[RANGES][32], footer[PROVENANCE_LINE];
     const char *panels[RANGES];
     struct slice_line lines[RANGES][FORMULAS - 1];
     double position[DOPPLERS], values[RANGES][FORMULAS - 1][DOPPLERS];
@@ -208,8 +208,7 @@ static enum status study_draw(const struct study *study, const struct csv *publi
     }
     snprintf(title, sizeof title, "%.300s: phase error of receiver %d (d = %g m)", study_title(study),
              study->receiver[receiver], study->offset[receiver]);
-    provenance_line(line);
-    snprintf(footer, sizeof footer, "%.50s, %s", study->scene, line);
+    provenance_line(footer);
     return plot_phase(path, PLOT_DIRECTORY,
                       &(struct slices_picture){.title = title,
                                                .footer = footer,
