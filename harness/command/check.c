@@ -12,6 +12,7 @@ enum status command_check(const struct task *task)
     struct scene *scene;
     char names[400] = "";
     int count = 0;
+    struct check_told told = {.count = 0};
     if (!task->name_count && !task->echoes)
         return status_set(STATUS_INVALID, "check: a SCENE, or --echoes FILE.mat with --grid GRID, is missing");
     enum status status = task_scenes("check", task, 0, NULL, &scene, &count);
@@ -29,7 +30,7 @@ enum status command_check(const struct task *task)
             status = spec_parse(algorithms[k]->name, &own);
         const struct spec *spec = task->spec_count > 0 ? &task->specs[k] : &own;
         if (status == STATUS_OK)
-            status = check_algorithm(stdout, scene, spec, &refused);
+            status = check_algorithm(stdout, scene, spec, &told, &refused);
         if (status == STATUS_OK && refused) {
             size_t used = strlen(names);
             snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", spec->algorithm->name);

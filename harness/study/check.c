@@ -2,6 +2,7 @@
 #include "study/check.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "common/delay.h"
 #include "measure/outcome.h"
@@ -50,8 +51,7 @@ static const char *verdict(const struct condition *condition)
     return condition->severity == SEVERITY_REFUSE ? "REFUSED" : condition->severity == SEVERITY_WARN ? "warns" : "note";
 }
 
-/* The line of a condition; does it hold, or not refuse? */
-static bool condition_print(FILE *stream, const struct condition *c)
+static void condition_print(FILE *stream, const struct condition *c)
 {
     const bool holds = condition_holds(c);
     char figures[120], words[500];
@@ -62,7 +62,6 @@ static bool condition_print(FILE *stream, const struct condition *c)
     fprintf(stream, "%s%s%s\n", figures, one_line ? "  " : "", one_line ? words : "");
     if (!one_line)
         table_text(stream, 11, words);
-    return holds || c->severity != SEVERITY_REFUSE;
 }
 
 void check_warnings(FILE *stream, const struct scene *scene)
@@ -88,17 +87,63 @@ void check_scene(FILE *stream, const struct scene *scene)
         condition_print(stream, &list[k]);
 }
 
-enum status check_algorithm(FILE *stream, const struct scene *scene, const struct spec *spec, bool *refused)
+static bool condition_same(const struct condition *a, const struct condition *b)
+{
+    return strcmp(a->name, b->name) == 0 && a->value == b->value && a->limit == b->limit && a->severity == b->severity
+           && strcmp(a->meaning, b->meaning) == 0 && strcmp(a->cure, b->cure) == 0;
+}
+
+/* Was it told already? If not, it is now. */
+static bool told_before(struct check_told *told, const struct condition *condition)
+{
+    for (int k = 0; told && k < told->count; k++)
+        if (condition_same(&told->list[k], condition))
+            return true;
+    if (told && told->count < (int)(sizeof told->list / sizeof *told->list))
+        told->list[told->count++] = *condition;
+    return false;
+}
+
+/* "as above: holds subsonic, sampled; warns ghost" */
+static void repeated_print(FILE *stream, const struct condition *const *repeated, int count)
+{
+    static const char *const verdicts[] = {"holds", "note", "warns", "REFUSED"};
+    char text[600] = "as above:";
+    const char *between = " ";
+    for (int v = 0; v < 4; v++) {
+        const char *ahead = verdicts[v];
+        for (int k = 0; k < count; k++) {
+            if (strcmp(verdict(repeated[k]), verdicts[v]) != 0)
+                continue;
+            const size_t used = strlen(text);
+            snprintf(text + used, sizeof text - used, "%s%s%s%s", between, ahead, *ahead ? " " : "", repeated[k]->name);
+            between = ", ";
+            ahead = "";
+        }
+        between = strlen(text) > strlen("as above:") ? "; " : " ";
+    }
+    if (count > 0)
+        table_text(stream, 2, text);
+}
+
+enum status check_algorithm(FILE *stream, const struct scene *scene, const struct spec *spec, struct check_told *told,
+                            bool *refused)
 {
     struct problem problem = session_problem(scene, spec->algorithm, spec->precision);
     struct condition list[CONDITIONS_MAX + 2];
+    const struct condition *repeated[CONDITIONS_MAX + 2];
+    int repeated_count = 0;
     void *plan = NULL;
     int count = algorithm_conditions(spec->algorithm, &problem, spec->options, list, CONDITIONS_MAX);
     count += targets_conditions(scene, spec->precision, list + count);
     fprintf(stream, "\n%s%s%s\n", spec->algorithm->name, *spec->text ? ":" : "", spec->text);
-    *refused = false;
+    *refused = !conditions_accept(list, count);
     for (int k = 0; k < count; k++)
-        *refused |= !condition_print(stream, &list[k]);
+        if (told_before(told, &list[k]))
+            repeated[repeated_count++] = &list[k];
+        else
+            condition_print(stream, &list[k]);
+    repeated_print(stream, repeated, repeated_count);
     if (*refused)
         return STATUS_OK;
     enum status status = spec->algorithm->plan(&problem, spec->options, &plan);

@@ -13,9 +13,17 @@ void check_warnings(FILE *stream, const struct scene *scene);
 /* Print the conditions of the scene by itself. */
 void check_scene(FILE *stream, const struct scene *scene);
 
-/* Print the conditions of one SPEC on a scene, those that hold too, and whether its plan can be made. *refused is set
-   where it cannot. Errors: STATUS_FAILED without memory. */
-enum status check_algorithm(FILE *stream, const struct scene *scene, const struct spec *spec, bool *refused);
+/* Conditions that were printed already, all zero at first. */
+struct check_told {
+    struct condition list[100];
+    int count;
+};
+
+/* Print the conditions of one SPEC on a scene, those that hold too, and whether its plan can be made. Those that `told`
+   has with the same figures are only named; it takes the rest (NULL: all are printed). *refused is set where no plan can
+   be made. Errors: STATUS_FAILED without memory. */
+enum status check_algorithm(FILE *stream, const struct scene *scene, const struct spec *spec, struct check_told *told,
+                            bool *refused);
 
 /* What a small error of one quantity does to a pair of ping and receiver. */
 struct sensitivity {

@@ -276,14 +276,33 @@ static void interrupted_run_resumes(void **state)
     csv_free(&after);
 }
 
+/* What all algorithms share is said of the first; of the others by name. Standard error does not cut into it. */
+static void check_says_each_condition_once(void **state)
+{
+    (void)state;
+    struct outcome outcome = program_run((const char *const[ARGUMENTS_MAX]){"check", path_in("scene.cfg")});
+    assert_int_equal(outcome.status, 1); /* omega-k takes one receiver */
+    const char *first = strstr(outcome.out, "holds    phase_digits");
+    assert_non_null(first);
+    assert_null(strstr(first + 1, "holds    phase_digits"));
+    const char *refused = strstr(outcome.out, "REFUSED  one_receiver");
+    assert_non_null(refused);
+    assert_null(strstr(refused + 1, "REFUSED  one_receiver"));
+    assert_holds(strstr(outcome.out, "\nbp_linear:beta=8\n"), "  as above: holds subsonic, sampled, phase_digits,");
+    assert_holds(strstr(outcome.out, "\nwk_squint"), "; REFUSED one_receiver");
+    outcome_free(&outcome);
+    char *alone = program_output((const char *const[ARGUMENTS_MAX]){"check", path_in("scene.cfg"), "-a", "bp_linear"});
+    assert_holds(alone, "holds    phase_digits");
+    assert_null(strstr(alone, "as above"));
+    free(alone);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(help_list_and_info_tell_everything),
-        cmocka_unit_test(file_and_scene_give_the_same_image),
-        cmocka_unit_test(run_leaves_its_results_and_keeps_them),
-        cmocka_unit_test(unsupported_is_a_row_with_a_reason),
-        cmocka_unit_test(interrupted_run_resumes),
+        cmocka_unit_test(help_list_and_info_tell_everything), cmocka_unit_test(check_says_each_condition_once),
+        cmocka_unit_test(file_and_scene_give_the_same_image), cmocka_unit_test(run_leaves_its_results_and_keeps_them),
+        cmocka_unit_test(unsupported_is_a_row_with_a_reason), cmocka_unit_test(interrupted_run_resumes),
     };
     return cmocka_run_group_tests(tests, inputs_make, folder_remove);
 }

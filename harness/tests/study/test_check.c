@@ -48,7 +48,7 @@ static char *checked(const struct scene *scene, const char *text, bool *refused)
     assert_non_null(stream);
     if (text) {
         assert_int_equal(spec_parse(text, &spec), STATUS_OK);
-        assert_int_equal(check_algorithm(stream, scene, &spec, refused), STATUS_OK);
+        assert_int_equal(check_algorithm(stream, scene, &spec, NULL, refused), STATUS_OK);
         spec_free(&spec);
     } else {
         check_scene(stream, scene);
