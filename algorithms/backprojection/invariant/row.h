@@ -66,7 +66,8 @@
    samples: they are summed together and share the loads. Tables and sums take turns, so that both stay in the cache. Up
    to two taps, and single residues of more taps, keep the sums of a block in registers over all shifts of a region. Of
    Farrow branches a vector of a sample's values stays in registers for all residues of a run, whose sums are read and
-   written for each shift: Horner's rule and the phase factor are 2 branches + 2 multiply-adds between a load and a store.
+   written for each shift: Horner's rule and the phase factor are 2 branches + 2 multiply-adds between a load and a
+   store.
 
    THE TABLES. An entry is one shift of one residue. A group's entries are ordered by shift and then residue, and are
    padded to whole vectors. Made once for a row and the receivers of the slab (TABLES_BEGIN): seconds on the way out
@@ -170,8 +171,8 @@ struct bp_polynomial {
 };
 
 /* Scratch of one thread. Entries of a row: of all residues = min(ratio, columns), each BP_ENTRIES(pings +
-   residue_columns) at the most; of one receiver and as many groups as fit into `capacity` >= the
-   most residues of a group times BP_ENTRIES(pings + residue_columns). */
+   residue_columns) at the most; of one receiver and as many groups as fit into `capacity` >= the most
+   residues of a group times BP_ENTRIES(pings + residue_columns). */
 struct bp_row_scratch {
     struct bp_row_group *groups; /* [residues + 1], the last for its `first` */
     double *leg;                 /* [row's entries] s, from the transmitter; not where there are pieces */

@@ -284,8 +284,8 @@ INLINE struct region region_from(int s, int pings, int j, int last)
     return (struct region){begin, width, begin > j && more < fewer ? more : fewer};
 }
 
-/* All columns, in blocks as wide as each other. Where the lead is as wide as a block, a shift that has pings for some of
-   its vectors is summed for all, for the others zeros; else for those only that have some. */
+/* All columns, in blocks as wide as each other. Where the lead is as wide as a block, a shift that has pings for some
+   of its vectors is summed for all, for the others zeros; else for those only that have some. */
 static void sum_columns(const struct kernel *kernel, struct chunk *chunk)
 {
     const int columns = chunk->raster->residue_columns, pings = chunk->raster->pings;
