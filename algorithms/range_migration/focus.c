@@ -299,10 +299,8 @@ void REAL_ISA_NAME(rma_column)(const struct rma *rma, const struct rma_swath *sw
     }
     for (size_t i = 0; i < swath->rows; i++) {
         real *out = focused + 2 * (i * swath->columns + (size_t)turn);
-        for (size_t n = 0; n < RMA_TILE; n++) {
-            out[2 * n] = stored[n * stride + 2 * i];
-            out[2 * n + 1] = stored[n * stride + 2 * i + 1];
-        }
+        for (size_t n = 0; n < RMA_TILE; n++) /* moved as one: else the compiler takes real from imaginary parts */
+            memcpy(out + 2 * n, stored + n * stride + 2 * i, 2 * sizeof *out);
     }
     stage_end(&w, RMA_FOCUS);
 }

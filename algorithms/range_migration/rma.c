@@ -9,6 +9,7 @@
 
 #include "common/fft_length.h"
 #include "common/isa.h"
+#include "common/memory.h"
 #include "range_migration/engine.h"
 
 const char *const rma_spacing_names[] = {"uniform", "inverse", NULL};
@@ -42,7 +43,7 @@ static rma_map_function *const map_functions[][2] = {
 void *rma_take(struct rma *rma, size_t count, size_t size, double share)
 {
     size_t bytes = (count * size + RMA_ALIGNMENT - 1) / RMA_ALIGNMENT * RMA_ALIGNMENT;
-    void *memory = aligned_alloc(RMA_ALIGNMENT, bytes ? bytes : RMA_ALIGNMENT);
+    void *memory = memory_aligned(RMA_ALIGNMENT, bytes ? bytes : RMA_ALIGNMENT);
     if (memory)
         memset(memory, 0, bytes);
     rma->work.bytes += share * (double)bytes;

@@ -25,6 +25,49 @@ static inline __attribute__((always_inline)) struct fit_cell bin_exact(const voi
                              b->weight * frequency / (root * sqrt(kappa))}; /* F/(kappa^1.5) dF/dK */
 }
 
+/* What eight lanes sum to, left in four: of the real parts, then of the imaginary ones. `taps`, a multiple of
+   eight, is a constant where this is inlined. */
+static inline __attribute__((always_inline)) void eights(const struct rma *rma, const real *restrict spectrum,
+                                                         int length, int taps, double position, vec8 *sums)
+{
+    const int bin = (int)position, first = bin + 1 - taps / 2;
+    const double interval = (position - bin) * RMA_INTERVALS;
+    const real *a = (const real *)rma->kernel + (size_t)(int)interval * (size_t)taps, *b = a + taps;
+    const real *re = spectrum + first, *im = re + length + 2 * RMA_GUARD;
+    const real u = (real)(interval - (int)interval);
+    vec8 vr = {0}, vi = {0};
+    for (int k = 0; k < taps; k += EIGHT) {
+        const vec8 low = *(const vec8 *)(a + k), weight = low + u * (*(const vec8 *)(b + k) - low);
+        vr += weight * *(const vec8 *)(re + k);
+        vi += weight * *(const vec8 *)(im + k);
+    }
+    *sums = __builtin_shufflevector(vr, vi, 0, 1, 2, 3, 8, 9, 10, 11)
+            + __builtin_shufflevector(vr, vi, 4, 5, 6, 7, 12, 13, 14, 15);
+}
+
+/* As `interpolate`, four bins at a time: what sums a vector's lanes serves four. SPAN positions have room for the last
+   four, which repeat the last one. */
+static inline __attribute__((always_inline)) void interpolate_fours(const struct rma *rma,
+                                                                    const real *restrict spectrum, int length, int taps,
+                                                                    int n, double *restrict position, real *restrict re,
+                                                                    real *restrict im)
+{
+    for (int j = n; j % 4 != 0; j++)
+        position[j] = position[n - 1];
+    for (int j = 0; j < n; j += 4) {
+        vec8 half[4], quarter[2];
+        for (int k = 0; k < 4; k++)
+            eights(rma, spectrum, length, taps, position[j + k], &half[k]);
+        for (int k = 0; k < 2; k++)
+            quarter[k] = __builtin_shufflevector(half[2 * k], half[2 * k + 1], 0, 1, 8, 9, 4, 5, 12, 13)
+                         + __builtin_shufflevector(half[2 * k], half[2 * k + 1], 2, 3, 10, 11, 6, 7, 14, 15);
+        const vec8 sums = __builtin_shufflevector(quarter[0], quarter[1], 0, 2, 8, 10, 4, 6, 12, 14)
+                          + __builtin_shufflevector(quarter[0], quarter[1], 1, 3, 9, 11, 5, 7, 13, 15);
+        memcpy(re + j, &sums, 4 * sizeof *re);
+        memcpy(im + j, (const real *)&sums + 4, 4 * sizeof *im);
+    }
+}
+
 /* Values of the spectrum between its bins; position counts from the first guard bin. `taps` is a constant where
    this is inlined. */
 static inline __attribute__((always_inline)) void interpolate(const struct rma *rma, const real *restrict spectrum,
@@ -38,21 +81,6 @@ static inline __attribute__((always_inline)) void interpolate(const struct rma *
         double interval = (position[j] - bin) * RMA_INTERVALS;
         const real *a = kernel + (size_t)(int)interval * (size_t)taps, *b = a + taps;
         real u = (real)(interval - (int)interval);
-        if (taps % EIGHT == 0) {
-            vec8 vr = {0}, vi = {0};
-            for (int k = 0; k < taps; k += EIGHT) {
-                const vec8 low = *(const vec8 *)(a + k), weight = low + u * (*(const vec8 *)(b + k) - low);
-                vr += weight * *(const vec8 *)(spectrum + first + k);
-                vi += weight * *(const vec8 *)(imaginary + first + k);
-            }
-            vec8 sum = __builtin_shufflevector(vr, vi, 0, 1, 2, 3, 8, 9, 10, 11)
-                       + __builtin_shufflevector(vr, vi, 4, 5, 6, 7, 12, 13, 14, 15);
-            sum += __builtin_shufflevector(sum, sum, 2, 3, 0, 1, 6, 7, 4, 5);
-            sum += __builtin_shufflevector(sum, sum, 1, 0, 3, 2, 5, 4, 7, 6);
-            re[j] = sum[0];
-            im[j] = sum[4];
-            continue;
-        }
         real vr = 0, vi = 0;
         for (int k = 0; k < taps; k++) {
             real weight = a[k] + u * (b[k] - a[k]);
@@ -88,6 +116,16 @@ static struct bins bins_of(const struct workspace *w, const struct rma_patch *pa
                          .weight = sqrt(c / 2) * to_kappa / rma->fs};
 }
 
+/* wave += the values times their phasors. */
+static void add_turned(int n, const real *restrict re, const real *restrict im, const real *restrict wr,
+                       const real *restrict wi, real *restrict wave)
+{
+    for (int i = 0; i < n; i++) {
+        wave[2 * i] += re[i] * wr[i] - im[i] * wi[i];
+        wave[2 * i + 1] += re[i] * wi[i] + im[i] * wr[i];
+    }
+}
+
 void REAL_ISA_NAME(rma_stolt)(struct workspace *w, const struct rma_patch *patch, const real *z, real *stored)
 {
     const struct rma *rma = w->rma;
@@ -105,7 +143,8 @@ void REAL_ISA_NAME(rma_stolt)(struct workspace *w, const struct rma_patch *patch
         fit_cells(fit, bin_exact, &bins, (double)j0, n, position, cycles, weight);
         switch (rma->taps) {
         case 4: interpolate(rma, z, length, 4, n, position, re, im); break;
-        case 8: interpolate(rma, z, length, 8, n, position, re, im); break;
+        case 8: interpolate_fours(rma, z, length, 8, n, position, re, im); break;
+        case 16: interpolate_fours(rma, z, length, 16, n, position, re, im); break;
         default: interpolate(rma, z, length, rma->taps, n, position, re, im); break;
         }
         stage_end(w, RMA_STOLT);
@@ -115,12 +154,10 @@ void REAL_ISA_NAME(rma_stolt)(struct workspace *w, const struct rma_patch *patch
             wr[i] *= (real)weight[i];
             wi[i] *= (real)weight[i];
         }
-        int at = (int)(j0 % patch->length);
-        for (int i = 0; i < n; i++) {
-            wave[2 * at] += re[i] * wr[i] - im[i] * wi[i];
-            wave[2 * at + 1] += re[i] * wi[i] + im[i] * wr[i];
-            if (++at == patch->length)
-                at = 0;
+        for (int i = 0, left; i < n; i += left) { /* bins beyond the transform fold onto it */
+            const int at = (int)((j0 + i) % patch->length);
+            left = patch->length - at < n - i ? patch->length - at : n - i;
+            add_turned(left, re + i, im + i, wr + i, wi + i, wave + 2 * (size_t)at);
         }
         stage_end(w, RMA_FOCUS);
     }
