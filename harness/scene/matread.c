@@ -185,9 +185,8 @@ static enum status check_claim(const char *path, const struct wanted *wanted, co
         }
         if (__builtin_mul_overflow(bytes, matvar->dims[i], &bytes) || bytes / 16 / 1032 > file_size) {
             return status_set(STATUS_INVALID,
-                              "%s: variable `%s` claims more numbers than the file's %zu bytes can "
-                              "hold",
-                              path, wanted->name, file_size);
+                              "%s: variable `%s` claims more numbers than the file's %zu bytes can hold", path,
+                              wanted->name, file_size);
         }
     }
     /* Twice the numbers: HDF5 may hold a whole data set as one packed chunk. */
