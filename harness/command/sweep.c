@@ -107,9 +107,6 @@ enum status command_sweep(const struct task *task)
         fprintf(stderr, "sasbench: %s\n", status_message());
         batch.undrawn++;
     }
-    if (interruption_seen())
-        fprintf(stderr, "sasbench: interrupted; %s holds what was measured, the same command goes on from there\n",
-                directory);
     fflush(stdout); /* the signal leaves no time */
     interruption_end();
     if (status == STATUS_OK)

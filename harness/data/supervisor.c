@@ -19,6 +19,7 @@ enum { CRASHES_MAX = 256, TASK_MAX = 800 };
 static struct notes {
     volatile sig_atomic_t busy; /* within a task */
     char task[TASK_MAX];        /* the latest */
+    char folder[400];           /* what is measured is kept there */
     int crash_count;
     struct {
         char task[TASK_MAX], how[120];
@@ -39,6 +40,12 @@ void supervisor_leave(void)
 {
     if (notes)
         notes->busy = false;
+}
+
+void supervisor_keeps(const char *folder)
+{
+    if (notes)
+        snprintf(notes->folder, sizeof notes->folder, "%s", folder);
 }
 
 const char *supervisor_crash(const char *task)
@@ -97,6 +104,11 @@ static void wait_for_child(void)
     }
     if (WIFSIGNALED(state)) {
         sigset_t all;
+        if (*notes->folder && (WTERMSIG(state) == SIGINT || WTERMSIG(state) == SIGTERM)) {
+            fputs("sasbench: interrupted; ", stderr);
+            shown_write(stderr, notes->folder);
+            fputs(" holds what was measured, the same command goes on from there\n", stderr);
+        }
         signal(WTERMSIG(state), SIG_DFL);
         sigfillset(&all);
         raise(WTERMSIG(state));

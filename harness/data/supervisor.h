@@ -15,4 +15,7 @@ void supervisor_leave(void);
 /* How the process ended that did this task, "ended by signal 11 (Segmentation fault)"; NULL if none did. */
 const char *supervisor_crash(const char *task);
 
+/* What is measured from now on is kept in this folder: where the work is interrupted, the parent says so. */
+void supervisor_keeps(const char *folder);
+
 #endif

@@ -359,8 +359,10 @@ enum status batch_open(const char *directory, int rows, bool details, struct bat
     provenance_line(batch->footer);
     batch->begin = batch->told = seconds_now();
     enum status status = results_folder_open(directory, &provenance, &batch->results);
-    if (status == STATUS_OK)
+    if (status == STATUS_OK) {
+        supervisor_keeps(directory);
         table_header(stdout);
+    }
     if (status == STATUS_OK && batch->threads > omp_get_num_procs())
         fprintf(stderr, "sasbench: warning: %d threads share %d processors: times are not those of %d threads\n",
                 batch->threads, omp_get_num_procs(), batch->threads);

@@ -164,6 +164,38 @@ static void killed_sweep_resumes(void **state)
     check_resumed("sweep", SWEEP("sweep"), SWEEP("sweep-killed"));
 }
 
+/* Where to go on is said, once. */
+static void check_interruption_told(FILE *sink, const char *kept)
+{
+    static char text[100000];
+    rewind(sink);
+    text[fread(text, 1, sizeof text - 1, sink)] = '\0';
+    fclose(sink);
+    const char *at = strstr(text, "sasbench: interrupted; "), *end = at ? strchr(at, '\n') : NULL;
+    if (!end || strstr(end, "interrupted;"))
+        fail_msg("interruption not said once: %s", at ? at : text);
+    const char *folder_named = strstr(at, kept);
+    assert_true(folder_named && folder_named < end);
+}
+
+/* An interrupted run ends by the signal at once, and says where its rows are: here in the midst of the exact image. */
+static void interrupted_run_is_told(void **state)
+{
+    (void)state;
+    static const char *const arguments[ARGUMENTS_MAX] = {"run", "study/template", "-a", "bp_nearest", "-o", "stopped"};
+    int status;
+    FILE *sink = tmpfile();
+    assert_non_null(sink);
+    const pid_t child = program_start(arguments, sink, sink);
+    for (int k = 0; k < 6000 && !support_exists("stopped/measurements.csv"); k++)
+        nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);
+    nanosleep(&(struct timespec){.tv_nsec = 200000000}, NULL);
+    assert_int_equal(kill(-child, SIGINT), 0);
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_true(WIFSIGNALED(status) && WTERMSIG(status) == SIGINT);
+    check_interruption_told(sink, "stopped");
+}
+
 /* An interrupted sweep ends by the signal, which a terminal sends to all of its processes, but first writes what its
    rows say. */
 static void interrupted_sweep_leaves_tables(void **state)
@@ -187,8 +219,8 @@ static void interrupted_sweep_leaves_tables(void **state)
     }
     assert_int_equal(kill(-child, SIGINT), 0); /* its group */
     assert_int_equal(waitpid(child, &status, 0), child);
-    fclose(sink);
     assert_true(WIFSIGNALED(status) && WTERMSIG(status) == SIGINT);
+    check_interruption_told(sink, "interrupted");
     assert_in_range(rows, 2, 7);
     static const char *const files[] = {"cheapest.csv", "fronts.csv", "points.csv", "slopes.csv"};
     for (size_t k = 0; k < COUNT_OF(files); k++) {
@@ -208,9 +240,8 @@ static void killed_reproduction_resumes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(killed_run_resumes),
-        cmocka_unit_test(killed_sweep_resumes),
-        cmocka_unit_test(interrupted_sweep_leaves_tables),
+        cmocka_unit_test(killed_run_resumes),          cmocka_unit_test(killed_sweep_resumes),
+        cmocka_unit_test(interrupted_run_is_told),     cmocka_unit_test(interrupted_sweep_leaves_tables),
         cmocka_unit_test(killed_reproduction_resumes),
     };
     return cmocka_run_group_tests(tests, inputs_make, folder_remove);
