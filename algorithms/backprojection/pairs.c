@@ -97,7 +97,7 @@ int pair_spans(const struct acquisition *a, int ping, struct vector h, const str
         const bool met = k < 2 && root[k] > -2 && root[k] < n + 1.0;
         if (k < 2 && !met)
             continue;
-        const double whole = floor(root[k]), rest = root[k] - whole;
+        const double at = met ? root[k] : n, whole = floor(at), rest = at - whole;
         const bool clear = rest > NEAR_PIXEL && rest < 1 - NEAR_PIXEL && root[1] - root[0] > APART;
         const int begin = met ? pixel_between(clear ? whole + 1 : whole - 1, next, n) : n;
         const int end = met ? pixel_between(clear ? whole + 1 : whole + 3, begin, n) : n;

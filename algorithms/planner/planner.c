@@ -1,6 +1,6 @@
 /* Choosing among candidates (planner.h). Back projections are forecast first: their forecasts are cheap. Range
-   migration is forecast where the FFTs alone that it cannot do without are faster than the fastest of those, and, in any
-   case, where nothing else fits. */
+   migration is forecast where the FFTs alone that it cannot do without are faster than the fastest of those, and, in
+   any case, where nothing else fits. */
 #include "planner/planner.h"
 
 #include <math.h>

@@ -16,7 +16,8 @@ extern const char *const rule_quantities[];
 
 /* Follow both on 200 scenes, those whose exact image holds anything, into DIRECTORY/rules_random.csv, a row a scene and
    rule: sampling rate over bandwidth, error after one gain (empty where the setting is refused, which meets no
-   budget), the rule's rate, and the least that is enough. Errors: STATUS_INVALID for a place that cannot be written, STATUS_FAILED without memory. */
+   budget), the rule's rate, and the least that is enough. Errors: STATUS_INVALID for a place that cannot be written,
+   STATUS_FAILED without memory. */
 enum status rules_study(const char *directory);
 /* NAN with `missing` set where the study was not made, or where no scene has what is asked for. */
 double rule_value(struct measured *measured, const char *rule, const char *quantity, double number);

@@ -237,10 +237,9 @@ static enum status send_variable(const char *path, const struct wanted *wanted, 
     bool is_text = matvar->class_type == MAT_C_CHAR;
     bool is_number = matvar->class_type >= MAT_C_DOUBLE && matvar->class_type <= MAT_C_UINT64;
     if (wanted[index].kind == KIND_TEXT ? !is_text : !is_number) {
-        size_t class = (size_t)matvar->class_type;
-        bool is_known = class < sizeof class_names / sizeof *class_names;
+        bool is_known = (size_t)matvar->class_type < sizeof class_names / sizeof *class_names;
         return status_set(STATUS_INVALID, "%s: variable `%s` is %s; %s is needed", path, name,
-                          is_known ? class_names[class] : "of unknown class", wanted[index].accepted);
+                          is_known ? class_names[matvar->class_type] : "of unknown class", wanted[index].accepted);
     }
     if (is_empty(matvar)) {
         return is_text && wanted[index].is_optional

@@ -318,7 +318,7 @@ INLINE void join_many(bool cubics, int taps, const struct chunk *chunk, const st
     int *offset = scratch->offset + first, *rows = scratch->rows + first;
     real *weights = (real *)scratch->weights + (size_t)first * (size_t)(taps + BP_SPREAD);
     for (int i = 0; i < n; i++) {
-        int least = *row, most = *row;
+        int least = *row, most = least;
         for (int p = 1; p < residues; p++) {
             least = row[p] < least ? row[p] : least;
             most = row[p] > most ? row[p] : most;

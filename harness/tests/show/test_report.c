@@ -100,8 +100,7 @@ static void test_everything_is_on_the_page(void **state)
     folder_fill();
     assert_int_equal(report_write(folder), STATUS_OK);
     char *html = support_read("report.html"), *markdown = support_read("report.md");
-    assert_non_null(html);
-    assert_non_null(markdown);
+    assert_true(html && markdown);
     struct parser *page = page_parse(html);
     /* Summary, machine, three scenes, cheapest of all scenes and of one, slopes, choices of all scenes and plans of
        one, predictions, rules, two papers, two reproduced tables. */

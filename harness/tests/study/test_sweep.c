@@ -282,8 +282,8 @@ static char *rows_read(void)
     return text;
 }
 
-/* Every setting but the reference and blocks that are asked for by number is predicted, hardly ever too low; the summary
-   is of these rows. */
+/* Every setting but the reference and blocks that are asked for by number is predicted, hardly ever too low; the
+   summary is of these rows. */
 static void predictions_check(void)
 {
     struct csv csv;
