@@ -31,7 +31,7 @@ static const struct method {
     {"bp_zeropad", ":factor=8", 8, 0}, {"bp_farrow", ":degree=3", 20, 0.7}, {"bp_farrow", ":degree=5", 28, 0.5},
     {"bp_fitted", ":taps=4", 24, 0.6}, {"bp_fitted", ":taps=6", 32, 0},
 };
-enum { METHODS = sizeof methods / sizeof *methods, NEAREST = 0, FARROW_3 = 4, FARROW_5 = 5, BRIEF = 6 };
+enum { METHODS = sizeof methods / sizeof *methods, NEAREST = 0, ZEROPAD = 3, FARROW_3 = 4, FARROW_5 = 5, BRIEF = 6 };
 
 static const struct bench_case {
     const char *scene, *engine, *isa; /* isa: "" for the processor's best */
@@ -294,6 +294,12 @@ static void full_goals(struct bench *bench)
                "general engine, error 1e-5 (bp_farrow, degree 5), run over nearest's: full size");
     const int all = bench->threads > 1;
     const struct line *nearest = &bench->lines[0][NEAREST][PRECISION_FLOAT][all];
+    const struct line *zeropad = &bench->lines[0][ZEROPAD][PRECISION_FLOAT][all];
+    /* Twice what it was with one long transform for each record: 4.58 s of a core of 180 GFLOP/s. */
+    bench_goal(bench->goals, GOAL_AT_LEAST, 0.296,
+               methods[ZEROPAD].pair_flops * zeropad->pairs / line_median(zeropad, RUN_S)
+                   / peak_median(bench->lines[0], PRECISION_FLOAT, all),
+               "invariant engine, bp_zeropad of factor 8, whole run, of the peak: %s", cases[0].scene);
     bench_goal(bench->goals, GOAL_AT_MOST, 3,
                line_median(&bench->lines[0][FARROW_3][PRECISION_FLOAT][all], RUN_S) / line_median(nearest, RUN_S),
                "invariant engine, error 1e-3 (bp_farrow, degree 3), run over nearest's: %s", cases[0].scene);

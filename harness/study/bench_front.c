@@ -2,6 +2,7 @@
 #include "study/bench_front.h"
 
 #include <math.h>
+#include <omp.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -175,6 +176,38 @@ static enum status receivers_measure(FILE *file, struct bench_goals *goals)
     return status;
 }
 
+/* Factorised back projection of a long aperture on a track that sways, over direct back projection. */
+static enum status aperture_measure(FILE *file, struct bench_goals *goals)
+{
+    static const char *const scene_name = "study/rail_sway";
+    static const char *const specs[] = {"bp_nearest", "bp_factorised:error=0.01"};
+    struct scene scene;
+    struct echoes recorded = {0}, echoes = {0};
+    struct bench_sample sample[2];
+    enum status status = scene_load(scene_name, SCENE_DIRECTORY, &scene);
+    if (status != STATUS_OK)
+        return status;
+    const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
+    status = scene_simulate(&scene, &recorded);
+    if (status == STATUS_OK)
+        status = echoes_convert(&recorded, PRECISION_FLOAT, &echoes);
+    for (int k = 0; k < 2 && status == STATUS_OK; k++)
+        status = bench_once(specs[k], &problem, &echoes, omp_get_max_threads(), NULL, NULL, &sample[k]);
+    for (int k = 0; k < 2 && status == STATUS_OK; k++) {
+        const double ratio = sample[k].run_s / sample[0].run_s;
+        fprintf(file, "%s,\"%s\",%d,%d,%.4g,%.4g,\n", scene_name, specs[k], scene.patches[0].x_count,
+                scene.patches[0].r_count, sample[k].run_s, ratio);
+        printf("%-18s %-36s %8.4f s %6.2f x nearest, all threads\n", scene_name, specs[k], sample[k].run_s, ratio);
+        if (k > 0)
+            bench_goal(goals, GOAL_AT_MOST, 1, ratio, "%s, run over nearest's: %s", specs[k], scene_name);
+    }
+    fflush(stdout);
+    echoes_free(&echoes);
+    echoes_free(&recorded);
+    scene_free(&scene);
+    return status;
+}
+
 enum status bench_front(const char *directory, struct bench_goals *goals)
 {
     char path[4096];
@@ -189,6 +222,8 @@ enum status bench_front(const char *directory, struct bench_goals *goals)
         status = scene_front(scenes[k], file.stream, goals);
     if (status == STATUS_OK)
         status = receivers_measure(file.stream, goals);
+    if (status == STATUS_OK)
+        status = aperture_measure(file.stream, goals);
     status = text_file_close(&file, status);
     if (status == STATUS_OK)
         printf("Results: %s\n", path);
