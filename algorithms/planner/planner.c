@@ -16,6 +16,9 @@
 
 /* Forecasts are means over scenes: what is planned with lies above. */
 static const double MARGIN = 1.12;
+/* Of the budget, what interpolated delays may take: where that is more, they are made more exact, by a phase limit (rad)
+   of this share of the budget. */
+static const double DELAYS_MOST = 0.4, PHASE_SHARE = 0.8;
 /* Of a candidate's time, what an aperture limit leaves at most, where it is looked at. */
 static const double LIMIT_PAYS = 0.95;
 
@@ -97,9 +100,23 @@ static enum status migration_fill(const struct setting *setting, struct candidat
     return STATUS_OK;
 }
 
+/* The forecast, with delays as exact as the budget needs them. */
+static enum status forecast_make(const struct setting *setting, struct candidate *candidate)
+{
+    const struct algorithm *algorithm = candidate->algorithm;
+    char limit[16];
+    snprintf(limit, sizeof limit, "%.1e", PHASE_SHARE * setting->budget->error);
+    enum status status = algorithm->forecast(setting->problem, candidate->options, &candidate->forecast);
+    if (status == STATUS_OK && candidate->forecast.sums_pairs
+        && MARGIN * candidate->forecast.error[CAUSE_DELAYS] > DELAYS_MOST * setting->budget->error
+        && candidate_set(candidate, "phase_limit", limit))
+        status = algorithm->forecast(setting->problem, candidate->options, &candidate->forecast);
+    return status;
+}
+
 static enum status candidate_forecast(const struct setting *setting, struct candidate *candidate)
 {
-    enum status status = candidate->algorithm->forecast(setting->problem, candidate->options, &candidate->forecast);
+    enum status status = forecast_make(setting, candidate);
     if (status == STATUS_OK) {
         judge(setting, candidate);
         if (candidate->forecast.sums_pairs)
@@ -260,6 +277,20 @@ static enum status forecast_all(const struct setting *setting, struct choice *ch
     return status == STATUS_OK ? migrations_forecast(setting, setting->budget->thorough, choice) : status;
 }
 
+/* Tables take memory that the general engine does without: one candidate more, where one with tables is too large. */
+static enum status general_try(const struct setting *setting, const struct candidate *from, struct choice *choice)
+{
+    if (!from->forecast.tables || choice->count == CANDIDATES_MAX)
+        return STATUS_OK;
+    struct candidate *general = &choice->list[choice->count];
+    *general = *from;
+    *general->reason = '\0';
+    if (!candidate_set(general, "engine", "general"))
+        return STATUS_OK;
+    choice->count++;
+    return candidate_forecast(setting, general);
+}
+
 /* Plan the fastest that is left; false without one. One that its plan refuses, or whose memory is too much, is out. */
 static enum status plan_fastest(const struct setting *setting, struct choice *choice, bool *tried)
 {
@@ -286,7 +317,7 @@ static enum status plan_fastest(const struct setting *setting, struct choice *ch
     best->verdict = VERDICT_MEMORY;
     snprintf(best->reason, sizeof best->reason, "its plan holds %.3g MB, more than %.3g MB", best->bytes / 1e6,
              setting->budget->bytes / 1e6);
-    return STATUS_OK;
+    return general_try(setting, best, choice);
 }
 
 /* One after the other, from the fastest on, until one is found. */

@@ -11,7 +11,7 @@ enum verdict { VERDICT_CHOSEN, VERDICT_SLOWER, VERDICT_MEMORY, VERDICT_ERROR, VE
 
 struct candidate {
     const struct algorithm *algorithm;
-    char settings[48];        /* as in a SPEC: "degree=4", may be empty */
+    char settings[80];        /* as in a SPEC: "degree=4", may be empty */
     max_align_t options[8];   /* the algorithm's options struct */
     double sine;              /* up to which it sums pairs, beside the acquisition's own limit; 1: all */
     struct forecast forecast; /* zero where refused, and where it is too slow in any case */
@@ -49,7 +49,7 @@ void automatic_tell(void (*hear)(void *to, const struct problem *problem, const 
                     void *to);
 
 /* "bp_farrow:degree=4": as the column `engine` holds it. */
-enum { CANDIDATE_NAME = 64 };
+enum { CANDIDATE_NAME = 96 };
 void candidate_name(const struct candidate *candidate, char text[CANDIDATE_NAME]);
 
 #endif

@@ -4,21 +4,22 @@
 
 /* Measured by `plan` on an Intel Xeon with AVX-512 at 2.1 GHz. */
 static struct rates rates = {
-    .pair = {{[READ_NEAREST] = 4.5e-10, [READ_LINE] = 5.9e-10, [READ_TAPS] = 1.1e-9, [READ_BRANCHES] = 2.4e-10},
-             {[READ_NEAREST] = 8.7e-11, [READ_LINE] = 1.75e-10}},
-    .value = {{[READ_BRANCHES] = 1.1e-10}, {[READ_TAPS] = 1.69e-10, [READ_BRANCHES] = 1.19e-10}},
-    .unit = {{[READ_NEAREST] = 8.0e-8, [READ_LINE] = 8.1e-8, [READ_TAPS] = 1.2e-7, [READ_BRANCHES] = 9.3e-8},
-             {[READ_NEAREST] = 3.1e-9, [READ_LINE] = 6.3e-9, [READ_TAPS] = 1.45e-8, [READ_BRANCHES] = 1.35e-8}},
-    .compress = 4.7e-11,
-    .filter = 6.3e-11,
-    .put = {1.9e-9, 4.7e-9},
-    .migrate = 1.48e-10,
-    .doubled = 1.6,
+    .pair = {{[READ_NEAREST] = 3.6e-10, [READ_LINE] = 5.0e-10, [READ_TAPS] = 8.6e-10, [READ_BRANCHES] = 2.2e-10},
+             {[READ_NEAREST] = 5.4e-11, [READ_LINE] = 1.29e-10}},
+    .value = {{[READ_BRANCHES] = 9.1e-11}, {[READ_TAPS] = 8.5e-11, [READ_BRANCHES] = 4.8e-11}},
+    .unit = {{[READ_NEAREST] = 8.0e-8, [READ_LINE] = 8.2e-8, [READ_TAPS] = 1.11e-7, [READ_BRANCHES] = 8.7e-8},
+             {[READ_NEAREST] = 1.9e-9, [READ_LINE] = 4.65e-9, [READ_TAPS] = 5.8e-9, [READ_BRANCHES] = 4.3e-9}},
+    .compress = 2.6e-11,
+    .filter = 4.9e-11,
+    .put = {2.3e-9, 4.8e-9},
+    .migrate = 1.24e-10,
+    .doubled = 1.65,
     .noise = 0.06,
 };
 
-/* Taps that are no whole vectors of eight take the invariant engine as long as so many more: measured, 4 to 12. */
-enum { PART = 8 };
+/* Taps beyond eight that are no whole vectors of eight take the invariant engine as long as so many more: measured, 4 to
+   5. */
+enum { VECTOR = 8, PART = 5 };
 
 static const double START = 1e-5; /* s: of any run, also where no pixel meets a record */
 
@@ -40,7 +41,7 @@ static double factor(enum precision precision)
 double rates_sums(const struct forecast *f, enum precision precision, double pairs)
 {
     const int engine = f->tables, kind = f->kind;
-    const int more = engine && kind == READ_TAPS && f->values % 8 > 0 ? PART : 0;
+    const int more = engine && kind == READ_TAPS && f->values > VECTOR && f->values % VECTOR > 0 ? PART : 0;
     const double pair = rates.pair[engine][kind] + rates.value[engine][kind] * (f->values + more);
     const double records = f->record_flops * f->slowness * rates.compress + f->kernel_flops * rates.filter
                            + f->record_values * rates.put[engine];

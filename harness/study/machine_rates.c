@@ -110,7 +110,7 @@ static enum status probe_spec(const struct bench *bench, const char *text, bool 
 
 static const char *const specs[] = {"bp_nearest:engine=",
                                     "bp_linear:engine=",
-                                    "bp_sinc:taps=8,engine=",
+                                    "bp_sinc:taps=4,engine=",
                                     "bp_sinc:taps=16,engine=",
                                     "bp_farrow:degree=3,engine=",
                                     "bp_farrow:degree=7,engine=",
@@ -125,11 +125,13 @@ static void kind_fill(int engine, enum reading_kind kind, const struct probe *fe
     const double unit = fmax((narrow->focus - share * few->focus) / (narrow->forecast.units - share * units), 0);
     const double units_s = fmin(unit * units, 0.9 * few->focus);
     const double a = (few->focus - units_s) / few->work.pairs, b = (many->focus - units_s) / many->work.pairs;
-    const int more = many->forecast.values - few->forecast.values;
-    const double value = more > 0 ? fmax(b - a, 0) / more : 0;
+    const int less = few->forecast.values, more = many->forecast.values;
+    double value = more > less ? fmax(b - a, 0) / (more - less) : 0;
+    if (value * less > a) /* many cost more than in proportion: between the two */
+        value = sqrt(a / less * b / more);
     rates->unit[engine][kind] = units_s / units;
     rates->value[engine][kind] = value;
-    rates->pair[engine][kind] = fmax(a - value * few->forecast.values, 0);
+    rates->pair[engine][kind] = fmax(a - value * less, 0);
 }
 
 struct probes {
