@@ -335,7 +335,7 @@ static enum status forecast_reading(const struct bp *bp, const struct interpolat
     return made ? STATUS_OK : status_set(STATUS_FAILED, "no memory for interpolation weights");
 }
 
-/* Who does the sums, and which records are read, without a plan: of *bp only `met` is to be freed. */
+/* Who does the sums, and which records are read, without a plan: of *bp `met` and `turned` are to be freed. */
 static enum status forecast_begin(const struct problem *problem, const struct interpolator *in,
                                   const struct bp_options *options, struct bp *bp)
 {
@@ -353,6 +353,8 @@ static enum status forecast_begin(const struct problem *problem, const struct in
     enum status status =
         conditions_check("back projection", list, bp_conditions(problem, options, list, CONDITIONS_MAX));
     aperture_take(bp, options);
+    if (status == STATUS_OK)
+        status = problem_turn_back(&bp->problem, &bp->turned, NULL);
     if (status == STATUS_OK)
         status = choose_engine(bp, options);
     return status == STATUS_OK ? met_find(bp) : status;
@@ -395,7 +397,7 @@ enum status bp_forecast(const struct problem *problem, const struct interpolator
         forecast->error[CAUSE_INTERPOLATION] = hypot(hypot(law, ends), a->bandwidth < a->fs ? 0 : 1.0 / a->samples);
         forecast->error[CAUSE_DELAYS] = general ? DELAYS_SHARE * bp.medium.phase_limit : 1e-7;
         forecast->error[CAUSE_FLOAT] = ROUNDING[general][problem->precision];
-        if (bp.problem.acquisition == &bp.limited) {
+        if (bp.limited.aperture_limit > 0) {
             forecast->error[CAUSE_APERTURE] = aperture_planned(problem, given->aperture);
         }
         forecast_records(&bp, in, forecast);
@@ -403,6 +405,7 @@ enum status bp_forecast(const struct problem *problem, const struct interpolator
             status = status_set(STATUS_FAILED, "no memory for an error law");
     }
     free(bp.met);
+    turned_free(&bp.turned);
     return status;
 }
 

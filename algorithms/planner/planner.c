@@ -10,6 +10,7 @@
 
 #include "backprojection/omission.h"
 #include "backprojection/pairs.h"
+#include "backprojection/turned.h"
 #include "common/fft_length.h"
 #include "planner/candidates.h"
 #include "planner/rates.h"
@@ -36,11 +37,22 @@ void candidate_name(const struct candidate *candidate, char text[CANDIDATE_NAME]
              candidate->settings);
 }
 
+/* Of back projection, which sums along x and r: turned grids are turned back. */
+static enum status pairs_of(const struct problem *problem, double *pairs)
+{
+    struct problem along = *problem;
+    struct turned_problem turned = {0};
+    enum status status = problem_turn_back(&along, &turned, NULL);
+    *pairs = status == STATUS_OK ? pairs_count(&along) : 0;
+    turned_free(&turned);
+    return status;
+}
+
 static struct setting setting_of(const struct problem *problem, const struct budget *budget)
 {
     const struct acquisition *a = problem->acquisition;
     const double transforms = a->pings * fft_flops(a->samples) + (double)a->samples * fft_flops(a->pings);
-    return (struct setting){problem, budget, pairs_count(problem), a->receivers * transforms};
+    return (struct setting){problem, budget, 0, a->receivers * transforms};
 }
 
 /* Over the budget, or not. */
@@ -66,8 +78,9 @@ static enum status refused(struct candidate *candidate, enum status status)
     return STATUS_OK;
 }
 
-static void sums_fill(const struct setting *setting, struct candidate *candidate)
+static enum status sums_fill(const struct setting *setting, struct candidate *candidate)
 {
+    enum status status = STATUS_OK;
     const struct forecast *f = &candidate->forecast;
     struct problem problem = *setting->problem;
     struct acquisition limited = *problem.acquisition;
@@ -75,10 +88,11 @@ static void sums_fill(const struct setting *setting, struct candidate *candidate
     if (candidate->sine < 1) {
         limited.aperture_limit = candidate->sine;
         problem.acquisition = &limited;
-        candidate->pairs = pairs_count(&problem);
+        status = pairs_of(&problem, &candidate->pairs);
     }
     candidate->flops = candidate->pairs * f->pair_flops + f->record_flops + f->kernel_flops;
     candidate->seconds = rates_sums(f, problem.precision, candidate->pairs);
+    return status;
 }
 
 /* Its FLOPs are counted by its own plan, which is made where the error allows it. */
@@ -120,7 +134,7 @@ static enum status candidate_forecast(const struct setting *setting, struct cand
     if (status == STATUS_OK) {
         judge(setting, candidate);
         if (candidate->forecast.sums_pairs)
-            sums_fill(setting, candidate);
+            status = sums_fill(setting, candidate);
         else
             status = migration_fill(setting, candidate);
     }
@@ -349,12 +363,14 @@ static void reasons_fill(struct choice *choice)
 
 enum status planner_choose(const struct problem *problem, const struct budget *budget, struct choice *choice)
 {
-    const struct setting setting = setting_of(problem, budget);
+    struct setting setting = setting_of(problem, budget);
     *choice = (struct choice){.least = INFINITY, .list = malloc(CANDIDATES_MAX * sizeof *choice->list)};
     if (!choice->list)
         return status_set(STATUS_FAILED, "no memory for the candidates of a plan");
     choice->count = candidates_fill(choice->list);
-    enum status status = forecast_all(&setting, choice);
+    enum status status = pairs_of(problem, &setting.pairs);
+    if (status == STATUS_OK)
+        status = forecast_all(&setting, choice);
     if (status == STATUS_OK)
         status = plan_first(&setting, choice);
     if (status == STATUS_OK && !choice->found)

@@ -167,6 +167,24 @@ static void scene_is_judged(void)
     free(text);
 }
 
+/* Turned axes: what is planned with is counted as back projection counts it. */
+static void turned_axes(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct choice choice;
+    support_scene("gate/squint", &scene);
+    const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
+    const struct budget budget = {1e-3, 4e9, false};
+    assert_int_equal(planner_choose(&problem, &budget, &choice), STATUS_OK);
+    assert_true(choice.found && choice.list[0].forecast.record_values > 0);
+    const struct work work = choice.list[0].algorithm->work(choice.plan);
+    assert_true(work.pairs > 0 && choice.list[0].pairs == work.pairs);
+    assert_close(choice.list[0].flops, work.flops, 1e-3 * work.flops);
+    choice_free(&choice);
+    scene_free(&scene);
+}
+
 static void command_writes(void **state)
 {
     (void)state;
@@ -201,6 +219,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(scenes_are_whole, folder_make, folder_remove),
         cmocka_unit_test(fastest_within),
         cmocka_unit_test(nothing_fits),
+        cmocka_unit_test(turned_axes),
         cmocka_unit_test_setup_teardown(rates_are_kept, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(command_writes, folder_make, folder_remove),
     };
