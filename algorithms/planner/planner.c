@@ -17,8 +17,8 @@
 
 /* Forecasts are means over scenes: what is planned with lies above. */
 static const double MARGIN = 1.12;
-/* Of the budget, what interpolated delays may take: where that is more, they are made more exact, by a phase limit (rad)
-   of this share of the budget. */
+/* Of the budget, what interpolated delays may take: where that is more, they are made more exact, by a phase limit
+   (rad) of this share of the budget. */
 static const double DELAYS_MOST = 0.4, PHASE_SHARE = 0.8;
 /* Of a candidate's time, what an aperture limit leaves at most, where it is looked at. */
 static const double LIMIT_PAYS = 0.95;

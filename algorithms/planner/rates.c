@@ -17,8 +17,8 @@ static struct rates rates = {
     .noise = 0.06,
 };
 
-/* Taps beyond eight that are no whole vectors of eight take the invariant engine as long as so many more: measured, 4 to
-   5. */
+/* Taps beyond eight that are no whole vectors of eight take the invariant engine as long as so many more: measured,
+   4 to 5. */
 enum { VECTOR = 8, PART = 5 };
 
 static const double START = 1e-5; /* s: of any run, also where no pixel meets a record */
