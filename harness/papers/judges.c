@@ -233,7 +233,7 @@ enum status judges_read(struct formula *formula, const char *column, const char 
     judgement->verdict = CLAIM_FAILS;
     if (judge_identity(text))
         formula->at += 9;
-    if (strncmp(text, "else ", 5) == 0) {
+    if (strncmp(formula->at, "else ", 5) == 0) {
         formula->at += 5;
         strict = false;
     }

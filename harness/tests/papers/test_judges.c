@@ -234,6 +234,9 @@ static void judges_are_joined(void **state)
         if (judgement.verdict != cases[k].verdict)
             fail_msg("%s: %s", cases[k].judge, claim_verdict_names[judgement.verdict]);
     }
+    assert_int_equal(judge("identity above(3, 0)", "x = 1", &measured).verdict, CLAIM_IDENTITY);
+    assert_int_equal(judge("identity else above(3, 0)", "x = 1", &measured).verdict, CLAIM_ASSUMED);
+    assert_int_equal(judge("identity else above(3, 9)", "x = 1", &measured).verdict, CLAIM_FAILS);
     assert_string_equal(
         judge("above(a, 9) else within(b, a, 0.5) else above(v, 0)", LANGUAGE_A "; " LANGUAGE_V, &measured).evidence,
         "a = 3, b = 2, v = 1 to 3 (median 2); criterion: a criterion; 3 above 9: no; 2 from 3 by at "
