@@ -14,6 +14,7 @@ if (!exists("footer")) footer = ""
 width = 1500
 height = 620
 load plots."/style.gp"
+load plots."/quote.gp"
 set datafile separator comma
 
 stats csv using (column("threads")) name "threads" nooutput
@@ -21,16 +22,16 @@ set table $sets separator comma                        # the best instruction se
 plot csv using (strcol("isa")) with table
 unset table
 best = $sets[2]
-label(method, precision, scene) = method.(precision eq "double" ? " double" : "") \
+label(method, precision, scene) = commas(method).(precision eq "double" ? " double" : "") \
     .(scene eq "bp22/full" ? " (whole aperture)" : "")
-set table $rows separator comma
-plot csv using (label(strcol("algorithm"), strcol("precision"), strcol("scene"))):(strcol("engine")): \
+set table $rows separator tab                          # settings have commas
+plot without_commas(csv) using (label(strcol("algorithm"), strcol("precision"), strcol("scene"))):(strcol("engine")): \
     (1e-9*column("pairs_per_s")):(column("fraction_of_peak")):(column("ratio_to_control")):(" ") \
     with table if (column("threads") == threads_max && strcol("isa") eq best)
 unset table
 height = 210 + 24*|$rows|
 load plots."/style.gp"
-set datafile separator comma
+set datafile separator tab
 
 array title[3] = ["rate (1e9 pairs/s)", "fraction of the multiply-add peak", "times the scalar reference loop's rate"]
 array engine[2] = ["invariant", "general"]

@@ -26,12 +26,9 @@ short(scene) = scene[(strstrt(scene, "extreme/") == 1 ? 9 : 1):*]
 name(algorithm, options, precision) = algorithm.(options eq "" ? "" : ":".options).(precision eq "double" ? " double" : "")
 kind(verdict) = verdict[1:5] eq "works" ? 0 : verdict[1:7] eq "refused" ? 2 : verdict[1:5] eq "fails" ? 3 : 1
 why(verdict) = strstrt(verdict, ": ") ? verdict[strstrt(verdict, ": ") + 2:*] : ""
-# gnuplot ends a quoted field at its first comma: those stand as semicolons until they are drawn.
 load plots."/quote.gp"
-rows_of = sprintf("< LC_ALL=C awk 'BEGIN { FS = OFS = \"\\\"\" } { for (k = 2; k <= NF; k += 2) gsub(/,/, \";\", $k) } 1' <'%s'", quote(csv))
-commas(text) = strstrt(text, ";") ? text[1:strstrt(text, ";") - 1].",".commas(text[strstrt(text, ";") + 1:*]) : text
 set table $cells separator tab
-plot rows_of using (place(strcol("scene"))):(column_now):(strcol("digits") eq "" ? "none" : strcol("digits")):(kind(strcol("verdict"))): \
+plot without_commas(csv) using (place(strcol("scene"))):(column_now):(strcol("digits") eq "" ? "none" : strcol("digits")):(kind(strcol("verdict"))): \
     (short(strcol("scene"))):(name(strcol("algorithm"), commas(strcol("options")), strcol("precision"))): \
     (why(strcol("verdict"))):(" ") with table
 unset table

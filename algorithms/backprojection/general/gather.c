@@ -280,6 +280,7 @@ INLINE void add_branches(enum loading loading, const struct receiver_group *grou
 {
     const int branches = group->table->branches;
     switch (branches) {
+    case 3: add_group((struct taking){false, 3, loading}, group, runs, pixels, re, im); break;
     case 4: add_group((struct taking){false, 4, loading}, group, runs, pixels, re, im); break;
     case 5: add_group((struct taking){false, 5, loading}, group, runs, pixels, re, im); break;
     case 6: add_group((struct taking){false, 6, loading}, group, runs, pixels, re, im); break;
