@@ -141,19 +141,30 @@ bool support_recording(const char *file, char *path, size_t size)
 
 char folder[256];
 
+static int folder_named(const char *name)
+{
+    const char *base = getenv("TMPDIR");
+    snprintf(folder, sizeof folder, "%s/%s-XXXXXX", base ? base : "/tmp", name);
+    return mkdtemp(folder) ? 0 : -1;
+}
+
 int folder_make(void **state)
 {
     (void)state;
-    const char *base = getenv("TMPDIR");
-    snprintf(folder, sizeof folder, "%s/sasbench-XXXXXX", base ? base : "/tmp");
-    return mkdtemp(folder) ? 0 : -1;
+    return folder_named("sasbench");
+}
+
+int folder_make_quoted(void **state)
+{
+    (void)state;
+    return folder_named("it's a sasbench");
 }
 
 int folder_remove(void **state)
 {
     (void)state;
     char command[300];
-    snprintf(command, sizeof command, "rm -r '%s'", folder);
+    snprintf(command, sizeof command, "rm -r \"%s\"", folder);
     return system(command);
 }
 

@@ -40,7 +40,8 @@ bool support_recording(const char *file, char *path, size_t size);
 /* A folder of its own for every test: fixtures, and the path of a name in it (the last four stay valid). */
 extern char folder[256];
 int folder_make(void **state);
-int folder_remove(void **state); /* with all that is in it */
+int folder_make_quoted(void **state); /* its name has blanks and an apostrophe */
+int folder_remove(void **state);      /* with all that is in it */
 const char *path_of(const char *name);
 bool support_exists(const char *name);
 void support_write(const char *name, const char *text);

@@ -8,8 +8,39 @@
 #include "data/echo_data.h"
 #include "show/plot.h"
 #include "show/plot_queue.h"
-#include "tests/assertions.h"
-#include "tests/show/plot_fixture.h"
+#include "tests/support.h"
+
+static const char real_plots[] = SASBENCH_ROOT "/plots";
+
+/* A file of the test's folder holds this and nothing else. */
+static void assert_text(const char *name, const char *expected)
+{
+    char *text = support_read(name);
+    assert_non_null(text);
+    assert_string_equal(text, expected);
+    free(text);
+}
+
+static void assert_png(const char *name)
+{
+    char *text = support_read(name);
+    assert_true(text && strncmp(text, "\x89PNG\r\n\x1a\n", 8) == 0);
+    free(text);
+}
+
+static void assert_drawn(enum status status)
+{
+    if (status != STATUS_OK)
+        fail_msg("%s", status_message());
+}
+
+/* Nothing temporary is left behind. */
+static void assert_nothing_left(void)
+{
+    char command[300];
+    snprintf(command, sizeof command, "ls -A \"%s\" | grep -q '^[.]'", folder);
+    assert_int_not_equal(system(command), 0);
+}
 
 static void image_is_drawn(void **state)
 {
@@ -17,14 +48,13 @@ static void image_is_drawn(void **state)
     struct grid patches[] = {{-1, 0.01, 200, 40, 0.02, 50}, {5, 0.01, 1, 50, 0.02, 1}, {5, 0.01, 4, 50, 0.02, 1}};
     struct image image;
     assert_int_equal(image_allocate(3, patches, PRECISION_FLOAT, &image), STATUS_OK);
-    char path[4096];
-    path_in(path, "it's.png");
-    assert_drawn(plot_image(path, real_plots,
+    assert_drawn(plot_image(path_of("it's.png"), real_plots,
                             &(struct image_picture){.image = &image, .title = "all zero, 'quoted' \"twice\"\n\\n $x"}));
     assert_png("it's.png");
     ((float complex *)image.pixels[0])[77] = 3;
     ((float complex *)image.pixels[1])[0] = NAN;
-    assert_drawn(plot_image(path, real_plots, &(struct image_picture){.image = &image, .title = "with NAN"}));
+    assert_drawn(
+        plot_image(path_of("it's.png"), real_plots, &(struct image_picture){.image = &image, .title = "with NAN"}));
     assert_png("it's.png");
     image_free(&image);
     assert_nothing_left();
@@ -34,20 +64,20 @@ static void image_is_drawn(void **state)
 static void image_data_are_right(void **state)
 {
     (void)state;
-    text_to_file("image.gp", "set print output\n"
-                             "print title\n"
-                             "print |panels|\n"
-                             "stats panels[1] binary matrix using 1 name 'sx' nooutput\n"
-                             "stats panels[1] binary matrix using 2 name 'sr' nooutput\n"
-                             "stats panels[1] binary matrix using 3 name 'v' nooutput\n"
-                             "print sprintf('%d %.3f %.3f %.3f %.3f', v_records, sx_min, sx_max, sr_min, sr_max)\n"
-                             "stats panels[1] binary matrix using ($3 > -50) name 'n' nooutput\n"
-                             "stats panels[1] binary matrix using ($3 > -50 ? $1 : 0) name 'sx' nooutput\n"
-                             "stats panels[1] binary matrix using ($3 > -50 ? $2 : 0) name 'sr' nooutput\n"
-                             "print sprintf('%d %.3f %.3f %.2f', n_sum, sx_max, sr_max, v_max)\n"
-                             "print sprintf('%s %g %g %g %g', shapes[1], x_low[1], x_high[1], r_low[1], r_high[1])\n"
-                             "print has_differences, range_db, target_count[1]\n"
-                             "print '</svg>'\n");
+    support_write("image.gp", "set print output\n"
+                              "print title\n"
+                              "print |panels|\n"
+                              "stats panels[1] binary matrix using 1 name 'sx' nooutput\n"
+                              "stats panels[1] binary matrix using 2 name 'sr' nooutput\n"
+                              "stats panels[1] binary matrix using 3 name 'v' nooutput\n"
+                              "print sprintf('%d %.3f %.3f %.3f %.3f', v_records, sx_min, sx_max, sr_min, sr_max)\n"
+                              "stats panels[1] binary matrix using ($3 > -50) name 'n' nooutput\n"
+                              "stats panels[1] binary matrix using ($3 > -50 ? $1 : 0) name 'sx' nooutput\n"
+                              "stats panels[1] binary matrix using ($3 > -50 ? $2 : 0) name 'sr' nooutput\n"
+                              "print sprintf('%d %.3f %.3f %.2f', n_sum, sx_max, sr_max, v_max)\n"
+                              "print sprintf('%s %g %g %g %g', shapes[1], x_low[1], x_high[1], r_low[1], r_high[1])\n"
+                              "print has_differences, range_db, target_count[1]\n"
+                              "print '</svg>'\n");
     /* 2700 columns make blocks of 3; the brightest pixel of all is in a patch that is not shown. */
     struct grid patches[9];
     for (int p = 0; p < 9; p++)
@@ -57,13 +87,11 @@ static void image_data_are_right(void **state)
     ((double complex *)image.pixels[0])[2 * 2700 + 301] = 3 + 4 * I;
     ((double complex *)image.pixels[0])[5] = INFINITY;
     ((double complex *)image.pixels[8])[0] = 50;
-    char path[4096], text[400];
-    path_in(path, "variables.svg");
-    assert_drawn(plot_image(path, folder, &(struct image_picture){.image = &image, .title = "it's\ta_title"}));
-    file_to_text("variables.svg", text, sizeof text);
-    assert_string_equal(text, "it's a_title (1 pixel not finite) (first 8 of 9 patches)\n8\n"
-                              "2700 1.000 2698.000 10.000 11.000\n"
-                              "1 301.000 11.000 -20.00\nimage -0.5 2699.5 9.75 11.25\n0 60 0\n</svg>\n");
+    assert_drawn(plot_image(path_of("variables.svg"), folder,
+                            &(struct image_picture){.image = &image, .title = "it's\ta_title"}));
+    assert_text("variables.svg", "it's a_title (1 pixel not finite) (first 8 of 9 patches)\n8\n"
+                                 "2700 1.000 2698.000 10.000 11.000\n"
+                                 "1 301.000 11.000 -20.00\nimage -0.5 2699.5 9.75 11.25\n0 60 0\n</svg>\n");
     image_free(&image);
     assert_nothing_left();
 }
@@ -72,28 +100,23 @@ static void image_data_are_right(void **state)
 static void far_pixels_are_told_apart(void **state)
 {
     (void)state;
-    text_to_file("image.gp", "set print output\n"
-                             "stats panels[1] binary matrix using 1 name 'sx' nooutput\n"
-                             "stats panels[1] binary matrix using 2 name 'sr' nooutput\n"
-                             "print sprintf('%.3f %.3f', x_origin[1] + sx_min, x_origin[1] + sx_max)\n"
-                             "print sprintf('%.3f %.3f', r_origin[1] + sr_min, r_origin[1] + sr_max)\n"
-                             "print '</svg>'\n");
+    support_write("image.gp", "set print output\n"
+                              "stats panels[1] binary matrix using 1 name 'sx' nooutput\n"
+                              "stats panels[1] binary matrix using 2 name 'sr' nooutput\n"
+                              "print sprintf('%.3f %.3f', x_origin[1] + sx_min, x_origin[1] + sx_max)\n"
+                              "print sprintf('%.3f %.3f', r_origin[1] + sr_min, r_origin[1] + sr_max)\n"
+                              "print '</svg>'\n");
     const struct grid patch = {4000003, 0.02, 101, 500019.5, 0.02, 51, 0};
     struct image image;
     assert_int_equal(image_allocate(1, &patch, PRECISION_DOUBLE, &image), STATUS_OK);
     ((double complex *)image.pixels[0])[25 * 101 + 50] = 1;
-    char path[4096], text[400];
     const struct image_picture picture = {.image = &image, .title = "a"};
-    path_in(path, "variables.svg");
-    assert_drawn(plot_image(path, folder, &picture));
-    file_to_text("variables.svg", text, sizeof text);
-    assert_string_equal(text, "4000003.000 4000005.000\n500019.500 500020.500\n</svg>\n");
-    path_in(path, "far.svg");
-    assert_drawn(plot_image(path, real_plots, &picture));
-    static char whole[400000];
-    file_to_text("far.svg", whole, sizeof whole);
-    assert_non_null(strstr(whole, "4000003.5"));
-    assert_non_null(strstr(whole, "500020.5"));
+    assert_drawn(plot_image(path_of("variables.svg"), folder, &picture));
+    assert_text("variables.svg", "4000003.000 4000005.000\n500019.500 500020.500\n</svg>\n");
+    assert_drawn(plot_image(path_of("far.svg"), real_plots, &picture));
+    char *whole = support_read("far.svg");
+    assert_true(whole && strstr(whole, "4000003.5") && strstr(whole, "500020.5"));
+    free(whole);
     image_free(&image);
     assert_nothing_left();
 }
@@ -102,17 +125,17 @@ static void far_pixels_are_told_apart(void **state)
 static void differences_curves_and_targets(void **state)
 {
     (void)state;
-    text_to_file("image.gp", "set print output\n"
-                             "print shapes[1], ' ', shapes[2], ' ', shapes[3], curves[1], curves[2], curves[3]\n"
-                             "print has_differences, range_db, difference_top\n"
-                             "stats differences[1] index 0 using 2 name 'd' nooutput\n"
-                             "print sprintf('%.2f', d_max)\n"
-                             "stats panels[2] index 1 using 1:2 name 'c' nooutput\n"
-                             "print sprintf('%.2f %.2f', c_pos_max_y, c_max_y)\n"
-                             "print target_count[1], target_count[2], target_count[3], ' ', footer\n"
-                             "plot targets[3] using (t = strcol(3), $1):(u = $2)\n"
-                             "print t, ' ', u\n"
-                             "print '</svg>'\n");
+    support_write("image.gp", "set print output\n"
+                              "print shapes[1], ' ', shapes[2], ' ', shapes[3], curves[1], curves[2], curves[3]\n"
+                              "print has_differences, range_db, difference_top\n"
+                              "stats differences[1] index 0 using 2 name 'd' nooutput\n"
+                              "print sprintf('%.2f', d_max)\n"
+                              "stats panels[2] index 1 using 1:2 name 'c' nooutput\n"
+                              "print sprintf('%.2f %.2f', c_pos_max_y, c_max_y)\n"
+                              "print target_count[1], target_count[2], target_count[3], ' ', footer\n"
+                              "plot targets[3] using (t = strcol(3), $1):(u = $2)\n"
+                              "print t, ' ', u\n"
+                              "print '</svg>'\n");
     const struct grid patches[3] = {{0, 1, 20, 10, 1, 1, 0}, {0, 1, 2, 10, 1, 30, 0}, {0, 1, 5, 100, 1, 5, 0}};
     const struct target targets[] = {{50, 50, 1}, {2, 102, 1}};
     struct image image, exact;
@@ -121,8 +144,6 @@ static void differences_curves_and_targets(void **state)
     ((double complex *)exact.pixels[0])[7] = 10;
     ((double complex *)image.pixels[0])[7] = 10 + 0.5 * I;
     ((double complex *)image.pixels[1])[2 * 11 + 1] = 1; /* second column, at 21 m */
-    char path[4096], text[400];
-    path_in(path, "variables.svg");
     const struct image_picture picture = {.image = &image,
                                           .reference = &exact,
                                           .title = "a",
@@ -130,13 +151,12 @@ static void differences_curves_and_targets(void **state)
                                           .range_db = 40,
                                           .targets = targets,
                                           .target_count = 2};
-    assert_drawn(plot_image(path, folder, &picture));
-    file_to_text("variables.svg", text, sizeof text);
+    assert_drawn(plot_image(path_of("variables.svg"), folder, &picture));
     /* 1 of 10: the difference in the second patch is the largest, -20 dB; that in the first 0.5 of 10. */
-    assert_string_equal(
-        text, "rows   columns   image 1 2 0\n1 40 -20\n-26.02\n21.00 -20.01\n0 0 1   from here\nT2   102.0\n</svg>\n");
-    path_in(path, "all.png");
-    assert_drawn(plot_image(path, real_plots, &picture));
+    assert_text(
+        "variables.svg",
+        "rows   columns   image 1 2 0\n1 40 -20\n-26.02\n21.00 -20.01\n0 0 1   from here\nT2   102.0\n</svg>\n");
+    assert_drawn(plot_image(path_of("all.png"), real_plots, &picture));
     assert_png("all.png");
     image_free(&image);
     image_free(&exact);
@@ -157,13 +177,13 @@ static void slices_are_drawn(void **state)
             l % 2 ? "bp_'sinc'" : "reference", position, power, 101, l == 3 ? power : NULL, NULL, 0};
     lines[1].count = 0;
     const char *titles[] = {"target 0", "target_1"};
-    char path[4096];
-    path_in(path, "slices.png");
-    assert_drawn(plot_slices(path, real_plots, &(struct slices_picture){"two targets", "here", 2, 2, titles, lines}));
+    assert_drawn(plot_slices(path_of("slices.png"), real_plots,
+                             &(struct slices_picture){"two targets", "here", 2, 2, titles, lines}));
     assert_png("slices.png");
     for (int l = 0; l < 4; l++)
         lines[l].count = 0;
-    assert_drawn(plot_slices(path, real_plots, &(struct slices_picture){"nothing", NULL, 2, 2, titles, lines}));
+    assert_drawn(
+        plot_slices(path_of("slices.png"), real_plots, &(struct slices_picture){"nothing", NULL, 2, 2, titles, lines}));
     assert_png("slices.png");
     assert_nothing_left();
 }
@@ -174,82 +194,74 @@ static void phase_errors_are_drawn(void **state)
     double place[] = {-2, 0, 1}, error[] = {0.1, 0, 0.2};
     const struct slice_line line = {"LBF", place, error, 3, NULL, "rma_lbf", 0.15};
     const char *panel = "r = 50 m";
-    char path[4096];
-    path_in(path, "phase.png");
-    assert_drawn(plot_phase(path, real_plots, &(struct slices_picture){"title", "here", 1, 1, &panel, &line}));
+    assert_drawn(
+        plot_phase(path_of("phase.png"), real_plots, &(struct slices_picture){"title", "here", 1, 1, &panel, &line}));
     assert_png("phase.png");
+}
+
+/* What these statements print once the style of all pictures is loaded. */
+static void assert_style_prints(const char *statements, const char *expected)
+{
+    char script[4000], whole[1000];
+    const char *panel = "panel";
+    const struct slice_line line = {.label = "reference"};
+    snprintf(
+        script, sizeof script,
+        "plots = '%s'; name = output; format = 'svg'; load plots.'/style.gp'; set print name\n%s\nprint '</svg>'\n",
+        real_plots, statements);
+    support_write("slices.gp", script);
+    assert_drawn(
+        plot_slices(path_of("variables.svg"), folder, &(struct slices_picture){"title", NULL, 1, 1, &panel, &line}));
+    snprintf(whole, sizeof whole, "%s\n</svg>\n", expected);
+    assert_text("variables.svg", whole);
 }
 
 /* An algorithm has its number by its name, whatever its settings. */
 static void families_are_told_by_name(void **state)
 {
     (void)state;
-    char path[4096], text[400], script[5000];
-    snprintf(script, sizeof script,
-             "load '%s/families.gp'; set print output\n"
-             "print family_number('reference'), family_number('bp_sinc:taps=8,window=none'), family_number('bp_sinc "
-             "double')\n"
-             "print family_number('bp_sincere'), family_number('bp'), family_number('rma_wu'), family_drawn('mine')\n"
-             "print |family_colour|, |family_filled|, |family_open|, |family_dash|, |family_names|\n"
-             "print '</svg>'\n",
-             real_plots);
-    text_to_file("slices.gp", script);
-    path_in(path, "variables.svg");
-    const char *panel = "panel";
-    const struct slice_line line = {.label = "reference"};
-    assert_drawn(plot_slices(path, folder, &(struct slices_picture){"title", NULL, 1, 1, &panel, &line}));
-    file_to_text("variables.svg", text, sizeof text);
-    assert_string_equal(text, "1 4 4\n0 0 11 18\n18 18 18 18 17\n</svg>\n");
-    /* Every algorithm that there is has its own. */
-    FILE *families = fopen(SASBENCH_ROOT "/plots/families.gp", "r");
-    char whole[8000];
-    assert_non_null(families);
-    whole[fread(whole, 1, sizeof whole - 1, families)] = '\0';
-    fclose(families);
-    for (int k = 0; algorithms[k]; k++) {
-        char row[80];
-        snprintf(row, sizeof row, "\n%s ", algorithms[k]->name);
-        if (!strstr(whole, row))
-            fail_msg("%s has no row in plots/families.gp", algorithms[k]->name);
+    assert_style_prints(
+        "print family_number('reference'), family_number('bp_sinc:taps=8,window=none'), family_number('bp_sinc "
+        "double')\n"
+        "print family_number('bp_sincere'), family_number('bp'), family_number('rma_wu'), family_drawn('mine')\n"
+        "print |family_colour|, |family_filled|, |family_open|, |family_dash|, |family_names|",
+        "1 4 4\n0 0 11 18\n18 18 18 18 17");
+    char statements[2000] = "set print name", names[800] = "";
+    for (int k = 0; algorithms[k]; k++) { /* every one that there is has its own */
+        char *statement = statements + strlen(statements), *name = names + strlen(names);
+        snprintf(statement, 80, "\nprint family_names[family_number('%s')]", algorithms[k]->name);
+        snprintf(name, 40, "%s%s", k > 0 ? "\n" : "", algorithms[k]->name);
     }
+    assert_style_prints(statements, names);
 }
 
 /* Labels of short slices are farther apart: "-0.004" is longer than "-1". */
 static void labels_do_not_collide(void **state)
 {
     (void)state;
-    char script[5000], path[4096], text[400];
-    snprintf(script, sizeof script,
-             "plots = '%s'; name = output; format = 'svg'; load plots.'/style.gp'; set print name\n"
-             "print tic_apart(1.5*0.00465, 2*0.00465, 500), tic_apart(1.5*1.2, 2*1.2, 500), tic_step(1.5*0.00465)\n"
-             "print tic_format(0, 80, 10), ' ', tic_format(4000003, 4000005, 0.5)\nprint '</svg>'\n",
-             real_plots);
-    text_to_file("slices.gp", script);
-    path_in(path, "variables.svg");
-    const char *panel = "panel";
-    const struct slice_line line = {.label = "reference"};
-    assert_drawn(plot_slices(path, folder, &(struct slices_picture){"title", NULL, 1, 1, &panel, &line}));
-    file_to_text("variables.svg", text, sizeof text);
-    assert_string_equal(text, "0.002 0.5 0.001\n%.6g   %.8g\n</svg>\n");
+    assert_style_prints(
+        "print tic_apart(1.5*0.00465, 2*0.00465, 500), tic_apart(1.5*1.2, 2*1.2, 500), tic_step(1.5*0.00465)\n"
+        "print tic_format(0, 80, 10), ' ', tic_format(4000003, 4000005, 0.5)",
+        "0.002 0.5 0.001\n%.6g   %.8g");
 }
 
 /* A file for each line, without what lies beyond those that are shown; an empty line has one, too. */
 static void slice_data_are_right(void **state)
 {
     (void)state;
-    text_to_file("slices.gp",
-                 "set print output\n"
-                 "print title, |panels|, |lines|, panels[2], lines[2]\n"
-                 "print sprintf('%d %.3f %d %g', has_differences, extent, point_interval, difference_top)\n"
-                 "stats data[4] using 3 name 'e' nooutput\n"
-                 "print sprintf('%.1f %d', e_min, e_records)\n"
-                 "do for [b = 1:4] {\n"
-                 "    stats data[b] using ($2 == $2 ? $1 : NaN) name 'x' nooutput\n"
-                 "    print sprintf('%d', exists('x_records') ? x_records : 0)\n"
-                 "    stats data[b] using ($2 == $2 ? $2 : NaN) name 'p' nooutput\n"
-                 "    print exists('p_max') && b != 2 ? sprintf('%.2f %.2f', x_max, p_max) : '-'\n"
-                 "}\n"
-                 "print '</svg>'\n");
+    support_write("slices.gp",
+                  "set print output\n"
+                  "print title, |panels|, |lines|, panels[2], lines[2]\n"
+                  "print sprintf('%d %.3f %d %g', has_differences, extent, point_interval, difference_top)\n"
+                  "stats data[4] using 3 name 'e' nooutput\n"
+                  "print sprintf('%.1f %d', e_min, e_records)\n"
+                  "do for [b = 1:4] {\n"
+                  "    stats data[b] using ($2 == $2 ? $1 : NaN) name 'x' nooutput\n"
+                  "    print sprintf('%d', exists('x_records') ? x_records : 0)\n"
+                  "    stats data[b] using ($2 == $2 ? $2 : NaN) name 'p' nooutput\n"
+                  "    print exists('p_max') && b != 2 ? sprintf('%.2f %.2f', x_max, p_max) : '-'\n"
+                  "}\n"
+                  "print '</svg>'\n");
     double position[] = {-9, -0.5, 0, 0.25, 7, 8}, difference[] = {-12, -41, -INFINITY, -43, -12, -12};
     double power[4][6] = {{-40, -9, -1, -9, -40, -40}, {0}, {-40, -9, -2, -9, -40, -40}, {-40, -9, -3, -9, -40, -40}};
     struct slice_line lines[4];
@@ -257,13 +269,11 @@ static void slice_data_are_right(void **state)
         lines[l] = (struct slice_line){l % 2 ? "b" : "a",          position, power[l], l == 1 ? 0 : 6,
                                        l == 3 ? difference : NULL, NULL,     0};
     const char *titles[] = {"t0", "t1"};
-    char path[4096], text[400];
-    path_in(path, "variables.svg");
-    assert_drawn(plot_slices(path, folder, &(struct slices_picture){"title", NULL, 2, 2, titles, lines}));
-    file_to_text("variables.svg", text, sizeof text);
-    assert_string_equal(text,
-                        "title 2 2 t1 b\n1 0.575 0 -40\n-200.0 5\n5\n7.00 -1.00\n0\n-\n5\n7.00 -2.00\n5\n7.00 -3.00\n"
-                        "</svg>\n");
+    assert_drawn(
+        plot_slices(path_of("variables.svg"), folder, &(struct slices_picture){"title", NULL, 2, 2, titles, lines}));
+    assert_text("variables.svg",
+                "title 2 2 t1 b\n1 0.575 0 -40\n-200.0 5\n5\n7.00 -1.00\n0\n-\n5\n7.00 -2.00\n5\n7.00 -3.00\n"
+                "</svg>\n");
     assert_nothing_left();
 }
 
@@ -273,28 +283,26 @@ static void failures_are_told(void **state)
     struct grid patch = {0, 1, 4, 10, 1, 4};
     struct image image;
     assert_int_equal(image_allocate(1, &patch, PRECISION_FLOAT, &image), STATUS_OK);
-    char path[4096];
 
-    path_in(path, "no/such/folder.png");
-    assert_int_equal(plot_image(path, real_plots, &(struct image_picture){.image = &image, .title = "a"}),
-                     STATUS_FAILED);
+    assert_int_equal(
+        plot_image(path_of("no/such/folder.png"), real_plots, &(struct image_picture){.image = &image, .title = "a"}),
+        STATUS_FAILED);
     assert_non_null(strstr(status_message(), "no/such/folder.png"));
 
     /* A failing script leaves the old picture alone. */
-    text_to_file("image.gp", "set print output; print 'half'; nonsense here\n");
-    text_to_file("old.png", "old");
-    path_in(path, "old.png");
-    assert_int_equal(plot_image(path, folder, &(struct image_picture){.image = &image, .title = "a"}), STATUS_FAILED);
+    support_write("image.gp", "set print output; print 'half'; nonsense here\n");
+    support_write("old.png", "old");
+    assert_int_equal(plot_image(path_of("old.png"), folder, &(struct image_picture){.image = &image, .title = "a"}),
+                     STATUS_FAILED);
     assert_non_null(strstr(status_message(), "old.png"));
     assert_non_null(strstr(status_message(), "nonsense"));
     assert_non_null(strstr(status_message(), ": line 1: invalid command"));
-    char text[10];
-    file_to_text("old.png", text, sizeof text);
-    assert_string_equal(text, "old");
+    assert_text("old.png", "old");
 
     char *paths = strdup(getenv("PATH"));
     setenv("PATH", folder, 1);
-    enum status status = plot_image(path, real_plots, &(struct image_picture){.image = &image, .title = "a"});
+    enum status status =
+        plot_image(path_of("old.png"), real_plots, &(struct image_picture){.image = &image, .title = "a"});
     setenv("PATH", paths, 1);
     free(paths);
     assert_int_equal(status, STATUS_FAILED);
@@ -322,14 +330,12 @@ static void cut_pictures_are_told(void **state)
     struct image image;
     assert_int_equal(image_allocate(1, &patch, PRECISION_FLOAT, &image), STATUS_OK);
     for (size_t k = 0; k < sizeof cuts / sizeof *cuts; k++) {
-        char path[4096], text[64];
-        text_to_file("image.gp", cuts[k].script);
-        text_to_file(cuts[k].name, "old");
-        path_in(path, cuts[k].name);
-        assert_int_equal(plot_image(path, folder, &(struct image_picture){.image = &image, .title = "a"}),
-                         cuts[k].whole ? STATUS_OK : STATUS_FAILED);
-        file_to_text(cuts[k].name, text, sizeof text);
-        assert_string_equal(text, cuts[k].whole ? "<svg>all of it to its end</svg>\n\n\n" : "old");
+        support_write("image.gp", cuts[k].script);
+        support_write(cuts[k].name, "old");
+        assert_int_equal(
+            plot_image(path_of(cuts[k].name), folder, &(struct image_picture){.image = &image, .title = "a"}),
+            cuts[k].whole ? STATUS_OK : STATUS_FAILED);
+        assert_text(cuts[k].name, cuts[k].whole ? "<svg>all of it to its end</svg>\n\n\n" : "old");
         if (!cuts[k].whole) {
             assert_non_null(strstr(status_message(), cuts[k].name));
             assert_non_null(strstr(status_message(), "without its end"));
@@ -362,19 +368,17 @@ static void queued_pictures_are_drawn(void **state)
     double position[] = {-1, 0, 1}, power[] = {-20, 0, -20};
     struct slice_line line = {.label = "a", .position_m = position, .power_db = power, .count = 3};
     const char *panel = "t0";
-    char path[4096], text[10];
+    char name[10];
     assert_int_equal(image_allocate(1, &patch, PRECISION_FLOAT, &image), STATUS_OK);
-    text_to_file("image.gp", "nonsense here\n");
+    support_write("image.gp", "nonsense here\n");
     const struct image_picture picture = {.image = &image, .title = "a"};
     for (int k = 0; k < 5; k++) {
-        snprintf(text, sizeof text, "q%d.png", k);
-        path_in(path, text);
-        assert_drawn(plot_image_later(&queue, path, k == 2 ? folder : real_plots, &picture));
-        assert_int_not_equal(access(path, F_OK), 0);
+        snprintf(name, sizeof name, "q%d.png", k);
+        assert_drawn(plot_image_later(&queue, path_of(name), k == 2 ? folder : real_plots, &picture));
+        assert_int_not_equal(access(path_of(name), F_OK), 0);
     }
-    path_in(path, "s.png");
-    assert_drawn(
-        plot_slices_later(&queue, path, real_plots, &(struct slices_picture){"title", NULL, 1, 1, &panel, &line}));
+    assert_drawn(plot_slices_later(&queue, path_of("s.png"), real_plots,
+                                   &(struct slices_picture){"title", NULL, 1, 1, &panel, &line}));
     image_free(&image);
     line.count = 0;
     assert_int_equal(queue.count, 6);
@@ -384,22 +388,21 @@ static void queued_pictures_are_drawn(void **state)
     assert_non_null(strstr(told.message, "q2.png"));
     assert_non_null(strstr(told.message, "nonsense"));
     for (int k = 0; k < 5; k++) {
-        snprintf(text, sizeof text, "q%d.png", k);
-        path_in(path, text);
+        snprintf(name, sizeof name, "q%d.png", k);
         if (k == 2)
-            assert_int_not_equal(access(path, F_OK), 0);
+            assert_int_not_equal(access(path_of(name), F_OK), 0);
         else
-            assert_png(text);
+            assert_png(name);
     }
     assert_png("s.png");
     assert_nothing_left();
 
     /* What is dropped leaves nothing, either. */
     assert_int_equal(image_allocate(1, &patch, PRECISION_FLOAT, &image), STATUS_OK);
-    path_in(path, "dropped.png");
-    assert_drawn(plot_image_later(&queue, path, real_plots, &(struct image_picture){.image = &image, .title = "a"}));
+    assert_drawn(plot_image_later(&queue, path_of("dropped.png"), real_plots,
+                                  &(struct image_picture){.image = &image, .title = "a"}));
     plot_queue_free(&queue);
-    assert_int_not_equal(access(path, F_OK), 0);
+    assert_int_not_equal(access(path_of("dropped.png"), F_OK), 0);
     image_free(&image);
     assert_nothing_left();
 }
@@ -410,15 +413,14 @@ static void hanging_gnuplot_is_stopped(void **state)
     (void)state;
     struct grid patch = {0, 1, 4, 10, 1, 4};
     struct image image;
-    char path[4096];
     assert_int_equal(image_allocate(1, &patch, PRECISION_FLOAT, &image), STATUS_OK);
-    text_to_file("image.gp", "pause 1000\n");
-    path_in(path, "a.png");
+    support_write("image.gp", "pause 1000\n");
     plot_seconds_most = 0.2;
-    assert_int_equal(plot_image(path, folder, &(struct image_picture){.image = &image, .title = "a"}), STATUS_FAILED);
+    assert_int_equal(plot_image(path_of("a.png"), folder, &(struct image_picture){.image = &image, .title = "a"}),
+                     STATUS_FAILED);
     assert_non_null(strstr(status_message(), "did not end within 0.2 s"));
     plot_seconds_most = 60;
-    assert_int_equal(plot_image(path, real_plots, &(struct image_picture){.image = &image, .title = "a"}),
+    assert_int_equal(plot_image(path_of("a.png"), real_plots, &(struct image_picture){.image = &image, .title = "a"}),
                      STATUS_FAILED);
     assert_non_null(strstr(status_message(), "did not end on a picture before"));
     image_free(&image);
@@ -442,5 +444,5 @@ int main(void)
         cmocka_unit_test(queued_pictures_are_drawn),
         cmocka_unit_test(hanging_gnuplot_is_stopped),
     };
-    return cmocka_run_group_tests_name("plot", tests, plot_set_up, plot_tear_down);
+    return cmocka_run_group_tests_name("plot", tests, folder_make_quoted, folder_remove);
 }
