@@ -108,6 +108,24 @@ static void assert_holds(const char *text, const char *part)
         fail_msg("no '%s' in: %s", part, text);
 }
 
+/* The grid that `info` proposes, as an option. */
+static void grid_proposed(const char *told, char grid[200])
+{
+    const char *proposed = strstr(told, "--grid=");
+    assert_non_null(proposed);
+    snprintf(grid, 200, "%.*s", (int)strcspn(proposed, "\n"), proposed);
+}
+
+/* The peak that `image` tells is at (x, 20) m. */
+static void assert_peak(const char *told, double x_wanted)
+{
+    double x, r;
+    const char *peak = strstr(told, "peak ");
+    assert_non_null(peak);
+    assert_int_equal(sscanf(peak, "peak %*f at (%lf, %lf) m", &x, &r), 2);
+    assert_true(fabs(x - x_wanted) < 0.05 && fabs(r - 20) < 0.05);
+}
+
 /* Coordinates of a map projection keep their digits, and what `info` proposes is fine enough for `image`. */
 static void far_recordings_are_told(void **state)
 {
@@ -122,19 +140,13 @@ static void far_recordings_are_told(void **state)
     program_good(simulate);
     char *told = program_output(info);
     assert_holds(told, "track        from (4000117.4, 0, 0) to (4000129.25, 0, 0) m");
-    const char *proposed = strstr(told, "--grid=");
-    assert_non_null(proposed);
-    snprintf(grid, sizeof grid, "%.*s", (int)strcspn(proposed, "\n"), proposed);
+    grid_proposed(told, grid);
     free(told);
     const char *const image[ARGUMENTS_MAX] = {"image", "--echoes", "far.mat", grid, "-a", "bp_sinc", "-o", "far.png"};
     struct outcome outcome = program_run(image);
     assert_int_equal(outcome.status, 0);
     assert_null(strstr(outcome.err, "pixel_"));
-    double x, r;
-    const char *peak = strstr(outcome.out, "peak ");
-    assert_non_null(peak);
-    assert_int_equal(sscanf(peak, "peak %*f at (%lf, %lf) m", &x, &r), 2);
-    assert_true(fabs(x - 4000123.4) < 0.05 && fabs(r - 20) < 0.05);
+    assert_peak(outcome.out, 4000123.4);
     outcome_free(&outcome);
 }
 
@@ -149,9 +161,7 @@ static void files_are_told_and_shown(void **state)
     assert_holds(told, "fc 150000 Hz, bandwidth 15000 Hz, fs 30000 Hz");
     assert_holds(told, "ranges of 18 to 24.375 m");
     assert_holds(told, "uniform and straight, 0.16 m from ping to ping");
-    const char *proposed = strstr(told, "--grid=");
-    assert_non_null(proposed);
-    snprintf(grid, sizeof grid, "%.*s", (int)strcspn(proposed, "\n"), proposed);
+    grid_proposed(told, grid);
     free(told);
     const char *const image[ARGUMENTS_MAX] = {"image", "--echoes", "good.mat", grid, "-a", "bp_sinc", "-o", "seen.mat"};
     static const char *const show[ARGUMENTS_MAX] = {"show", "seen.mat", "--range", "40"};
@@ -160,11 +170,7 @@ static void files_are_told_and_shown(void **state)
                                                      "bp_sinc", "-o",      "seen.svg"};
     char *line = program_output(image);
     assert_holds(line, "seen.mat: bp_sinc of good, ");
-    const char *peak = strstr(line, "peak ");
-    double x, r;
-    assert_non_null(peak);
-    assert_int_equal(sscanf(peak, "peak %*f at (%lf, %lf) m", &x, &r), 2);
-    assert_true(fabs(x) < 0.05 && fabs(r - 20) < 0.05); /* the target at (0, 20) m */
+    assert_peak(line, 0);
     free(line);
     line = program_output(show);
     assert_holds(line, "seen.png: good.mat: bp_sinc:taps=8,window=none");

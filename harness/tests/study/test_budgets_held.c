@@ -12,7 +12,7 @@
 struct tally {
     double used[4000]; /* measured error over the budget */
     int count, refused;
-    int zero; /* choices on images of zeros, which have no error */
+    int zero; /* choices on images of zeros, which have no error and must be zero as well */
 };
 
 /* Measure what `auto` chooses for one scene and budget. */
@@ -25,12 +25,14 @@ static void choice_measure(const struct session *session, int seed, double budge
     assert_int_equal(spec_parse(text, &spec), STATUS_OK);
     enum status status = session_image(session, &spec, &image);
     if (status == STATUS_OK) {
-        const double error = metrics_error(&image, &session->reference).error_gain;
-        print_message("seed %d, %s: %.2e, %.2f of the budget\n", seed, text, error, error / budget);
-        if (support_peak(&session->reference) > 0)
+        if (support_peak(&session->reference) > 0) {
+            const double error = metrics_error(&image, &session->reference).error_gain;
+            print_message("seed %d, %s: %.2e, %.2f of the budget\n", seed, text, error, error / budget);
             tally->used[tally->count++] = error / budget;
-        else /* an image of zeros has no error */
+        } else {
             assert_true(support_peak(&image) == 0);
+            tally->zero++;
+        }
         image_free(&image);
     } else {
         if (status != STATUS_UNSUPPORTED || !strstr(status_message(), "condition budget"))
