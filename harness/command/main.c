@@ -16,6 +16,7 @@
 #include "data/suggestion.h"
 #include "data/supervisor.h"
 #include "data/temporary.h"
+#include "data/text_append.h"
 #include "measure/provenance.h"
 #include "show/table.h"
 
@@ -168,8 +169,7 @@ static enum status option_unknown(const struct command *command, const char *opt
     for (const struct option *o = long_options; o->name; o++)
         if (strchr(command->options, o->val)) {
             suggestion_offer(&suggestion, o->name);
-            size_t used = strlen(accepted);
-            snprintf(accepted + used, sizeof accepted - used, "%s--%s", used ? ", " : "", o->name);
+            text_append(accepted, sizeof accepted, "%s--%s", *accepted ? ", " : "", o->name);
         }
     if (suggestion.best)
         snprintf(meant, sizeof meant, "; did you mean '--%s'?", suggestion.best);
@@ -270,8 +270,7 @@ static enum status command_find(const char *name, const struct command **found)
         }
         if (commands[k].hidden)
             continue;
-        size_t used = strlen(names);
-        snprintf(names + used, sizeof names - used, "%s, ", commands[k].name);
+        text_append(names, sizeof names, "%s, ", commands[k].name);
         suggestion_offer(&suggestion, commands[k].name);
     }
     suggestion_text(&suggestion, meant, sizeof meant);

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "data/text_append.h"
 #include "gate/diff_side.h"
 #include "measure/timing.h"
 
@@ -228,9 +229,8 @@ static enum status note_versions(struct diff *diff, const struct diff_side sides
     for (const struct metric *metric = metrics_used; metric->name; metric++) {
         const bool old = csv_column(&sides[0].results.csv, metric->name) >= 0;
         const bool new = csv_column(&sides[1].results.csv, metric->name) >= 0;
-        const size_t used = strlen(names);
         if (old != new)
-            snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", metric->name);
+            text_append(names, sizeof names, "%s%s", *names ? ", " : "", metric->name);
     }
     return *names ? diff_note(diff, "versions of the files differ: only one has %s, which %s not compared", names,
                               strchr(names, ',') ? "are" : "is")

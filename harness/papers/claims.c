@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "data/paths.h"
+#include "data/text_append.h"
 #include "measure/timing.h"
 #include "papers/assumptions.h"
 

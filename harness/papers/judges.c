@@ -1,5 +1,6 @@
 /* The judges (judges.h). Each compares so that NaN disagrees. */
 #include "papers/judges.h"
+#include "data/text_append.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "data/paths.h"
+#include "data/text_append.h"
 #include "measure/spec.h"
 #include "papers/tables.h"
 #include "papers/assumptions.h"

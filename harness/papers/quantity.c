@@ -8,20 +8,12 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "data/text_append.h"
 #include "measure/timing.h"
 #include "papers/lookup.h"
 #include "papers/tables.h"
 
 /* ---- texts ---- */
-
-void text_append(char *text, size_t size, const char *format, ...)
-{
-    size_t used = strlen(text);
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text + used, size - used, format, arguments);
-    va_end(arguments);
-}
 
 double values_extreme(const struct values *values, bool largest)
 {

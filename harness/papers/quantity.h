@@ -70,6 +70,5 @@ enum status formula_error(const struct formula *formula, const char *at, const c
 double values_extreme(const struct values *values, bool largest);
 /* "0.452", or "0.01 to 0.45" of several, at the end of a text in `size` bytes. */
 void values_append(char *text, size_t size, const struct values *values);
-void text_append(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
 #endif

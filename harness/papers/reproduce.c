@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 
 #include "data/paths.h"
+#include "data/text_append.h"
 #include "measure/spec.h"
 #include "papers/figures.h"
 #include "papers/assumptions.h"

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "data/csv.h"
+#include "data/text_append.h"
 #include "data/text_file.h"
 #include "papers/verdicts.h"
 #include "show/table.h"

@@ -3,17 +3,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "data/text_append.h"
 #include "scene/key_types.h"
 #include "scene/keys.h"
-
-void key_text_append(char *text, size_t size, const char *format, ...)
-{
-    size_t used = strlen(text);
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text + used, size - used, format, arguments);
-    va_end(arguments);
-}
 
 /* "targets.points[2].x" */
 static void append_setting_path(char *text, size_t size, const config_setting_t *setting)
@@ -24,9 +16,9 @@ static void append_setting_path(char *text, size_t size, const config_setting_t 
     }
     append_setting_path(text, size, parent);
     if (config_setting_name(setting)) {
-        key_text_append(text, size, "%s%s", *text ? "." : "", config_setting_name(setting));
+        text_append(text, size, "%s%s", *text ? "." : "", config_setting_name(setting));
     } else {
-        key_text_append(text, size, "[%d]", config_setting_index(setting));
+        text_append(text, size, "[%d]", config_setting_index(setting));
     }
 }
 
@@ -35,26 +27,24 @@ static void append_value(char *text, size_t size, const config_setting_t *settin
     char number[40];
     const char *string;
     switch (config_setting_type(setting)) {
-    case CONFIG_TYPE_INT: key_text_append(text, size, "%d", config_setting_get_int(setting)); break;
-    case CONFIG_TYPE_INT64: key_text_append(text, size, "%lld", config_setting_get_int64(setting)); break;
+    case CONFIG_TYPE_INT: text_append(text, size, "%d", config_setting_get_int(setting)); break;
+    case CONFIG_TYPE_INT64: text_append(text, size, "%lld", config_setting_get_int64(setting)); break;
     case CONFIG_TYPE_FLOAT:
         snprintf(number, sizeof number, "%.10g", config_setting_get_float(setting));
-        key_text_append(text, size, "%s%s", number, strpbrk(number, ".en") ? "" : ".0"); /* 40.0 is no integer */
+        text_append(text, size, "%s%s", number, strpbrk(number, ".en") ? "" : ".0"); /* 40.0 is no integer */
         break;
-    case CONFIG_TYPE_BOOL:
-        key_text_append(text, size, "%s", config_setting_get_bool(setting) ? "true" : "false");
-        break;
+    case CONFIG_TYPE_BOOL: text_append(text, size, "%s", config_setting_get_bool(setting) ? "true" : "false"); break;
     case CONFIG_TYPE_STRING:
         string = config_setting_get_string(setting);
-        key_text_append(text, size, "\"%.*s\"", (int)strcspn(string, "\r\n"), string);
+        text_append(text, size, "\"%.*s\"", (int)strcspn(string, "\r\n"), string);
         break;
     default:
-        key_text_append(text, size, "%s",
-                        config_setting_is_group(setting)  ? "a group { ... }"
-                        : config_setting_is_list(setting) ? "a list ( ... )"
-                                                          : "an array [ ... ]");
+        text_append(text, size, "%s",
+                    config_setting_is_group(setting)  ? "a group { ... }"
+                    : config_setting_is_list(setting) ? "a list ( ... )"
+                                                      : "an array [ ... ]");
         for (int i = 0; config_setting_is_array(setting) && i < config_setting_length(setting) && i < 3; i++) {
-            key_text_append(text, size, "%s", i == 0 ? " of " : ", ");
+            text_append(text, size, "%s", i == 0 ? " of " : ", ");
             append_value(text, size, config_setting_get_elem(setting, (unsigned)i));
         }
     }
@@ -95,11 +85,11 @@ enum status refuse(const struct reading *reading, const config_setting_t *group,
         append_setting_path(path, sizeof path, near);
     } else {
         place_format(reading, 0, place, sizeof place);
-        key_text_append(path, sizeof path, "%s", group_name);
+        text_append(path, sizeof path, "%s", group_name);
     }
     if (!setting) {
-        key_text_append(path, sizeof path, "%s%s", *path ? "." : "", name);
-        key_text_append(value, sizeof value, "missing");
+        text_append(path, sizeof path, "%s%s", *path ? "." : "", name);
+        text_append(value, sizeof value, "missing");
     } else {
         append_value(value, sizeof value, setting);
     }

@@ -5,6 +5,8 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "data/text_append.h"
+
 #define LEVEL_MIN 1e-300 /* of amplitudes, unless they are 0 */
 
 static bool within(const struct key *key, double value)
@@ -146,21 +148,21 @@ const struct type LIST = {"a list ( ... )", read_list, 0, false};
 
 void key_accepted_append(char *text, size_t size, const struct key *key)
 {
-    key_text_append(text, size, "%s", key->type->accepts);
+    text_append(text, size, "%s", key->type->accepts);
     for (int i = 0; key->choices && key->choices[i]; i++) {
-        key_text_append(text, size, "%s \"%s\"", i == 0 ? "" : ",", key->choices[i]);
+        text_append(text, size, "%s \"%s\"", i == 0 ? "" : ",", key->choices[i]);
     }
     if (key->min == key->max) {
         return; /* types without bounds */
     }
     if (key->min == -DBL_MAX) {
-        key_text_append(text, size, " that is finite");
+        text_append(text, size, " that is finite");
     } else if (key->max == DBL_MAX) {
-        key_text_append(text, size, key->min == ABOVE_0 ? " > 0" : " >= %.10g", key->min);
+        text_append(text, size, key->min == ABOVE_0 ? " > 0" : " >= %.10g", key->min);
     } else if (key->min == ABOVE_0) {
-        key_text_append(text, size, " > 0 and <= %.10g", key->max);
+        text_append(text, size, " > 0 and <= %.10g", key->max);
     } else {
-        key_text_append(text, size, " from %.10g to %.10g", key->min, key->max);
+        text_append(text, size, " from %.10g to %.10g", key->min, key->max);
     }
-    key_text_append(text, size, "%s%s", *key->unit ? " " : "", key->unit);
+    text_append(text, size, "%s%s", *key->unit ? " " : "", key->unit);
 }

@@ -32,7 +32,5 @@ extern const struct type REAL, LATER_REAL, INTEGER, SEED, BOOLEAN, LATER_BOOLEAN
 
 /* What a key accepts, in words, at the end of a text. */
 void key_accepted_append(char *text, size_t size, const struct key *key);
-/* printf at the end of a text that is cut at `size` bytes. */
-void key_text_append(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
 #endif

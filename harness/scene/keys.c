@@ -4,6 +4,7 @@
 #include <limits.h>
 #include <string.h>
 
+#include "data/text_append.h"
 #include "scene/key_types.h"
 
 #define FNV_PRIME 1099511628211u
@@ -131,7 +132,7 @@ static enum status check_names(const struct reading *reading, const config_setti
         bool found = false;
         for (size_t k = 0; k < KEY_COUNT && !found; k++) {
             if (strcmp(keys[k].group, group) == 0) {
-                key_text_append(known, sizeof known, "%s%s", *known ? ", " : "", keys[k].name);
+                text_append(known, sizeof known, "%s%s", *known ? ", " : "", keys[k].name);
                 found = strcmp(keys[k].name, name) == 0;
             }
         }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "data/csv.h"
+#include "data/text_append.h"
 #include "data/text_file.h"
 
 struct setting setting_read(const char *options)
@@ -16,12 +17,11 @@ struct setting setting_read(const char *options)
     for (char *option; (option = strsep(&rest, ","));) {
         const char *value = strchr(option, '=');
         double number;
-        size_t used = strlen(setting.rest);
         if (!*setting.name && value && csv_number(value + 1, &number) && isfinite(number)) {
             snprintf(setting.name, sizeof setting.name, "%.*s", (int)(value - option), option);
             setting.value = number;
         } else {
-            snprintf(setting.rest + used, sizeof setting.rest - used, "%s%s", used ? "," : "", option);
+            text_append(setting.rest, sizeof setting.rest, "%s%s", *setting.rest ? "," : "", option);
         }
     }
     return setting;

@@ -1,5 +1,6 @@
 /* The summary of a report (report_summary.h). */
 #include "show/report_summary.h"
+#include "data/text_append.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -61,10 +62,8 @@ static void scene_show(struct page *page, const struct results *results, const c
     }
     for (int k = 0; k < count; k++)
         cells[k + 1] = (struct page_cell){texts[k], k == fastest ? "good" : NULL};
-    if (fastest >= 0 && page->format == PAGE_MARKDOWN) {
-        const size_t used = strlen(texts[fastest]);
-        snprintf(texts[fastest] + used, sizeof texts[fastest] - used, ", fastest");
-    }
+    if (fastest >= 0 && page->format == PAGE_MARKDOWN)
+        text_append(texts[fastest], sizeof texts[fastest], ", fastest");
     page_row(page, cells);
 }
 

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 
 #include "data/published.h"
+#include "data/text_append.h"
 #include "data/verdict.h"
 #include "show/plot.h"
 #include "show/report_cheapest.h"
@@ -236,9 +237,8 @@ static void verdicts_count_show(struct page *page, const struct report_table *ta
             int count = 0, column = csv_column(csv, table->columns[k].name);
             for (int row = 0; row < csv->row_count; row++)
                 count += strcmp(csv_cell(csv, row, column), claim_verdict_names[verdict]) == 0;
-            size_t used = strlen(text);
-            snprintf(text + used, sizeof text - used, "%s%s%d %s", used ? "" : table->columns[k].title,
-                     used ? ", " : ": ", count, claim_verdict_names[verdict]);
+            text_append(text, sizeof text, "%s%s%d %s", *text ? "" : table->columns[k].title, *text ? ", " : ": ",
+                        count, claim_verdict_names[verdict]);
         }
         page_paragraph(page, text);
     }

@@ -10,6 +10,7 @@
 
 #include "data/number.h"
 #include "data/shown_text.h"
+#include "data/text_append.h"
 #include "measure/outcome.h"
 
 enum { WIDTH_WIDE = 110, WIDTH_LEAST = 80 };
@@ -186,8 +187,7 @@ static void text_print(FILE *stream, const char *before, const char *text)
 
 void table_warning(FILE *stream, const char *text)
 {
-    const size_t used = strlen(table.warned);
-    snprintf(table.warned + used, sizeof table.warned - used, "%s\n", text);
+    text_append(table.warned, sizeof table.warned, "%s\n", text);
     text_print(stream, "", text);
 }
 

@@ -1,0 +1,10 @@
+/* A text that is made part by part. */
+#ifndef SASBENCH_DATA_TEXT_APPEND_H
+#define SASBENCH_DATA_TEXT_APPEND_H
+
+#include <stddef.h>
+
+/* Add a formatted part behind text[size], a string, which is cut where there is no room. */
+void text_append(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+#endif
