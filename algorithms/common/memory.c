@@ -51,10 +51,12 @@ void *memory_aligned(size_t alignment, size_t bytes)
 {
     static const size_t huge = 1 << 21;
     const bool large = bytes >= 4 * huge;
-    const size_t unit = large ? huge : alignment;
-    void *memory = aligned_alloc(unit, (bytes + unit - 1) / unit * unit);
+    const size_t units = bytes > 0 ? (bytes + alignment - 1) / alignment : 1;
+    void *memory;
+    if (posix_memalign(&memory, large ? huge : alignment, units * alignment) != 0)
+        return NULL;
 #ifdef MADV_HUGEPAGE
-    if (memory && large)
+    if (large)
         madvise(memory, bytes, MADV_HUGEPAGE); /* advice: without it the pages are small */
 #endif
     return memory;

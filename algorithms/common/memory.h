@@ -11,8 +11,8 @@
    program when it finds no memory for a plan, and the system may end it when it takes more than there is. */
 enum status memory_check(double bytes, const char *what);
 
-/* aligned_alloc; what is large lies on huge pages where the system gives them, for what walks through columns meets
-   another page at each row. NULL without memory. */
+/* As aligned_alloc, of any size, 0 among them; what is large lies on huge pages where the system gives them, for what
+   walks through columns meets another page at each row. NULL without memory. */
 void *memory_aligned(size_t alignment, size_t bytes);
 
 #endif

@@ -35,7 +35,7 @@ static int degree_of(const struct tree *tree)
 static void *allocate(struct factorised *plan, size_t bytes)
 {
     plan->bp.work.bytes += (double)bytes;
-    return aligned_alloc(64, (bytes + 63) / 64 * 64);
+    return memory_aligned(64, bytes);
 }
 
 static bool images_make(struct factorised *plan)

@@ -11,6 +11,7 @@
 #include "backprojection/engine.h"
 #include "backprojection/budget.h"
 #include "backprojection/general/lines.h"
+#include "common/memory.h"
 
 enum {
     BATCH_BYTES = 8 << 20, /* rows of one batch: they stay in the shared cache while all lines read them */
@@ -160,7 +161,7 @@ static enum status general_plan(struct bp *bp)
     double pairs = (double)a->pings * a->receivers;
     general->sum = bp_sum_choose(problem->precision);
     general->batch = (int)fmin(pairs, fmax(BATCH_LEAST, (double)(BATCH_BYTES / row_bytes)));
-    general->rows = aligned_alloc(64, ((size_t)general->batch * row_bytes + size + 63) / 64 * 64);
+    general->rows = memory_aligned(64, (size_t)general->batch * row_bytes + size);
     const size_t interleaved = 2 * bp_record_values(bp) * size;
     general->interleaved = malloc((size_t)omp_get_max_threads() * interleaved);
     general->normal = calloc((size_t)a->pings, sizeof *general->normal);

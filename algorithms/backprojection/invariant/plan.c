@@ -8,6 +8,7 @@
 #include <stdlib.h>
 
 #include "backprojection/budget.h"
+#include "common/memory.h"
 
 enum {
     SLAB_BYTES = 64 << 20, /* receivers are taken together up to this: the image is read and written for each slab */
@@ -146,7 +147,7 @@ enum status invariant_applicable(const struct bp *bp)
 static void *allocate(size_t bytes, double *total)
 {
     *total += (double)bytes;
-    return aligned_alloc(64, (bytes + 63) / 64 * 64);
+    return memory_aligned(64, bytes);
 }
 
 /* The largest distance along the track between a ping and a pixel at r that are a pair. */
