@@ -172,18 +172,34 @@ static void pings_seeing(const struct acquisition *a, struct vector place, int p
     }
 }
 
+/* Pings lie closer to the edge of the beam for other columns than for those that are looked at: the place as far along
+   the track, up to where the next ping, which does not see `place`, is beside it. */
+static struct vector place_at_edge(const struct acquisition *a, int ping, int next, struct vector place)
+{
+    double inside = 0, outside = a->tx[ping].x - a->tx[next].x;
+    for (int k = 0; k < 50; k++) {
+        const double middle = (inside + outside) / 2;
+        *(condition_sees(a, ping, (struct vector){place.x + middle, place.y, place.z}) ? &inside : &outside) = middle;
+    }
+    return (struct vector){place.x + inside, place.y, place.z};
+}
+
 static void extent_add_pings(const struct acquisition *a, struct vector p, const int pings[3], struct extent *extent)
 {
     const double step = a->sound_speed / a->fc / 100, axis = -2 * sin(a->echo_squint) / a->sound_speed;
     for (int n = 0; n < 6; n++) {
-        int ping = pings[n / 2], m = n % 2 ? a->receivers - 1 : 0;
+        const int ping = pings[n / 2], m = n % 2 ? a->receivers - 1 : 0;
+        const int next = n / 2 == 0 ? ping - 1 : n / 2 == 1 ? ping + 1 : -1;
         if (ping < 0)
             continue;
-        struct vector tx = a->tx[ping], rx = a->rx[(size_t)ping * (size_t)a->receivers + (size_t)m];
-        double delay = delay_exact(tx, rx, a->velocity[ping], p, a->sound_speed);
-        double ahead = delay_exact(tx, rx, a->velocity[ping], (struct vector){p.x - step, p.y, p.z}, a->sound_speed);
-        double place = (delay - a->t0[ping]) * a->fs;
-        extent->slope = fmax(extent->slope, fabs((ahead - delay) / step - axis));
+        const struct vector tx = a->tx[ping], rx = a->rx[(size_t)ping * (size_t)a->receivers + (size_t)m];
+        const struct vector edge = next >= 0 && next < a->pings ? place_at_edge(a, ping, next, p) : p;
+        const struct vector beside = {edge.x - step, edge.y, edge.z};
+        const double delay = delay_exact(tx, rx, a->velocity[ping], p, a->sound_speed);
+        const double change = delay_exact(tx, rx, a->velocity[ping], beside, a->sound_speed)
+                              - delay_exact(tx, rx, a->velocity[ping], edge, a->sound_speed);
+        const double place = (delay - a->t0[ping]) * a->fs;
+        extent->slope = fmax(extent->slope, fabs(change / step - axis));
         if (place >= 0 && place <= a->samples - 1) {
             extent->delay = fmax(extent->delay, delay);
             extent->places = fmax(extent->places, place);
@@ -213,7 +229,7 @@ static void extent_search(const struct acquisition *a, const struct grid *g, str
         for (int n = 0; n < 3; n++) {
             const struct vector place = row_on_axis(a, p, g, n / 2.0 * (g->r_count - 1));
             if (condition_sees(a, p, place))
-                extent_add_pings(a, place, (const int[3]){p, -1, -1}, extent);
+                extent_add_pings(a, place, (const int[3]){-1, -1, p}, extent);
         }
 }
 
@@ -327,6 +343,18 @@ static bool is_sampled_evenly(const struct acquisition *a, struct straight_track
     return spacing > 0;
 }
 
+struct condition condition_doppler(const struct problem *problem, double spacing)
+{
+    const struct acquisition *a = problem->acquisition;
+    return (struct condition){"doppler",
+                              (a->fc + a->bandwidth / 2) * extent_of(problem).slope * 2 * fabs(spacing) / a->receivers,
+                              1.05,
+                              false,
+                              SEVERITY_WARN,
+                              "the widest azimuth wavenumber in the beam over what the receivers sample, M/(2 spacing)",
+                              "pings closer together, more receivers, a narrower beam or a lower speed"};
+}
+
 int conditions_sampled(const struct problem *problem, struct condition *list, int room)
 {
     const struct acquisition *a = problem->acquisition;
@@ -337,12 +365,7 @@ int conditions_sampled(const struct problem *problem, struct condition *list, in
                            "the lowest frequency fc - B/2 (Hz)", "a higher carrier or a narrower band"});
     if (a->pings < 2 || !is_sampled_evenly(a, &track))
         return count;
-    add(list, room, &count,
-        (struct condition){
-            "doppler", (a->fc + a->bandwidth / 2) * extent_of(problem).slope * 2 * fabs(track.spacing) / a->receivers,
-            1.05, false, SEVERITY_WARN,
-            "the widest azimuth wavenumber in the beam over what the receivers sample, M/(2 spacing)",
-            "pings closer together, more receivers, a narrower beam or a lower speed"});
+    add(list, room, &count, condition_doppler(problem, track.spacing));
     if (a->receivers > 1)
         add(list, room, &count, condition_ghost(a, track.spacing));
     return count;

@@ -58,7 +58,9 @@ enum { CONDITIONS_SCENE = 8 };
    records. All of them warn. */
 int conditions_scene(const struct problem *problem, struct condition list[CONDITIONS_SCENE]);
 
-/* The ghosts of a straight track of several receivers, `spacing` m from ping to ping. */
+/* Of a straight track, `spacing` m from ping to ping: how much of the azimuth band is sampled; with several receivers,
+   ghosts. */
+struct condition condition_doppler(const struct problem *problem, double spacing);
 struct condition condition_ghost(const struct acquisition *acquisition, double spacing);
 
 /* Offset of the receiver that is n/2 of the way from the least to the greatest, m along the track; n = 0, 1, 2. */

@@ -150,27 +150,6 @@ static struct condition spa_amplitude(const struct rma_view *view)
                               "rows farther away, or receivers nearer to the transmitter"};
 }
 
-static double doppler_at(const struct rma_view *view, double r, double low, double high)
-{
-    const struct acquisition *a = view->problem->acquisition;
-    double steepest = 0;
-    for (int n = 0; n < 4; n++) /* the delay is convex: its slope is steepest at the ends */
-        steepest =
-            fmax(steepest, fabs(spectrum_slope(&view->setting, offset_at(view, n / 2 * 2), r, n % 2 ? high : low)));
-    return (a->fc + a->bandwidth / 2) * steepest * 2 * view->spacing / a->receivers;
-}
-
-static struct condition doppler(const struct rma_view *view)
-{
-    return (struct condition){"doppler",
-                              worst_row(view, doppler_at),
-                              1.05,
-                              false,
-                              SEVERITY_WARN,
-                              "the widest azimuth wavenumber in the beam over what the receivers sample, M/(2 spacing)",
-                              "pings closer together, more receivers, a narrower beam or a lower speed"};
-}
-
 /* Root mean square over the beam, the band and the array of the phase that the method's formula misses. */
 static double formula_at(const struct rma_view *view, double r, double low, double high)
 {
@@ -274,7 +253,7 @@ bool azimuth_requirements(const struct problem *problem, struct condition *list,
 static int prediction_conditions(const struct rma_view *view, const struct straight_track *track, struct condition *all,
                                  int count)
 {
-    struct condition causes[] = {doppler(view), formula(view)};
+    struct condition causes[] = {condition_doppler(view->problem, track->spacing), formula(view)};
     struct condition error = predicted_error(view);
     if (view->problem->acquisition->receivers > 1)
         all[count++] = condition_ghost(view->problem->acquisition, track->spacing);

@@ -1,4 +1,5 @@
 /* The command `check`: a scene's conditions and sensitivities before any work. */
+#include "data/text_append.h"
 #include "study/check.h"
 
 #include <stdio.h>
@@ -31,10 +32,8 @@ enum status command_check(const struct task *task)
         const struct spec *spec = task->spec_count > 0 ? &task->specs[k] : &own;
         if (status == STATUS_OK)
             status = check_algorithm(stdout, scene, spec, &told, &refused);
-        if (status == STATUS_OK && refused) {
-            size_t used = strlen(names);
-            snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", spec->algorithm->name);
-        }
+        if (status == STATUS_OK && refused)
+            text_append(names, sizeof names, "%s%s", *names ? ", " : "", spec->algorithm->name);
         spec_free(&own);
     }
     if (status == STATUS_OK && *names)

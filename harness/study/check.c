@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "common/delay.h"
+#include "data/text_append.h"
 #include "measure/outcome.h"
 #include "measure/session.h"
 #include "show/table.h"
@@ -96,10 +97,10 @@ static bool condition_same(const struct condition *a, const struct condition *b)
 /* Was it told already? If not, it is now. */
 static bool told_before(struct check_told *told, const struct condition *condition)
 {
-    for (int k = 0; told && k < told->count; k++)
+    for (int k = 0; k < told->count; k++)
         if (condition_same(&told->list[k], condition))
             return true;
-    if (told && told->count < (int)(sizeof told->list / sizeof *told->list))
+    if (told->count < (int)(sizeof told->list / sizeof *told->list))
         told->list[told->count++] = *condition;
     return false;
 }
@@ -108,19 +109,17 @@ static bool told_before(struct check_told *told, const struct condition *conditi
 static void repeated_print(FILE *stream, const struct condition *const *repeated, int count)
 {
     static const char *const verdicts[] = {"holds", "note", "warns", "REFUSED"};
-    char text[600] = "as above:";
-    const char *between = " ";
+    char text[600] = "";
     for (int v = 0; v < 4; v++) {
-        const char *ahead = verdicts[v];
+        bool first = true;
         for (int k = 0; k < count; k++) {
             if (strcmp(verdict(repeated[k]), verdicts[v]) != 0)
                 continue;
-            const size_t used = strlen(text);
-            snprintf(text + used, sizeof text - used, "%s%s%s%s", between, ahead, *ahead ? " " : "", repeated[k]->name);
-            between = ", ";
-            ahead = "";
+            if (first)
+                text_append(text, sizeof text, "%s %s", *text ? ";" : "as above:", verdicts[v]);
+            text_append(text, sizeof text, "%s%s", first ? " " : ", ", repeated[k]->name);
+            first = false;
         }
-        between = strlen(text) > strlen("as above:") ? "; " : " ";
     }
     if (count > 0)
         table_text(stream, 2, text);

@@ -20,8 +20,8 @@ struct check_told {
 };
 
 /* Print the conditions of one SPEC on a scene, those that hold too, and whether its plan can be made. Those that `told`
-   has with the same figures are only named; it takes the rest (NULL: all are printed). *refused is set where no plan
-   can be made. Errors: STATUS_FAILED without memory. */
+   has with the same figures are only named; it takes the rest. *refused is set where no plan can be made. Errors:
+   STATUS_FAILED without memory. */
 enum status check_algorithm(FILE *stream, const struct scene *scene, const struct spec *spec, struct check_told *told,
                             bool *refused);
 

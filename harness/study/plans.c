@@ -9,6 +9,7 @@
 
 #include "data/csv.h"
 #include "data/echo_data.h"
+#include "data/text_append.h"
 #include "data/text_file.h"
 #include "measure/provenance.h"
 #include "study/planned.h"
@@ -25,8 +26,7 @@ struct joined {
 static void line_join(void *to, const char *text)
 {
     struct joined *joined = to;
-    const size_t used = strlen(joined->text);
-    snprintf(joined->text + used, sizeof joined->text - used, "%s%s", used ? "; " : "left out: ", text);
+    text_append(joined->text, sizeof joined->text, "%s%s", *joined->text ? "; " : "left out: ", text);
 }
 
 static void row_write(struct plans *plans, const struct candidate *candidate, const char *text)
