@@ -59,10 +59,12 @@ static void accepted_format(const struct param *param, char *text, size_t size)
 static enum status file_info(const char *path)
 {
     struct image_file file;
-    bool echoes;
+    bool echoes, is_image = false;
     enum status status = echo_file_is(path, &echoes);
-    if (status == STATUS_OK && echoes)
-        return inspect_echoes(path);
+    if (status == STATUS_OK && !echoes)
+        status = image_file_is(path, &is_image);
+    if (status == STATUS_OK && !is_image)
+        return inspect_echoes(path); /* of neither kind: says what echoes need */
     if (status == STATUS_OK)
         status = image_file_open(path, &file);
     if (status != STATUS_OK)

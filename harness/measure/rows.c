@@ -147,20 +147,22 @@ enum status header_check(const struct csv *csv, const struct row_kind *kind)
     int count = 0;
     while (kind->columns[count].name && kind->columns[count].since <= version)
         count++;
-    for (int k = 0; k < count || k < csv->column_count; k++) {
-        const char *found = k < csv->column_count ? csv->columns[k] : NULL;
-        if (csv->column_count == 0)
-            return status_set(STATUS_INVALID, "%s: no line names the columns; %d names from '%s' on are needed",
-                              csv->path, count, kind->columns[0].name);
-        if (k >= count)
-            return status_set(STATUS_INVALID,
-                              "%s: column %d is '%.60s'; version %d, which the first line says, has %d columns",
-                              csv->path, k + 1, found, version, count);
-        if (!found || strcmp(kind->columns[k].name, found) != 0)
-            return status_set(STATUS_INVALID, "%s: column %d is %s%.60s%s; '%s' is needed (another version?)",
-                              csv->path, k + 1, found ? "'" : "", found ? found : "missing", found ? "'" : "",
-                              kind->columns[k].name);
+    if (csv->column_count == 0)
+        return status_set(STATUS_INVALID, "%s: no line names the columns; %d names from '%s' on are needed", csv->path,
+                          count, kind->columns[0].name);
+    for (int k = 0; k < count; k++) {
+        const bool missing = k >= csv->column_count;
+        char found[64] = "missing";
+        if (!missing)
+            snprintf(found, sizeof found, "'%.60s'", csv->columns[k]);
+        if (missing || strcmp(kind->columns[k].name, csv->columns[k]) != 0)
+            return status_set(STATUS_INVALID, "%s: column %d is %s; '%s' is needed (another version?)", csv->path,
+                              k + 1, found, kind->columns[k].name);
     }
+    if (csv->column_count > count)
+        return status_set(STATUS_INVALID,
+                          "%s: column %d is '%.60s'; version %d, which the first line says, has %d columns", csv->path,
+                          count + 1, csv->columns[count], version, count);
     return STATUS_OK;
 }
 

@@ -210,6 +210,19 @@ static enum status texts_read(const char *path, struct image_file *file)
     return STATUS_OK;
 }
 
+enum status image_file_is(const char *path, bool *is)
+{
+    struct wanted axis = image_variables[IMAGE_X];
+    struct variable variable;
+    axis.is_optional = true;
+    enum status status = variables_read(path, &axis, 1, &variable);
+    *is = status == STATUS_OK && variable.values;
+    if (status == STATUS_OK) {
+        variables_free(&variable, 1);
+    }
+    return status;
+}
+
 enum status image_file_open(const char *path, struct image_file *file)
 {
     *file = (struct image_file){.image.precision = PRECISION_DOUBLE};

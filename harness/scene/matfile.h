@@ -36,7 +36,8 @@ struct image_file {
 enum status image_file_open(const char *path, struct image_file *file);
 void image_file_close(struct image_file *file);
 
-/* Is it an echo file, by its variable `format`? Errors: as variables_read. */
+/* Is it an echo file, by its variable `format` or `t0`? An image file, by its axis `x`? Errors: as variables_read. */
 enum status echo_file_is(const char *path, bool *is);
+enum status image_file_is(const char *path, bool *is);
 
 #endif

@@ -62,15 +62,16 @@ static double azimuth_resolution(const struct acquisition *a, double range)
     return half_angle > 0 ? fmax(wavelength / 4, wavelength / (4 * sin(half_angle))) : wavelength;
 }
 
-/* How much too coarse a grid's step is, by the condition of this name. */
-static double step_over_resolution(const struct acquisition *a, const struct grid *grid, const char *name)
+/* Lower resolutions to those that the conditions find for a grid's places, its steps over which are their values. */
+static void resolutions_lower(const struct acquisition *a, const struct grid *grid, double *x, double *r)
 {
     struct condition list[CONDITIONS_SCENE];
     const int count = conditions_scene(&(struct problem){a, 1, grid, PRECISION_DOUBLE}, list);
     for (int k = 0; k < count; k++)
-        if (strcmp(list[k].name, name) == 0)
-            return list[k].value;
-    return 1;
+        if (strcmp(list[k].name, "pixel_x") == 0)
+            *x = fmin(*x, 2 * grid->x_step / list[k].value);
+        else if (strcmp(list[k].name, "pixel_r") == 0)
+            *r = fmin(*r, 2 * grid->r_step / list[k].value);
 }
 
 bool inspect_grid(const struct acquisition *a, struct grid *grid, bool *cut)
@@ -117,8 +118,8 @@ bool inspect_grid(const struct acquisition *a, struct grid *grid, bool *cut)
         axis_make(r_low, r_high, resolution_r, &grid->r_first, &grid->r_step, &grid->r_count, cut);
         if (grid_check(grid, "grid") != STATUS_OK || grid_meets_records(a, 1, grid, "grid") != STATUS_OK)
             return false;
-        resolution_x = fmin(resolution_x, 2 * grid->x_step / step_over_resolution(a, grid, "pixel_x"));
-        resolution_r = fmin(resolution_r, 2 * grid->r_step / step_over_resolution(a, grid, "pixel_r"));
+        if (round == 0)
+            resolutions_lower(a, grid, &resolution_x, &resolution_r);
     }
     return true;
 }

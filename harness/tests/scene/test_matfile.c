@@ -179,6 +179,9 @@ static void all_patches_come_back(void **state)
     assert_string_equal(file.scene, "of/here");
     image_file_close(&file);
     assert_ok(image_file_write(path, &image, "bp_nearest", "", "of/here")); /* an algorithm without options */
+    bool is = false;
+    assert_ok(image_file_is(path, &is));
+    assert_true(is);
     assert_ok(image_file_open(path, &file));
     assert_string_equal(file.algorithm, "bp_nearest");
     assert_string_equal(file.options, "");

@@ -207,6 +207,11 @@ static void other_formats_are_named(void **state)
     assert_echoes_invalid("`format` is missing");
     assert_echoes_invalid("holds a struct `sonar`");
     assert_echoes_invalid("'-struct', 'sonar'");
+    bool is = true;
+    assert_int_equal(echo_file_is(path, &is), STATUS_OK);
+    assert_false(is);
+    assert_int_equal(image_file_is(path, &is), STATUS_OK);
+    assert_false(is);
 }
 
 static void absurd_sizes_are_refused(void **state)
