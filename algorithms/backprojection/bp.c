@@ -34,21 +34,21 @@ void bp_fill_row(const struct bp *bp, int thread, const struct echoes *echoes, s
         traces_fill_float(bp->traces, thread, (const float complex *)echoes->samples + offset, row);
 }
 
-void bp_fill_spectrum(const struct bp *bp, const struct echoes *echoes, size_t index, void *spectrum)
+void bp_fill_spectrum(const struct bp *bp, int thread, const struct echoes *echoes, size_t index, void *spectrum)
 {
     size_t offset = index * (size_t)bp->shape.samples;
     if (bp->problem.precision == PRECISION_DOUBLE)
-        traces_spectrum_double(bp->traces, (const double complex *)echoes->samples + offset, spectrum);
+        traces_spectrum_double(bp->traces, thread, (const double complex *)echoes->samples + offset, spectrum);
     else
-        traces_spectrum_float(bp->traces, (const float complex *)echoes->samples + offset, spectrum);
+        traces_spectrum_float(bp->traces, thread, (const float complex *)echoes->samples + offset, spectrum);
 }
 
-void bp_fill_plane(const struct bp *bp, const void *spectrum, int plane, void *values)
+void bp_fill_plane(const struct bp *bp, int thread, void *spectrum, int plane, void *values)
 {
     if (bp->problem.precision == PRECISION_DOUBLE)
-        traces_plane_double(bp->traces, spectrum, plane, values);
+        traces_plane_double(bp->traces, thread, spectrum, plane, values);
     else
-        traces_plane_float(bp->traces, spectrum, plane, values);
+        traces_plane_float(bp->traces, thread, spectrum, plane, values);
 }
 
 /* The kernel's branches, where they are few enough; false without memory. */

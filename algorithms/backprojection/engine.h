@@ -65,7 +65,7 @@ enum status bp_plan_traces(struct bp *bp);
 /* Compress record `index` into a row of bp->shape.length complex values. */
 void bp_fill_row(const struct bp *bp, int thread, const struct echoes *echoes, size_t index, void *row);
 /* In two steps, for a phase alone (traces.h). */
-void bp_fill_spectrum(const struct bp *bp, const struct echoes *echoes, size_t index, void *spectrum);
-void bp_fill_plane(const struct bp *bp, const void *spectrum, int plane, void *values);
+void bp_fill_spectrum(const struct bp *bp, int thread, const struct echoes *echoes, size_t index, void *spectrum);
+void bp_fill_plane(const struct bp *bp, int thread, void *spectrum, int plane, void *values);
 
 #endif

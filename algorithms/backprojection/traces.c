@@ -14,11 +14,13 @@
 
 struct traces {
     struct traces_shape shape;
-    bool transforms;             /* false: compressed already, and read as it is */
-    FFTW(plan) forward, inverse; /* of L = shape.period, in place */
-    complex_real *filter;        /* [L] conj(P)/(L sum|p|^2); 1/L if compressed; over sinc^2 where it is emphasised */
-    complex_real *factors;       /* [branches][upsample][L/2 + 1] of frequencies 0 to fs/2; NULL: of one plane, all 1 */
-    complex_real *scratch;       /* [threads][1 + upsample][shape.pitch]: a spectrum, and a branch's planes */
+    bool transforms; /* false: compressed already, and read as it is */
+    FFTW(plan)
+    forward, inverse;      /* of L = shape.period, from one array into another: in place takes 1.2 times as long */
+    complex_real *filter;  /* [L] conj(P)/(L sum|p|^2); 1/L if compressed; over sinc^2 where it is emphasised */
+    complex_real *factors; /* [branches][upsample][L/2 + 1] of frequencies 0 to fs/2; NULL: of one plane, all 1 */
+    complex_real *scratch; /* [threads][2 + upsample][shape.pitch]: what is transformed, a spectrum, and a branch's
+                                    planes */
 };
 
 static void filter_fill(const struct acquisition *acquisition, int length, double complex *work, complex_real *filter)
@@ -78,7 +80,7 @@ static enum status transforms_plan(struct traces *traces, const struct acquisiti
     struct traces_shape *shape = &traces->shape;
     const int length = shape->period, planes = shape->branches * shape->upsample;
     const size_t pitch = whole_lines(length), factors = planes > 1 ? (size_t)planes * ((size_t)length / 2 + 1) : 0;
-    const int each = 1 + shape->upsample; /* arrays of a thread */
+    const int each = 2 + shape->upsample; /* arrays of a thread */
     shape->pitch = pitch;
     /* Scratch, filter, factors, the pulse's spectrum, and as much as FFTW's plans may hold. */
     enum status status =
@@ -104,8 +106,8 @@ static enum status transforms_plan(struct traces *traces, const struct acquisiti
         /* ESTIMATE: the same algorithm, hence the same bits, at every planning; measuring costs more than a scene's
            compression. */
         complex_real *a = traces->scratch;
-        traces->forward = FFTW(plan_dft_1d)(length, a, a, FFTW_FORWARD, FFTW_ESTIMATE);
-        traces->inverse = FFTW(plan_dft_1d)(length, a, a, FFTW_BACKWARD, FFTW_ESTIMATE);
+        traces->forward = FFTW(plan_dft_1d)(length, a, a + pitch, FFTW_FORWARD, FFTW_ESTIMATE);
+        traces->inverse = FFTW(plan_dft_1d)(length, a, a + pitch, FFTW_BACKWARD, FFTW_ESTIMATE);
     }
     fftw_free(work);
     if (!traces->forward || !traces->inverse)
@@ -118,7 +120,7 @@ static enum status transforms_plan(struct traces *traces, const struct acquisiti
 int REAL_NAME(traces_period)(const struct acquisition *acquisition)
 {
     const int n = acquisition->samples;
-    return acquisition->compressed ? n : fft_length_fast((long long)n + acquisition->pulse_length - 1);
+    return acquisition->compressed ? n : fft_length_quick((long long)n + acquisition->pulse_length - 1);
 }
 
 static bool transforms(const struct acquisition *acquisition, const struct traces_form *form)
@@ -169,12 +171,20 @@ enum status REAL_NAME(traces_plan)(const struct acquisition *acquisition, const 
     return STATUS_OK;
 }
 
-void REAL_NAME(traces_spectrum)(const struct traces *traces, const complex_real *record, complex_real *spectrum)
+/* The first of a thread's arrays. */
+static complex_real *scratch_of(const struct traces *traces, int thread)
+{
+    return traces->scratch + (size_t)thread * (size_t)(2 + traces->shape.upsample) * traces->shape.pitch;
+}
+
+void REAL_NAME(traces_spectrum)(const struct traces *traces, int thread, const complex_real *record,
+                                complex_real *spectrum)
 {
     const size_t n = (size_t)traces->shape.samples, length = (size_t)traces->shape.period;
-    memcpy(spectrum, record, n * sizeof *spectrum);
-    memset(spectrum + n, 0, (length - n) * sizeof *spectrum);
-    FFTW(execute_dft)(traces->forward, spectrum, spectrum);
+    complex_real *padded = scratch_of(traces, thread);
+    memcpy(padded, record, n * sizeof *padded);
+    memset(padded + n, 0, (length - n) * sizeof *padded);
+    FFTW(execute_dft)(traces->forward, padded, spectrum);
     real *x = (real *)spectrum;
     const real *h = (const real *)traces->filter;
     for (size_t k = 0; k < 2 * length; k += 2) { /* written out: a complex product would check for NaN */
@@ -184,16 +194,17 @@ void REAL_NAME(traces_spectrum)(const struct traces *traces, const complex_real 
     }
 }
 
-void REAL_NAME(traces_plane)(const struct traces *traces, const complex_real *spectrum, int plane, complex_real *values)
+void REAL_NAME(traces_plane)(const struct traces *traces, int thread, complex_real *spectrum, int plane,
+                             complex_real *values)
 {
     const size_t length = (size_t)traces->shape.period, half = length / 2 + 1;
+    complex_real *turned = scratch_of(traces, thread);
     if (!traces->factors) {
-        memcpy(values, spectrum, length * sizeof *values);
-        FFTW(execute_dft)(traces->inverse, values, values);
+        FFTW(execute_dft)(traces->inverse, spectrum, values);
         return;
     }
     const real *h = (const real *)(traces->factors + (size_t)plane * half), *x = (const real *)spectrum;
-    real *y = (real *)values;
+    real *y = (real *)turned;
     for (size_t k = 0; k < length; k += 2) { /* below fs/2 */
         y[k] = x[k] * h[k] - x[k + 1] * h[k + 1];
         y[k + 1] = x[k] * h[k + 1] + x[k + 1] * h[k];
@@ -208,7 +219,7 @@ void REAL_NAME(traces_plane)(const struct traces *traces, const complex_real *sp
         y[length] = x[length] * h[length];
         y[length + 1] = x[length + 1] * h[length];
     }
-    FFTW(execute_dft)(traces->inverse, values, values);
+    FFTW(execute_dft)(traces->inverse, turned, values);
 }
 
 /* A branch's row from one period of each of its planes, [upsample][pitch]. */
@@ -240,13 +251,12 @@ void REAL_NAME(traces_fill)(const struct traces *traces, int thread, const compl
         row_fill(shape, record, row);
         return;
     }
-    complex_real *spectrum = traces->scratch + (size_t)thread * (size_t)(1 + shape->upsample) * shape->pitch;
-    complex_real *values = spectrum + shape->pitch;
-    REAL_NAME(traces_spectrum)(traces, record, spectrum);
+    complex_real *spectrum = scratch_of(traces, thread) + shape->pitch, *values = spectrum + shape->pitch;
+    REAL_NAME(traces_spectrum)(traces, thread, record, spectrum);
     for (int branch = 0; branch < shape->branches; branch++, row += shape->length) {
         for (int phase = 0; phase < shape->upsample; phase++)
             REAL_NAME(traces_plane)
-        (traces, spectrum, branch * shape->upsample + phase, values + (size_t)phase * shape->pitch);
+        (traces, thread, spectrum, branch * shape->upsample + phase, values + (size_t)phase * shape->pitch);
         row_fill(shape, values, row);
     }
 }

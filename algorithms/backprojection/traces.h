@@ -51,11 +51,14 @@ void traces_fill_float(const struct traces *traces, int thread, const float comp
 void traces_fill_double(const struct traces *traces, int thread, const double complex *record, double complex *row);
 /* The same in two steps, where pitch > 0: a record's spectrum, complex [period], compressed; and of it one plane,
    number branch times upsample + phase: complex [period], of which value n is fine sample n upsample + phase. Both
-   arrays begin at cache lines. */
-void traces_spectrum_float(const struct traces *traces, const float complex *record, float complex *spectrum);
-void traces_spectrum_double(const struct traces *traces, const double complex *record, double complex *spectrum);
-void traces_plane_float(const struct traces *traces, const float complex *spectrum, int plane, float complex *values);
-void traces_plane_double(const struct traces *traces, const double complex *spectrum, int plane,
+   arrays begin at cache lines; the spectrum is not changed. */
+void traces_spectrum_float(const struct traces *traces, int thread, const float complex *record,
+                           float complex *spectrum);
+void traces_spectrum_double(const struct traces *traces, int thread, const double complex *record,
+                            double complex *spectrum);
+void traces_plane_float(const struct traces *traces, int thread, float complex *spectrum, int plane,
+                        float complex *values);
+void traces_plane_double(const struct traces *traces, int thread, double complex *spectrum, int plane,
                          double complex *values);
 void traces_destroy_float(struct traces *traces);
 void traces_destroy_double(struct traces *traces);

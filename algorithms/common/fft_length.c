@@ -35,6 +35,27 @@ int fft_length_fast(long long n)
     return 0;
 }
 
+/* Seconds a FLOP of short transforms, by the odd part of their length, over those of powers of two. */
+static double odd_slowness(int n)
+{
+    while (n % 2 == 0)
+        n /= 2;
+    return n == 1 || n == 5 ? 1 : n == 3 || n == 15 || n == 25 ? 1.5 : 1.8;
+}
+
+int fft_length_quick(long long n)
+{
+    enum { SHORT = 4096 }; /* longer ones differ little */
+    const int least = fft_length_fast(n);
+    int best = least;
+    if (least == 0 || least > SHORT)
+        return least;
+    for (int length = least; length <= least + least / 4; length = fft_length_fast(length + 1))
+        if (fft_flops(length) * odd_slowness(length) < fft_flops(best) * odd_slowness(best))
+            best = length;
+    return best;
+}
+
 double fft_slowness(int n)
 {
     int rest = n, largest = 1, two = 1;

@@ -8,6 +8,10 @@ int fft_length(long long n);
    to three times faster where FFTW plans by estimate. 0 when it exceeds INT_MAX. */
 int fft_length_fast(long long n);
 
+/* The length of the quickest transform of n or more values, up to a quarter longer than the last: most often a power of
+   two, or five times one. For what is as long as its transforms alone, for all else grows with the length. */
+int fft_length_quick(long long n);
+
 /* Seconds a FLOP of a transform of n, over those of fft_length_fast: 1, 1.8, 3.5 or 6 by its prime factors. Measured
    where FFTW plans by estimate; of one length they may be 1.6 times less or more. */
 double fft_slowness(int n);

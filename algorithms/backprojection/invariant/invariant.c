@@ -72,14 +72,16 @@ static void fill_steps(const struct bp *bp, const struct echoes *echoes, int m, 
     const struct invariant *in = bp->state;
     const size_t pitch = bp->shape.pitch, bytes = pitch * 2 * real_size(bp->problem.precision);
     const size_t samples = (size_t)bp->shape.samples;
-    char *spectra = (char *)in->tiles + (size_t)omp_get_thread_num() * in->tile_bytes, *tile = spectra + TILE * bytes;
+    const int thread = omp_get_thread_num();
+    char *spectra = (char *)in->tiles + (size_t)thread * in->tile_bytes, *tile = spectra + TILE * bytes;
     for (int p = 0; p < place->count; p++)
         if (tile_met(bp, place->ping + p, 1))
-            bp_fill_spectrum(bp, echoes, record_of(bp, place->ping + p, m), spectra + (size_t)p * bytes);
+            bp_fill_spectrum(bp, thread, echoes, record_of(bp, place->ping + p, m), spectra + (size_t)p * bytes);
     for (int k = 0; k < in->slab.step_count && in->slab.step_first + k < bp->table.upsample; k++) {
         for (int p = 0; p < place->count; p++)
             if (tile_met(bp, place->ping + p, 1))
-                bp_fill_plane(bp, spectra + (size_t)p * bytes, in->slab.step_first + k, tile + (size_t)p * bytes);
+                bp_fill_plane(bp, thread, spectra + (size_t)p * bytes, in->slab.step_first + k,
+                              tile + (size_t)p * bytes);
             else
                 memset(tile + (size_t)p * bytes, 0, bytes);
         scatter(bp, tile, pitch, samples, (size_t)k * samples, 1, place);
