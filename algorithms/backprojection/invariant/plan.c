@@ -99,22 +99,31 @@ struct condition invariant_condition(const struct problem *problem, enum severit
 {
     const struct acquisition *a = problem->acquisition;
     struct straight_track track;
-    double off = INFINITY;
+    double off = INFINITY, step = 0; /* of the columns that lie farthest off, 0 where pings do */
     if (acquisition_is_straight(a, &track)) {
         off = 0;
         for (int p = 0; p < a->pings; p++)
             off = fmax(off, ping_beside(a, &track, p));
-        for (int k = 0; k < problem->patch_count; k++)
-            off = fmax(off, columns_beside(a, &track, &problem->patches[k]));
+        for (int k = 0; k < problem->patch_count; k++) {
+            const double beside = columns_beside(a, &track, &problem->patches[k]);
+            step = beside > off ? problem->patches[k].x_step : step;
+            off = fmax(off, beside);
+        }
     }
-    return (struct condition){
-        "invariance",
-        off * fmax(a->fc, a->fs) / a->sound_speed,
-        DRIFT_MOST,
-        false,
-        severity,
-        "how far columns and pings drift apart over the track (cycles of the carrier, or samples)",
-        "a uniform straight track whose ping spacing is a whole number of azimuth steps"};
+    struct condition condition = {"invariance",
+                                  off * fmax(a->fc, a->fs) / a->sound_speed,
+                                  DRIFT_MOST,
+                                  false,
+                                  severity,
+                                  "how far columns and pings drift apart over the track (cycles of the carrier, or "
+                                  "samples); the general engine, which takes any, is slower",
+                                  "a uniform straight track whose ping spacing is a whole number of azimuth steps"};
+    if (step > 0 && isfinite(off)) {
+        const double spacing = fabs(track.spacing), ratio = round(spacing / step);
+        condition_cure_add(&condition, ": steps of %.12g m in place of %.12g m, or pings %.12g m apart",
+                           spacing / ratio, step, ratio * step);
+    }
+    return condition;
 }
 
 enum status invariant_applicable(const struct bp *bp)

@@ -405,6 +405,28 @@ static void exact_keeps_the_roots(void **state)
     acquisition_free(&a);
 }
 
+/* A spacing that misses whole steps by a hair: the cure says the step that tables take, and the spacing. */
+static void steps_are_told_that_tables_take(void **state)
+{
+    (void)state;
+    struct acquisition a = support_acquisition(18, 1, 400);
+    struct grid grid = {-0.6, 0.02, 61, 20, 0.025, 9, 0};
+    const struct problem problem = {&a, 1, &grid, PRECISION_FLOAT};
+    double step = 0, spacing = 0;
+    for (int p = 0; p < a.pings; p++)
+        a.tx[p].x = a.rx[p].x = p * 0.1600007;
+    const struct condition off = invariant_condition(&problem, SEVERITY_INFORM);
+    assert_false(condition_holds(&off));
+    const char *cure = strstr(off.cure, "steps of");
+    assert_non_null(cure);
+    assert_int_equal(sscanf(cure, "steps of %lf m in place of 0.02 m, or pings %lf m apart", &step, &spacing), 2);
+    assert_close(spacing, 0.16, 1e-15);
+    grid.x_step = step;
+    const struct condition even = invariant_condition(&problem, SEVERITY_INFORM);
+    assert_true(condition_holds(&even));
+    acquisition_free(&a);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -416,6 +438,7 @@ int main(void)
         cmocka_unit_test(exact_keeps_the_roots),
         cmocka_unit_test(jitter_takes_the_general_engine),
         cmocka_unit_test(auto_falls_back),
+        cmocka_unit_test(steps_are_told_that_tables_take),
     };
     return cmocka_run_group_tests_name("bp_invariant", tests, NULL, NULL);
 }

@@ -307,8 +307,7 @@ static void echoes_without_an_imaginary_part_are_told(void **state)
     scene_free(&scene);
 }
 
-/* Delays are those that pings see, wherever in the patch and the beam that is: 20 m ahead or abeam, all rows at 20
-   m. */
+/* Delays are those that pings see, wherever in the patch and the beam that is: 20 m ahead or abeam. */
 static void delays_are_those_of_what_is_seen(void **state)
 {
     (void)state;
@@ -317,8 +316,10 @@ static void delays_are_those_of_what_is_seen(void **state)
         struct parts parts;
         double range, doppler; /* m, and F |dtau/dx| 2 spacing/M with spacing/M = 0.02 m */
     } views[] = {
-        /* The last receiver is 0.32 m ahead, and moves 0.07 m until the echo of the nearest row is there. */
-        {"plain", {0}, 20, 157.5e3 / 1500 * (0.443 / 8 + 0.443 / 8 + 0.39 / 19.9) * 2 * 0.02},
+        {"plain",
+         {0},
+         20,
+         157.5e3 / 1500 * (0.443 / 4 + (0.32 + 0.07) / 19.9) * 2 * 0.02}, /* the last receiver moves */
         {"pings that see a part of the patch without its corners and middle",
          {.track = "speed = 2.5; pri = 0.064; pings = 2; x_first = 11.3;",
           .image = "x = { first = -60.0; step = 0.5; count = 242; }; r = { first = 20.0; step = 0.025; count = 1; };"},
@@ -327,8 +328,7 @@ static void delays_are_those_of_what_is_seen(void **state)
         {"squint of 30 degrees",
          {.beam = "kind = \"rect\"; truncation = \"tx\"; limit = 0.443; squint = 30.0;",
           .track = "speed = 0.0; spacing = 0.16; pri = 0.064; pings = 18; x_first = -12.9;"},
-         20.1 / 0.837, /* 33.2 degrees off broadside */
-         /* The sines of 26.8 degrees, and of the last receiver's way back, against those of the axis. */
+         20.1 / 0.837, /* 33.2 degrees off broadside; at 26.8 the way back to the last receiver is flatter */
          157.5e3 / 1500 * (1 - 0.4513 - 0.4398) * 2 * 0.02},
     };
     for (size_t k = 0; k < sizeof views / sizeof *views; k++) {
