@@ -11,8 +11,9 @@ do for [picture = 1:pictures] {
     if (!has_points) { continue }
     output = picture_output[picture]
     others = cost == 2 ? 4 : 2
+    panel_px = 520
     load plots."/legend.gp"
-    height = int(690 + legend_px)
+    height = int(170 + panel_px + legend_px)
     load plots."/style.gp"
     set output output
     set logscale xy

@@ -14,8 +14,9 @@ do for [picture = 1:pictures] {
     if (!has_lobes) { continue }
     output = picture_output[picture]
     others = 1
+    panel_px = 355
     load plots."/legend.gp"
-    height = int(940 + legend_px)
+    height = int(230 + 2*panel_px + legend_px)
     load plots."/style.gp"
     set output output
     set label 1 caption at screen 0.5,12.0/height center font ",10" textcolor "#606060"
@@ -34,8 +35,9 @@ do for [picture = 1:pictures] {
     set lmargin at screen 110.0/width
     set rmargin at screen 1 - 25.0/width
     do for [panel = 1:2] {
-        set tmargin at screen 1 - (45 + 420*(panel - 1))/(1.0*height)
-        set bmargin at screen 1 - (45 + 420*(panel - 1) + 355)/(1.0*height)
+        top = 45 + (panel_px + 65)*(panel - 1)
+        set tmargin at screen 1 - top/(1.0*height)
+        set bmargin at screen 1 - (top + panel_px)/(1.0*height)
         set ylabel sprintf("|%s - exact image's| (dB)", quantity[panel])
         set xlabel (panel == 1 ? "" : "median run time, raw echoes to image (s)")
         set title (panel == 1 ? \

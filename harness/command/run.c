@@ -70,9 +70,9 @@ enum status command_run(const struct task *task)
     if (status == STATUS_OK && batch.measured > 0)
         time_print(&batch);
     if (status == STATUS_OK)
-        printf("\nThe harness itself takes %.1f ns a run (an algorithm that does nothing).\n"
+        printf("\nOf each time %.2g us are the harness's own: an algorithm that does nothing takes them.\n"
                "Results: %s/measurements.csv, targets.csv and pictures.\n",
-               1e9 * timing_floor(), batch.directory);
+               1e6 * timing_floor(), batch.directory);
     status = batch_close(&batch, status);
     scenes_free(scenes, scene_count);
     for (int k = 0; k < all_count; k++)
