@@ -1,6 +1,5 @@
-/* Back projection (bp.h): weights, records, the choice of an engine, and the count of the work. */
+/* Back projection (bp.h): weights, the choice of an engine, and the count of the work. */
 #include <math.h>
-#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -11,45 +10,6 @@
 #include "backprojection/omission.h"
 #include "common/fft_length.h"
 #include "backprojection/pairs.h"
-
-enum status bp_plan_traces(struct bp *bp)
-{
-    const struct acquisition *a = bp->problem.acquisition;
-    const struct traces_form form = {bp->table.upsample, bp->table.branches - 1, bp->table.guard,
-                                     bp->table.preemphasis};
-    bool is_double = bp->problem.precision == PRECISION_DOUBLE;
-    enum status status =
-        (is_double ? traces_plan_double : traces_plan_float)(a, &form, omp_get_max_threads(), &bp->shape, &bp->traces);
-    if (status == STATUS_OK)
-        bp->work.bytes += bp->shape.bytes;
-    return status;
-}
-
-void bp_fill_row(const struct bp *bp, int thread, const struct echoes *echoes, size_t index, void *row)
-{
-    size_t offset = index * (size_t)bp->shape.samples;
-    if (bp->problem.precision == PRECISION_DOUBLE)
-        traces_fill_double(bp->traces, thread, (const double complex *)echoes->samples + offset, row);
-    else
-        traces_fill_float(bp->traces, thread, (const float complex *)echoes->samples + offset, row);
-}
-
-void bp_fill_spectrum(const struct bp *bp, int thread, const struct echoes *echoes, size_t index, void *spectrum)
-{
-    size_t offset = index * (size_t)bp->shape.samples;
-    if (bp->problem.precision == PRECISION_DOUBLE)
-        traces_spectrum_double(bp->traces, thread, (const double complex *)echoes->samples + offset, spectrum);
-    else
-        traces_spectrum_float(bp->traces, thread, (const float complex *)echoes->samples + offset, spectrum);
-}
-
-void bp_fill_plane(const struct bp *bp, int thread, void *spectrum, int plane, void *values)
-{
-    if (bp->problem.precision == PRECISION_DOUBLE)
-        traces_plane_double(bp->traces, thread, spectrum, plane, values);
-    else
-        traces_plane_float(bp->traces, thread, spectrum, plane, values);
-}
 
 /* The kernel's branches, where they are few enough; false without memory. */
 static bool kernel_make(struct bp *bp, const struct interpolator *in, const void *options)
@@ -263,7 +223,7 @@ enum status bp_plan(const struct problem *problem, const struct interpolator *in
     if (!bp)
         return status_set(STATUS_FAILED, "no memory for the plan");
     bp->problem = *problem;
-    bp->medium = (struct bp_medium){a->sound_speed, a->fc, a->fs, a->samples, 0};
+    bp->medium = (struct bp_medium){a->sound_speed, a->fc, a->fs, 0, a->samples - 1, 0};
     bp->work.bytes = offsetof(struct bp, turned); /* the rest is for turned grids alone, counted there */
     aperture_take(bp, options);
     enum status status = problem_turn_back(&bp->problem, &bp->turned, &bp->work.bytes);
@@ -305,8 +265,10 @@ struct work bp_work(const void *plan)
         length = snprintf(work.skipped, sizeof work.skipped, "%.3g %% of the pairs: outside the record%s",
                           100 * (1 - work.pairs / all), a->aperture_limit < 1 ? " or the aperture limit" : "");
     if (bp->met)
-        snprintf(work.skipped + length, sizeof work.skipped - (size_t)length, "%s%d of %d pings, which no pixel meets",
-                 length > 0 ? "; " : "", a->pings - met_count(bp), a->pings);
+        length += snprintf(work.skipped + length, sizeof work.skipped - (size_t)length,
+                           "%s%d of %d pings, which no pixel meets", length > 0 ? "; " : "", a->pings - met_count(bp),
+                           a->pings);
+    bp_records_skipped(bp, work.skipped + length, sizeof work.skipped - (size_t)length, length > 0 ? "; " : "");
     return work;
 }
 
@@ -340,7 +302,7 @@ static enum status forecast_begin(const struct problem *problem, const struct in
                                   const struct bp_options *options, struct bp *bp)
 {
     const struct acquisition *a = problem->acquisition;
-    *bp = (struct bp){.problem = *problem, .medium = {a->sound_speed, a->fc, a->fs, a->samples, 0}};
+    *bp = (struct bp){.problem = *problem, .medium = {a->sound_speed, a->fc, a->fs, 0, a->samples - 1, 0}};
     bp->table = (struct bp_table){.reading = in->degree > 0  ? BP_BRANCHES
                                              : in->taps == 1 ? BP_NEAREST
                                              : in->steps > 0 ? BP_STEPS
@@ -348,7 +310,9 @@ static enum status forecast_begin(const struct problem *problem, const struct in
                                   .upsample = in->upsample,
                                   .steps = in->steps,
                                   .taps = in->degree > 0 ? in->degree + 1 : in->taps,
-                                  .branches = in->degree > 0 ? in->degree + 1 : 1};
+                                  .first = in->degree > 0 ? 0 : in->first,
+                                  .branches = in->degree > 0 ? in->degree + 1 : 1,
+                                  .preemphasis = in->preemphasis};
     struct condition list[CONDITIONS_MAX];
     enum status status =
         conditions_check("back projection", list, bp_conditions(problem, options, list, CONDITIONS_MAX));
@@ -361,17 +325,17 @@ static enum status forecast_begin(const struct problem *problem, const struct in
 }
 
 /* The work besides pairs. */
-static void forecast_records(const struct bp *bp, const struct interpolator *in, struct forecast *forecast)
+static void forecast_records(struct bp *bp, const struct interpolator *in, struct forecast *forecast)
 {
     const struct acquisition *a = bp->problem.acquisition;
-    const struct traces_form form = {.upsample = in->upsample, .degree = in->degree, .preemphasis = in->preemphasis};
-    const double records = (double)met_count(bp) * a->receivers, fine = (a->samples - 1.0) * in->upsample + 1;
+    const struct traces_form form = bp_records_form(bp);
+    const double records = (double)met_count(bp) * a->receivers, fine = (form.count - 1.0) * in->upsample + 1;
     const int taps = forecast->kind == READ_BRANCHES && in->degree == 0 ? in->taps : 0; /* of a kernel's branches */
     forecast->units = bp->engine->units(bp);
     forecast->pair_flops =
         4.0 * (in->taps == 1 && in->degree == 0 ? 0 : forecast->values - (forecast->kind == READ_BRANCHES)) + 8;
     forecast->record_flops = records * traces_flops_double(a, &form);
-    forecast->slowness = fft_slowness(traces_period_double(a));
+    forecast->slowness = fft_slowness(traces_period_double(a, &form));
     forecast->kernel_flops = records * 4.0 * forecast->values * taps * fine;
     forecast->record_values = records * fine * (forecast->kind == READ_BRANCHES ? forecast->values : 1);
 }

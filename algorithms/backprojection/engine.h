@@ -38,6 +38,8 @@ struct bp_engine {
     /* What a plan would make for the pairs to read by, all records together: entries of tables, or blocks of pixels.
        Known from bp->problem, medium and table, before any plan; of a problem that is applicable. */
     double (*units)(const struct bp *bp);
+    /* m: how far along the track beyond the pairs' places delays are evaluated; NULL: nowhere. */
+    double (*beside)(const struct bp *bp);
     /* Make bp->state and bp->traces; adds to bp->work.bytes. */
     enum status (*plan)(struct bp *bp);
     void (*execute)(struct bp *bp, const struct echoes *echoes, struct image *image, struct stages *stages);
@@ -60,8 +62,13 @@ static inline size_t real_size(enum precision precision)
     return precision == PRECISION_DOUBLE ? sizeof(double) : sizeof(float);
 }
 
-/* Records for up to omp_get_max_threads() threads; fills bp->traces and bp->shape and counts their bytes. */
+/* What of the records pairs read, into bp->medium, and the form of their rows; all where there is no engine. */
+struct traces_form bp_records_form(struct bp *bp);
+/* Records for up to omp_get_max_threads() threads; fills bp->traces and bp->shape and counts their bytes; `origin` of
+   the table follows from them. */
 enum status bp_plan_traces(struct bp *bp);
+/* Name into `text` of `room` characters, behind `join`, the samples that no row needs; nothing where there are none. */
+void bp_records_skipped(const struct bp *bp, char *text, size_t room, const char *join);
 /* Compress record `index` into a row of bp->shape.length complex values. */
 void bp_fill_row(const struct bp *bp, int thread, const struct echoes *echoes, size_t index, void *row);
 /* In two steps, for a phase alone (traces.h). */

@@ -289,6 +289,80 @@ int pings_met(const struct problem *problem, bool *met)
     return count;
 }
 
+/* Where a grid's pixels are, seen from a ping: as far as they are along its normal, and beside it. */
+struct seen {
+    double along, beside; /* m, the most */
+};
+
+static struct seen grid_seen(const struct grid *grid, struct vector tx, struct vector normal)
+{
+    struct seen seen = {0, 0};
+    for (int k = 0; k < 4; k++) {
+        const double x = grid->x_first + (k % 2 ? (grid->x_count - 1) * grid->x_step : 0) - tx.x;
+        const double r = grid->r_first + (k / 2 ? (grid->r_count - 1) * grid->r_step : 0) - tx.y;
+        const double along = x * normal.x + r * normal.y - tx.z * normal.z;
+        seen.along = fmax(seen.along, fabs(along));
+        seen.beside = fmax(seen.beside, sqrt(fmax(0, x * x + r * r + tx.z * tx.z - along * along)));
+    }
+    return seen;
+}
+
+/* m: the least distance of a grid from `at`, which may be `away` from there along each axis, pixels `beside` m off
+   among them. */
+static double grid_nearest(const struct grid *grid, struct vector at, struct vector away, double beside)
+{
+    const double last_x = grid->x_first + (grid->x_count - 1) * grid->x_step;
+    const double last_r = grid->r_first + (grid->r_count - 1) * grid->r_step;
+    const double x = fmax(0, fmax(grid->x_first - at.x, at.x - last_x) - fabs(away.x) - beside);
+    const double r = fmax(0, fmax(grid->r_first - at.y, at.y - last_r) - fabs(away.y));
+    const double z = fmax(0, fabs(at.z) - fabs(away.z));
+    return sqrt(x * x + r * r + z * z);
+}
+
+/* Bounds of the delays inside a ping's records: ways out and back to where each receiver is at any time until the
+   records end. Inside the aperture pixels are no further along the normal than beside it times the limit's tangent. */
+static struct delay_bounds ping_delays(const struct acquisition *a, int ping, const struct grid *grid, double beside)
+{
+    const struct vector tx = a->tx[ping], v = a->velocity[ping], n = acquisition_normal(a, ping);
+    const double longest = fmax(0, a->t0[ping] + (a->samples - 1) / a->fs), limit = a->aperture_limit;
+    const struct vector way = {v.x * longest, v.y * longest, v.z * longest}, still = {0, 0, 0};
+    const struct seen seen = grid_seen(grid, tx, n);
+    const double edge = limit < 1 ? seen.beside * limit / sqrt((1 - limit) * (1 + limit)) : INFINITY;
+    const double along = fmin(seen.along, edge) + beside, out = grid_nearest(grid, tx, still, beside);
+    double least = INFINITY, most = 0;
+    for (int m = 0; m < a->receivers; m++) {
+        const struct vector rx = a->rx[(size_t)ping * (size_t)a->receivers + (size_t)m];
+        const double x = rx.x - tx.x, y = rx.y - tx.y, z = rx.z - tx.z, ahead = x * n.x + y * n.y + z * n.z;
+        const double aside = sqrt(fmax(0, x * x + y * y + z * z - ahead * ahead));
+        const double moved = fabs(way.x * n.x + way.y * n.y + way.z * n.z);
+        const double drift = sqrt(fmax(0, way.x * way.x + way.y * way.y + way.z * way.z - moved * moved));
+        least = fmin(least, out + grid_nearest(grid, rx, way, beside));
+        const double far_along = along + fabs(ahead) + moved, far_beside = seen.beside + aside + drift;
+        most = fmax(most, sqrt(far_along * far_along + far_beside * far_beside));
+    }
+    most += sqrt(along * along + seen.beside * seen.beside);
+    return (struct delay_bounds){least / a->sound_speed, most / a->sound_speed};
+}
+
+struct sample_span pairs_samples(const struct problem *problem, const bool *met, double beside)
+{
+    const struct acquisition *a = problem->acquisition;
+    const double end = a->samples - 1;
+    double first = INFINITY, last = -INFINITY;
+    for (int p = 0; p < a->pings; p++)
+        for (int k = 0; k < problem->patch_count && (!met || met[p]); k++) {
+            const struct delay_bounds delays = ping_delays(a, p, &problem->patches[k], beside);
+            if (!record_reached(a, p, delays))
+                continue;
+            const double slack = 1 + 1e-9 * fabs(a->t0[p]) * a->fs; /* samples: far more than anything rounds */
+            first = fmin(first, (delays.least - a->t0[p]) * a->fs * (1 - 1e-9) - slack);
+            last = fmax(last, (delays.most - a->t0[p]) * a->fs * (1 + 1e-9) + slack);
+        }
+    if (!(first <= last))
+        return (struct sample_span){0, 0};
+    return (struct sample_span){first > 0 ? fmin(first, end) : 0, last < end ? fmax(last, 0) : end};
+}
+
 /* Pairs of a ping along a line. Most lines lie inside the records as a whole, which spares the receivers. */
 static double line_pairs(const struct acquisition *a, int ping, double apart, const struct pixel_line *line)
 {

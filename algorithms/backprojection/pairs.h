@@ -45,6 +45,15 @@ int record_spans(const struct acquisition *acquisition, int ping, int receiver, 
    beside it, or all delays are outside its records. Returns how many are met. */
 int pings_met(const struct problem *problem, bool *met);
 
+/* Samples of a record, as fractions counted from its first one, both ends included. */
+struct sample_span {
+    double first, last;
+};
+
+/* Samples between which all delays of a problem's pairs lie for sure, and those of pixels up to `beside` m ahead of or
+   behind them; no more than the record. Pings that are not met do not count (NULL: all are); {0, 0} without any. */
+struct sample_span pairs_samples(const struct problem *problem, const bool *met, double beside);
+
 /* All pairs of a problem inside its records and its aperture limit: what a back projection sums. Exact, and the same on
    every machine. */
 double pairs_count(const struct problem *problem);

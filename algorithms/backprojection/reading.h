@@ -26,6 +26,7 @@ enum { BP_STEPS_MOST = 4096 };   /* between two samples: times 19 bits of fracti
 struct bp_table {
     enum bp_reading reading;
     int upsample, steps, taps, first, guard;
+    int origin;          /* where a row holds the record's sample 0: guard, less what the row leaves out before */
     int branches;        /* values of each place of a record: `taps` if BP_BRANCHES, else 1 */
     double shift;        /* branches: they are read at floor(place + shift), u = place + shift - 1/2 from there */
     bool preemphasis;    /* of the records (struct traces_form) */
@@ -34,7 +35,7 @@ struct bp_table {
 
 struct bp_medium {
     double sound_speed, fc, fs;
-    int samples;
+    double first, last; /* samples of a record between which every pair's delay lies, both included */
     double phase_limit; /* rad: L of the error budget (backprojection/budget.h); 0: every delay is evaluated */
 };
 

@@ -117,20 +117,39 @@ static enum status transforms_plan(struct traces *traces, const struct acquisiti
     return STATUS_OK;
 }
 
-int REAL_NAME(traces_period)(const struct acquisition *acquisition)
-{
-    const int n = acquisition->samples;
-    return acquisition->compressed ? n : fft_length_quick((long long)n + acquisition->pulse_length - 1);
-}
-
 static bool transforms(const struct acquisition *acquisition, const struct traces_form *form)
 {
     return !acquisition->compressed || form->upsample > 1 || form->degree > 0 || form->preemphasis;
 }
 
+/* Does a row depend on part of the record only? */
+static bool cuts(const struct acquisition *acquisition, const struct traces_form *form)
+{
+    const bool compresses = !acquisition->compressed && form->upsample == 1 && form->degree == 0 && !form->preemphasis;
+    return form->count > 0 && (compresses || !transforms(acquisition, form));
+}
+
+int REAL_NAME(traces_period)(const struct acquisition *acquisition, const struct traces_form *form)
+{
+    const int n = cuts(acquisition, form) ? form->count : acquisition->samples;
+    return acquisition->compressed ? n : fft_length_quick((long long)n + acquisition->pulse_length - 1);
+}
+
+/* What of a record is read, and what a row holds of it. */
+static void shape_cut(const struct acquisition *acquisition, const struct traces_form *form, struct traces_shape *shape)
+{
+    const int all = acquisition->samples, pulse = acquisition->compressed ? 1 : acquisition->pulse_length;
+    shape->first = form->count > 0 ? form->first : 0;
+    shape->samples = form->count > 0 ? form->count : all;
+    shape->from = cuts(acquisition, form) ? shape->first : 0;
+    shape->read = all - shape->from;
+    if (cuts(acquisition, form) && shape->samples + pulse - 1 < shape->read)
+        shape->read = shape->samples + pulse - 1;
+}
+
 double REAL_NAME(traces_flops)(const struct acquisition *acquisition, const struct traces_form *form)
 {
-    const double length = REAL_NAME(traces_period)(acquisition), planes = (form->degree + 1.0) * form->upsample;
+    const double length = REAL_NAME(traces_period)(acquisition, form), planes = (form->degree + 1.0) * form->upsample;
     if (!transforms(acquisition, form))
         return 0;
     return (planes + 1) * fft_flops(length) + 6 * length + (planes > 1 ? 6 * planes * length : 0);
@@ -140,24 +159,25 @@ enum status REAL_NAME(traces_plan)(const struct acquisition *acquisition, const 
                                    struct traces_shape *shape, struct traces **out)
 {
     *out = NULL;
-    const int n = acquisition->samples, upsample = form->upsample, branches = form->degree + 1;
-    const int length = REAL_NAME(traces_period)(acquisition);
+    const int n = form->count > 0 ? form->count : acquisition->samples;
+    const int upsample = form->upsample, branches = form->degree + 1;
+    const int length = REAL_NAME(traces_period)(acquisition, form);
     long long fine = (long long)length * upsample, row = (long long)(n - 1) * upsample + 1 + 2LL * form->guard;
     if (length == 0 || fine * branches > INT_MAX / 4 || row * branches > INT_MAX / 4)
         return status_set(STATUS_UNSUPPORTED,
                           "records of %d samples upsampled by %d are too long to transform "
                           "(at most %d values)",
-                          n, upsample, INT_MAX / 4 / branches);
+                          acquisition->samples, upsample, INT_MAX / 4 / branches);
     struct traces *traces = calloc(1, sizeof *traces);
     if (!traces)
         return status_set(STATUS_FAILED, "no memory for range compression");
-    traces->shape = (struct traces_shape){.samples = n,
-                                          .upsample = upsample,
+    traces->shape = (struct traces_shape){.upsample = upsample,
                                           .guard = form->guard,
                                           .branches = branches,
                                           .length = (int)row,
                                           .period = length,
                                           .bytes = sizeof *traces};
+    shape_cut(acquisition, form, &traces->shape);
     traces->shape.flops = REAL_NAME(traces_flops)(acquisition, form);
     traces->transforms = transforms(acquisition, form);
     enum status status =
@@ -180,9 +200,9 @@ static complex_real *scratch_of(const struct traces *traces, int thread)
 void REAL_NAME(traces_spectrum)(const struct traces *traces, int thread, const complex_real *record,
                                 complex_real *spectrum)
 {
-    const size_t n = (size_t)traces->shape.samples, length = (size_t)traces->shape.period;
+    const size_t n = (size_t)traces->shape.read, length = (size_t)traces->shape.period;
     complex_real *padded = scratch_of(traces, thread);
-    memcpy(padded, record, n * sizeof *padded);
+    memcpy(padded, record + traces->shape.from, n * sizeof *padded);
     memset(padded + n, 0, (length - n) * sizeof *padded);
     FFTW(execute_dft)(traces->forward, padded, spectrum);
     real *x = (real *)spectrum;
@@ -222,20 +242,21 @@ void REAL_NAME(traces_plane)(const struct traces *traces, int thread, complex_re
     FFTW(execute_dft)(traces->inverse, turned, values);
 }
 
-/* A branch's row from one period of each of its planes, [upsample][pitch]. */
+/* A branch's row from one period of each of its planes, [upsample][pitch], sample `from` and on. */
 static void row_fill(const struct traces_shape *shape, const complex_real *values, complex_real *row)
 {
     const size_t upsample = (size_t)shape->upsample, guard = (size_t)shape->guard, length = (size_t)shape->length;
     const size_t period = (size_t)shape->period, n = (size_t)shape->samples;
+    const size_t begin = (size_t)(shape->first - shape->from);
     if (upsample == 1) {
         memset(row, 0, guard * sizeof *row);
-        memcpy(row + guard, values, n * sizeof *row);
+        memcpy(row + guard, values + begin, n * sizeof *row);
         memset(row + guard + n, 0, guard * sizeof *row);
         return;
     }
-    /* Value guard + n upsample + phase is sample n of the phase; the row begins before sample 0. */
+    /* Value guard + n upsample + phase is sample begin + n of the phase; the row begins before sample `begin`. */
     const size_t before = (guard + upsample - 1) / upsample, first = before * upsample - guard;
-    size_t sample = (period - before % period) % period;
+    size_t sample = (begin + period - before % period) % period;
     for (size_t i = 0, phase = first; i < length; phase = 0) {
         const size_t end = upsample - phase < length - i ? upsample : phase + length - i;
         for (; phase < end; phase++)
@@ -248,7 +269,7 @@ void REAL_NAME(traces_fill)(const struct traces *traces, int thread, const compl
 {
     const struct traces_shape *shape = &traces->shape;
     if (!traces->transforms) {
-        row_fill(shape, record, row);
+        row_fill(shape, record + shape->from, row);
         return;
     }
     complex_real *spectrum = scratch_of(traces, thread) + shape->pitch, *values = spectrum + shape->pitch;

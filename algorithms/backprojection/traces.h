@@ -14,29 +14,37 @@ struct traces_form {
     int degree;       /* > 0: of Farrow branches (farrow.h), u in upsampled samples */
     int guard;        /* upsampled samples before and behind the record */
     bool preemphasis; /* the spectrum is divided by sinc^2(f/fs), which linear interpolation takes off it */
+    int first, count; /* the samples [first, first + count) that a row holds; count 0: all */
 };
 
-/* A row holds guard + (samples - 1) upsample + 1 + guard values; value guard + i lies at sample coordinate i/upsample
-   of the record, t = t0 + i/(upsample fs). Guards continue the band-limited signal, periodically where it has no other
-   continuation; with upsample = 1 they read zero. With a degree > 0 a row holds degree + 1 of these one behind the
-   other, the branches.
+/* A row holds guard + (samples - 1) upsample + 1 + guard values; value guard + i lies at sample coordinate first +
+   i/upsample of the record, t = t0 + (first + i/upsample)/fs. Guards continue the band-limited signal, periodically
+   where it has no other continuation; with upsample = 1 they read zero. With a degree > 0 a row holds degree + 1 of
+   these one behind the other, the branches.
+
+   Where a row holds part of the record and its values depend on a stretch of it only, nothing else of the record is
+   read: raw echoes that are compressed and no more read a pulse's length behind the row's samples, and the transform is
+   so much shorter; the values are the same but for rounding. Whatever is read between the samples (upsample > 1,
+   degree > 0), or emphasised, depends on the whole record, which is transformed as one.
 
    Zero padding is done by phases: values i = n upsample + phase are the samples n of the signal phase/upsample samples
    earlier, hence an inverse transform of the record's own length L, of its spectrum times exp(j 2 pi nu
    phase/upsample). `upsample` short transforms stand for one long one, and each is made for itself. */
 struct traces_shape {
-    int samples, upsample, guard;
-    int branches; /* 1, or degree + 1 */
-    int length;   /* of a row's branch, complex values */
-    int period;   /* L: of the transformed signal, >= samples + pulse - 1 if raw */
-    size_t pitch; /* from one spectrum or plane to the next, complex values: whole cache lines; 0: none is made */
-    double flops; /* for one record: 5 N log2 N an FFT, 6 a complex product */
-    double bytes; /* held with one thread */
+    int first, samples; /* of the record, in a row */
+    int upsample, guard;
+    int branches;   /* 1, or degree + 1 */
+    int length;     /* of a row's branch, complex values */
+    int from, read; /* the record's samples [from, from + read) are read */
+    int period;     /* L: of the transformed signal, >= samples + pulse - 1 if raw; its sample 0 is `from` */
+    size_t pitch;   /* from one spectrum or plane to the next, complex values: whole cache lines; 0: none is made */
+    double flops;   /* for one record: 5 N log2 N an FFT, 6 a complex product */
+    double bytes;   /* held with one thread */
 };
 
 /* `period` of the shape without a plan; 0 where it is too long. */
-int traces_period_float(const struct acquisition *acquisition);
-int traces_period_double(const struct acquisition *acquisition);
+int traces_period_float(const struct acquisition *acquisition, const struct traces_form *form);
+int traces_period_double(const struct acquisition *acquisition, const struct traces_form *form);
 /* `flops` of the shape without a plan. */
 double traces_flops_float(const struct acquisition *acquisition, const struct traces_form *form);
 double traces_flops_double(const struct acquisition *acquisition, const struct traces_form *form);
@@ -46,12 +54,12 @@ enum status traces_plan_float(const struct acquisition *acquisition, const struc
                               struct traces_shape *shape, struct traces **traces);
 enum status traces_plan_double(const struct acquisition *acquisition, const struct traces_form *form, int threads,
                                struct traces_shape *shape, struct traces **traces);
-/* Turn one record, complex [samples], into a row; `thread` < threads names the scratch to use. */
+/* Turn one record, complex [the acquisition's samples], into a row; `thread` < threads names the scratch to use. */
 void traces_fill_float(const struct traces *traces, int thread, const float complex *record, float complex *row);
 void traces_fill_double(const struct traces *traces, int thread, const double complex *record, double complex *row);
 /* The same in two steps, where pitch > 0: a record's spectrum, complex [period], compressed; and of it one plane,
-   number branch times upsample + phase: complex [period], of which value n is fine sample n upsample + phase. Both
-   arrays begin at cache lines; the spectrum is not changed. */
+   number branch times upsample + phase: complex [period], of which value n is fine sample (from + n) upsample + phase.
+   Both arrays begin at cache lines; the spectrum is not changed. */
 void traces_spectrum_float(const struct traces *traces, int thread, const float complex *record,
                            float complex *spectrum);
 void traces_spectrum_double(const struct traces *traces, int thread, const double complex *record,

@@ -95,6 +95,19 @@ enum status support_image(const char *text, struct problem problem, const struct
     return status;
 }
 
+struct work support_work(const char *text, struct problem problem)
+{
+    struct spec spec;
+    void *plan;
+    CHECK(spec_parse(text, &spec));
+    problem.precision = spec.precision;
+    CHECK(spec.algorithm->plan(&problem, spec.options, &plan));
+    const struct work work = spec.algorithm->work(plan);
+    spec.algorithm->destroy(plan);
+    spec_free(&spec);
+    return work;
+}
+
 void support_pixel_set(struct image *image, int patch, int i, int j, double complex value)
 {
     size_t at = (size_t)i * (size_t)image->patches[patch].x_count + (size_t)j;

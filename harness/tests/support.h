@@ -26,6 +26,8 @@ void support_flat_noise(double band, struct acquisition *acquisition, struct ech
 /* Image a problem by SPEC (the SPEC's precision replaces the problem's) from double echoes. *image is allocated
    here. */
 enum status support_image(const char *spec, struct problem problem, const struct echoes *echoes, struct image *image);
+/* What the plan of SPEC counts (the SPEC's precision replaces the problem's). */
+struct work support_work(const char *spec, struct problem problem);
 /* A zeroed image; one of its pixels, whatever the precision. */
 void support_image_make(const struct grid *patches, int count, enum precision precision, struct image *image);
 void support_pixel_set(struct image *image, int patch, int i, int j, double complex value);

@@ -149,7 +149,8 @@ static void line_add(const struct factorised *plan, int subaperture, int view, c
                 scratch->row);
     struct bp_medium medium = plan->bp.medium;
     medium.fs = c / (2 * step->rho);
-    medium.samples = count;
+    medium.first = 0;
+    medium.last = count - 1;
     const struct bp_ping ping = {centre,  {0, 0, 0},    2 * first * step->rho / c, 1,
                                  &centre, scratch->row, plan->polar_layout,        span};
     const struct bp_pings alone = {1, &ping};

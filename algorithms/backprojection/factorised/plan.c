@@ -169,7 +169,8 @@ static enum status reading_make(struct factorised *plan)
     struct bp *bp = &plan->bp;
     const struct acquisition *a = bp->problem.acquisition;
     const int degree = degree_of(&plan->tree), branches = plan->tree.range.branches;
-    bp->medium = (struct bp_medium){a->sound_speed, a->fc, a->fs, a->samples, phase_limit_of(&plan->tree, a->fs)};
+    bp->medium =
+        (struct bp_medium){a->sound_speed, a->fc, a->fs, 0, a->samples - 1, phase_limit_of(&plan->tree, a->fs)};
     bp->table = (struct bp_table){.reading = BP_BRANCHES,
                                   .upsample = 1,
                                   .steps = 1,
@@ -188,6 +189,7 @@ static enum status reading_make(struct factorised *plan)
     plan->polar_layout = bp_layout_make(precision, places + 3 * BP_BRANCHES_GUARD, branches, true);
     plan->polar_table = bp->table;
     plan->polar_table.taps = plan->polar_table.branches = branches;
+    plan->polar_table.origin = plan->polar_table.guard;
     plan->polar_table.shift = 0; /* read half way between two samples (backprojection/kernel.h) */
     plan->trace_pitch = (places + 2 * FITTED_TAPS_MOST + TRACE_PLACES + 15) / 16 * 16;
     const double quintics = budget_quintics(bp->medium.phase_limit, precision);

@@ -222,7 +222,7 @@ INLINE void add_taken(struct taking taking, int receivers, const struct receiver
     const int count = pixels.end;
     int i = pixels.begin;
     for (int g = 0; g < receivers; g++) {
-        const int place = group->table->guard + group->table->first + runs[g].base;
+        const int place = group->table->origin + group->table->first + runs[g].base;
         const bool whole = taking.branches > 1;
         from[g].values = group->row + (size_t)g * layout.record + (whole ? 0 : place);
         from[g].place = whole ? place : 0;
@@ -342,7 +342,7 @@ void BP_GATHER(const struct receiver_group *group, enum loading loading, struct 
         return;
     }
     const size_t length = group->layout.apart;
-    const real *row = group->row + table->guard + table->first;
+    const real *row = group->row + table->origin + table->first;
     for (int g = 0; g < group->receivers; g++, row += group->layout.record) {
         const real *from = row + runs[g].base;
         switch (table->taps) { /* the shipped kernels unroll, any other length works as well */

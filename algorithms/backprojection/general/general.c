@@ -134,6 +134,7 @@ static void read_branches(struct bp *bp)
                                   .steps = 1,
                                   .taps = kernel->branches,
                                   .guard = BP_BRANCHES_GUARD,
+                                  .origin = BP_BRANCHES_GUARD - bp->shape.first * bp->table.upsample,
                                   .branches = kernel->branches};
     bp->shape.flops += 4.0 * kernel->branches * kernel->taps * ((bp->shape.samples - 1.0) * bp->table.upsample + 1);
 }

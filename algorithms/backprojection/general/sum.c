@@ -98,7 +98,8 @@ static void sum_exact(const struct line_sum *sum, const struct bp_ping *ping, in
     double tau[RUN_PIXELS];
     const struct motion motion = motion_make(medium, ping->velocity);
     const bool cubics = table->reading == BP_CUBICS, branches = table->reading == BP_BRANCHES;
-    const double one = cubics ? BP_INTERVALS : table->steps, last = (medium->samples - 1.0) * table->upsample;
+    const double one = cubics ? BP_INTERVALS : table->steps;
+    const double least = medium->first * table->upsample, last = medium->last * table->upsample;
     run.base = 0;
     for (int first = begin; first < end; first += RUN_PIXELS) {
         const int count = end - first < RUN_PIXELS ? end - first : RUN_PIXELS;
@@ -118,7 +119,7 @@ static void sum_exact(const struct line_sum *sum, const struct bp_ping *ping, in
 #pragma omp simd
             for (int i = 0; i < count; i++) {
                 double q = (tau[i] - scale->t0) * scale->fs * table->upsample;
-                q = q > 0 ? q : 0; /* the record's ends, but for rounding; nothing else becomes an index */
+                q = q > least ? q : least; /* what rows hold, but for rounding; nothing else becomes an index */
                 q = q < last ? q : last;
                 double point = floor(q * one + scale->shift * one), cycles = medium->fc * tau[i];
                 double sample = floor((point + 0.5) / one);
@@ -157,10 +158,10 @@ INLINE void prefetch(const struct receiver_group *group, const double *low, cons
     }; /* values of a cache line; cache lines of a part, else it does not pay */
     const bool blocks = BLOCKS && group->table->reading == BP_BRANCHES;
     const size_t apart = group->layout.apart;
-    const int guard = group->table->guard, all = 2 * group->table->branches;
+    const int origin = group->table->origin, all = 2 * group->table->branches;
     const int parts = blocks ? 1 : all, width = blocks ? all : 1; /* in blocks all parts lie side by side */
     for (int g = 0; g < group->receivers; g++) {
-        const int first = ((int)low[g] + guard) / NEAR, last = ((int)high[g] + guard) / NEAR + (blocks ? 1 : 2);
+        const int first = ((int)low[g] + origin) / NEAR, last = ((int)high[g] + origin) / NEAR + (blocks ? 1 : 2);
         const real *row = group->row + (size_t)g * group->layout.record;
         for (int p = 0; last - first < MOST && p < parts; p++, row += apart)
             for (int i = first * width; i < last * width; i++)
@@ -169,8 +170,8 @@ INLINE void prefetch(const struct receiver_group *group, const double *low, cons
 }
 
 /* A line reads few values of each record and comes back to the next line much later. False where a delay is not one
-   of the record, which ends at `last`: then no quintic through it may become an index. */
-INLINE bool reads_inside(const struct receiver_group *group, double (*tau)[GROUP_RECEIVERS], double last)
+   that rows hold, `first` to `last`: then no quintic through it may become an index. */
+INLINE bool reads_inside(const struct receiver_group *group, double (*tau)[GROUP_RECEIVERS], double first, double last)
 {
     const struct scale *scale = group->scale;
     const int upsample = group->table->upsample;
@@ -186,7 +187,7 @@ INLINE bool reads_inside(const struct receiver_group *group, double (*tau)[GROUP
         high[g] = (most - scale->t0) * scale->fs * upsample + 1;
     }
     for (int g = 0; g < group->receivers; g++)
-        if (!(low[g] >= -2 && high[g] <= last + 2))
+        if (!(low[g] >= first - 2 && high[g] <= last + 2))
             return false;
     prefetch(group, low, high);
     return true;
@@ -298,7 +299,8 @@ INLINE void together_delays(bool slow, double one_c, const struct together *all,
 static void sum_blocks(const struct line_sum *sum, const struct bp_pings *pings, struct receiver_group group,
                        double (*tau)[GROUP_RECEIVERS], int block_count, const struct bp_block *blocks)
 {
-    const double last = (sum->medium->samples - 1.0) * sum->table->upsample;
+    const int upsample = sum->table->upsample;
+    const double first = sum->medium->first * upsample, last = sum->medium->last * upsample;
     bool readable[BP_BLOCKS];
     group.table = sum->table;
     group.scale = sum->scale;
@@ -308,7 +310,7 @@ static void sum_blocks(const struct line_sum *sum, const struct bp_pings *pings,
     group.re = sum->re;
     group.im = sum->im;
     for (int b = 0; b < block_count; b++)
-        readable[b] = !blocks[b].exact && reads_inside(&group, tau + b * NODES, last);
+        readable[b] = !blocks[b].exact && reads_inside(&group, tau + b * NODES, first, last);
     for (int b = 0; b < block_count; b++)
         if (readable[b])
             BP_RUNS(&group, &blocks[b], tau + b * NODES);

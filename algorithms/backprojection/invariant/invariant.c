@@ -70,8 +70,9 @@ static void fill_rows(const struct bp *bp, const struct echoes *echoes, int m, c
 static void fill_steps(const struct bp *bp, const struct echoes *echoes, int m, const struct tile_place *place)
 {
     const struct invariant *in = bp->state;
-    const size_t pitch = bp->shape.pitch, bytes = pitch * 2 * real_size(bp->problem.precision);
+    const size_t bytes = bp->shape.pitch * 2 * real_size(bp->problem.precision);
     const size_t samples = (size_t)bp->shape.samples;
+    const size_t begin = (size_t)(bp->shape.first - bp->shape.from) * 2 * real_size(bp->problem.precision);
     const int thread = omp_get_thread_num();
     char *spectra = (char *)in->tiles + (size_t)thread * in->tile_bytes, *tile = spectra + TILE * bytes;
     for (int p = 0; p < place->count; p++)
@@ -84,7 +85,7 @@ static void fill_steps(const struct bp *bp, const struct echoes *echoes, int m, 
                               tile + (size_t)p * bytes);
             else
                 memset(tile + (size_t)p * bytes, 0, bytes);
-        scatter(bp, tile, pitch, samples, (size_t)k * samples, 1, place);
+        scatter(bp, tile + begin, bp->shape.pitch, samples, (size_t)k * samples, 1, place);
     }
 }
 
@@ -187,6 +188,7 @@ const struct bp_engine bp_invariant = {
     .name = "invariant",
     .applicable = invariant_applicable,
     .units = invariant_units,
+    .beside = invariant_beside,
     .plan = invariant_plan,
     .execute = invariant_execute,
     .destroy = invariant_destroy,

@@ -89,28 +89,37 @@ static struct delay_terms delay_terms_make(const struct bp_row *row)
     return (struct delay_terms){v, c * c, r * r, e * r * r, 1 / e, fabs(v) <= BP_SLOW * c};
 }
 
-/* Are all delays of a row inside the record, by the least and the longest there could be? `furthest` and `offset`:
-   largest distances along the track between ping and pixel and between transmitter and receiver. */
-static bool inside_record(const struct bp_row *row, const struct delay_terms *terms, double offset, double furthest)
+/* The least and the largest distance along the track between a ping and a pixel that are summed. */
+struct distances {
+    double least, most; /* m */
+};
+
+/* Are all delays of a row among the samples that pairs read, by the least and the longest there could be? `offset`: the
+   largest distance along the track between transmitter and receiver. */
+static bool inside_record(const struct bp_row *row, const struct delay_terms *terms, double offset,
+                          struct distances distances)
 {
     const struct bp_medium *medium = row->medium;
-    const double r = row->r, t0 = row->raster->t0;
-    const double v = fabs(terms->v), c = medium->sound_speed, leg = sqrt(furthest * furthest + r * r) / c;
-    const double b = furthest + offset + v * leg;
-    const double least = fabs(r) / c + (sqrt(terms->er2) - v * b) * terms->one_e;
+    const double r = row->r, t0 = row->raster->t0, c = medium->sound_speed, v = fabs(terms->v);
+    const double first = t0 + medium->first / medium->fs, last = t0 + medium->last / medium->fs;
+    const double leg = sqrt(distances.most * distances.most + r * r) / c, b = distances.most + offset + v * leg;
+    /* Of both ways together, or, as long as they end with the record, of each by itself. */
+    const double ahead = distances.least, behind = fmax(0, ahead - offset - v * fmax(0, last));
+    const double least = fmax(fabs(r) / c + (sqrt(terms->er2) - v * b) * terms->one_e,
+                              (sqrt(ahead * ahead + r * r) + sqrt(behind * behind + r * r)) / c);
     const double most = leg + (v * b + sqrt(terms->c2 * b * b + terms->er2)) * terms->one_e;
-    const double slack = 1e-8 / medium->fs, last = t0 + (medium->samples - 1) / medium->fs;
-    return least >= t0 + slack && most <= last - slack;
+    const double slack = 1e-8 / medium->fs;
+    return least >= first + slack && most <= last - slack;
 }
 
-/* One group from `first` on, and the largest distance along the track between a ping and a pixel of it. */
-static double group_make(const struct bp_row *row, int first, int count, struct bp_row_group *group)
+/* One group from `first` on; its distances along the track are among *distances then. */
+static void group_make(const struct bp_row *row, int first, int count, struct bp_row_group *group,
+                       struct distances *distances)
 {
     const struct bp_raster *raster = row->raster;
     const double limit = raster->limit;
     const double edge = limit < 1 ? fabs(row->r) * limit / sqrt((1 - limit) * (1 + limit)) : INFINITY;
     struct shifts inside;
-    double furthest = 0;
     group->residue = first;
     group->residues = count;
     for (int k = 0; k < count; k++) {
@@ -126,12 +135,13 @@ static double group_make(const struct bp_row *row, int first, int count, struct 
         bool empty = group->begin == group->end;
         group->begin = empty || begin < group->begin ? begin : group->begin;
         group->end = empty || end > group->end ? end : group->end;
-        furthest = fmax(furthest, fmax(fabs(x + begin * raster->spacing), fabs(x + (end - 1) * raster->spacing)));
+        const double low = x + begin * raster->spacing, high = x + (end - 1) * raster->spacing;
+        distances->most = fmax(distances->most, fmax(-low, high));
+        distances->least = fmin(distances->least, fmax(0, fmax(low, -high)));
     }
     group->to = group->end - group->begin;
     if (group->to > 0)
         count == 2 ? group_places(2, row, group, &inside) : group_places(count, row, group, &inside);
-    return furthest;
 }
 
 struct row_tables TABLES_BEGIN(const struct bp_row *row) {
@@ -140,20 +150,22 @@ struct row_tables TABLES_BEGIN(const struct bp_row *row) {
     const int residues = raster_residues(raster);
     const int group_count = (residues + raster->together - 1) / raster->together;
     const int size = residues / group_count, larger = residues % group_count; /* the first ones have one residue more */
-    double furthest = 0, offset = 0;
+    struct distances distances = {INFINITY, 0};
+    double offset = 0;
     int total = 0;
     for (int g = 0; g < group_count; g++) {
         groups[g] = (struct bp_row_group){.first = total};
-        furthest =
-            fmax(furthest, group_make(row, g * size + (g < larger ? g : larger), size + (g < larger), &groups[g]));
+        group_make(row, g * size + (g < larger ? g : larger), size + (g < larger), &groups[g], &distances);
         total += whole_vectors(groups[g].to * groups[g].residues);
     }
     groups[group_count].first = total;
-    furthest += raster->spacing; /* a group has entries outside the aperture of some of its residues */
+    /* A group has entries outside the aperture of some of its residues. */
+    distances.least = fmax(0, distances.least - raster->spacing);
+    distances.most += raster->spacing;
     for (int m = 0; m < row->receivers; m++)
         offset = fmax(offset, fabs(row->offsets[m]));
     const struct delay_terms terms = delay_terms_make(row);
-    const bool inside = inside_record(row, &terms, offset, furthest);
+    const bool inside = inside_record(row, &terms, offset, distances);
     return (struct row_tables){group_count, DELAYS_PLAN(row, &terms, inside ? offset : INFINITY, total), terms, inside};
 }
 
@@ -172,17 +184,17 @@ static void confine(const struct chunk *chunk, struct bp_row_group *group, int f
 {
     double *restrict q = chunk->scratch->q + first;
     real *restrict wr = (real *)chunk->scratch->wr + first, *restrict wi = (real *)chunk->scratch->wi + first;
-    const double last = chunk->medium->samples - 1;
+    const double first_sample = chunk->medium->first, last = chunk->medium->last;
     const int residues = group->residues, n = (group->end - group->begin) * residues, whole = whole_vectors(n);
     int from = n, to = 0;
     for (int i = 0; i < whole; i++) {
-        if (q[i] >= 0 && q[i] <= last) {
+        if (q[i] >= first_sample && q[i] <= last) {
             from = i < from ? i : from;
             to = i + 1;
             continue;
         }
         wr[i] = wi[i] = 0;
-        q[i] = q[i] < 0 ? 0 : last;
+        q[i] = q[i] < first_sample ? first_sample : last;
     }
     to = to < n ? to : n;
     group->from = from < to ? from / residues : 0;
@@ -199,7 +211,7 @@ static void keep(const struct chunk *chunk, struct bp_row_group *group, int firs
     int *kept = chunk->scratch->kept + first;
     int count = 0, n = group->end - group->begin;
     for (int i = 0; i < n; i++) {
-        if (!(q[i] >= 0 && q[i] <= chunk->medium->samples - 1))
+        if (!(q[i] >= chunk->medium->first && q[i] <= chunk->medium->last))
             continue;
         int sample, step;
         nearest_step(q[i], chunk->table->upsample, &sample, &step);
@@ -212,7 +224,7 @@ static void keep(const struct chunk *chunk, struct bp_row_group *group, int firs
     }
     group->to = count;
     for (int i = count; i < whole_vectors(n); i++) {
-        q[i] = 0;
+        q[i] = chunk->medium->first;
         kept[i] = group->begin;
     }
 }
@@ -228,8 +240,9 @@ INLINE void tabulate(const struct chunk *chunk)
     const int n = chunk->entries, *restrict shift = chunk->shift;
     double *restrict q = scratch->q;
     int *restrict row = scratch->row, *restrict offset = scratch->offset, *restrict step = scratch->step;
-    const int first = bp_whole(table) ? table->guard + table->first : 0, stride = slab->ping_stride;
     const int upsample = table->upsample; /* the loops below vectorise where they read nothing through `table` */
+    const int first = bp_whole(table) ? table->origin + table->first : (table->origin - table->guard) / upsample;
+    const int stride = slab->ping_stride;
     if (table->reading == BP_CUBICS) {
 #pragma omp simd
         for (int i = 0; i < n; i++) {
@@ -246,12 +259,12 @@ INLINE void tabulate(const struct chunk *chunk)
     }
     if (table->reading == BP_BRANCHES) {
         real *restrict weights = scratch->weights;
-        const int pitch = table->branches * stride, origin = table->guard * pitch;
+        const int pitch = table->branches * stride, origin = table->origin;
 #pragma omp simd
         for (int i = 0; i < n; i++) {
             const double place = q[i] * upsample;
             const int sample = (int)(place + 0.5);
-            offset[i] = sample * pitch + origin + shift[i];
+            offset[i] = (sample + origin) * pitch + shift[i];
             weights[i] = (real)(place - sample);
         }
         return;

@@ -125,19 +125,6 @@ static void laws_hold(void **state)
     }
 }
 
-static struct work work_of(const char *text, const struct problem *problem)
-{
-    struct spec spec;
-    void *plan;
-    assert_int_equal(spec_parse(text, &spec), STATUS_OK);
-    if (spec.algorithm->plan(problem, spec.options, &plan) != STATUS_OK)
-        fail_msg("%s: %s", text, status_message());
-    const struct work work = spec.algorithm->work(plan);
-    spec.algorithm->destroy(plan);
-    spec_free(&spec);
-    return work;
-}
-
 /* Settings may limit the aperture: the image is that of an acquisition with the limit, to the last bit; records of
    pings that then meet no pixel are not read, for they may hold anything, and their transforms are not counted. */
 static void pings_left_out(void **state)
@@ -173,7 +160,7 @@ static void pings_left_out(void **state)
                 ((double complex *)spoilt.samples)[n] = NAN;
         assert_int_equal(support_image(some, problem, &spoilt, &unread), STATUS_OK);
         assert_true(support_difference(&unread, &by_scene) == 0);
-        const struct work whole = work_of(all, &problem), part = work_of(some, &problem);
+        const struct work whole = support_work(all, problem), part = support_work(some, problem);
         const double records = (part.flops - 8 * part.pairs) / (whole.flops - 8 * whole.pairs);
         print_message("%s: %.3f of the pairs, %.3f of the records' FLOPs for %d of %d pings\n", engines[k],
                       part.pairs / whole.pairs, records, count, pings);

@@ -299,20 +299,6 @@ static void long_swath(void **state)
     free_scene(&scene);
 }
 
-static struct work work_of(const char *text, struct problem problem)
-{
-    struct spec spec;
-    void *plan;
-    assert_int_equal(spec_parse(text, &spec), STATUS_OK);
-    problem.precision = spec.precision;
-    if (spec.algorithm->plan(&problem, spec.options, &plan) != STATUS_OK)
-        fail_msg("%s: %s", text, status_message());
-    struct work work = spec.algorithm->work(plan);
-    spec.algorithm->destroy(plan);
-    spec_free(&spec);
-    return work;
-}
-
 /* Eq. (13) at pi/4: 16 blocks in 1/r against some 118 of equal width, from 40 to 300 m. */
 static void block_counts(void **state)
 {
@@ -321,8 +307,8 @@ static void block_counts(void **state)
     struct grid patches[2] = {{0, 1, 1, 40, 1, 1}, {0, 1, 1, 300, 1, 1}};
     make_scene(&(struct rma_track){2, 66, 12800, 24e3, 0.032, 0, speed * pri, 0.04}, &scene);
     struct problem problem = {&scene.acquisition, 2, patches, PRECISION_DOUBLE};
-    struct work inverse = work_of("rma_lbf:blend=off", problem);
-    struct work uniform = work_of("rma_lbf:blend=off,spacing=uniform", problem);
+    struct work inverse = support_work("rma_lbf:blend=off", problem);
+    struct work uniform = support_work("rma_lbf:blend=off,spacing=uniform", problem);
     print_message("%s, %s; skipped: %s\n", inverse.engine, uniform.engine, inverse.skipped);
     assert_string_equal(inverse.engine, "2 of 16 blocks");
     int needed, count;
@@ -383,7 +369,7 @@ static void one_receiver(void **state)
     assert_true(small_error("rma_lbf:precision=double", &scene, 0.2) < 0.01);
     struct grid grid = {0, 0.02, 3, 40, 0.5, 9};
     struct problem problem = {&scene.acquisition, 1, &grid, PRECISION_FLOAT};
-    assert_non_null(strstr(work_of("rma_lbf", problem).skipped, "conversion"));
+    assert_non_null(strstr(support_work("rma_lbf", problem).skipped, "conversion"));
     free_scene(&scene);
 }
 

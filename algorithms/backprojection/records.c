@@ -1,0 +1,81 @@
+/* Which samples of the records an image's pairs read, and the rows that hold them (traces.h). */
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+
+#include "backprojection/engine.h"
+#include "backprojection/pairs.h"
+
+/* Rows hold, beside the samples at the delays, those that the taps reach, and one more that rounding to the nearest
+   may ask for. */
+struct traces_form bp_records_form(struct bp *bp)
+{
+    const struct bp_table *table = &bp->table;
+    const int end = bp->problem.acquisition->samples - 1, taps = table->branches > 1 ? 1 : table->taps;
+    struct sample_span span = {0, end};
+    if (bp->engine)
+        span = pairs_samples(&bp->problem, bp->met, bp->engine->beside ? bp->engine->beside(bp) : 0);
+    bp->medium.first = floor(span.first);
+    bp->medium.last = ceil(span.last);
+    const int first = (int)fmax(0, bp->medium.first + table->first - 1);
+    const int last = (int)fmin(end, bp->medium.last + table->first + taps + 1);
+    return (struct traces_form){.upsample = table->upsample,
+                                .degree = table->branches - 1,
+                                .guard = table->guard,
+                                .preemphasis = table->preemphasis,
+                                .first = first,
+                                .count = last - first + 1};
+}
+
+enum status bp_plan_traces(struct bp *bp)
+{
+    const struct acquisition *a = bp->problem.acquisition;
+    const struct traces_form form = bp_records_form(bp);
+    bool is_double = bp->problem.precision == PRECISION_DOUBLE;
+    enum status status =
+        (is_double ? traces_plan_double : traces_plan_float)(a, &form, omp_get_max_threads(), &bp->shape, &bp->traces);
+    if (status != STATUS_OK)
+        return status;
+    bp->work.bytes += bp->shape.bytes;
+    bp->table.origin = bp->table.guard - bp->shape.first * bp->table.upsample;
+    return STATUS_OK;
+}
+
+void bp_fill_row(const struct bp *bp, int thread, const struct echoes *echoes, size_t index, void *row)
+{
+    size_t offset = index * (size_t)bp->problem.acquisition->samples;
+    if (bp->problem.precision == PRECISION_DOUBLE)
+        traces_fill_double(bp->traces, thread, (const double complex *)echoes->samples + offset, row);
+    else
+        traces_fill_float(bp->traces, thread, (const float complex *)echoes->samples + offset, row);
+}
+
+void bp_fill_spectrum(const struct bp *bp, int thread, const struct echoes *echoes, size_t index, void *spectrum)
+{
+    size_t offset = index * (size_t)bp->problem.acquisition->samples;
+    if (bp->problem.precision == PRECISION_DOUBLE)
+        traces_spectrum_double(bp->traces, thread, (const double complex *)echoes->samples + offset, spectrum);
+    else
+        traces_spectrum_float(bp->traces, thread, (const float complex *)echoes->samples + offset, spectrum);
+}
+
+void bp_fill_plane(const struct bp *bp, int thread, void *spectrum, int plane, void *values)
+{
+    if (bp->problem.precision == PRECISION_DOUBLE)
+        traces_plane_double(bp->traces, thread, spectrum, plane, values);
+    else
+        traces_plane_float(bp->traces, thread, spectrum, plane, values);
+}
+
+void bp_records_skipped(const struct bp *bp, char *text, size_t room, const char *join)
+{
+    const int all = bp->problem.acquisition->samples, from = bp->shape.from, end = from + bp->shape.read;
+    char before[40] = "", behind[40] = "";
+    if (from > 0)
+        snprintf(before, sizeof before, "0-%d", from - 1);
+    if (end < all)
+        snprintf(behind, sizeof behind, "%d-%d", end, all - 1);
+    if (*before || *behind)
+        snprintf(text, room, "%ssamples %s%s%s of %d, which no pixel reads", join, before,
+                 *before && *behind ? " and " : "", behind, all);
+}
