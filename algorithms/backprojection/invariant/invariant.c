@@ -2,6 +2,7 @@
    repeats itself from ping to ping, so that tables of one row serve all its columns (invariant/row.h). Traces are laid
    out with pings contiguous, some receivers at a time; each image row is summed by one thread in a fixed order. Cost: 8
    FLOPs a pair (nearest), tables of ratio x shifts entries for each row and receiver. */
+#include <math.h>
 #include <omp.h>
 #include <string.h>
 
@@ -182,6 +183,20 @@ static void invariant_execute(struct bp *bp, const struct echoes *echoes, struct
     for (int k = 0; k < in->patch_count; k++)
         store(bp, k, image->pixels[k]);
     stages_end(stages, "store");
+}
+
+/* A group of residues has entries up to one ping spacing outside the aperture of some; rows are known to lie inside the
+   samples as a whole by the farthest receiver and another spacing. */
+static double invariant_beside(const struct bp *bp)
+{
+    const struct problem *problem = &bp->problem;
+    const struct acquisition *a = problem->acquisition;
+    double spacing = a->pings > 1 ? fabs(a->tx[1].x - a->tx[0].x) : 0, offset = 0;
+    for (int m = 0; m < a->receivers; m++)
+        offset = fmax(offset, fabs(a->rx[m].x - a->tx[0].x));
+    for (int k = 0; k < problem->patch_count && a->pings == 1; k++)
+        spacing = fmax(spacing, problem->patches[k].x_count * problem->patches[k].x_step);
+    return 2 * (spacing + offset);
 }
 
 const struct bp_engine bp_invariant = {

@@ -189,20 +189,6 @@ double invariant_units(const struct bp *bp)
     return units * problem->acquisition->receivers;
 }
 
-/* A group of residues has entries up to one ping spacing outside the aperture of some; rows are known to lie inside the
-   samples as a whole by the farthest receiver and another spacing. */
-double invariant_beside(const struct bp *bp)
-{
-    const struct problem *problem = &bp->problem;
-    const struct acquisition *a = problem->acquisition;
-    double spacing = a->pings > 1 ? fabs(a->tx[1].x - a->tx[0].x) : 0, offset = 0;
-    for (int m = 0; m < a->receivers; m++)
-        offset = fmax(offset, fabs(a->rx[m].x - a->tx[0].x));
-    for (int k = 0; k < problem->patch_count && a->pings == 1; k++)
-        spacing = fmax(spacing, problem->patches[k].x_count * problem->patches[k].x_step);
-    return 2 * (spacing + offset);
-}
-
 /* The least and the largest distance between a row of the grid and the track, whose side is no matter. */
 static void row_ranges(const struct grid *grid, double r[2])
 {
