@@ -50,17 +50,24 @@ static int conditions(const struct problem *problem, const void *options, struct
     return conditions_sampled(problem, list, room);
 }
 
-static enum status plan_direct(const struct problem *problem, double error, void **plan)
+/* Without images: back projection by polynomials. */
+static const struct bp_options direct_options = {BP_ENGINE_AUTO, 0, 1e-4, 1};
+
+static struct interpolator direct_branches(const struct problem *problem, double error)
 {
     const struct acquisition *a = problem->acquisition;
-    const struct interpolator branches = {
-        .upsample = 1, .taps = 1, .degree = farrow_degree(error, a->bandwidth / a->fs)};
-    const struct bp_options options = {BP_ENGINE_AUTO, 0, 1e-4};
-    return bp_plan(problem, &branches, &options, plan);
+    return (struct interpolator){.upsample = 1, .taps = 1, .degree = farrow_degree(error, a->bandwidth / a->fs)};
+}
+
+static enum status plan_direct(const struct problem *problem, double error, void **plan)
+{
+    const struct interpolator branches = direct_branches(problem, error);
+    return bp_plan(problem, &branches, &direct_options, plan);
 }
 
 /* The number of levels that takes the least work; 0 where back projection itself does. */
-static enum status choose_stages(const struct problem *problem, struct tree_settings *settings)
+static enum status choose_stages(const struct problem *problem, struct tree_settings *settings,
+                                 struct factorised_cost *chosen)
 {
     double least;
     enum status status = factorised_cost_direct(problem, &least);
@@ -68,10 +75,11 @@ static enum status choose_stages(const struct problem *problem, struct tree_sett
     settings->stages = 0;
     double pings = tried.base;
     for (tried.stages = 1; status == STATUS_OK && tried.stages <= STAGES_MOST; tried.stages++) {
-        double cost;
+        struct factorised_cost cost;
         status = factorised_cost(problem, &tried, &cost);
-        if (status == STATUS_OK && cost < least) {
-            least = cost;
+        if (status == STATUS_OK && cost.pairs < least) {
+            least = cost.pairs;
+            *chosen = cost;
             settings->stages = tried.stages;
         }
         if (pings >= problem->acquisition->pings)
@@ -81,16 +89,43 @@ static enum status choose_stages(const struct problem *problem, struct tree_sett
     return status;
 }
 
+/* What is planned; the cost is known where the number of levels is chosen, and not 0. */
+static enum status settings_make(const struct problem *problem, const struct options *options,
+                                 struct tree_settings *settings, struct factorised_cost *cost)
+{
+    const int base = options->base / problem->acquisition->receivers;
+    struct condition list[CONDITIONS_MAX];
+    *settings = (struct tree_settings){options->error, base > 1 ? base : 1, options->factor, options->stages - 1};
+    const enum status status =
+        conditions_check("bp_factorised", list, conditions(problem, options, list, CONDITIONS_MAX));
+    if (status == STATUS_OK && options->stages == STAGES_AUTO)
+        return choose_stages(problem, settings, cost);
+    return status;
+}
+
+static enum status forecast(const struct problem *problem, const void *given, struct forecast *forecast)
+{
+    const struct options *options = given;
+    struct tree_settings settings;
+    struct factorised_cost cost;
+    enum status status = settings_make(problem, options, &settings, &cost);
+    if (status == STATUS_OK && settings.stages > 0 && options->stages != STAGES_AUTO)
+        status = factorised_cost(problem, &settings, &cost);
+    if (status != STATUS_OK)
+        return status;
+    if (settings.stages > 0)
+        return factorised_forecast(problem, &settings, &cost, forecast);
+    const struct interpolator branches = direct_branches(problem, options->error);
+    return bp_forecast(problem, &branches, &direct_options, forecast);
+}
+
 static enum status plan(const struct problem *problem, const void *given, void **out)
 {
     const struct options *options = given;
-    const int receivers = problem->acquisition->receivers, base = options->base / receivers;
-    struct tree_settings settings = {options->error, base > 1 ? base : 1, options->factor, options->stages - 1};
-    struct condition list[CONDITIONS_MAX];
+    struct tree_settings settings;
+    struct factorised_cost cost;
     *out = NULL;
-    enum status status = conditions_check("bp_factorised", list, conditions(problem, options, list, CONDITIONS_MAX));
-    if (status == STATUS_OK && options->stages == STAGES_AUTO)
-        status = choose_stages(problem, &settings);
+    enum status status = settings_make(problem, options, &settings, &cost);
     if (status != STATUS_OK)
         return status;
     struct planned *planned = calloc(1, sizeof *planned);
@@ -143,6 +178,7 @@ const struct algorithm bp_factorised = {
     .options_size = sizeof(struct options),
     .params = params,
     .conditions = conditions,
+    .forecast = forecast,
     .plan = plan,
     .execute = execute,
     .work = work,

@@ -35,6 +35,9 @@ struct forecast {
     double slowness;      /* of their length: times the seconds a FLOP of the lengths that FFTW is fast at */
     double kernel_flops;  /* of branches that stand for a kernel's taps */
     double record_values; /* complex ones that are put where pairs read them */
+    /* Where images of subapertures stand for pairs, what these take; 0 elsewhere. */
+    double image_cost; /* in pairs */
+    double image_flops;
 };
 
 /* Of all causes: the root of the sum of squares. */

@@ -56,13 +56,12 @@ void law_spectrum(const struct acquisition *a, struct law_spectrum *spectrum)
         spectrum->weight[n] /= sum;
 }
 
-/* H of Farrow branches: what they make of exp(j 2 pi nu u), |u| <= 1/2, over it. */
-static double complex branches_response(int degree, double nu, double u)
+/* H of Farrow branches of these gains (farrow_gains): what they make of exp(j 2 pi nu u), |u| <= 1/2, over it. */
+static double complex branches_response(int degree, const double *gains, double nu, double u)
 {
     static const double complex turns[] = {1, I};
-    double gains[FARROW_MOST + 1], power = 1;
+    double power = 1;
     double complex sum = 0;
-    farrow_gains(degree, nu, gains);
     for (int m = 0; m <= degree; m++, power *= u)
         sum += turns[m % 2] * gains[m] * power;
     return sum * cexp(-2 * I * M_PI * nu * u);
@@ -80,12 +79,15 @@ static double complex taps_response(const double *taps, int first, int count, do
 
 double interpolation_error(const struct interpolator *in, const void *options, const struct law_spectrum *spectrum)
 {
+    double gains[LAW_NODES][FARROW_MOST + 1];             /* of branches */
     double off[LAW_NODES] = {0}, spread[LAW_NODES] = {0}; /* means of the real part of H - 1, and of |H - 1|^2 */
     const int steps = in->steps, rounded = steps > 0 ? IN_A_STEP * steps : 0;
     const int count = rounded > FRACTIONS ? rounded : steps > 0 ? FRACTIONS / steps * steps : FRACTIONS;
     double *taps = malloc((size_t)in->taps * sizeof *taps);
     if (!taps)
         return NAN;
+    for (int n = 0; n < spectrum->count && in->degree > 0; n++)
+        farrow_gains(in->degree, spectrum->nu[n] / in->upsample, gains[n]);
     for (int k = 0; k < count; k++) {
         const double fraction = (k + 0.5) / count, place = steps > 0 ? floor(fraction * steps + 0.5) / steps : fraction;
         const int whole = (int)floor(place);
@@ -94,7 +96,7 @@ double interpolation_error(const struct interpolator *in, const void *options, c
             in->weights(options, place - whole, taps);
         for (int n = 0; n < spectrum->count; n++) {
             const double nu = spectrum->nu[n] / in->upsample;
-            const double complex read = in->degree > 0 ? branches_response(in->degree, nu, fraction - 0.5)
+            const double complex read = in->degree > 0 ? branches_response(in->degree, gains[n], nu, fraction - 0.5)
                                                        : taps_response(taps, whole + in->first, in->taps, nu, fraction);
             const double lost = in->preemphasis && nu > 0 ? pow(sin(M_PI * nu) / (M_PI * nu), 2) : 1;
             const double complex response = read / lost;

@@ -1,12 +1,14 @@
 #include "planner/candidates.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "param.h"
 
-/* THE list: an algorithm with a forecast, what is fixed, and the values that one parameter takes. */
+/* THE list: an algorithm with a forecast, what is fixed, and the values that one parameter takes; `budget`: the planner
+   sets it. */
 static const struct {
     const char *algorithm, *fixed, *varied, *values; /* "key=value,key=value", "key", "value value" */
 } families[] = {
@@ -22,6 +24,7 @@ static const struct {
     {"bp_fitted", "", "taps", "2 4 6 8 10 12 16"},
     {"bp_fitted", "factor=2", "taps", "2 4 6 8 12"},
     {"bp_fitted", "factor=4", "taps", "2 4 6 8"},
+    {"bp_factorised", "", "error", "budget"},
     {"rma_delay", "", "terms", "1 2"},
     {"rma_delay", "taps=24", "terms", "2 3"},
     {"rma_lbf", "", "limit", "0.785 0.1 0.01"},
@@ -53,6 +56,18 @@ bool candidate_set(struct candidate *candidate, const char *key, const char *val
     return (size_t)snprintf(settings + length, room, "%s%s=%s", length > 0 ? "," : "", key, value) < room;
 }
 
+bool candidate_set_error(struct candidate *candidate, double error)
+{
+    char text[16];
+    const double unit = pow(10, floor(log10(error)) - 1);
+    for (const struct param *param = candidate->algorithm->params; param && param->name; param++)
+        if (strcmp(param->name, "error") == 0) {
+            snprintf(text, sizeof text, "%.1e", fmin(floor(error / unit) * unit, param->max));
+            return candidate_set(candidate, "error", text);
+        }
+    return false;
+}
+
 /* One candidate of a family; false where the algorithm does not take its settings. */
 static bool candidate_fill(int family, const char *value, struct candidate *candidate)
 {
@@ -67,7 +82,8 @@ static bool candidate_fill(int family, const char *value, struct candidate *cand
     while ((key = strsep(&rest, "=")) && *key)
         if (!candidate_set(candidate, key, strsep(&rest, ",")))
             return false;
-    return !*varied || candidate_set(candidate, varied, value);
+    candidate->budgeted = strcmp(value, "budget") == 0;
+    return !*varied || candidate->budgeted || candidate_set(candidate, varied, value);
 }
 
 int candidates_fill(struct candidate *list)

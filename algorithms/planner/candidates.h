@@ -12,5 +12,7 @@ int candidates_fill(struct candidate *list);
 
 /* One more setting of a candidate; false where its algorithm has no such parameter or does not take the value. */
 bool candidate_set(struct candidate *candidate, const char *key, const char *value);
+/* Its parameter `error`, rounded down to two digits, or as much as it takes; false where that is too small. */
+bool candidate_set_error(struct candidate *candidate, double error);
 
 #endif

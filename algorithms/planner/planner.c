@@ -1,6 +1,6 @@
 /* Choosing among candidates (planner.h). Back projections are forecast first: their forecasts are cheap. Range
-   migration is forecast where the FFTs alone that it cannot do without are faster than the fastest of those, and, in
-   any case, where nothing else fits. */
+   migration, and images of subapertures, are forecast where what they cannot do without is faster than the fastest of
+   those, and, in any case, where nothing else fits. */
 #include "planner/planner.h"
 
 #include <math.h>
@@ -22,12 +22,15 @@ static const double MARGIN = 1.12;
 static const double DELAYS_MOST = 0.4, PHASE_SHARE = 0.8;
 /* Of a candidate's time, what an aperture limit leaves at most, where it is looked at. */
 static const double LIMIT_PAYS = 0.95;
+/* Of the budget over the margin, what a setting takes that is called by its error: delays and rounding have the rest. */
+static const double BUDGETED = 0.99;
 
 /* What all candidates of a problem share. */
 struct setting {
     const struct problem *problem;
     const struct budget *budget;
     double pairs;      /* of back projection */
+    double reads;      /* pairs that images of subapertures cannot do without */
     double transforms; /* FLOPs: range and azimuth transforms of all records */
 };
 
@@ -48,11 +51,25 @@ static enum status pairs_of(const struct problem *problem, double *pairs)
     return status;
 }
 
+/* Each pixel reads an image, each record is read by some lines of places of one. */
+static double reads_of(const struct problem *problem, double pairs)
+{
+    static const double LINES = 8, LINE = 300; /* of an image; pairs that one takes beside those of its places */
+    const struct acquisition *a = problem->acquisition;
+    const double pixels = problem_pixels(problem), step = a->sound_speed / (2 * a->fs);
+    double places = 0;
+    for (int k = 0; k < problem->patch_count; k++) {
+        const struct grid *g = &problem->patches[k];
+        places += fmin(g->r_count * g->r_step, g->x_count * g->x_step) / step + LINE / a->receivers;
+    }
+    return pixels + pairs / pixels * LINES * places;
+}
+
 static struct setting setting_of(const struct problem *problem, const struct budget *budget)
 {
     const struct acquisition *a = problem->acquisition;
     const double transforms = a->pings * fft_flops(a->samples) + (double)a->samples * fft_flops(a->pings);
-    return (struct setting){problem, budget, 0, a->receivers * transforms};
+    return (struct setting){problem, budget, 0, 0, a->receivers * transforms};
 }
 
 /* Over the budget, or not. */
@@ -90,7 +107,9 @@ static enum status sums_fill(const struct setting *setting, struct candidate *ca
         problem.acquisition = &limited;
         status = pairs_of(&problem, &candidate->pairs);
     }
-    candidate->flops = candidate->pairs * f->pair_flops + f->record_flops + f->kernel_flops;
+    if (f->image_cost > 0)
+        candidate->pairs = 0;
+    candidate->flops = candidate->pairs * f->pair_flops + f->image_flops + f->record_flops + f->kernel_flops;
     candidate->seconds = rates_sums(f, problem.precision, candidate->pairs);
     return status;
 }
@@ -214,7 +233,7 @@ static enum status limit_try(const struct setting *setting, struct choice *choic
     return candidate_forecast(setting, limited);
 }
 
-/* ---- range migration ---- */
+/* ---- range migration, and images of subapertures ---- */
 
 /* Whether another setting of the algorithm is over the budget by what all its settings have: its spectrum's error. */
 static bool spectrum_fails(const struct setting *setting, const struct choice *choice,
@@ -234,16 +253,36 @@ static bool has_forecast(const struct candidate *candidate)
     return candidate->error < INFINITY || candidate->verdict == VERDICT_REFUSED;
 }
 
-/* Where a candidate cannot be the choice, no forecast is made, unless all are asked for. */
-static enum status migration_forecast(const struct setting *setting, const struct choice *choice, double best, bool all,
-                                      struct candidate *c)
+/* Whether its forecast costs so much that it is only made where it may pay. */
+static bool is_costly(const struct candidate *candidate)
 {
-    const double floor_s = rates_migration(setting->problem->precision, setting->transforms);
-    if (!all && !(floor_s < best)) {
+    return candidate->budgeted || !(candidate->algorithm->traits & TRAIT_ANY_TRACK);
+}
+
+/* s: that it takes in any case. */
+static double seconds_least(const struct setting *setting, const struct candidate *candidate)
+{
+    const enum precision precision = setting->problem->precision;
+    const struct forecast images = {.image_cost = setting->reads};
+    return candidate->budgeted ? rates_sums(&images, precision, 0) : rates_migration(precision, setting->transforms);
+}
+
+/* Where a candidate cannot be the choice, no forecast is made, unless all are asked for. */
+static enum status costly_forecast(const struct setting *setting, const struct choice *choice, double best, bool all,
+                                   struct candidate *c)
+{
+    const double least_s = seconds_least(setting, c);
+    if (!all && !(least_s < best)) {
         c->verdict = VERDICT_SLOWER;
-        c->seconds = floor_s;
-        snprintf(c->reason, sizeof c->reason,
-                 "%.1f times the chosen one's time or more: its transforms alone take %.2g s", floor_s / best, floor_s);
+        c->seconds = least_s;
+        snprintf(c->reason, sizeof c->reason, "%.1f times the chosen one's time or more: its %s alone take %.2g s",
+                 least_s / best, c->budgeted ? "images of subapertures" : "transforms", least_s);
+        return STATUS_OK;
+    }
+    if (c->budgeted && !*c->settings && !candidate_set_error(c, BUDGETED * setting->budget->error / MARGIN)) {
+        c->verdict = VERDICT_ERROR;
+        snprintf(c->reason, sizeof c->reason, "does not take an error as small as the budget of %.2g",
+                 setting->budget->error);
         return STATUS_OK;
     }
     if (!all && spectrum_fails(setting, choice, c)) {
@@ -258,14 +297,14 @@ static enum status migration_forecast(const struct setting *setting, const struc
 }
 
 /* All that have none yet. */
-static enum status migrations_forecast(const struct setting *setting, bool all, struct choice *choice)
+static enum status costly_forecasts(const struct setting *setting, bool all, struct choice *choice)
 {
     const double best = fastest(choice);
     enum status status = STATUS_OK;
     for (int k = 0; k < choice->count && status == STATUS_OK; k++) {
         struct candidate *c = &choice->list[k];
-        if (!(c->algorithm->traits & TRAIT_ANY_TRACK) && !(all && has_forecast(c)))
-            status = migration_forecast(setting, choice, best, all, c);
+        if (is_costly(c) && !(all && has_forecast(c)))
+            status = costly_forecast(setting, choice, best, all, c);
     }
     return status;
 }
@@ -281,14 +320,14 @@ static enum status forecast_all(const struct setting *setting, struct choice *ch
         c->flops = c->pairs = c->bytes = NAN;
     }
     for (int k = 0; k < choice->count && status == STATUS_OK; k++)
-        if (choice->list[k].algorithm->traits & TRAIT_ANY_TRACK)
+        if (!is_costly(&choice->list[k]))
             status = candidate_forecast(setting, &choice->list[k]);
     if (status == STATUS_OK)
         status = limit_try(setting, choice);
     for (int k = 0; k < choice->count; k++)
-        if (!(choice->list[k].algorithm->traits & TRAIT_ANY_TRACK))
+        if (is_costly(&choice->list[k]))
             choice->list[k].verdict = VERDICT_SLOWER; /* has no forecast */
-    return status == STATUS_OK ? migrations_forecast(setting, setting->budget->thorough, choice) : status;
+    return status == STATUS_OK ? costly_forecasts(setting, setting->budget->thorough, choice) : status;
 }
 
 /* Tables take memory that the general engine does without: one candidate more, where one with tables is too large. */
@@ -369,12 +408,13 @@ enum status planner_choose(const struct problem *problem, const struct budget *b
         return status_set(STATUS_FAILED, "no memory for the candidates of a plan");
     choice->count = candidates_fill(choice->list);
     enum status status = pairs_of(problem, &setting.pairs);
+    setting.reads = reads_of(problem, setting.pairs);
     if (status == STATUS_OK)
         status = forecast_all(&setting, choice);
     if (status == STATUS_OK)
         status = plan_first(&setting, choice);
     if (status == STATUS_OK && !choice->found)
-        status = migrations_forecast(&setting, true, choice); /* of those, too, that seemed too slow */
+        status = costly_forecasts(&setting, true, choice); /* of those, too, that seemed too slow */
     if (status == STATUS_OK && !choice->found)
         status = plan_first(&setting, choice);
     if (status != STATUS_OK) {

@@ -13,6 +13,7 @@ struct candidate {
     const struct algorithm *algorithm;
     char settings[80];        /* as in a SPEC: "degree=4", may be empty */
     max_align_t options[8];   /* the algorithm's options struct */
+    bool budgeted;            /* its parameter `error` is set to what the budget allows */
     double sine;              /* up to which it sums pairs, beside the acquisition's own limit; 1: all */
     struct forecast forecast; /* zero where refused, and where it is too slow in any case */
     double error;             /* relative L2 that is planned with; INFINITY where there is no forecast */
@@ -36,7 +37,7 @@ struct choice {
 struct budget {
     double error;  /* relative L2 of the complex image after one best complex gain, > 0 */
     double bytes;  /* that the plan may hold */
-    bool thorough; /* forecasts of range migration also where back projection is faster for sure */
+    bool thorough; /* forecasts also of range migration and images of subapertures that are slower for sure */
 };
 
 /* Errors: STATUS_FAILED without memory. Where nothing fits, found is false, and the reasons say why. */

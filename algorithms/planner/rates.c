@@ -11,6 +11,7 @@ static struct rates rates = {
              {[READ_NEAREST] = 1.9e-9, [READ_LINE] = 4.65e-9, [READ_TAPS] = 5.8e-9, [READ_BRANCHES] = 4.3e-9}},
     .compress = 2.6e-11,
     .filter = 4.9e-11,
+    .image = 1.2e-9,
     .put = {2.3e-9, 4.8e-9},
     .migrate = 1.24e-10,
     .doubled = 1.65,
@@ -45,7 +46,9 @@ double rates_sums(const struct forecast *f, enum precision precision, double pai
     const double pair = rates.pair[engine][kind] + rates.value[engine][kind] * (f->values + more);
     const double records = f->record_flops * f->slowness * rates.compress + f->kernel_flops * rates.filter
                            + f->record_values * rates.put[engine];
-    return START + factor(precision) * (pairs * pair + f->units * rates.unit[engine][kind] + records);
+    const double sums =
+        f->image_cost > 0 ? f->image_cost * rates.image : pairs * pair + f->units * rates.unit[engine][kind];
+    return START + factor(precision) * (sums + records);
 }
 
 double rates_migration(enum precision precision, double flops)

@@ -11,6 +11,7 @@ struct rates {
     double unit[2][READ_KINDS]; /* a block of pixels; an entry of the tables */
     double compress;            /* a FLOP of range compression's transforms */
     double filter;              /* a FLOP of branches that stand for taps */
+    double image;               /* what images of subapertures cost for one pair */
     double put[2];              /* a value of a record, put where pairs read it */
     double migrate;             /* a FLOP of range migration */
     double doubled;             /* factor for double, the same for all, so that both precisions choose alike */

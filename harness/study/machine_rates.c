@@ -30,9 +30,9 @@ static double *rate_at(struct rates *rates, int k, char name[48])
     const struct {
         const char *name;
         double *rate;
-    } others[] = {{"compress", &rates->compress},    {"filter", &rates->filter},   {"general_put", &rates->put[0]},
-                  {"invariant_put", &rates->put[1]}, {"migrate", &rates->migrate}, {"doubled", &rates->doubled},
-                  {"noise", &rates->noise}};
+    } others[] = {{"compress", &rates->compress},  {"filter", &rates->filter},        {"image", &rates->image},
+                  {"general_put", &rates->put[0]}, {"invariant_put", &rates->put[1]}, {"migrate", &rates->migrate},
+                  {"doubled", &rates->doubled},    {"noise", &rates->noise}};
     const struct {
         const char *name;
         double (*rates)[READ_KINDS]; /* [2] */
@@ -135,8 +135,8 @@ static void kind_fill(int engine, enum reading_kind kind, const struct probe *fe
 }
 
 struct probes {
-    struct probe of[2][PROBES], narrow[2][PROBES], migration; /* by engine; on the narrow image */
-    double nearest[ROUNDS];                                   /* s: of the general engine, in each round */
+    struct probe of[2][PROBES], narrow[2][PROBES], migration, images; /* by engine; on the narrow image */
+    double nearest[ROUNDS];                                           /* s: of the general engine, in each round */
     double noise;
 };
 
@@ -150,6 +150,8 @@ static enum status round_run(const struct bench *bench, struct probes *probes)
         snprintf(text, sizeof text, "%s%s", specs[n], engine ? "invariant" : "general");
         status = probe_spec(bench, text, narrow, narrow ? &probes->narrow[engine][n] : &probes->of[engine][n]);
     }
+    if (status == STATUS_OK)
+        status = probe_spec(bench, "bp_factorised:stages=1", false, &probes->images);
     return status == STATUS_OK ? probe_spec(bench, "rma_lbf", false, &probes->migration) : status;
 }
 
@@ -190,6 +192,7 @@ static void rates_fill(const struct probes *probes, struct rates *rates)
             kind_fill(engine, kinds[k].kind, &probes->of[engine][kinds[k].few], &probes->of[engine][kinds[k].many],
                       &probes->narrow[engine][kinds[k].few], rates);
     records_fill(probes, rates);
+    rates->image = fmax(probes->images.total - probes->images.compress, 0) / probes->images.forecast.image_cost;
     rates->migrate = probes->migration.total / probes->migration.work.flops;
     rates->doubled = sqrt(probes->of[0][DOUBLE].total / probes->of[0][NEAREST].total * probes->of[1][DOUBLE].total
                           / probes->of[1][NEAREST].total);
@@ -204,7 +207,7 @@ static enum status rounds_run(const struct bench *bench, struct probes *probes)
     enum status status = STATUS_OK;
     for (int k = 0; k < 4 * PROBES; k++)
         all[k / PROBES][k % PROBES] = none;
-    probes->migration = none;
+    probes->migration = probes->images = none;
     for (int number = 0; number < ROUNDS && status == STATUS_OK; number++) {
         struct probe nearest = none;
         status = probe_spec(bench, "bp_nearest:engine=general", false, &nearest);

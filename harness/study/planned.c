@@ -107,7 +107,11 @@ void planned_left_out(const struct problem *problem, const struct candidate *cho
     const struct acquisition *a = problem->acquisition;
     const struct forecast *f = &chosen->forecast;
     char text[400];
-    if (f->sums_pairs) {
+    if (f->image_cost > 0) {
+        snprintf(text, sizeof text, "the sum over pairs, for which images of subapertures are read: %.2g",
+                 f->error[CAUSE_INTERPOLATION]);
+        line(to, text);
+    } else if (f->sums_pairs) {
         const double all = (double)a->pings * a->receivers * problem_pixels(problem);
         const double left = 100 * (1 - chosen->pairs / all);
         if (chosen->sine < 1)

@@ -38,10 +38,21 @@ struct factorised {
     double direct; /* pixels times records that are summed so, if all of them count */
 };
 
-/* What some settings cost, in pairs of the general engine, and what back projection itself does: to be compared.
+/* What some settings take beside the transforms of the records, counted on some of the lines of pixels. */
+struct factorised_cost {
+    double pairs;   /* in pairs of the general engine: by this the number of levels is chosen */
+    double records; /* of these, those of a record and a pixel or a place of an image */
+    double flops;   /* of all but those */
+};
+
+/* What some settings cost, and, in pairs, what back projection itself does: to be compared.
    Errors: as tree_make; STATUS_UNSUPPORTED where patches are turned by different angles. */
-enum status factorised_cost(const struct problem *problem, const struct tree_settings *settings, double *cost);
-enum status factorised_cost_direct(const struct problem *problem, double *cost);
+enum status factorised_cost(const struct problem *problem, const struct tree_settings *settings,
+                            struct factorised_cost *cost);
+enum status factorised_cost_direct(const struct problem *problem, double *pairs);
+/* The forecast of settings whose cost is known. Errors: STATUS_FAILED without memory. */
+enum status factorised_forecast(const struct problem *problem, const struct tree_settings *settings,
+                                const struct factorised_cost *cost, struct forecast *forecast);
 
 /* stages >= 1. Errors: as factorised_cost, and STATUS_UNSUPPORTED for records too long. *out is NULL then. */
 enum status factorised_plan(const struct problem *problem, const struct tree_settings *settings,

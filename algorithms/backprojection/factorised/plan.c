@@ -7,7 +7,6 @@
 
 #include "backprojection/budget.h"
 #include "backprojection/factorised/factorised.h"
-#include "backprojection/farrow.h"
 #include "common/memory.h"
 
 static polar_trace_function *const trace_functions[][2] = {
@@ -17,20 +16,6 @@ static polar_trace_function *const trace_functions[][2] = {
     [ISA_V4] = {polar_trace_float_v4, polar_trace_double_v4},
 #endif
 };
-
-/* rad: what quintics may change phases by, in proportion to the error that is asked for. */
-static double phase_limit_of(const struct tree *tree, double fs)
-{
-    const double limit = fmin(1e-3, fmax(1e-6, 0.03 * tree->settings.error));
-    return budget_limit(limit, tree->problem.acquisition->fc, fs);
-}
-
-/* The records' polynomials share the error with the images' taps. */
-static int degree_of(const struct tree *tree)
-{
-    const struct acquisition *a = tree->problem.acquisition;
-    return farrow_degree(tree_error_each(&tree->settings), a->bandwidth / a->fs);
-}
 
 static void *allocate(struct factorised *plan, size_t bytes)
 {
@@ -168,9 +153,9 @@ static enum status reading_make(struct factorised *plan)
 {
     struct bp *bp = &plan->bp;
     const struct acquisition *a = bp->problem.acquisition;
-    const int degree = degree_of(&plan->tree), branches = plan->tree.range.branches;
+    const int degree = tree_degree(&plan->tree.settings, a), branches = plan->tree.range.branches;
     bp->medium =
-        (struct bp_medium){a->sound_speed, a->fc, a->fs, 0, a->samples - 1, phase_limit_of(&plan->tree, a->fs)};
+        (struct bp_medium){a->sound_speed, a->fc, a->fs, 0, a->samples - 1, tree_phase_limit(&plan->tree.settings, a)};
     bp->table = (struct bp_table){.reading = BP_BRANCHES,
                                   .upsample = 1,
                                   .steps = 1,

@@ -4,8 +4,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { TAPS_MOST = 12, FRACTIONS = 16, HALVINGS = 40 }; /* as fine, rounding moves no place that matters */
-static const double OVERSAMPLING_MOST = 6;
+enum { TAPS_MOST = 12, FRACTIONS = 16, STEPS = 40 };
+/* As fine as FINEST, relative, rounding moves no place that matters. */
+static const double OVERSAMPLING_MOST = 6, FINEST = 1e-12;
 
 static void weights(const void *fitted, double fraction, double *w)
 {
@@ -40,27 +41,50 @@ static double cost_of(int taps, double oversampling)
     return oversampling * (7 + taps);
 }
 
+/* The least oversampling from `least` on at which taps have the error: by false position, the error being nearly
+   exponential, where an end that stays twice counts half (Dowell, Jarratt, BIT 11, 1971). INFINITY where none
+   has it, or none that costs less than `cheapest`. */
+static double oversampling_of(int taps, double error, double least, double cheapest)
+{
+    struct fitted fitted;
+    double low = least, high = OVERSAMPLING_MOST;
+    if (!(low < high && cost_of(taps, low) < cheapest))
+        return INFINITY;
+    double above = log(error_of(taps, low, &fitted) / error), below = log(error_of(taps, high, &fitted) / error);
+    if (!(below <= 0))
+        return INFINITY;
+    if (above <= 0)
+        return low;
+    for (int n = 0, moved = 0; n < STEPS && high - low > FINEST * high && cost_of(taps, low) < cheapest; n++) {
+        const double middle = (low * below - high * above) / (below - above);
+        const double value = log(error_of(taps, middle, &fitted) / error);
+        if (!(middle > low && middle < high))
+            break;
+        if (value <= 0) {
+            high = middle;
+            below = value;
+            above /= moved > 0 ? 2 : 1;
+            moved = 1;
+        } else {
+            low = middle;
+            above = value;
+            below /= moved < 0 ? 2 : 1;
+            moved = -1;
+        }
+    }
+    return high;
+}
+
 enum status polar_taps_choose(double error, double least, struct polar_taps *chosen)
 {
     double cheapest = INFINITY;
     struct fitted fitted;
     for (int taps = 2; taps <= TAPS_MOST; taps += 2) {
-        double low = least, high = OVERSAMPLING_MOST;
-        if (!(low < high && cost_of(taps, low) < cheapest) || !(error_of(taps, high, &fitted) <= error))
-            continue;
-        if (error_of(taps, low, &fitted) <= error)
-            high = low;
-        for (int n = 0; n < HALVINGS && high > low && cost_of(taps, low) < cheapest; n++) {
-            const double middle = 0.5 * (low + high);
-            if (error_of(taps, middle, &fitted) <= error)
-                high = middle;
-            else
-                low = middle;
-        }
-        if (cost_of(taps, high) < cheapest) {
-            cheapest = cost_of(taps, high);
+        const double oversampling = oversampling_of(taps, error, least, cheapest);
+        if (cost_of(taps, oversampling) < cheapest) {
+            cheapest = cost_of(taps, oversampling);
             chosen->taps = taps;
-            chosen->oversampling = high;
+            chosen->oversampling = oversampling;
         }
     }
     if (cheapest == INFINITY)

@@ -5,7 +5,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "backprojection/budget.h"
 #include "backprojection/factorised/grids.h"
+#include "backprojection/farrow.h"
 #include "backprojection/law.h"
 
 /* Steps of range, over a record's samples c/(2 fs), at most: runs of pixels are fastest below one sample a pixel
@@ -14,6 +16,16 @@ static const double STEP_MOST = 0.93, STEP_NEXT = 0.975;
 static const double RATE_LEAST = 10;   /* lines a unit of s: a single ping would need hardly any */
 static const double ANGLE_LEAST = 1.1; /* oversampling */
 static const double RANGE_MOST = 3;    /* oversampling by small steps of a record that is sampled far finer */
+
+int tree_degree(const struct tree_settings *settings, const struct acquisition *a)
+{
+    return farrow_degree(tree_error_each(settings), a->bandwidth / a->fs);
+}
+
+double tree_phase_limit(const struct tree_settings *settings, const struct acquisition *a)
+{
+    return budget_limit(fmin(1e-3, fmax(1e-6, 0.03 * settings->error)), a->fc, a->fs);
+}
 
 static double length(struct vector v)
 {

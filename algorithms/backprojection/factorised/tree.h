@@ -75,6 +75,11 @@ static inline double tree_error_each(const struct tree_settings *settings)
     return 0.85 * settings->error / sqrt(2 * settings->stages + 1);
 }
 
+/* Of the records' polynomials, which share the error with the images' taps. */
+int tree_degree(const struct tree_settings *settings, const struct acquisition *acquisition);
+/* rad: what quintics may change phases by, in proportion to the error that is asked for. */
+double tree_phase_limit(const struct tree_settings *settings, const struct acquisition *acquisition);
+
 struct tree {
     struct problem problem;
     struct tree_settings settings;

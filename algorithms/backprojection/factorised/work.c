@@ -72,30 +72,42 @@ static int stride_of(const struct tree *tree, int patch)
 }
 
 /* In pairs of the general engine, measured: what an image takes for each pixel, a trace for each sample, a line. */
-static double cost_of(const struct tree *tree, const struct amounts *sum)
+static double pairs_of(const struct tree *tree, const struct amounts *sum)
 {
     static const double IMAGE = 1.2, TRACE = 1, TAP = 0.1, BRANCH = 0.05, LINE = 300;
     const double trace = TRACE + TAP * tree->angle.taps + BRANCH * tree->range.taps * tree->range.branches;
     return sum->records + IMAGE * sum->images + trace * sum->traces + LINE * sum->lines;
 }
 
-static double tree_cost(const struct tree *tree)
+/* Of images, and lines through them. */
+static double flops_of(const struct tree *tree, const struct amounts *sum)
+{
+    const struct polar_taps *range = &tree->range;
+    return sum->images * (4.0 * (range->branches - 1) + 8)
+           + sum->traces * 4 * (tree->angle.taps + (double)range->taps * range->branches);
+}
+
+static struct factorised_cost tree_cost(const struct tree *tree)
 {
     struct amounts all = {0};
-    double cost = 0;
     for (int n = 0; n < tree->first[tree->settings.stages]; n++) {
         count_images(tree, &tree->subapertures[n], &all);
         for (int k = 0; k < tree->problem.patch_count; k++) {
+            const int stride = stride_of(tree, k);
             struct amounts some = {0};
             double direct = 0;
-            count_pixels(tree, n, k, stride_of(tree, k), &some, &direct);
-            cost += stride_of(tree, k) * (cost_of(tree, &some) + direct);
+            count_pixels(tree, n, k, stride, &some, &direct);
+            all.records += stride * direct;
+            all.images += stride * some.images;
+            all.traces += stride * some.traces;
+            all.lines += stride * some.lines;
         }
     }
-    return cost + cost_of(tree, &all);
+    return (struct factorised_cost){pairs_of(tree, &all), all.records, flops_of(tree, &all)};
 }
 
-enum status factorised_cost(const struct problem *problem, const struct tree_settings *settings, double *cost)
+enum status factorised_cost(const struct problem *problem, const struct tree_settings *settings,
+                            struct factorised_cost *cost)
 {
     struct problem seen = *problem;
     struct turned_problem turned;
@@ -110,8 +122,8 @@ enum status factorised_cost(const struct problem *problem, const struct tree_set
     return status;
 }
 
-/* Pairs inside the aperture limit, of some lines and pings. */
-static double pairs_about(const struct problem *problem)
+/* Pairs inside the aperture limit, of some lines and pings, and `line` for each line that a record adds to. */
+static double pairs_about(const struct problem *problem, double line)
 {
     enum { LINES = 32, PINGS = 64 };
     const struct acquisition *a = problem->acquisition;
@@ -123,26 +135,43 @@ static double pairs_about(const struct problem *problem)
         for (int n = 0; n < grid->x_count; n += stride)
             for (int p = 0; p < a->pings; p += every) {
                 struct pair_span spans[2];
-                const struct pixel_line line = grid_line(grid, false, n);
-                const int count = pair_spans(a, p, acquisition_normal(a, p), &line, spans);
+                const struct pixel_line along = grid_line(grid, false, n);
+                const int count = pair_spans(a, p, acquisition_normal(a, p), &along, spans);
                 for (int i = 0; i < count; i++)
-                    pairs += (double)stride * every * (spans[i].end - spans[i].begin);
+                    pairs += (double)stride * every * (line + spans[i].end - spans[i].begin);
             }
     }
     return pairs * a->receivers;
 }
 
-enum status factorised_cost_direct(const struct problem *problem, double *cost)
+enum status factorised_cost_direct(const struct problem *problem, double *pairs)
 {
-    static const double INVARIANT = 0.3; /* of a pair of the general engine */
+    static const double INVARIANT = 0.3, LINE = 150; /* of a pair of the general engine; which a line takes there */
     const struct condition invariant = invariant_condition(problem, SEVERITY_INFORM);
     struct problem seen = *problem;
     struct turned_problem turned;
     enum status status = problem_turn_back(&seen, &turned, NULL);
     if (status == STATUS_OK)
-        *cost = pairs_about(&seen) * (condition_holds(&invariant) ? INVARIANT : 1);
+        *pairs = condition_holds(&invariant) ? INVARIANT * pairs_about(&seen, 0) : pairs_about(&seen, LINE);
     turned_free(&turned);
     return status;
+}
+
+enum status factorised_forecast(const struct problem *problem, const struct tree_settings *settings,
+                                const struct factorised_cost *cost, struct forecast *forecast)
+{
+    const struct acquisition *a = problem->acquisition;
+    const struct interpolator records = {.upsample = 1, .taps = 1, .degree = tree_degree(settings, a)};
+    const struct bp_options options = {.engine = BP_ENGINE_GENERAL, .phase_limit = tree_phase_limit(settings, a)};
+    const enum status status = bp_forecast(problem, &records, &options, forecast);
+    if (status != STATUS_OK)
+        return status;
+    const double share = settings->error / sqrt(2 * settings->stages + 1);
+    double *error = &forecast->error[CAUSE_INTERPOLATION]; /* of the records alone, which have a share of it */
+    *error = hypot(settings->error, sqrt(fmax(*error * *error - share * share, 0)));
+    forecast->image_cost = cost->pairs;
+    forecast->image_flops = cost->flops + cost->records * forecast->pair_flops;
+    return STATUS_OK;
 }
 
 bool factorised_count(struct factorised *plan)
@@ -167,10 +196,7 @@ bool factorised_count(struct factorised *plan)
             all.traces += some.traces;
         }
     }
-    const struct polar_taps *range = &tree->range;
-    const double pair = 4.0 * (plan->bp.table.branches - 1) + 8;
-    plan->flops += all.records * pair + all.images * (4.0 * (range->branches - 1) + 8)
-                   + all.traces * 4 * (tree->angle.taps + (double)range->taps * range->branches);
+    plan->flops += all.records * (4.0 * (plan->bp.table.branches - 1) + 8) + flops_of(tree, &all);
     return true;
 }
 

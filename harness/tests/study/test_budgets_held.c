@@ -6,6 +6,7 @@
 #include "measure/metrics.h"
 #include "measure/session.h"
 #include "measure/timing.h"
+#include "planner/planner.h"
 #include "tests/support.h"
 
 /* What choices made of their budgets. */
@@ -16,7 +17,7 @@ struct tally {
 };
 
 /* Measure what `auto` chooses for one scene and budget. */
-static void choice_measure(const struct session *session, int seed, double budget, struct tally *tally)
+static void choice_measure(const struct session *session, const char *name, double budget, struct tally *tally)
 {
     char text[64];
     struct spec spec;
@@ -27,7 +28,7 @@ static void choice_measure(const struct session *session, int seed, double budge
     if (status == STATUS_OK) {
         if (support_peak(&session->reference) > 0) {
             const double error = metrics_error(&image, &session->reference).error_gain;
-            print_message("seed %d, %s: %.2e, %.2f of the budget\n", seed, text, error, error / budget);
+            print_message("%s, %s: %.2e, %.2f of the budget\n", name, text, error, error / budget);
             tally->used[tally->count++] = error / budget;
         } else {
             assert_true(support_peak(&image) == 0);
@@ -36,8 +37,8 @@ static void choice_measure(const struct session *session, int seed, double budge
         image_free(&image);
     } else {
         if (status != STATUS_UNSUPPORTED || !strstr(status_message(), "condition budget"))
-            fail_msg("seed %d, %s: %s", seed, text, status_message());
-        print_message("seed %d: %s\n", seed, status_message());
+            fail_msg("%s, %s: %s", name, text, status_message());
+        print_message("%s: %s\n", name, status_message());
         tally->refused++;
     }
     spec_free(&spec);
@@ -58,10 +59,12 @@ static void within_budget(void **state)
     for (int seed = FIRST; seed < FIRST + seeds; seed++) {
         struct scene scene;
         struct session session;
+        char name[32];
+        snprintf(name, sizeof name, "seed %d", seed);
         support_random_scene(seed, &scene);
         assert_int_equal(session_open(&scene, &session), STATUS_OK);
         for (int k = 0; k < BUDGETS; k++)
-            choice_measure(&session, seed, budgets[k], &tally);
+            choice_measure(&session, name, budgets[k], &tally);
         session_close(&session);
         scene_free(&scene);
     }
@@ -78,10 +81,37 @@ static void within_budget(void **state)
     assert_true(tally.refused <= seeds / 10);
 }
 
+/* On a curved track of many pings images of subapertures are chosen, with the error that the budget leaves them. */
+static void subapertures_within_budget(void **state)
+{
+    (void)state;
+    static const double budgets[] = {3e-2, 1e-2, 1e-3};
+    struct scene scene;
+    struct session session;
+    static struct tally tally;
+    support_scene("study/rail_sway", &scene);
+    scene.acquisition.pings = 512;
+    const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
+    assert_int_equal(session_open(&scene, &session), STATUS_OK);
+    for (size_t k = 0; k < sizeof budgets / sizeof *budgets; k++) {
+        const struct budget budget = {budgets[k], 4e9, false};
+        struct choice choice;
+        assert_int_equal(planner_choose(&problem, &budget, &choice), STATUS_OK);
+        assert_true(choice.found);
+        assert_string_equal(choice.list[0].algorithm->name, "bp_factorised");
+        choice_free(&choice);
+        choice_measure(&session, "512 pings of study/rail_sway", budgets[k], &tally);
+        assert_true(tally.used[k] <= 1 && tally.used[k] > 0.1);
+    }
+    session_close(&session);
+    scene_free(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(within_budget, folder_make, folder_remove),
+        cmocka_unit_test(subapertures_within_budget),
     };
     return cmocka_run_group_tests_name("budgets_held", tests, NULL, NULL);
 }
