@@ -3,6 +3,7 @@
 #define SASBENCH_BACKPROJECTION_ENGINE_H
 
 #include "backprojection/bp.h"
+#include "backprojection/planes.h"
 #include "backprojection/reading.h"
 #include "common/isa.h"
 #include "backprojection/traces.h"
@@ -22,6 +23,7 @@ struct bp {
     struct bp_kernel kernel;
     struct traces *traces;
     struct traces_shape shape;
+    const struct planes *planes; /* of the plan's precision */
     const struct bp_engine *engine;
     void *state; /* the engine's own */
     struct work work;

@@ -27,6 +27,21 @@ struct traces_form bp_records_form(struct bp *bp)
                                 .count = last - first + 1};
 }
 
+/* With AVX-512 as well 32 bytes at a time: values lie anywhere, and of 64 bytes each store would meet two cache
+   lines. */
+static const struct planes *const planes[][2] = {
+    [ISA_BASELINE] = {&planes_float_baseline, &planes_double_baseline},
+#ifdef SASBENCH_X86_64
+    [ISA_V3] = {&planes_float_v3, &planes_double_v3},
+    [ISA_V4] = {&planes_float_v3, &planes_double_v3},
+#endif
+};
+
+const struct planes *planes_choose(enum precision precision)
+{
+    return planes[isa_choose()][precision];
+}
+
 enum status bp_plan_traces(struct bp *bp)
 {
     const struct acquisition *a = bp->problem.acquisition;
@@ -37,6 +52,7 @@ enum status bp_plan_traces(struct bp *bp)
     if (status != STATUS_OK)
         return status;
     bp->work.bytes += bp->shape.bytes;
+    bp->planes = planes_choose(bp->problem.precision);
     bp->table.origin = bp->table.guard - bp->shape.first * bp->table.upsample;
     return STATUS_OK;
 }

@@ -8,19 +8,22 @@
 #include <string.h>
 
 #include "backprojection/farrow.h"
+#include "backprojection/planes.h"
 #include "common/fft_length.h"
 #include "common/memory.h"
 #include "common/real.h"
 
 struct traces {
     struct traces_shape shape;
-    bool transforms; /* false: compressed already, and read as it is */
-    FFTW(plan)
-    forward, inverse;      /* of L = shape.period, from one array into another: in place takes 1.2 times as long */
-    complex_real *filter;  /* [L] conj(P)/(L sum|p|^2); 1/L if compressed; over sinc^2 where it is emphasised */
-    complex_real *factors; /* [branches][upsample][L/2 + 1] of frequencies 0 to fs/2; NULL: of one plane, all 1 */
-    complex_real *scratch; /* [threads][2 + upsample][shape.pitch]: what is transformed, a spectrum, and a branch's
-                                    planes */
+    bool transforms;             /* false: compressed already, and read as it is */
+    FFTW(plan) forward, inverse; /* of L = shape.period, into another array: in place takes 1.2 times as long */
+    complex_real *filter;        /* [L] conj(P)/(L sum|p|^2); 1/L if compressed; over sinc^2 where it is emphasised */
+    complex_real *factors;       /* [branches][upsample][L/2 + 1] of frequencies 0 to fs/2, where upsample > 1 */
+    /* [branches][L] where branches > 1 and upsample = 1: real gains, of odd branches times the imaginary unit. Neither
+       factors nor gains: of one plane, all are 1. */
+    real *gains;
+    const struct planes *planes;
+    complex_real *scratch; /* [threads][2 + upsample][shape.pitch]: what is transformed, a spectrum, a branch */
 };
 
 static void filter_fill(const struct acquisition *acquisition, int length, double complex *work, complex_real *filter)
@@ -48,21 +51,29 @@ static void emphasise(int length, complex_real *filter)
 }
 
 /* Branch m at phase j of K is the signal of the spectrum times H_m(nu) exp(j 2 pi nu j/K), of which the factors of -nu
-   are the conjugates of those of nu. */
+   are the conjugates of those of nu. H_m is real for even m, imaginary for odd ones. */
 static void factors_fill(const struct traces *traces)
 {
     const int length = traces->shape.period, branches = traces->shape.branches, upsample = traces->shape.upsample;
     const size_t half = (size_t)length / 2 + 1;
-    double gains[FARROW_MOST + 1];
+    double gains[FARROW_MOST + 1] = {1};
     for (size_t k = 0; k < half; k++) {
-        farrow_gains(branches - 1, (double)k / length / upsample, gains);
-        for (int m = 0; m < branches; m++)
-            for (int j = 0; j < upsample; j++) {
+        if (branches > 1)
+            farrow_gains(branches - 1, (double)k / length / upsample, gains);
+        for (int m = 0; m < branches; m++) {
+            if (traces->gains) {
+                real *of = traces->gains + (size_t)m * (size_t)length;
+                if (k > 0)
+                    of[(size_t)length - k] = (real)(m % 2 ? -gains[m] : gains[m]);
+                /* the bin at fs/2: half of it at either end of the band */
+                of[k] = m % 2 && 2 * k == (size_t)length ? 0 : (real)gains[m];
+            }
+            for (int j = 0; traces->factors && j < upsample; j++) {
                 const double turn = 2 * M_PI * (double)k * j / ((double)length * upsample);
-                const double gain = branches > 1 ? gains[m] : 1;
-                const double complex factor = gain * (cos(turn) + I * sin(turn)) * (m % 2 ? I : 1);
+                const double complex factor = gains[m] * (cos(turn) + I * sin(turn)) * (m % 2 ? I : 1);
                 traces->factors[((size_t)m * (size_t)upsample + (size_t)j) * half + k] = (complex_real)factor;
             }
+        }
     }
 }
 
@@ -79,21 +90,25 @@ static enum status transforms_plan(struct traces *traces, const struct acquisiti
 {
     struct traces_shape *shape = &traces->shape;
     const int length = shape->period, planes = shape->branches * shape->upsample;
-    const size_t pitch = whole_lines(length), factors = planes > 1 ? (size_t)planes * ((size_t)length / 2 + 1) : 0;
+    const size_t pitch = whole_lines(length);
+    const size_t factors = shape->upsample > 1 ? (size_t)planes * ((size_t)length / 2 + 1) : 0;
+    const size_t gains = shape->upsample == 1 && planes > 1 ? (size_t)planes * (size_t)length : 0;
     const int each = 2 + shape->upsample; /* arrays of a thread */
     shape->pitch = pitch;
     /* Scratch, filter, factors, the pulse's spectrum, and as much as FFTW's plans may hold. */
     enum status status =
         memory_check((each * (threads + 1.0) * (double)pitch + length + (double)factors) * sizeof(complex_real)
-                         + (double)length * sizeof(double complex),
+                         + (double)gains * sizeof(real) + (double)length * sizeof(double complex),
                      "range compression");
     if (status != STATUS_OK)
         return status;
     traces->scratch = FFTW(malloc)((size_t)threads * (size_t)each * pitch * sizeof *traces->scratch);
     traces->filter = FFTW(malloc)((size_t)length * sizeof *traces->filter);
     traces->factors = factors > 0 ? FFTW(malloc)(factors * sizeof *traces->factors) : NULL;
+    traces->gains = gains > 0 ? FFTW(malloc)(gains * sizeof *traces->gains) : NULL;
     double complex *work = fftw_malloc((size_t)length * sizeof *work);
-    if (traces->scratch && traces->filter && work && (traces->factors || factors == 0)) {
+    if (traces->scratch && traces->filter && work && (traces->factors || factors == 0)
+        && (traces->gains || gains == 0)) {
         if (acquisition->compressed)
             for (int k = 0; k < length; k++)
                 traces->filter[k] = (real)1 / (real)length;
@@ -101,7 +116,7 @@ static enum status transforms_plan(struct traces *traces, const struct acquisiti
             filter_fill(acquisition, length, work, traces->filter);
         if (preemphasis)
             emphasise(length, traces->filter);
-        if (factors > 0)
+        if (planes > 1)
             factors_fill(traces);
         /* ESTIMATE: the same algorithm, hence the same bits, at every planning; measuring costs more than a scene's
            compression. */
@@ -113,7 +128,8 @@ static enum status transforms_plan(struct traces *traces, const struct acquisiti
     if (!traces->forward || !traces->inverse)
         return status_set(STATUS_FAILED, "no memory for range compression (%.0f MB)",
                           (double)threads * each * (double)pitch * sizeof(complex_real) / 1e6);
-    shape->bytes += (double)((size_t)each * pitch + (size_t)length + factors) * sizeof(complex_real);
+    shape->bytes +=
+        (double)((size_t)each * pitch + (size_t)length + factors) * sizeof(complex_real) + (double)gains * sizeof(real);
     return STATUS_OK;
 }
 
@@ -152,7 +168,8 @@ double REAL_NAME(traces_flops)(const struct acquisition *acquisition, const stru
     const double length = REAL_NAME(traces_period)(acquisition, form), planes = (form->degree + 1.0) * form->upsample;
     if (!transforms(acquisition, form))
         return 0;
-    return (planes + 1) * fft_flops(length) + 6 * length + (planes > 1 ? 6 * planes * length : 0);
+    const double product = planes > 1 ? form->upsample > 1 ? 6 : 2 : 0;
+    return (planes + 1) * fft_flops(length) + 6 * length + product * planes * length;
 }
 
 enum status REAL_NAME(traces_plan)(const struct acquisition *acquisition, const struct traces_form *form, int threads,
@@ -179,6 +196,7 @@ enum status REAL_NAME(traces_plan)(const struct acquisition *acquisition, const 
                                           .bytes = sizeof *traces};
     shape_cut(acquisition, form, &traces->shape);
     traces->shape.flops = REAL_NAME(traces_flops)(acquisition, form);
+    traces->planes = planes_choose(REAL_DOUBLE ? PRECISION_DOUBLE : PRECISION_FLOAT);
     traces->transforms = transforms(acquisition, form);
     enum status status =
         traces->transforms ? transforms_plan(traces, acquisition, form->preemphasis, threads) : STATUS_OK;
@@ -205,40 +223,20 @@ void REAL_NAME(traces_spectrum)(const struct traces *traces, int thread, const c
     memcpy(padded, record + traces->shape.from, n * sizeof *padded);
     memset(padded + n, 0, (length - n) * sizeof *padded);
     FFTW(execute_dft)(traces->forward, padded, spectrum);
-    real *x = (real *)spectrum;
-    const real *h = (const real *)traces->filter;
-    for (size_t k = 0; k < 2 * length; k += 2) { /* written out: a complex product would check for NaN */
-        real re = x[k] * h[k] - x[k + 1] * h[k + 1];
-        x[k + 1] = x[k] * h[k + 1] + x[k + 1] * h[k];
-        x[k] = re;
-    }
+    traces->planes->filter(spectrum, traces->filter, length);
 }
 
 void REAL_NAME(traces_plane)(const struct traces *traces, int thread, complex_real *spectrum, int plane,
                              complex_real *values)
 {
-    const size_t length = (size_t)traces->shape.period, half = length / 2 + 1;
+    const size_t length = (size_t)traces->shape.period;
     complex_real *turned = scratch_of(traces, thread);
-    if (!traces->factors) {
-        FFTW(execute_dft)(traces->inverse, spectrum, values);
-        return;
-    }
-    const real *h = (const real *)(traces->factors + (size_t)plane * half), *x = (const real *)spectrum;
-    real *y = (real *)turned;
-    for (size_t k = 0; k < length; k += 2) { /* below fs/2 */
-        y[k] = x[k] * h[k] - x[k + 1] * h[k + 1];
-        y[k + 1] = x[k] * h[k + 1] + x[k + 1] * h[k];
-    }
-    for (size_t k = 1; 2 * k < length; k++) {
-        const real re = h[2 * k], im = -h[2 * k + 1];
-        const size_t at = 2 * (length - k);
-        y[at] = x[at] * re - x[at + 1] * im;
-        y[at + 1] = x[at] * im + x[at + 1] * re;
-    }
-    if (length % 2 == 0) { /* the bin at fs/2: half of it at either end of the band, the factors' mean */
-        y[length] = x[length] * h[length];
-        y[length + 1] = x[length + 1] * h[length];
-    }
+    if (traces->factors)
+        traces->planes->turn(spectrum, traces->factors + (size_t)plane * (length / 2 + 1), length, turned);
+    else if (traces->gains)
+        traces->planes->weigh(spectrum, traces->gains + (size_t)plane * length, plane % 2, length, turned);
+    else
+        turned = spectrum;
     FFTW(execute_dft)(traces->inverse, turned, values);
 }
 
@@ -292,6 +290,7 @@ void REAL_NAME(traces_destroy)(struct traces *traces)
         FFTW(destroy_plan)(traces->inverse);
     FFTW(free)(traces->filter);
     FFTW(free)(traces->factors);
+    FFTW(free)(traces->gains);
     FFTW(free)(traces->scratch);
     free(traces);
 }

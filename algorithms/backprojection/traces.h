@@ -38,7 +38,7 @@ struct traces_shape {
     int from, read; /* the record's samples [from, from + read) are read */
     int period;     /* L: of the transformed signal, >= samples + pulse - 1 if raw; its sample 0 is `from` */
     size_t pitch;   /* from one spectrum or plane to the next, complex values: whole cache lines; 0: none is made */
-    double flops;   /* for one record: 5 N log2 N an FFT, 6 a complex product */
+    double flops;   /* for one record: 5 N log2 N an FFT, 6 a complex product, 2 a real one */
     double bytes;   /* held with one thread */
 };
 

@@ -189,65 +189,34 @@ void bp_lines_store(enum precision precision, const struct grid *grid, bool alon
         }
 }
 
-/* One branch, complex [length], into its blocks. */
-#define SPREAD(real)                                                                                                   \
-    do {                                                                                                               \
-        const real *values = (const real *)from + 2 * branch * length;                                                 \
-        real *to = (real *)row + 2 * branch * block;                                                                   \
-        for (size_t left = length, k = 0; k < (size_t)layout->blocks; k++, to += step) {                               \
-            const size_t count = left < block ? left : block;                                                          \
-            for (size_t i = 0; i < count; i++) {                                                                       \
-                to[i] = values[2 * i];                                                                                 \
-                to[block + i] = values[2 * i + 1];                                                                     \
-            }                                                                                                          \
-            for (size_t i = count; i < block; i++)                                                                     \
-                to[i] = to[block + i] = 0;                                                                             \
-            values += 2 * count;                                                                                       \
-            left -= count;                                                                                             \
-        }                                                                                                              \
-    } while (0)
-
 /* A kernel's branches of a trace, complex [branches][length], which follow it; 0 beyond the record's ends. */
-#define FILTER(real)                                                                                                   \
-    do {                                                                                                               \
-        const size_t count = 2 * (length - 2 * guard);                                                                 \
-        for (size_t m = 0; m < branches; m++) {                                                                        \
-            real *to = (real *)trace + 2 * ((size_t)bp->shape.length + m * length);                                    \
-            memset(to, 0, 2 * length * sizeof *to);                                                                    \
-            to += 2 * guard;                                                                                           \
-            for (int t = 0; t < kernel->taps; t++) {                                                                   \
-                const real weight = (real)kernel->coefficients[m * (size_t)kernel->taps + (size_t)t];                  \
-                const real *values = (const real *)trace + 2 * (bp->shape.guard + kernel->first + t);                  \
-                for (size_t i = 0; i < count; i++)                                                                     \
-                    to[i] += weight * values[i];                                                                       \
-            }                                                                                                          \
-        }                                                                                                              \
-    } while (0)
-
-static void filter(const struct bp *bp, void *trace)
+static void filter(const struct bp *bp, char *trace)
 {
     const struct bp_kernel *kernel = &bp->kernel;
     const size_t branches = (size_t)bp->table.branches, length = bp_branch_length(bp), guard = (size_t)bp->table.guard;
-    if (bp->problem.precision == PRECISION_DOUBLE)
-        FILTER(double);
-    else
-        FILTER(float);
+    const size_t bytes = 2 * real_size(bp->problem.precision), taps = (size_t)kernel->taps;
+    char *to = trace + (size_t)bp->shape.length * bytes;
+    const char *from = trace + (size_t)(bp->shape.guard + kernel->first) * bytes;
+    for (size_t m = 0; m < branches; m++, to += length * bytes) {
+        memset(to, 0, guard * bytes);
+        bp->planes->convolve(from, kernel->coefficients + m * taps, kernel->taps, length - 2 * guard,
+                             to + guard * bytes);
+        memset(to + (length - guard) * bytes, 0, guard * bytes);
+    }
 }
 
 void bp_record_fill(const struct bp *bp, const struct bp_layout *layout, const struct echoes *echoes, size_t index,
                     void *scratch, void *row)
 {
-    const size_t branches = (size_t)bp->table.branches, length = bp_branch_length(bp);
-    const size_t block = layout->apart, step = 2 * branches * block, size = real_size(bp->problem.precision);
-    char *from = scratch;
+    const size_t branches = (size_t)bp->table.branches, length = bp_branch_length(bp), blocks = (size_t)layout->blocks;
+    const size_t block = layout->apart, size = real_size(bp->problem.precision);
+    char *from = scratch, *to = row;
     bp_fill_row(bp, omp_get_thread_num(), echoes, index, from);
     if (bp->table.branches > bp->shape.branches) {
         filter(bp, from);
         from += 2 * (size_t)bp->shape.length * size;
     }
-    for (size_t branch = 0; branch < branches; branch++)
-        if (bp->problem.precision == PRECISION_DOUBLE)
-            SPREAD(double);
-        else
-            SPREAD(float);
+    for (size_t m = 0; m < branches; m++)
+        bp->planes->part(from + m * 2 * length * size, length, blocks, block, 2 * branches * block,
+                         to + m * 2 * block * size);
 }
