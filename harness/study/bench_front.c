@@ -131,8 +131,8 @@ static enum status receivers_measure(FILE *file, struct bench_goals *goals)
     static const char *const scene_name = "bp22/full_limited", *const text = "bp_nearest:engine=general";
     enum { ROWS = 64, COUNTS = 3 };
     struct scene scene;
-    struct echoes recorded = {0}, echoes = {0};
-    enum status status = scene_load(scene_name, SCENE_DIRECTORY, &scene);
+    struct echoes echoes;
+    enum status status = bench_scene(scene_name, &scene, &echoes);
     if (status != STATUS_OK)
         return status;
     struct grid grid = scene.patches[0];
@@ -140,9 +140,6 @@ static enum status receivers_measure(FILE *file, struct bench_goals *goals)
     grid.r_count = ROWS;
     const int counts[COUNTS] = {scene.acquisition.receivers, 1, 2};
     double rate[COUNTS][ROUNDS], ratio[COUNTS][ROUNDS];
-    status = scene_simulate(&scene, &recorded);
-    if (status == STATUS_OK)
-        status = echoes_convert(&recorded, PRECISION_FLOAT, &echoes);
     for (int round = 0; round < ROUNDS; round++)
         for (int k = 0; k < COUNTS && status == STATUS_OK; k++) {
             struct acquisition few;
@@ -171,7 +168,6 @@ static enum status receivers_measure(FILE *file, struct bench_goals *goals)
     }
     fflush(stdout);
     echoes_free(&echoes);
-    echoes_free(&recorded);
     scene_free(&scene);
     return status;
 }
@@ -182,15 +178,12 @@ static enum status aperture_measure(FILE *file, struct bench_goals *goals)
     static const char *const scene_name = "study/rail_sway";
     static const char *const specs[] = {"bp_nearest", "bp_factorised:error=0.01"};
     struct scene scene;
-    struct echoes recorded = {0}, echoes = {0};
+    struct echoes echoes;
     struct bench_sample sample[2];
-    enum status status = scene_load(scene_name, SCENE_DIRECTORY, &scene);
+    enum status status = bench_scene(scene_name, &scene, &echoes);
     if (status != STATUS_OK)
         return status;
     const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
-    status = scene_simulate(&scene, &recorded);
-    if (status == STATUS_OK)
-        status = echoes_convert(&recorded, PRECISION_FLOAT, &echoes);
     for (int k = 0; k < 2 && status == STATUS_OK; k++)
         status = bench_once(specs[k], &problem, &echoes, omp_get_max_threads(), NULL, NULL, &sample[k]);
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {
@@ -203,7 +196,6 @@ static enum status aperture_measure(FILE *file, struct bench_goals *goals)
     }
     fflush(stdout);
     echoes_free(&echoes);
-    echoes_free(&recorded);
     scene_free(&scene);
     return status;
 }

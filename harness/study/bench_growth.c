@@ -7,10 +7,8 @@
 #include <string.h>
 
 #include "data/echo_data.h"
-#include "data/paths.h"
 #include "measure/imaging.h"
 #include "measure/provenance.h"
-#include "scene/simulate.h"
 #include "study/bench.h"
 #include "study/bench_once.h"
 
@@ -129,8 +127,8 @@ static enum status growth_measure(FILE *file, struct bench_goals *goals)
     (void)goals; /* none */
     struct provenance provenance;
     struct scene scene;
-    struct echoes recorded, echoes;
-    enum status status = scene_load("bp22/full_limited", SCENE_DIRECTORY, &scene);
+    struct echoes echoes;
+    enum status status = bench_scene("bp22/full_limited", &scene, &echoes);
     if (status != STATUS_OK)
         return status;
     provenance_fill(&provenance, omp_get_max_threads());
@@ -140,15 +138,8 @@ static enum status growth_measure(FILE *file, struct bench_goals *goals)
             "algorithm,options,engine,setting,columns,rows,pairs,run_s,ns_per_pair,plan_bytes\n",
             provenance.machine, provenance.compiler, provenance.flags, provenance.commit, provenance.date,
             provenance.isa);
-    status = scene_simulate(&scene, &recorded);
-    if (status == STATUS_OK) {
-        status = echoes_convert(&recorded, PRECISION_FLOAT, &echoes);
-        echoes_free(&recorded);
-    }
-    if (status == STATUS_OK) {
-        status = lines_measure(file, &scene, &echoes);
-        echoes_free(&echoes);
-    }
+    status = lines_measure(file, &scene, &echoes);
+    echoes_free(&echoes);
     scene_free(&scene);
     return status;
 }

@@ -4,10 +4,29 @@
 #include <omp.h>
 #include <string.h>
 
+#include "data/echo_data.h"
+#include "data/paths.h"
 #include "measure/imaging.h"
+#include "scene/simulate.h"
 
 enum { RUNS_LEAST = 3, RUNS_MOST = 99 };
 static const double single_s = 0.5, least_s = 0.25;
+
+enum status bench_scene(const char *name, struct scene *scene, struct echoes *echoes)
+{
+    struct echoes recorded;
+    enum status status = scene_load(name, SCENE_DIRECTORY, scene);
+    if (status != STATUS_OK)
+        return status;
+    status = scene_simulate(scene, &recorded);
+    if (status == STATUS_OK) {
+        status = echoes_convert(&recorded, PRECISION_FLOAT, echoes);
+        echoes_free(&recorded);
+    }
+    if (status != STATUS_OK)
+        scene_free(scene);
+    return status;
+}
 
 /* Runs in the order of their times. */
 static void insert(struct bench_sample *runs, int *count, const struct stages *stages, double seconds)

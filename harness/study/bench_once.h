@@ -1,8 +1,13 @@
-/* One algorithm timed once, for the rounds of `bench`. */
+/* One algorithm timed once, for the rounds of `bench`; the scenes that it is timed on. */
 #ifndef SASBENCH_STUDY_BENCH_ONCE_H
 #define SASBENCH_STUDY_BENCH_ONCE_H
 
 #include "algorithm.h"
+#include "scene/scene.h"
+
+/* A shipped scene and its echoes in float, to be freed both. Errors: as scene_load, scene_simulate and echoes_convert;
+   nothing to free then. */
+enum status bench_scene(const char *name, struct scene *scene, struct echoes *echoes);
 
 struct bench_sample {
     double plan_s, run_s;

@@ -10,13 +10,11 @@
 #include <string.h>
 
 #include "data/echo_data.h"
-#include "scene/scene.h"
-#include "scene/simulate.h"
-#include "data/paths.h"
 #include "data/text_file.h"
 #include "measure/spec.h"
 #include "measure/imaging.h"
 #include "measure/timing.h"
+#include "study/bench_once.h"
 #include "study/fft_seconds.h"
 
 enum {
@@ -178,27 +176,20 @@ enum status bench_rma(const char *directory, struct bench_goals *goals)
 {
     char path[4096];
     struct scene scene;
-    struct echoes recorded, echoes;
+    struct echoes echoes;
     snprintf(path, sizeof path, "%s/bench_rma.csv", directory);
     struct text_file file;
     enum status status = text_file_open(path, &file);
     if (status != STATUS_OK)
         return status;
-    status = scene_load("lbf21/real_size", SCENE_DIRECTORY, &scene);
+    status = bench_scene("lbf21/real_size", &scene, &echoes);
     if (status == STATUS_OK) {
-        status = scene_simulate(&scene, &recorded);
-        if (status == STATUS_OK) {
-            status = echoes_convert(&recorded, PRECISION_FLOAT, &echoes);
-            echoes_free(&recorded);
-        }
-        if (status == STATUS_OK) {
-            struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
-            struct measured measured;
-            status = measure(&problem, &echoes, &measured);
-            if (status == STATUS_OK)
-                report(&measured, file.stream, goals);
-            echoes_free(&echoes);
-        }
+        struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
+        struct measured measured;
+        status = measure(&problem, &echoes, &measured);
+        if (status == STATUS_OK)
+            report(&measured, file.stream, goals);
+        echoes_free(&echoes);
         scene_free(&scene);
     }
     status = text_file_close(&file, status);

@@ -8,11 +8,9 @@
 #include <string.h>
 
 #include "data/echo_data.h"
-#include "data/paths.h"
 #include "data/text_file.h"
 #include "measure/timing.h"
-#include "scene/scene.h"
-#include "scene/simulate.h"
+#include "study/bench_once.h"
 #include "study/fft_seconds.h"
 
 enum { AZIMUTH = 3840, RANGE = 4096 };
@@ -55,21 +53,14 @@ static enum status case_measure(const struct bench_case *c, const struct fft_sec
                                 struct bench_goals *goals)
 {
     struct scene scene;
-    struct echoes recorded, echoes;
+    struct echoes echoes;
     double seconds = 0;
-    enum status status = scene_load(c->scene, SCENE_DIRECTORY, &scene);
+    enum status status = bench_scene(c->scene, &scene, &echoes);
     if (status != STATUS_OK)
         return status;
-    status = scene_simulate(&scene, &recorded);
-    if (status == STATUS_OK) {
-        status = echoes_convert(&recorded, PRECISION_FLOAT, &echoes);
-        echoes_free(&recorded);
-    }
-    if (status == STATUS_OK) {
-        const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
-        status = spec_seconds(c->spec, &problem, &echoes, &seconds);
-        echoes_free(&echoes);
-    }
+    const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
+    status = spec_seconds(c->spec, &problem, &echoes, &seconds);
+    echoes_free(&echoes);
     scene_free(&scene);
     if (status == STATUS_OK) {
         fprintf(file, "%s,%s,float,run,s,%.6g\n", c->scene, c->spec, seconds);
