@@ -88,7 +88,7 @@ struct work {
         const char *source; /* "BP22 Eq. (11)"; NULL ends the list */
         double flops;
     } published[3];    /* the papers' formulas for this task, the algorithm's own paper first */
-    char engine[64];   /* which of several ways the plan chose: "general" */
+    char engine[96];   /* which of several ways the plan chose: "general" */
     char skipped[256]; /* what the plan left out because the scene does not need it; may be empty */
 };
 

@@ -6,7 +6,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "backprojection/bp.h"
 #include "planner/planner.h"
@@ -105,25 +104,13 @@ static enum status execute(void *plan, const struct echoes *echoes, struct image
     return automatic->algorithm->execute(automatic->plan, echoes, image, stages);
 }
 
-/* A name, or as many of its settings as there is room for. */
-static void name_fit(const char *name, char *text, size_t size)
-{
-    const char *end = name + strlen(name);
-    while ((size_t)(end - name) >= size - (*end ? strlen(",...") : 0)) {
-        do
-            end--;
-        while (*end != ',');
-    }
-    snprintf(text, size, "%.*s%s", (int)(end - name), name, *end ? ",..." : "");
-}
-
 static struct work work(const void *plan)
 {
     const struct automatic *automatic = plan;
     struct work work = automatic->algorithm->work(automatic->plan);
     char skipped[sizeof work.skipped];
     snprintf(skipped, sizeof skipped, "%s", work.skipped);
-    name_fit(automatic->name, work.engine, sizeof work.engine);
+    snprintf(work.engine, sizeof work.engine, "%s", automatic->name);
     snprintf(work.skipped, sizeof work.skipped, "%d other settings: an error of %.2g is predicted%s%.180s",
              automatic->rejected, automatic->error, *skipped ? "; " : "", skipped);
     work.bytes += sizeof *automatic;

@@ -23,7 +23,7 @@ struct stability_verdict {
     enum verdict_kind kind;
     char why[80];      /* the condition that refuses, or what fails; else empty */
     char message[400]; /* in full */
-    char engine[64];
+    char engine[96];
     double error;      /* relative L2 against the right image, worst patch and mode; NAN: none, or the image is zero */
     double error_most; /* the method's promise */
     double difference, conditioning, digits; /* NAN where there is nothing to compare with */

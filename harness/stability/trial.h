@@ -16,7 +16,7 @@ struct attempt {
     bool done;
     enum status status; /* of plan and execute */
     char message[400];  /* why it is not OK; or how the process ended */
-    char engine[64];
+    char engine[96];
     bool same_bits;  /* one and two threads made the same image */
     int exceptions;  /* FE_INVALID, FE_DIVBYZERO, FE_OVERFLOW that plan or execute raised, with one thread */
     bool is_stopped; /* the process ended by a signal */
