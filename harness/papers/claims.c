@@ -253,7 +253,7 @@ static void basis_append(char *evidence, size_t size, const struct basis *basis)
                  {"scenes", basis->scenes},
                  {"azimuth slices", basis->slices},
                  {"printed numbers", basis->tables}};
-    for (int k = 0; k < 4; k++)
+    for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
         if (*parts[k].list)
             text_append(evidence, size, "; %s: %s", parts[k].title, parts[k].list);
 }

@@ -33,19 +33,18 @@ void gnuplot_complaint(const char *log, char *text, size_t size)
     if (!file)
         return;
     /* A failed statement, a '^' below its fault, then "SCRIPT" line N: REASON. */
-    char line[512];
-    bool any = false;
+    char line[512], statement[200] = "";
     while (fgets(line, sizeof line, file)) {
         line[strcspn(line, "\r\n")] = '\0';
         const char *start = line + strspn(line, " \t^"), *reason = *start == '"' ? strstr(start, "\" line ") : NULL;
-        const size_t used = any ? strnlen(text, size / 2) : 0;
-        if (reason)
-            snprintf(text + used, size - used, "%s%s", used > 0 ? ": " : "", reason + 2);
-        else if (*start && !any)
-            snprintf(text, size, "%s", start);
-        any |= *start != '\0';
-        if (reason)
+        if (reason) {
+            snprintf(text, size, "%s%s%s", statement, *statement ? ": " : "", reason + 2);
             break;
+        }
+        if (*start && !*statement) {
+            snprintf(statement, sizeof statement, "%.199s", start);
+            snprintf(text, size, "%s", statement);
+        }
     }
     fclose(file);
 }

@@ -7,7 +7,6 @@
 
 #include "show/plot_queue.h"
 
-static const char slices_script[] = "slices.gp";
 static const double floor_db = -200; /* stands for zero power, far below what is shown */
 
 /* What slices show: all lines out to the last place where one is above -30 dB, with a dozen points a line. */
@@ -96,30 +95,30 @@ static enum status lines_write(const struct plot *plot, const struct slices_pict
     return status;
 }
 
-static enum status lines_draw(struct plot_queue *queue, const char *path, const char *plots_directory,
-                              const char *script, const struct slices_picture *picture)
+static enum status lines_draw(struct plot_queue *queue, const char *path, const char *plots_directory, bool slices,
+                              const struct slices_picture *picture)
 {
     struct plot plot;
     enum status status = plot_begin(&plot, path);
     if (status == STATUS_OK)
-        status = lines_write(&plot, picture, script == slices_script);
-    return plot_finish(&plot, status, queue, plots_directory, script);
+        status = lines_write(&plot, picture, slices);
+    return plot_finish(&plot, status, queue, plots_directory, slices ? "slices.gp" : "phase.gp");
 }
 
 enum status plot_slices(const char *path, const char *plots_directory, const struct slices_picture *picture)
 {
-    return lines_draw(NULL, path, plots_directory, slices_script, picture);
+    return lines_draw(NULL, path, plots_directory, true, picture);
 }
 
 enum status plot_slices_later(struct plot_queue *queue, const char *path, const char *plots_directory,
                               const struct slices_picture *picture)
 {
-    return lines_draw(queue, path, plots_directory, slices_script, picture);
+    return lines_draw(queue, path, plots_directory, true, picture);
 }
 
 enum status plot_phase(const char *path, const char *plots_directory, const struct slices_picture *picture)
 {
-    return lines_draw(NULL, path, plots_directory, "phase.gp", picture);
+    return lines_draw(NULL, path, plots_directory, false, picture);
 }
 
 const char *const folder_plots[] = {"error_time", "error_flops", "lobes_time", "upsampling", NULL};
