@@ -122,9 +122,11 @@ enum status factorised_cost(const struct problem *problem, const struct tree_set
     return status;
 }
 
-/* Pairs inside the aperture limit, of some lines and pings, and `line` for each line that a record adds to. */
-static double pairs_about(const struct problem *problem, double line)
+/* Pairs inside the aperture limit, of some lines and pings; those of the general engine with what a line takes beside
+   its pixels, and a pixel on a slope of a sample a pixel. */
+static double pairs_about(const struct problem *problem, bool general)
 {
+    static const double LINE = 150, STEEP = 3.5;
     enum { LINES = 32, PINGS = 64 };
     const struct acquisition *a = problem->acquisition;
     double pairs = 0;
@@ -137,8 +139,11 @@ static double pairs_about(const struct problem *problem, double line)
                 struct pair_span spans[2];
                 const struct pixel_line along = grid_line(grid, false, n);
                 const int count = pair_spans(a, p, acquisition_normal(a, p), &along, spans);
-                for (int i = 0; i < count; i++)
-                    pairs += (double)stride * every * (line + spans[i].end - spans[i].begin);
+                for (int i = 0; i < count; i++) {
+                    const double pixels = spans[i].end - spans[i].begin;
+                    const bool steep = general && blocks_steep(a, a->fs, p, &along, spans[i]);
+                    pairs += (double)stride * every * (pixels * (steep ? STEEP : 1) + (general ? LINE : 0));
+                }
             }
     }
     return pairs * a->receivers;
@@ -146,13 +151,13 @@ static double pairs_about(const struct problem *problem, double line)
 
 enum status factorised_cost_direct(const struct problem *problem, double *pairs)
 {
-    static const double INVARIANT = 0.3, LINE = 150; /* of a pair of the general engine; which a line takes there */
+    static const double INVARIANT = 0.3; /* of a pair of the general engine */
     const struct condition invariant = invariant_condition(problem, SEVERITY_INFORM);
     struct problem seen = *problem;
     struct turned_problem turned;
     enum status status = problem_turn_back(&seen, &turned, NULL);
     if (status == STATUS_OK)
-        *pairs = condition_holds(&invariant) ? INVARIANT * pairs_about(&seen, 0) : pairs_about(&seen, LINE);
+        *pairs = condition_holds(&invariant) ? INVARIANT * pairs_about(&seen, false) : pairs_about(&seen, true);
     turned_free(&turned);
     return status;
 }

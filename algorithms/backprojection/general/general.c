@@ -55,6 +55,9 @@ static void general_destroy(void *state)
 
 /* Measured, in pixels of a block: a block's quintic takes as long as 30, an exact delay as long as three. */
 enum { BLOCK_COST = 30, EXACT_COST = 3, VECTOR = 16 };
+/* Of a unit, what a value of branches takes more where each pixel loads its own, on slopes of a sample a pixel (run.h);
+   measured. */
+static const double STEEP_COST = 0.008;
 
 /* Whole numbers, in which the order of sums does not matter. */
 struct line_counts {
@@ -97,6 +100,7 @@ static double general_units(const struct bp *bp)
     const struct problem *problem = &bp->problem;
     const struct acquisition *a = problem->acquisition;
     const double quintics = budget_quintics(bp->medium.phase_limit, problem->precision);
+    const double finest = a->fs * bp->table.upsample;
     const int pings = step_of(a->pings);
     double units = 0;
     for (int p = pings / 2; p < a->pings; p += pings) {
@@ -110,15 +114,20 @@ static double general_units(const struct bp *bp)
             const bool along_x =
                 steps[1] * lines_cost(&box, grid, true, steps[1]) < steps[0] * lines_cost(&box, grid, false, steps[0]);
             struct line_counts counts = {0};
+            double steep = 0; /* pixels */
             for (int n = 0; n < grid_line_count(grid, along_x); n += steps[along_x]) {
                 const struct pixel_line line = grid_line(grid, along_x, n);
                 struct pair_span spans[2];
                 const int count = pair_spans(a, p, normal, &line, spans);
-                for (int s = 0; s < count; s++)
+                for (int s = 0; s < count; s++) {
                     span_count(&box, &line, spans[s], &counts);
+                    if (bp->table.branches > 1 && blocks_steep(a, finest, p, &line, spans[s]))
+                        steep += spans[s].end - spans[s].begin;
+                }
             }
             const double looked = ceil((double)grid_line_count(grid, along_x) / steps[along_x]);
-            units += (counts.blocks + counts.exact * EXACT_COST / BLOCK_COST) * grid_line_count(grid, along_x) / looked;
+            units += (counts.blocks + counts.exact * EXACT_COST / BLOCK_COST + steep * STEEP_COST * bp->table.branches)
+                     * grid_line_count(grid, along_x) / looked;
         }
     }
     const double looked = ceil((a->pings - pings / 2) / (double)pings);

@@ -213,6 +213,42 @@ static void command_writes(void **state)
     assert_int_equal(command_plan(&task), STATUS_INVALID);
 }
 
+/* What the general engine reads pixels by, of one column of them, `share` of a sample apart along range. */
+static double units_of(const char *text, double share)
+{
+    struct scene scene;
+    struct spec spec;
+    struct forecast forecast;
+    support_scene("study/sway", &scene);
+    const struct acquisition *a = &scene.acquisition;
+    struct grid *grid = &scene.patches[0];
+    grid->x_count = 1;
+    grid->r_step = share * a->sound_speed / (2 * a->fs);
+    const struct problem problem = {a, 1, grid, PRECISION_FLOAT};
+    assert_int_equal(spec_parse(text, &spec), STATUS_OK);
+    assert_int_equal(spec.algorithm->forecast(&problem, spec.options, &forecast), STATUS_OK);
+    spec_free(&spec);
+    scene_free(&scene);
+    return forecast.units;
+}
+
+/* Pixels a sample apart load branches one by one, which takes time; one value each, it does not matter. */
+static void steep_slopes_cost(void **state)
+{
+    (void)state;
+    const double values[] = {3, 5};
+    const char *const specs[] = {"bp_farrow:degree=2", "bp_farrow:degree=4"};
+    const double nearest = units_of("bp_nearest", 0.9);
+    double more[2];
+    for (int k = 0; k < 2; k++) {
+        assert_true(units_of(specs[k], 0.9) == nearest);
+        more[k] = (units_of(specs[k], 1.1) - nearest) / values[k];
+    }
+    assert_true(more[0] > 0.05 * nearest);
+    assert_close(more[1] / more[0], 1, 0.01);
+    assert_true(units_of("bp_nearest", 1.1) == nearest);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -220,6 +256,7 @@ int main(void)
         cmocka_unit_test(fastest_within),
         cmocka_unit_test(nothing_fits),
         cmocka_unit_test(turned_axes),
+        cmocka_unit_test(steep_slopes_cost),
         cmocka_unit_test_setup_teardown(rates_are_kept, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(command_writes, folder_make, folder_remove),
     };
