@@ -83,7 +83,7 @@ enum rma_buffer {
     RMA_PARTS,     /* [most rows of a patch]: vectors of a direct sum's re and im */
     RMA_STORED,    /* complex [RMA_TILE][rows + RMA_TILE] */
     RMA_RECORD,    /* complex [record_length] */
-    RMA_PADDED,    /* complex [samples + 2 map guards]: delay compensation's */
+    RMA_PADDED,    /* complex [held + 2 map guards]: delay compensation's */
     RMA_TURNS,     /* real [RMA_TILE][receivers][2]: phasors of the receivers' offsets */
     RMA_EDGES,     /* complex [RMA_TILE][terms][row/LANES + 1]: U at the edges of vectors */
     RMA_BUFFERS
@@ -191,6 +191,8 @@ struct rma {
     bool converts; /* false: one receiver, at the transmitter */
 
     /* pulse compression */
+    int from, held;    /* the compressed samples that swaths take: [from, from + held) of a record */
+    int read;          /* the samples [from, from + read) that these take: as many, and a pulse's length if raw */
     int record_length; /* of its transform; 0: the echoes come compressed */
     double half_band;  /* Hz: half of what holds the compressed pulse */
     double loss;       /* energy of the compressed pulse outside it, relative */

@@ -313,6 +313,47 @@ static enum status lay_swaths(struct rma *rma)
     return status;
 }
 
+/* By how many samples the map reads before and behind a swath's own ones: delays of all receivers, which are smooth in
+   range, and the taps; runs are whole. */
+static void map_reach(const struct rma *rma, const struct rma_swath *swath, double *before, double *behind)
+{
+    enum { RANGES = 9 };
+    const double c = rma->setting.sound_speed, beta = rma->setting.speed / c;
+    const double to_range = c / 2 * sqrt((1 - beta) * (1 + beta)), slack = 2;
+    double least = 0, most = 0;
+    for (int m = 0; m < rma->receivers; m++)
+        for (int k = 0; k < RANGES; k++) {
+            const double tau = swath->t_first + (double)k / (RANGES - 1) * (swath->held + RMA_RUN) / rma->fs;
+            const double r = fmax(tau * to_range, DELAY_NEAREST * swath->nearest);
+            const double shift = spectrum_abeam(&rma->setting, rma->offset[m], r) * rma->fs;
+            least = fmin(least, shift);
+            most = fmax(most, shift);
+        }
+    *before = slack - least + rma->delay->taps.taps;
+    *behind = slack + most + rma->delay->taps.taps + RMA_RUN;
+}
+
+/* What the swaths take of a record. Correlation of a stretch of it is exact: that much is compressed. */
+static enum status lay_record(struct rma *rma)
+{
+    const int pulse = rma->record_length > 0 ? rma->problem.acquisition->pulse_length : 1;
+    double from = rma->samples, to = 0, before = 0, behind = 0;
+    for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
+        if (s->end <= s->begin)
+            continue;
+        if (rma->delay)
+            map_reach(rma, s, &before, &behind);
+        from = fmin(from, floor(s->begin - before));
+        to = fmax(to, ceil(s->end + behind));
+    }
+    rma->from = from < to ? (int)fmax(0, from) : 0;
+    rma->held = from < to ? (int)fmin(to, rma->samples) - rma->from : 1;
+    rma->read = (int)fmin(rma->held + pulse - 1.0, rma->samples - rma->from);
+    if (rma->record_length > 0)
+        rma->record_length = fft_length_fast((long long)rma->held + pulse - 1);
+    return STATUS_OK;
+}
+
 /* The scratch of a thread: room for each swath in turn. */
 static void lay_scratch(struct rma *rma)
 {
@@ -338,7 +379,7 @@ static void lay_scratch(struct rma *rma)
             [RMA_SPECTRUM] = 2 * (stolt + 2 * RMA_GUARD) * real_bytes,
             [RMA_PARTS] = rma->taps == 0 ? most_rows * 2 * RMA_ALIGNMENT : 0,
             [RMA_STORED] = 2 * RMA_TILE * (s->rows + RMA_TILE) * real_bytes,
-            [RMA_PADDED] = rma->delay ? 2 * ((size_t)rma->samples + 2 * (size_t)rma->delay->guard) * real_bytes : 0,
+            [RMA_PADDED] = rma->delay ? 2 * ((size_t)rma->held + 2 * (size_t)rma->delay->guard) * real_bytes : 0,
             [RMA_TURNS] = rma->delay ? 2 * RMA_TILE * receivers * real_bytes : 0,
             [RMA_EDGES] = RMA_TILE * terms * ((size_t)s->row * real_bytes / RMA_ALIGNMENT + 1) * 2 * real_bytes,
         };
@@ -353,7 +394,8 @@ static void lay_scratch(struct rma *rma)
 
 enum status rma_layout(struct rma *rma)
 {
-    static enum status (*const steps[])(struct rma *) = {lay_track, lay_band, rma_blocks_lay, lay_patches, lay_swaths};
+    static enum status (*const steps[])(struct rma *) = {lay_track,   lay_band,   rma_blocks_lay,
+                                                         lay_patches, lay_swaths, lay_record};
     enum status status = STATUS_OK;
     for (size_t k = 0; status == STATUS_OK && k < sizeof steps / sizeof *steps; k++)
         status = steps[k](rma);

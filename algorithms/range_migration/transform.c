@@ -228,7 +228,7 @@ static inline void multiply(real *restrict a, const real *restrict b, int count)
     }
 }
 
-/* A swath's part of a compressed record, as the spectrum's bins of the band. */
+/* A swath's part of a compressed record, of which sample `from` is the first, as the spectrum's bins of the band. */
 static void cut(const struct rma *rma, const struct rma_swath *swath, const real *record, real *row)
 {
     const real *tapers = rma->tapers;
@@ -236,7 +236,7 @@ static void cut(const struct rma *rma, const struct rma_swath *swath, const real
     real *wave = scratch_of(rma, RMA_WAVE), *taken = wave + 2 * lead;
     memset(wave, 0, 2 * (size_t)lead * sizeof *wave);
     if (count > 0)
-        memcpy(taken, record + 2 * swath->begin, 2 * (size_t)count * sizeof *wave);
+        memcpy(taken, record + 2 * (swath->begin - rma->from), 2 * (size_t)count * sizeof *wave);
     memset(taken + 2 * count, 0, 2 * (size_t)(length - lead - count) * sizeof *wave);
     for (int k = 0; k < rma->taper && k < count; k++)
         for (int part = 0; part < 2; part++) {
@@ -250,10 +250,10 @@ static void cut(const struct rma *rma, const struct rma_swath *swath, const real
     memset(row + 2 * swath->band, 0, 2 * (size_t)(swath->row - swath->band) * sizeof *row);
 }
 
-/* A compressed record between zeros. */
+/* What is held of a compressed record between zeros. */
 static real *padded(const struct rma *rma, const real *record)
 {
-    const size_t guard = 2 * (size_t)rma->delay->guard, n = 2 * (size_t)rma->samples;
+    const size_t guard = 2 * (size_t)rma->delay->guard, n = 2 * (size_t)rma->held;
     real *out = scratch_of(rma, RMA_PADDED);
     memset(out, 0, guard * sizeof *out);
     memcpy(out + guard, record, n * sizeof *out);
@@ -266,11 +266,11 @@ static real *padded(const struct rma *rma, const real *record)
 static void compress(const struct rma *rma, rma_map_function *map, const void *samples, double seconds[2])
 {
     double compressing = 0, mapping = 0;
-    const size_t n = 2 * (size_t)rma->samples, length = 2 * (size_t)rma->record_length;
+    const size_t all = 2 * (size_t)rma->samples, n = 2 * (size_t)rma->read, length = 2 * (size_t)rma->record_length;
 #pragma omp parallel for schedule(static) num_threads(rma->threads) reduction(+ : compressing, mapping)
     for (int turn = 0; turn < rma->pings * rma->receivers; turn++) {
         const int receiver = turn / rma->pings, k = turn % rma->pings * rma->receivers + receiver;
-        const real *record = (const real *)samples + n * (size_t)k;
+        const real *record = (const real *)samples + all * (size_t)k + 2 * (size_t)rma->from;
         const double begun = seconds_now();
         if (length > 0) {
             real *wave = scratch_of(rma, RMA_RECORD);

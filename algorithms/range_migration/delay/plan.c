@@ -1,4 +1,5 @@
 /* Tables of a swath's map (delay.h), compiled once for each precision. */
+#include <assert.h>
 #include <limits.h>
 #include <string.h>
 
@@ -54,8 +55,12 @@ static void run_fill(const struct rma *rma, const struct rma_swath *swath, int r
     const double middle = (delays[RMA_RUN / 2 - 1] + delays[RMA_RUN / 2]) / 2 * rma->fs, whole = floor(middle);
     const double step = (delays[RMA_RUN - 1] - delays[0]) * rma->fs / (RMA_RUN - 1); /* samples a sample */
     const double first = from + whole + 1 - taps / 2;
-    bool inside = first >= -rma->delay->guard && first + RMA_RUN + taps <= rma->samples + rma->delay->guard;
-    map->first[at] = inside ? (int)first + rma->delay->guard : INT_MIN;
+    const double place = first - rma->from;
+    bool inside = place >= -rma->delay->guard && place + RMA_RUN + taps <= rma->held + rma->delay->guard;
+    /* What is held of the record reaches as far as taps do, or to the record's own end. */
+    assert(swath->end == swath->begin || rma->from == 0 || place >= 0);
+    assert(swath->end == swath->begin || rma->from + rma->held == rma->samples || place + RMA_RUN + taps <= rma->held);
+    map->first[at] = inside ? (int)place + rma->delay->guard : INT_MIN;
     delay_taps_weights(&rma->delay->taps, middle - whole, weights, slopes);
     for (int k = 0; k < taps; k++) {
         ((real *)map->weights)[at * (size_t)taps + (size_t)k] = (real)weights[k];

@@ -6,9 +6,11 @@
 #include <string.h>
 
 #include "backprojection/pairs.h"
+#include "backprojection/traces.h"
 #include "common/delay.h"
 #include "common/fft_length.h"
 #include "data/random.h"
+#include "range_migration/engine.h"
 #include "tests/support.h"
 
 enum { SAMPLES = 1500, PULSE = 90, PINGS = 13, RECEIVERS = 3, PATCHES = 3 };
@@ -210,6 +212,86 @@ static void samples_left_out(void **state)
     print_message("largest difference: %.1e float, %.1e double\n", worst[0], worst[1]);
 }
 
+/* Records correlated as a whole; *out points into `a`. */
+static void compress(const struct acquisition *a, const struct echoes *raw, struct acquisition *out,
+                     struct echoes *echoes)
+{
+    struct traces_shape shape;
+    struct traces *traces;
+    assert_int_equal(traces_plan_double(a, &(struct traces_form){.upsample = 1}, 1, &shape, &traces), STATUS_OK);
+    *out = *a;
+    out->compressed = true;
+    assert_int_equal(echoes_allocate(out, PRECISION_DOUBLE, echoes), STATUS_OK);
+    for (int i = 0; i < PINGS * RECEIVERS; i++)
+        traces_fill_double(traces, 0, (const double complex *)raw->samples + i * SAMPLES,
+                           (double complex *)echoes->samples + i * SAMPLES);
+    traces_destroy_double(traces);
+}
+
+/* What range migration compresses of a record; its work does not grow with what is recorded beside it. */
+static void read_by(const char *text, struct problem problem, int *from, int *end)
+{
+    struct acquisition longer = *problem.acquisition;
+    struct spec spec;
+    void *plan;
+    assert_int_equal(spec_parse(text, &spec), STATUS_OK);
+    problem.precision = spec.precision;
+    if (spec.algorithm->plan(&problem, spec.options, &plan) != STATUS_OK)
+        fail_msg("%s: %s", text, status_message());
+    *from = ((const struct rma *)plan)->from;
+    *end = *from + ((const struct rma *)plan)->read;
+    spec.algorithm->destroy(plan);
+    spec_free(&spec);
+    const double flops = support_work(text, problem).flops;
+    longer.samples *= 2;
+    problem.acquisition = &longer;
+    assert_up_to(support_work(text, problem).flops / flops, 1.02, "%s, records of twice the length", text);
+}
+
+/* Range migration compresses what its swaths take of the records: the image is that of whole ones. */
+static void swaths_left_out(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *spec;
+        double bound; /* rma_delay: of its taps, which follow the replica where there is one */
+    } runs[] = {{"rma_lbf:variant=corrected,precision=float", 1e-6},
+                {"rma_numeric:precision=double", 1e-14},
+                {"rma_delay:precision=float", 4e-5},
+                {"rma_delay:precision=double", 4e-5}};
+    for (size_t n = 0; n < sizeof runs / sizeof *runs; n++) {
+        struct acquisition a, whole;
+        struct echoes echoes, compressed;
+        struct image image, from_whole, spoilt;
+        int from, end;
+        make_case(&cases[0], true, &a, &echoes);
+        a.echo_sine = 0.02;
+        compress(&a, &echoes, &whole, &compressed);
+        const struct problem problem = {&a, 1, cases[0].grids, PRECISION_DOUBLE};
+        read_by(runs[n].spec, problem, &from, &end);
+        assert_true(from > SAMPLES / 4 && end < 3 * SAMPLES / 4);
+        assert_int_equal(support_image(runs[n].spec, problem, &echoes, &image), STATUS_OK);
+        assert_int_equal(support_image(runs[n].spec, (struct problem){&whole, 1, cases[0].grids, PRECISION_DOUBLE},
+                                       &compressed, &from_whole),
+                         STATUS_OK);
+        const double difference = support_difference(&image, &from_whole);
+        for (int i = 0; i < PINGS * RECEIVERS * SAMPLES; i++)
+            if (i % SAMPLES < from || i % SAMPLES >= end)
+                ((double complex *)echoes.samples)[i] = NAN;
+        assert_int_equal(support_image(runs[n].spec, problem, &echoes, &spoilt), STATUS_OK);
+        print_message("%s: samples %d to %d, %.1e from that of whole records\n", runs[n].spec, from, end - 1,
+                      difference);
+        assert_up_to(difference, runs[n].bound, "%s", runs[n].spec);
+        assert_true(support_difference(&spoilt, &image) == 0);
+        image_free(&image);
+        image_free(&from_whole);
+        image_free(&spoilt);
+        echoes_free(&compressed);
+        echoes_free(&echoes);
+        acquisition_free(&a);
+    }
+}
+
 static double uniform(struct random *random, double low, double high)
 {
     return low + (high - low) * random_uniform(random);
@@ -255,6 +337,7 @@ static void bounds_hold(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(samples_left_out), cmocka_unit_test(bounds_hold)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(samples_left_out), cmocka_unit_test(swaths_left_out),
+                                       cmocka_unit_test(bounds_hold)};
     return cmocka_run_group_tests_name("samples_read", tests, NULL, NULL);
 }
