@@ -101,18 +101,17 @@ static void far_pixels_are_told_apart(void **state)
 {
     (void)state;
     support_write("image.gp", "set print output\n"
-                              "stats panels[1] binary matrix using 1 name 'sx' nooutput\n"
-                              "stats panels[1] binary matrix using 2 name 'sr' nooutput\n"
-                              "print sprintf('%.3f %.3f', x_origin[1] + sx_min, x_origin[1] + sx_max)\n"
-                              "print sprintf('%.3f %.3f', r_origin[1] + sr_min, r_origin[1] + sr_max)\n"
+                              "stats panels[1] binary matrix using ($3 > -50 ? $1 : 0) name 'sx' nooutput\n"
+                              "stats panels[1] binary matrix using ($3 > -50 ? $2 : 0) name 'sr' nooutput\n"
+                              "print sprintf('brightest at %.3f %.3f', x_origin[1] + sx_max, r_origin[1] + sr_max)\n"
                               "print '</svg>'\n");
     const struct grid patch = {4000003, 0.02, 101, 500019.5, 0.02, 51, 0};
     struct image image;
     assert_int_equal(image_allocate(1, &patch, PRECISION_DOUBLE, &image), STATUS_OK);
-    ((double complex *)image.pixels[0])[25 * 101 + 50] = 1;
+    ((double complex *)image.pixels[0])[26 * 101 + 51] = 1;
     const struct image_picture picture = {.image = &image, .title = "a"};
     assert_drawn(plot_image(path_of("variables.svg"), folder, &picture));
-    assert_text("variables.svg", "4000003.000 4000005.000\n500019.500 500020.500\n</svg>\n");
+    assert_text("variables.svg", "brightest at 4000004.020 500020.020\n</svg>\n");
     assert_drawn(plot_image(path_of("far.svg"), real_plots, &picture));
     char *whole = support_read("far.svg");
     assert_true(whole && strstr(whole, "4000003.5") && strstr(whole, "500020.5"));
