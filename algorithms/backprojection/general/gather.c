@@ -251,41 +251,73 @@ INLINE void add_taken(struct taking taking, int receivers, const struct receiver
     }
 }
 
-/* `taking` is a constant where this is inlined. */
-INLINE void add_group(struct taking taking, const struct receiver_group *group, struct run *runs,
-                      struct pair_span pixels, real *re, real *im)
+/* Ways of taking as functions of their own, of a whole group and of one record: where several are inlined into one
+   function, the compiler's choice of registers for each depends on the others. */
+typedef void adding(const struct receiver_group *group, struct run *runs, struct pair_span pixels, real *re, real *im);
+#define ADDING(name, line, branches, loading, receivers)                                                               \
+    static __attribute__((noinline)) void name(const struct receiver_group *group, struct run *runs,                   \
+                                               struct pair_span pixels, real *re, real *im)                            \
+    {                                                                                                                  \
+        add_taken((struct taking){line, branches, loading}, receivers, group, runs, pixels, re, im);                   \
+    }
+#define PAIR(name, line, branches, loading)                                                                            \
+    ADDING(name##_one, line, branches, loading, 1)                                                                     \
+    ADDING(name##_group, line, branches, loading, GROUP_RECEIVERS)
+#define VALUES(name, line)                                                                                             \
+    PAIR(name##_apart, line, 1, APART)                                                                                 \
+    PAIR(name##_fours, line, 1, FOURS)                                                                                 \
+    PAIR(name##_together, line, 1, TOGETHER)
+#define BRANCHES(name, count)                                                                                          \
+    PAIR(name##_apart, false, count, APART)                                                                            \
+    PAIR(name##_together, false, count, TOGETHER)
+VALUES(nearest, false)
+VALUES(line, true)
+BRANCHES(three, 3)
+BRANCHES(four, 4)
+BRANCHES(five, 5)
+BRANCHES(six, 6)
+BRANCHES(any, group->table->branches)
+
+/* One record, and a whole group, by how samples are loaded. */
+struct ways {
+    adding *one[3], *group[3];
+};
+#define OF_VALUES(name)                                                                                                \
+    {                                                                                                                  \
+        {name##_apart_one, name##_fours_one, name##_together_one},                                                     \
+            {name##_apart_group, name##_fours_group, name##_together_group},                                           \
+    }
+#define OF_BRANCHES(name)                                                                                              \
+    {                                                                                                                  \
+        {name##_apart_one, name##_apart_one, name##_together_one},                                                     \
+            {name##_apart_group, name##_apart_group, name##_together_group},                                           \
+    }
+static const struct ways ways_nearest = OF_VALUES(nearest), ways_line = OF_VALUES(line);
+/* The usual numbers of branches unroll, any other one works as well. */
+enum { USUAL_LEAST = 3, USUAL_MOST = 6 };
+static const struct ways ways_any = OF_BRANCHES(any),
+                         ways_usual[] = {OF_BRANCHES(three), OF_BRANCHES(four), OF_BRANCHES(five), OF_BRANCHES(six)};
+
+static const struct ways *ways_choose(const struct bp_table *table)
 {
+    const int branches = table->branches;
+    if (table->reading != BP_BRANCHES)
+        return table->reading == BP_LINE ? &ways_line : &ways_nearest;
+    return branches < USUAL_LEAST || branches > USUAL_MOST ? &ways_any : &ways_usual[branches - USUAL_LEAST];
+}
+
+static void add_group(const struct receiver_group *group, enum loading loading, struct pair_span pixels,
+                      struct run *runs, real *re, real *im)
+{
+    const struct ways *ways = ways_choose(group->table);
     if (group->receivers == GROUP_RECEIVERS) {
-        add_taken(taking, GROUP_RECEIVERS, group, runs, pixels, re, im);
+        ways->group[loading](group, runs, pixels, re, im);
         return;
     }
     struct receiver_group one = *group;
     one.receivers = 1;
     for (int g = 0; g < group->receivers; g++, one.row += one.layout.record)
-        add_taken(taking, 1, &one, &runs[g], pixels, re, im);
-}
-
-INLINE void add_all(enum loading loading, const struct receiver_group *group, struct run *runs, struct pair_span pixels,
-                    real *re, real *im)
-{
-    if (group->table->reading == BP_LINE)
-        add_group((struct taking){true, 1, loading}, group, runs, pixels, re, im);
-    else
-        add_group((struct taking){false, 1, loading}, group, runs, pixels, re, im);
-}
-
-/* The usual degrees unroll, any other one works as well. */
-INLINE void add_branches(enum loading loading, const struct receiver_group *group, struct run *runs,
-                         struct pair_span pixels, real *re, real *im)
-{
-    const int branches = group->table->branches;
-    switch (branches) {
-    case 3: add_group((struct taking){false, 3, loading}, group, runs, pixels, re, im); break;
-    case 4: add_group((struct taking){false, 4, loading}, group, runs, pixels, re, im); break;
-    case 5: add_group((struct taking){false, 5, loading}, group, runs, pixels, re, im); break;
-    case 6: add_group((struct taking){false, 6, loading}, group, runs, pixels, re, im); break;
-    default: add_group((struct taking){false, branches, loading}, group, runs, pixels, re, im); break;
-    }
+        ways->one[loading](&one, &runs[g], pixels, re, im);
 }
 
 /* Many weights, from a table of steps or from cubics in the fraction; the record's parts lie apart. `taps` is a
@@ -326,19 +358,8 @@ void BP_GATHER(const struct receiver_group *group, enum loading loading, struct 
                real *re, real *im)
 {
     const struct bp_table *table = group->table;
-    if (table->reading == BP_NEAREST || table->reading == BP_LINE) {
-        switch (loading) {
-        case APART: add_all(APART, group, runs, pixels, re, im); break;
-        case FOURS: add_all(FOURS, group, runs, pixels, re, im); break;
-        case TOGETHER: add_all(TOGETHER, group, runs, pixels, re, im); break;
-        }
-        return;
-    }
-    if (table->reading == BP_BRANCHES) {
-        if (PERMUTES && loading == TOGETHER)
-            add_branches(TOGETHER, group, runs, pixels, re, im);
-        else
-            add_branches(APART, group, runs, pixels, re, im);
+    if (table->reading == BP_NEAREST || table->reading == BP_LINE || table->reading == BP_BRANCHES) {
+        add_group(group, loading, pixels, runs, re, im);
         return;
     }
     const size_t length = group->layout.apart;

@@ -14,8 +14,8 @@
 #include "common/memory.h"
 
 enum {
-    BATCH_BYTES = 8 << 20, /* rows of one batch: they stay in the shared cache while all lines read them */
-    BATCH_LEAST = 8        /* rows of one batch at least, so that threads share the compression */
+    BATCH_BYTES = 2 << 20, /* rows of one batch: they stay in the second-level cache while all lines read them */
+    BATCH_LEAST = 16       /* rows of one batch at least, so that threads share the compression */
 };
 
 struct general {
@@ -170,7 +170,8 @@ static enum status general_plan(struct bp *bp)
     size_t size = real_size(problem->precision), row_bytes = general->layout.record * size;
     double pairs = (double)a->pings * a->receivers;
     general->sum = bp_sum_choose(problem->precision);
-    general->batch = (int)fmin(pairs, fmax(BATCH_LEAST, (double)(BATCH_BYTES / row_bytes)));
+    const size_t held = BATCH_BYTES / row_bytes;
+    general->batch = (int)fmin(pairs, fmax(BATCH_LEAST, (double)(held - held % BP_RECORDS)));
     general->rows = memory_aligned(64, (size_t)general->batch * row_bytes + size);
     const size_t interleaved = 2 * bp_record_values(bp) * size;
     general->interleaved = malloc((size_t)omp_get_max_threads() * interleaved);
