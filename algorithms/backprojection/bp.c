@@ -364,8 +364,8 @@ enum status bp_forecast(const struct problem *problem, const struct interpolator
         if (bp.limited.aperture_limit > 0) {
             forecast->error[CAUSE_APERTURE] = aperture_planned(problem, given->aperture);
         }
-        if (forecast->kind == READ_BRANCHES)
-            bp.table.branches = forecast->values; /* of a kernel, too */
+        if (forecast->kind == READ_BRANCHES && in->degree == 0)
+            bp.kernel.branches = forecast->values;
         forecast_records(&bp, in, forecast);
         if (isnan(law))
             status = status_set(STATUS_FAILED, "no memory for an error law");

@@ -101,6 +101,7 @@ static double general_units(const struct bp *bp)
     const struct acquisition *a = problem->acquisition;
     const double quintics = budget_quintics(bp->medium.phase_limit, problem->precision);
     const double finest = a->fs * bp->table.upsample;
+    const int branches = bp->kernel.branches > 0 ? bp->kernel.branches : bp->table.branches;
     const int pings = step_of(a->pings);
     double units = 0;
     for (int p = pings / 2; p < a->pings; p += pings) {
@@ -121,12 +122,12 @@ static double general_units(const struct bp *bp)
                 const int count = pair_spans(a, p, normal, &line, spans);
                 for (int s = 0; s < count; s++) {
                     span_count(&box, &line, spans[s], &counts);
-                    if (bp->table.branches > 1 && blocks_steep(a, finest, p, &line, spans[s]))
+                    if (branches > 1 && blocks_steep(a, finest, p, &line, spans[s]))
                         steep += spans[s].end - spans[s].begin;
                 }
             }
             const double looked = ceil((double)grid_line_count(grid, along_x) / steps[along_x]);
-            units += (counts.blocks + counts.exact * EXACT_COST / BLOCK_COST + steep * STEEP_COST * bp->table.branches)
+            units += (counts.blocks + counts.exact * EXACT_COST / BLOCK_COST + steep * STEEP_COST * branches)
                      * grid_line_count(grid, along_x) / looked;
         }
     }

@@ -213,8 +213,8 @@ static void command_writes(void **state)
     assert_int_equal(command_plan(&task), STATUS_INVALID);
 }
 
-/* What the general engine reads pixels by, of one column of them, `share` of a sample apart along range. */
-static double units_of(const char *text, double share)
+/* Of one column of pixels, `share` of a sample apart along range, in the general engine. */
+static struct forecast column_forecast(const char *text, double share)
 {
     struct scene scene;
     struct spec spec;
@@ -229,10 +229,17 @@ static double units_of(const char *text, double share)
     assert_int_equal(spec.algorithm->forecast(&problem, spec.options, &forecast), STATUS_OK);
     spec_free(&spec);
     scene_free(&scene);
-    return forecast.units;
+    assert_false(forecast.tables);
+    return forecast;
 }
 
-/* Pixels a sample apart load branches one by one, which takes time; one value each, it does not matter. */
+static double units_of(const char *text, double share)
+{
+    return column_forecast(text, share).units;
+}
+
+/* Pixels a sample apart load branches one by one, which takes time; one value each, it does not matter. Branches that
+   stand for a kernel are such, too, but need no transforms of their own. */
 static void steep_slopes_cost(void **state)
 {
     (void)state;
@@ -247,6 +254,10 @@ static void steep_slopes_cost(void **state)
     assert_true(more[0] > 0.05 * nearest);
     assert_close(more[1] / more[0], 1, 0.01);
     assert_true(units_of("bp_nearest", 1.1) == nearest);
+    const struct forecast kernel = column_forecast("bp_fitted:taps=8", 1.1), one = column_forecast("bp_nearest", 1.1);
+    assert_true(kernel.kind == READ_BRANCHES && kernel.values > 3);
+    assert_close((kernel.units - nearest) / kernel.values / more[0], 1, 0.01);
+    assert_true(kernel.record_flops == one.record_flops);
 }
 
 int main(void)
