@@ -106,13 +106,26 @@ double condition_seen_sine(const struct acquisition *a)
     return a->echo_tapers ? fmin(a->echo_sine, LOBES * a->sound_speed / a->fc / a->tx_length) : condition_beam_sine(a);
 }
 
-double condition_amplitude(const struct acquisition *a, double r, double u)
+/* Sine, off the beam's axis, of a target r m beside the track from a place u m ahead of it. */
+static double beam_sine_at(const struct acquisition *a, double r, double u)
 {
-    double along = u * cos(a->echo_squint) + r * sin(a->echo_squint), sine = along / hypot(u, r);
-    double turns = sine * a->fc / a->sound_speed;
+    return (u * cos(a->echo_squint) + r * sin(a->echo_squint)) / hypot(u, r);
+}
+
+double condition_pair_amplitude(const struct acquisition *a, double r, double u, double d)
+{
+    const double sine = beam_sine_at(a, r, u), turns = a->fc / a->sound_speed;
     if (!(fabs(sine) <= condition_seen_sine(a)))
         return 0;
-    return a->echo_tapers ? condition_sinc(a->tx_length * turns) * condition_sinc(a->rx_length * turns) : 1;
+    if (!a->echo_tapers)
+        return 1;
+    return condition_sinc(a->tx_length * sine * turns)
+           * condition_sinc(a->rx_length * beam_sine_at(a, r, u + d) * turns);
+}
+
+double condition_amplitude(const struct acquisition *a, double r, double u)
+{
+    return condition_pair_amplitude(a, r, u, 0);
 }
 
 double condition_offset(const struct acquisition *a, int n)

@@ -77,6 +77,8 @@ double condition_seen_sine(const struct acquisition *acquisition);
 /* Amplitude of the echo of a unit target r m beside a straight track along x, the transmitter u m ahead of it: 1 inside
    the beam, or both elements' sinc where the echoes taper; 0 where it is not seen. */
 double condition_amplitude(const struct acquisition *acquisition, double r, double u);
+/* The same by the receiver d m ahead of the transmitter, whose own sinc counts from its place. */
+double condition_pair_amplitude(const struct acquisition *acquisition, double r, double u, double d);
 /* sin(pi z)/(pi z) */
 double condition_sinc(double z);
 /* The larger of two values; NAN, which no limit holds, where one of them is. */

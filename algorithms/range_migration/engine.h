@@ -229,6 +229,11 @@ struct rma {
 
 /* Fills everything but the pointers that rma_transform's plan fills. */
 enum status rma_layout(struct rma *rma);
+/* Samples over which a cut of the records tapers. */
+int rma_taper(const struct acquisition *acquisition);
+/* Pings and zeros after them that rows up to `farthest` need whose columns lie `overhang` m beyond the track. */
+double rma_period(const struct acquisition *acquisition, const struct rma_bounds *bounds, double spacing,
+                  double farthest, double overhang);
 
 static inline double rma_last_row(const struct grid *grid)
 {

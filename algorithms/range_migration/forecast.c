@@ -1,9 +1,13 @@
-/* The forecast of range migration (rma_forecast in conditions.h): the errors that its conditions predict, and those of
-   blocks and Stolt interpolation. */
+/* The forecast of range migration (rma_forecast in conditions.h): estimates of an image's error, where its conditions
+   refuse by bounds. What the terms of delay compensation leave is their bound. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-#include "range_migration/conditions.h"
+#include "common/fft_length.h"
+#include "common/pulse_band.h"
+#include "range_migration/azimuth.h"
+#include "range_migration/engine.h"
 
 static const int stolt_taps[] = {0, 4, 6, 8, 12, 16}; /* of rma_stolt_names; 0: a direct sum */
 /* Samples fill two thirds of the transform that is interpolated (RMA_OVERSAMPLING), after Kaiser's weight is taken off:
@@ -12,6 +16,10 @@ static const double STOLT_SHARE = 4, STOLT_SLOPE = 0.57735;
 /* rad, root mean square over a block, for each rad at its ends: a lone block is taken up to 1/(4 pi), several that
    blend leave less (docs/range_migration.md). */
 static const double BLOCK_SHARE = 0.08;
+static const double FEW_TARGETS = 1.4;      /* what an image of a few targets may have of the error of many: measured */
+static const double PULSE_PERIODS = 8;      /* of B: of a record beside its rows (layout.c) */
+static const double PULSE_SHARE = 1.0 / 16; /* of that, where the pulse's own spectrum reaches so far */
+static const double EDGE_BINS = 4; /* of a record's transform that are wrong at half the sampling rate: measured */
 /* Rounding, relative L2: of the transforms. */
 static const double ROUNDING[] = {1e-6, 1e-13};
 
@@ -24,6 +32,69 @@ static double value_of(const char *name, const struct condition *list, int count
     return 0;
 }
 
+/* What range migration keeps of the band. */
+struct band {
+    double half; /* cycles a sample */
+    double lost; /* energy, relative: beyond it, or at half the sampling rate */
+};
+
+/* Energy density at half the sampling rate over that of the band, by the records' ends: what is cut D samples beside an
+   echo, 1/(sqrt 2 pi D B/fs) of it, ends in a step, whose spectrum has half of that there. */
+static double density_of_ends(const struct problem *problem)
+{
+    const struct acquisition *a = problem->acquisition;
+    double before = INFINITY, after = INFINITY;
+    for (int k = 0; k < problem->patch_count; k++) {
+        const struct grid *g = &problem->patches[k];
+        const double last = g->r_first + (g->r_count - 1) * g->r_step;
+        before = fmin(before, (2 * g->r_first / a->sound_speed - a->t0[0]) * a->fs);
+        after = fmin(after, a->samples - 1 - (2 * last / a->sound_speed - a->t0[0]) * a->fs);
+    }
+    return (pow(fmax(before, 1), -2) + pow(fmax(after, 1), -2)) / (8 * M_PI * M_PI);
+}
+
+/* Raw echoes keep the pulse's band, wider by what tapers smear where the first row lets the records be cut, and by what
+   Stolt interpolation reads beyond it, where only samples have anything. */
+static enum status raw_band(const struct rma_view *view, struct band *band, double *density)
+{
+    const struct problem *problem = view->problem;
+    const struct acquisition *a = problem->acquisition;
+    const double pulse = PULSE_PERIODS * a->fs / a->bandwidth, taper = rma_taper(a);
+    const int length = fft_length_fast((long long)a->samples + a->pulse_length);
+    struct pulse_band found;
+    double nearest = INFINITY, total = 0, outside = 0;
+    double *energy = pulse_energy(a, length);
+    enum status status = energy ? pulse_band_find(a, length, &found) : STATUS_FAILED;
+    for (int k = 0; k < problem->patch_count; k++)
+        nearest = fmin(nearest, problem->patches[k].r_first);
+    if (status == STATUS_OK) {
+        band->half = found.half_hz / a->fs;
+        if ((2 * nearest / a->sound_speed - a->t0[0]) * a->fs > fmax(2 * taper, pulse))
+            band->half += 2 / taper;
+        if (view->method->terms > 0)
+            band->half += RMA_GUARD / (a->samples + 2 * pulse);
+        for (int k = 0; k < length; k++) {
+            total += energy[k];
+            outside += fmin(k, length - k) > band->half * length ? energy[k] : 0;
+        }
+        band->lost = outside / total;
+        *density += PULSE_SHARE * energy[length / 2] / (total / length) * a->bandwidth / a->fs;
+    }
+    free(energy);
+    return status;
+}
+
+static enum status band_of(const struct rma_view *view, struct band *band)
+{
+    const struct acquisition *a = view->problem->acquisition;
+    double density = density_of_ends(view->problem);
+    *band = (struct band){fmin(fmax(a->bandwidth / a->fs, 32.0 / a->samples), 0.5), 0};
+    enum status status = a->compressed ? STATUS_OK : raw_band(view, band, &density);
+    if (band->half >= 0.5)
+        band->lost += EDGE_BINS * density / (a->samples * a->bandwidth / a->fs + 2 * PULSE_PERIODS);
+    return status;
+}
+
 enum status rma_forecast(const struct problem *problem, const struct rma_method *method,
                          const struct rma_options *options, struct forecast *forecast)
 {
@@ -32,15 +103,27 @@ enum status rma_forecast(const struct problem *problem, const struct rma_method 
     enum status status = rma_conditions_check(method, list, count);
     if (status != STATUS_OK)
         return status;
-    const double terms = value_of("delay_terms", list, count), taps = value_of("delay_taps", list, count);
+    struct band band;
+    struct straight_track track;
+    acquisition_is_straight(problem->acquisition, &track);
+    const struct rma_view view = rma_view_of(problem, method, &track);
+    status = band_of(&view, &band);
+    if (status != STATUS_OK)
+        return status;
     *forecast = (struct forecast){.sums_pairs = false};
-    forecast->error[CAUSE_SPECTRUM] = value_of("predicted_error", list, count);
+    const double mean = azimuth_error(&view), bound = value_of("predicted_error", list, count);
+    const double taps = method->terms > 0 && view.converts ? delay_taps_expected(&view, method->taps, band.half) : 0;
+    if (isnan(mean) || isnan(taps))
+        return status_set(STATUS_FAILED, "%s: no memory to forecast the image's error", method->name);
+    forecast->error[CAUSE_SPECTRUM] = hypot(isinf(mean) ? bound : FEW_TARGETS * mean, sqrt(band.lost));
     forecast->error[CAUSE_DELAYS] = taps;
     if (!(problem->acquisition->bandwidth < problem->acquisition->fs))
         forecast->error[CAUSE_SPECTRUM] = INFINITY; /* the bin at fs/2 stands for both ends of the band: no law */
     /* Blocks that are asked for by number, or have hard edges, have no law. */
     const bool lawless = options->blocks || !options->blend;
-    forecast->error[CAUSE_BLOCKS] = method->terms > 0 ? terms : lawless ? INFINITY : BLOCK_SHARE * options->limit;
+    forecast->error[CAUSE_BLOCKS] = method->terms > 0 ? value_of("delay_terms", list, count)
+                                    : lawless         ? INFINITY
+                                                      : BLOCK_SHARE * options->limit;
     if (stolt_taps[options->stolt] > 0)
         forecast->error[CAUSE_STOLT] = STOLT_SHARE * exp(-M_PI * STOLT_SLOPE * stolt_taps[options->stolt]);
     forecast->error[CAUSE_FLOAT] = ROUNDING[problem->precision];

@@ -89,14 +89,19 @@ static enum status lay_track(struct rma *rma)
     return rma->method.terms > 0 ? lay_delay(rma, &view) : STATUS_OK;
 }
 
+int rma_taper(const struct acquisition *a)
+{
+    /* No longer than an eighth of the record for a narrow band's sake; the whole record at fs = B. */
+    const double band = fmax(a->bandwidth / a->fs, 8 * TAPER_PERIODS / a->samples);
+    const double share = fmax(fmin(1 - a->bandwidth / a->fs, band), TAPER_PERIODS / a->samples);
+    return (int)fmin(ceil(TAPER_PERIODS / share), a->samples);
+}
+
 /* The bins that hold the compressed pulse; of echoes that come compressed already, twice the band. */
 static enum status lay_band(struct rma *rma)
 {
     const struct acquisition *a = rma->problem.acquisition;
-    /* No longer than an eighth of the record for a narrow band's sake; the whole record at fs = B. */
-    double band = fmax(a->bandwidth / a->fs, 8 * TAPER_PERIODS / a->samples);
-    double share = fmax(fmin(1 - a->bandwidth / a->fs, band), TAPER_PERIODS / a->samples);
-    rma->taper = (int)fmin(ceil(TAPER_PERIODS / share), a->samples);
+    rma->taper = rma_taper(a);
     struct pulse_band pulse;
     rma->record_length = a->compressed ? 0 : fft_length_fast((long long)a->samples + a->pulse_length - 1);
     enum status status = pulse_band_find(a, rma->record_length, &pulse);
@@ -165,14 +170,24 @@ static enum status lay_patches(struct rma *rma)
     return STATUS_OK;
 }
 
-/* Azimuth: the full rate of M receivers (LBF21 Eq. (10)), with zeros after the pings, since the period wraps around:
-   what is focused beyond either end of the track, as far as the widest angle sees, must not reach a wanted column. */
+/* Zeros after the pings, since the period wraps around: what is focused beyond either end of the track, as far as the
+   widest angle sees, must not reach a wanted column. */
+double rma_period(const struct acquisition *a, const struct rma_bounds *bounds, double spacing, double farthest,
+                  double overhang)
+{
+    const double angle = farthest * bounds->sine / sqrt(1 - bounds->sine * bounds->sine);
+    const double reach = rma_reach(a, bounds, farthest), folds = reach < angle ? bounds->way + reach : 0;
+    /* A receiver aside sees half its offset farther; what is less than a Fresnel zone tapers like any edge. */
+    const double zone = sqrt(a->sound_speed / a->fc * farthest / 2);
+    const double extent = (a->pings - 1) * spacing + overhang + angle + fmax(0, bounds->aside / 2 - zone);
+    return fmax(ceil(extent / spacing) + 1, folds / spacing);
+}
+
+/* Azimuth: the full rate of M receivers (LBF21 Eq. (10)). */
 static enum status swath_azimuth(const struct rma *rma, struct rma_swath *swath)
 {
     double spacing = fabs(rma->spacing),
            angle = swath->farthest * rma->bounds.sine / sqrt(1 - rma->bounds.sine * rma->bounds.sine);
-    double reach = rma_reach(rma->problem.acquisition, &rma->bounds, swath->farthest),
-           folds = reach < angle ? rma->bounds.way + reach : 0;
     double x_low = fmin(rma->x_first, rma->x_first + (rma->pings - 1) * rma->spacing);
     double x_high = x_low + (rma->pings - 1) * spacing, overhang = 0;
     for (int k = 0; k < swath->patch_count; k++) {
@@ -187,17 +202,15 @@ static enum status swath_azimuth(const struct rma *rma, struct rma_swath *swath)
                               fmax(x_low - angle - g->x_first, last - x_high - angle));
         overhang = fmax(overhang, fmax(x_low - g->x_first, last - x_high));
     }
-    /* A receiver aside sees half its offset farther; what is less than a Fresnel zone tapers like any edge. */
-    double zone = sqrt(rma->setting.sound_speed / rma->setting.fc * swath->farthest / 2);
-    double extent = x_high - x_low + overhang + angle + fmax(0, rma->bounds.aside / 2 - zone);
-    swath->period = fft_length((long long)fmin(1e9, fmax(ceil(extent / spacing) + 1, folds / spacing)));
+    const double period = rma_period(rma->problem.acquisition, &rma->bounds, spacing, swath->farthest, overhang);
+    swath->period = fft_length((long long)fmin(1e9, period));
     if (swath->period == 0 || (double)swath->period * rma->receivers > INT_MAX / 4)
         return status_set(STATUS_UNSUPPORTED,
                           "%s: condition transform_length: the wavenumbers of %g m to either side of a target, pings "
                           "%g m apart, %d receivers, are %.3g; at most %d is needed (cure: columns nearer to the "
                           "track, fewer receivers, or back projection)",
-                          rma->method.name, reach, spacing, rma->receivers,
-                          fmax(ceil(extent / spacing) + 1, folds / spacing) * rma->receivers, INT_MAX / 4);
+                          rma->method.name, rma_reach(rma->problem.acquisition, &rma->bounds, swath->farthest), spacing,
+                          rma->receivers, period * rma->receivers, INT_MAX / 4);
     swath->wavenumbers = swath->period * rma->receivers;
     swath->columns = (size_t)(swath->wavenumbers + RMA_TILE - 1) / RMA_TILE * RMA_TILE;
     return STATUS_OK;

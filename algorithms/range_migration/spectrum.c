@@ -158,7 +158,8 @@ double spectrum_compensated(const struct spectrum_setting *setting, double d, do
     const double walk = spectrum_walk(setting, nu);
     if (isnan(walk))
         return NAN;
-    double abeam = spectrum_abeam(setting, d, r * walk);
-    return -(r * spectrum_monostatic(setting, frequency, nu) - M_PI * nu * d + 2 * M_PI * frequency * abeam
-             + spectrum_residual(setting, d, r, nu));
+    /* The delay at this frequency and spectrum_residual, which takes it off at the carrier. */
+    double late = 2 * M_PI * (frequency - setting->fc) * spectrum_abeam(setting, d, r * walk);
+    return -(r * spectrum_monostatic(setting, frequency, nu) - M_PI * nu * d + late
+             + bistatic(setting, d, r, setting->fc, nu));
 }

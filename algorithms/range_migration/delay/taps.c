@@ -11,9 +11,14 @@
 
 static const double FLOOR = 1e-7; /* of the energy lies evenly over all frequencies: weights stay small everywhere */
 
-enum { BINS = 512 };
+enum { BINS = 512, RECEIVERS = 32 /* whose delays are looked at, at most */ };
 
-/* The compressed pulse's energy by frequency, bin k about (k + 1/2)/BINS - 1/2 of the sampling rate; their sum is 1. */
+static double frequency_of(int bin)
+{
+    return (bin + 0.5) / BINS - 0.5;
+}
+
+/* The compressed pulse's energy by frequency, bin k about frequency_of(k) of the sampling rate; their sum is 1. */
 static enum status spectrum_fill(const struct acquisition *a, double energy[BINS])
 {
     const double half = a->bandwidth / 2 / a->fs;
@@ -49,7 +54,7 @@ static double correlation(const double energy[BINS], double x, double *slope)
     double value = 0;
     *slope = 0;
     for (int k = 0; k < BINS; k++) {
-        double w = 2 * M_PI * ((k + 0.5) / BINS - 0.5);
+        double w = 2 * M_PI * frequency_of(k);
         value += energy[k] * cos(w * x);
         *slope -= energy[k] * w * sin(w * x);
     }
@@ -95,6 +100,41 @@ double delay_taps_error(const struct acquisition *acquisition, int taps)
     struct normal normal;
     double weights[DELAY_TAPS], slopes[DELAY_TAPS];
     return normal_make(acquisition, taps, &normal) == STATUS_OK ? weights_solve(&normal, 0.5, weights, slopes) : NAN;
+}
+
+/* The error half-way between two samples, of the frequencies that are kept: without the floor, and without the flanks
+   that are cut off. The weights are even about the middle. */
+static double middle_error(const struct normal *normal, double half, const double weights[DELAY_TAPS])
+{
+    double left = 0;
+    for (int n = 0; n < BINS / 2; n++) {
+        const double nu = frequency_of(n + BINS / 2),
+                     energy = normal->energy[BINS / 2 + n] + normal->energy[BINS / 2 - 1 - n];
+        double off = -1;
+        for (int k = 0; k < normal->taps; k++)
+            off += weights[k] * cos(2 * M_PI * nu * (k + 0.5 - normal->taps / 2));
+        left += nu < half ? fmax(energy - 2 * FLOOR / BINS, 0) * off * off : 0;
+    }
+    return sqrt(left);
+}
+
+double delay_taps_expected(const struct rma_view *view, int taps, double half)
+{
+    const struct problem *problem = view->problem;
+    const struct acquisition *a = problem->acquisition;
+    const int every = (a->receivers + RECEIVERS - 1) / RECEIVERS;
+    struct normal normal;
+    double weights[DELAY_TAPS], slopes[DELAY_TAPS], sum = 0, count = 0;
+    if (normal_make(a, taps, &normal) != STATUS_OK)
+        return NAN;
+    weights_solve(&normal, 0.5, weights, slopes);
+    for (int k = 0; k < 2 * problem->patch_count; k++)
+        for (int m = 0; m < a->receivers; m += every, count++) {
+            const struct grid *g = &problem->patches[k / 2];
+            const double r = g->r_first + k % 2 * (g->r_count - 1) * g->r_step;
+            sum += pow(sin(M_PI * a->fs * spectrum_abeam(&view->setting, a->rx[m].x - a->tx[0].x, r)), 2);
+        }
+    return middle_error(&normal, half, weights) * sqrt(sum / count);
 }
 
 enum status delay_taps_make(const struct acquisition *acquisition, int taps, struct delay_taps *made)

@@ -99,6 +99,32 @@ static void measured(void **state)
         fail_msg("the median of predicted over measured errors is %g, must be from 1 to 1.8", middle);
 }
 
+/* Range migration's forecast is an estimate, too: of scenes that few and many pings see, near and far, whose records end
+   near their rows. Of the second, azimuth alone says a quarter. */
+static void range_migration(void **state)
+{
+    (void)state;
+    static const int seeds[] = {5028, 5043, 5024, 5033, 5034, 5037, 5041, 5046, 5047, 5057, 5081, 5090};
+    enum { SEEDS = sizeof seeds / sizeof *seeds };
+    double ratios[SEEDS];
+    for (int k = 0; k < SEEDS; k++) {
+        struct scene scene;
+        struct session session;
+        double error;
+        support_random_scene(seeds[k], &scene);
+        assert_int_equal(session_open(&scene, &session), STATUS_OK);
+        ratios[k] = predicted_over_measured(&session, "rma_delay", &error);
+        if (!(ratios[k] > 0.9))
+            fail_msg("seed %d: an error of %g is predicted, %g measured", seeds[k], ratios[k] * error, error);
+        session_close(&session);
+        scene_free(&scene);
+    }
+    const double middle = median(ratios, SEEDS); /* sorts them */
+    print_message("predicted over measured: %.2f to %.2f, median %.2f\n", ratios[0], ratios[SEEDS - 1], middle);
+    if (!(middle > 1 && middle < 2))
+        fail_msg("the median of predicted over measured errors is %g, must be from 1 to 2", middle);
+}
+
 /* Records that end where pixels lie: taps read zeros beyond, padded records go on. */
 static void cut_records(void **state)
 {
@@ -136,6 +162,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(closed_forms),
         cmocka_unit_test_setup_teardown(measured, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(range_migration, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(cut_records, folder_make, folder_remove),
     };
     return cmocka_run_group_tests_name("law", tests, NULL, NULL);
