@@ -22,7 +22,8 @@ static const double MARGIN = 1.12;
 static const double DELAYS_MOST = 0.4, PHASE_SHARE = 0.8;
 /* Of a candidate's time, what an aperture limit leaves at most, where it is looked at. */
 static const double LIMIT_PAYS = 0.95;
-/* Of the budget over the margin, what a setting takes that is called by its error: delays and rounding have the rest. */
+/* Of the budget over the margin, what a setting takes that is called by its error: delays and rounding have the
+   rest. */
 static const double BUDGETED = 0.99;
 
 /* What all candidates of a problem share. */

@@ -248,10 +248,24 @@ static void general_execute(struct bp *bp, const struct echoes *echoes, struct i
     stages_end(stages, "store");
 }
 
+/* Neighbouring pings of few receivers share blocks of pixels, some of which are outside the aperture of one of them. */
+static double general_beside(const struct bp *bp)
+{
+    const struct acquisition *a = bp->problem.acquisition;
+    const int joined = a->receivers < BP_RECORDS ? BP_RECORDS / a->receivers : 1;
+    double apart = 0;
+    for (int p = 1; p < a->pings && joined > 1; p++) {
+        const struct vector at = a->tx[p], before = a->tx[p - 1];
+        apart = fmax(apart, sqrt(pow(at.x - before.x, 2) + pow(at.y - before.y, 2) + pow(at.z - before.z, 2)));
+    }
+    return (joined - 1) * apart;
+}
+
 const struct bp_engine bp_general = {
     .name = "general",
     .applicable = general_applicable,
     .units = general_units,
+    .beside = general_beside,
     .plan = general_plan,
     .execute = general_execute,
     .destroy = general_destroy,

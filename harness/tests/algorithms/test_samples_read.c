@@ -21,11 +21,14 @@ static const struct patch_case {
     int patches;
     struct grid grids[2];
     double speed, limit; /* m/s; aperture limit */
+    int receivers;       /* 0: RECEIVERS, which are the most */
+    double spacing;      /* m, of the pings; 0: 0.1 */
 } cases[] = {
     {"middle", 1, {{-0.4, 0.02, 41, 25, 0.02, 30, 0}}, 2.5, INFINITY},
     {"limited", 1, {{-0.4, 0.02, 41, 25, 0.02, 30, 0}}, 2.5, 0.03},
     {"fast", 1, {{-0.4, 0.02, 41, 25, 0.02, 30, 0}}, -75, INFINITY},
     {"ahead", 1, {{19.6, 0.02, 41, 25, 0.02, 30, 0}}, 2.5, INFINITY},
+    {"joined pings", 1, {{-6, 0.1, 121, 25, 0.02, 9, 0}}, 2.5, 0.3, 1, 0.8},
     {"record's start", 1, {{-0.4, 0.02, 41, 8.8, 0.02, 30, 0}}, 2.5, INFINITY},
     {"record's end", 1, {{-0.4, 0.02, 41, 46.2, 0.02, 30, 0}}, 2.5, INFINITY},
     {"beyond the record", 1, {{-0.4, 0.02, 41, 60, 0.02, 30, 0}}, 2.5, INFINITY},
@@ -53,14 +56,15 @@ static const struct method {
 static void make_case(const struct patch_case *c, bool raw, struct acquisition *a, struct echoes *echoes)
 {
     struct random random = random_seed(31, (uint64_t)(c - cases));
-    *a = support_acquisition(PINGS, RECEIVERS, SAMPLES);
+    const int receivers = c->receivers > 0 ? c->receivers : RECEIVERS;
+    *a = support_acquisition(PINGS, receivers, SAMPLES);
     a->aperture_limit = c->limit;
     for (int p = 0; p < PINGS; p++) {
         a->t0[p] = 2 * 9 / a->sound_speed;
-        a->tx[p].x = (p - PINGS / 2) * 0.1;
+        a->tx[p].x = (p - PINGS / 2) * (c->spacing > 0 ? c->spacing : 0.1);
         a->velocity[p].x = c->speed;
-        for (int m = 0; m < RECEIVERS; m++)
-            a->rx[p * RECEIVERS + m].x = a->tx[p].x - 0.04 * (m + 1);
+        for (int m = 0; m < receivers; m++)
+            a->rx[p * receivers + m].x = a->tx[p].x - 0.04 * (m + 1);
     }
     if (raw) {
         a->compressed = false;
@@ -126,7 +130,7 @@ static int samples_met(const struct problem *problem, int *first, int *last)
 static void assert_not_read(const struct patch_case *c, const struct problem *problem, const struct echoes *echoes,
                             const char *text, const struct image *image, const bool *unread)
 {
-    const int records = PINGS * RECEIVERS;
+    const int records = PINGS * problem->acquisition->receivers;
     struct echoes spoilt;
     struct image unspoilt;
     assert_int_equal(echoes_convert(echoes, PRECISION_DOUBLE, &spoilt), STATUS_OK);
