@@ -1,17 +1,18 @@
 /* Azimuth of range migration at single frequencies (azimuth.h).
 
-   The echo of a target at (x', r) at the frequency F is  s_pm = a exp(-j 2 pi F tau_m(x_p - x')),  a the beam's amplitude.
-   Range migration transforms it over the pings, adds the receivers up and transforms back (rma.h):
+   The echo of a target at (x', r) at the frequency F is  s_pm = a exp(-j 2 pi F tau_m(x_p - x')),  a the beam's
+   amplitude. Range migration transforms it over the pings, adds the receivers up and transforms back (rma.h):
 
        image(x) = sum over nu of  w(F, nu) exp(+j 2 pi nu x) sum over m of  exp(-j phi_m(F, nu)) X_m(nu),
 
    X_m(nu) periodic in nu as the pings sample it. This is done as it stands, for it costs little at one frequency, and
-   compared with back projection,  sum over p and m of  s_pm exp(+j 2 pi F tau_m(x_p - x)).  What goes wrong in azimuth is
-   all in it: wavenumbers that the receivers do not sample, what is seen and not focused, the ripple where the track ends,
-   what stationary phase drops, the formula's own phase.
+   compared with back projection,  sum over p and m of  s_pm exp(+j 2 pi F tau_m(x_p - x)).  What goes wrong in
+   azimuth is all in it: wavenumbers that the receivers do not sample, what is seen and not focused, the ripple where
+   the track ends, what stationary phase drops, the formula's own phase.
 
-   Rows need not be looked at: to a column, a row is a delay, and by Parseval's theorem the energies of all rows are those
-   of all frequencies. Targets, rows and frequencies are taken in turn; their energies are summed as those of the image. */
+   Rows need not be looked at: to a column, a row is a delay, and by Parseval's theorem the energies of all rows are
+   those of all frequencies. Targets, rows and frequencies are taken in turn; their energies are summed as those of
+   the image. */
 #include "range_migration/azimuth.h"
 
 #include <complex.h>

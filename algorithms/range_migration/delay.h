@@ -65,8 +65,8 @@ struct delay_taps {
 enum status delay_taps_make(const struct acquisition *acquisition, int taps, struct delay_taps *made);
 /* Their error, relative L2 of the pulse, half-way between two samples; NAN without memory. */
 double delay_taps_error(const struct acquisition *acquisition, int taps);
-/* Their error in an image, relative L2: that of its receivers' delays, which grows as sin(pi fraction), of the frequencies
-   up to `half` cycles a sample. NAN without memory. */
+/* Their error in an image, relative L2: that of its receivers' delays, which grows as sin(pi fraction), of the
+   frequencies up to `half` cycles a sample. NAN without memory. */
 double delay_taps_expected(const struct rma_view *view, int taps, double half);
 /* Weights for the signal `fraction` samples (0 to 1) after tap taps/2 - 1, and their slopes over it. */
 void delay_taps_weights(const struct delay_taps *taps, double fraction, double *weights, double *slopes);

@@ -99,8 +99,8 @@ static void measured(void **state)
         fail_msg("the median of predicted over measured errors is %g, must be from 1 to 1.8", middle);
 }
 
-/* Range migration's forecast is an estimate, too: of scenes that few and many pings see, near and far, whose records end
-   near their rows. Of the second, azimuth alone says a quarter. */
+/* Range migration's forecast is an estimate, too: of scenes that few and many pings see, near and far, whose records
+   end near their rows. Of the second, azimuth alone says a quarter. */
 static void range_migration(void **state)
 {
     (void)state;
