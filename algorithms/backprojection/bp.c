@@ -224,7 +224,7 @@ enum status bp_plan(const struct problem *problem, const struct interpolator *in
         return status_set(STATUS_FAILED, "no memory for the plan");
     bp->problem = *problem;
     bp->medium = (struct bp_medium){a->sound_speed, a->fc, a->fs, 0, a->samples - 1, 0};
-    bp->work.bytes = offsetof(struct bp, turned); /* the rest is for turned grids alone, counted there */
+    bp->work.bytes = sizeof *bp;
     aperture_take(bp, options);
     enum status status = problem_turn_back(&bp->problem, &bp->turned, &bp->work.bytes);
     if (status == STATUS_OK)

@@ -6,8 +6,8 @@
 static double bytes_of(const struct acquisition *a, int patches)
 {
     const size_t vectors = (size_t)a->pings * (2 + (size_t)a->receivers) * sizeof *a->tx;
-    return (double)(sizeof(struct turned_problem) + (size_t)patches * sizeof(struct grid) + vectors
-                    + (size_t)a->pings * sizeof *a->t0 + (size_t)a->pulse_length * sizeof *a->pulse);
+    return (double)((size_t)patches * sizeof(struct grid) + vectors + (size_t)a->pings * sizeof *a->t0
+                    + (size_t)a->pulse_length * sizeof *a->pulse);
 }
 
 enum status problem_turn_back(struct problem *problem, struct turned_problem *turned, double *bytes)

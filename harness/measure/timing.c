@@ -88,6 +88,7 @@ static enum status repeat(struct imaging *imaging, const struct echoes *echoes, 
     double first, begin = seconds_now(), elapsed = 0, waited = waited_s();
     struct stages stages;
     int runs = 0;
+    const int most = budget == &part ? samples->runs + TIMING_RUNS / TIMING_ROUNDS : TIMING_RUNS; /* a round's share */
     enum status status = run_once(imaging, echoes, &stages, &first);
     const bool single = first >= budget->single;
     if (first >= budget->first_counts && samples->runs == 0) {
@@ -99,7 +100,7 @@ static enum status repeat(struct imaging *imaging, const struct echoes *echoes, 
         begin = seconds_now();
         waited = waited_s();
     }
-    for (; status == STATUS_OK && !single && samples->runs < TIMING_RUNS
+    for (; status == STATUS_OK && !single && samples->runs < most
            && (runs < budget->runs_least || elapsed < budget->seconds_least)
            && (runs < budget->runs_fewest || elapsed < budget->seconds_most);
          runs++) {
