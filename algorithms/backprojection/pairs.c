@@ -253,6 +253,26 @@ static bool record_holds(const struct acquisition *a, int ping, struct delay_bou
     return delays.least > first + slack && delays.most < last - slack;
 }
 
+static int common_divisor(int a, int b)
+{
+    while (b > 0) {
+        const int rest = a % b;
+        a = b;
+        b = rest;
+    }
+    return a;
+}
+
+/* A step through `count` lines, in golden section, that comes to each of them once, and soon near any. */
+static int stride_of(int count)
+{
+    int stride = (int)(0.618 * count) + 1;
+    while (common_divisor(stride, count) > 1)
+        stride++;
+    return stride;
+}
+
+/* Each line once, the last one first: along x the aperture widens with the range, along r pings see few of them. */
 static bool ping_met(const struct problem *problem, int ping)
 {
     const struct acquisition *a = problem->acquisition;
@@ -261,7 +281,8 @@ static bool ping_met(const struct problem *problem, int ping)
     for (int k = 0; k < problem->patch_count; k++) {
         const struct grid *grid = &problem->patches[k];
         const bool along_x = grid->x_count > grid->r_count;
-        for (int n = grid_line_count(grid, along_x) - 1; n >= 0; n--) { /* the aperture widens with the range */
+        const int lines = grid_line_count(grid, along_x), stride = stride_of(lines);
+        for (int left = lines, n = lines - 1; left > 0; left--, n = (int)(((long long)n + stride) % lines)) {
             const struct pixel_line line = grid_line(grid, along_x, n);
             struct pair_span spans[2];
             if (record_reached(a, ping, line_delays(a, ping, apart, &line))
