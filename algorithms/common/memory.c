@@ -47,16 +47,26 @@ enum status memory_check(double bytes, const char *what)
                       free_bytes / 1e9);
 }
 
+static void *aligned(size_t alignment, size_t unit, size_t bytes)
+{
+    const size_t units = bytes > 0 ? (bytes + unit - 1) / unit : 1;
+    void *memory;
+    return posix_memalign(&memory, alignment, units * unit) == 0 ? memory : NULL;
+}
+
 void *memory_aligned(size_t alignment, size_t bytes)
 {
+    return aligned(alignment, alignment, bytes);
+}
+
+void *memory_columns(size_t alignment, size_t bytes)
+{
     static const size_t huge = 1 << 21;
-    const bool large = bytes >= 4 * huge;
-    const size_t units = bytes > 0 ? (bytes + alignment - 1) / alignment : 1;
-    void *memory;
-    if (posix_memalign(&memory, large ? huge : alignment, units * alignment) != 0)
-        return NULL;
+    if (bytes < 4 * huge)
+        return memory_aligned(alignment, bytes);
+    void *memory = aligned(huge, alignment, bytes);
 #ifdef MADV_HUGEPAGE
-    if (large)
+    if (memory)
         madvise(memory, bytes, MADV_HUGEPAGE); /* advice: without it the pages are small */
 #endif
     return memory;

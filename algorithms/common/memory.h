@@ -11,8 +11,11 @@
    program when it finds no memory for a plan, and the system may end it when it takes more than there is. */
 enum status memory_check(double bytes, const char *what);
 
-/* As aligned_alloc, of any size, 0 among them; what is large lies on huge pages where the system gives them, for what
-   walks through columns meets another page at each row. NULL without memory. */
+/* As aligned_alloc, of any size, 0 among them. NULL without memory. */
 void *memory_aligned(size_t alignment, size_t bytes);
+
+/* The same for what is walked through by columns and meets another page at each row: what is large lies on huge pages
+   where the system gives them. Its first use can take a third of a second, for the system clears and gathers them. */
+void *memory_columns(size_t alignment, size_t bytes);
 
 #endif

@@ -43,7 +43,7 @@ static rma_map_function *const map_functions[][2] = {
 void *rma_take(struct rma *rma, size_t count, size_t size, double share)
 {
     size_t bytes = (count * size + RMA_ALIGNMENT - 1) / RMA_ALIGNMENT * RMA_ALIGNMENT;
-    void *memory = memory_aligned(RMA_ALIGNMENT, bytes);
+    void *memory = memory_columns(RMA_ALIGNMENT, bytes);
     if (memory)
         memset(memory, 0, bytes);
     rma->work.bytes += share * (double)bytes;

@@ -66,7 +66,7 @@ static double upsampling_for(const struct polar_filter *f, int count)
 static void *take(struct polar_filter *f, size_t count, size_t size, double share)
 {
     size_t bytes = (count * size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
-    void *memory = memory_aligned(ALIGNMENT, bytes);
+    void *memory = memory_columns(ALIGNMENT, bytes);
     if (memory)
         memset(memory, 0, bytes);
     f->shape.bytes += share * (double)bytes;

@@ -21,7 +21,7 @@ enum {
 static void *take(struct wk *wk, size_t count, size_t size, double share)
 {
     size_t bytes = (count * size + WK_ALIGNMENT - 1) / WK_ALIGNMENT * WK_ALIGNMENT;
-    void *memory = memory_aligned(WK_ALIGNMENT, bytes);
+    void *memory = memory_columns(WK_ALIGNMENT, bytes);
     if (memory)
         memset(memory, 0, bytes);
     wk->work.bytes += share * (double)bytes;

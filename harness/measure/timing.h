@@ -31,7 +31,8 @@ struct timing_samples {
 /* How much is put into a time. EFFORT_WHOLE: a run to warm up, then repeated until five runs and half a second are
    timed; long runs are repeated less (three at least, and no new run begins after 3 s; a first run of 10 s or more is
    the only one). EFFORT_BRIEF, where hundreds are measured: five runs and 0.04 s (two at least, and no new one after
-   0.15 s; a first run of 0.04 s or more counts, and one of 0.3 s or more is the only one). */
+   0.15 s; a first run of 0.04 s or more counts, and one of 0.3 s or more is the only one). A first run of which the
+   system had more than a quarter, to find and clear memory, never counts. */
 enum effort { EFFORT_NONE, EFFORT_BRIEF, EFFORT_WHOLE };
 
 /* Plan and run as often as the effort says, which is not EFFORT_NONE. The control is timed before, unless it just was,

@@ -89,10 +89,10 @@ static void seeded_scene(int seed, struct scene *scene)
     FILE *file = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
     assert_non_null(file);
     fprintf(file,
-            "base = {\n@include \"%s/scenes/study/speckle.cfg\"\n};\n"
+            "base = {\n@include \"study/speckle.cfg\"\n};\n"
             "record = { first_sample = 3493; samples = 1024; };\n" /* shorter: the test is quicker */
             "targets = { fields = ( { x = [-1.0, 1.0]; r = [99.937, 100.337]; count = 40; seed = %d; } ); };\n",
-            SASBENCH_ROOT, seed);
+            seed);
     fclose(file);
     support_scene(path, scene);
     unlink(path);

@@ -8,7 +8,7 @@
 #include "scene/simulate.h"
 #include "tests/support.h"
 
-static const char base[] = "base = {\n@include \"" SCENE_DIRECTORY "/extreme/_base.cfg\"\n};\n";
+static const char base[] = "base = {\n@include \"extreme/_base.cfg\"\n};\n";
 
 static enum status load(const char *text, struct scene *scene)
 {
