@@ -72,20 +72,21 @@ enum {
 
 /* Scratch of a thread; all but the first two hold values of the plan's precision. The largest swath counts. */
 enum rma_buffer {
-    RMA_RAMPS,     /* struct rma_ramp [1 + needed][groups]: bulk, then each block's */
-    RMA_ABSCISSAS, /* double [row]: y of each bin */
-    RMA_CONVERTED, /* [receivers][RMA_SPAN]: some bins after the bulk correction */
-    RMA_SUMS,      /* [needed][1 or receivers][row]: spectra of each block */
-    RMA_WAVE,      /* complex [longest transform of a swath] */
-    RMA_CUT,       /* complex [stolt_length]: the blocks put together, from sample `centre` on */
-    RMA_PLACES,    /* real [length]: position of those samples in blocks */
-    RMA_SPECTRUM,  /* complex [RMA_GUARD + stolt_length + RMA_GUARD] in rising frequency */
-    RMA_PARTS,     /* [most rows of a patch]: vectors of a direct sum's re and im */
-    RMA_STORED,    /* complex [RMA_TILE][rows + RMA_TILE] */
-    RMA_RECORD,    /* complex [record_length] */
-    RMA_PADDED,    /* complex [held + 2 map guards]: delay compensation's */
-    RMA_TURNS,     /* real [RMA_TILE][receivers][2]: phasors of the receivers' offsets */
-    RMA_EDGES,     /* complex [RMA_TILE][terms][row/LANES + 1]: U at the edges of vectors */
+    RMA_RAMPS,       /* struct rma_ramp [1 + needed][groups]: bulk, then each block's */
+    RMA_ABSCISSAS,   /* double [row]: y of each bin */
+    RMA_CONVERTED,   /* [receivers][RMA_SPAN]: some bins after the bulk correction */
+    RMA_SUMS,        /* [needed][1 or receivers][row]: spectra of each block */
+    RMA_WAVE,        /* complex [longest transform of a swath] */
+    RMA_TRANSFORMED, /* complex [longest transform]: what becomes of the one in RMA_WAVE */
+    RMA_CUT,         /* complex [stolt_length]: the blocks put together, from sample `centre` on */
+    RMA_PLACES,      /* real [length]: position of those samples in blocks */
+    RMA_SPECTRUM,    /* complex [RMA_GUARD + stolt_length + RMA_GUARD] in rising frequency */
+    RMA_PARTS,       /* [most rows of a patch]: vectors of a direct sum's re and im */
+    RMA_STORED,      /* complex [RMA_TILE][rows + RMA_TILE] */
+    RMA_RECORD,      /* complex [record_length] */
+    RMA_PADDED,      /* complex [held + 2 map guards]: delay compensation's */
+    RMA_TURNS,       /* real [RMA_TILE][receivers][2]: phasors of the receivers' offsets */
+    RMA_EDGES,       /* complex [RMA_TILE][terms][row/LANES + 1]: U at the edges of vectors */
     RMA_BUFFERS
 };
 

@@ -105,11 +105,11 @@ static void add_block(const struct workspace *w, const real *row, int block, con
 {
     const struct rma_swath *swath = w->swath;
     const int length = swath->length, below = -swath->band_first;
-    real *wave = buffer(w, RMA_WAVE);
+    real *wave = buffer(w, RMA_WAVE), *samples = buffer(w, RMA_TRANSFORMED);
     interleave(row, 0, below, wave + 2 * (length - below));
     interleave(row, below, swath->band, wave);
     memset(wave + 2 * (swath->band - below), 0, 2 * (size_t)(length - swath->band) * sizeof *wave);
-    FFTW(execute_dft)(swath->range_inverse, (complex_real *)wave, (complex_real *)wave);
+    FFTW(execute_dft)(swath->range_inverse, (complex_real *)wave, (complex_real *)samples);
     struct piece pieces[RMA_NODES];
     const int count = place ? block_pieces(w->rma, block, pieces) : 0;
     /* Samples from `centre` on, then those before it at the cut's end. */
@@ -118,7 +118,7 @@ static void add_block(const struct workspace *w, const real *row, int block, con
                   left = (j < ahead ? ahead : length) - j;
         n = left < RUN ? left : RUN;
         n = n < length - at ? n : length - at;
-        real *to = cut + 2 * (j < ahead ? j : j + swath->stolt_length - length), *x = wave + 2 * at;
+        real *to = cut + 2 * (j < ahead ? j : j + swath->stolt_length - length), *x = samples + 2 * at;
         if (!place) {
             memcpy(to, x, 2 * (size_t)n * sizeof *to);
             continue;
@@ -136,17 +136,18 @@ static void spectrum(const struct workspace *w, real *cut, real *re)
 {
     const size_t length = (size_t)w->swath->stolt_length, low = length / 2; /* low: bins below fc */
     const real *scale = w->swath->apodization;
+    real *bins = buffer(w, RMA_TRANSFORMED);
     real *im = re + length + 2 * RMA_GUARD;
     for (size_t j = 0; j < length; j++) {
         cut[2 * j] *= scale[j];
         cut[2 * j + 1] *= scale[j];
     }
-    FFTW(execute_dft)(w->swath->stolt_forward, (complex_real *)cut, (complex_real *)cut);
+    FFTW(execute_dft)(w->swath->stolt_forward, (complex_real *)cut, (complex_real *)bins);
     const struct {
         size_t from, to, count;
     } pieces[] = {{length - low, RMA_GUARD, low}, {0, RMA_GUARD + low, length - low}};
     for (int piece = 0; piece < 2; piece++) {
-        const real *from = cut + 2 * pieces[piece].from;
+        const real *from = bins + 2 * pieces[piece].from;
         real *to_re = re + pieces[piece].to, *to_im = im + pieces[piece].to;
         for (size_t k = 0; k < pieces[piece].count; k++) {
             to_re[k] = from[2 * k];

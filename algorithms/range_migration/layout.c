@@ -372,7 +372,8 @@ static void lay_scratch(struct rma *rma)
 {
     const size_t real_bytes = rma->problem.precision == PRECISION_DOUBLE ? sizeof(double) : sizeof(float);
     const size_t receivers = (size_t)rma->receivers, summed = rma->options.sum == RMA_SUM_AFTER ? receivers : 1;
-    size_t most[RMA_BUFFERS] = {[RMA_RECORD] = 2 * (size_t)rma->record_length * real_bytes};
+    const size_t record = 2 * (size_t)rma->record_length * real_bytes;
+    size_t most[RMA_BUFFERS] = {[RMA_RECORD] = record, [RMA_TRANSFORMED] = record};
     for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
         size_t row = 2 * (size_t)s->row * real_bytes, stolt = (size_t)s->stolt_length, needed = (size_t)s->needed;
         size_t longest = stolt, most_rows = 0, terms = rma->delay ? (size_t)rma->delay->terms.terms : 0;
@@ -387,6 +388,7 @@ static void lay_scratch(struct rma *rma)
             [RMA_CONVERTED] = receivers * 2 * RMA_SPAN * real_bytes,
             [RMA_SUMS] = needed * summed * row,
             [RMA_WAVE] = 2 * longest * real_bytes,
+            [RMA_TRANSFORMED] = 2 * longest * real_bytes,
             [RMA_CUT] = 2 * stolt * real_bytes * (rma->delay ? RMA_TILE : 1),
             [RMA_PLACES] = (size_t)s->length * real_bytes,
             [RMA_SPECTRUM] = 2 * (stolt + 2 * RMA_GUARD) * real_bytes,

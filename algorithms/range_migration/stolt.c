@@ -134,7 +134,7 @@ void REAL_ISA_NAME(rma_stolt)(struct workspace *w, const struct rma_patch *patch
     const struct bins bins = bins_of(w, patch, &first, &last);
     struct fit made,
         *fit = last > first && fit_make(&rma->fit, bin_exact, &bins, (double)first, (double)last, &made) ? &made : NULL;
-    real *wave = buffer(w, RMA_WAVE);
+    real *wave = buffer(w, RMA_WAVE), *rows = buffer(w, RMA_TRANSFORMED);
     memset(wave, 0, 2 * (size_t)patch->length * sizeof *wave);
     double position[SPAN], cycles[SPAN], weight[SPAN];
     real re[SPAN], im[SPAN], wr[SPAN], wi[SPAN];
@@ -161,7 +161,7 @@ void REAL_ISA_NAME(rma_stolt)(struct workspace *w, const struct rma_patch *patch
         }
         stage_end(w, RMA_FOCUS);
     }
-    FFTW(execute_dft)(patch->focus_plan, (complex_real *)wave, (complex_real *)wave);
-    memcpy(stored, wave, 2 * (size_t)patch->grid.r_count * sizeof *stored);
+    FFTW(execute_dft)(patch->focus_plan, (complex_real *)wave, (complex_real *)rows);
+    memcpy(stored, rows, 2 * (size_t)patch->grid.r_count * sizeof *stored);
     stage_end(w, RMA_FOCUS);
 }

@@ -10,7 +10,7 @@
 
 enum {
     LANES = RMA_ALIGNMENT / sizeof(real),
-    BLOCKS = 4 /* vectors of bins that go through the azimuth FFT together */
+    BLOCKS = 4 /* vectors of bins that are copied together for the azimuth FFT */
 };
 
 static real *scratch_of(const struct rma *rma, enum rma_buffer buffer)
@@ -25,10 +25,18 @@ static complex_real rotor(double cycles)
     return (real)cos(angle) + (real)sin(angle) * (complex_real)I;
 }
 
-/* ESTIMATE: the same algorithm, hence the same bits, at every planning. */
-static void *plan_line(int length, complex_real *memory, int sign)
+/* Transforms of this file work on the scratch's begin: from there, to as far behind it as `count` values need. */
+static complex_real *behind(complex_real *memory, size_t count)
 {
-    return FFTW(plan_dft_1d)(length, memory, memory, sign, FFTW_ESTIMATE);
+    return memory + (count + LANES - 1) / LANES * LANES;
+}
+
+/* From one array into another, which spares FFTW copies of its own. ESTIMATE: the same algorithm, hence the same bits,
+   at every planning. */
+static void *plan_line(const struct rma *rma, int length, int sign)
+{
+    return FFTW(plan_dft_1d)(length, (complex_real *)scratch_of(rma, RMA_WAVE),
+                             (complex_real *)scratch_of(rma, RMA_TRANSFORMED), sign, FFTW_ESTIMATE);
 }
 
 /* conj(P)/sum|p|^2 and the inverse transform's 1/length; transforms in double. */
@@ -84,11 +92,11 @@ static bool azimuth_fill(struct rma *rma, const struct rma_swath *swath, struct 
     complex_real *before = rma_take(rma, (size_t)q_count, sizeof *before, 1);
     complex_real *after = rma_take(rma, (size_t)x_count, sizeof *after, 1);
     complex_real *kernel = patch->folds ? NULL : rma_take(rma, (size_t)length, sizeof *kernel, 1);
-    complex_real *wave = (complex_real *)scratch_of(rma, 0);
+    complex_real *wave = rma->scratch, *turned = behind(wave, (size_t)length);
     patch->before = before;
     patch->after = after;
     patch->kernel = kernel;
-    patch->azimuth_inverse = plan_line(length, wave, FFTW_BACKWARD);
+    patch->azimuth_inverse = FFTW(plan_dft_1d)(length, wave, turned, FFTW_BACKWARD, FFTW_ESTIMATE);
     if (!before || !after || !patch->azimuth_inverse)
         return false;
     const double period = swath->period * fabs(rma->spacing),
@@ -100,33 +108,35 @@ static bool azimuth_fill(struct rma *rma, const struct rma_swath *swath, struct 
         after[j] = rotor(square * j * j - turn * (q_count / 2) * j) / (real)(patch->folds ? period : period * length);
     if (patch->folds)
         return true;
-    patch->azimuth_forward = plan_line(length, wave, FFTW_FORWARD);
+    patch->azimuth_forward = FFTW(plan_dft_1d)(length, turned, wave, FFTW_FORWARD, FFTW_ESTIMATE);
     if (!kernel || !patch->azimuth_forward)
         return false;
+    memset(turned, 0, (size_t)length * sizeof *turned);
     for (int i = -(q_count - 1); i < x_count; i++)
-        kernel[i < 0 ? i + length : i] = rotor(-square * i * i);
-    FFTW(execute_dft)(patch->azimuth_forward, kernel, kernel);
+        turned[i < 0 ? i + length : i] = rotor(-square * i * i);
+    FFTW(execute_dft)(patch->azimuth_forward, turned, wave);
+    memcpy(kernel, wave, (size_t)length * sizeof *wave);
     return true;
 }
 
 static bool plan_swath(struct rma *rma, struct rma_swath *swath)
 {
-    complex_real *wave = (complex_real *)scratch_of(rma, RMA_WAVE), *lines = rma->scratch;
+    complex_real *lines = rma->scratch, *turned = behind(lines, BLOCKS * LANES * (size_t)swath->period);
     swath->data =
         rma_take(rma, (size_t)swath->period * (size_t)rma->receivers, 2 * (size_t)swath->row * sizeof(real), 1);
     swath->apodization = rma_take(rma, (size_t)swath->stolt_length, sizeof(real), 1);
     if (!swath->data || !swath->apodization || (rma->delay && !REAL_NAME(rma_map_plan)(rma, swath)))
         return false;
     apodization_fill(rma, swath);
-    swath->range_forward = plan_line(swath->length, wave, FFTW_FORWARD);
-    swath->range_inverse = plan_line(swath->length, wave, FFTW_BACKWARD);
-    swath->stolt_forward = plan_line(swath->stolt_length, wave, FFTW_FORWARD);
-    swath->azimuth_forward = FFTW(plan_many_dft)(1, &swath->period, BLOCKS * LANES, lines, NULL, BLOCKS * LANES, 1,
-                                                 lines, NULL, BLOCKS * LANES, 1, FFTW_FORWARD, FFTW_ESTIMATE);
+    swath->range_forward = plan_line(rma, swath->length, FFTW_FORWARD);
+    swath->range_inverse = plan_line(rma, swath->length, FFTW_BACKWARD);
+    swath->stolt_forward = plan_line(rma, swath->stolt_length, FFTW_FORWARD);
+    swath->azimuth_forward = FFTW(plan_many_dft)(1, &swath->period, LANES, lines, NULL, LANES, 1, turned, NULL, LANES,
+                                                 1, FFTW_FORWARD, FFTW_ESTIMATE);
     bool complete = swath->range_forward && swath->range_inverse && swath->stolt_forward && swath->azimuth_forward;
     for (int k = 0; complete && k < swath->patch_count; k++) {
         struct rma_patch *patch = &swath->patches[k];
-        patch->focus_plan = plan_line(patch->length, wave, FFTW_BACKWARD);
+        patch->focus_plan = plan_line(rma, patch->length, FFTW_BACKWARD);
         complete = patch->focus_plan && azimuth_fill(rma, swath, patch);
     }
     return complete;
@@ -141,7 +151,7 @@ static enum status plan(struct rma *rma)
         for (int k = 0; k < s->patch_count; k++)
             strip = strip > (size_t)s->patches[k].columns ? strip : (size_t)s->patches[k].columns;
     }
-    strip *= sizeof(complex_real);
+    strip = 2 * (strip + LANES) * sizeof(complex_real);
     if (rma->scratch_bytes < strip)
         rma->scratch_bytes = (strip / RMA_ALIGNMENT + 1) * RMA_ALIGNMENT;
     rma->scratch = rma_take(rma, (size_t)rma->threads, rma->scratch_bytes, 1.0 / rma->threads);
@@ -164,9 +174,10 @@ static enum status plan(struct rma *rma)
         complete = basis != NULL;
     }
     if (complete && rma->record_length > 0) {
-        complex_real *record = (complex_real *)scratch_of(rma, RMA_RECORD);
-        rma->record_forward = plan_line(rma->record_length, record, FFTW_FORWARD);
-        rma->record_inverse = plan_line(rma->record_length, record, FFTW_BACKWARD);
+        complex_real *record = (complex_real *)scratch_of(rma, RMA_RECORD),
+                     *turned = (complex_real *)scratch_of(rma, RMA_TRANSFORMED);
+        rma->record_forward = FFTW(plan_dft_1d)(rma->record_length, record, turned, FFTW_FORWARD, FFTW_ESTIMATE);
+        rma->record_inverse = FFTW(plan_dft_1d)(rma->record_length, turned, record, FFTW_BACKWARD, FFTW_ESTIMATE);
         complete = rma->record_forward && rma->record_inverse && filter_fill(rma);
     }
     for (int n = 0; complete && n < rma->swath_count; n++)
@@ -233,7 +244,7 @@ static void cut(const struct rma *rma, const struct rma_swath *swath, const real
 {
     const real *tapers = rma->tapers;
     const int length = swath->length, count = swath->end - swath->begin, lead = swath->begin - swath->first;
-    real *wave = scratch_of(rma, RMA_WAVE), *taken = wave + 2 * lead;
+    real *wave = scratch_of(rma, RMA_WAVE), *taken = wave + 2 * lead, *bins = scratch_of(rma, RMA_TRANSFORMED);
     memset(wave, 0, 2 * (size_t)lead * sizeof *wave);
     if (count > 0)
         memcpy(taken, record + 2 * (swath->begin - rma->from), 2 * (size_t)count * sizeof *wave);
@@ -243,10 +254,10 @@ static void cut(const struct rma *rma, const struct rma_swath *swath, const real
             taken[2 * k + part] *= swath->begin > 0 ? tapers[k] : 1;
             taken[2 * (count - 1 - k) + part] *= swath->end < rma->samples ? tapers[k] : 1;
         }
-    FFTW(execute_dft)(swath->range_forward, (complex_real *)wave, (complex_real *)wave);
+    FFTW(execute_dft)(swath->range_forward, (complex_real *)wave, (complex_real *)bins);
     const int below = -swath->band_first;
-    memcpy(row, wave + 2 * (length - below), 2 * (size_t)below * sizeof *row);
-    memcpy(row + 2 * below, wave, 2 * (size_t)(swath->band - below) * sizeof *row);
+    memcpy(row, bins + 2 * (length - below), 2 * (size_t)below * sizeof *row);
+    memcpy(row + 2 * below, bins, 2 * (size_t)(swath->band - below) * sizeof *row);
     memset(row + 2 * swath->band, 0, 2 * (size_t)(swath->row - swath->band) * sizeof *row);
 }
 
@@ -273,12 +284,12 @@ static void compress(const struct rma *rma, rma_map_function *map, const void *s
         const real *record = (const real *)samples + all * (size_t)k + 2 * (size_t)rma->from;
         const double begun = seconds_now();
         if (length > 0) {
-            real *wave = scratch_of(rma, RMA_RECORD);
+            real *wave = scratch_of(rma, RMA_RECORD), *bins = scratch_of(rma, RMA_TRANSFORMED);
             memcpy(wave, record, n * sizeof *wave);
             memset(wave + n, 0, (length - n) * sizeof *wave);
-            FFTW(execute_dft)(rma->record_forward, (complex_real *)wave, (complex_real *)wave);
-            multiply(wave, rma->filter, rma->record_length);
-            FFTW(execute_dft)(rma->record_inverse, (complex_real *)wave, (complex_real *)wave);
+            FFTW(execute_dft)(rma->record_forward, (complex_real *)wave, (complex_real *)bins);
+            multiply(bins, rma->filter, rma->record_length);
+            FFTW(execute_dft)(rma->record_inverse, (complex_real *)bins, (complex_real *)wave);
             record = wave;
         }
         const real *between = rma->delay ? padded(rma, record) : NULL;
@@ -297,29 +308,44 @@ static void compress(const struct rma *rma, rma_map_function *map, const void *s
     seconds[1] = rma->delay ? mapping : 0;
 }
 
+/* Pings' samples [vector][ping][LANES], transformed, to rows of vectors. */
+static void spread_strip(const struct rma_swath *swath, const complex_real *lines, complex_real *turned, size_t vectors,
+                         size_t stride, real *data)
+{
+    const size_t period = (size_t)swath->period;
+    for (size_t v = 0; v < vectors; v++)
+        FFTW(execute_dft)
+        (swath->azimuth_forward, (complex_real *)lines + v * period * LANES, turned + v * period * LANES);
+    for (size_t p = 0; p < period; p++)
+        for (size_t v = 0; v < vectors; v++) {
+            const real *from = (const real *)(turned + (v * period + p) * LANES);
+            real *to = data + p * stride + v * 2 * LANES;
+            for (size_t l = 0; l < LANES; l++) {
+                to[l] = from[2 * l];
+                to[LANES + l] = from[2 * l + 1];
+            }
+        }
+}
+
 /* Azimuth FFT over the pings and the zeros after them, in place; the complex numbers of a vector become its real
    parts and then its imaginary parts. */
 static void spread(const struct rma *rma, const struct rma_swath *swath)
 {
     const int vectors = swath->row / LANES, strips = (vectors + BLOCKS - 1) / BLOCKS;
-    const size_t row = 2 * (size_t)swath->row;
+    const size_t row = 2 * (size_t)swath->row, pings = (size_t)rma->pings, period = (size_t)swath->period;
 #pragma omp parallel for schedule(static) collapse(2) num_threads(rma->threads)
     for (int m = 0; m < rma->receivers; m++)
         for (int s = 0; s < strips; s++) {
-            const size_t width = 2 * LANES * (size_t)(vectors - s * BLOCKS < BLOCKS ? vectors - s * BLOCKS : BLOCKS);
-            real *lines = scratch_of(rma, 0);
+            const size_t count = (size_t)(vectors - s * BLOCKS < BLOCKS ? vectors - s * BLOCKS : BLOCKS);
+            complex_real *lines = (complex_real *)scratch_of(rma, 0);
             real *data = (real *)swath->data + (size_t)m * row + (size_t)s * BLOCKS * 2 * LANES;
-            const size_t ping = (size_t)rma->receivers * row, line = 2 * BLOCKS * LANES, pings = (size_t)rma->pings;
+            const size_t ping = (size_t)rma->receivers * row;
             for (size_t p = 0; p < pings; p++)
-                memcpy(lines + p * line, data + p * ping, width * sizeof *lines);
-            memset(lines + pings * line, 0, ((size_t)swath->period - pings) * line * sizeof *lines);
-            FFTW(execute_dft)(swath->azimuth_forward, (complex_real *)lines, (complex_real *)lines);
-            for (size_t p = 0; p < (size_t)swath->period; p++)
-                for (size_t b = 0; b < width; b += 2 * LANES)
-                    for (size_t l = 0; l < LANES; l++) {
-                        data[p * ping + b + l] = lines[p * line + b + 2 * l];
-                        data[p * ping + b + LANES + l] = lines[p * line + b + 2 * l + 1];
-                    }
+                for (size_t v = 0; v < count; v++)
+                    memcpy(lines + (v * period + p) * LANES, data + p * ping + v * 2 * LANES, LANES * sizeof *lines);
+            for (size_t v = 0; v < count; v++)
+                memset(lines + (v * period + pings) * LANES, 0, (period - pings) * LANES * sizeof *lines);
+            spread_strip(swath, lines, behind(lines, BLOCKS * LANES * period), count, ping, data);
         }
 }
 
@@ -330,7 +356,7 @@ static void inverse(const struct rma *rma, const struct rma_swath *swath, const 
     const real *before = patch->before;
 #pragma omp parallel for schedule(static) num_threads(rma->threads)
     for (int i = 0; i < patch->grid.r_count; i++) {
-        real *wave = scratch_of(rma, 0);
+        real *wave = scratch_of(rma, 0), *turned = (real *)behind((complex_real *)wave, (size_t)length);
         real *out = (real *)pixels + 2 * x_count * (size_t)i;
         real root = (real)sqrt(patch->grid.r_first + i * patch->grid.r_step);
         const real *from = (const real *)rma->focused + 2 * swath->columns * (patch->row + (size_t)i);
@@ -343,13 +369,14 @@ static void inverse(const struct rma *rma, const struct rma_swath *swath, const 
                 to[1] += from[0] * b[1] + from[1] * b[0];
             }
         if (!patch->folds) {
-            FFTW(execute_dft)(patch->azimuth_forward, (complex_real *)wave, (complex_real *)wave);
+            memcpy(turned, wave, 2 * (size_t)length * sizeof *wave);
+            FFTW(execute_dft)(patch->azimuth_forward, (complex_real *)turned, (complex_real *)wave);
             multiply(wave, patch->kernel, length);
         }
-        FFTW(execute_dft)(patch->azimuth_inverse, (complex_real *)wave, (complex_real *)wave);
-        multiply(wave, patch->after, patch->grid.x_count);
+        FFTW(execute_dft)(patch->azimuth_inverse, (complex_real *)wave, (complex_real *)turned);
+        multiply(turned, patch->after, patch->grid.x_count);
         for (size_t k = 0; k < 2 * x_count; k++)
-            out[k] = wave[k] * root;
+            out[k] = turned[k] * root;
     }
 }
 
