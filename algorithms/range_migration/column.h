@@ -39,9 +39,9 @@ static inline void stage_end(struct workspace *w, enum rma_stage stage)
    [needed][1 or receivers] rows. Bins that are evanescent hold anything. */
 void REAL_ISA_NAME(rma_convert)(struct workspace *w, real *sums);
 
-/* By delay compensation: monostatic echoes of the tile's wavenumbers q (negative: none), each in its own of RMA_TILE
-   `cuts`, complex [stolt_length], samples from `centre` on and then those before it at the end. */
-void REAL_ISA_NAME(rma_receivers)(struct workspace *w, const int *q, const struct rma_line *lines, real *cuts);
+/* By delay compensation: monostatic echoes of wavenumbers p, p + period, ... that are used, in the order of turns, each
+   in its own of `cuts`, complex [receivers][row]. */
+void REAL_ISA_NAME(rma_receivers)(struct workspace *w, int p, real *cuts);
 
 /* Rows of a patch, complex, from K = j 2 pi/(length step): interpolation (LBF21 Eq. (16)
    for the exact K), bulk focusing at the first row, weight, IFFT. `z`: the spectrum with its guards, real parts before

@@ -14,7 +14,12 @@
    is a monostatic echo, which the engine focuses like any other (rma.h). The V are the first principal vectors of the
    phasors within the beam, U their coefficients, tabulated over the angle and 1/r.
 
-   Cost: 2 (taps + 3) multiply-adds a sample, then 2 + terms complex ones a receiver, wavenumber and sample.
+   The second sum goes in two steps where receivers are evenly spaced and `periods` = 2 |spacing|/pitch is whole: from a
+   wavenumber to that of the same spectra periods/fold times 1/spacing beyond it, receiver i is turned by exp(-j 2 pi
+   i/fold), as is i + fold. Sums over i modulo fold serve a class of wavenumbers, each of which adds up fold of them.
+
+   Cost: 2 (taps + 3) multiply-adds a sample, then 2 + terms complex ones a receiver, class and sample, and fold/2 more
+   a term, wavenumber and sample.
    Error: spectrum_compensated for the phase, `left` for the rank, the taps' own for the delays. */
 #ifndef SASBENCH_RANGE_MIGRATION_DELAY_H
 #define SASBENCH_RANGE_MIGRATION_DELAY_H

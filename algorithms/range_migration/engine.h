@@ -27,7 +27,7 @@
                  count from `centre`; zeros up to stolt_length; an FFT, its bins in rising frequency
    stolt         [stolt_length] bins of F -> bins of K, RMA_SPAN at a time, for each patch
    focus         bins of K -> [length of the patch] -> [r_count] rows of the patch
-                 phase at the first row, and weight; bins beyond the transform fold onto it; an IFFT. Rows of all
+                 phase at the first row and column, and weight; bins beyond the transform fold onto it; an IFFT. Rows of all
                  patches of RMA_TILE wavenumbers, [RMA_TILE][rows], go to `focused`, [rows][columns]. `columns` of the
                  swath is Q rounded up to RMA_TILE
 
@@ -41,9 +41,10 @@
                  each record through the matched filter, between zeros
    map           mapped onto the swath's samples by taps
    spread        as above, for each sample
-   receivers     RMA_TILE wavenumbers of [M][row] -> RMA_TILE x [stolt_length] samples from `centre` on
-                 turned by each receiver's offset, added up with the weights of each term, times the term's coefficient
-   stolt         begins with the FFT of reconstruct
+   receivers     [M][row] -> M x [row], for all wavenumbers that read the same spectra
+                 turned by each receiver's offset, added up with the weights of each term, times the term's coefficient;
+                 in two steps where receivers are even (rma_fold)
+   stolt         begins with the zeros and the FFT of reconstruct
 
    Shortcuts: a single receiver at the transmitter needs no bulk and no differential. With stolt=direct, focus sums each
    bin of the band at each row, without stolt and IFFT. If then one block is needed and sum=before, there is nothing to
@@ -63,6 +64,8 @@ enum {
     RMA_SPAN = 256,       /* bins that go through all corrections together, in the cache */
     RMA_GROUP = 24,       /* receivers of one recurrence: float loses some 1e-6 over it */
     RMA_TILE = 8,         /* neighbouring wavenumbers whose rows are stored together */
+    RMA_CLASSES = 8,      /* of wavenumbers whose receivers are added up together */
+    RMA_FOLD = 16,        /* sums of receivers that a class shares, at most */
     RMA_NODES = 4,        /* blocks that blend at one range: a cubic */
     RMA_GUARD = 16,       /* bins repeated beyond a spectrum's ends: the longest kernel */
     RMA_INTERVALS = 1024, /* of the Stolt kernel's table, linear inside each */
@@ -78,15 +81,17 @@ enum rma_buffer {
     RMA_SUMS,        /* [needed][1 or receivers][row]: spectra of each block */
     RMA_WAVE,        /* complex [longest transform of a swath] */
     RMA_TRANSFORMED, /* complex [longest transform]: what becomes of the one in RMA_WAVE */
-    RMA_CUT,         /* complex [stolt_length]: the blocks put together, from sample `centre` on */
+    RMA_CUT,         /* complex [stolt_length]: the blocks put together, from sample `centre` on; delay
+                        compensation's [rma_turns][row]: samples */
     RMA_PLACES,      /* real [length]: position of those samples in blocks */
     RMA_SPECTRUM,    /* complex [RMA_GUARD + stolt_length + RMA_GUARD] in rising frequency */
     RMA_PARTS,       /* [most rows of a patch]: vectors of a direct sum's re and im */
     RMA_STORED,      /* complex [RMA_TILE][rows + RMA_TILE] */
     RMA_RECORD,      /* complex [record_length] */
     RMA_PADDED,      /* complex [held + 2 map guards]: delay compensation's */
-    RMA_TURNS,       /* real [RMA_TILE][receivers][2]: phasors of the receivers' offsets */
-    RMA_EDGES,       /* complex [RMA_TILE][terms][row/LANES + 1]: U at the edges of vectors */
+    RMA_TURNS,       /* real [RMA_CLASSES][receivers][2]: phasors of the receivers' offsets */
+    RMA_EDGES,       /* complex [receivers][terms][row/LANES + 1]: U at the edges of vectors */
+    RMA_MEMBERS,     /* struct rma_member [receivers] */
     RMA_BUFFERS
 };
 
@@ -95,6 +100,14 @@ enum rma_buffer {
 struct rma_ramp {
     int begin, count; /* receivers */
     double first[FIT_DEGREE + 1], step[FIT_DEGREE + 1], curve[FIT_DEGREE + 1];
+};
+
+/* Delay compensation: a wavenumber that shares the sums of its class, `number` (modulo fold) strides beyond the
+   class's first. */
+struct rma_member {
+    int number;
+    const void *edges; /* complex [terms][row/LANES + 1]: U, with the phase of the first receiver */
+    void *cut;         /* complex [row] */
 };
 
 /* One wavenumber: what of its band exists, and how far ranges are delayed. */
@@ -118,8 +131,10 @@ struct rma_patch {
     /* azimuth: columns that divide the track's period evenly are bins of one transform (wavenumbers fold onto it);
        any other ones are a convolution with a chirp */
     bool folds;
-    int columns;                   /* length of the transform */
-    void *before, *kernel, *after; /* complex [wavenumbers], [columns] (chirp only), [x_count]: factors on the way */
+    int columns;          /* length of the transform */
+    double shift, square; /* cycles: wavenumber q is turned by (q - Q/2) shift + q^2 square */
+    int *bins;            /* [columns of the swath] of the transform, by turn; `columns`: of none */
+    void *kernel, *after; /* complex [columns] (chirp only), [x_count]: factors behind the focused rows */
     void *focus_plan, *azimuth_forward, *azimuth_inverse; /* forward: chirp only */
 };
 
@@ -171,6 +186,10 @@ struct rma_delay {
     struct delay_taps taps;
     int guard;   /* zeros beside a record */
     void *basis; /* real [terms][receivers]: V */
+    /* The phasors of receivers m and m + fold differ, from a wavenumber to that `stride` times `period` beyond it, by
+       the same factor: the sums over m modulo `fold` serve a whole class of such wavenumbers. fold = 1: none. */
+    int fold, stride;
+    double turn, step; /* cycles a stride: of the first receiver, and from a receiver to the next (1/fold) */
 };
 
 struct rma {
@@ -265,6 +284,19 @@ static inline int rma_wavenumber(const struct rma *rma, const struct rma_swath *
     return turn / rma->receivers + turn % rma->receivers * swath->period;
 }
 
+/* The phase of wavenumber q that takes its rows to a patch's columns, in cycles. */
+static inline double rma_shift(const struct rma_swath *swath, const struct rma_patch *patch, int q)
+{
+    const double cycles = (q - swath->wavenumbers / 2) * patch->shift + patch->square * q * q;
+    return cycles - floor(cycles + 0.5);
+}
+
+/* How many turns a thread takes at once: delay compensation those that read the same spectra. */
+static inline int rma_turns(const struct rma *rma)
+{
+    return rma->delay ? (4 * RMA_TILE + rma->receivers - 1) / rma->receivers * rma->receivers : RMA_TILE;
+}
+
 /* ---- phase.c ---- */
 
 double rma_frequency(const struct rma *rma, const struct rma_swath *swath, int bin); /* F, Hz */
@@ -275,6 +307,13 @@ struct rma_line rma_line(const struct rma *rma, const struct rma_swath *swath, i
 void rma_ramps(const struct rma *rma, const struct rma_line *line, double r, double less, struct rma_ramp *ramps);
 /* Range of a block's centre, m. */
 double rma_block_range(const struct rma *rma, int block);
+
+/* ---- delay/fold.c ---- */
+
+/* The fold that costs least of those that the receivers' places allow. */
+void rma_fold(struct rma *rma);
+/* FLOPs of a sample, of all wavenumbers that read the same spectra. */
+double rma_fold_flops(const struct rma *rma);
 
 /* ---- delay/plan.c ---- */
 
@@ -304,7 +343,7 @@ extern const struct rma_transform rma_transform_float, rma_transform_double;
 
 /* ---- focus.c ---- */
 enum rma_stage { RMA_RECEIVERS, RMA_BULK, RMA_DIFFERENTIAL, RMA_RECONSTRUCT, RMA_STOLT, RMA_FOCUS, RMA_STAGES };
-/* The wavenumbers whose turn it is from `turn` to turn + RMA_TILE - 1, all rows, into `focused`; seconds of each stage
+/* The wavenumbers whose turn it is from `turn` on, rma_turns of them, all rows, into `focused`; seconds of each stage
    are added. */
 typedef void rma_column_function(const struct rma *rma, const struct rma_swath *swath, int thread, int turn,
                                  double seconds[RMA_STAGES]);

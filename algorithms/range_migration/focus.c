@@ -2,6 +2,7 @@
    focusing (reconstruct to focus of rma.h). Compiled once for each precision and instruction set (BP_ISA names it). */
 #include <string.h>
 
+#include "common/stream.h"
 #include "range_migration/column.h"
 
 enum { RUN = 64 }; /* samples that a block takes or leaves together: places rise or fall along them */
@@ -130,19 +131,31 @@ static void add_block(const struct workspace *w, const real *row, int block, con
     }
 }
 
-/* The cut's spectrum in rising frequency, RMA_GUARD bins of the next period at either end: all real parts, then all
-   imaginary ones. Its samples count from `centre`. */
-static void spectrum(const struct workspace *w, real *cut, real *re)
+/* `count` samples times their apodization. */
+static void apodize(const real *restrict samples, const real *restrict scale, size_t count, real *restrict out)
 {
-    const size_t length = (size_t)w->swath->stolt_length, low = length / 2; /* low: bins below fc */
-    const real *scale = w->swath->apodization;
-    real *bins = buffer(w, RMA_TRANSFORMED);
-    real *im = re + length + 2 * RMA_GUARD;
-    for (size_t j = 0; j < length; j++) {
-        cut[2 * j] *= scale[j];
-        cut[2 * j + 1] *= scale[j];
+    for (size_t j = 0; j < count; j++) {
+        out[2 * j] = samples[2 * j] * scale[j];
+        out[2 * j + 1] = samples[2 * j + 1] * scale[j];
     }
-    FFTW(execute_dft)(w->swath->stolt_forward, (complex_real *)cut, (complex_real *)bins);
+}
+
+/* The spectrum of a cut (delay compensation: a row of samples) in rising frequency, RMA_GUARD bins of the next period at
+   either end: all real parts, then all imaginary ones. Its samples count from `centre`. */
+static void spectrum(const struct workspace *w, const real *cut, real *re)
+{
+    const struct rma_swath *swath = w->swath;
+    const size_t length = (size_t)swath->stolt_length, low = length / 2; /* low: bins below fc */
+    const real *scale = swath->apodization;
+    real *wave = buffer(w, RMA_WAVE), *bins = buffer(w, RMA_TRANSFORMED), *im = re + length + 2 * RMA_GUARD;
+    if (w->rma->delay) {
+        const size_t before = (size_t)swath->centre, behind = (size_t)(swath->held - swath->centre);
+        apodize(cut + 2 * before, scale, behind, wave);
+        memset(wave + 2 * behind, 0, 2 * (length - behind - before) * sizeof *wave);
+        apodize(cut, scale + length - before, before, wave + 2 * (length - before));
+    } else
+        apodize(cut, scale, length, wave);
+    FFTW(execute_dft)(swath->stolt_forward, (complex_real *)wave, (complex_real *)bins);
     const struct {
         size_t from, to, count;
     } pieces[] = {{length - low, RMA_GUARD, low}, {0, RMA_GUARD + low, length - low}};
@@ -169,6 +182,7 @@ static void focus_direct(struct workspace *w, const struct rma_patch *patch, con
     const struct rma *rma = w->rma;
     const struct rma_swath *swath = w->swath;
     const double c = rma->setting.sound_speed, beta = rma->setting.speed / c, b1 = (1 - beta) * (1 + beta);
+    const double shift = 0.125 + rma_shift(swath, patch, w->q);
     const int rows = patch->grid.r_count;
     real *parts = buffer(w, RMA_PARTS);
     memset(parts, 0, (size_t)rows * 2 * LANES * sizeof *parts);
@@ -180,7 +194,7 @@ static void focus_direct(struct workspace *w, const struct rma_patch *patch, con
             double frequency = rma_frequency(rma, swath, exists ? k + l : swath->band - 1);
             k_cycles[l] = spectrum_monostatic(&rma->setting, frequency, w->line.nu) / (2 * M_PI);
             double kappa = c / 2 * k_cycles[l];
-            origin_cycles[l] = 0.125 - (frequency - rma->setting.fc) * origin;
+            origin_cycles[l] = shift - (frequency - rma->setting.fc) * origin;
             weight[l] = exists ? frequency / b1 * sqrt(c / (2 * kappa)) / kappa / swath->length : 0;
             double step = k_cycles[l] * patch->grid.r_step;
             phasor(step - floor(step + 0.5), &sr[l], &si[l]);
@@ -235,22 +249,20 @@ static void reconstruct(struct workspace *w, real *sums, real *cut)
         }
 }
 
-/* `n`: of the tile's wavenumbers. */
-static void column(struct workspace *w, int n, real *stored)
+/* `samples`: delay compensation's. */
+static void column(struct workspace *w, const real *samples, real *stored)
 {
     const struct rma *rma = w->rma;
     const struct rma_swath *swath = w->swath;
     real *sums = buffer(w, RMA_SUMS), *cut = buffer(w, RMA_CUT), *z = buffer(w, RMA_SPECTRUM);
     const bool direct = rma->taps == 0;
     const bool from_sums = direct && swath->needed == 1 && rma->options.sum == RMA_SUM_BEFORE && !rma->delay;
-    if (rma->delay)
-        cut += (size_t)n * 2 * (size_t)swath->stolt_length;
-    else
+    if (!rma->delay)
         REAL_ISA_NAME(rma_convert)(w, sums);
     if (!from_sums) {
         if (!rma->delay)
             reconstruct(w, sums, cut);
-        spectrum(w, cut, z);
+        spectrum(w, rma->delay ? samples : cut, z);
     }
     if (direct && !from_sums) { /* its transform is as long as the conversion's */
         int first = swath->band_first + swath->length / 2 + RMA_GUARD;
@@ -272,6 +284,55 @@ static void column(struct workspace *w, int n, real *stored)
     }
 }
 
+/* Rows of `count` wavenumbers, `stride` reals apart, side by side in `focused`. */
+static void tile_store(const struct workspace *w, const real *stored, size_t stride, int turn, size_t count)
+{
+    const struct rma_swath *swath = w->swath;
+    real *out = (real *)w->rma->focused + 2 * (size_t)turn;
+    const bool streams =
+        count == RMA_TILE && stream_pays((double)swath->rows * (double)swath->columns * 2 * sizeof(real));
+    for (size_t i = 0; i < swath->rows; i++, out += 2 * swath->columns) {
+        const real *from = stored + 2 * i;
+        if (streams && REAL_DOUBLE)
+            for (size_t n = 0; n < RMA_TILE; n++)
+                stream_halves(out + 2 * n, from + n * stride, from + n * stride + 1);
+        else if (streams)
+            for (size_t n = 0; n < RMA_TILE; n += 2)
+                stream_halves(out + 2 * n, from + n * stride, from + (n + 1) * stride);
+        else if (count == RMA_TILE)               /* the usual case, of constant length */
+            for (size_t n = 0; n < RMA_TILE; n++) /* moved as one: else the compiler takes real from imaginary parts */
+                memcpy(out + 2 * n, from + n * stride, 2 * sizeof *out);
+        else
+            for (size_t n = 0; n < count; n++)
+                memcpy(out + 2 * n, from + n * stride, 2 * sizeof *out);
+    }
+    if (streams)
+        stream_end();
+}
+
+/* Wavenumbers of one tile; `samples` of the first, where delays are compensated. */
+static void tile(struct workspace *w, int turn, int count, const real *samples)
+{
+    const struct rma *rma = w->rma;
+    const struct rma_swath *swath = w->swath;
+    real *stored = buffer(w, RMA_STORED);
+    const size_t stride = 2 * (swath->rows + RMA_TILE); /* or rows a power of two apart would share sets of the cache */
+    for (int n = 0; n < count; n++, samples += rma->delay ? 2 * swath->row : 0) {
+        real *rows = stored + (size_t)n * stride;
+        w->line.begin = swath->band;
+        if (turn + n < swath->wavenumbers) {
+            w->q = rma_wavenumber(rma, swath, turn + n);
+            w->line = rma_line(rma, swath, w->q);
+        }
+        if (w->line.begin < swath->band)
+            column(w, samples, rows);
+        else
+            memset(rows, 0, 2 * swath->rows * sizeof *rows);
+    }
+    tile_store(w, stored, stride, turn, (size_t)count);
+    stage_end(w, RMA_FOCUS);
+}
+
 void REAL_ISA_NAME(rma_column)(const struct rma *rma, const struct rma_swath *swath, int thread, int turn,
                                double seconds[RMA_STAGES])
 {
@@ -280,28 +341,16 @@ void REAL_ISA_NAME(rma_column)(const struct rma *rma, const struct rma_swath *sw
                           .seconds = seconds,
                           .mark = seconds_now(),
                           .scratch = (char *)rma->scratch + (size_t)thread * rma->scratch_bytes};
-    real *stored = buffer(&w, RMA_STORED), *focused = rma->focused;
-    const size_t stride = 2 * (swath->rows + RMA_TILE); /* or rows a power of two apart would share sets of the cache */
-    struct rma_line lines[RMA_TILE];
-    int q[RMA_TILE];
-    for (int n = 0; n < RMA_TILE; n++) {
-        q[n] = turn + n < swath->wavenumbers ? rma_wavenumber(rma, swath, turn + n) : -1;
-        lines[n] = q[n] >= 0 ? rma_line(rma, swath, q[n]) : (struct rma_line){.begin = swath->band};
+    const size_t row = 2 * (size_t)swath->row;
+    real *samples = buffer(&w, RMA_CUT);
+    int end = turn + rma_turns(rma) < swath->wavenumbers ? turn + rma_turns(rma) : swath->wavenumbers;
+    for (int at = turn; rma->delay && at < end; at += rma->receivers)
+        REAL_ISA_NAME(rma_receivers)(&w, at / rma->receivers, samples + (size_t)(at - turn) * row);
+    if (end == swath->wavenumbers)
+        end = (int)swath->columns;
+    for (int at = turn, count; at < end; at += count, samples += rma->delay ? (size_t)count * row : 0) {
+        count = RMA_TILE - at % RMA_TILE;
+        count = count < end - at ? count : end - at;
+        tile(&w, at, count, samples);
     }
-    if (rma->delay)
-        REAL_ISA_NAME(rma_receivers)(&w, q, lines, buffer(&w, RMA_CUT));
-    for (int n = 0; n < RMA_TILE; n++) {
-        w.q = q[n];
-        w.line = lines[n];
-        if (w.line.begin < swath->band)
-            column(&w, n, stored + (size_t)n * stride);
-        else
-            memset(stored + (size_t)n * stride, 0, 2 * swath->rows * sizeof *stored);
-    }
-    for (size_t i = 0; i < swath->rows; i++) {
-        real *out = focused + 2 * (i * swath->columns + (size_t)turn);
-        for (size_t n = 0; n < RMA_TILE; n++) /* moved as one: else the compiler takes real from imaginary parts */
-            memcpy(out + 2 * n, stored + n * stride + 2 * i, 2 * sizeof *out);
-    }
-    stage_end(&w, RMA_FOCUS);
 }

@@ -55,6 +55,7 @@ static enum status lay_delay(struct rma *rma, const struct rma_view *view)
         return status_set(STATUS_FAILED, "%s: no memory for %d receivers", rma->method.name, rma->receivers);
     delay->guard = RMA_RUN + rma->method.taps;
     rma->work.bytes += (double)sizeof *delay + delay->terms.bytes;
+    rma_fold(rma);
     return delay_taps_make(rma->problem.acquisition, rma->method.taps, &delay->taps);
 }
 
@@ -389,14 +390,15 @@ static void lay_scratch(struct rma *rma)
             [RMA_SUMS] = needed * summed * row,
             [RMA_WAVE] = 2 * longest * real_bytes,
             [RMA_TRANSFORMED] = 2 * longest * real_bytes,
-            [RMA_CUT] = 2 * stolt * real_bytes * (rma->delay ? RMA_TILE : 1),
+            [RMA_CUT] = rma->delay ? (size_t)rma_turns(rma) * row : 2 * stolt * real_bytes,
             [RMA_PLACES] = (size_t)s->length * real_bytes,
             [RMA_SPECTRUM] = 2 * (stolt + 2 * RMA_GUARD) * real_bytes,
             [RMA_PARTS] = rma->taps == 0 ? most_rows * 2 * RMA_ALIGNMENT : 0,
             [RMA_STORED] = 2 * RMA_TILE * (s->rows + RMA_TILE) * real_bytes,
             [RMA_PADDED] = rma->delay ? 2 * ((size_t)rma->held + 2 * (size_t)rma->delay->guard) * real_bytes : 0,
-            [RMA_TURNS] = rma->delay ? 2 * RMA_TILE * receivers * real_bytes : 0,
-            [RMA_EDGES] = RMA_TILE * terms * ((size_t)s->row * real_bytes / RMA_ALIGNMENT + 1) * 2 * real_bytes,
+            [RMA_TURNS] = rma->delay ? 2 * RMA_CLASSES * receivers * real_bytes : 0,
+            [RMA_EDGES] = receivers * terms * ((size_t)s->row * real_bytes / RMA_ALIGNMENT + 1) * 2 * real_bytes,
+            [RMA_MEMBERS] = rma->delay ? receivers * sizeof(struct rma_member) : 0,
         };
         for (int k = 0; k < RMA_BUFFERS; k++)
             most[k] = bytes[k] > most[k] ? bytes[k] : most[k];

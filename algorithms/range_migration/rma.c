@@ -67,7 +67,7 @@ static double swath_flops(const struct rma *rma, const struct rma_swath *swath)
         flops += receivers
                      * (rma->pings * swath->held * (8.0 * rma->delay->taps.taps + 10)
                         + swath->row * fft_flops(swath->period))
-                 + q * swath->held * (receivers * (6 + 4.0 * rma->delay->terms.terms) + 12 * rma->delay->terms.terms);
+                 + (double)swath->period * swath->held * rma_fold_flops(rma);
     else
         flops += receivers * rma->pings * fft_flops(length) + receivers * band * fft_flops(swath->period)
                  + q * receivers * band * (rma->converts ? 8 : 0) * swath->needed
@@ -235,7 +235,7 @@ static void migrate(const struct rma *rma, const struct rma_swath *swath, struct
 #pragma omp parallel num_threads(rma->threads) reduction(+ : seconds[:RMA_STAGES])
     {
 #pragma omp for schedule(dynamic)
-        for (int turn = 0; turn < swath->wavenumbers; turn += RMA_TILE)
+        for (int turn = 0; turn < swath->wavenumbers; turn += rma_turns(rma))
             column(rma, swath, omp_get_thread_num(), turn, seconds);
     }
     stages_share(stages, RMA_STAGES, stage_names, seconds);

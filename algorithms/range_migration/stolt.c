@@ -13,6 +13,7 @@ struct bins {
     double to_kappa;           /* of j: c step/4 pi */
     double to_position, to_fc; /* of the frequency above fc: bins of the spectrum */
     double to_row, to_centre;  /* cycles of j at the first row; s, the samples' origin */
+    double shift;              /* cycles: to the patch's columns */
     double weight;             /* of the cell: everything that does not change along K */
 };
 
@@ -21,7 +22,7 @@ static inline __attribute__((always_inline)) struct fit_cell bin_exact(const voi
     const struct bins *b = of;
     double kappa = b->to_kappa * j, root = sqrt(b->half * b->half + b->b1 * kappa * kappa);
     double frequency = b->beta * b->half + root, offset = frequency - b->fc;
-    return (struct fit_cell){offset * b->to_position + b->to_fc, j * b->to_row - offset * b->to_centre,
+    return (struct fit_cell){offset * b->to_position + b->to_fc, j * b->to_row - offset * b->to_centre + b->shift,
                              b->weight * frequency / (root * sqrt(kappa))}; /* F/(kappa^1.5) dF/dK */
 }
 
@@ -113,6 +114,7 @@ static struct bins bins_of(const struct workspace *w, const struct rma_patch *pa
                          .to_fc = swath->stolt_length / 2 + RMA_GUARD,
                          .to_row = step * patch->grid.r_first / (2 * M_PI),
                          .to_centre = swath->t_first + swath->centre / rma->fs,
+                         .shift = rma_shift(swath, patch, w->q),
                          .weight = sqrt(c / 2) * to_kappa / rma->fs};
 }
 

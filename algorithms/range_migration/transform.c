@@ -6,11 +6,13 @@
 
 #include "common/kaiser.h"
 #include "common/real.h"
+#include "common/stream.h"
 #include "range_migration/engine.h"
 
 enum {
     LANES = RMA_ALIGNMENT / sizeof(real),
-    BLOCKS = 4 /* vectors of bins that are copied together for the azimuth FFT */
+    BLOCKS = 4, /* vectors of bins that are copied together for the azimuth FFT */
+    AHEAD = 256 /* wavenumbers of a row that are on their way from memory */
 };
 
 static real *scratch_of(const struct rma *rma, enum rma_buffer buffer)
@@ -89,21 +91,23 @@ static void apodization_fill(const struct rma *rma, const struct rma_swath *swat
 static bool azimuth_fill(struct rma *rma, const struct rma_swath *swath, struct rma_patch *patch)
 {
     const int q_count = swath->wavenumbers, x_count = patch->grid.x_count, length = patch->columns;
-    complex_real *before = rma_take(rma, (size_t)q_count, sizeof *before, 1);
+    int *bins = rma_take(rma, swath->columns, sizeof *bins, 1);
     complex_real *after = rma_take(rma, (size_t)x_count, sizeof *after, 1);
     complex_real *kernel = patch->folds ? NULL : rma_take(rma, (size_t)length, sizeof *kernel, 1);
-    complex_real *wave = rma->scratch, *turned = behind(wave, (size_t)length);
-    patch->before = before;
+    complex_real *wave = rma->scratch, *turned = behind(wave, (size_t)length + 1);
+    patch->bins = bins;
     patch->after = after;
     patch->kernel = kernel;
     patch->azimuth_inverse = FFTW(plan_dft_1d)(length, wave, turned, FFTW_BACKWARD, FFTW_ESTIMATE);
-    if (!before || !after || !patch->azimuth_inverse)
+    if (!bins || !after || !patch->azimuth_inverse)
         return false;
     const double period = swath->period * fabs(rma->spacing),
                  turn = patch->folds ? 1.0 / length : patch->grid.x_step / period;
-    const double from = (patch->grid.x_first - rma->x_first) / period, square = patch->folds ? 0 : 0.5 * turn;
-    for (int q = 0; q < q_count; q++)
-        before[q] = rotor((q - q_count / 2) * from + square * q * q);
+    const double square = patch->folds ? 0 : 0.5 * turn;
+    patch->shift = (patch->grid.x_first - rma->x_first) / period;
+    patch->square = square;
+    for (int k = 0; k < (int)swath->columns; k++)
+        bins[k] = k < q_count ? rma_wavenumber(rma, swath, k) % length : length;
     for (int j = 0; j < x_count; j++)
         after[j] = rotor(square * j * j - turn * (q_count / 2) * j) / (real)(patch->folds ? period : period * length);
     if (patch->folds)
@@ -200,7 +204,7 @@ static void destroy(struct rma *rma)
         plan_destroy(patch->focus_plan);
         plan_destroy(patch->azimuth_forward);
         plan_destroy(patch->azimuth_inverse);
-        free(patch->before);
+        free(patch->bins);
         free(patch->after);
         free(patch->kernel);
     }
@@ -315,7 +319,7 @@ static void spread_strip(const struct rma_swath *swath, const complex_real *line
     const size_t period = (size_t)swath->period;
     for (size_t v = 0; v < vectors; v++)
         FFTW(execute_dft)
-        (swath->azimuth_forward, (complex_real *)lines + v * period * LANES, turned + v * period * LANES);
+    (swath->azimuth_forward, (complex_real *)lines + v * period * LANES, turned + v * period * LANES);
     for (size_t p = 0; p < period; p++)
         for (size_t v = 0; v < vectors; v++) {
             const real *from = (const real *)(turned + (v * period + p) * LANES);
@@ -352,22 +356,22 @@ static void spread(const struct rma *rma, const struct rma_swath *swath)
 static void inverse(const struct rma *rma, const struct rma_swath *swath, const struct rma_patch *patch, void *pixels)
 {
     const size_t x_count = (size_t)patch->grid.x_count;
-    const int length = patch->columns;
-    const real *before = patch->before;
+    const int length = patch->columns, *bins = patch->bins;
+    const size_t columns = swath->columns;
+    const bool streams = stream_pays((double)x_count * patch->grid.r_count * 2 * sizeof(real));
+    typedef real one __attribute__((vector_size(2 * sizeof(real)), aligned(sizeof(real)), may_alias));
 #pragma omp parallel for schedule(static) num_threads(rma->threads)
     for (int i = 0; i < patch->grid.r_count; i++) {
-        real *wave = scratch_of(rma, 0), *turned = (real *)behind((complex_real *)wave, (size_t)length);
+        real *wave = scratch_of(rma, 0), *turned = (real *)behind((complex_real *)wave, (size_t)length + 1);
         real *out = (real *)pixels + 2 * x_count * (size_t)i;
         real root = (real)sqrt(patch->grid.r_first + i * patch->grid.r_step);
         const real *from = (const real *)rma->focused + 2 * swath->columns * (patch->row + (size_t)i);
         memset(wave, 0, 2 * (size_t)length * sizeof *wave);
-        for (int p = 0; p < swath->period; p++) /* in the order of rma_wavenumber */
-            for (int q = p; q < swath->wavenumbers; q += swath->period, from += 2) {
-                const real *b = before + 2 * q;
-                real *to = wave + 2 * (q < length ? q : q % length);
-                to[0] += from[0] * b[0] - from[1] * b[1];
-                to[1] += from[0] * b[1] + from[1] * b[0];
-            }
+        for (size_t k = 0; k < columns; k += RMA_TILE) {
+            __builtin_prefetch(from + 2 * (k + AHEAD));
+            for (size_t n = k; n < k + RMA_TILE; n++)
+                *(one *)(wave + 2 * bins[n]) += *(const one *)(from + 2 * n);
+        }
         if (!patch->folds) {
             memcpy(turned, wave, 2 * (size_t)length * sizeof *wave);
             FFTW(execute_dft)(patch->azimuth_forward, (complex_real *)turned, (complex_real *)wave);
@@ -376,7 +380,11 @@ static void inverse(const struct rma *rma, const struct rma_swath *swath, const 
         FFTW(execute_dft)(patch->azimuth_inverse, (complex_real *)wave, (complex_real *)turned);
         multiply(turned, patch->after, patch->grid.x_count);
         for (size_t k = 0; k < 2 * x_count; k++)
-            out[k] = turned[k] * root;
+            turned[k] *= root;
+        if (streams)
+            stream_copy(out, turned, 2 * x_count * sizeof *out);
+        else
+            memcpy(out, turned, 2 * x_count * sizeof *out);
     }
 }
 

@@ -4,8 +4,6 @@
 
 #include "range_migration/column.h"
 
-enum { TOGETHER = VECTOR_BYTES == 64 ? 4 : 2 }; /* wavenumbers, as many as registers hold */
-
 /* The first and the second half of the complex numbers with these real and imaginary parts. */
 #if defined __AVX512F__ && !REAL_DOUBLE
 #define FIRST(a, b)  __builtin_shufflevector(a, b, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23)
@@ -21,15 +19,16 @@ enum { TOGETHER = VECTOR_BYTES == 64 ? 4 : 2 }; /* wavenumbers, as many as regis
 #define SECOND(a, b) __builtin_shufflevector(a, b, 1, 3)
 #endif
 
-/* Wavenumbers that read the same spectra. */
+/* Wavenumbers that read the same spectra: some classes, and all members of each. */
 struct group {
     const struct rma *rma;
     const struct rma_swath *swath;
-    const real *data;            /* [receivers][row] */
-    int count, member[RMA_TILE]; /* of the tile */
-    const real *turns;           /* [RMA_TILE][receivers][2] */
-    const complex_real *edges;   /* [RMA_TILE][terms][edges] */
-    real *cuts;                  /* [RMA_TILE][stolt_length] complex */
+    const real *data; /* [receivers][row] */
+    int classes;
+    const real *turns[RMA_CLASSES]; /* [receivers][2]: of a class's first wavenumber */
+    int begin[RMA_CLASSES + 1];     /* of its members */
+    const struct rma_member *members;
+    real factors[RMA_FOLD][2]; /* exp(-j 2 pi n/fold) */
 };
 
 /* exp(-j pi nu d) of each receiver. */
@@ -41,8 +40,8 @@ static void turns_fill(const struct rma *rma, double nu, real *turns)
     }
 }
 
-/* U at the edges of the row's vectors. */
-static void edges_fill(const struct workspace *w, double nu, real *restrict edges)
+/* U at the edges of the row's vectors, turned by `cycles`. */
+static void edges_fill(const struct workspace *w, double nu, double cycles, real *restrict edges)
 {
     const struct delay_terms *terms = &w->rma->delay->terms;
     const size_t count = 2 * (size_t)terms->terms * (size_t)(w->swath->row / LANES + 1);
@@ -50,117 +49,153 @@ static void edges_fill(const struct workspace *w, double nu, real *restrict edge
     const size_t first = (size_t)delay_terms_place(terms, &w->rma->setting, nu, weights);
     const real *a = (const real *)w->swath->map.edges + first * count, *b = a + count, *c = b + count, *d = c + count;
     const real wa = (real)weights[0], wb = (real)weights[1], wc = (real)weights[2], wd = (real)weights[3];
-    for (size_t k = 0; k < count; k++)
-        edges[k] = wa * a[k] + wb * b[k] + wc * c[k] + wd * d[k];
+    real tr, ti;
+    phasor((real)(cycles - floor(cycles + 0.5)), &tr, &ti);
+    for (size_t k = 0; k < count; k += 2) {
+        const real re = wa * a[k] + wb * b[k] + wc * c[k] + wd * d[k],
+                   im = wa * a[k + 1] + wb * b[k + 1] + wc * c[k + 1] + wd * d[k + 1];
+        edges[k] = re * tr - im * ti;
+        edges[k + 1] = re * ti + im * tr;
+    }
 }
 
-/* One vector of samples of `count` wavenumbers from `member` on; both are constants where this is inlined. */
-static inline __attribute__((always_inline)) void samples_add(const struct group *g, const int *member, int count,
-                                                              int terms, int block)
+/* Receivers at one vector of samples, turned, weighted and added up over those of equal number modulo fold; of an even
+   fold then the sums of those half of it apart, and their differences. */
+static inline __attribute__((always_inline)) void partial_sums(const struct group *g, const real *x, const real *turns,
+                                                               int terms, vec sums[RMA_FOLD][DELAY_TERMS][2])
 {
     const struct rma *rma = g->rma;
-    const struct rma_swath *swath = g->swath;
-    const size_t row = 2 * (size_t)swath->row;
-    const int receivers = rma->receivers, edges = swath->row / LANES + 1, first = block * LANES;
-    for (int v = 0; v < LANES / VECTOR; v++) {
-        const real *x = g->data + 2 * first + v * VECTOR;
-        vec re[TOGETHER][DELAY_TERMS], im[TOGETHER][DELAY_TERMS];
-        const vec zero = {0};
-        for (int n = 0; n < count; n++)
-            for (int q = 0; q < terms; q++)
-                re[n][q] = im[n][q] = zero;
-        const real *basis = rma->delay->basis;
-        for (int m = 0; m < receivers; m++, x += row) {
-            const vec xr = *(const vec *)x, xi = *(const vec *)(x + LANES);
-            __builtin_prefetch(x
-                               + 2 * LANES); /* the next vector's: more streams than the processor follows by itself */
-            __builtin_prefetch(x + 3 * LANES);
-            for (int n = 0; n < count; n++) {
-                const real *turn = g->turns + 2 * ((size_t)member[n] * (size_t)receivers + (size_t)m);
-                const vec pr = xr * turn[0] - xi * turn[1], pi = xr * turn[1] + xi * turn[0];
-                for (int q = 0; q < terms; q++) {
-                    const real weight = basis[q * receivers + m];
-                    re[n][q] += pr * weight;
-                    im[n][q] += pi * weight;
-                }
+    const size_t row = 2 * (size_t)g->swath->row;
+    const int receivers = rma->receivers, fold = rma->delay->fold, half = fold / 2;
+    const real *basis = rma->delay->basis;
+    for (int c = 0; c < fold; c++) {
+        vec re[DELAY_TERMS], im[DELAY_TERMS];
+        for (int q = 0; q < terms; q++)
+            re[q] = im[q] = (vec){0};
+        for (int m = c; m < receivers; m += fold) {
+            const vec xr = *(const vec *)(x + (size_t)m * row), xi = *(const vec *)(x + (size_t)m * row + LANES);
+            const real *turn = turns + 2 * (size_t)m;
+            const vec pr = xr * turn[0] - xi * turn[1], pi = xr * turn[1] + xi * turn[0];
+            for (int q = 0; q < terms; q++) {
+                const real weight = basis[q * receivers + m];
+                re[q] += pr * weight;
+                im[q] += pi * weight;
             }
         }
-        vec along = zero;
-        for (int l = 0; l < VECTOR; l++)
-            along[l] = (real)(v * VECTOR + l) / LANES;
-        for (int n = 0; n < count; n++) {
-            vec zr = zero, zi = zero;
-            for (int q = 0; q < terms; q++) {
-                const real *u =
-                    (const real *)(g->edges + ((size_t)member[n] * (size_t)terms + (size_t)q) * (size_t)edges
-                                   + (size_t)block);
-                const vec ur = u[0] + along * (u[2] - u[0]), ui = u[1] + along * (u[3] - u[1]);
-                zr += re[n][q] * ur - im[n][q] * ui;
-                zi += re[n][q] * ui + im[n][q] * ur;
-            }
-            /* Samples count from `centre`, a multiple of the vector; those before it are the cut's last. */
-            const int sample = first + v * VECTOR, ahead = sample - swath->centre;
-            real *to = g->cuts
-                       + 2
-                             * ((size_t)member[n] * (size_t)swath->stolt_length
-                                + (size_t)(ahead < 0 ? ahead + swath->stolt_length : ahead));
-            const int kept = swath->held - sample < VECTOR ? swath->held - sample : VECTOR;
-            if (kept == VECTOR) {
-                *(vec_unaligned *)to = FIRST(zr, zi);
-                *(vec_unaligned *)(to + VECTOR) = SECOND(zr, zi);
-                continue;
-            }
-            for (int l = 0; l < kept; l++) {
-                to[2 * l] = zr[l];
-                to[2 * l + 1] = zi[l];
-            }
+        for (int q = 0; q < terms; q++) {
+            sums[c][q][0] = re[q];
+            sums[c][q][1] = im[q];
         }
     }
+    for (int c = 0; fold % 2 == 0 && c < half; c++)
+        for (int q = 0; q < terms; q++)
+            for (int part = 0; part < 2; part++) {
+                const vec a = sums[c][q][part], b = sums[c + half][q][part];
+                sums[c][q][part] = a + b;
+                sums[c + half][q][part] = a - b;
+            }
+}
+
+/* One member's vector of samples, `v` within block. */
+static inline __attribute__((always_inline)) void member_store(const struct group *g, const struct rma_member *member,
+                                                               int terms, int block, int v,
+                                                               vec sums[RMA_FOLD][DELAY_TERMS][2])
+{
+    const int edges = g->swath->row / LANES + 1, fold = g->rma->delay->fold;
+    const int count = fold % 2 == 0 ? fold / 2 : fold;
+    vec(*from)[DELAY_TERMS][2] = sums + (fold % 2 == 0 && member->number % 2 != 0 ? count : 0);
+    vec re[DELAY_TERMS], im[DELAY_TERMS], along, zr = {0}, zi = {0};
+    for (int q = 0; q < terms; q++) {
+        re[q] = from[0][q][0];
+        im[q] = from[0][q][1];
+    }
+    for (int c = 1, n = 0; c < count; c++) {
+        n += member->number;
+        n -= n >= fold ? fold : 0;
+        const real wr = g->factors[n][0], wi = g->factors[n][1];
+        for (int q = 0; q < terms; q++) {
+            re[q] += from[c][q][0] * wr - from[c][q][1] * wi;
+            im[q] += from[c][q][0] * wi + from[c][q][1] * wr;
+        }
+    }
+    for (int l = 0; l < VECTOR; l++)
+        along[l] = (real)(v * VECTOR + l) / LANES;
+    for (int q = 0; q < terms; q++) {
+        const real *u = (const real *)member->edges + 2 * ((size_t)q * (size_t)edges + (size_t)block);
+        const vec ur = u[0] + along * (u[2] - u[0]), ui = u[1] + along * (u[3] - u[1]);
+        zr += re[q] * ur - im[q] * ui;
+        zi += re[q] * ui + im[q] * ur;
+    }
+    real *to = (real *)member->cut + 2 * ((size_t)block * LANES + (size_t)v * VECTOR);
+    *(vec *)to = FIRST(zr, zi);
+    *(vec *)(to + VECTOR) = SECOND(zr, zi);
 }
 
 static inline __attribute__((always_inline)) void group_add(const struct group *g, int terms)
 {
     const int blocks = (g->swath->held + LANES - 1) / LANES;
+    const size_t row = 2 * (size_t)g->swath->row;
     for (int block = 0; block < blocks; block++) {
-        int n = 0;
-        for (; n + TOGETHER <= g->count; n += TOGETHER)
-            samples_add(g, g->member + n, TOGETHER, terms, block);
-        for (; n < g->count; n++)
-            samples_add(g, g->member + n, 1, terms, block);
+        const real *x = g->data + 2 * (size_t)block * LANES;
+        for (int m = 0; m < g->rma->receivers; m++) { /* more streams than the processor follows by itself */
+            __builtin_prefetch(x + (size_t)m * row + 2 * LANES);
+            __builtin_prefetch(x + (size_t)m * row + 3 * LANES);
+        }
+        for (int v = 0; v < LANES / VECTOR; v++)
+            for (int n = 0; n < g->classes; n++) {
+                vec sums[RMA_FOLD][DELAY_TERMS][2];
+                partial_sums(g, x + v * VECTOR, g->turns[n], terms, sums);
+                for (int k = g->begin[n]; k < g->begin[n + 1]; k++)
+                    member_store(g, &g->members[k], terms, block, v, sums);
+            }
     }
 }
 
-void REAL_ISA_NAME(rma_receivers)(struct workspace *w, const int *q, const struct rma_line *lines, real *cuts)
+/* The members of classes [from, from + RMA_CLASSES) among `count` wavenumbers that read column p. */
+static void group_fill(struct workspace *w, int p, int from, real *cuts, struct group *g)
 {
     const struct rma *rma = w->rma;
     const struct rma_swath *swath = w->swath;
-    const int period = swath->period, edges = swath->row / LANES + 1;
-    real *turns = buffer(w, RMA_TURNS);
-    complex_real *values = buffer(w, RMA_EDGES);
-    struct group group = {.rma = rma, .swath = swath, .turns = turns, .edges = values, .cuts = cuts};
-    int column[RMA_TILE];
-    for (int n = 0; n < RMA_TILE; n++) {
-        column[n] = -1;
-        if (q[n] < 0 || lines[n].begin >= swath->band)
+    const struct rma_delay *delay = rma->delay;
+    struct rma_member *members = buffer(w, RMA_MEMBERS);
+    const size_t row = 2 * (size_t)swath->row,
+                 edges = 2 * (size_t)delay->terms.terms * ((size_t)swath->row / LANES + 1);
+    int count = 0;
+    g->classes = 0;
+    g->members = members;
+    for (int n = from; n < from + RMA_CLASSES && n < delay->stride && n < rma->receivers; n++) {
+        real *turns = (real *)buffer(w, RMA_TURNS) + 2 * (size_t)(n - from) * (size_t)rma->receivers;
+        g->begin[g->classes] = count;
+        for (int k = n; k < rma->receivers; k += delay->stride) {
+            const struct rma_line line = rma_line(rma, swath, p + k * swath->period);
+            const int number = (k - n) / delay->stride;
+            if (line.begin >= swath->band)
+                continue;
+            real *values = (real *)buffer(w, RMA_EDGES) + (size_t)count * edges;
+            edges_fill(w, line.nu, number * delay->turn, values);
+            members[count++] = (struct rma_member){number % delay->fold, values, cuts + (size_t)k * row};
+        }
+        if (count == g->begin[g->classes])
             continue;
-        const int wraps = q[n] - swath->wavenumbers / 2;
-        column[n] = ((rma->spacing < 0 ? -wraps : wraps) % period + period) % period;
-        /* Zeros between the last sample and the first. */
-        memset(cuts + 2 * ((size_t)n * (size_t)swath->stolt_length + (size_t)(swath->held - swath->centre)), 0,
-               2 * (size_t)(swath->stolt_length - swath->held) * sizeof *cuts);
-        turns_fill(rma, lines[n].nu, turns + 2 * (size_t)n * (size_t)rma->receivers);
-        edges_fill(w, lines[n].nu, (real *)(values + (size_t)n * (size_t)rma->delay->terms.terms * (size_t)edges));
+        turns_fill(rma, rma_line(rma, swath, p + n * swath->period).nu, turns);
+        g->turns[g->classes++] = turns;
     }
-    for (int n = 0; n < RMA_TILE; n++) {
-        if (column[n] < 0)
-            continue;
-        group.count = 0;
-        group.data = (const real *)swath->data + (size_t)column[n] * (size_t)rma->receivers * 2 * (size_t)swath->row;
-        for (int k = RMA_TILE - 1; k >= n; k--)
-            if (column[k] == column[n]) {
-                group.member[group.count++] = k;
-                column[k] = k > n ? -1 : column[k];
-            }
+    g->begin[g->classes] = count;
+}
+
+void REAL_ISA_NAME(rma_receivers)(struct workspace *w, int p, real *cuts)
+{
+    const struct rma *rma = w->rma;
+    const struct rma_swath *swath = w->swath;
+    const int period = swath->period, wraps = p - swath->wavenumbers / 2;
+    const int column = ((rma->spacing < 0 ? -wraps : wraps) % period + period) % period;
+    struct group group = {.rma = rma, .swath = swath};
+    group.data = (const real *)swath->data + (size_t)column * (size_t)rma->receivers * 2 * (size_t)swath->row;
+    for (int n = 0; n < rma->delay->fold; n++)
+        phasor((real)(n * rma->delay->step - floor(n * rma->delay->step + 0.5)), &group.factors[n][0],
+               &group.factors[n][1]);
+    for (int from = 0; from < rma->delay->stride && from < rma->receivers; from += RMA_CLASSES) {
+        group_fill(w, p, from, cuts, &group);
         switch (rma->delay->terms.terms) {
         case 1: group_add(&group, 1); break;
         case 2: group_add(&group, 2); break;

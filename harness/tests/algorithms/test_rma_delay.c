@@ -158,13 +158,55 @@ static void deep_swath(void **state)
     free_scene(&scene);
 }
 
+/* Receivers at even places are added up in two steps: the image is that of one step, which a receiver takes that is
+   1e-9 of a wavelength off its place. More receivers than the track's spacing asks for (48 in place of 40), fewer, odd
+   numbers, a track backwards. */
+static void two_steps(void **state)
+{
+    (void)state;
+    static const struct {
+        int receivers, periods;
+        double direction;
+    } arrays[] = {{40, 40, 1}, {48, 40, -1}, {35, 35, 1}, {24, 48, 1}, {22, 22, -1}};
+    static const double targets[] = {60.2, 61.1};
+    static const struct grid part = {-0.14, 0.02, 8, 60, 0.05, 30};
+    static const char *const specs[] = {"rma_delay:precision=double", "rma_delay:terms=3,precision=double",
+                                        "rma_delay:terms=1"};
+    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) {
+        const double spacing = arrays[k].direction * arrays[k].periods * 0.02;
+        struct scene scene;
+        struct echoes echoes;
+        struct image image;
+        make_scene(&(struct rma_track){12, arrays[k].receivers, 512, 25e3, 1980 / 25e3, -5.5 * spacing, spacing, 0.04},
+                   &scene);
+        struct acquisition *a = &scene.acquisition;
+        add_targets(&scene, 2, targets);
+        assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
+        struct problem problem = {a, 1, &part, PRECISION_DOUBLE};
+        for (size_t n = 0; n < sizeof specs / sizeof *specs; n++) {
+            const double folded = support_work(specs[n], problem).flops;
+            for (int p = 0; p < a->pings; p++)
+                a->rx[p * a->receivers + 3].x += 1e-11;
+            const double plain = support_work(specs[n], problem).flops;
+            form(specs[n], problem, &echoes, &image);
+            for (int p = 0; p < a->pings; p++)
+                a->rx[p * a->receivers + 3].x -= 1e-11;
+            assert_true(folded < 0.9 * plain);
+            print_message("    %d receivers, %.2f of the FLOPs:\n", a->receivers, folded / plain);
+            assert_up_to(swath_error(specs[n], problem, &echoes, &image), n < 2 ? 1e-11 : 3e-7, "%s, %d receivers",
+                         specs[n], a->receivers);
+            image_free(&image);
+        }
+        echoes_free(&echoes);
+        free_scene(&scene);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(spectrum),
-        cmocka_unit_test(taps),
-        cmocka_unit_test(terms),
-        cmocka_unit_test(deep_swath),
+        cmocka_unit_test(spectrum),   cmocka_unit_test(taps),      cmocka_unit_test(terms),
+        cmocka_unit_test(deep_swath), cmocka_unit_test(two_steps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
