@@ -1,11 +1,13 @@
 /* Back projection with Farrow branches:  s(q) = sum over m <= degree of branch_m[i] u^m,  i = floor(q + 1/2), u = q-i.
-   Branch m is the record's spectrum times H_m(nu), made in the range compression (backprojection/farrow.h has the
-   expansion). A pair reads its values at one index, like bp_nearest, and needs neither taps nor weights.
+   Branch m is the record's spectrum times H_m(nu), made in the range compression: the first two by transforms, the
+   others from their neighbours (backprojection/farrow.h has both). A pair reads its values at one index, like
+   bp_nearest, and needs neither taps nor weights.
 
-   Cost: degree + 1 inverse FFTs of factor N a record in place of one; 4 degree + 8 FLOPs a pair. Error, relative L2
-   of a record of flat spectrum (farrow_error): 4.0e-4, 2.8e-5, 1.7e-6, 9.0e-8 for degrees 3 to 6 at fs = 2B; 2.9e-3,
-   3.5e-4, 3.6e-5, 3.1e-6 at fs = 1.2 B. It falls by an order of magnitude and more with each degree; a higher degree
-   is cheaper than factor = 2. Frequencies beyond the band keep a small error as well: 1.7e-2 for degree 3 at fs/2. */
+   Cost: two inverse FFTs of factor N a record in place of one, whatever the degree; 4 degree + 8 FLOPs a pair.
+   Error, relative L2 of a record of flat spectrum (farrow_error): 4.0e-4, 2.8e-5, 1.7e-6, 9.0e-8 for degrees 3 to 6
+   at fs = 2B; 2.9e-3, 3.5e-4, 3.6e-5, 3.1e-6 at fs = 1.2 B. It falls by an order of magnitude and more with each
+   degree; a higher degree is cheaper than factor = 2. Frequencies beyond the band keep a small error as well: 1.7e-2
+   for degree 3 at fs/2. */
 #include "backprojection/bp.h"
 #include "backprojection/farrow.h"
 

@@ -22,16 +22,25 @@ void farrow_gains(int degree, double nu, double *gains)
     }
 }
 
+/* Mean square over u of what the cut leaves out at nu. */
+static double left_out(int degree, double nu)
+{
+    enum { TERMS = 12 };
+    double sum = 0;
+    for (int n = degree + 1; n <= degree + TERMS; n++) {
+        const double value = bessel_spherical(n, M_PI * nu);
+        sum += (2 * n + 1) * value * value;
+    }
+    return sum;
+}
+
 double farrow_error(int degree, double band)
 {
-    enum { FREQUENCIES = 64, TERMS = 12 };
+    enum { MEANS = 64 };
     double sum = 0;
-    for (int k = 0; k < FREQUENCIES; k++)
-        for (int n = degree + 1; n <= degree + TERMS; n++) {
-            const double value = bessel_spherical(n, M_PI * band / 2 * (k + 0.5) / FREQUENCIES);
-            sum += (2 * n + 1) * value * value;
-        }
-    return sqrt(sum / FREQUENCIES);
+    for (int k = 0; k < MEANS; k++)
+        sum += left_out(degree, band / 2 * (k + 0.5) / MEANS);
+    return sqrt(sum / MEANS);
 }
 
 int farrow_degree(double error, double band)
@@ -40,4 +49,77 @@ int farrow_degree(double error, double band)
     while (degree < FARROW_MOST && !(farrow_error(degree, band) <= error))
         degree++;
     return degree;
+}
+
+int farrow_reach(int degree, int upsample, enum precision precision)
+{
+    if (precision == PRECISION_DOUBLE)
+        return FARROW_REACH_MOST;
+    return upsample > 1 ? (degree + 5) / 2 : degree > 4 ? degree : 4;
+}
+
+enum { FREQUENCIES = 256, COLUMNS = 2 * FARROW_REACH_MOST + 1 };
+
+/* x of least squares |a x - b|, by Gram and Schmidt, each column made orthogonal twice; `a` is lost. */
+static void least_squares(int columns, double (*a)[FREQUENCIES], const double *b, double *x)
+{
+    double r[COLUMNS][COLUMNS] = {{0}};
+    for (int c = 0; c < columns; c++) {
+        double square = 0;
+        for (int k = 0; k < 2 * c; k++) {
+            double dot = 0;
+            for (int n = 0; n < FREQUENCIES; n++)
+                dot += a[k % c][n] * a[c][n];
+            for (int n = 0; n < FREQUENCIES; n++)
+                a[c][n] -= dot * a[k % c][n];
+            r[k % c][c] += dot;
+        }
+        for (int n = 0; n < FREQUENCIES; n++)
+            square += a[c][n] * a[c][n];
+        r[c][c] = sqrt(square);
+        for (int n = 0; n < FREQUENCIES; n++)
+            a[c][n] /= r[c][c];
+    }
+    for (int c = columns - 1; c >= 0; c--) {
+        x[c] = 0;
+        for (int n = 0; n < FREQUENCIES; n++)
+            x[c] += a[c][n] * b[n];
+        for (int k = c + 1; k < columns; k++)
+            x[c] -= r[c][k] * x[k];
+        x[c] /= r[c][c];
+    }
+}
+
+/* Taps are fitted where an upsampled record has frequencies, each weighted by the error that there is anyway, of which
+   the least are alike: weights of all magnitudes make large taps. */
+void farrow_taps_make(int degree, int upsample, double band, int reach, struct farrow_taps *taps)
+{
+    const double law = farrow_error(degree, band / upsample) + 1e-12;
+    const int columns = 2 * reach + 1;
+    double gains[FREQUENCIES][FARROW_MOST + 1], weight[FREQUENCIES], nu[FREQUENCIES];
+    *taps = (struct farrow_taps){.reach = reach};
+    for (int n = 0; n < FREQUENCIES; n++) {
+        nu[n] = (n + 0.5) / (2 * FREQUENCIES * upsample);
+        weight[n] = 1 / (sqrt(left_out(degree, nu[n])) + law);
+        farrow_gains(degree, nu[n], gains[n]);
+    }
+    for (int m = 2; m <= degree; m++) {
+        double a[COLUMNS][FREQUENCIES], b[FREQUENCIES], x[COLUMNS] = {0};
+        for (int n = 0; n < FREQUENCIES; n++) {
+            const double own = weight[n] * gains[n][m % 2], other = weight[n] * gains[n][1 - m % 2];
+            b[n] = weight[n] * gains[n][m];
+            a[0][n] = own;
+            for (int k = 1; k <= reach; k++) {
+                a[k][n] = 2 * own * cos(2 * M_PI * k * nu[n]);
+                a[reach + k][n] = (m % 2 ? 2 : -2) * other * sin(2 * M_PI * k * nu[n]);
+            }
+        }
+        least_squares(columns, a, b, x);
+        taps->own[m][reach] = x[0];
+        for (int k = 1; k <= reach; k++) {
+            taps->own[m][reach - k] = taps->own[m][reach + k] = x[k];
+            taps->other[m][reach + k] = x[reach + k];
+            taps->other[m][reach - k] = -x[reach + k];
+        }
+    }
 }

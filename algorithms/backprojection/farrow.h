@@ -10,6 +10,8 @@
 #ifndef SASBENCH_BACKPROJECTION_FARROW_H
 #define SASBENCH_BACKPROJECTION_FARROW_H
 
+#include "algorithm.h"
+
 enum { FARROW_LEAST = 2, FARROW_MOST = 9 }; /* degrees */
 
 /* gains[degree + 1]: H_m = gains[m] for an even m, j gains[m] for an odd one; gains[m] is even or odd in nu as m is.
@@ -22,5 +24,27 @@ double farrow_error(int degree, double band);
 
 /* The least degree whose a-priori error is at most `error`; FARROW_MOST if none is. */
 int farrow_degree(double error, double band);
+
+/* Branches 0 and 1 make all others, with neighbours at most `reach` values away:
+
+       branch_m[i] = sum over k of own[m][reach + k] branch_(m%2)[i + k] + other[m][reach + k] branch_(1 - m%2)[i + k]
+
+   (own is even, other odd in k). It is generalised sampling (Papoulis, IEEE Trans. Circuits Syst. 24(11), 1977: a
+   signal and its derivative), which knows no edge at fs/2, so that few neighbours are enough, and two inverse
+   transforms for any degree. Taps are least squares, weighted with the error that there is anyway. What they add to
+   it at any frequency below fs/2 is at most FARROW_SHARE of the rms error there and in the band together; in double,
+   where they reach farther, 2e-10 of the signal as well. */
+enum { FARROW_REACH_MOST = FARROW_MOST };
+#define FARROW_SHARE 0.01
+struct farrow_taps {
+    int reach;
+    double own[FARROW_MOST + 1][2 * FARROW_REACH_MOST + 1]; /* m from 2 on */
+    double other[FARROW_MOST + 1][2 * FARROW_REACH_MOST + 1];
+};
+
+/* FARROW_LEAST <= degree <= FARROW_MOST; `upsample` 1 or 2: what the records are zero padded by; 0 < band <= 1: of
+   those that are not; `reach`: farrow_reach(). */
+int farrow_reach(int degree, int upsample, enum precision precision);
+void farrow_taps_make(int degree, int upsample, double band, int reach, struct farrow_taps *taps);
 
 #endif

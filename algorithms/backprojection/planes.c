@@ -120,9 +120,11 @@ static void weigh(const void *spectrum, const void *gains, bool imaginary, size_
 }
 
 /* `width` vectors of sums. */
-INLINE void convolve_vectors(int width, const real *x, const double *weights, int taps, real *y)
+INLINE void convolve_vectors(int width, const real *x, const double *weights, int taps, bool add, real *y)
 {
-    vector_real sums[WIDEST] = {{0}};
+    vector_real sums[WIDEST];
+    for (int v = 0; v < width; v++)
+        sums[v] = add ? *at(y + v * LANES) : (vector_real){0};
     for (int t = 0; t < taps; t++)
         for (int v = 0; v < width; v++)
             sums[v] += (real)weights[t] * *at(x + 2 * t + v * LANES);
@@ -130,17 +132,17 @@ INLINE void convolve_vectors(int width, const real *x, const double *weights, in
         *at(y + v * LANES) = sums[v];
 }
 
-static void convolve(const void *values, const double *weights, int taps, size_t count, void *sums)
+static void convolve(const void *values, const double *weights, int taps, size_t count, bool add, void *sums)
 {
     const real *x = values;
     real *y = sums;
     size_t k = 0;
     for (; k + WIDEST * LANES <= 2 * count; k += WIDEST * LANES)
-        convolve_vectors(WIDEST, x + k, weights, taps, y + k);
+        convolve_vectors(WIDEST, x + k, weights, taps, add, y + k);
     for (; k + LANES <= 2 * count; k += LANES)
-        convolve_vectors(1, x + k, weights, taps, y + k);
+        convolve_vectors(1, x + k, weights, taps, add, y + k);
     for (; k < 2 * count; k++) {
-        y[k] = 0;
+        y[k] = add ? y[k] : 0;
         for (int t = 0; t < taps; t++)
             y[k] += (real)weights[t] * x[k + 2 * (size_t)t];
     }

@@ -16,8 +16,8 @@ struct planes {
     void (*turn)(const void *x, const void *h, size_t length, void *y);
     /* A spectrum times real gains [length] into y; times the imaginary unit as well where they are `imaginary`. */
     void (*weigh)(const void *x, const void *gains, bool imaginary, size_t length, void *y);
-    /* Sums of `taps` neighbours, y[k] = sum over t of weights[t] x[k + t], complex [count]. */
-    void (*convolve)(const void *x, const double *weights, int taps, size_t count, void *y);
+    /* Sums of `taps` neighbours, y[k] = sum over t of weights[t] x[k + t], complex [count]; `add`: to what y holds. */
+    void (*convolve)(const void *x, const double *weights, int taps, size_t count, bool add, void *y);
     /* Complex values [count] into `blocks` blocks of `block` real parts and as many imaginary ones, each block `step`
        values behind the one before; 0 behind the last value. */
     void (*part)(const void *values, size_t count, size_t blocks, size_t block, size_t step, void *to);

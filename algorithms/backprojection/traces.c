@@ -23,8 +23,18 @@ struct traces {
        factors nor gains: of one plane, all are 1. */
     real *gains;
     const struct planes *planes;
-    complex_real *scratch; /* [threads][2 + upsample][shape.pitch]: what is transformed, a spectrum, a branch */
+    struct farrow_taps *taps; /* of branches from 2 on, where there are some */
+    /* Of each thread: [2 + upsample][shape.pitch], what is transformed, a spectrum, a branch; and where branches > 1
+       [2][wide], the first two with neighbours, in order. */
+    complex_real *scratch;
+    size_t wide, each; /* complex values: of a branch with neighbours; of a thread, whole cache lines */
 };
+
+/* Branches that are transformed; they make the others (farrow.h). */
+static int transformed(int branches)
+{
+    return branches < 2 ? branches : 2;
+}
 
 static void filter_fill(const struct acquisition *acquisition, int length, double complex *work, complex_real *filter)
 {
@@ -54,13 +64,13 @@ static void emphasise(int length, complex_real *filter)
    are the conjugates of those of nu. H_m is real for even m, imaginary for odd ones. */
 static void factors_fill(const struct traces *traces)
 {
-    const int length = traces->shape.period, branches = traces->shape.branches, upsample = traces->shape.upsample;
+    const int length = traces->shape.period, upsample = traces->shape.upsample, degree = traces->shape.branches - 1;
     const size_t half = (size_t)length / 2 + 1;
     double gains[FARROW_MOST + 1] = {1};
     for (size_t k = 0; k < half; k++) {
-        if (branches > 1)
-            farrow_gains(branches - 1, (double)k / length / upsample, gains);
-        for (int m = 0; m < branches; m++) {
+        if (degree > 0)
+            farrow_gains(degree, (double)k / length / upsample, gains);
+        for (int m = 0; m < transformed(degree + 1); m++) {
             if (traces->gains) {
                 real *of = traces->gains + (size_t)m * (size_t)length;
                 if (k > 0)
@@ -84,31 +94,52 @@ static size_t whole_lines(int count)
     return ((size_t)count + line - 1) / line * line;
 }
 
+static int reach_of(int degree, int upsample)
+{
+    return farrow_reach(degree, upsample, REAL_DOUBLE ? PRECISION_DOUBLE : PRECISION_FLOAT);
+}
+
+/* Values of a branch that are made by convolution: by sixteens, the last of them in the guard. */
+static int convolved(const struct traces_shape *shape)
+{
+    const int count = shape->length - 2 * shape->guard;
+    return shape->guard < 15 ? count : (count + 15) / 16 * 16;
+}
+
 /* Filter, factors, scratch and FFTW's plans, and what they count in the shape. */
 static enum status transforms_plan(struct traces *traces, const struct acquisition *acquisition, bool preemphasis,
                                    int threads)
 {
     struct traces_shape *shape = &traces->shape;
-    const int length = shape->period, planes = shape->branches * shape->upsample;
+    const int length = shape->period, planes = transformed(shape->branches) * shape->upsample;
     const size_t pitch = whole_lines(length);
     const size_t factors = shape->upsample > 1 ? (size_t)planes * ((size_t)length / 2 + 1) : 0;
     const size_t gains = shape->upsample == 1 && planes > 1 ? (size_t)planes * (size_t)length : 0;
-    const int each = 2 + shape->upsample; /* arrays of a thread */
     shape->pitch = pitch;
+    if (shape->branches > 1) {
+        const int reach = reach_of(shape->branches - 1, shape->upsample);
+        traces->wide = whole_lines(convolved(shape) + 2 * reach);
+        traces->taps = malloc(sizeof *traces->taps);
+        if (traces->taps)
+            farrow_taps_make(shape->branches - 1, shape->upsample, fmin(1, acquisition->bandwidth / acquisition->fs),
+                             reach, traces->taps);
+        shape->bytes += sizeof *traces->taps;
+    }
+    traces->each = (2 + (size_t)shape->upsample) * pitch + 2 * traces->wide;
     /* Scratch, filter, factors, the pulse's spectrum, and as much as FFTW's plans may hold. */
     enum status status =
-        memory_check((each * (threads + 1.0) * (double)pitch + length + (double)factors) * sizeof(complex_real)
+        memory_check(((threads + 1.0) * (double)traces->each + length + (double)factors) * sizeof(complex_real)
                          + (double)gains * sizeof(real) + (double)length * sizeof(double complex),
                      "range compression");
     if (status != STATUS_OK)
         return status;
-    traces->scratch = FFTW(malloc)((size_t)threads * (size_t)each * pitch * sizeof *traces->scratch);
+    traces->scratch = FFTW(malloc)((size_t)threads * traces->each * sizeof *traces->scratch);
     traces->filter = FFTW(malloc)((size_t)length * sizeof *traces->filter);
     traces->factors = factors > 0 ? FFTW(malloc)(factors * sizeof *traces->factors) : NULL;
     traces->gains = gains > 0 ? FFTW(malloc)(gains * sizeof *traces->gains) : NULL;
     double complex *work = fftw_malloc((size_t)length * sizeof *work);
-    if (traces->scratch && traces->filter && work && (traces->factors || factors == 0)
-        && (traces->gains || gains == 0)) {
+    if (traces->scratch && traces->filter && work && (traces->factors || factors == 0) && (traces->gains || gains == 0)
+        && (traces->taps || shape->branches == 1)) {
         if (acquisition->compressed)
             for (int k = 0; k < length; k++)
                 traces->filter[k] = (real)1 / (real)length;
@@ -127,9 +158,9 @@ static enum status transforms_plan(struct traces *traces, const struct acquisiti
     fftw_free(work);
     if (!traces->forward || !traces->inverse)
         return status_set(STATUS_FAILED, "no memory for range compression (%.0f MB)",
-                          (double)threads * each * (double)pitch * sizeof(complex_real) / 1e6);
+                          threads * (double)traces->each * sizeof(complex_real) / 1e6);
     shape->bytes +=
-        (double)((size_t)each * pitch + (size_t)length + factors) * sizeof(complex_real) + (double)gains * sizeof(real);
+        (double)(traces->each + (size_t)length + factors) * sizeof(complex_real) + (double)gains * sizeof(real);
     return STATUS_OK;
 }
 
@@ -163,11 +194,18 @@ static void shape_cut(const struct acquisition *acquisition, const struct traces
         shape->read = shape->samples + pulse - 1;
 }
 
-double REAL_NAME(traces_flops)(const struct acquisition *acquisition, const struct traces_form *form)
+double REAL_NAME(traces_flops)(const struct acquisition *acquisition, const struct traces_form *form, double *sums)
 {
-    const double length = REAL_NAME(traces_period)(acquisition, form), planes = (form->degree + 1.0) * form->upsample;
+    const double length = REAL_NAME(traces_period)(acquisition, form);
+    const double planes = transformed(form->degree + 1) * form->upsample;
+    const int samples = form->count > 0 ? form->count : acquisition->samples;
+    *sums = 0;
     if (!transforms(acquisition, form))
         return 0;
+    if (form->degree > 0) {
+        const double taps = 2 * (2 * reach_of(form->degree, form->upsample) + 1);
+        *sums = 4 * taps * (form->degree - 1) * ((samples - 1.0) * form->upsample + 1);
+    }
     const double product = planes > 1 ? form->upsample > 1 ? 6 : 2 : 0;
     return (planes + 1) * fft_flops(length) + 6 * length + product * planes * length;
 }
@@ -195,7 +233,9 @@ enum status REAL_NAME(traces_plan)(const struct acquisition *acquisition, const 
                                           .period = length,
                                           .bytes = sizeof *traces};
     shape_cut(acquisition, form, &traces->shape);
-    traces->shape.flops = REAL_NAME(traces_flops)(acquisition, form);
+    double sums;
+    traces->shape.flops = REAL_NAME(traces_flops)(acquisition, form, &sums);
+    traces->shape.flops += sums;
     traces->planes = planes_choose(REAL_DOUBLE ? PRECISION_DOUBLE : PRECISION_FLOAT);
     traces->transforms = transforms(acquisition, form);
     enum status status =
@@ -212,7 +252,7 @@ enum status REAL_NAME(traces_plan)(const struct acquisition *acquisition, const 
 /* The first of a thread's arrays. */
 static complex_real *scratch_of(const struct traces *traces, int thread)
 {
-    return traces->scratch + (size_t)thread * (size_t)(2 + traces->shape.upsample) * traces->shape.pitch;
+    return traces->scratch + (size_t)thread * traces->each;
 }
 
 void REAL_NAME(traces_spectrum)(const struct traces *traces, int thread, const complex_real *record,
@@ -240,26 +280,57 @@ void REAL_NAME(traces_plane)(const struct traces *traces, int thread, complex_re
     FFTW(execute_dft)(traces->inverse, turned, values);
 }
 
-/* A branch's row from one period of each of its planes, [upsample][pitch], sample `from` and on. */
+/* `count` fine values in order from one period of each of their planes, [upsample][pitch]; the first of them lies
+   `before` fine values before the row's first sample. */
+static void fine_fill(const struct traces_shape *shape, const complex_real *values, size_t before, size_t count,
+                      complex_real *fine)
+{
+    const size_t upsample = (size_t)shape->upsample, period = (size_t)shape->period;
+    const size_t samples = (before + upsample - 1) / upsample, begin = (size_t)(shape->first - shape->from);
+    size_t sample = (begin + period - samples % period) % period, phase = samples * upsample - before;
+    for (size_t i = 0; i < count && upsample == 1; sample = 0) {
+        const size_t some = period - sample < count - i ? period - sample : count - i;
+        memcpy(fine + i, values + sample, some * sizeof *fine);
+        i += some;
+    }
+    for (size_t i = 0; i < count && upsample > 1; phase = 0) {
+        const size_t end = upsample - phase < count - i ? upsample : phase + count - i;
+        for (; phase < end; phase++)
+            fine[i++] = values[phase * shape->pitch + sample];
+        sample = sample + 1 < period ? sample + 1 : 0;
+    }
+}
+
+/* A row of one branch. */
 static void row_fill(const struct traces_shape *shape, const complex_real *values, complex_real *row)
 {
-    const size_t upsample = (size_t)shape->upsample, guard = (size_t)shape->guard, length = (size_t)shape->length;
-    const size_t period = (size_t)shape->period, n = (size_t)shape->samples;
-    const size_t begin = (size_t)(shape->first - shape->from);
-    if (upsample == 1) {
-        memset(row, 0, guard * sizeof *row);
-        memcpy(row + guard, values + begin, n * sizeof *row);
-        memset(row + guard + n, 0, guard * sizeof *row);
+    const size_t guard = (size_t)shape->guard, length = (size_t)shape->length;
+    if (shape->upsample > 1) {
+        fine_fill(shape, values, guard, length, row);
         return;
     }
-    /* Value guard + n upsample + phase is sample begin + n of the phase; the row begins before sample `begin`. */
-    const size_t before = (guard + upsample - 1) / upsample, first = before * upsample - guard;
-    size_t sample = (begin + period - before % period) % period;
-    for (size_t i = 0, phase = first; i < length; phase = 0) {
-        const size_t end = upsample - phase < length - i ? upsample : phase + length - i;
-        for (; phase < end; phase++)
-            row[i++] = values[phase * shape->pitch + sample];
-        sample = sample + 1 < period ? sample + 1 : 0;
+    memset(row, 0, guard * sizeof *row);
+    fine_fill(shape, values, 0, length - 2 * guard, row + guard);
+    memset(row + length - guard, 0, guard * sizeof *row);
+}
+
+/* All branches from the first two and their neighbours, [2][wide]. */
+static void branches_fill(const struct traces *traces, const complex_real *first, complex_real *row)
+{
+    const struct farrow_taps *taps = traces->taps;
+    const size_t guard = (size_t)traces->shape.guard, length = (size_t)traces->shape.length;
+    const size_t count = length - 2 * guard, some = (size_t)convolved(&traces->shape), reach = (size_t)taps->reach;
+    for (int m = 0; m < traces->shape.branches; m++, row += length) {
+        const complex_real *own = first + (size_t)(m % 2) * traces->wide;
+        const complex_real *other = first + (size_t)(1 - m % 2) * traces->wide;
+        memset(row, 0, guard * sizeof *row);
+        if (m < 2)
+            memcpy(row + guard, own + reach, count * sizeof *row);
+        else {
+            traces->planes->convolve(own, taps->own[m], 2 * taps->reach + 1, some, false, row + guard);
+            traces->planes->convolve(other, taps->other[m], 2 * taps->reach + 1, some, true, row + guard);
+        }
+        memset(row + length - guard, 0, guard * sizeof *row);
     }
 }
 
@@ -271,13 +342,20 @@ void REAL_NAME(traces_fill)(const struct traces *traces, int thread, const compl
         return;
     }
     complex_real *spectrum = scratch_of(traces, thread) + shape->pitch, *values = spectrum + shape->pitch;
+    complex_real *first = values + (size_t)shape->upsample * shape->pitch;
     REAL_NAME(traces_spectrum)(traces, thread, record, spectrum);
-    for (int branch = 0; branch < shape->branches; branch++, row += shape->length) {
+    for (int branch = 0; branch < transformed(shape->branches); branch++) {
         for (int phase = 0; phase < shape->upsample; phase++)
             REAL_NAME(traces_plane)
         (traces, thread, spectrum, branch * shape->upsample + phase, values + (size_t)phase * shape->pitch);
-        row_fill(shape, values, row);
+        if (shape->branches == 1)
+            row_fill(shape, values, row);
+        else
+            fine_fill(shape, values, (size_t)traces->taps->reach, (size_t)(convolved(shape) + 2 * traces->taps->reach),
+                      first + (size_t)branch * traces->wide);
     }
+    if (shape->branches > 1)
+        branches_fill(traces, first, row);
 }
 
 void REAL_NAME(traces_destroy)(struct traces *traces)
@@ -292,5 +370,6 @@ void REAL_NAME(traces_destroy)(struct traces *traces)
     FFTW(free)(traces->factors);
     FFTW(free)(traces->gains);
     FFTW(free)(traces->scratch);
+    free(traces->taps);
     free(traces);
 }

@@ -19,8 +19,9 @@ struct traces_form {
 
 /* A row holds guard + (samples - 1) upsample + 1 + guard values; value guard + i lies at sample coordinate first +
    i/upsample of the record, t = t0 + (first + i/upsample)/fs. Guards continue the band-limited signal, periodically
-   where it has no other continuation; with upsample = 1 they read zero. With a degree > 0 a row holds degree + 1 of
-   these one behind the other, the branches.
+   where it has no other continuation; with upsample = 1 or branches they read zero. With a degree > 0 a row holds
+   degree + 1 of these one behind the other, the branches: the first two from transforms, the others from their
+   neighbours (farrow.h).
 
    Where a row holds part of the record and its values depend on a stretch of it only, nothing else of the record is
    read: raw echoes that are compressed and no more read a pulse's length behind the row's samples, and the transform is
@@ -45,9 +46,9 @@ struct traces_shape {
 /* `period` of the shape without a plan; 0 where it is too long. */
 int traces_period_float(const struct acquisition *acquisition, const struct traces_form *form);
 int traces_period_double(const struct acquisition *acquisition, const struct traces_form *form);
-/* `flops` of the shape without a plan. */
-double traces_flops_float(const struct acquisition *acquisition, const struct traces_form *form);
-double traces_flops_double(const struct acquisition *acquisition, const struct traces_form *form);
+/* `flops` of the shape without a plan, in two parts: of transforms and products, and *sums over neighbours. */
+double traces_flops_float(const struct acquisition *acquisition, const struct traces_form *form, double *sums);
+double traces_flops_double(const struct acquisition *acquisition, const struct traces_form *form, double *sums);
 /* `threads`: how many threads may call fill at once. Errors: STATUS_FAILED without memory, STATUS_UNSUPPORTED when a
    row is too long to index. *traces is NULL then. */
 enum status traces_plan_float(const struct acquisition *acquisition, const struct traces_form *form, int threads,
@@ -58,8 +59,8 @@ enum status traces_plan_double(const struct acquisition *acquisition, const stru
 void traces_fill_float(const struct traces *traces, int thread, const float complex *record, float complex *row);
 void traces_fill_double(const struct traces *traces, int thread, const double complex *record, double complex *row);
 /* The same in two steps, where pitch > 0: a record's spectrum, complex [period], compressed; and of it one plane,
-   number branch times upsample + phase: complex [period], of which value n is fine sample (from + n) upsample + phase.
-   Both arrays begin at cache lines; the spectrum is not changed. */
+   number branch times upsample + phase, branch < 2: complex [period], of which value n is fine sample (from + n)
+   upsample + phase. Both arrays begin at cache lines; the spectrum is not changed. */
 void traces_spectrum_float(const struct traces *traces, int thread, const float complex *record,
                            float complex *spectrum);
 void traces_spectrum_double(const struct traces *traces, int thread, const double complex *record,

@@ -199,7 +199,7 @@ static void filter(const struct bp *bp, char *trace)
     const char *from = trace + (size_t)(bp->shape.guard + kernel->first) * bytes;
     for (size_t m = 0; m < branches; m++, to += length * bytes) {
         memset(to, 0, guard * bytes);
-        bp->planes->convolve(from, kernel->coefficients + m * taps, kernel->taps, length - 2 * guard,
+        bp->planes->convolve(from, kernel->coefficients + m * taps, kernel->taps, length - 2 * guard, false,
                              to + guard * bytes);
         memset(to + (length - guard) * bytes, 0, guard * bytes);
     }

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "backprojection/farrow.h"
+#include "backprojection/traces.h"
 #include "measure/metrics.h"
 #include "tests/support.h"
 
@@ -65,6 +66,98 @@ static void law_has_its_figures(void **state)
         assert_int_equal(farrow_degree(farrow_error(degree, 0.7) * 0.999, 0.7), degree + 1);
     }
     assert_true(farrow_error(FARROW_MOST, 1) <= 1e-8); /* any `error` that bp_farrow accepts is reached */
+}
+
+/* rms over u of what the branches leave of the exponential. */
+static double left_out(int degree, double nu)
+{
+    enum { PLACES = 200 };
+    double square = 0;
+    for (int n = 0; n < PLACES; n++) {
+        const double u = (n + 0.5) / PLACES - 0.5;
+        square += pow(cabs(response(degree, nu, u) - cexp(2 * M_PI * I * nu * u)), 2) / PLACES;
+    }
+    return sqrt(square);
+}
+
+/* What taps make at nu of branch m, less what it is. */
+static double complex taps_error(const struct farrow_taps *taps, const double *gains, int m, double nu)
+{
+    double complex sum = -gains[m] * (m % 2 ? I : 1);
+    for (int k = -taps->reach; k <= taps->reach; k++)
+        sum += cexp(2 * M_PI * I * nu * k)
+               * (taps->own[m][taps->reach + k] * gains[m % 2] * (m % 2 ? I : 1)
+                  + taps->other[m][taps->reach + k] * gains[1 - m % 2] * (m % 2 ? 1 : I));
+    return sum;
+}
+
+/* What branches that are made of the first two add to the error is a share of what there is anyway at every frequency,
+   in any degree, with upsampling; in double it is next to nothing. */
+static void taps_add_a_share(void **state)
+{
+    (void)state;
+    enum { FREQUENCIES = 300 };
+    static const double bands[] = {0.1, 0.5, 0.95};
+    for (int n = 0; n < 12 * (FARROW_MOST - FARROW_LEAST + 1); n++) {
+        const int degree = FARROW_LEAST + n / 12, upsample = 1 + n % 2;
+        const enum precision precision = n / 2 % 2 ? PRECISION_DOUBLE : PRECISION_FLOAT;
+        const double band = bands[n / 4 % 3], law = farrow_error(degree, band / upsample);
+        const double floor = precision == PRECISION_DOUBLE ? 1e-12 : 1e-9;
+        struct farrow_taps taps;
+        double share = 0, most = 0, gain = 0;
+        farrow_taps_make(degree, upsample, band, farrow_reach(degree, upsample, precision), &taps);
+        for (int k = 0; k < FREQUENCIES; k++) {
+            const double nu = (k + 0.5) / FREQUENCIES / 2 / upsample;
+            double gains[FARROW_MOST + 1], added = 0;
+            farrow_gains(degree, nu, gains);
+            for (int m = 2; m <= degree; m++)
+                added += cabs(taps_error(&taps, gains, m, nu)) * pow(0.5, m);
+            share = worse_of(share, added / (left_out(degree, nu) + law + floor));
+            most = worse_of(most, added);
+        }
+        for (int m = 2; m <= degree; m++)
+            for (int k = 0; k <= 2 * taps.reach; k++)
+                gain += (fabs(taps.own[m][k]) + fabs(taps.other[m][k])) * pow(0.5, m);
+        print_message(
+            "degree %d, upsampled %d times, band %.2f, reach %d: %.2g of the error, %.1e at most, taps %.2g\n", degree,
+            upsample, band, taps.reach, share, most, gain);
+        assert_true(share <= FARROW_SHARE && (precision == PRECISION_FLOAT || most <= 2e-10));
+        assert_true(gain < 10); /* of rounding */
+    }
+}
+
+/* Rows hold what the branches' responses make of each frequency, at the record's ends as well. */
+static void rows_hold_branches(void **state)
+{
+    (void)state;
+    enum { SAMPLES = 60, GUARD = 16 };
+    static double complex record[SAMPLES], row[(FARROW_MOST + 1) * (2 * SAMPLES + 2 * GUARD)];
+    for (int n = 0; n < 2 * (FARROW_MOST - FARROW_LEAST + 1); n++) {
+        const int degree = FARROW_LEAST + n / 2, upsample = 1 + n % 2;
+        struct acquisition a = support_acquisition(1, 1, SAMPLES);
+        struct traces *traces;
+        struct traces_shape shape;
+        const struct traces_form form = {.upsample = upsample, .degree = degree, .guard = GUARD};
+        assert_int_equal(traces_plan_double(&a, &form, 1, &shape, &traces), STATUS_OK);
+        for (int k = 1 - SAMPLES / 2; k < SAMPLES / 2; k++) {
+            const double nu = (double)k / SAMPLES / upsample;
+            double gains[FARROW_MOST + 1];
+            farrow_gains(degree, nu, gains);
+            for (int i = 0; i < SAMPLES; i++)
+                record[i] = cexp(2 * M_PI * I * k * i / SAMPLES);
+            traces_fill_double(traces, 0, record, row);
+            for (int m = 0; m <= degree; m++)
+                for (int i = 0; i < shape.length; i++) {
+                    const bool inside = i >= GUARD && i < shape.length - GUARD;
+                    const double complex factor = m % 2 ? I * gains[m] : gains[m];
+                    const double complex value = factor * cexp(2 * M_PI * I * nu * (i - GUARD));
+                    if (!(cabs(row[m * shape.length + i] - (inside ? value : 0)) <= 1e-9))
+                        fail_msg("degree %d, bin %d, branch %d, value %d", degree, k, m, i);
+                }
+        }
+        traces_destroy_double(traces);
+        acquisition_free(&a);
+    }
 }
 
 /* Measured errors lie within a tenth of the law's, in any degree, at any band, with upsampling, by both engines. */
@@ -136,6 +229,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(responses_tend_to_the_exponential),
         cmocka_unit_test(law_has_its_figures),
+        cmocka_unit_test(taps_add_a_share),
+        cmocka_unit_test(rows_hold_branches),
         cmocka_unit_test(images_follow_the_law),
         cmocka_unit_test(auto_takes_the_least),
     };

@@ -99,7 +99,11 @@ static void neighbours_are_summed(void **state)
         for (int k = 0; k < length; k++)
             for (int t = 0; t < TAPS; t++)
                 expected[k] += weights[t] * n.x[k + t];
-        planes_choose(precision)->convolve(x, weights, TAPS, (size_t)length, y);
+        planes_choose(precision)->convolve(x, weights, TAPS, (size_t)length, false, y);
+        assert_same(precision, y, expected, length);
+        for (int k = 0; k < length; k++)
+            expected[k] *= 2;
+        planes_choose(precision)->convolve(x, weights, TAPS, (size_t)length, true, y);
         assert_same(precision, y, expected, length);
     }
 }
