@@ -136,6 +136,9 @@ struct algorithm {
        STATUS_UNSUPPORTED with the reason, as plan, STATUS_FAILED without memory. NULL: nothing is known beforehand, and
        no planner chooses the algorithm. */
     enum status (*forecast)(const struct problem *problem, const void *options, struct forecast *forecast);
+    /* Where that is as costly as a plan: the counts alone, which `forecast` then leaves at 0. Errors: as forecast; what
+       only a forecast finds out is not refused. NULL: `forecast` counts. */
+    enum status (*cost)(const struct problem *problem, const void *options, struct forecast *forecast);
     /* Make a plan in *plan. Errors: STATUS_UNSUPPORTED with the reason, STATUS_FAILED; *plan is then NULL. */
     enum status (*plan)(const struct problem *problem, const void *options, void **plan);
     /* Echoes of the plan's acquisition and precision into an image of the plan's patches and precision. */

@@ -70,7 +70,7 @@ void automatic_tell(void (*hear)(void *to, const struct problem *problem, const 
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
     const struct options *o = options;
-    const struct budget budget = {o->error, 1e9 * o->memory, false};
+    const struct budget budget = {o->error, 1e9 * o->memory};
     struct choice choice;
     struct condition list[CONDITIONS_MAX];
     *plan = NULL;

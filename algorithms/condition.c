@@ -163,16 +163,22 @@ static double off_axis(const struct acquisition *a, int p, struct vector place, 
     return a->echo_squint != 0 ? u * cos(a->echo_squint) + sqrt(across2) * sin(a->echo_squint) : u;
 }
 
-bool condition_sees(const struct acquisition *a, int ping, struct vector place)
+/* condition_sees, of a beam sine that is found once. */
+static bool sees(const struct acquisition *a, double sine, int ping, struct vector place)
 {
     double range, off = fabs(off_axis(a, ping, place, &range));
-    return off <= condition_beam_sine(a) * range;
+    return off <= sine * range;
+}
+
+bool condition_sees(const struct acquisition *a, int ping, struct vector place)
+{
+    return sees(a, condition_beam_sine(a), ping, place);
 }
 
 /* The first and the last ping that see a place, and the one nearest to seeing it on the axis; -1: none does. */
-static void pings_seeing(const struct acquisition *a, struct vector place, int pings[3])
+static void pings_seeing(const struct acquisition *a, double sine, struct vector place, int pings[3])
 {
-    double sine = condition_beam_sine(a), nearest = INFINITY, range;
+    double nearest = INFINITY, range;
     pings[0] = pings[1] = pings[2] = -1;
     for (int p = 0; p < a->pings; p++) {
         double off = fabs(off_axis(a, p, place, &range));
@@ -187,17 +193,18 @@ static void pings_seeing(const struct acquisition *a, struct vector place, int p
 
 /* Pings lie closer to the edge of the beam for other columns than for those that are looked at: the place as far along
    the track, up to where the next ping, which does not see `place`, is beside it. */
-static struct vector place_at_edge(const struct acquisition *a, int ping, int next, struct vector place)
+static struct vector place_at_edge(const struct acquisition *a, double sine, int ping, int next, struct vector place)
 {
     double inside = 0, outside = a->tx[ping].x - a->tx[next].x;
     for (int k = 0; k < 50; k++) {
         const double middle = (inside + outside) / 2;
-        *(condition_sees(a, ping, (struct vector){place.x + middle, place.y, place.z}) ? &inside : &outside) = middle;
+        *(sees(a, sine, ping, (struct vector){place.x + middle, place.y, place.z}) ? &inside : &outside) = middle;
     }
     return (struct vector){place.x + inside, place.y, place.z};
 }
 
-static void extent_add_pings(const struct acquisition *a, struct vector p, const int pings[3], struct extent *extent)
+static void extent_add_pings(const struct acquisition *a, double sine, struct vector p, const int pings[3],
+                             struct extent *extent)
 {
     const double step = a->sound_speed / a->fc / 100, axis = -2 * sin(a->echo_squint) / a->sound_speed;
     for (int n = 0; n < 6; n++) {
@@ -206,7 +213,7 @@ static void extent_add_pings(const struct acquisition *a, struct vector p, const
         if (ping < 0)
             continue;
         const struct vector tx = a->tx[ping], rx = a->rx[(size_t)ping * (size_t)a->receivers + (size_t)m];
-        const struct vector edge = next >= 0 && next < a->pings ? place_at_edge(a, ping, next, p) : p;
+        const struct vector edge = next >= 0 && next < a->pings ? place_at_edge(a, sine, ping, next, p) : p;
         const struct vector beside = {edge.x - step, edge.y, edge.z};
         const double delay = delay_exact(tx, rx, a->velocity[ping], p, a->sound_speed);
         const double change = delay_exact(tx, rx, a->velocity[ping], beside, a->sound_speed)
@@ -236,18 +243,19 @@ static struct vector row_on_axis(const struct acquisition *a, int p, const struc
 }
 
 /* A patch whose corners and middle no ping sees: the axis of each ping on its first, middle and last row. */
-static void extent_search(const struct acquisition *a, const struct grid *g, struct extent *extent)
+static void extent_search(const struct acquisition *a, double sine, const struct grid *g, struct extent *extent)
 {
     for (int p = 0; p < a->pings; p++)
         for (int n = 0; n < 3; n++) {
             const struct vector place = row_on_axis(a, p, g, n / 2.0 * (g->r_count - 1));
-            if (condition_sees(a, p, place))
-                extent_add_pings(a, place, (const int[3]){-1, -1, p}, extent);
+            if (sees(a, sine, p, place))
+                extent_add_pings(a, sine, place, (const int[3]){-1, -1, p}, extent);
         }
 }
 
 static struct extent extent_of(const struct problem *problem)
 {
+    const double sine = condition_beam_sine(problem->acquisition);
     struct extent extent = {0, 0, 0};
     for (int k = 0; k < problem->patch_count; k++) {
         const struct grid *g = &problem->patches[k];
@@ -256,12 +264,12 @@ static struct extent extent_of(const struct problem *problem)
             double u = n < 4 ? n % 2 : 0.5, w = n < 4 ? n / 2 : 0.5;
             const struct vector place = grid_point(g, w * (g->r_count - 1), u * (g->x_count - 1));
             int pings[3];
-            pings_seeing(problem->acquisition, place, pings);
-            extent_add_pings(problem->acquisition, place, pings, &extent);
+            pings_seeing(problem->acquisition, sine, place, pings);
+            extent_add_pings(problem->acquisition, sine, place, pings, &extent);
             seen = seen || pings[0] >= 0;
         }
         if (!seen)
-            extent_search(problem->acquisition, g, &extent);
+            extent_search(problem->acquisition, sine, g, &extent);
     }
     return extent;
 }

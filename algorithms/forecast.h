@@ -21,6 +21,16 @@ extern const char *const cause_names[CAUSES];
 /* How a pair's value is read: what its time depends on. */
 enum reading_kind { READ_NEAREST, READ_LINE, READ_TAPS, READ_BRANCHES, READ_KINDS };
 
+/* What range migration takes its time for. */
+enum migration {
+    MIGRATION_RECORDS, /* FLOPs of the records' transforms and delays */
+    MIGRATION_SPREAD,  /* values that are transformed over the pings and put where wavenumbers read them */
+    MIGRATION_BLOCKS,  /* FLOPs that convert receivers, block by block */
+    MIGRATION_TERMS,   /* FLOPs that add receivers up by terms */
+    MIGRATION_FOCUS,   /* bins and rows that transforms and the Stolt interpolation make of all wavenumbers */
+    MIGRATIONS
+};
+
 struct forecast {
     double error[CAUSES]; /* relative L2 of the complex image after one best complex gain, root mean square;
                              INFINITY: no law */
@@ -38,6 +48,9 @@ struct forecast {
     /* Where images of subapertures stand for pairs, what these take; 0 elsewhere. */
     double image_cost; /* in pairs */
     double image_flops;
+    /* Of range migration, by algorithm.h's `cost`: */
+    double migration[MIGRATIONS];
+    double migration_flops; /* that are counted, all of them */
 };
 
 /* Of all causes: the root of the sum of squares. */

@@ -52,6 +52,13 @@ static enum status forecast(const struct problem *problem, const void *options, 
     return rma_forecast(problem, &method, &shared, forecast);
 }
 
+static enum status cost(const struct problem *problem, const void *options, struct forecast *forecast)
+{
+    const struct rma_method method = method_of(options);
+    const struct rma_options shared = shared_of(options);
+    return rma_cost(problem, &method, &shared, forecast);
+}
+
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
     const struct rma_method method = method_of(options);
@@ -67,6 +74,7 @@ const struct algorithm rma_delay = {
     .params = params,
     .conditions = conditions,
     .forecast = forecast,
+    .cost = cost,
     .plan = plan,
     .execute = rma_execute,
     .work = rma_work,

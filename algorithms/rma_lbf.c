@@ -55,6 +55,13 @@ static enum status forecast(const struct problem *problem, const void *options, 
     return rma_forecast(problem, &method, &lbf->shared, forecast);
 }
 
+static enum status cost(const struct problem *problem, const void *options, struct forecast *forecast)
+{
+    const struct lbf_options *lbf = options;
+    const struct rma_method method = method_of(lbf);
+    return rma_cost(problem, &method, &lbf->shared, forecast);
+}
+
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
     const struct lbf_options *lbf = options;
@@ -70,6 +77,7 @@ const struct algorithm rma_lbf = {
     .params = params,
     .conditions = conditions,
     .forecast = forecast,
+    .cost = cost,
     .plan = plan,
     .execute = rma_execute,
     .work = rma_work,

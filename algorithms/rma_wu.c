@@ -33,6 +33,11 @@ static enum status forecast(const struct problem *problem, const void *options, 
     return rma_forecast(problem, &method, options, forecast);
 }
 
+static enum status cost(const struct problem *problem, const void *options, struct forecast *forecast)
+{
+    return rma_cost(problem, &method, options, forecast);
+}
+
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
     return rma_plan(problem, &method, options, plan);
@@ -46,6 +51,7 @@ const struct algorithm rma_wu = {
     .params = params,
     .conditions = conditions,
     .forecast = forecast,
+    .cost = cost,
     .plan = plan,
     .execute = rma_execute,
     .work = rma_work,

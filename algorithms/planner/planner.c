@@ -1,6 +1,6 @@
-/* Choosing among candidates (planner.h). Back projections are forecast first: their forecasts are cheap. Range
-   migration, and images of subapertures, are forecast where what they cannot do without is faster than the fastest of
-   those, and, in any case, where nothing else fits. */
+/* Choosing among candidates (planner.h). Back projections are forecast first: their forecasts are cheap. The work of
+   range migration is counted, which is cheap as well; its error, and images of subapertures, are forecast only where
+   they would be faster than the fastest that is within the budget. */
 #include "planner/planner.h"
 
 #include <math.h>
@@ -11,7 +11,6 @@
 #include "backprojection/omission.h"
 #include "backprojection/pairs.h"
 #include "backprojection/turned.h"
-#include "common/fft_length.h"
 #include "planner/candidates.h"
 #include "planner/rates.h"
 
@@ -30,9 +29,8 @@ static const double BUDGETED = 0.99;
 struct setting {
     const struct problem *problem;
     const struct budget *budget;
-    double pairs;      /* of back projection */
-    double reads;      /* pairs that images of subapertures cannot do without */
-    double transforms; /* FLOPs: range and azimuth transforms of all records */
+    double pairs; /* of back projection */
+    double reads; /* pairs that images of subapertures cannot do without */
 };
 
 void candidate_name(const struct candidate *candidate, char text[CANDIDATE_NAME])
@@ -64,13 +62,6 @@ static double reads_of(const struct problem *problem, double pairs)
         places += fmin(g->r_count * g->r_step, g->x_count * g->x_step) / step + LINE / a->receivers;
     }
     return pixels + pairs / pixels * LINES * places;
-}
-
-static struct setting setting_of(const struct problem *problem, const struct budget *budget)
-{
-    const struct acquisition *a = problem->acquisition;
-    const double transforms = a->pings * fft_flops(a->samples) + (double)a->samples * fft_flops(a->pings);
-    return (struct setting){problem, budget, 0, 0, a->receivers * transforms};
 }
 
 /* Over the budget, or not. */
@@ -115,25 +106,6 @@ static enum status sums_fill(const struct setting *setting, struct candidate *ca
     return status;
 }
 
-/* Its FLOPs are counted by its own plan, which is made where the error allows it. */
-static enum status migration_fill(const struct setting *setting, struct candidate *candidate)
-{
-    const struct problem *problem = setting->problem;
-    void *plan = NULL;
-    candidate->pairs = 0;
-    if (candidate->verdict == VERDICT_ERROR)
-        return STATUS_OK;
-    enum status status = candidate->algorithm->plan(problem, candidate->options, &plan);
-    if (status != STATUS_OK)
-        return status;
-    const struct work work = candidate->algorithm->work(plan);
-    candidate->algorithm->destroy(plan);
-    candidate->flops = work.flops;
-    candidate->bytes = work.bytes;
-    candidate->seconds = rates_migration(problem->precision, work.flops);
-    return STATUS_OK;
-}
-
 /* The forecast, with delays as exact as the budget needs them. */
 static enum status forecast_make(const struct setting *setting, struct candidate *candidate)
 {
@@ -153,10 +125,31 @@ static enum status candidate_forecast(const struct setting *setting, struct cand
     enum status status = forecast_make(setting, candidate);
     if (status == STATUS_OK) {
         judge(setting, candidate);
-        if (candidate->forecast.sums_pairs)
-            status = sums_fill(setting, candidate);
-        else
-            status = migration_fill(setting, candidate);
+        status = sums_fill(setting, candidate);
+    }
+    return refused(candidate, status);
+}
+
+/* What a range migration takes, which its forecast does not say. */
+static enum status migration_cost(const struct setting *setting, struct candidate *candidate)
+{
+    const struct problem *problem = setting->problem;
+    enum status status = candidate->algorithm->cost(problem, candidate->options, &candidate->forecast);
+    if (status == STATUS_OK) {
+        candidate->pairs = 0;
+        candidate->flops = candidate->forecast.migration_flops;
+        candidate->seconds = rates_migration(&candidate->forecast, problem->precision);
+    }
+    return refused(candidate, status);
+}
+
+static enum status migration_forecast(const struct setting *setting, struct candidate *candidate)
+{
+    struct forecast forecast;
+    enum status status = candidate->algorithm->forecast(setting->problem, candidate->options, &forecast);
+    if (status == STATUS_OK) {
+        memcpy(candidate->forecast.error, forecast.error, sizeof forecast.error);
+        judge(setting, candidate);
     }
     return refused(candidate, status);
 }
@@ -166,7 +159,7 @@ static double fastest(const struct choice *choice)
 {
     double least = INFINITY;
     for (int k = 0; k < choice->count; k++)
-        if (choice->list[k].verdict == VERDICT_SLOWER)
+        if (choice->list[k].verdict == VERDICT_SLOWER && choice->list[k].error < INFINITY)
             least = fmin(least, choice->list[k].seconds);
     return least;
 }
@@ -249,63 +242,68 @@ static bool spectrum_fails(const struct setting *setting, const struct choice *c
     return false;
 }
 
-static bool has_forecast(const struct candidate *candidate)
-{
-    return candidate->error < INFINITY || candidate->verdict == VERDICT_REFUSED;
-}
-
 /* Whether its forecast costs so much that it is only made where it may pay. */
 static bool is_costly(const struct candidate *candidate)
 {
-    return candidate->budgeted || !(candidate->algorithm->traits & TRAIT_ANY_TRACK);
+    return candidate->budgeted || candidate->algorithm->cost;
 }
 
-/* s: that it takes in any case. */
-static double seconds_least(const struct setting *setting, const struct candidate *candidate)
+/* Costly, neither refused nor forecast. */
+static bool is_open(const struct candidate *candidate)
 {
-    const enum precision precision = setting->problem->precision;
+    return is_costly(candidate) && candidate->verdict == VERDICT_SLOWER && !(candidate->error < INFINITY);
+}
+
+/* The time of costly candidates: counted, or that of images of subapertures, which is a lower bound. */
+static enum status costs_fill(const struct setting *setting, struct choice *choice)
+{
     const struct forecast images = {.image_cost = setting->reads};
-    return candidate->budgeted ? rates_sums(&images, precision, 0) : rates_migration(precision, setting->transforms);
+    enum status status = STATUS_OK;
+    for (int k = 0; k < choice->count && status == STATUS_OK; k++) {
+        struct candidate *c = &choice->list[k];
+        if (!is_costly(c))
+            continue;
+        c->verdict = VERDICT_SLOWER;
+        if (c->algorithm->cost)
+            status = migration_cost(setting, c);
+        else
+            c->seconds = rates_sums(&images, setting->problem->precision, 0);
+    }
+    return status;
 }
 
-/* Where a candidate cannot be the choice, no forecast is made, unless all are asked for. */
-static enum status costly_forecast(const struct setting *setting, const struct choice *choice, double best, bool all,
-                                   struct candidate *c)
+static enum status costly_forecast(const struct setting *setting, const struct choice *choice, struct candidate *c)
 {
-    const double least_s = seconds_least(setting, c);
-    if (!all && !(least_s < best)) {
-        c->verdict = VERDICT_SLOWER;
-        c->seconds = least_s;
-        snprintf(c->reason, sizeof c->reason, "%.1f times the chosen one's time or more: its %s alone take %.2g s",
-                 least_s / best, c->budgeted ? "images of subapertures" : "transforms", least_s);
-        return STATUS_OK;
-    }
-    if (c->budgeted && !*c->settings && !candidate_set_error(c, BUDGETED * setting->budget->error / MARGIN)) {
-        c->verdict = VERDICT_ERROR;
-        snprintf(c->reason, sizeof c->reason, "does not take an error as small as the budget of %.2g",
-                 setting->budget->error);
-        return STATUS_OK;
-    }
-    if (!all && spectrum_fails(setting, choice, c)) {
+    if (c->algorithm->cost && spectrum_fails(setting, choice, c)) {
         c->verdict = VERDICT_ERROR;
         snprintf(c->reason, sizeof c->reason,
                  "over the budget of %.2g by the error of its spectrum, as with other settings",
                  setting->budget->error);
         return STATUS_OK;
     }
-    *c->reason = '\0';
+    if (c->algorithm->cost)
+        return migration_forecast(setting, c);
+    if (!*c->settings && !candidate_set_error(c, BUDGETED * setting->budget->error / MARGIN)) {
+        c->verdict = VERDICT_ERROR;
+        snprintf(c->reason, sizeof c->reason, "does not take an error as small as the budget of %.2g",
+                 setting->budget->error);
+        return STATUS_OK;
+    }
     return candidate_forecast(setting, c);
 }
 
-/* All that have none yet. */
-static enum status costly_forecasts(const struct setting *setting, bool all, struct choice *choice)
+/* Of those that are faster than the fastest within the budget, from the fastest on: those behind it need no forecast. */
+static enum status costly_forecasts(const struct setting *setting, struct choice *choice)
 {
-    const double best = fastest(choice);
     enum status status = STATUS_OK;
-    for (int k = 0; k < choice->count && status == STATUS_OK; k++) {
-        struct candidate *c = &choice->list[k];
-        if (is_costly(c) && !(all && has_forecast(c)))
-            status = costly_forecast(setting, choice, best, all, c);
+    while (status == STATUS_OK) {
+        struct candidate *next = NULL;
+        for (int k = 0; k < choice->count; k++)
+            if (is_open(&choice->list[k]) && (!next || choice->list[k].seconds < next->seconds))
+                next = &choice->list[k];
+        if (!next || !(next->seconds < fastest(choice)))
+            return STATUS_OK;
+        status = costly_forecast(setting, choice, next);
     }
     return status;
 }
@@ -325,10 +323,7 @@ static enum status forecast_all(const struct setting *setting, struct choice *ch
             status = candidate_forecast(setting, &choice->list[k]);
     if (status == STATUS_OK)
         status = limit_try(setting, choice);
-    for (int k = 0; k < choice->count; k++)
-        if (is_costly(&choice->list[k]))
-            choice->list[k].verdict = VERDICT_SLOWER; /* has no forecast */
-    return status == STATUS_OK ? costly_forecasts(setting, setting->budget->thorough, choice) : status;
+    return status == STATUS_OK ? costs_fill(setting, choice) : status;
 }
 
 /* Tables take memory that the general engine does without: one candidate more, where one with tables is too large. */
@@ -374,12 +369,16 @@ static enum status plan_fastest(const struct setting *setting, struct choice *ch
     return general_try(setting, best, choice);
 }
 
-/* One after the other, from the fastest on, until one is found. */
+/* One after the other, from the fastest on, until one is found. Where one is out, others that seemed too slow may be
+   the fastest. */
 static enum status plan_first(const struct setting *setting, struct choice *choice)
 {
     enum status status = STATUS_OK;
-    for (bool tried = true; status == STATUS_OK && tried && !choice->found;)
-        status = plan_fastest(setting, choice, &tried);
+    for (bool tried = true; status == STATUS_OK && tried && !choice->found;) {
+        status = costly_forecasts(setting, choice);
+        if (status == STATUS_OK)
+            status = plan_fastest(setting, choice, &tried);
+    }
     return status;
 }
 
@@ -395,15 +394,23 @@ static void reasons_fill(struct choice *choice)
 {
     for (int k = 1; k < choice->count; k++) {
         struct candidate *c = &choice->list[k];
-        if (c->verdict == VERDICT_SLOWER && !*c->reason)
-            snprintf(c->reason, sizeof c->reason, "within the budget, %.2f times the chosen one's time",
-                     c->seconds / choice->list[0].seconds);
+        const double ratio = c->seconds / choice->list[0].seconds;
+        if (c->verdict != VERDICT_SLOWER)
+            continue;
+        if (c->error < INFINITY)
+            snprintf(c->reason, sizeof c->reason, "within the budget, %.2f times the chosen one's time", ratio);
+        else if (c->budgeted)
+            snprintf(c->reason, sizeof c->reason,
+                     "%.2f times the chosen one's time or more: its images of subapertures alone take %.2g s", ratio,
+                     c->seconds);
+        else
+            snprintf(c->reason, sizeof c->reason, "%.2f times the chosen one's time, whatever its error", ratio);
     }
 }
 
 enum status planner_choose(const struct problem *problem, const struct budget *budget, struct choice *choice)
 {
-    struct setting setting = setting_of(problem, budget);
+    struct setting setting = {.problem = problem, .budget = budget};
     *choice = (struct choice){.least = INFINITY, .list = malloc(CANDIDATES_MAX * sizeof *choice->list)};
     if (!choice->list)
         return status_set(STATUS_FAILED, "no memory for the candidates of a plan");
@@ -413,10 +420,6 @@ enum status planner_choose(const struct problem *problem, const struct budget *b
     if (status == STATUS_OK)
         status = forecast_all(&setting, choice);
     if (status == STATUS_OK)
-        status = plan_first(&setting, choice);
-    if (status == STATUS_OK && !choice->found)
-        status = costly_forecasts(&setting, true, choice); /* of those, too, that seemed too slow */
-    if (status == STATUS_OK && !choice->found)
         status = plan_first(&setting, choice);
     if (status != STATUS_OK) {
         choice_free(choice);

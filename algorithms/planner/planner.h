@@ -15,9 +15,9 @@ struct candidate {
     max_align_t options[8];   /* the algorithm's options struct */
     bool budgeted;            /* its parameter `error` is set to what the budget allows */
     double sine;              /* up to which it sums pairs, beside the acquisition's own limit; 1: all */
-    struct forecast forecast; /* zero where refused, and where it is too slow in any case */
+    struct forecast forecast; /* zero where refused; errors are, too, where it is too slow whatever they be */
     double error;             /* relative L2 that is planned with; INFINITY where there is no forecast */
-    double seconds;           /* of a run; a lower bound where it is too slow in any case; INFINITY where unknown */
+    double seconds;           /* of a run; INFINITY where unknown; of bp_factorised without a forecast a lower bound */
     double flops, pairs;      /* counted; NAN where unknown */
     double bytes;             /* of the plan; NAN where none was made */
     enum verdict verdict;
@@ -35,9 +35,8 @@ struct choice {
 
 /* What is asked for. */
 struct budget {
-    double error;  /* relative L2 of the complex image after one best complex gain, > 0 */
-    double bytes;  /* that the plan may hold */
-    bool thorough; /* forecasts also of range migration and images of subapertures that are slower for sure */
+    double error; /* relative L2 of the complex image after one best complex gain, > 0 */
+    double bytes; /* that the plan may hold */
 };
 
 /* Errors: STATUS_FAILED without memory. Where nothing fits, found is false, and the reasons say why. */

@@ -13,7 +13,11 @@ static struct rates rates = {
     .filter = 4.9e-11,
     .image = 1.2e-9,
     .put = {2.3e-9, 4.8e-9},
-    .migrate = 1.24e-10,
+    .migrate = {[MIGRATION_RECORDS] = 9e-11,
+                [MIGRATION_SPREAD] = 5e-9,
+                [MIGRATION_BLOCKS] = 4e-11,
+                [MIGRATION_TERMS] = 1.2e-11,
+                [MIGRATION_FOCUS] = 1.1e-8},
     .doubled = 1.65,
     .noise = 0.06,
 };
@@ -51,7 +55,10 @@ double rates_sums(const struct forecast *f, enum precision precision, double pai
     return START + factor(precision) * (sums + records);
 }
 
-double rates_migration(enum precision precision, double flops)
+double rates_migration(const struct forecast *f, enum precision precision)
 {
-    return START + factor(precision) * flops * rates.migrate;
+    double seconds = 0;
+    for (int k = 0; k < MIGRATIONS; k++)
+        seconds += f->migration[k] * rates.migrate[k];
+    return START + factor(precision) * seconds;
 }

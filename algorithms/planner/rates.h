@@ -13,7 +13,7 @@ struct rates {
     double filter;              /* a FLOP of branches that stand for taps */
     double image;               /* what images of subapertures cost for one pair */
     double put[2];              /* a value of a record, put where pairs read it */
-    double migrate;             /* a FLOP of range migration */
+    double migrate[MIGRATIONS]; /* a FLOP or a value of range migration's parts */
     double doubled;             /* factor for double, the same for all, so that both precisions choose alike */
     double noise;               /* relative: by how much the same time was off when it was measured again */
 };
@@ -23,9 +23,9 @@ struct rates {
 const struct rates *rates_get(void);
 void rates_set(const struct rates *rates);
 
-/* With all threads that OpenMP has: the seconds that a forecast's sums take of `pairs` pairs; those of a range
-   migration of `flops`. */
+/* With all threads that OpenMP has: the seconds that a forecast's sums take of `pairs` pairs; those of its range
+   migration. */
 double rates_sums(const struct forecast *forecast, enum precision precision, double pairs);
-double rates_migration(enum precision precision, double flops);
+double rates_migration(const struct forecast *forecast, enum precision precision);
 
 #endif

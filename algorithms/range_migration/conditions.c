@@ -291,14 +291,31 @@ static bool along_track(const struct problem *problem, struct condition *all, in
     return squint == 0 && turned == 0;
 }
 
+/* What is known without a prediction. False where something of it does not hold. */
+static bool requirements(const struct problem *problem, struct condition all[CONDITIONS_MAX], int *count,
+                         struct straight_track *track)
+{
+    *count = conditions_general(problem, all, CONDITIONS_MAX);
+    all[0].limit = SLOWEST;
+    return along_track(problem, all, count) && azimuth_requirements(problem, all, count, track)
+           && condition_holds(&all[0]);
+}
+
+enum status rma_requirements_check(const struct problem *problem, const struct rma_method *method)
+{
+    struct straight_track track;
+    struct condition all[CONDITIONS_MAX];
+    int count;
+    requirements(problem, all, &count, &track);
+    return conditions_check(method->name, all, count);
+}
+
 int rma_conditions(const struct problem *problem, const struct rma_method *method, struct condition *list, int room)
 {
     struct straight_track track;
     struct condition all[CONDITIONS_MAX];
-    int count = conditions_general(problem, all, CONDITIONS_MAX);
-    all[0].limit = SLOWEST;
-    if (along_track(problem, all, &count) && azimuth_requirements(problem, all, &count, &track)
-        && condition_holds(&all[0])) {
+    int count;
+    if (requirements(problem, all, &count, &track)) {
         struct rma_view view = rma_view_of(problem, method, &track);
         all[count++] = stationary(&view);
         if (condition_holds(&all[count - 1]))

@@ -43,8 +43,15 @@ int rma_conditions(const struct problem *problem, const struct rma_method *metho
 /* STATUS_UNSUPPORTED as conditions_check, STATUS_FAILED where a value is NAN without memory. */
 enum status rma_conditions_check(const struct rma_method *method, const struct condition *list, int count);
 
-/* The forecast by a method. Errors: as rma_conditions_check. */
+/* STATUS_UNSUPPORTED where track, axes or rows alone refuse; far cheaper than rma_conditions. */
+enum status rma_requirements_check(const struct problem *problem, const struct rma_method *method);
+
+/* The forecast by a method, its errors alone. Errors: as rma_conditions_check. */
 enum status rma_forecast(const struct problem *problem, const struct rma_method *method,
                          const struct rma_options *options, struct forecast *forecast);
+/* Its counts alone. Errors: STATUS_UNSUPPORTED as rma_requirements_check, and where transforms, work or memory are too
+   large; STATUS_FAILED without memory. */
+enum status rma_cost(const struct problem *problem, const struct rma_method *method, const struct rma_options *options,
+                     struct forecast *forecast);
 
 #endif

@@ -247,8 +247,11 @@ struct rma {
 
 /* ---- layout.c ---- */
 
-/* Fills everything but the pointers that rma_transform's plan fills. */
+/* Fills everything but the tables of delay compensation and the pointers that rma_transform's plan fills. What
+   rma_requirements_check asks for must hold. */
 enum status rma_layout(struct rma *rma);
+/* Those tables. */
+enum status rma_delay_tables(struct rma *rma);
 /* Samples over which a cut of the records tapers. */
 int rma_taper(const struct acquisition *acquisition);
 /* Pings and zeros after them that rows up to `farthest` need whose columns lie `overhang` m beyond the track. */
@@ -261,6 +264,10 @@ static inline double rma_last_row(const struct grid *grid)
 }
 
 /* ---- rma.c ---- */
+/* A plan of counted work, without memory for echoes or transforms; rma_destroy releases it. Errors: as rma_layout, and
+   STATUS_UNSUPPORTED where work or memory would be too large; *rma is then NULL. */
+enum status rma_count(const struct problem *problem, const struct rma_method *method, const struct rma_options *options,
+                      struct rma **rma);
 
 /* Zeroed memory on the plan's account, `share` of it; NULL without memory. */
 void *rma_take(struct rma *rma, size_t count, size_t size, double share);

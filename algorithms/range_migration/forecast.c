@@ -1,5 +1,6 @@
-/* The forecast of range migration (rma_forecast in conditions.h): estimates of an image's error, where its conditions
-   refuse by bounds. What the terms of delay compensation leave is their bound. */
+/* The forecast of range migration (rma_forecast and rma_cost in conditions.h): estimates of an image's error, where its
+   conditions refuse by bounds, and counts of what takes its time. What the terms of delay compensation leave is their
+   bound. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,6 +21,7 @@ static const double FEW_TARGETS = 1.4;      /* what an image of a few targets ma
 static const double PULSE_PERIODS = 8;      /* of B: of a record beside its rows (layout.c) */
 static const double PULSE_SHARE = 1.0 / 16; /* of that, where the pulse's own spectrum reaches so far */
 static const double EDGE_BINS = 4; /* of a record's transform that are wrong at half the sampling rate: measured */
+static const double BULK = 2;      /* blocks that the correction ahead of them takes as long as: measured, 1 to 4 */
 /* Rounding, relative L2: of the transforms. */
 static const double ROUNDING[] = {1e-6, 1e-13};
 
@@ -127,5 +129,61 @@ enum status rma_forecast(const struct problem *problem, const struct rma_method 
     if (stolt_taps[options->stolt] > 0)
         forecast->error[CAUSE_STOLT] = STOLT_SHARE * exp(-M_PI * STOLT_SLOPE * stolt_taps[options->stolt]);
     forecast->error[CAUSE_FLOAT] = ROUNDING[problem->precision];
+    return STATUS_OK;
+}
+
+/* ---- what it takes ---- */
+
+/* The share of a swath's wavenumbers that rma_line keeps: of every few of them. */
+static double share_kept(const struct rma *rma, const struct rma_swath *swath)
+{
+    enum { LOOKED_AT = 500 };
+    const int step = swath->wavenumbers / LOOKED_AT + 1;
+    int kept = 0, count = 0;
+    for (int q = 0; q < swath->wavenumbers; q += step, count++)
+        kept += rma_line(rma, swath, q).begin < swath->band;
+    return (double)kept / count;
+}
+
+static void swath_cost(const struct rma *rma, const struct rma_swath *swath, double cost[MIGRATIONS])
+{
+    const double receivers = rma->receivers, length = swath->length,
+                 sums = rma->options.sum == RMA_SUM_AFTER ? receivers : 1;
+    const double all = swath->wavenumbers, kept = all * share_kept(rma, swath);
+    cost[MIGRATION_SPREAD] += all * swath->row;
+    cost[MIGRATION_FOCUS] += kept * swath->stolt_length;
+    if (rma->delay) {
+        cost[MIGRATION_RECORDS] += receivers * rma->pings * swath->held * (8.0 * rma->delay->taps.taps + 10);
+        cost[MIGRATION_TERMS] += kept / receivers * swath->held * rma_fold_flops(rma);
+    } else {
+        cost[MIGRATION_RECORDS] += receivers * rma->pings * fft_flops(length);
+        cost[MIGRATION_BLOCKS] += rma->converts ? kept * receivers * swath->band * 8 * (swath->needed + BULK) : 0;
+        cost[MIGRATION_FOCUS] += kept * swath->needed * sums * length;
+    }
+    for (int k = 0; k < swath->patch_count; k++) {
+        const struct rma_patch *patch = &swath->patches[k];
+        const double rows = patch->grid.r_count;
+        cost[MIGRATION_FOCUS] +=
+            kept * (rma->taps ? patch->length * (1 + rma->taps / 8.0) : rows * swath->band) + rows * patch->columns;
+    }
+}
+
+enum status rma_cost(const struct problem *problem, const struct rma_method *method, const struct rma_options *options,
+                     struct forecast *forecast)
+{
+    struct rma *rma = NULL;
+    enum status status = rma_requirements_check(problem, method);
+    *forecast = (struct forecast){.sums_pairs = false};
+    if (status == STATUS_OK)
+        status = rma_count(problem, method, options, &rma);
+    if (status != STATUS_OK)
+        return status;
+    forecast->migration_flops = rma->work.flops;
+    if (rma->record_length > 0)
+        forecast->migration[MIGRATION_RECORDS] =
+            (double)rma->receivers * rma->pings * (2 * fft_flops(rma->record_length) + 6 * rma->record_length);
+    for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++)
+        swath_cost(rma, s, forecast->migration);
+    rma_destroy(rma);
     return STATUS_OK;
 }

@@ -48,28 +48,38 @@ static enum status lay_receivers(struct rma *rma)
     return STATUS_OK;
 }
 
-static enum status lay_delay(struct rma *rma, const struct rma_view *view)
+/* What is known of delay compensation without its tables. */
+static enum status lay_delay(struct rma *rma)
 {
     struct rma_delay *delay = rma->delay = calloc(1, sizeof *delay);
-    if (!delay || !delay_terms_make(view, rma->method.terms, &delay->terms))
+    if (!delay)
         return status_set(STATUS_FAILED, "%s: no memory for %d receivers", rma->method.name, rma->receivers);
+    delay->terms.terms = rma->method.terms < rma->receivers ? rma->method.terms : rma->receivers;
+    delay->taps.taps = rma->method.taps;
     delay->guard = RMA_RUN + rma->method.taps;
-    rma->work.bytes += (double)sizeof *delay + delay->terms.bytes;
     rma_fold(rma);
+    return STATUS_OK;
+}
+
+enum status rma_delay_tables(struct rma *rma)
+{
+    struct rma_delay *delay = rma->delay;
+    struct straight_track track;
+    acquisition_is_straight(rma->problem.acquisition, &track);
+    const struct rma_view view = rma_view_of(&rma->problem, &rma->method, &track);
+    if (!delay_terms_make(&view, rma->method.terms, &delay->terms))
+        return status_set(STATUS_FAILED, "%s: no memory for %d receivers", rma->method.name, rma->receivers);
+    rma->work.bytes += (double)sizeof *delay + delay->terms.bytes;
     return delay_taps_make(rma->problem.acquisition, rma->method.taps, &delay->taps);
 }
 
 static enum status lay_track(struct rma *rma)
 {
     const struct acquisition *a = rma->problem.acquisition;
-    struct condition list[CONDITIONS_MAX];
-    int count = rma_conditions(&rma->problem, &rma->method, list, CONDITIONS_MAX);
-    enum status status = rma_conditions_check(&rma->method, list, count);
-    if (status == STATUS_OK)
-        status = lay_receivers(rma);
+    struct straight_track track;
+    enum status status = lay_receivers(rma);
     if (status != STATUS_OK)
         return status;
-    struct straight_track track;
     acquisition_is_straight(a, &track);
     struct rma_view view = rma_view_of(&rma->problem, &rma->method, &track);
     rma->x_first = track.x_first;
@@ -87,7 +97,7 @@ static enum status lay_track(struct rma *rma)
         rma->nearest = fmin(rma->nearest, rma->problem.patches[k].r_first);
         rma->farthest = fmax(rma->farthest, rma_last_row(&rma->problem.patches[k]));
     }
-    return rma->method.terms > 0 ? lay_delay(rma, &view) : STATUS_OK;
+    return rma->method.terms > 0 ? lay_delay(rma) : STATUS_OK;
 }
 
 int rma_taper(const struct acquisition *a)

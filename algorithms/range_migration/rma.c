@@ -186,10 +186,10 @@ static enum status check_work(const struct rma *rma)
     return STATUS_OK;
 }
 
-enum status rma_plan(const struct problem *problem, const struct rma_method *method, const struct rma_options *options,
-                     void **plan)
+enum status rma_count(const struct problem *problem, const struct rma_method *method, const struct rma_options *options,
+                      struct rma **counted)
 {
-    *plan = NULL;
+    *counted = NULL;
     struct rma *rma = calloc(1, sizeof *rma);
     if (!rma)
         return status_set(STATUS_FAILED, "no memory for the plan");
@@ -204,6 +204,26 @@ enum status rma_plan(const struct problem *problem, const struct rma_method *met
         status = count_work(rma);
     if (status == STATUS_OK)
         status = check_work(rma);
+    if (status != STATUS_OK) {
+        rma_destroy(rma);
+        return status;
+    }
+    *counted = rma;
+    return STATUS_OK;
+}
+
+enum status rma_plan(const struct problem *problem, const struct rma_method *method, const struct rma_options *options,
+                     void **plan)
+{
+    struct condition list[CONDITIONS_MAX];
+    struct rma *rma = NULL;
+    const int count = rma_conditions(problem, method, list, CONDITIONS_MAX);
+    enum status status = rma_conditions_check(method, list, count);
+    *plan = NULL;
+    if (status == STATUS_OK)
+        status = rma_count(problem, method, options, &rma);
+    if (status == STATUS_OK && rma->delay)
+        status = rma_delay_tables(rma);
     if (status == STATUS_OK)
         status = transform(rma)->plan(rma);
     if (status != STATUS_OK) {

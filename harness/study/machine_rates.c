@@ -30,9 +30,18 @@ static double *rate_at(struct rates *rates, int k, char name[48])
     const struct {
         const char *name;
         double *rate;
-    } others[] = {{"compress", &rates->compress},  {"filter", &rates->filter},        {"image", &rates->image},
-                  {"general_put", &rates->put[0]}, {"invariant_put", &rates->put[1]}, {"migrate", &rates->migrate},
-                  {"doubled", &rates->doubled},    {"noise", &rates->noise}};
+    } others[] = {{"compress", &rates->compress},
+                  {"filter", &rates->filter},
+                  {"image", &rates->image},
+                  {"general_put", &rates->put[0]},
+                  {"invariant_put", &rates->put[1]},
+                  {"migrate_records", &rates->migrate[MIGRATION_RECORDS]},
+                  {"migrate_spread", &rates->migrate[MIGRATION_SPREAD]},
+                  {"migrate_blocks", &rates->migrate[MIGRATION_BLOCKS]},
+                  {"migrate_terms", &rates->migrate[MIGRATION_TERMS]},
+                  {"migrate_focus", &rates->migrate[MIGRATION_FOCUS]},
+                  {"doubled", &rates->doubled},
+                  {"noise", &rates->noise}};
     const struct {
         const char *name;
         double (*rates)[READ_KINDS]; /* [2] */
@@ -51,6 +60,7 @@ static double *rate_at(struct rates *rates, int k, char name[48])
 /* The least of some runs: what other work on the machine takes only adds. */
 struct probe {
     double total, compress, focus; /* s */
+    double parts[MIGRATIONS];      /* s: of range migration */
     struct work work;
     struct forecast forecast;
 };
@@ -61,6 +71,23 @@ static double stage_seconds(const struct stages *stages, const char *name)
         if (strcmp(stages->stage[k].name, name) == 0)
             return stages->stage[k].seconds;
     return 0;
+}
+
+/* The stages of range migration, by what its forecast counts. */
+static void parts_add(const struct stages *stages, double parts[MIGRATIONS])
+{
+    static const struct {
+        const char *stage;
+        enum migration part;
+    } list[] = {{"compress", MIGRATION_RECORDS},  {"map", MIGRATION_RECORDS},     {"spread", MIGRATION_SPREAD},
+                {"bulk", MIGRATION_BLOCKS},       {"receivers", MIGRATION_TERMS}, {"differential", MIGRATION_BLOCKS},
+                {"reconstruct", MIGRATION_FOCUS}, {"stolt", MIGRATION_FOCUS},     {"focus", MIGRATION_FOCUS},
+                {"inverse", MIGRATION_FOCUS}};
+    double seconds[MIGRATIONS] = {0};
+    for (size_t k = 0; k < sizeof list / sizeof *list; k++)
+        seconds[list[k].part] += stage_seconds(stages, list[k].stage);
+    for (int k = 0; k < MIGRATIONS; k++)
+        parts[k] = fmin(parts[k], seconds[k]);
 }
 
 static enum status probe_run(struct imaging *imaging, const struct echoes *echoes, struct probe *probe)
@@ -76,6 +103,7 @@ static enum status probe_run(struct imaging *imaging, const struct echoes *echoe
         probe->total = fmin(probe->total, seconds_now() - begin);
         probe->compress = fmin(probe->compress, stage_seconds(&stages, "compress"));
         probe->focus = fmin(probe->focus, stage_seconds(&stages, "focus"));
+        parts_add(&stages, probe->parts);
     }
     return status;
 }
@@ -96,7 +124,8 @@ static enum status probe_spec(const struct bench *bench, const char *text, bool 
         return status;
     const struct problem problem = {&bench->scene.acquisition, 1, narrow ? &bench->narrow : &bench->wide,
                                     spec.precision};
-    status = spec.algorithm->forecast(&problem, spec.options, &probe->forecast);
+    status = (spec.algorithm->cost ? spec.algorithm->cost : spec.algorithm->forecast)(&problem, spec.options,
+                                                                                      &probe->forecast);
     if (status == STATUS_OK)
         status = imaging_open(&spec, &problem, &imaging);
     if (status == STATUS_OK) {
@@ -135,8 +164,9 @@ static void kind_fill(int engine, enum reading_kind kind, const struct probe *fe
 }
 
 struct probes {
-    struct probe of[2][PROBES], narrow[2][PROBES], migration, images; /* by engine; on the narrow image */
-    double nearest[ROUNDS];                                           /* s: of the general engine, in each round */
+    struct probe of[2][PROBES], narrow[2][PROBES]; /* by engine; on the narrow image */
+    struct probe blocks, terms, images;
+    double nearest[ROUNDS]; /* s: of the general engine, in each round */
     double noise;
 };
 
@@ -152,7 +182,9 @@ static enum status round_run(const struct bench *bench, struct probes *probes)
     }
     if (status == STATUS_OK)
         status = probe_spec(bench, "bp_factorised:stages=1", false, &probes->images);
-    return status == STATUS_OK ? probe_spec(bench, "rma_lbf", false, &probes->migration) : status;
+    if (status == STATUS_OK)
+        status = probe_spec(bench, "rma_lbf", false, &probes->blocks);
+    return status == STATUS_OK ? probe_spec(bench, "rma_delay", false, &probes->terms) : status;
 }
 
 /* What the records take: compress = FLOPs c + values p, of one value and of many. */
@@ -193,7 +225,10 @@ static void rates_fill(const struct probes *probes, struct rates *rates)
                       &probes->narrow[engine][kinds[k].few], rates);
     records_fill(probes, rates);
     rates->image = fmax(probes->images.total - probes->images.compress, 0) / probes->images.forecast.image_cost;
-    rates->migrate = probes->migration.total / probes->migration.work.flops;
+    for (int k = 0; k < MIGRATIONS; k++) {
+        const struct probe *of = k == MIGRATION_BLOCKS ? &probes->blocks : &probes->terms;
+        rates->migrate[k] = of->parts[k] / of->forecast.migration[k];
+    }
     rates->doubled = sqrt(probes->of[0][DOUBLE].total / probes->of[0][NEAREST].total * probes->of[1][DOUBLE].total
                           / probes->of[1][NEAREST].total);
     rates->noise = probes->noise;
@@ -202,12 +237,14 @@ static void rates_fill(const struct probes *probes, struct rates *rates)
 /* Rounds of all probes; by how much the first of them was slower in a round than in the fastest is the noise. */
 static enum status rounds_run(const struct bench *bench, struct probes *probes)
 {
-    const struct probe none = {.total = INFINITY, .compress = INFINITY, .focus = INFINITY};
+    struct probe none = {.total = INFINITY, .compress = INFINITY, .focus = INFINITY};
     struct probe *const all[] = {probes->of[0], probes->of[1], probes->narrow[0], probes->narrow[1]};
     enum status status = STATUS_OK;
+    for (int k = 0; k < MIGRATIONS; k++)
+        none.parts[k] = INFINITY;
     for (int k = 0; k < 4 * PROBES; k++)
         all[k / PROBES][k % PROBES] = none;
-    probes->migration = probes->images = none;
+    probes->blocks = probes->terms = probes->images = none;
     for (int number = 0; number < ROUNDS && status == STATUS_OK; number++) {
         struct probe nearest = none;
         status = probe_spec(bench, "bp_nearest:engine=general", false, &nearest);

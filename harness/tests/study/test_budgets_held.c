@@ -94,7 +94,7 @@ static void subapertures_within_budget(void **state)
     const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
     assert_int_equal(session_open(&scene, &session), STATUS_OK);
     for (size_t k = 0; k < sizeof budgets / sizeof *budgets; k++) {
-        const struct budget budget = {budgets[k], 4e9, false};
+        const struct budget budget = {budgets[k], 4e9};
         struct choice choice;
         assert_int_equal(planner_choose(&problem, &budget, &choice), STATUS_OK);
         assert_true(choice.found);

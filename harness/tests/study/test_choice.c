@@ -261,7 +261,7 @@ static void refusals_compare(const struct scene *scene, const char *name, const 
     const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, PRECISION_FLOAT};
     for (int k = 0; k < ERRORS * SHARES; k++) {
         const double error = errors[k / SHARES];
-        const struct budget budget = {error, shares[k % SHARES] * least_bytes(sweep, error), false};
+        const struct budget budget = {error, shares[k % SHARES] * least_bytes(sweep, error)};
         const struct setting *finest = sweep_finest(sweep, budget.bytes);
         struct choice choice;
         assert_int_equal(planner_choose(&problem, &budget, &choice), STATUS_OK);
@@ -294,7 +294,7 @@ static void scene_compare(const struct scene *scene, const char *name, bool time
     }
     for (int k = 0; k < BUDGETS; k++) {
         const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, PRECISION_FLOAT};
-        const struct budget budget = {budgets[k], 4e9, false};
+        const struct budget budget = {budgets[k], 4e9};
         assert_int_equal(planner_choose(&problem, &budget, &comparisons[k].choice), STATUS_OK);
         comparisons[k].chosen = comparisons[k].choice.found ? sweep_find(&sweep, &comparisons[k].choice.list[0]) : NULL;
     }

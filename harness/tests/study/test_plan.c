@@ -38,7 +38,7 @@ static void choose(double error, double bytes, enum precision precision, struct 
     struct scene scene;
     support_scene("study/quick", &scene);
     const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, precision};
-    const struct budget budget = {error, bytes, true};
+    const struct budget budget = {error, bytes};
     assert_int_equal(planner_choose(&problem, &budget, choice), STATUS_OK);
     if (choice->plan)
         choice->list[0].algorithm->destroy(choice->plan);
@@ -113,12 +113,12 @@ static void rates_are_kept(void **state)
     setenv("XDG_CACHE_HOME", path_of("cache"), 1);
     machine_rates_use(&found);
     assert_false(found);
-    made.migrate = 1.25e-9;
+    made.migrate[MIGRATION_FOCUS] = 1.25e-9;
     assert_int_equal(machine_rates_keep(&made), STATUS_OK);
     rates_set(&before);
     machine_rates_use(&found);
     assert_true(found);
-    assert_close(rates_get()->migrate, 1.25e-9, 1e-15);
+    assert_close(rates_get()->migrate[MIGRATION_FOCUS], 1.25e-9, 1e-15);
     machine_rates_path(path, sizeof path);
     support_write("cache/sasbench/rates.csv", "# machine: another\nrate,value\nmigrate,1\n");
     machine_rates_use(&found);
@@ -175,7 +175,7 @@ static void turned_axes(void **state)
     struct choice choice;
     support_scene("gate/squint", &scene);
     const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
-    const struct budget budget = {1e-3, 4e9, false};
+    const struct budget budget = {1e-3, 4e9};
     assert_int_equal(planner_choose(&problem, &budget, &choice), STATUS_OK);
     assert_true(choice.found && choice.list[0].forecast.record_values > 0);
     const struct work work = choice.list[0].algorithm->work(choice.plan);
