@@ -58,6 +58,7 @@ int fft_length_quick(long long n)
 
 double fft_slowness(int n)
 {
+    enum { SMALL = 400, LONG = 2048, OUT_OF_CACHE = 8192 };
     int rest = n, largest = 1, two = 1;
     for (int prime = 2; prime <= rest / prime; prime++)
         for (; rest % prime == 0; rest /= prime) {
@@ -65,7 +66,9 @@ double fft_slowness(int n)
             two *= prime == 2 ? 2 : 1;
         }
     largest = rest > largest ? rest : largest;
-    return largest > 31 ? 6 : largest > 13 ? 3.5 : largest > 7 || n / two > 4 * two ? 1.8 : 1;
+    if (largest > 7 || n / two > 4 * two)
+        return largest > 31 ? 6 : largest > 13 ? 3.5 : 1.8;
+    return n >= OUT_OF_CACHE ? 1.9 : n > LONG ? 1.4 : n > SMALL ? odd_slowness(n) : 1;
 }
 
 double fft_flops(double n)

@@ -12,8 +12,8 @@ int fft_length_fast(long long n);
    two, or five times one. For what is as long as its transforms alone, for all else grows with the length. */
 int fft_length_quick(long long n);
 
-/* Seconds a FLOP of a transform of n, over those of fft_length_fast: 1, 1.8, 3.5 or 6 by its prime factors. Measured
-   where FFTW plans by estimate; of one length they may be 1.6 times less or more. */
+/* Seconds a FLOP of a transform of n, over those of a short power of two: 1 to 6 by its prime factors and its length.
+   Measured where FFTW plans by estimate; of one length they may be 1.6 times less or more. */
 double fft_slowness(int n);
 
 /* FLOPs of one complex transform, 5 n log2 n: the count that both papers and FFTW's own benchmark use. */

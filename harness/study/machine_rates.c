@@ -187,6 +187,23 @@ static enum status round_run(const struct bench *bench, struct probes *probes)
     return status == STATUS_OK ? probe_spec(bench, "rma_delay", false, &probes->terms) : status;
 }
 
+/* FLOPs of the records' transforms, as many as take the time in a short length that is a power of two. */
+static double transforms_of(const struct probe *probe)
+{
+    return probe->forecast.record_flops * probe->forecast.slowness;
+}
+
+/* What records that are put and filtered take, of few taps and of many: rest = values p + FLOPs f, twice. */
+static void filter_fill(const struct probe *few, const struct probe *many, struct rates *rates)
+{
+    const double v = few->forecast.record_values, w = many->forecast.record_values;
+    const double k = few->forecast.kernel_flops, l = many->forecast.kernel_flops;
+    const double rest = few->compress - rates->compress * transforms_of(few);
+    const double more = many->compress - rates->compress * transforms_of(many);
+    rates->filter = l * v > k * w ? fmax(more * v - rest * w, 0) / (l * v - k * w) : rates->compress;
+    rates->put[0] = fmax(rest - rates->filter * k, 0) / v;
+}
+
 /* What the records take: compress = FLOPs c + values p, of one value and of many. */
 static void records_fill(const struct probes *probes, struct rates *rates)
 {
@@ -194,20 +211,13 @@ static void records_fill(const struct probes *probes, struct rates *rates)
     for (int engine = 0; engine < 2; engine++) {
         const struct probe *one = &probes->of[engine][NEAREST], *many = &probes->of[engine][MANY_BRANCHES];
         const double ratio = many->forecast.record_values / one->forecast.record_values;
-        sum += fmax((many->compress - ratio * one->compress)
-                        / (many->forecast.record_flops - ratio * one->forecast.record_flops),
-                    0);
+        sum += fmax((many->compress - ratio * one->compress) / (transforms_of(many) - ratio * transforms_of(one)), 0);
     }
     rates->compress = sum / 2;
-    for (int engine = 0; engine < 2; engine++) {
-        const struct probe *many = &probes->of[engine][MANY_BRANCHES];
-        rates->put[engine] =
-            fmax(many->compress - rates->compress * many->forecast.record_flops, 0) / many->forecast.record_values;
-    }
-    const struct probe *taps = &probes->of[0][MANY_TAPS];
-    const double rest =
-        taps->compress - rates->compress * taps->forecast.record_flops - rates->put[0] * taps->forecast.record_values;
-    rates->filter = taps->forecast.kernel_flops > 0 ? fmax(rest, 0) / taps->forecast.kernel_flops : rates->compress;
+    const struct probe *branches = &probes->of[1][MANY_BRANCHES];
+    rates->put[1] =
+        fmax(branches->compress - rates->compress * transforms_of(branches), 0) / branches->forecast.record_values;
+    filter_fill(&probes->of[0][FEW_TAPS], &probes->of[0][MANY_TAPS], rates);
 }
 
 static void rates_fill(const struct probes *probes, struct rates *rates)
