@@ -68,7 +68,7 @@ double fft_slowness(int n)
     largest = rest > largest ? rest : largest;
     if (largest > 7 || n / two > 4 * two)
         return largest > 31 ? 6 : largest > 13 ? 3.5 : 1.8;
-    return n >= OUT_OF_CACHE ? 1.9 : n > LONG ? 1.4 : n > SMALL ? odd_slowness(n) : 1;
+    return n >= OUT_OF_CACHE ? 1.9 : n > LONG ? 1.7 : n > SMALL ? odd_slowness(n) : 1;
 }
 
 double fft_flops(double n)

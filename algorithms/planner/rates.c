@@ -4,21 +4,22 @@
 
 /* Measured by `plan` on an Intel Xeon with AVX-512 at 2.1 GHz. */
 static struct rates rates = {
-    .pair = {{[READ_NEAREST] = 3.6e-10, [READ_LINE] = 5.0e-10, [READ_TAPS] = 8.6e-10, [READ_BRANCHES] = 2.2e-10},
-             {[READ_NEAREST] = 5.4e-11, [READ_LINE] = 1.29e-10}},
-    .value = {{[READ_BRANCHES] = 9.1e-11}, {[READ_TAPS] = 8.5e-11, [READ_BRANCHES] = 4.8e-11}},
-    .unit = {{[READ_NEAREST] = 8.0e-8, [READ_LINE] = 8.2e-8, [READ_TAPS] = 1.11e-7, [READ_BRANCHES] = 8.7e-8},
-             {[READ_NEAREST] = 1.9e-9, [READ_LINE] = 4.65e-9, [READ_TAPS] = 5.8e-9, [READ_BRANCHES] = 4.3e-9}},
-    .compress = 2.6e-11,
-    .filter = 4.9e-11,
-    .image = 1.2e-9,
-    .put = {2.3e-9, 4.8e-9},
-    .migrate = {[MIGRATION_RECORDS] = 9e-11,
-                [MIGRATION_SPREAD] = 5e-9,
-                [MIGRATION_BLOCKS] = 4e-11,
-                [MIGRATION_TERMS] = 1.2e-11,
-                [MIGRATION_FOCUS] = 1.1e-8},
-    .doubled = 1.65,
+    .pair = {{[READ_NEAREST] = 4.1e-10, [READ_LINE] = 5.2e-10, [READ_TAPS] = 8.6e-10, [READ_BRANCHES] = 4.5e-10},
+             {[READ_NEAREST] = 3.5e-11, [READ_LINE] = 6e-11, [READ_TAPS] = 1.8e-10, [READ_BRANCHES] = 1.6e-10}},
+    .value = {{[READ_BRANCHES] = 5.5e-11}, {[READ_TAPS] = 2.4e-11, [READ_BRANCHES] = 5e-11}},
+    .unit = {{[READ_NEAREST] = 8.6e-8, [READ_LINE] = 9.3e-8, [READ_TAPS] = 1.2e-7, [READ_BRANCHES] = 7.6e-8},
+             {[READ_NEAREST] = 2.6e-9, [READ_LINE] = 6.3e-9, [READ_TAPS] = 2.9e-9, [READ_BRANCHES] = 1.6e-9}},
+    .unit_value = {{[READ_BRANCHES] = 5.5e-9}, {[READ_TAPS] = 1.0e-9, [READ_BRANCHES] = 7.7e-10}},
+    .compress = 1.9e-11,
+    .filter = 2.1e-11,
+    .image = 1.8e-9,
+    .put = {2.0e-9, 4.8e-9},
+    .migrate = {[MIGRATION_RECORDS] = 9.6e-11,
+                [MIGRATION_SPREAD] = 6.8e-9,
+                [MIGRATION_BLOCKS] = 4.0e-11,
+                [MIGRATION_TERMS] = 1.15e-11,
+                [MIGRATION_FOCUS] = 1.08e-8},
+    .doubled = 1.7,
     .noise = 0.06,
 };
 
@@ -48,10 +49,10 @@ double rates_sums(const struct forecast *f, enum precision precision, double pai
     const int engine = f->tables, kind = f->kind;
     const int more = engine && kind == READ_TAPS && f->values > VECTOR && f->values % VECTOR > 0 ? PART : 0;
     const double pair = rates.pair[engine][kind] + rates.value[engine][kind] * (f->values + more);
+    const double unit = rates.unit[engine][kind] + rates.unit_value[engine][kind] * (f->values + more);
     const double records = f->record_flops * f->slowness * rates.compress + f->kernel_flops * rates.filter
                            + f->record_values * rates.put[engine];
-    const double sums =
-        f->image_cost > 0 ? f->image_cost * rates.image : pairs * pair + f->units * rates.unit[engine][kind];
+    const double sums = f->image_cost > 0 ? f->image_cost * rates.image : pairs * pair + f->units * unit;
     return START + factor(precision) * (sums + records);
 }
 

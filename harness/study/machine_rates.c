@@ -45,11 +45,12 @@ static double *rate_at(struct rates *rates, int k, char name[48])
     const struct {
         const char *name;
         double (*rates)[READ_KINDS]; /* [2] */
-    } pairs[] = {{"pair", rates->pair}, {"value", rates->value}, {"unit", rates->unit}};
-    const int of_pairs = 3 * 2 * READ_KINDS, engine = k / (3 * READ_KINDS), kind = k / 3 % READ_KINDS;
+    } pairs[] = {
+        {"pair", rates->pair}, {"value", rates->value}, {"unit", rates->unit}, {"unit_value", rates->unit_value}};
+    const int of_pairs = 4 * 2 * READ_KINDS, engine = k / (4 * READ_KINDS), kind = k / 4 % READ_KINDS;
     if (k < of_pairs) {
-        snprintf(name, 48, "%s_%s_%s", engines[engine], kinds[kind], pairs[k % 3].name);
-        return &pairs[k % 3].rates[engine][kind];
+        snprintf(name, 48, "%s_%s_%s", engines[engine], kinds[kind], pairs[k % 4].name);
+        return &pairs[k % 4].rates[engine][kind];
     }
     if (k - of_pairs >= (int)(sizeof others / sizeof *others))
         return NULL;
@@ -108,22 +109,22 @@ static enum status probe_run(struct imaging *imaging, const struct echoes *echoe
     return status;
 }
 
-/* What is probed: some rows of the scene with all of its columns, or the first of them. */
+/* What is probed: some rows of the scene with all of its columns; with many pairs for each entry of a table, fewer rows
+   with more columns, and with few. */
 struct bench {
     struct scene scene;
-    struct grid wide, narrow;
+    struct grid usual, wide, narrow;
     struct echoes echoes[2];
 };
 
-static enum status probe_spec(const struct bench *bench, const char *text, bool narrow, struct probe *probe)
+static enum status probe_spec(const struct bench *bench, const char *text, const struct grid *grid, struct probe *probe)
 {
     struct spec spec;
     struct imaging imaging;
     enum status status = spec_parse(text, &spec);
     if (status != STATUS_OK)
         return status;
-    const struct problem problem = {&bench->scene.acquisition, 1, narrow ? &bench->narrow : &bench->wide,
-                                    spec.precision};
+    const struct problem problem = {&bench->scene.acquisition, 1, grid, spec.precision};
     status = (spec.algorithm->cost ? spec.algorithm->cost : spec.algorithm->forecast)(&problem, spec.options,
                                                                                       &probe->forecast);
     if (status == STATUS_OK)
@@ -146,21 +147,34 @@ static const char *const specs[] = {"bp_nearest:engine=",
                                     "bp_nearest:precision=double,engine="};
 enum { NEAREST, LINE, FEW_TAPS, MANY_TAPS, FEW_BRANCHES, MANY_BRANCHES, DOUBLE, PROBES };
 
-/* The rates of a kind. Units are told from pairs by two widths of the image: focus = pairs p + units u, twice. */
-static void kind_fill(int engine, enum reading_kind kind, const struct probe *few, const struct probe *many,
-                      const struct probe *narrow, struct rates *rates)
+/* Of a probe on two images: focus = pairs p + units u, twice. Neither is below 0. */
+static void parts_solve(const struct probe *wide, const struct probe *narrow, double *pair, double *unit)
 {
-    const double share = narrow->work.pairs / few->work.pairs, units = few->forecast.units;
-    const double unit = fmax((narrow->focus - share * few->focus) / (narrow->forecast.units - share * units), 0);
-    const double units_s = fmin(unit * units, 0.9 * few->focus);
-    const double a = (few->focus - units_s) / few->work.pairs, b = (many->focus - units_s) / many->work.pairs;
-    const int less = few->forecast.values, more = many->forecast.values;
-    double value = more > less ? fmax(b - a, 0) / (more - less) : 0;
-    if (value * less > a) /* many cost more than in proportion: between the two */
-        value = sqrt(a / less * b / more);
-    rates->unit[engine][kind] = units_s / units;
-    rates->value[engine][kind] = value;
-    rates->pair[engine][kind] = fmax(a - value * less, 0);
+    const double p = wide->work.pairs, q = narrow->work.pairs, u = wide->forecast.units, w = narrow->forecast.units;
+    *unit = fmin(fmax((narrow->focus * p - wide->focus * q) / (w * p - u * q), 0), wide->focus / u);
+    *pair = (wide->focus - *unit * u) / p;
+}
+
+/* Of few values and of many: few = rate + value times their number, twice. Neither is below 0; where many cost more
+   than in proportion, between the two. */
+static void values_solve(double few, double many, const int values[2], double *rate, double *value)
+{
+    *value = values[1] > values[0] ? fmax(many - few, 0) / (values[1] - values[0]) : 0;
+    if (*value * values[0] > few)
+        *value = sqrt(few / values[0] * many / values[1]);
+    *rate = fmax(few - *value * values[0], 0);
+}
+
+/* The rates of a kind, whose probes are of few values and of many. */
+static void kind_fill(int engine, enum reading_kind kind, const struct probe *wide[2], const struct probe *narrow[2],
+                      struct rates *rates)
+{
+    const int values[2] = {wide[0]->forecast.values, wide[1]->forecast.values};
+    double pairs[2], units[2];
+    for (int k = 0; k < 2; k++)
+        parts_solve(wide[k], narrow[k], &pairs[k], &units[k]);
+    values_solve(pairs[0], pairs[1], values, &rates->pair[engine][kind], &rates->value[engine][kind]);
+    values_solve(units[0], units[1], values, &rates->unit[engine][kind], &rates->unit_value[engine][kind]);
 }
 
 struct probes {
@@ -178,13 +192,17 @@ static enum status round_run(const struct bench *bench, struct probes *probes)
         const int engine = k / PROBES % 2, n = k % PROBES;
         const bool narrow = k >= 2 * PROBES;
         snprintf(text, sizeof text, "%s%s", specs[n], engine ? "invariant" : "general");
-        status = probe_spec(bench, text, narrow, narrow ? &probes->narrow[engine][n] : &probes->of[engine][n]);
+        status = probe_spec(bench, text,
+                            narrow   ? &bench->narrow
+                            : engine ? &bench->wide
+                                     : &bench->usual,
+                            narrow ? &probes->narrow[engine][n] : &probes->of[engine][n]);
     }
     if (status == STATUS_OK)
-        status = probe_spec(bench, "bp_factorised:stages=1", false, &probes->images);
+        status = probe_spec(bench, "bp_factorised:stages=1", &bench->usual, &probes->images);
     if (status == STATUS_OK)
-        status = probe_spec(bench, "rma_lbf", false, &probes->blocks);
-    return status == STATUS_OK ? probe_spec(bench, "rma_delay", false, &probes->terms) : status;
+        status = probe_spec(bench, "rma_lbf", &bench->usual, &probes->blocks);
+    return status == STATUS_OK ? probe_spec(bench, "rma_delay", &bench->usual, &probes->terms) : status;
 }
 
 /* FLOPs of the records' transforms, as many as take the time in a short length that is a power of two. */
@@ -231,8 +249,11 @@ static void rates_fill(const struct probes *probes, struct rates *rates)
                  {READ_BRANCHES, FEW_BRANCHES, MANY_BRANCHES}};
     for (int engine = 0; engine < 2; engine++)
         for (int k = 0; k < READ_KINDS; k++)
-            kind_fill(engine, kinds[k].kind, &probes->of[engine][kinds[k].few], &probes->of[engine][kinds[k].many],
-                      &probes->narrow[engine][kinds[k].few], rates);
+            kind_fill(
+                engine, kinds[k].kind,
+                (const struct probe *[]){&probes->of[engine][kinds[k].few], &probes->of[engine][kinds[k].many]},
+                (const struct probe *[]){&probes->narrow[engine][kinds[k].few], &probes->narrow[engine][kinds[k].many]},
+                rates);
     records_fill(probes, rates);
     rates->image = fmax(probes->images.total - probes->images.compress, 0) / probes->images.forecast.image_cost;
     for (int k = 0; k < MIGRATIONS; k++) {
@@ -257,7 +278,7 @@ static enum status rounds_run(const struct bench *bench, struct probes *probes)
     probes->blocks = probes->terms = probes->images = none;
     for (int number = 0; number < ROUNDS && status == STATUS_OK; number++) {
         struct probe nearest = none;
-        status = probe_spec(bench, "bp_nearest:engine=general", false, &nearest);
+        status = probe_spec(bench, "bp_nearest:engine=general", &bench->usual, &nearest);
         probes->nearest[number] = nearest.total;
         if (status == STATUS_OK)
             status = round_run(bench, probes);
@@ -276,8 +297,12 @@ enum status machine_rates_measure(struct rates *rates)
     enum status status = scene_load(scene_name, SCENE_DIRECTORY, &bench.scene);
     if (status != STATUS_OK)
         return status;
-    bench.wide = bench.narrow = bench.scene.patches[0];
-    bench.wide.r_count = bench.narrow.r_count = 40; /* are enough */
+    bench.usual = bench.scene.patches[0];
+    bench.usual.r_count = 40; /* are enough */
+    bench.wide = bench.narrow = bench.usual;
+    bench.wide.r_count /= 4;
+    bench.wide.x_count *= 4;
+    bench.wide.x_first -= 1.5 * bench.usual.x_count * bench.usual.x_step;
     bench.narrow.x_count /= 4;
     for (int precision = 0; precision < 2 && status == STATUS_OK; precision++)
         status = echoes_allocate(&bench.scene.acquisition, (enum precision)precision, &bench.echoes[precision]);
