@@ -213,6 +213,68 @@ static void command_writes(void **state)
     assert_int_equal(command_plan(&task), STATUS_INVALID);
 }
 
+/* What range migration takes is counted without a plan: the plan's FLOPs, and a time of which the terms over the
+   receivers are a small part, as is measured. */
+static void migration_is_counted(void **state)
+{
+    (void)state;
+    const char *const specs[] = {"rma_delay:terms=1", "rma_delay:terms=3", "rma_lbf", "rma_numeric:limit=0.01"};
+    enum { SPECS = sizeof specs / sizeof *specs };
+    double seconds[SPECS];
+    struct scene scene;
+    support_scene("study/far", &scene);
+    const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
+    for (int k = 0; k < SPECS; k++) {
+        struct spec spec;
+        struct forecast forecast;
+        void *plan;
+        assert_int_equal(spec_parse(specs[k], &spec), STATUS_OK);
+        assert_int_equal(spec.algorithm->cost(&problem, spec.options, &forecast), STATUS_OK);
+        assert_int_equal(spec.algorithm->plan(&problem, spec.options, &plan), STATUS_OK);
+        assert_true(forecast.migration_flops == spec.algorithm->work(plan).flops);
+        assert_true((forecast.migration[MIGRATION_TERMS] > 0) == (k < 2));
+        assert_true((forecast.migration[MIGRATION_BLOCKS] > 0) == (k >= 2));
+        seconds[k] = rates_migration(&forecast, PRECISION_FLOAT);
+        spec.algorithm->destroy(plan);
+        spec_free(&spec);
+    }
+    scene_free(&scene);
+    assert_true(seconds[1] > seconds[0] && seconds[1] < 1.2 * seconds[0]); /* 1.04 to 1.08 times are measured */
+    assert_true(seconds[2] > 2 * seconds[0]);                              /* 3.2 times */
+}
+
+/* Range migration is chosen where it is the fastest; its error, which costs its conditions, is forecast where it would
+   be, and not where another is faster. */
+static void migration_is_chosen(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *scene;
+        bool chosen;
+    } cases[] = {{"bp22/table3", true}, {"study/quick", false}};
+    for (int n = 0; n < 2; n++) {
+        struct scene scene;
+        struct choice choice;
+        support_scene(cases[n].scene, &scene);
+        const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
+        const struct budget budget = {1e-2, 4e9};
+        int slower = 0;
+        assert_int_equal(planner_choose(&problem, &budget, &choice), STATUS_OK);
+        assert_true(choice.found && (strcmp(choice.list[0].algorithm->name, "rma_delay") == 0) == cases[n].chosen);
+        for (int k = 1; k < choice.count; k++) {
+            const struct candidate *c = &choice.list[k];
+            if (!c->algorithm->cost || c->verdict != VERDICT_SLOWER)
+                continue;
+            slower++;
+            assert_true(c->error == INFINITY && c->seconds >= choice.list[0].seconds && c->flops > 0);
+            assert_non_null(strstr(c->reason, "times the chosen one's time, whatever its error"));
+        }
+        assert_true(slower > 5);
+        choice_free(&choice);
+        scene_free(&scene);
+    }
+}
+
 /* Of one column of pixels, `share` of a sample apart along range, in the general engine. */
 static struct forecast column_forecast(const char *text, double share)
 {
@@ -267,6 +329,8 @@ int main(void)
         cmocka_unit_test(fastest_within),
         cmocka_unit_test(nothing_fits),
         cmocka_unit_test(turned_axes),
+        cmocka_unit_test(migration_is_counted),
+        cmocka_unit_test(migration_is_chosen),
         cmocka_unit_test(steep_slopes_cost),
         cmocka_unit_test_setup_teardown(rates_are_kept, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(command_writes, folder_make, folder_remove),
