@@ -202,8 +202,8 @@ INLINE void points_flat(const struct flat *flat, int g, const struct scale *scal
             const vector_real more = u * ladder.points_left + bend * ladder.points_a_cycle;
             const vector_int fixed_point = (vector_int)(ladder.point + (vector_unsigned)NEAREST(more));
             *(vector_int *)(run->sample + i) = fixed_point >> 23;
-            *at(run->rest + i) =
-                __builtin_convertvector(fixed_point & ((1 << 23) - 1), vector_real) * (real)0x1p-23 - (real)0.5;
+            /* the fraction as the mantissa of a float from 1 to 2 */
+            *at(run->rest + i) = (vector_real)((fixed_point & ((1 << 23) - 1)) | 0x3f800000) - (real)1.5;
             ladder.point += ladder.step;
         } else if (line) {
             vector_real whole = FLOOR(point);
