@@ -292,7 +292,7 @@ static enum status costly_forecast(const struct setting *setting, const struct c
     return candidate_forecast(setting, c);
 }
 
-/* Of those that are faster than the fastest within the budget, from the fastest on: those behind it need no forecast. */
+/* Of those that are faster than the fastest within the budget, from the fastest on: others need none. */
 static enum status costly_forecasts(const struct setting *setting, struct choice *choice)
 {
     enum status status = STATUS_OK;
