@@ -205,37 +205,31 @@ static enum status round_run(const struct bench *bench, struct probes *probes)
     return status == STATUS_OK ? probe_spec(bench, "rma_delay", &bench->usual, &probes->terms) : status;
 }
 
-/* FLOPs of the records' transforms, as many as take the time in a short length that is a power of two. */
-static double transforms_of(const struct probe *probe)
+static double determinant(const double a[3], const double b[3], const double c[3])
 {
-    return probe->forecast.record_flops * probe->forecast.slowness;
+    return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
-/* What records that are put and filtered take, of few taps and of many: rest = values p + FLOPs f, twice. */
-static void filter_fill(const struct probe *few, const struct probe *many, struct rates *rates)
-{
-    const double v = few->forecast.record_values, w = many->forecast.record_values;
-    const double k = few->forecast.kernel_flops, l = many->forecast.kernel_flops;
-    const double rest = few->compress - rates->compress * transforms_of(few);
-    const double more = many->compress - rates->compress * transforms_of(many);
-    rates->filter = l * v > k * w ? fmax(more * v - rest * w, 0) / (l * v - k * w) : rates->compress;
-    rates->put[0] = fmax(rest - rates->filter * k, 0) / v;
-}
-
-/* What the records take: compress = FLOPs c + values p, of one value and of many. */
+/* What the records take: compress = FLOPs c of transforms + FLOPs f of filters + values p, of few and many taps and of
+   many branches in the general engine; in the invariant engine another p. None is below 0. */
 static void records_fill(const struct probes *probes, struct rates *rates)
 {
-    double sum = 0;
-    for (int engine = 0; engine < 2; engine++) {
-        const struct probe *one = &probes->of[engine][NEAREST], *many = &probes->of[engine][MANY_BRANCHES];
-        const double ratio = many->forecast.record_values / one->forecast.record_values;
-        sum += fmax((many->compress - ratio * one->compress) / (transforms_of(many) - ratio * transforms_of(one)), 0);
+    const struct probe *of[3] = {&probes->of[0][FEW_TAPS], &probes->of[0][MANY_TAPS], &probes->of[0][MANY_BRANCHES]};
+    double transforms[3], filters[3], values[3], seconds[3];
+    for (int k = 0; k < 3; k++) {
+        transforms[k] = of[k]->forecast.record_flops * of[k]->forecast.slowness;
+        filters[k] = of[k]->forecast.kernel_flops;
+        values[k] = of[k]->forecast.record_values;
+        seconds[k] = of[k]->compress;
     }
-    rates->compress = sum / 2;
-    const struct probe *branches = &probes->of[1][MANY_BRANCHES];
-    rates->put[1] =
-        fmax(branches->compress - rates->compress * transforms_of(branches), 0) / branches->forecast.record_values;
-    filter_fill(&probes->of[0][FEW_TAPS], &probes->of[0][MANY_TAPS], rates);
+    const double all = determinant(transforms, filters, values);
+    rates->compress = fmax(determinant(seconds, filters, values) / all, 0);
+    rates->filter = fmax(determinant(transforms, seconds, values) / all, 0);
+    rates->put[0] = fmax(determinant(transforms, filters, seconds) / all, 0);
+    const struct forecast *f = &probes->of[1][MANY_BRANCHES].forecast;
+    const double rest = probes->of[1][MANY_BRANCHES].compress - rates->compress * f->record_flops * f->slowness
+                        - rates->filter * f->kernel_flops;
+    rates->put[1] = fmax(rest, 0) / f->record_values;
 }
 
 static void rates_fill(const struct probes *probes, struct rates *rates)
