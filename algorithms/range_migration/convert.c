@@ -7,7 +7,7 @@
 
 #include "range_migration/column.h"
 
-enum { PAIR = LANES > VECTOR ? 2 : 1, SPAN = RMA_SPAN };
+enum { PAIR = 2, SPAN = RMA_SPAN };
 
 /* exp(j 2 pi poly(y)) of n bins, |y| <= 1. Polynomials below an eighth of a turn need neither double nor whole turns
    taken off. */
@@ -37,52 +37,67 @@ struct rows {
     size_t row;
 };
 
-/* The group's receivers times their corrections at n bins: stored row by row, or added up into one row, or both
-   (what is NULL is left out). */
-static inline __attribute__((always_inline)) void group_apply(struct rows in, int count, int n,
-                                                              real rotor[restrict 6][SPAN], struct rows stored,
-                                                              real *sum)
+/* The group's receivers times their corrections at bins [b, b + pair VECTOR): stored row by row, or added up into one
+   row, or both (what is NULL is left out). `pair` is a constant where this is inlined: recurrences side by side hide
+   each other's latency. */
+static inline __attribute__((always_inline)) void vectors_apply(struct rows in, int count, int b, int pair,
+                                                                real rotor[restrict 6][SPAN], struct rows stored,
+                                                                real *sum)
 {
-    for (int b = 0; b < n; b += PAIR * VECTOR) {
-        const int at = 2 * (b / LANES * LANES) + b % LANES;
-        const real *x = in.values + at;
-        real *z = stored.values ? stored.values + at : NULL;
-        vec wr[PAIR], wi[PAIR], sr[PAIR], si[PAIR], sum_r[PAIR], sum_i[PAIR];
-        for (int v = 0; v < PAIR; v++) {
-            wr[v] = *(vec *)&rotor[0][b + v * VECTOR];
-            wi[v] = *(vec *)&rotor[1][b + v * VECTOR];
-            sr[v] = *(vec *)&rotor[2][b + v * VECTOR];
-            si[v] = *(vec *)&rotor[3][b + v * VECTOR];
-            if (sum) {
-                sum_r[v] = *(vec *)(sum + at + v * VECTOR);
-                sum_i[v] = *(vec *)(sum + at + LANES + v * VECTOR);
-            }
-        }
-        for (int i = 0; i < count; i++, x += in.row)
-            for (int v = 0; v < PAIR; v++) {
-                const vec kr = *(vec *)&rotor[4][b + v * VECTOR], ki = *(vec *)&rotor[5][b + v * VECTOR];
-                vec xr = *(const vec *)(x + v * VECTOR), xi = *(const vec *)(x + LANES + v * VECTOR), t;
-                vec pr = xr * wr[v] - xi * wi[v], pi = xr * wi[v] + xi * wr[v];
+    vec wr[PAIR], wi[PAIR], sr[PAIR], si[PAIR], sum_r[PAIR], sum_i[PAIR];
+    size_t at[PAIR];
+    for (int v = 0; v < pair; v++) {
+        const int bin = b + v * VECTOR;
+        at[v] = 2 * (size_t)(bin / LANES * LANES) + (size_t)(bin % LANES);
+        wr[v] = *(vec *)&rotor[0][bin];
+        wi[v] = *(vec *)&rotor[1][bin];
+        sr[v] = *(vec *)&rotor[2][bin];
+        si[v] = *(vec *)&rotor[3][bin];
+        sum_r[v] = sum ? *(vec *)(sum + at[v]) : (vec){0};
+        sum_i[v] = sum ? *(vec *)(sum + at[v] + LANES) : (vec){0};
+    }
+    const real *x = in.values;
+    for (int i = 0; i < count; i++, x += in.row)
+        for (int v = 0; v < pair; v++) {
+            const vec kr = *(vec *)&rotor[4][b + v * VECTOR], ki = *(vec *)&rotor[5][b + v * VECTOR];
+            const vec xr = *(const vec *)(x + at[v]), xi = *(const vec *)(x + at[v] + LANES);
+            if (stored.values) {
+                const vec pr = xr * wr[v] - xi * wi[v], pi = xr * wi[v] + xi * wr[v];
+                real *z = stored.values + (size_t)i * stored.row + at[v];
+                *(vec *)z = pr;
+                *(vec *)(z + LANES) = pi;
                 if (sum) {
                     sum_r[v] += pr;
                     sum_i[v] += pi;
                 }
-                if (z) {
-                    *(vec *)(z + (size_t)i * stored.row + v * VECTOR) = pr;
-                    *(vec *)(z + (size_t)i * stored.row + LANES + v * VECTOR) = pi;
-                }
-                t = wr[v] * sr[v] - wi[v] * si[v];
-                wi[v] = wr[v] * si[v] + wi[v] * sr[v];
-                wr[v] = t;
-                t = sr[v] * kr - si[v] * ki;
-                si[v] = sr[v] * ki + si[v] * kr;
-                sr[v] = t;
+            } else { /* four multiply-adds, where the product by itself takes six operations */
+                sum_r[v] = sum_r[v] + xr * wr[v];
+                sum_i[v] = sum_i[v] + xr * wi[v];
+                sum_r[v] = sum_r[v] - xi * wi[v];
+                sum_i[v] = sum_i[v] + xi * wr[v];
             }
-        for (int v = 0; sum && v < PAIR; v++) {
-            *(vec *)(sum + at + v * VECTOR) = sum_r[v];
-            *(vec *)(sum + at + LANES + v * VECTOR) = sum_i[v];
+            vec t = wr[v] * sr[v] - wi[v] * si[v];
+            wi[v] = wr[v] * si[v] + wi[v] * sr[v];
+            wr[v] = t;
+            t = sr[v] * kr - si[v] * ki;
+            si[v] = sr[v] * ki + si[v] * kr;
+            sr[v] = t;
         }
+    for (int v = 0; sum && v < pair; v++) {
+        *(vec *)(sum + at[v]) = sum_r[v];
+        *(vec *)(sum + at[v] + LANES) = sum_i[v];
     }
+}
+
+static inline __attribute__((always_inline)) void group_apply(struct rows in, int count, int n,
+                                                              real rotor[restrict 6][SPAN], struct rows stored,
+                                                              real *sum)
+{
+    int b = 0;
+    for (; b + PAIR * VECTOR <= n; b += PAIR * VECTOR)
+        vectors_apply(in, count, b, PAIR, rotor, stored, sum);
+    for (; b < n; b += VECTOR)
+        vectors_apply(in, count, b, 1, rotor, stored, sum);
 }
 
 /* All receivers at bins [k, k + n) by recurrence. */
