@@ -203,7 +203,7 @@ int conditions_scene(const struct problem *problem, struct condition list[CONDIT
                                condition_at_most(k == PIXEL_X ? survey.x.most : survey.r.most));
     for (int k = PIXELS_MET; k <= PATCHES_MET; k++)
         condition_cure_add(&all[k], ", which hold ranges of %.4g to %.4g m", survey.nearest, survey.farthest);
-    condition_cure_add(&all[PIXELS_SEEN], ", which runs from x = %.4g to %.4g m%s", a->tx[0].x, a->tx[a->pings - 1].x,
+    condition_cure_add(&all[PIXELS_SEEN], ", which runs from x = %.9g to %.9g m%s", a->tx[0].x, a->tx[a->pings - 1].x,
                        a->echo_squint != 0 ? ", the beam squinted" : "");
     for (int k = 0; k < CONDITIONS_SCENE; k++)
         list[k] = all[k];
