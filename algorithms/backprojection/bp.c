@@ -335,9 +335,8 @@ static void forecast_records(struct bp *bp, const struct interpolator *in, struc
     forecast->pair_flops =
         4.0 * (in->taps == 1 && in->degree == 0 ? 0 : forecast->values - (forecast->kind == READ_BRANCHES)) + 8;
     double sums = 0;
-    const bool is_double = bp->problem.precision == PRECISION_DOUBLE;
-    forecast->record_flops = records * (is_double ? traces_flops_double : traces_flops_float)(a, &form, &sums);
-    forecast->slowness = fft_slowness(traces_period_double(a, &form));
+    forecast->record_flops = records * traces_flops_float(a, &form, &sums); /* alike in both precisions */
+    forecast->slowness = fft_slowness(traces_period_float(a, &form));
     forecast->kernel_flops = records * (4.0 * forecast->values * taps * fine + sums);
     forecast->record_values = records * fine * (forecast->kind == READ_BRANCHES ? forecast->values : 1);
 }
