@@ -1,5 +1,5 @@
-/* Range compression and exact upsampling of single records (traces.h). Cost: an FFT of L, and one for each phase (of the
-   first two branches each): as many operations as one of L upsample, less those on zeros, and all in the nearest
+/* Range compression and exact upsampling of single records (traces.h). Cost: an FFT of L, and one for each phase (of
+   the first two branches each): as many operations as one of L upsample, less those on zeros, and all in the nearest
    cache. */
 #include "backprojection/traces.h"
 

@@ -27,9 +27,9 @@
                  count from `centre`; zeros up to stolt_length; an FFT, its bins in rising frequency
    stolt         [stolt_length] bins of F -> bins of K, RMA_SPAN at a time, for each patch
    focus         bins of K -> [length of the patch] -> [r_count] rows of the patch
-                 phase at the first row and column, and weight; bins beyond the transform fold onto it; an IFFT. Rows of all
-                 patches of RMA_TILE wavenumbers, [RMA_TILE][rows], go to `focused`, [rows][columns]. `columns` of the
-                 swath is Q rounded up to RMA_TILE
+                 phase at the first row and column, and weight; bins beyond the transform fold onto it; an IFFT. Rows of
+                 all patches of RMA_TILE wavenumbers, [RMA_TILE][rows], go to `focused`, [rows][columns]. `columns` of
+                 the swath is Q rounded up to RMA_TILE
 
    inverse       [r_count][columns] -> [r_count][x_count], the pixels of each patch
                  an IFFT over the wavenumbers of a row, onto the grid's columns: one transform, or a convolution with a

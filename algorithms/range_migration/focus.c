@@ -140,8 +140,8 @@ static void apodize(const real *restrict samples, const real *restrict scale, si
     }
 }
 
-/* The spectrum of a cut (delay compensation: a row of samples) in rising frequency, RMA_GUARD bins of the next period at
-   either end: all real parts, then all imaginary ones. Its samples count from `centre`. */
+/* The spectrum of a cut (delay compensation: a row of samples) in rising frequency, RMA_GUARD bins of the next period
+   at either end: all real parts, then all imaginary ones. Its samples count from `centre`. */
 static void spectrum(const struct workspace *w, const real *cut, real *re)
 {
     const struct rma_swath *swath = w->swath;

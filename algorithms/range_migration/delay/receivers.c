@@ -104,7 +104,7 @@ static inline __attribute__((always_inline)) void member_store(const struct grou
     const int edges = g->swath->row / LANES + 1, fold = g->rma->delay->fold;
     const int count = fold % 2 == 0 ? fold / 2 : fold;
     vec(*from)[DELAY_TERMS][2] = sums + (fold % 2 == 0 && member->number % 2 != 0 ? count : 0);
-    vec re[DELAY_TERMS], im[DELAY_TERMS], along, zr = {0}, zi = {0};
+    vec re[DELAY_TERMS], im[DELAY_TERMS], along = {0}, zr = {0}, zi = {0};
     for (int q = 0; q < terms; q++) {
         re[q] = from[0][q][0];
         im[q] = from[0][q][1];
