@@ -34,11 +34,12 @@ void rma_fold(struct rma *rma)
     struct rma_delay *delay = rma->delay;
     const double spacing = fabs(rma->spacing);
     const double pitch = rma->receivers > 1 ? rma->offset[1] - rma->offset[0] : 0;
-    const double periods = floor(2 * spacing / fabs(pitch) + 0.5); /* of wavenumbers, until phasors repeat */
+    /* of wavenumbers, until phasors repeat */
+    const double periods = pitch != 0 ? floor(2 * spacing / fabs(pitch) + 0.5) : 0;
     delay->fold = 1;
     delay->stride = rma->receivers;
     delay->turn = delay->step = 0;
-    if (!(periods <= 4.0 * rma->receivers) || !even(rma, copysign(2 * spacing / periods, pitch)))
+    if (!(periods >= 1 && periods <= 4.0 * rma->receivers) || !even(rma, copysign(2 * spacing / periods, pitch)))
         return;
     for (int fold = 2; fold <= RMA_FOLD; fold++)
         if ((int)periods % fold == 0
