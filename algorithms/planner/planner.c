@@ -292,8 +292,9 @@ static enum status costly_forecast(const struct setting *setting, const struct c
     return candidate_forecast(setting, c);
 }
 
-/* Of those that are faster than the fastest within the budget, from the fastest on: others need none. */
-static enum status costly_forecasts(const struct setting *setting, struct choice *choice)
+/* Of those that are faster than the fastest within the budget, from the fastest on: others need none, unless `every`
+   one is asked for. */
+static enum status costly_forecasts(const struct setting *setting, bool every, struct choice *choice)
 {
     enum status status = STATUS_OK;
     while (status == STATUS_OK) {
@@ -301,7 +302,7 @@ static enum status costly_forecasts(const struct setting *setting, struct choice
         for (int k = 0; k < choice->count; k++)
             if (is_open(&choice->list[k]) && (!next || choice->list[k].seconds < next->seconds))
                 next = &choice->list[k];
-        if (!next || !(next->seconds < fastest(choice)))
+        if (!next || !(every || next->seconds < fastest(choice)))
             return STATUS_OK;
         status = costly_forecast(setting, choice, next);
     }
@@ -375,7 +376,7 @@ static enum status plan_first(const struct setting *setting, struct choice *choi
 {
     enum status status = STATUS_OK;
     for (bool tried = true; status == STATUS_OK && tried && !choice->found;) {
-        status = costly_forecasts(setting, choice);
+        status = costly_forecasts(setting, false, choice);
         if (status == STATUS_OK)
             status = plan_fastest(setting, choice, &tried);
     }
@@ -421,6 +422,8 @@ enum status planner_choose(const struct problem *problem, const struct budget *b
         status = forecast_all(&setting, choice);
     if (status == STATUS_OK)
         status = plan_first(&setting, choice);
+    if (status == STATUS_OK && budget->every)
+        status = costly_forecasts(&setting, true, choice);
     if (status != STATUS_OK) {
         choice_free(choice);
         return status;

@@ -37,6 +37,7 @@ struct choice {
 struct budget {
     double error; /* relative L2 of the complex image after one best complex gain, > 0 */
     double bytes; /* that the plan may hold */
+    bool every;   /* forecast the errors of all candidates, also of those that are slower for sure: takes seconds */
 };
 
 /* Errors: STATUS_FAILED without memory. Where nothing fits, found is false, and the reasons say why. */

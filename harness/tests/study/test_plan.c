@@ -33,17 +33,48 @@ static void scenes_are_whole(void **state)
 }
 
 /* A choice on study/quick. */
-static void choose(double error, double bytes, enum precision precision, struct choice *choice)
+static void choose_of(struct budget budget, enum precision precision, struct choice *choice)
 {
     struct scene scene;
     support_scene("study/quick", &scene);
     const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, precision};
-    const struct budget budget = {error, bytes};
     assert_int_equal(planner_choose(&problem, &budget, choice), STATUS_OK);
     if (choice->plan)
         choice->list[0].algorithm->destroy(choice->plan);
     choice->plan = NULL;
     scene_free(&scene);
+}
+
+static void choose(double error, double bytes, enum precision precision, struct choice *choice)
+{
+    choose_of((struct budget){error, bytes}, precision, choice);
+}
+
+/* Errors of all candidates change neither the choice nor what is known of the others. */
+static void every_error_is_forecast(void **state)
+{
+    (void)state;
+    for (double error = 1e-4; error < 0.2; error *= 10) {
+        struct choice few, every;
+        int more = 0;
+        choose(error, 4e9, PRECISION_FLOAT, &few);
+        choose_of((struct budget){error, 4e9, .every = true}, PRECISION_FLOAT, &every);
+        assert_true(few.found && every.found && few.count == every.count);
+        assert_string_equal(few.list[0].algorithm->name, every.list[0].algorithm->name);
+        assert_string_equal(few.list[0].settings, every.list[0].settings);
+        for (int k = 0; k < every.count; k++) {
+            const struct candidate *c = &every.list[k];
+            assert_true(c->verdict == VERDICT_REFUSED || c->error < INFINITY || c->budgeted
+                        || strstr(c->reason, "as with other settings"));
+            assert_true(c->verdict != VERDICT_SLOWER || c->error <= error);
+            for (int i = 0; i < few.count; i++)
+                more += few.list[i].algorithm == c->algorithm && strcmp(few.list[i].settings, c->settings) == 0
+                        && c->error < few.list[i].error;
+        }
+        assert_true(more > 0);
+        choice_free(&few);
+        choice_free(&every);
+    }
 }
 
 /* The chosen one is within the budget, and no other is that and faster; a larger budget takes no more time. */
@@ -327,6 +358,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(scenes_are_whole, folder_make, folder_remove),
         cmocka_unit_test(fastest_within),
+        cmocka_unit_test(every_error_is_forecast),
         cmocka_unit_test(nothing_fits),
         cmocka_unit_test(turned_axes),
         cmocka_unit_test(migration_is_counted),
