@@ -312,18 +312,23 @@ static enum status costly_forecasts(const struct setting *setting, bool every, s
 static enum status forecast_all(const struct setting *setting, struct choice *choice)
 {
     enum status status = STATUS_OK;
-    for (int k = 0; k < choice->count; k++) { /* no verdict yet */
-        struct candidate *c = &choice->list[k];
+    int count = 0;
+    bool tables = false; /* else all are of the general engine, said or not */
+    for (int k = 0; k < choice->count && status == STATUS_OK; k++) {
+        if (!tables && strstr(choice->list[k].settings, "engine=general"))
+            continue;
+        struct candidate *c = &choice->list[count++];
+        *c = choice->list[k];
         c->sine = 1;
-        c->verdict = VERDICT_REFUSED;
+        c->verdict = VERDICT_REFUSED;     /* no verdict yet */
         c->error = c->seconds = INFINITY; /* numbers, for they are compared, which of a NAN would raise FE_INVALID */
         c->flops = c->pairs = c->bytes = NAN;
+        if (!is_costly(c))
+            status = candidate_forecast(setting, c);
+        tables = tables || c->forecast.tables;
     }
-    for (int k = 0; k < choice->count && status == STATUS_OK; k++)
-        if (!is_costly(&choice->list[k]))
-            status = candidate_forecast(setting, &choice->list[k]);
-    if (status == STATUS_OK)
-        status = limit_try(setting, choice);
+    choice->count = count;
+    status = status == STATUS_OK ? limit_try(setting, choice) : status;
     return status == STATUS_OK ? costs_fill(setting, choice) : status;
 }
 
