@@ -2,7 +2,8 @@
 #ifndef SASBENCH_COMMON_CLOCK_H
 #define SASBENCH_COMMON_CLOCK_H
 
-double clock_monotonic(void); /* s, the system's */
+/* s, the system's. Threads of an algorithm take their stages' shares by it: seconds_now may be for one thread only. */
+double clock_monotonic(void);
 
 /* From now on seconds_now is `clock`, in s. Call it before threads that time something. */
 void clock_set(double (*clock)(void));

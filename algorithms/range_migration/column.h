@@ -4,6 +4,7 @@
 #define SASBENCH_RANGE_MIGRATION_COLUMN_H
 
 #include "range_migration/engine.h"
+#include "common/clock.h"
 #include "common/phasor.h"
 #include "common/vector_bytes.h"
 
@@ -30,7 +31,7 @@ static inline void *buffer(const struct workspace *w, enum rma_buffer which)
 
 static inline void stage_end(struct workspace *w, enum rma_stage stage)
 {
-    double now = seconds_now();
+    double now = clock_monotonic();
     w->seconds[stage] += now - w->mark;
     w->mark = now;
 }

@@ -2,6 +2,7 @@
    focusing (reconstruct to focus of rma.h). Compiled once for each precision and instruction set (BP_ISA names it). */
 #include <string.h>
 
+#include "common/clock.h"
 #include "common/stream.h"
 #include "range_migration/column.h"
 
@@ -339,7 +340,7 @@ void REAL_ISA_NAME(rma_column)(const struct rma *rma, const struct rma_swath *sw
     struct workspace w = {.rma = rma,
                           .swath = swath,
                           .seconds = seconds,
-                          .mark = seconds_now(),
+                          .mark = clock_monotonic(),
                           .scratch = (char *)rma->scratch + (size_t)thread * rma->scratch_bytes};
     const size_t row = 2 * (size_t)swath->row;
     real *samples = buffer(&w, RMA_CUT);

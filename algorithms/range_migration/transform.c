@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/clock.h"
 #include "common/kaiser.h"
 #include "common/real.h"
 #include "common/stream.h"
@@ -286,7 +287,7 @@ static void compress(const struct rma *rma, rma_map_function *map, const void *s
     for (int turn = 0; turn < rma->pings * rma->receivers; turn++) {
         const int receiver = turn / rma->pings, k = turn % rma->pings * rma->receivers + receiver;
         const real *record = (const real *)samples + all * (size_t)k + 2 * (size_t)rma->from;
-        const double begun = seconds_now();
+        const double begun = clock_monotonic();
         if (length > 0) {
             real *wave = scratch_of(rma, RMA_RECORD), *bins = scratch_of(rma, RMA_TRANSFORMED);
             memcpy(wave, record, n * sizeof *wave);
@@ -297,7 +298,7 @@ static void compress(const struct rma *rma, rma_map_function *map, const void *s
             record = wave;
         }
         const real *between = rma->delay ? padded(rma, record) : NULL;
-        const double compressed = seconds_now();
+        const double compressed = clock_monotonic();
         for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
             real *row = (real *)s->data + 2 * (size_t)s->row * (size_t)k;
             if (rma->delay)
@@ -306,7 +307,7 @@ static void compress(const struct rma *rma, rma_map_function *map, const void *s
                 cut(rma, s, record, row);
         }
         compressing += compressed - begun;
-        mapping += seconds_now() - compressed;
+        mapping += clock_monotonic() - compressed;
     }
     seconds[0] = compressing + (rma->delay ? 0 : mapping);
     seconds[1] = rma->delay ? mapping : 0;

@@ -4,6 +4,7 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "common/clock.h"
 #include "common/complex_lanes.h"
 #include "common/phasor.h"
 #include "wavenumber/engine.h"
@@ -28,7 +29,7 @@ struct line {
 
 static void stage_end(struct line *l, enum wk_stage stage)
 {
-    double now = seconds_now();
+    double now = clock_monotonic();
     l->seconds[stage] += now - l->mark;
     l->mark = now;
 }
@@ -331,7 +332,7 @@ static real *aligned(real *memory)
 
 void REAL_ISA_NAME(wk_line)(const struct wk *wk, int thread, int first, double seconds[WK_STAGES])
 {
-    struct line l = {.wk = wk, .seconds = seconds, .mark = seconds_now()};
+    struct line l = {.wk = wk, .seconds = seconds, .mark = clock_monotonic()};
     const size_t cells = (size_t)wk->band + 2 * WK_GUARD;
     l.wave = (real *)((char *)wk->scratch + (size_t)thread * wk->scratch_bytes); /* as FFTW was told: aligned */
     size_t longest = 0;
