@@ -11,11 +11,12 @@
 #include "common/fft_length.h"
 #include "backprojection/pairs.h"
 
-/* The kernel's branches, where they are few enough; false without memory. */
+/* The kernel's branches, where they are few enough; false without memory. In float they may be as far off as phase
+   factors are rounded (ROUNDING). */
 static bool kernel_make(struct bp *bp, const struct interpolator *in, const void *options)
 {
     const size_t count = KERNEL_BRANCHES_MOST * (size_t)in->taps;
-    const double tolerance = bp->problem.precision == PRECISION_DOUBLE ? 1e-10 : 1e-6;
+    const double tolerance = bp->problem.precision == PRECISION_DOUBLE ? 1e-10 : 3.5e-6;
     bp->kernel = (struct bp_kernel){.taps = in->taps, .first = in->first};
     bp->kernel.coefficients = malloc(count * sizeof *bp->kernel.coefficients);
     if (!bp->kernel.coefficients)

@@ -60,10 +60,9 @@ int farrow_reach(int degree, int upsample, enum precision precision)
 
 enum { FREQUENCIES = 256, COLUMNS = 2 * FARROW_REACH_MOST + 1 };
 
-/* x of least squares |a x - b|, by Gram and Schmidt, each column made orthogonal twice; `a` is lost. */
-static void least_squares(int columns, double (*a)[FREQUENCIES], const double *b, double *x)
+/* a = q r, by Gram and Schmidt, each column made orthogonal twice; q takes a's place. */
+static void orthogonalise(int columns, double (*a)[FREQUENCIES], double (*r)[COLUMNS])
 {
-    double r[COLUMNS][COLUMNS] = {{0}};
     for (int c = 0; c < columns; c++) {
         double square = 0;
         for (int k = 0; k < 2 * c; k++) {
@@ -80,13 +79,35 @@ static void least_squares(int columns, double (*a)[FREQUENCIES], const double *b
         for (int n = 0; n < FREQUENCIES; n++)
             a[c][n] /= r[c][c];
     }
+}
+
+/* x of least squares |q r x - b|. */
+static void least_squares(int columns, double (*q)[FREQUENCIES], double (*r)[COLUMNS], const double *b, double *x)
+{
     for (int c = columns - 1; c >= 0; c--) {
         x[c] = 0;
         for (int n = 0; n < FREQUENCIES; n++)
-            x[c] += a[c][n] * b[n];
+            x[c] += q[c][n] * b[n];
         for (int k = c + 1; k < columns; k++)
             x[c] -= r[c][k] * x[k];
         x[c] /= r[c][c];
+    }
+}
+
+/* Taps of branch m. */
+static void branch_fit(int m, int columns, double (*q)[FREQUENCIES], double (*r)[COLUMNS],
+                       double (*gains)[FARROW_MOST + 1], const double *weight, struct farrow_taps *taps)
+{
+    const int reach = columns / 2;
+    double b[FREQUENCIES], x[COLUMNS];
+    for (int n = 0; n < FREQUENCIES; n++)
+        b[n] = weight[n] * gains[n][m];
+    least_squares(columns, q, r, b, x);
+    taps->own[m][reach] = x[0];
+    for (int k = 1; k <= reach; k++) {
+        taps->own[m][reach - k] = taps->own[m][reach + k] = x[k];
+        taps->other[m][reach + k] = x[reach + k];
+        taps->other[m][reach - k] = -x[reach + k];
     }
 }
 
@@ -103,23 +124,18 @@ void farrow_taps_make(int degree, int upsample, double band, int reach, struct f
         weight[n] = 1 / (sqrt(left_out(degree, nu[n])) + law);
         farrow_gains(degree, nu[n], gains[n]);
     }
-    for (int m = 2; m <= degree; m++) {
-        double a[COLUMNS][FREQUENCIES], b[FREQUENCIES], x[COLUMNS] = {0};
+    for (int odd = 0; odd < 2; odd++) { /* all even branches are made of the same columns, and all odd ones */
+        double a[COLUMNS][FREQUENCIES], r[COLUMNS][COLUMNS] = {{0}};
         for (int n = 0; n < FREQUENCIES; n++) {
-            const double own = weight[n] * gains[n][m % 2], other = weight[n] * gains[n][1 - m % 2];
-            b[n] = weight[n] * gains[n][m];
+            const double own = weight[n] * gains[n][odd], other = weight[n] * gains[n][1 - odd];
             a[0][n] = own;
             for (int k = 1; k <= reach; k++) {
                 a[k][n] = 2 * own * cos(2 * M_PI * k * nu[n]);
-                a[reach + k][n] = (m % 2 ? 2 : -2) * other * sin(2 * M_PI * k * nu[n]);
+                a[reach + k][n] = (odd ? 2 : -2) * other * sin(2 * M_PI * k * nu[n]);
             }
         }
-        least_squares(columns, a, b, x);
-        taps->own[m][reach] = x[0];
-        for (int k = 1; k <= reach; k++) {
-            taps->own[m][reach - k] = taps->own[m][reach + k] = x[k];
-            taps->other[m][reach + k] = x[reach + k];
-            taps->other[m][reach - k] = -x[reach + k];
-        }
+        orthogonalise(columns, a, r);
+        for (int m = 2 + odd; m <= degree; m += 2)
+            branch_fit(m, columns, a, r, gains, weight, taps);
     }
 }

@@ -148,9 +148,11 @@ static void convolve(const void *values, const double *weights, int taps, size_t
     }
 }
 
-/* `filled` values into a block of `block`. */
-INLINE void part_block(const real *from, size_t filled, size_t block, real *to)
+static void part(const void *values, size_t count, size_t block, void *parts)
 {
+    const real *from = values;
+    real *to = parts;
+    const size_t filled = count < block ? count : block;
     size_t i = 0;
     for (; i + LANES <= filled; i += LANES) {
         const vector_real a = *at(from + 2 * i), b = *at(from + 2 * i + LANES);
@@ -165,13 +167,13 @@ INLINE void part_block(const real *from, size_t filled, size_t block, real *to)
         to[i] = to[block + i] = 0;
 }
 
-static void part(const void *values, size_t count, size_t blocks, size_t block, size_t step, void *to)
+static void part_blocks(const void *values, size_t count, size_t blocks, size_t block, size_t step, void *to)
 {
-    const real *from = values;
-    for (size_t k = 0, filled; k < blocks; k++, from += 2 * filled, count -= filled) {
-        filled = count < block ? count : block;
-        part_block(from, filled, block, (real *)to + k * step);
+    const size_t advance = block / 2;
+    for (size_t k = 0; k < blocks; k++) {
+        const size_t first = k * advance < count ? k * advance : count;
+        part((const real *)values + 2 * first, count - first, block, (real *)to + k * step);
     }
 }
 
-const struct planes REAL_ISA_NAME(planes) = {filter, turn, weigh, convolve, part};
+const struct planes REAL_ISA_NAME(planes) = {filter, turn, weigh, convolve, part, part_blocks};

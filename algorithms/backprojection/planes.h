@@ -18,9 +18,11 @@ struct planes {
     void (*weigh)(const void *x, const void *gains, bool imaginary, size_t length, void *y);
     /* Sums of `taps` neighbours, y[k] = sum over t of weights[t] x[k + t], complex [count]; `add`: to what y holds. */
     void (*convolve)(const void *x, const double *weights, int taps, size_t count, bool add, void *y);
-    /* Complex values [count] into `blocks` blocks of `block` real parts and as many imaginary ones, each block `step`
-       values behind the one before; 0 behind the last value. */
-    void (*part)(const void *values, size_t count, size_t blocks, size_t block, size_t step, void *to);
+    /* Complex values [count] into a block of `block` real parts and as many imaginary ones; 0 behind the last value. */
+    void (*part)(const void *values, size_t count, size_t block, void *to);
+    /* The same into `blocks` blocks, which hold values from block/2 to block/2 on, each block `step` values behind the
+       one before. */
+    void (*part_blocks)(const void *values, size_t count, size_t blocks, size_t block, size_t step, void *to);
 };
 
 /* The build for this machine. */

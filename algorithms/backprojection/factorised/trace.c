@@ -4,6 +4,7 @@
 #include "backprojection/factorised/trace.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "backprojection/reading.h"
 #include "common/lanes.h"
@@ -129,6 +130,18 @@ INLINE void follow(int taps, const struct polar_image *image, const struct polar
     }
 }
 
+/* LANES samples of a part of a branch. Where the row is cut into blocks, which begin half a vector apart, they are one
+   block and halves of both its neighbours; `step`: values from block to block. */
+INLINE void put(vector_real values, bool blocks, size_t step, real *to)
+{
+    const size_t half = sizeof values / 2;
+    *(vector_real *)to = values;
+    if (blocks) {
+        memcpy(to - step + LANES / 2, &values, half);
+        memcpy(to + step, (const char *)&values + half, half);
+    }
+}
+
 /* Branches of `count` samples, whose first tap is value 0 of the trace. */
 INLINE void filter(int taps, const struct polar_taps *range, const real *re, const real *im, int count,
                    const struct bp_layout *layout, real *row)
@@ -136,9 +149,11 @@ INLINE void filter(int taps, const struct polar_taps *range, const real *re, con
     const size_t branches = (size_t)range->branches, apart = layout->apart;
     struct coefficients weights;
     convert(range, &weights);
+    const bool blocks = layout->blocks > 1;
+    const size_t step = 2 * branches * apart;
     for (int i = 0; i < count; i += LANES) {
-        const size_t at = BP_BRANCHES_GUARD + (size_t)i, block = layout->blocks > 1 ? at / apart : 0;
-        real *to = row + block * 2 * branches * apart + (at - block * apart);
+        const size_t at = BP_BRANCHES_GUARD + (size_t)i;
+        real *to = row + (blocks ? at / (apart / 2) * step : at);
         for (size_t m = 0; m < branches; m++, to += 2 * apart) {
             const real *c = weights.values + m * (size_t)taps;
             vector_real x = c[0] * load(re + i), y = c[0] * load(im + i);
@@ -146,8 +161,8 @@ INLINE void filter(int taps, const struct polar_taps *range, const real *re, con
                 x += c[t] * load(re + i + t);
                 y += c[t] * load(im + i + t);
             }
-            *(vector_real *)to = x;
-            *(vector_real *)(to + apart) = y;
+            put(x, blocks, step, to);
+            put(y, blocks, step, to + apart);
         }
     }
 }

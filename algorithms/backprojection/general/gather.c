@@ -26,23 +26,28 @@
 
 #if PERMUTES
 #include <immintrin.h>
-/* Values of a window by an index of each pixel's, of which the lowest bits count. BLOCKS: the window is two vectors,
-   `next` after `values`; else it is one. */
+/* Values of a window by an index of each pixel's, of which the lowest bits count; PERMUTE_TWO: of a window of two
+   vectors, `next` behind `values`. */
 #if BLOCKS && REAL_DOUBLE
 typedef long long vector_index __attribute__((vector_size(VECTOR_BYTES)));
-#define PERMUTE(values, next, index)                                                                                   \
+#define PERMUTE(values, index) (vector_real) _mm512_permutexvar_pd((__m512i)(index), (__m512d)(values))
+#define PERMUTE_TWO(values, next, index)                                                                               \
     (vector_real) _mm512_permutex2var_pd((__m512d)(values), (__m512i)(index), (__m512d)(next))
 #elif BLOCKS
 typedef vector_int vector_index;
-#define PERMUTE(values, next, index)                                                                                   \
+#define PERMUTE(values, index) (vector_real) _mm512_permutexvar_ps((__m512i)(index), (__m512)(values))
+#define PERMUTE_TWO(values, next, index)                                                                               \
     (vector_real) _mm512_permutex2var_ps((__m512)(values), (__m512i)(index), (__m512)(next))
 #elif REAL_DOUBLE
 typedef long long vector_index __attribute__((vector_size(VECTOR_BYTES))); /* AVX2 permutes floats alone, by halves */
-#define PERMUTE(values, next, index)                                                                                   \
+#define PERMUTE(values, index)                                                                                         \
     (vector_real) _mm256_permutevar8x32_ps((__m256)(values), (__m256i)(2 * (index) + (2 * (index) + 1) * (1LL << 32)))
 #else
 typedef vector_int vector_index;
-#define PERMUTE(values, next, index) (vector_real) _mm256_permutevar8x32_ps((__m256)(values), (__m256i)(index))
+#define PERMUTE(values, index) (vector_real) _mm256_permutevar8x32_ps((__m256)(values), (__m256i)(index))
+#endif
+#if !BLOCKS
+#define PERMUTE_TWO(values, next, index) ((void)(next), PERMUTE(values, index)) /* not used */
 #endif
 #endif
 
@@ -133,18 +138,22 @@ struct record {
 #if PERMUTES
 /* Polynomials of a record's branches at the pixels' samples, by Horner's rule, out of windows that hold the samples
    of all (run.h, ITS GATHER). */
-INLINE void take_branches_together(int branches, struct record record, size_t apart, const struct run *run, int i,
-                                   vector_real *re, vector_real *im)
+INLINE void take_branches_together(int branches, enum loading loading, struct record record, size_t apart,
+                                   const struct run *run, int i, vector_real *re, vector_real *im)
 {
+    const bool two = BLOCKS && loading == FOURS;
     const int *index = run->sample + i;
     const int middle = index[MIDDLE_LANE] + record.place;
     const vector_real u = *at(run->rest + i);
-    const int first = BLOCKS ? (middle - LANES / 2) & -LANES : middle - MIDDLE_LANE;
+    const int before = two ? LANES / 2 : LANES / 4; /* the window's least samples before the middle one */
+    const int first = BLOCKS ? (middle - before) & -BLOCK_ADVANCE : middle - MIDDLE_LANE;
     const vector_index place =
         __builtin_convertvector(*(const vector_int *)index + (record.place - first), vector_index);
     const size_t part = BLOCKS ? LANES : apart, block = 2 * (size_t)branches * LANES;
-    const real *from = record.values + (BLOCKS ? (size_t)first / LANES * block : (size_t)first);
-#define WINDOW_OF(n) PERMUTE(*at(from + (n)*part), *at(from + (n)*part + block), place)
+    const real *from = record.values + (BLOCKS ? (size_t)first / BLOCK_ADVANCE * block : (size_t)first);
+    const int next = LANES / BLOCK_ADVANCE;
+#define PART_OF(n, k) *at(from + (n)*part + (size_t)(k)*block)
+#define WINDOW_OF(n)  (two ? PERMUTE_TWO(PART_OF(n, 0), PART_OF(n, next), place) : PERMUTE(PART_OF(n, 0), place))
     vector_real x = WINDOW_OF(2 * (size_t)branches - 2), y = WINDOW_OF(2 * (size_t)branches - 1);
     for (int m = branches - 2; m >= 0; m--) {
         x = x * u + WINDOW_OF(2 * (size_t)m);
@@ -165,7 +174,7 @@ INLINE void take_branches_apart(int branches, struct record record, size_t apart
     vector_real x = {0}, y = {0};
     for (int k = 0; k < LANES; k++) {
         const int place = run->sample[i + k] + record.place;
-        index[k] = BLOCKS ? place / LANES * (2 * branches * LANES) + place % LANES : place;
+        index[k] = BLOCKS ? place / BLOCK_ADVANCE * (2 * branches * LANES) + place % BLOCK_ADVANCE : place;
     }
     for (int m = branches - 1; m >= 0; m--) {
         x = x * u + gather_one(record.values + 2 * (size_t)m * part, index);
@@ -195,8 +204,8 @@ INLINE void take(struct taking taking, struct record record, size_t apart, const
 #endif
         phasor_vector(*at(run->cycles + i), &c, &s);
 #if PERMUTES
-    if (taking.branches > 1 && taking.loading == TOGETHER)
-        take_branches_together(taking.branches, record, apart, run, i, &x, &y);
+    if (taking.branches > 1 && taking.loading != APART)
+        take_branches_together(taking.branches, taking.loading, record, apart, run, i, &x, &y);
     else
 #endif
         if (taking.branches > 1)
@@ -263,40 +272,32 @@ typedef void adding(const struct receiver_group *group, struct run *runs, struct
 #define PAIR(name, line, branches, loading)                                                                            \
     ADDING(name##_one, line, branches, loading, 1)                                                                     \
     ADDING(name##_group, line, branches, loading, GROUP_RECEIVERS)
-#define VALUES(name, line)                                                                                             \
-    PAIR(name##_apart, line, 1, APART)                                                                                 \
-    PAIR(name##_fours, line, 1, FOURS)                                                                                 \
-    PAIR(name##_together, line, 1, TOGETHER)
-#define BRANCHES(name, count)                                                                                          \
-    PAIR(name##_apart, false, count, APART)                                                                            \
-    PAIR(name##_together, false, count, TOGETHER)
-VALUES(nearest, false)
-VALUES(line, true)
-BRANCHES(three, 3)
-BRANCHES(four, 4)
-BRANCHES(five, 5)
-BRANCHES(six, 6)
-BRANCHES(any, group->table->branches)
+#define WAYS(name, line, branches)                                                                                     \
+    PAIR(name##_apart, line, branches, APART)                                                                          \
+    PAIR(name##_fours, line, branches, FOURS)                                                                          \
+    PAIR(name##_together, line, branches, TOGETHER)
+WAYS(nearest, false, 1)
+WAYS(line, true, 1)
+WAYS(three, false, 3)
+WAYS(four, false, 4)
+WAYS(five, false, 5)
+WAYS(six, false, 6)
+WAYS(any, false, group->table->branches)
 
 /* One record, and a whole group, by how samples are loaded. */
 struct ways {
     adding *one[3], *group[3];
 };
-#define OF_VALUES(name)                                                                                                \
+#define WAYS_OF(name)                                                                                                  \
     {                                                                                                                  \
         {name##_apart_one, name##_fours_one, name##_together_one},                                                     \
             {name##_apart_group, name##_fours_group, name##_together_group},                                           \
     }
-#define OF_BRANCHES(name)                                                                                              \
-    {                                                                                                                  \
-        {name##_apart_one, name##_apart_one, name##_together_one},                                                     \
-            {name##_apart_group, name##_apart_group, name##_together_group},                                           \
-    }
-static const struct ways ways_nearest = OF_VALUES(nearest), ways_line = OF_VALUES(line);
+static const struct ways ways_nearest = WAYS_OF(nearest), ways_line = WAYS_OF(line);
 /* The usual numbers of branches unroll, any other one works as well. */
 enum { USUAL_LEAST = 3, USUAL_MOST = 6 };
-static const struct ways ways_any = OF_BRANCHES(any),
-                         ways_usual[] = {OF_BRANCHES(three), OF_BRANCHES(four), OF_BRANCHES(five), OF_BRANCHES(six)};
+static const struct ways ways_any = WAYS_OF(any),
+                         ways_usual[] = {WAYS_OF(three), WAYS_OF(four), WAYS_OF(five), WAYS_OF(six)};
 
 static const struct ways *ways_choose(const struct bp_table *table)
 {

@@ -14,7 +14,7 @@
 #include "common/memory.h"
 
 enum {
-    BATCH_BYTES = 2 << 20, /* rows of one batch: they stay in the second-level cache while all lines read them */
+    BATCH_BYTES = 1 << 20, /* rows of one batch: they stay in the second-level cache while all lines read them */
     BATCH_LEAST = 16       /* rows of one batch at least, so that threads share the compression */
 };
 
@@ -171,8 +171,7 @@ static enum status general_plan(struct bp *bp)
     size_t size = real_size(problem->precision), row_bytes = general->layout.record * size;
     double pairs = (double)a->pings * a->receivers;
     general->sum = bp_sum_choose(problem->precision);
-    const size_t held = BATCH_BYTES / row_bytes;
-    general->batch = (int)fmin(pairs, fmax(BATCH_LEAST, (double)(held - held % BP_RECORDS)));
+    general->batch = (int)fmin(pairs, fmax(BATCH_LEAST, (double)(BATCH_BYTES / row_bytes)));
     general->rows = memory_aligned(64, (size_t)general->batch * row_bytes + size);
     const size_t interleaved = 2 * bp_record_values(bp) * size;
     general->interleaved = malloc((size_t)omp_get_max_threads() * interleaved);
@@ -204,6 +203,17 @@ static enum status general_plan(struct bp *bp)
     return STATUS_OK;
 }
 
+/* Where the batch ends that begins with record `first`: between records that are summed together, so that bits do not
+   depend on it. */
+static size_t batch_end(const struct general *general, const struct acquisition *a, size_t first)
+{
+    const size_t pairs = (size_t)a->pings * (size_t)a->receivers, end = first + (size_t)general->batch;
+    const size_t joined = (size_t)bp_pings_joined(a), receivers = (size_t)a->receivers;
+    if (end >= pairs)
+        return pairs;
+    return joined > 1 ? end - end % (joined * receivers) : end - end % receivers % BP_RECORDS;
+}
+
 /* Add the batch's pairs, records [first, first + count), to one line of patch k. */
 static void sum_line(const struct bp_lines *lines, int k, int number, size_t first, int count)
 {
@@ -226,8 +236,9 @@ static void general_execute(struct bp *bp, const struct echoes *echoes, struct i
     for (int k = 0; k < problem->patch_count; k++)
         memset(general->sums[k], 0,
                2 * (size_t)problem->patches[k].x_count * (size_t)problem->patches[k].r_count * size);
-    for (size_t first = 0; first < pairs; first += (size_t)general->batch) {
-        int count = pairs - first < (size_t)general->batch ? (int)(pairs - first) : general->batch;
+    for (size_t first = 0, end; first < pairs; first = end) {
+        end = batch_end(general, problem->acquisition, first);
+        const int count = (int)(end - first);
 #pragma omp parallel for schedule(static)
         for (int n = 0; n < count; n++)
             if (bp_met(bp, (int)((first + (size_t)n) / (size_t)problem->acquisition->receivers)))
@@ -252,7 +263,7 @@ static void general_execute(struct bp *bp, const struct echoes *echoes, struct i
 static double general_beside(const struct bp *bp)
 {
     const struct acquisition *a = bp->problem.acquisition;
-    const int joined = a->receivers < BP_RECORDS ? BP_RECORDS / a->receivers : 1;
+    const int joined = bp_pings_joined(a);
     double apart = 0;
     for (int p = 1; p < a->pings && joined > 1; p++) {
         const struct vector at = a->tx[p], before = a->tx[p - 1];

@@ -28,11 +28,11 @@ size_t bp_record_values(const struct bp *bp)
     return trace + (bp->table.branches > bp->shape.branches ? (size_t)bp->table.branches * bp_branch_length(bp) : 0);
 }
 
-/* One block more than a record has: windows are two. Rounded up, so that a plan needs the same memory everywhere. */
+/* Two blocks more than a record has: windows are two. Rounded up, so that a plan needs the same memory everywhere. */
 struct bp_layout bp_layout_make(enum precision precision, size_t length, int branches, bool in_blocks)
 {
-    const size_t parts = 2 * (size_t)branches, vector = 64 / real_size(precision);
-    const size_t blocks = (length + vector - 1) / vector + 1;
+    const size_t parts = 2 * (size_t)branches, vector = 64 / real_size(precision), advance = vector / 2;
+    const size_t blocks = (length + advance - 1) / advance + 2;
     struct bp_layout layout = {.apart = in_blocks ? blocks * vector : length, .blocks = 1};
 #ifdef SASBENCH_X86_64
     if (in_blocks && isa_choose() == ISA_V4)
@@ -124,15 +124,22 @@ static void waiting_add(const struct bp_lines *lines, const struct line_sums *to
         add_alone(lines, to, waiting->p + n, &waiting->ping[n]);
 }
 
+int bp_pings_joined(const struct acquisition *acquisition)
+{
+    return acquisition->receivers < BP_RECORDS ? BP_RECORDS / acquisition->receivers : 1;
+}
+
 /* Can a ping's records be summed with those that wait? They share blocks of pixels, which pays where most of the
-   pixels are all pings'; where each delay is evaluated there are none. */
+   pixels are all pings'; where each delay is evaluated there are none. Only pings of the same few ever join, so that
+   bits do not depend on where a batch begins. */
 static bool joins(const struct bp_lines *lines, const struct waiting *waiting, int p, const struct bp_ping *ping)
 {
     const struct bp_ping *first = &waiting->ping[0];
     const struct pair_span all = span_of_both(first->within, ping->within);
     const int pixels = ping->within.end - ping->within.begin, firsts = first->within.end - first->within.begin;
-    return p == waiting->p + waiting->count && (waiting->count + 1) * ping->receivers <= BP_RECORDS
-           && ping->receivers == first->receivers && ping->t0 == first->t0 && lines->boxes[p].reach > 0
+    const int joined = bp_pings_joined(lines->acquisition);
+    return p == waiting->p + waiting->count && p / joined == waiting->p / joined && ping->t0 == first->t0
+           && lines->boxes[p].reach > 0
            && 2 * (all.end - all.begin) <= 3 * (pixels < firsts ? pixels : firsts);
 }
 
@@ -216,7 +223,12 @@ void bp_record_fill(const struct bp *bp, const struct bp_layout *layout, const s
         filter(bp, from);
         from += 2 * (size_t)bp->shape.length * size;
     }
-    for (size_t m = 0; m < branches; m++)
-        bp->planes->part(from + m * 2 * length * size, length, blocks, block, 2 * branches * block,
-                         to + m * 2 * block * size);
+    for (size_t m = 0; m < branches; m++) {
+        const char *branch = from + m * 2 * length * size;
+        char *parts = to + m * 2 * block * size;
+        if (blocks > 1)
+            bp->planes->part_blocks(branch, length, blocks, block, 2 * branches * block, parts);
+        else
+            bp->planes->part(branch, length, block, parts);
+    }
 }

@@ -32,6 +32,9 @@ struct bp_lines {
     struct bp_layout layout;
 };
 
+/* How many neighbouring pings are summed together at the most, the first a multiple of so many. */
+int bp_pings_joined(const struct acquisition *acquisition);
+
 /* Add records [first, first + count) to the pixels of a line that lie inside their times and inside the aperture limit:
    re[i], im[i] of pixel i. */
 void bp_lines_add(const struct bp_lines *lines, const struct pixel_line *line, size_t first, int count, void *re,

@@ -32,8 +32,15 @@
 
    Farrow branches (BP_BRANCHES) take a window from each branch with AVX2 in either precision. It is a vector from
    MIDDLE_LANE samples before m on; the pixel furthest from the middle, LANES/2 away, must be less than MIDDLE_LANE
-   samples from it: slopes below 1 - 2/LANES. With AVX-512 it is two whole blocks of LANES samples, of which m lies in
-   the middle half: slopes below 1. All branches of a block lie side by side, and blocks begin at cache lines.
+   samples from it: slopes below 1 - 2/LANES. With AVX-512 windows are whole blocks of LANES samples, which begin
+   BLOCK_ADVANCE = LANES/2 samples apart, at cache lines, all branches of a block side by side. m lies in the middle
+   half of its window: of one block on slopes below 1/2 (TOGETHER), of two that follow without a gap below 1 (FOURS).
+   An example of 8 lanes, m = 14:
+
+       samples      0   4   8   12  16  20  24
+       block 1          |------m|               m - LANES/2 < 8, the middle half ends before
+       block 2              |--:-m--:|          TOGETHER: the furthest pixel is at most 4 samples away
+       blocks 1, 3      |---:--m----:----|      FOURS: at most 8
 
    PART, EVEN, ODD: an example of 8 lanes (float, AVX2). Positions are double, so that 8 pixels are two vectors of 4
    doubles. The cheapest shuffle works inside each 128 bits, and takes two words of either operand there. PART orders
@@ -89,6 +96,7 @@
 #endif
 /* Can it take the values from two vectors? Then the samples of Farrow branches lie in blocks (struct bp_layout). */
 #define BLOCKS (VECTOR_BYTES == 64)
+#define BLOCK_ADVANCE (LANES / 2) /* samples from one block to the next */
 
 #define INLINE static inline __attribute__((always_inline))
 
@@ -107,8 +115,8 @@ typedef float vector_bits __attribute__((vector_size(VECTOR_BYTES))); /* moved, 
 /* How the samples of neighbouring pixels are loaded. */
 enum loading {
     APART,   /* each by itself */
-    FOURS,   /* those of four pixels at once: at most half a sample from pixel to pixel */
-    TOGETHER /* those of a vector at once: at most 2/LANES */
+    FOURS,   /* those of four pixels at once: at most half a sample from pixel to pixel. Branches: out of two blocks */
+    TOGETHER /* those of a vector at once: at most 2/LANES. Branches: out of one window */
 };
 
 /* Where a run of pixels reads a record. */

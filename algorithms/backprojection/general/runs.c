@@ -222,8 +222,10 @@ INLINE void points_flat(const struct flat *flat, int g, const struct scale *scal
 INLINE enum loading loading_choose(enum bp_reading reading, double slope)
 {
     const double slack = 0.01; /* for rounding */
+    if (reading == BP_BRANCHES && !BLOCKS)
+        return PERMUTES && slope < 1 - 2.0 / LANES - slack ? TOGETHER : APART;
     if (reading == BP_BRANCHES)
-        return PERMUTES && slope < (BLOCKS ? 1 : 1 - 2.0 / LANES) - slack ? TOGETHER : APART;
+        return slope > 1 - slack ? APART : slope > 0.5 - slack ? FOURS : TOGETHER;
     return !WINDOWS || slope > 0.5 - slack ? APART : slope > 2.0 / LANES - slack ? FOURS : TOGETHER;
 }
 
@@ -234,8 +236,10 @@ INLINE int flat_longest(const struct receiver_group *group, enum loading loading
     const enum bp_reading reading = group->table->reading;
     const double ratio = group->scale->ratio, half_run = sqrt(2 * budget_bend(group->phase_limit) / (bend * ratio));
     const int longest = 2 * half_run < RUN_PIXELS ? (int)(2 * half_run) / LANES * LANES : RUN_PIXELS;
-    const bool flat = loading == TOGETHER && longest >= FLAT_LEAST && ratio > RATIO_LEAST
-                      && (reading == BP_NEAREST || reading == BP_LINE || reading == BP_BRANCHES);
+    const bool near = reading == BP_BRANCHES                         ? loading != APART
+                      : reading == BP_NEAREST || reading == BP_LINE ? loading == TOGETHER
+                                                                    : false;
+    const bool flat = near && longest >= FLAT_LEAST && ratio > RATIO_LEAST;
     return flat ? longest : 0;
 }
 

@@ -149,22 +149,21 @@ static void sum_block_exact(const struct line_sum *sum, const struct bp_pings *p
     }
 }
 
-/* Have what a group reads of its records fetched together, between samples `low` and `high` of each. */
+/* Have what a group reads of its records fetched together, between samples `low` and `high` of each. Not of blocks,
+   whose parts lie side by side: the processor sees by itself what comes next. */
 INLINE void prefetch(const struct receiver_group *group, const double *low, const double *high)
 {
     enum {
         NEAR = 64 / sizeof(real),
         MOST = 16
     }; /* values of a cache line; cache lines of a part, else it does not pay */
-    const bool blocks = BLOCKS && group->table->reading == BP_BRANCHES;
     const size_t apart = group->layout.apart;
-    const int origin = group->table->origin, all = 2 * group->table->branches;
-    const int parts = blocks ? 1 : all, width = blocks ? all : 1; /* in blocks all parts lie side by side */
+    const int origin = group->table->origin, parts = group->layout.blocks > 1 ? 0 : 2 * group->table->branches;
     for (int g = 0; g < group->receivers; g++) {
-        const int first = ((int)low[g] + origin) / NEAR, last = ((int)high[g] + origin) / NEAR + (blocks ? 1 : 2);
+        const int first = ((int)low[g] + origin) / NEAR, last = ((int)high[g] + origin) / NEAR + 2;
         const real *row = group->row + (size_t)g * group->layout.record;
         for (int p = 0; last - first < MOST && p < parts; p++, row += apart)
-            for (int i = first * width; i < last * width; i++)
+            for (int i = first; i < last; i++)
                 __builtin_prefetch(row + i * NEAR);
     }
 }

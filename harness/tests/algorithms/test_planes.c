@@ -108,11 +108,11 @@ static void neighbours_are_summed(void **state)
     }
 }
 
-/* Into three blocks with room between them, which stays as it is. */
+/* Into one block of any size, or into five that begin half a block apart; what lies behind a block stays as it is. */
 static void values_are_parted(void **state)
 {
     (void)state;
-    enum { BLOCK = 32, STEP = 2 * BLOCK + 3, BLOCKS = 3 };
+    enum { BLOCK = 16, STEP = 2 * BLOCK + 3, BLOCKS = 5 };
     const struct numbers n = numbers_make();
     for (int p = 0; p < 2 * MOST; p++) {
         const enum precision precision = p % 2 ? PRECISION_DOUBLE : PRECISION_FLOAT;
@@ -121,16 +121,20 @@ static void values_are_parted(void **state)
         double untouched[BLOCKS * STEP], to[BLOCKS * STEP];
         for (int k = 0; k < BLOCKS * STEP; k++)
             untouched[k] = 9;
-        put(precision, untouched, BLOCKS * STEP, to);
         put(precision, (const double *)n.x, 2 * MOST, x);
-        planes_choose(precision)->part(x, (size_t)count, BLOCKS, BLOCK, STEP, to);
-        for (int b = 0; b < BLOCKS; b++)
-            for (int k = 0; k < STEP; k++) {
-                const int value = b * BLOCK + k % BLOCK;
-                const double part = k < BLOCK ? creal(n.x[value % MOST]) : cimag(n.x[value % MOST]);
-                const double expected = k >= 2 * BLOCK ? 9 : value < count ? part : 0;
-                assert_close(got(precision, to, (size_t)(b * STEP + k)), expected, 1e-6);
+        for (int blocks = 1; blocks <= BLOCKS; blocks += BLOCKS - 1) {
+            put(precision, untouched, BLOCKS * STEP, to);
+            if (blocks > 1)
+                planes_choose(precision)->part_blocks(x, (size_t)count, BLOCKS, BLOCK, STEP, to);
+            else
+                planes_choose(precision)->part(x, (size_t)count, BLOCK, to);
+            for (int k = 0; k < BLOCKS * STEP; k++) {
+                const int b = k / STEP, within = k % STEP, value = b * BLOCK / 2 + within % BLOCK;
+                const double part = within < BLOCK ? creal(n.x[value % MOST]) : cimag(n.x[value % MOST]);
+                const double expected = b >= blocks || within >= 2 * BLOCK ? 9 : value < count ? part : 0;
+                assert_close(got(precision, to, (size_t)k), expected, 1e-6);
             }
+        }
     }
 }
 
