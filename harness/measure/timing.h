@@ -47,8 +47,8 @@ enum status timing_measure(const struct spec *spec, const struct problem *proble
 double timing_floor(void);
 
 /* From now on seconds_now, and with it the stages of algorithms, leaves out the time in which this thread was ready to
-   run and other work had the processor (what the thread sleeps still counts). Only this thread may ask for the time from then
-   on. Where the system does not tell that, nothing changes. */
+   run and other work had the processor (what the thread sleeps still counts). Only this thread may ask for the time
+   from then on. Where the system does not tell that, nothing changes. */
 void seconds_skip_waiting(void);
 
 /* The quartiles' distance over the median beyond which a time is told to be noisy. */

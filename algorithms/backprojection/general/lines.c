@@ -139,8 +139,7 @@ static bool joins(const struct bp_lines *lines, const struct waiting *waiting, i
     const int pixels = ping->within.end - ping->within.begin, firsts = first->within.end - first->within.begin;
     const int joined = bp_pings_joined(lines->acquisition);
     return p == waiting->p + waiting->count && p / joined == waiting->p / joined && ping->t0 == first->t0
-           && lines->boxes[p].reach > 0
-           && 2 * (all.end - all.begin) <= 3 * (pixels < firsts ? pixels : firsts);
+           && lines->boxes[p].reach > 0 && 2 * (all.end - all.begin) <= 3 * (pixels < firsts ? pixels : firsts);
 }
 
 void bp_lines_add(const struct bp_lines *lines, const struct pixel_line *line, size_t first, int count, void *re,

@@ -95,7 +95,7 @@
 #define PERMUTES 0
 #endif
 /* Can it take the values from two vectors? Then the samples of Farrow branches lie in blocks (struct bp_layout). */
-#define BLOCKS (VECTOR_BYTES == 64)
+#define BLOCKS        (VECTOR_BYTES == 64)
 #define BLOCK_ADVANCE (LANES / 2) /* samples from one block to the next */
 
 #define INLINE static inline __attribute__((always_inline))

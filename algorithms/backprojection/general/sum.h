@@ -8,8 +8,8 @@
 #include "backprojection/reading.h"
 
 /* How the batch's records lie in memory: of each branch (one but for BP_BRANCHES) all real parts, then all imaginary
-   ones. With AVX-512 branches are cut into blocks of a vector's samples, [block][branch][re, im][sample], which begin half
-   a vector apart: each sample is in two of them. */
+   ones. With AVX-512 branches are cut into blocks of a vector's samples, [block][branch][re, im][sample], which begin
+   half a vector apart: each sample is in two of them. */
 struct bp_layout {
     size_t record; /* values from one record to the next */
     size_t apart;  /* from a branch's real parts to its imaginary ones, and from these to the next branch */
