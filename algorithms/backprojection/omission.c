@@ -83,6 +83,68 @@ double aperture_sine(const struct problem *problem, double error)
 /* Of what is planned with: times the law; and over the fewest pings. */
 static const double SHARE = 1.25, EDGES = 4;
 
+/* Does the aperture end where echoes are still strong? */
+static bool ends_at_once(const struct acquisition *a)
+{
+    static const double STRONG = 0.01; /* of the power on the beam's axis */
+    const double edge = fmin(a->aperture_limit, condition_seen_sine(a)) * (1 - 1e-6), r = 1e3;
+    const double amplitude = condition_amplitude(a, r, edge < 1 ? r * edge / sqrt(1 - edge * edge) : r);
+    const double axis = condition_amplitude(a, r, 0);
+    return amplitude * amplitude > STRONG * axis * axis;
+}
+
+/* Sums over the pixels beside a target, of the whole aperture and of the limited one. */
+struct profile {
+    double whole, limited;
+    double complex both;
+};
+
+/* The azimuth profile through a target in the middle of a patch: each pixel sums what lies within the sine of itself. Of receivers,
+   so many that what they repeat lies beyond the profile. */
+static void profile_add(const struct acquisition *a, const struct grid *g, double sine, struct profile *profile)
+{
+    enum { REACH = 64 }; /* pixels on either side */
+    const double i = (g->r_count - 1) / 2.0, j = (g->x_count - 1) / 2.0, wavelength = a->sound_speed / a->fc;
+    const int reach = g->x_count / 2 < REACH ? g->x_count / 2 : REACH;
+    const struct vector target = grid_point(g, i, j);
+    const double spacing = a->pings > 1 ? fabs(a->tx[1].x - a->tx[0].x) : 0, r = hypot(target.y, target.z);
+    const double needed = ceil(4 * reach * g->x_step * spacing / (wavelength * fmax(r, wavelength)));
+    const int receivers = (int)fmax(1, fmin(a->receivers, needed));
+    for (int n = -reach; n <= reach; n++) {
+        const struct vector pixel = grid_point(g, i, j + n);
+        double complex whole = 0, limited = 0;
+        for (int p = 0; p < a->pings; p++) {
+            const struct vector tx = a->tx[p];
+            const double u = tx.x - pixel.x, across = hypot(pixel.y - tx.y, tx.z), at = fabs(u) / hypot(u, across);
+            const double seen = condition_amplitude(a, hypot(target.y - tx.y, tx.z), tx.x - target.x);
+            for (int m = 0; m < receivers && seen > 0 && at <= a->aperture_limit; m++) {
+                const struct vector rx = a->rx[p * a->receivers + (2 * m + 1) * a->receivers / (2 * receivers)];
+                const struct vector still = {0, 0, 0};
+                const double late = delay_exact(tx, rx, still, pixel, a->sound_speed)
+                                    - delay_exact(tx, rx, still, target, a->sound_speed);
+                const double complex term =
+                    seen * condition_sinc(a->bandwidth * late) * cexp(2 * I * M_PI * a->fc * late);
+                whole += term;
+                limited += at <= sine ? term : 0;
+            }
+        }
+        profile->whole += creal(whole * conj(whole));
+        profile->limited += creal(limited * conj(limited));
+        profile->both += whole * conj(limited);
+    }
+}
+
+static double profile_error(const struct problem *problem, double sine)
+{
+    enum { PATCHES = 4 };
+    const int step = (problem->patch_count + PATCHES - 1) / PATCHES;
+    struct profile sum = {0};
+    for (int k = 0; k < problem->patch_count; k += step)
+        profile_add(problem->acquisition, &problem->patches[k], sine, &sum);
+    const double share = creal(sum.both * conj(sum.both)) / (sum.whole * sum.limited);
+    return sum.limited > 0 ? sqrt(fmax(0, 1 - share)) : 1;
+}
+
 double aperture_planned(const struct problem *problem, double sine)
 {
     struct condition list[CONDITIONS_MAX];
@@ -92,13 +154,27 @@ double aperture_planned(const struct problem *problem, double sine)
     for (int k = 0; k < count; k++)
         repeats |= list[k].severity == SEVERITY_WARN && !condition_holds(&list[k]);
     const double law = aperture_law(problem, sine, &fewest);
-    return isnan(law) || repeats ? INFINITY : hypot(SHARE * law, EDGES / fewest);
+    if (isnan(law) || repeats)
+        return INFINITY;
+    const double planned = hypot(SHARE * law, EDGES / fewest);
+    return ends_at_once(problem->acquisition) ? fmax(planned, SHARE * profile_error(problem, sine)) : planned;
 }
 
 double aperture_least(const struct problem *problem, double error)
 {
-    const double least = aperture_planned(problem, 1); /* of the edges alone */
-    return error > least ? aperture_sine(problem, sqrt(error * error - least * least) / SHARE) : 1;
+    enum { STEPS = 6 };
+    int fewest;
+    const double law = aperture_law(problem, 1, &fewest), least = EDGES / fewest;
+    if (isnan(law) || !(error > least) || isinf(aperture_planned(problem, 1)))
+        return 1;
+    double low = aperture_sine(problem, sqrt(error * error - least * least) / SHARE), high = 1;
+    if (!ends_at_once(problem->acquisition) || aperture_planned(problem, low) <= error)
+        return low;
+    for (int k = 0; k < STEPS; k++) {
+        const double middle = (low + fmin(high, problem->acquisition->aperture_limit)) / 2;
+        *(aperture_planned(problem, middle) <= error ? &high : &low) = middle;
+    }
+    return high;
 }
 
 /* Seconds by which a pair's delay is off. */

@@ -13,9 +13,12 @@
    patches. NAN where there is no law: fewer than 10 pings see one of these, the beam is unknown or squinted, or
    noise comes from all sides. */
 double aperture_error(const struct problem *problem, double sine);
-/* What is planned with: more than the law says, for it is up to 15 % below what is measured, and what the edges of
-   the cut make of neighbouring targets, up to 4 over the pings that see a pixel. INFINITY where there is no law, and
-   where pings lie so far apart that targets repeat: what an aperture leaves out is then seen beside them. */
+/* What is planned with: 1.25 times the law, which is up to 15 % below what is measured, and what the edges of the cut
+   make of neighbouring targets, up to 4 over the pings that see a pixel. Where the aperture ends while echoes are
+   strong, by a beam with edges or by the scene's own limit, at least 1.25 times what the azimuth profile of a target
+   loses: pixels beside a target sum other pings than it does, so that side lobes of both apertures differ in phase, not
+   in size alone. INFINITY where there is no law, and where pings lie so far apart that targets repeat: what an aperture
+   leaves out is then seen beside them. */
 double aperture_planned(const struct problem *problem, double sine);
 /* Its inverse: the least sine that loses at most `error`; 1 where none below does. */
 double aperture_least(const struct problem *problem, double error);

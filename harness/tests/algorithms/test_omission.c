@@ -7,6 +7,7 @@
 #include "measure/metrics.h"
 #include "backprojection/omission.h"
 #include "backprojection/pairs.h"
+#include "condition.h"
 #include "tests/support.h"
 
 /* Speckle before an array whose pings lie half of it apart. */
@@ -125,6 +126,40 @@ static void laws_hold(void **state)
     }
 }
 
+/* Beams with edges, and a scene's own limit of the aperture: side lobes of both apertures are beside the targets. */
+static void beams_that_end_at_once(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"pf05/nine", "sq18/squint_00"};
+    static const double parts[] = {0.3, 0.7, 0.9, 0.97, 0.997};
+    for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
+        struct scene scene;
+        struct echoes echoes;
+        struct image exact;
+        if (scene_load(names[n], SASBENCH_ROOT "/scenes", &scene) != STATUS_OK)
+            fail_msg("%s", status_message());
+        const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE};
+        support_echoes(&scene, &echoes);
+        image_by(&scene, &scene.acquisition, &echoes, &exact);
+        for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) {
+            struct acquisition limited = scene.acquisition;
+            struct image image;
+            limited.aperture_limit = parts[k] * fmin(limited.aperture_limit, condition_seen_sine(&limited));
+            image_by(&scene, &limited, &echoes, &image);
+            const double planned = aperture_planned(&problem, limited.aperture_limit);
+            const double measured = metrics_error(&image, &exact).error_gain;
+            print_message("%-16s aperture to %.4f: planned %.3f, measured %.3f, ratio %.2f; the energy law says %.3f\n",
+                          names[n], limited.aperture_limit, planned, measured, planned / measured,
+                          aperture_error(&problem, limited.aperture_limit));
+            assert_true(planned >= measured && planned < 1.6 * measured);
+            image_free(&image);
+        }
+        image_free(&exact);
+        echoes_free(&echoes);
+        scene_free(&scene);
+    }
+}
+
 /* Settings may limit the aperture: the image is that of an acquisition with the limit, to the last bit; records of
    pings that then meet no pixel are not read, for they may hold anything, and their transforms are not counted. */
 static void pings_left_out(void **state)
@@ -192,6 +227,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(laws_hold, folder_make, folder_remove),
+        cmocka_unit_test(beams_that_end_at_once),
         cmocka_unit_test_setup_teardown(pings_left_out, folder_make, folder_remove),
         cmocka_unit_test(few_pings),
     };
