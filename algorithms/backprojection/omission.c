@@ -99,8 +99,8 @@ struct profile {
     double complex both;
 };
 
-/* The azimuth profile through a target in the middle of a patch: each pixel sums what lies within the sine of itself. Of receivers,
-   so many that what they repeat lies beyond the profile. */
+/* The azimuth profile through a target in the middle of a patch: each pixel sums what lies within the sine of itself.
+   Of receivers, so many that what they repeat lies beyond the profile. */
 static void profile_add(const struct acquisition *a, const struct grid *g, double sine, struct profile *profile)
 {
     enum { REACH = 64 }; /* pixels on either side */

@@ -21,7 +21,6 @@ static const double FEW_TARGETS = 1.4;      /* what an image of a few targets ma
 static const double PULSE_PERIODS = 8;      /* of B: of a record beside its rows (layout.c) */
 static const double PULSE_SHARE = 1.0 / 16; /* of that, where the pulse's own spectrum reaches so far */
 static const double EDGE_BINS = 4; /* of a record's transform that are wrong at half the sampling rate: measured */
-static const double BULK = 2;      /* blocks that the correction ahead of them takes as long as: measured, 1 to 4 */
 /* Rounding, relative L2: of the transforms. */
 static const double ROUNDING[] = {1e-6, 1e-13};
 
@@ -157,7 +156,7 @@ static void swath_cost(const struct rma *rma, const struct rma_swath *swath, dou
         cost[MIGRATION_TERMS] += kept / receivers * swath->held * rma_fold_flops(rma);
     } else {
         cost[MIGRATION_RECORDS] += receivers * rma->pings * fft_flops(length);
-        cost[MIGRATION_BLOCKS] += rma->converts ? kept * receivers * swath->band * 8 * (swath->needed + BULK) : 0;
+        cost[MIGRATION_BLOCKS] += rma->converts ? kept * receivers * swath->band * 8 * swath->needed : 0;
         cost[MIGRATION_FOCUS] += kept * swath->needed * sums * length;
     }
     for (int k = 0; k < swath->patch_count; k++) {

@@ -109,22 +109,24 @@ static enum status probe_run(struct imaging *imaging, const struct echoes *echoe
     return status;
 }
 
-/* What is probed: some rows of the scene with all of its columns; with many pairs for each entry of a table, fewer rows
-   with more columns, and with few. */
+/* What is probed: some rows of the scene with all of its columns; with many pairs for each entry of a table, as many
+   records of fewer receivers and more pings, fewer rows and more columns; and with few pairs, few columns. */
 struct bench {
     struct scene scene;
+    struct acquisition dense;
     struct grid usual, wide, narrow;
     struct echoes echoes[2];
 };
 
 static enum status probe_spec(const struct bench *bench, const char *text, const struct grid *grid, struct probe *probe)
 {
+    const struct acquisition *acquisition = grid == &bench->wide ? &bench->dense : &bench->scene.acquisition;
     struct spec spec;
     struct imaging imaging;
     enum status status = spec_parse(text, &spec);
     if (status != STATUS_OK)
         return status;
-    const struct problem problem = {&bench->scene.acquisition, 1, grid, spec.precision};
+    const struct problem problem = {acquisition, 1, grid, spec.precision};
     status = (spec.algorithm->cost ? spec.algorithm->cost : spec.algorithm->forecast)(&problem, spec.options,
                                                                                       &probe->forecast);
     if (status == STATUS_OK)
@@ -282,6 +284,34 @@ static enum status rounds_run(const struct bench *bench, struct probes *probes)
     return status;
 }
 
+/* The scene's records, as if they were of a quarter of the receivers and pings a column apart about the image. */
+static enum status dense_make(struct bench *bench)
+{
+    enum { TIMES = 4, COLUMNS = 8 };
+    const struct acquisition *a = &bench->scene.acquisition;
+    struct acquisition *dense = &bench->dense;
+    const struct grid *g = &bench->usual;
+    *dense = *a;
+    dense->pings *= TIMES;
+    dense->receivers /= TIMES;
+    const enum status status = acquisition_allocate(dense);
+    if (status != STATUS_OK)
+        return status;
+    memcpy(dense->pulse, a->pulse, (size_t)a->pulse_length * sizeof *a->pulse);
+    for (int p = 0; p < dense->pings; p++) {
+        const double x = g->x_first + (0.5 * g->x_count + COLUMNS * (p - dense->pings / 2)) * g->x_step;
+        dense->t0[p] = a->t0[0];
+        dense->velocity[p] = a->velocity[0];
+        dense->tx[p] = (struct vector){x, a->tx[0].y, a->tx[0].z};
+        for (int m = 0; m < dense->receivers; m++) {
+            struct vector *rx = &dense->rx[p * dense->receivers + m];
+            *rx = a->rx[m];
+            rx->x += x - a->tx[0].x;
+        }
+    }
+    return STATUS_OK;
+}
+
 enum status machine_rates_measure(struct rates *rates)
 {
     struct bench bench = {.echoes = {{0}, {0}}};
@@ -298,6 +328,7 @@ enum status machine_rates_measure(struct rates *rates)
     bench.wide.x_count *= 4;
     bench.wide.x_first -= 1.5 * bench.usual.x_count * bench.usual.x_step;
     bench.narrow.x_count /= 4;
+    status = dense_make(&bench);
     for (int precision = 0; precision < 2 && status == STATUS_OK; precision++)
         status = echoes_allocate(&bench.scene.acquisition, (enum precision)precision, &bench.echoes[precision]);
     omp_set_num_threads(1); /* whose waiting for a processor is known */
@@ -310,6 +341,7 @@ enum status machine_rates_measure(struct rates *rates)
         rates_fill(&probes, rates);
     echoes_free(&bench.echoes[0]);
     echoes_free(&bench.echoes[1]);
+    acquisition_free(&bench.dense);
     scene_free(&bench.scene);
     return status;
 }
