@@ -141,8 +141,8 @@ static double profile_error(const struct problem *problem, double sine)
     struct profile sum = {0};
     for (int k = 0; k < problem->patch_count; k += step)
         profile_add(problem->acquisition, &problem->patches[k], sine, &sum);
-    const double share = creal(sum.both * conj(sum.both)) / (sum.whole * sum.limited);
-    return sum.limited > 0 ? sqrt(fmax(0, 1 - share)) : 1;
+    const double power = sum.whole * sum.limited;
+    return power > 0 ? sqrt(fmax(0, 1 - creal(sum.both * conj(sum.both)) / power)) : 1;
 }
 
 double aperture_planned(const struct problem *problem, double sine)
@@ -164,8 +164,10 @@ double aperture_least(const struct problem *problem, double error)
 {
     enum { STEPS = 6 };
     int fewest;
-    const double law = aperture_law(problem, 1, &fewest), least = EDGES / fewest;
-    if (isnan(law) || !(error > least) || isinf(aperture_planned(problem, 1)))
+    if (isnan(aperture_law(problem, 1, &fewest)))
+        return 1;
+    const double least = EDGES / fewest;
+    if (!(error > least) || isinf(aperture_planned(problem, 1)))
         return 1;
     double low = aperture_sine(problem, sqrt(error * error - least * least) / SHARE), high = 1;
     if (!ends_at_once(problem->acquisition) || aperture_planned(problem, low) <= error)
