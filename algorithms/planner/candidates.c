@@ -29,6 +29,7 @@ static const struct {
     {"bp_sinc", "window=kaiser_band,engine=general", "taps", "4 6 8"},
     {"bp_fitted", "engine=general", "taps", "2 4 6 8 10 12"},
     {"bp_factorised", "", "error", "budget"},
+    {"rma_delay", "taps=8", "terms", "1 2"},
     {"rma_delay", "", "terms", "1 2"},
     {"rma_delay", "taps=24", "terms", "2 3"},
     {"rma_lbf", "", "limit", "0.785 0.1 0.01"},

@@ -22,6 +22,7 @@ static const double budgets[] = {1e-1, 1e-2, 1e-3, 1e-4};
 enum { BUDGETS = sizeof budgets / sizeof *budgets, SETTINGS_MOST = 400, RUNS = 3, ROUNDS = 3 };
 static const double LAW_MOST = 15; /* times the measured error are predicted at most (docs/planning.md) */
 static const double SLOW = 2;      /* times the fastest in a first run: not timed again */
+static const double LONG = 0.2;    /* s: so long runs count at once, and once a plan */
 
 /* Whatever may be the fastest: all that `sweep` runs, in float, and what its parameters' defaults leave out. */
 static const char *const families[] = {"bp_nearest",
@@ -53,7 +54,7 @@ struct setting {
     double said;            /* s: predicted; NAN of those that are no candidates */
     double error;           /* measured, after one best complex gain; INFINITY where refused */
     double bytes;           /* of its plan */
-    double first, seconds;  /* of the first timed run, the least of all */
+    double seconds;         /* of the fastest run */
     double compress, focus; /* of the least */
     bool contends;
 };
@@ -87,7 +88,7 @@ static struct setting *sweep_add(struct sweep *sweep, struct spec *spec)
         }
     assert_true(sweep->count < SETTINGS_MOST);
     struct setting *setting = &sweep->list[sweep->count++];
-    *setting = (struct setting){.spec = *spec, .error = INFINITY, .said = NAN, .first = INFINITY, .seconds = INFINITY};
+    *setting = (struct setting){.spec = *spec, .error = INFINITY, .said = NAN, .seconds = INFINITY};
     setting_name(spec, setting->name, sizeof setting->name);
     return setting;
 }
@@ -141,7 +142,7 @@ static double stage_seconds(const struct stages *stages, const char *name)
     return 0;
 }
 
-/* One plan, `runs` runs, the first of several not counted; with `measure` the error of the image. */
+/* One plan, `runs` runs, the first of several not counted unless it is long; with `measure` the error of the image. */
 static void setting_run(const struct session *session, struct setting *setting, int runs, bool measure)
 {
     const struct problem problem = session_problem(session->scene, setting->spec.algorithm, PRECISION_FLOAT);
@@ -159,9 +160,9 @@ static void setting_run(const struct session *session, struct setting *setting, 
         const double begin = stages.mark;
         status = imaging_execute(&imaging, echoes, &stages);
         const double seconds = seconds_now() - begin;
-        if (k > 0)
-            setting->first = fmin(setting->first, seconds);
-        if (k > 0 && seconds < setting->seconds) {
+        if (seconds >= LONG)
+            runs = k; /* the last */
+        if ((k > 0 || seconds >= LONG) && seconds < setting->seconds) {
             setting->seconds = seconds;
             setting->compress = stage_seconds(&stages, "compress");
             setting->focus = stage_seconds(&stages, "focus");
