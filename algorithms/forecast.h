@@ -39,6 +39,7 @@ struct forecast {
     enum reading_kind kind;
     int values;        /* that a pair reads */
     double units;      /* that are made for them: entries of tables, or blocks of pixels */
+    double residues;   /* by tables: columns from ping to ping, of which neighbours share what they load */
     double pair_flops; /* of a pair */
     /* Of all records together: */
     double record_flops;  /* of the transforms of range compression */

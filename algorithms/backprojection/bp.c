@@ -342,6 +342,14 @@ static void forecast_records(struct bp *bp, const struct interpolator *in, struc
     forecast->record_values = records * fine * (forecast->kind == READ_BRANCHES ? forecast->values : 1);
 }
 
+/* Columns of the image from ping to ping; those of one ping are all neighbours. */
+static double residues_of(const struct problem *problem)
+{
+    const struct acquisition *a = problem->acquisition;
+    const struct grid *g = &problem->patches[0];
+    return a->pings > 1 ? fmax(1, round(fabs(a->tx[1].x - a->tx[0].x) / g->x_step)) : g->x_count;
+}
+
 enum status bp_forecast(const struct problem *problem, const struct interpolator *in, const void *options,
                         struct forecast *forecast)
 {
@@ -358,6 +366,7 @@ enum status bp_forecast(const struct problem *problem, const struct interpolator
         law_spectrum(a, &spectrum);
         const double law = interpolation_error(in, options, &spectrum);
         forecast->tables = !general;
+        forecast->residues = general ? 0 : residues_of(problem);
         const double ends = in->upsample == 1 && in->degree == 0 && in->taps > 1 ? law_ends(problem, in->taps) : 0;
         /* At fs = B the bin at fs/2 stands for both ends of the band. */
         forecast->error[CAUSE_INTERPOLATION] = hypot(hypot(law, ends), a->bandwidth < a->fs ? 0 : 1.0 / a->samples);

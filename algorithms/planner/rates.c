@@ -1,5 +1,6 @@
 #include "planner/rates.h"
 
+#include <math.h>
 #include <omp.h>
 
 /* Measured by `plan` on an AMD EPYC (Zen 5) with AVX-512. */
@@ -27,6 +28,17 @@ static struct rates rates = {
    4 to 5. */
 enum { VECTOR = 8, PART = 5 };
 
+/* In the invariant engine a pair takes the longer, the fewer columns there are from ping to ping, of which neighbours
+   share loads of the same sample: 1 + ALONE/columns, up to SHARED columns. Measured on one column and on eight. */
+enum { SHARED = 8 /* columns of the probe behind `pair` and `value` (machine_rates.c) */ };
+static const double ALONE[READ_KINDS] = {
+    [READ_NEAREST] = 0.8, [READ_LINE] = 0.8, [READ_TAPS] = 0.5, [READ_BRANCHES] = 4.4};
+
+static double alone(const struct forecast *f)
+{
+    return f->tables ? (1 + ALONE[f->kind] / fmin(f->residues, SHARED)) / (1 + ALONE[f->kind] / SHARED) : 1;
+}
+
 static const double START = 1e-5; /* s: of any run, also where no pixel meets a record */
 
 const struct rates *rates_get(void)
@@ -48,7 +60,7 @@ double rates_sums(const struct forecast *f, enum precision precision, double pai
 {
     const int engine = f->tables, kind = f->kind;
     const int more = engine && kind == READ_TAPS && f->values > VECTOR && f->values % VECTOR > 0 ? PART : 0;
-    const double pair = rates.pair[engine][kind] + rates.value[engine][kind] * (f->values + more);
+    const double pair = alone(f) * (rates.pair[engine][kind] + rates.value[engine][kind] * (f->values + more));
     const double unit = rates.unit[engine][kind] + rates.unit_value[engine][kind] * (f->values + more);
     const double records = f->record_flops * f->slowness * rates.compress + f->kernel_flops * rates.filter
                            + f->record_values * rates.put[engine];
