@@ -173,6 +173,21 @@ int folder_make_quoted(void **state)
     return folder_named("it's a sasbench");
 }
 
+const char *gnuplot_text(const char *text)
+{
+    static char quoted[2000];
+    size_t length = 0;
+    quoted[length++] = '\'';
+    for (; *text; text++) {
+        assert_true(length + 4 < sizeof quoted);
+        if (*text == '\'')
+            quoted[length++] = '\'';
+        quoted[length++] = *text;
+    }
+    snprintf(quoted + length, 2, "'");
+    return quoted;
+}
+
 int folder_remove(void **state)
 {
     (void)state;

@@ -43,7 +43,9 @@ bool support_recording(const char *file, char *path, size_t size);
 extern char folder[256];
 int folder_make(void **state);
 int folder_make_quoted(void **state); /* its name has blanks and an apostrophe */
-int folder_remove(void **state);      /* with all that is in it */
+/* A text between apostrophes as gnuplot reads it, its own ones doubled; until the next call. */
+const char *gnuplot_text(const char *text);
+int folder_remove(void **state); /* with all that is in it */
 const char *path_of(const char *name);
 bool support_exists(const char *name);
 void support_write(const char *name, const char *text);

@@ -335,9 +335,9 @@ static const char *program;
 /* Everything that the program with this fault prints; its exit status. */
 static int output_of(const char *fault, char *text, size_t size)
 {
-    char command[4200];
-    snprintf(command, sizeof command, "'%s' '%s' 2>&1", program, fault);
-    FILE *pipe = popen(command, "r");
+    setenv("FAULTY", program, 1);
+    setenv("FAULT", fault, 1);
+    FILE *pipe = popen("\"$FAULTY\" \"$FAULT\" 2>&1", "r");
     assert_non_null(pipe);
     size_t length = fread(text, 1, size - 1, pipe);
     text[length] = '\0';

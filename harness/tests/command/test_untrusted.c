@@ -138,11 +138,12 @@ static void plot_by_hand(const char *script, const char *directory)
     pid_t child = fork();
     assert_true(child >= 0);
     if (child == 0) {
-        char path[1024];
+        char path[1024], plots[2048];
         snprintf(path, sizeof path, "%s/%s.gp", PLOTS, script);
+        snprintf(plots, sizeof plots, "plots=%s", gnuplot_text(PLOTS));
         if (!freopen("/dev/null", "w", stdout) || !freopen("/dev/null", "w", stderr))
             _exit(126);
-        execlp("gnuplot", "gnuplot", "-e", "plots='" PLOTS "'", "-c", path, directory, (char *)NULL);
+        execlp("gnuplot", "gnuplot", "-e", plots, "-c", path, directory, (char *)NULL);
         _exit(127);
     }
     int status;
@@ -188,7 +189,8 @@ static void texts_are_given_as_codes(void **state)
     assert_int_equal(plot_points_write("."), STATUS_OK);
     setenv("FOLDER", ".", 1);
     setenv("SCENE", "\"touch\" 'me'", 1);
-    FILE *stream = popen("LC_ALL=C awk -f " PLOTS "/scene.awk", "r");
+    setenv("PLOTS", PLOTS, 1);
+    FILE *stream = popen("LC_ALL=C awk -f \"$PLOTS\"/scene.awk", "r");
     assert_non_null(stream);
     text[fread(text, 1, sizeof text - 1, stream)] = '\0';
     assert_int_equal(pclose(stream), 0);

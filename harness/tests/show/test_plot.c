@@ -204,10 +204,9 @@ static void assert_style_prints(const char *statements, const char *expected)
     char script[4000], whole[1000];
     const char *panel = "panel";
     const struct slice_line line = {.label = "reference"};
-    snprintf(
-        script, sizeof script,
-        "plots = '%s'; name = output; format = 'svg'; load plots.'/style.gp'; set print name\n%s\nprint '</svg>'\n",
-        real_plots, statements);
+    snprintf(script, sizeof script,
+             "plots = %s; name = output; format = 'svg'; load plots.'/style.gp'; set print name\n%s\nprint '</svg>'\n",
+             gnuplot_text(real_plots), statements);
     support_write("slices.gp", script);
     assert_drawn(
         plot_slices(path_of("variables.svg"), folder, &(struct slices_picture){"title", NULL, 1, 1, &panel, &line}));
