@@ -332,7 +332,7 @@ static void forecast_records(struct bp *bp, const struct interpolator *in, struc
     const struct traces_form form = bp_records_form(bp);
     const double records = (double)met_count(bp) * a->receivers, fine = (form.count - 1.0) * in->upsample + 1;
     const int taps = forecast->kind == READ_BRANCHES && in->degree == 0 ? in->taps : 0; /* of a kernel's branches */
-    forecast->units = bp->engine->units(bp);
+    forecast->units = bp->engine->units(bp, &forecast->residues);
     forecast->pair_flops =
         4.0 * (in->taps == 1 && in->degree == 0 ? 0 : forecast->values - (forecast->kind == READ_BRANCHES)) + 8;
     double sums = 0;
@@ -340,14 +340,6 @@ static void forecast_records(struct bp *bp, const struct interpolator *in, struc
     forecast->slowness = fft_slowness(traces_period_float(a, &form));
     forecast->kernel_flops = records * (4.0 * forecast->values * taps * fine + sums);
     forecast->record_values = records * fine * (forecast->kind == READ_BRANCHES ? forecast->values : 1);
-}
-
-/* Columns of the image from ping to ping; those of one ping are all neighbours. */
-static double residues_of(const struct problem *problem)
-{
-    const struct acquisition *a = problem->acquisition;
-    const struct grid *g = &problem->patches[0];
-    return a->pings > 1 ? fmax(1, round(fabs(a->tx[1].x - a->tx[0].x) / g->x_step)) : g->x_count;
 }
 
 enum status bp_forecast(const struct problem *problem, const struct interpolator *in, const void *options,
@@ -366,7 +358,6 @@ enum status bp_forecast(const struct problem *problem, const struct interpolator
         law_spectrum(a, &spectrum);
         const double law = interpolation_error(in, options, &spectrum);
         forecast->tables = !general;
-        forecast->residues = general ? 0 : residues_of(problem);
         const double ends = in->upsample == 1 && in->degree == 0 && in->taps > 1 ? law_ends(problem, in->taps) : 0;
         /* At fs = B the bin at fs/2 stands for both ends of the band. */
         forecast->error[CAUSE_INTERPOLATION] = hypot(hypot(law, ends), a->bandwidth < a->fs ? 0 : 1.0 / a->samples);

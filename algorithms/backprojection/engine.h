@@ -38,8 +38,9 @@ struct bp_engine {
     /* Can it do the problem of bp->problem? When not, the reason is the status message (STATUS_UNSUPPORTED). */
     enum status (*applicable)(const struct bp *bp);
     /* What a plan would make for the pairs to read by, all records together: entries of tables, or blocks of pixels.
-       Known from bp->problem, medium and table, before any plan; of a problem that is applicable. */
-    double (*units)(const struct bp *bp);
+       Known from bp->problem, medium and table, before any plan; of a problem that is applicable. *residues: of tables,
+       columns from ping to ping, the fewest of all patches; 0 without tables. */
+    double (*units)(const struct bp *bp, double *residues);
     /* m: how far along the track beyond the pairs' places delays are evaluated; NULL: nowhere. */
     double (*beside)(const struct bp *bp);
     /* Make bp->state and bp->traces; adds to bp->work.bytes. */

@@ -93,44 +93,40 @@ static bool ends_at_once(const struct acquisition *a)
     return amplitude * amplitude > STRONG * axis * axis;
 }
 
-/* Sums over the pixels beside a target, of the whole aperture and of the limited one. */
+enum { REACH = 64 /* pixels on either side of a target */, PIXELS = 2 * REACH + 1 };
+
+/* Pixels beside a target, by the whole aperture and by the limited one. */
 struct profile {
-    double whole, limited;
-    double complex both;
+    int reach;
+    double complex whole[PIXELS], limited[PIXELS];
 };
 
 /* The azimuth profile through a target in the middle of a patch: each pixel sums what lies within the sine of itself.
    Of receivers, so many that what they repeat lies beyond the profile. */
-static void profile_add(const struct acquisition *a, const struct grid *g, double sine, struct profile *profile)
+static void profile_make(const struct acquisition *a, const struct grid *g, double sine, struct profile *profile)
 {
-    enum { REACH = 64 }; /* pixels on either side */
     const double i = (g->r_count - 1) / 2.0, j = (g->x_count - 1) / 2.0, wavelength = a->sound_speed / a->fc;
-    const int reach = g->x_count / 2 < REACH ? g->x_count / 2 : REACH;
-    const struct vector target = grid_point(g, i, j);
+    const struct vector target = grid_point(g, i, j), still = {0, 0, 0};
     const double spacing = a->pings > 1 ? fabs(a->tx[1].x - a->tx[0].x) : 0, r = hypot(target.y, target.z);
-    const double needed = ceil(4 * reach * g->x_step * spacing / (wavelength * fmax(r, wavelength)));
+    *profile = (struct profile){.reach = g->x_count / 2 < REACH ? g->x_count / 2 : REACH};
+    const double needed = ceil(4 * profile->reach * g->x_step * spacing / (wavelength * fmax(r, wavelength)));
     const int receivers = (int)fmax(1, fmin(a->receivers, needed));
-    for (int n = -reach; n <= reach; n++) {
-        const struct vector pixel = grid_point(g, i, j + n);
-        double complex whole = 0, limited = 0;
-        for (int p = 0; p < a->pings; p++) {
-            const struct vector tx = a->tx[p];
-            const double u = tx.x - pixel.x, across = hypot(pixel.y - tx.y, tx.z), at = fabs(u) / hypot(u, across);
-            const double seen = condition_amplitude(a, hypot(target.y - tx.y, tx.z), tx.x - target.x);
-            for (int m = 0; m < receivers && seen > 0 && at <= a->aperture_limit; m++) {
-                const struct vector rx = a->rx[p * a->receivers + (2 * m + 1) * a->receivers / (2 * receivers)];
-                const struct vector still = {0, 0, 0};
-                const double late = delay_exact(tx, rx, still, pixel, a->sound_speed)
-                                    - delay_exact(tx, rx, still, target, a->sound_speed);
-                const double complex term =
-                    seen * condition_sinc(a->bandwidth * late) * cexp(2 * I * M_PI * a->fc * late);
-                whole += term;
-                limited += at <= sine ? term : 0;
-            }
+    for (int n = 0; n < a->pings * receivers; n++) {
+        const int p = n / receivers, m = n % receivers;
+        const struct vector tx = a->tx[p];
+        const struct vector rx = a->rx[p * a->receivers + (2 * m + 1) * a->receivers / (2 * receivers)];
+        const double seen = condition_amplitude(a, hypot(target.y - tx.y, tx.z), tx.x - target.x);
+        const double own = delay_exact(tx, rx, still, target, a->sound_speed);
+        for (int k = -profile->reach; k <= profile->reach && seen > 0; k++) {
+            const struct vector pixel = grid_point(g, i, j + k);
+            const double u = tx.x - pixel.x, at = fabs(u) / hypot(u, hypot(pixel.y - tx.y, tx.z));
+            if (!(at <= a->aperture_limit))
+                continue;
+            const double late = delay_exact(tx, rx, still, pixel, a->sound_speed) - own;
+            const double complex term = seen * condition_sinc(a->bandwidth * late) * cexp(2 * I * M_PI * a->fc * late);
+            profile->whole[profile->reach + k] += term;
+            profile->limited[profile->reach + k] += at <= sine ? term : 0;
         }
-        profile->whole += creal(whole * conj(whole));
-        profile->limited += creal(limited * conj(limited));
-        profile->both += whole * conj(limited);
     }
 }
 
@@ -138,43 +134,62 @@ static double profile_error(const struct problem *problem, double sine)
 {
     enum { PATCHES = 4 };
     const int step = (problem->patch_count + PATCHES - 1) / PATCHES;
-    struct profile sum = {0};
-    for (int k = 0; k < problem->patch_count; k += step)
-        profile_add(problem->acquisition, &problem->patches[k], sine, &sum);
-    const double power = sum.whole * sum.limited;
-    return power > 0 ? sqrt(fmax(0, 1 - creal(sum.both * conj(sum.both)) / power)) : 1;
+    double whole = 0, limited = 0;
+    double complex both = 0;
+    for (int k = 0; k < problem->patch_count; k += step) {
+        struct profile profile;
+        profile_make(problem->acquisition, &problem->patches[k], sine, &profile);
+        for (int n = 0; n <= 2 * profile.reach; n++) {
+            whole += creal(profile.whole[n] * conj(profile.whole[n]));
+            limited += creal(profile.limited[n] * conj(profile.limited[n]));
+            both += profile.whole[n] * conj(profile.limited[n]);
+        }
+    }
+    const double power = whole * limited;
+    return power > 0 ? sqrt(fmax(0, 1 - creal(both * conj(both)) / power)) : 1;
+}
+
+/* Of a problem that has a law. */
+static double planned_error(const struct problem *problem, double sine)
+{
+    int fewest;
+    const double law = SHARE * aperture_law(problem, sine, &fewest), planned = hypot(law, EDGES / fewest);
+    return ends_at_once(problem->acquisition) ? fmax(planned, SHARE * profile_error(problem, sine)) : planned;
+}
+
+/* Is there a law, and do targets not repeat? `least`: the error of the edges alone. */
+static bool has_law(const struct problem *problem, double *least)
+{
+    struct condition list[CONDITIONS_MAX];
+    const int count = conditions_sampled(problem, list, CONDITIONS_MAX);
+    int fewest;
+    for (int k = 0; k < count; k++)
+        if (list[k].severity == SEVERITY_WARN && !condition_holds(&list[k]))
+            return false;
+    if (isnan(aperture_law(problem, 1, &fewest)))
+        return false;
+    *least = EDGES / fewest;
+    return true;
 }
 
 double aperture_planned(const struct problem *problem, double sine)
 {
-    struct condition list[CONDITIONS_MAX];
-    const int count = conditions_sampled(problem, list, CONDITIONS_MAX);
-    bool repeats = false;
-    int fewest;
-    for (int k = 0; k < count; k++)
-        repeats |= list[k].severity == SEVERITY_WARN && !condition_holds(&list[k]);
-    const double law = aperture_law(problem, sine, &fewest);
-    if (isnan(law) || repeats)
-        return INFINITY;
-    const double planned = hypot(SHARE * law, EDGES / fewest);
-    return ends_at_once(problem->acquisition) ? fmax(planned, SHARE * profile_error(problem, sine)) : planned;
+    double least;
+    return has_law(problem, &least) ? planned_error(problem, sine) : INFINITY;
 }
 
 double aperture_least(const struct problem *problem, double error)
 {
     enum { STEPS = 6 };
-    int fewest;
-    if (isnan(aperture_law(problem, 1, &fewest)))
-        return 1;
-    const double least = EDGES / fewest;
-    if (!(error > least) || isinf(aperture_planned(problem, 1)))
+    double least;
+    if (!has_law(problem, &least) || !(error > least))
         return 1;
     double low = aperture_sine(problem, sqrt(error * error - least * least) / SHARE), high = 1;
-    if (!ends_at_once(problem->acquisition) || aperture_planned(problem, low) <= error)
+    if (!ends_at_once(problem->acquisition) || planned_error(problem, low) <= error)
         return low;
     for (int k = 0; k < STEPS; k++) {
         const double middle = (low + fmin(high, problem->acquisition->aperture_limit)) / 2;
-        *(aperture_planned(problem, middle) <= error ? &high : &low) = middle;
+        *(planned_error(problem, middle) <= error ? &high : &low) = middle;
     }
     return high;
 }

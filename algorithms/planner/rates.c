@@ -29,14 +29,14 @@ static struct rates rates = {
 enum { VECTOR = 8, PART = 5 };
 
 /* In the invariant engine a pair takes the longer, the fewer columns there are from ping to ping, of which neighbours
-   share loads of the same sample: 1 + ALONE/columns, up to SHARED columns. Measured on one column and on eight. */
-enum { SHARED = 8 /* columns of the probe behind `pair` and `value` (machine_rates.c) */ };
+   share loads of the same sample: 1 + ALONE/columns. Measured on one column and on RATES_COLUMNS. */
 static const double ALONE[READ_KINDS] = {
     [READ_NEAREST] = 0.8, [READ_LINE] = 0.8, [READ_TAPS] = 0.5, [READ_BRANCHES] = 4.4};
 
 static double alone(const struct forecast *f)
 {
-    return f->tables ? (1 + ALONE[f->kind] / fmin(f->residues, SHARED)) / (1 + ALONE[f->kind] / SHARED) : 1;
+    const double most = RATES_COLUMNS;
+    return f->tables ? (1 + ALONE[f->kind] / fmin(f->residues, most)) / (1 + ALONE[f->kind] / most) : 1;
 }
 
 static const double START = 1e-5; /* s: of any run, also where no pixel meets a record */

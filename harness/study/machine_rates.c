@@ -284,10 +284,11 @@ static enum status rounds_run(const struct bench *bench, struct probes *probes)
     return status;
 }
 
-/* The scene's records, as if they were of a quarter of the receivers and pings a column apart about the image. */
+/* The scene's records, as if they were of a quarter of the receivers and pings RATES_COLUMNS columns
+   apart about the image. */
 static enum status dense_make(struct bench *bench)
 {
-    enum { TIMES = 4, COLUMNS = 8 };
+    enum { TIMES = 4 };
     const struct acquisition *a = &bench->scene.acquisition;
     struct acquisition *dense = &bench->dense;
     const struct grid *g = &bench->usual;
@@ -299,7 +300,7 @@ static enum status dense_make(struct bench *bench)
         return status;
     memcpy(dense->pulse, a->pulse, (size_t)a->pulse_length * sizeof *a->pulse);
     for (int p = 0; p < dense->pings; p++) {
-        const double x = g->x_first + (0.5 * g->x_count + COLUMNS * (p - dense->pings / 2)) * g->x_step;
+        const double x = g->x_first + (0.5 * g->x_count + RATES_COLUMNS * (p - dense->pings / 2)) * g->x_step;
         dense->t0[p] = a->t0[0];
         dense->velocity[p] = a->velocity[0];
         dense->tx[p] = (struct vector){x, a->tx[0].y, a->tx[0].z};

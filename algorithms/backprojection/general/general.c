@@ -95,8 +95,9 @@ static int step_of(int count)
 }
 
 /* Blocks of some pings and lines, times all of them. Exact delays count as the blocks that last as long. */
-static double general_units(const struct bp *bp)
+static double general_units(const struct bp *bp, double *residues)
 {
+    *residues = 0;
     const struct problem *problem = &bp->problem;
     const struct acquisition *a = problem->acquisition;
     const double quintics = budget_quintics(bp->medium.phase_limit, problem->precision);

@@ -236,9 +236,8 @@ INLINE int flat_longest(const struct receiver_group *group, enum loading loading
     const enum bp_reading reading = group->table->reading;
     const double ratio = group->scale->ratio, half_run = sqrt(2 * budget_bend(group->phase_limit) / (bend * ratio));
     const int longest = 2 * half_run < RUN_PIXELS ? (int)(2 * half_run) / LANES * LANES : RUN_PIXELS;
-    const bool near = reading == BP_BRANCHES                        ? loading != APART
-                      : reading == BP_NEAREST || reading == BP_LINE ? loading == TOGETHER
-                                                                    : false;
+    const bool near = reading == BP_BRANCHES ? loading != APART
+                                             : loading == TOGETHER && (reading == BP_NEAREST || reading == BP_LINE);
     const bool flat = near && longest >= FLAT_LEAST && ratio > RATIO_LEAST;
     return flat ? longest : 0;
 }

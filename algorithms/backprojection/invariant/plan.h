@@ -32,7 +32,7 @@ struct invariant {
 
 /* The callbacks of struct bp_engine, but for execute. */
 enum status invariant_applicable(const struct bp *bp);
-double invariant_units(const struct bp *bp);
+double invariant_units(const struct bp *bp, double *residues);
 enum status invariant_plan(struct bp *bp);
 void invariant_destroy(void *state);
 
