@@ -39,13 +39,26 @@ struct vector grid_point(const struct grid *grid, double i, double j);
 /* The inverse: (x', r', 0) of a place in the track's axes. */
 struct vector grid_coordinates(const struct grid *grid, double x, double r);
 
+struct target {
+    double x, r;              /* m */
+    double complex amplitude; /* 1 */
+};
+
 /* One imaging task: every patch of the image is wanted, and nothing else. */
 struct problem {
     const struct acquisition *acquisition;
     int patch_count;            /* >= 1 */
     const struct grid *patches; /* [patch_count] */
     enum precision precision;   /* of samples, sums and pixels; geometry and phase are always double */
+    /* What is known beforehand: forecasts may go by it, and no image does. */
+    int target_count;             /* 0: echoes may come from anywhere */
+    const struct target *targets; /* [target_count] that all echoes come from */
+    int judged_count;             /* 0: an error counts wherever it is */
+    const struct grid *judged;    /* [judged_count] parts of patches where errors count, about these targets */
 };
+/* One of which nothing is known beforehand. */
+struct problem problem_make(const struct acquisition *acquisition, int patch_count, const struct grid *patches,
+                            enum precision precision);
 
 /* The recorded samples, read only. */
 struct echoes {

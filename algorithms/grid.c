@@ -10,6 +10,13 @@ struct vector grid_coordinates(const struct grid *grid, double x, double r)
     return (struct vector){x * cosine - r * sine, x * sine + r * cosine, 0};
 }
 
+struct problem problem_make(const struct acquisition *acquisition, int patch_count, const struct grid *patches,
+                            enum precision precision)
+{
+    return (struct problem){
+        .acquisition = acquisition, .patch_count = patch_count, .patches = patches, .precision = precision};
+}
+
 struct vector grid_point(const struct grid *grid, double i, double j)
 {
     double x = grid->x_first + j * grid->x_step, r = grid->r_first + i * grid->r_step;

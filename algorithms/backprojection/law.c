@@ -8,52 +8,55 @@
 
 #include "backprojection/farrow.h"
 #include "common/delay.h"
+#include "common/fft_length.h"
+#include "common/pulse_band.h"
 
-enum { GAUSS = 8, BINS = 48, FRACTIONS = 256, IN_A_STEP = 8 };
+enum { GAUSS = 8, BINS = 48, FINER = 16, FRACTIONS = 256, IN_A_STEP = 8 };
 /* The positive half of Gauss and Legendre's 16 points. */
 static const double node[GAUSS] = {0.0950125098376374, 0.2816035507792589, 0.4580167776572274, 0.6178762444026438,
                                    0.7554044083550030, 0.8656312023878318, 0.9445750230732326, 0.9894009349916499};
 static const double weight[GAUSS] = {0.1894506104550685, 0.1826034150449236, 0.1691565193950025, 0.1495959888165767,
                                      0.1246289712555339, 0.0951585116824928, 0.0622535239386479, 0.0271524594117541};
 
-/* Pulses of more cycles of time and bandwidth have a flat spectrum: its flanks are no matter. */
-static const double FLAT = 200;
+/* Pulses of more cycles of time and bandwidth have a flat spectrum. The flanks of others cost an interpolator that fails
+   at half the sampling rate up to 0.5 of their number, relative L2. */
+static const double FLAT = 20000;
 
-/* |P|^4 at a frequency in cycles a sample: the energy of the compressed pulse there. `scale`: 1 over the sum of the
-   replica's magnitudes, so that no power overflows. */
-static double pulse_energy(const struct acquisition *a, double scale, double nu)
+/* The replica's own, in bins whose nodes are their middles of energy: an interpolator's error grows steeply at the
+   band's edges. False without memory. */
+static bool replica_spectrum(const struct acquisition *a, struct law_spectrum *spectrum)
 {
-    const double complex turn = cexp(-2 * I * M_PI * nu);
-    double complex sum = 0, wave = 1;
-    for (int k = 0; k < a->pulse_length; k++, wave *= turn)
-        sum += scale * a->pulse[k] * wave;
-    const double power = creal(sum * conj(sum));
-    return power * power;
+    const int length = fft_length_fast((long long)fmax(2.0 * a->pulse_length, FINER * BINS));
+    double *energy = pulse_energy(a, length), sum = 0;
+    if (!energy)
+        return false;
+    *spectrum = (struct law_spectrum){.count = BINS};
+    for (int k = 0; k < length; k++) {
+        const double nu = fmin(k, length - k) / (double)length;
+        const int n = (int)fmin(2 * BINS * nu, BINS - 1);
+        spectrum->nu[n] += nu * energy[k];
+        spectrum->weight[n] += energy[k];
+        sum += energy[k];
+    }
+    free(energy);
+    for (int n = 0; n < BINS; n++) {
+        spectrum->nu[n] = spectrum->weight[n] > 0 ? spectrum->nu[n] / spectrum->weight[n] : (n + 0.5) / (2 * BINS);
+        spectrum->weight[n] /= sum;
+    }
+    return true;
 }
 
-void law_spectrum(const struct acquisition *a, struct law_spectrum *spectrum)
+bool law_spectrum(const struct acquisition *a, struct law_spectrum *spectrum)
 {
     const double band = fmin(a->bandwidth / a->fs, 1);
-    double sum = 0, magnitudes = 0;
-    if (a->compressed || a->pulse_length * band > FLAT) {
-        *spectrum = (struct law_spectrum){.count = GAUSS};
-        for (int n = 0; n < GAUSS; n++) {
-            spectrum->nu[n] = node[n] * band / 2;
-            spectrum->weight[n] = weight[n];
-        }
-        return;
+    if (!a->compressed && a->pulse_length * band <= FLAT)
+        return replica_spectrum(a, spectrum);
+    *spectrum = (struct law_spectrum){.count = GAUSS};
+    for (int n = 0; n < GAUSS; n++) {
+        spectrum->nu[n] = node[n] * band / 2;
+        spectrum->weight[n] = weight[n];
     }
-    *spectrum = (struct law_spectrum){.count = BINS};
-    for (int k = 0; k < a->pulse_length; k++)
-        magnitudes += cabs(a->pulse[k]);
-    for (int n = 0; n < BINS; n++) {
-        const double nu = (n + 0.5) / (2 * BINS);
-        spectrum->nu[n] = nu;
-        spectrum->weight[n] = pulse_energy(a, 1 / magnitudes, nu) + pulse_energy(a, 1 / magnitudes, -nu);
-        sum += spectrum->weight[n];
-    }
-    for (int n = 0; n < BINS; n++)
-        spectrum->weight[n] /= sum;
+    return true;
 }
 
 /* H of Farrow branches of these gains (farrow_gains): what they make of exp(j 2 pi nu u), |u| <= 1/2, over it. */

@@ -17,14 +17,15 @@
 
 enum { LAW_NODES = 48 };
 
-/* Positive frequencies and their share of the compressed echoes' energy: flat over the bandwidth, or, of raw echoes of
-   a pulse of small time-bandwidth product, which has flanks, the replica's own. The means of both signs of a frequency
+/* Positive frequencies and their share of the compressed echoes' energy: flat over the bandwidth, or, of raw echoes
+   whose pulse has flanks beyond it, the replica's own. The means of both signs of a frequency
    are the same but for the sign of their imaginary parts. */
 struct law_spectrum {
     int count;
     double nu[LAW_NODES], weight[LAW_NODES]; /* cycles a sample, 0 to 1/2; their sum is 1 */
 };
-void law_spectrum(const struct acquisition *acquisition, struct law_spectrum *spectrum);
+/* False without memory, with a message. */
+bool law_spectrum(const struct acquisition *acquisition, struct law_spectrum *spectrum);
 
 /* The error law; the interpolator's own upsampling divides the frequencies. NAN without memory. */
 double interpolation_error(const struct interpolator *interpolator, const void *options,

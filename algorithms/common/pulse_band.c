@@ -12,6 +12,9 @@ double *pulse_energy(const struct acquisition *a, int length)
 {
     double *energy = length > 0 ? malloc((size_t)length * sizeof *energy) : NULL;
     double complex *work = length > 0 ? fftw_malloc((size_t)length * sizeof *work) : NULL;
+    double magnitudes = 0; /* at least those of the spectrum: no power overflows */
+    for (int k = 0; k < a->pulse_length; k++)
+        magnitudes += cabs(a->pulse[k]);
     if (energy && work) {
         memset(work, 0, (size_t)length * sizeof *work);
         memcpy(work, a->pulse, (size_t)a->pulse_length * sizeof *work);
@@ -19,7 +22,7 @@ double *pulse_energy(const struct acquisition *a, int length)
         fftw_execute(forward);
         fftw_destroy_plan(forward);
         for (int k = 0; k < length; k++)
-            energy[k] = pow(cabs(work[k]), 4);
+            energy[k] = pow(cabs(work[k]) / magnitudes, 4);
     } else {
         status_set(STATUS_FAILED, "no memory for the replica's spectrum");
         free(energy);

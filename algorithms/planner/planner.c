@@ -385,7 +385,7 @@ static enum status plan_first(const struct setting *setting, struct choice *choi
         if (status == STATUS_OK)
             status = plan_fastest(setting, choice, &tried);
     }
-    return status;
+    return status == STATUS_OK && setting->budget->every ? costly_forecasts(setting, true, choice) : status;
 }
 
 static int compare(const void *a, const void *b)
@@ -421,14 +421,14 @@ enum status planner_choose(const struct problem *problem, const struct budget *b
     if (!choice->list)
         return status_set(STATUS_FAILED, "no memory for the candidates of a plan");
     choice->count = candidates_fill(choice->list);
-    enum status status = pairs_of(problem, &setting.pairs);
+    enum status status = condition_targets_shown(problem);
+    if (status == STATUS_OK)
+        status = pairs_of(problem, &setting.pairs);
     setting.reads = reads_of(problem, setting.pairs);
     if (status == STATUS_OK)
         status = forecast_all(&setting, choice);
     if (status == STATUS_OK)
         status = plan_first(&setting, choice);
-    if (status == STATUS_OK && budget->every)
-        status = costly_forecasts(&setting, true, choice);
     if (status != STATUS_OK) {
         choice_free(choice);
         return status;

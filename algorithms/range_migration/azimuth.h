@@ -5,8 +5,9 @@
 
 #include "range_migration/conditions.h"
 
-/* Relative L2 error, after one best complex gain, of the image of targets that lie evenly over all patches (1);
-   INFINITY where no ping sees any of them or the arrays are too long to be worth it, NAN without memory. */
+/* Relative L2 error (1), after one best complex gain, that the image of the problem's known targets is planned with, or
+   where none are known on its rows, that of targets evenly over all patches; INFINITY where no ping sees any of them or
+   the arrays are too long to be worth it, NAN without memory. */
 double azimuth_error(const struct rma_view *view);
 
 #endif

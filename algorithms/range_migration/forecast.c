@@ -17,10 +17,13 @@ static const double STOLT_SHARE = 4, STOLT_SLOPE = 0.57735;
 /* rad, root mean square over a block, for each rad at its ends: a lone block is taken up to 1/(4 pi), several that
    blend leave less (docs/range_migration.md). */
 static const double BLOCK_SHARE = 0.08;
-static const double FEW_TARGETS = 1.4;      /* what an image of a few targets may have of the error of many: measured */
+static const double TERMS_SHARE =
+    1.2; /* of what the terms leave, which targets have more of than their mean: measured */
 static const double PULSE_PERIODS = 8;      /* of B: of a record beside its rows (layout.c) */
 static const double PULSE_SHARE = 1.0 / 16; /* of that, where the pulse's own spectrum reaches so far */
 static const double EDGE_BINS = 4; /* of a record's transform that are wrong at half the sampling rate: measured */
+static const double TAPERED =
+    0.06; /* of that error, where ends that taper leave half the sampling rate out: measured */
 /* Rounding, relative L2: of the transforms. */
 static const double ROUNDING[] = {1e-6, 1e-13};
 
@@ -91,8 +94,8 @@ static enum status band_of(const struct rma_view *view, struct band *band)
     double density = density_of_ends(view->problem);
     *band = (struct band){fmin(fmax(a->bandwidth / a->fs, 32.0 / a->samples), 0.5), 0};
     enum status status = a->compressed ? STATUS_OK : raw_band(view, band, &density);
-    if (band->half >= 0.5)
-        band->lost += EDGE_BINS * density / (a->samples * a->bandwidth / a->fs + 2 * PULSE_PERIODS);
+    const double ends = EDGE_BINS * density / (a->samples * a->bandwidth / a->fs + 2 * PULSE_PERIODS);
+    band->lost += band->half >= 0.5 ? ends : pow(TAPERED, 2) * ends;
     return status;
 }
 
@@ -112,17 +115,17 @@ enum status rma_forecast(const struct problem *problem, const struct rma_method 
     if (status != STATUS_OK)
         return status;
     *forecast = (struct forecast){.sums_pairs = false};
-    const double mean = azimuth_error(&view), bound = value_of("predicted_error", list, count);
+    const double azimuth = azimuth_error(&view), bound = value_of("predicted_error", list, count);
     const double taps = method->terms > 0 && view.converts ? delay_taps_expected(&view, method->taps, band.half) : 0;
-    if (isnan(mean) || isnan(taps))
+    if (isnan(azimuth) || isnan(taps))
         return status_set(STATUS_FAILED, "%s: no memory to forecast the image's error", method->name);
-    forecast->error[CAUSE_SPECTRUM] = hypot(isinf(mean) ? bound : FEW_TARGETS * mean, sqrt(band.lost));
+    forecast->error[CAUSE_SPECTRUM] = hypot(isinf(azimuth) ? bound : azimuth, sqrt(band.lost));
     forecast->error[CAUSE_DELAYS] = taps;
     if (!(problem->acquisition->bandwidth < problem->acquisition->fs))
         forecast->error[CAUSE_SPECTRUM] = INFINITY; /* the bin at fs/2 stands for both ends of the band: no law */
     /* Blocks that are asked for by number, or have hard edges, have no law. */
     const bool lawless = options->blocks || !options->blend;
-    forecast->error[CAUSE_BLOCKS] = method->terms > 0 ? value_of("delay_terms", list, count)
+    forecast->error[CAUSE_BLOCKS] = method->terms > 0 ? TERMS_SHARE * value_of("delay_terms", list, count)
                                     : lawless         ? INFINITY
                                                       : BLOCK_SHARE * options->limit;
     if (stolt_taps[options->stolt] > 0)

@@ -231,12 +231,12 @@ struct energies {
 };
 
 /* A target, and the pings that stand for those that see it. */
-struct target {
+struct sight {
     double x;                /* m */
     int first, count, every; /* pings */
 };
 
-static void pixel_add(const struct kernel *kernel, const struct target *target, double x, double weight,
+static void pixel_add(const struct kernel *kernel, const struct sight *target, double x, double weight,
                       struct energies *energies)
 {
     const struct rma_view *view = kernel->view;
@@ -273,7 +273,7 @@ static void slice_add(const struct kernel *kernel, const struct grid *row, doubl
     const struct rma_view *view = kernel->view;
     const struct acquisition *a = view->problem->acquisition;
     const double width = (row->x_count - 1) * row->x_step, wavelength = a->sound_speed / a->fc;
-    struct target target = {x, 0, 0, 1};
+    struct sight target = {x, 0, 0, 1};
     for (int p = a->pings - 1; p >= 0; p--)
         if (condition_amplitude(a, kernel->r, a->tx[p].x - x) != 0) {
             target.count = target.count > 0 ? target.count + target.first - p : 1;

@@ -54,7 +54,7 @@ static enum status execute(const struct spec *spec, struct imaging *imaging, con
 /* The plan comes first: what cannot be imaged need not be simulated. */
 static enum status form_image(const struct spec *spec, const struct scene *scene, struct image *image, double *seconds)
 {
-    const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, spec->precision};
+    const struct problem problem = scene_problem(scene, spec->precision);
     struct imaging imaging;
     struct echoes simulated = {0}, recorded = {&scene->acquisition, PRECISION_DOUBLE, scene->recorded, 0};
     enum status status = imaging_open(spec, &problem, &imaging);
@@ -116,7 +116,7 @@ static enum status image_put(const struct task *task, const struct scene *scene,
 /* What is known to be wrong with the scene, before the work begins. */
 static void warn(const struct spec *spec, const struct scene *scene)
 {
-    const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, spec->precision};
+    const struct problem problem = scene_problem(scene, spec->precision);
     struct condition list[SCENE_CONDITIONS + CONDITIONS_MAX];
     char text[400];
     int count = scene_conditions(scene, list);

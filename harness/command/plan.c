@@ -54,7 +54,7 @@ static enum status rates_need(void)
             fprintf(stderr, "sasbench: warning: the machine's rates are not kept: %s\n", status_message());
     }
     machine_rates_path(path, sizeof path);
-    printf("Rates of this machine, %s; times repeat within %.1g %%: %s\n\n", found ? "measured before" : "measured now",
+    printf("Rates of this machine, %s; times repeat within %.0f %%: %s\n\n", found ? "measured before" : "measured now",
            100 * rates_get()->noise,
            !*path ? "not kept, for HOME is not set"
            : kept ? path

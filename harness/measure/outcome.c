@@ -113,7 +113,7 @@ static void work_fill(const struct session *session, const struct problem *probl
 {
     const struct work *work = &outcome->work;
     const struct scene *scene = session->scene;
-    struct problem whole = {&scene->acquisition, scene->patch_count, scene->patches, problem->precision};
+    struct problem whole = scene_problem(scene, problem->precision);
     struct measurement *row = &outcome->row;
     row->flops = work->flops;
     row->flops_published = work->published[0].source ? work->published[0].flops : NAN;

@@ -11,15 +11,15 @@
 static struct problem compared_problem(const struct scene *scene, enum precision precision)
 {
     if (scene->reference_count)
-        return (struct problem){&scene->acquisition, scene->reference_count, scene->reference_patches, precision};
-    return (struct problem){&scene->acquisition, scene->patch_count, scene->patches, precision};
+        return problem_make(&scene->acquisition, scene->reference_count, scene->reference_patches, precision);
+    return scene_problem(scene, precision);
 }
 
 struct problem session_problem(const struct scene *scene, const struct algorithm *algorithm, enum precision precision)
 {
     if (algorithm->traits & TRAIT_EXACT)
         return compared_problem(scene, precision);
-    return (struct problem){&scene->acquisition, scene->patch_count, scene->patches, precision};
+    return scene_problem(scene, precision);
 }
 
 enum status session_image(const struct session *session, const struct spec *spec, struct image *image)
@@ -55,7 +55,7 @@ enum status session_open(const struct scene *scene, struct session *session)
     const int exponent = session->echoes[PRECISION_DOUBLE].exponent;
     session->echoes[PRECISION_DOUBLE].exponent = 0;
     session->echoes[PRECISION_FLOAT].exponent -= exponent;
-    const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, PRECISION_FLOAT};
+    const struct problem problem = scene_problem(scene, PRECISION_FLOAT);
     session->control = control_begin(&problem, &session->echoes[PRECISION_FLOAT]);
     const double made = seconds_now();
     session->spent.echoes = made - begin;

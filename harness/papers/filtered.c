@@ -44,7 +44,7 @@ static void keep(struct measured *measured, const struct scene_number *asked, en
 static enum status size_find(struct measured *measured, const struct scene_number *asked, const struct scene *scene,
                              const struct spec *spec)
 {
-    const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, spec->precision};
+    const struct problem problem = scene_problem(scene, spec->precision);
     struct imaging imaging;
     if (spec->algorithm->work != wk_work)
         return status_set(STATUS_INVALID, "%s has no size factor; wk_* have", spec->algorithm->name);

@@ -124,7 +124,7 @@ static enum status work_plan(const char *scene_name, const char *spec_text, stru
         return status;
     status = spec_parse(spec_text, &spec);
     if (status == STATUS_OK) {
-        struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, spec.precision};
+        struct problem problem = scene_problem(&scene, spec.precision);
         status = imaging_open(&spec, &problem, &imaging);
         if (status == STATUS_OK) {
             *work = spec.algorithm->work(imaging.plan);

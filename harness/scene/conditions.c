@@ -20,7 +20,7 @@ static double imaginary_share(const struct scene *scene)
 
 int scene_conditions(const struct scene *scene, struct condition list[SCENE_CONDITIONS])
 {
-    const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, PRECISION_DOUBLE};
+    const struct problem problem = scene_problem(scene, PRECISION_DOUBLE);
     int count = conditions_scene(&problem, list);
     if (scene->recorded)
         list[count++] = (struct condition){"imaginary",

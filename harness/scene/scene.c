@@ -107,3 +107,15 @@ void scene_free(struct scene *scene)
     free(scene->reference_patches);
     *scene = (struct scene){0};
 }
+
+struct problem scene_problem(const struct scene *scene, enum precision precision)
+{
+    struct problem problem = problem_make(&scene->acquisition, scene->patch_count, scene->patches, precision);
+    if (scene->recorded || scene->flown || scene->noise_std > 0 || scene->target_count > scene->point_count)
+        return problem;
+    problem.target_count = scene->point_count;
+    problem.targets = scene->targets;
+    problem.judged_count = scene->reference_count;
+    problem.judged = scene->reference_patches;
+    return problem;
+}

@@ -24,11 +24,6 @@ struct beam {
     bool per_frequency; /* F = fc + f_tau instead of F = fc (lambda = c/F) */
 };
 
-struct target {
-    double x, r;              /* m */
-    double complex amplitude; /* 1 */
-};
-
 /* Freed with scene_free. */
 struct scene {
     char *name;        /* without extension: the path below scenes/, or the name of a file elsewhere */
@@ -65,6 +60,9 @@ enum status scene_load(const char *scene, const char *scene_directory, struct sc
    in messages. Errors: as echo_file_read, and STATUS_INVALID where no pixel meets any record; nothing to free then. */
 enum status scene_from_echoes(const char *path, const struct grid *grid, const char *place, struct scene *out);
 void scene_free(struct scene *scene);
+/* The whole image from the scene's echoes. Points are known to be all targets where nothing else is heard: no field, no
+   noise, no track but the stated one. Borrows from the scene. */
+struct problem scene_problem(const struct scene *scene, enum precision precision);
 /* Two files of one name, not both shipped, get as much of their folders in their names as tells them apart. Errors:
    STATUS_FAILED without memory. */
 enum status scenes_tell_apart(struct scene *a, struct scene *b);

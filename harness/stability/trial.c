@@ -58,7 +58,7 @@ static void echoes_make(struct trial *trial)
 static enum status image_form(const struct scene *scene, const struct echoes *echoes, const struct spec *spec,
                               int threads, struct image *image, struct attempt *attempt)
 {
-    const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, spec->precision};
+    const struct problem problem = scene_problem(scene, spec->precision);
     struct work work;
     omp_set_num_threads(threads);
     feclearexcept(FE_ALL_EXCEPT);
@@ -127,7 +127,7 @@ static void sums_scale(const struct trial *trial, struct exact_sum *sums)
 static void exact_make(struct trial *trial)
 {
     const struct scene *scene = trial->scene;
-    const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, PRECISION_DOUBLE};
+    const struct problem problem = scene_problem(scene, PRECISION_DOUBLE);
     enum status status = trial->ideal_excludes ? STATUS_OK : exact_ideal(scene, trial->ideal);
     for (int k = 0; k < trial->spec_count && status == STATUS_OK && scene->acquisition.compressed; k++) {
         const struct attempt *attempt = trial_attempt(trial, 0, k);

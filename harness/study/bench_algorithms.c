@@ -51,7 +51,7 @@ static void loaded_close(struct loaded *loaded)
 
 static struct problem loaded_problem(const struct loaded *loaded, enum precision precision)
 {
-    return (struct problem){&loaded->scene.acquisition, 1, &loaded->grid, precision};
+    return problem_make(&loaded->scene.acquisition, 1, &loaded->grid, precision);
 }
 
 static struct grid candidate_grid(const struct candidate *candidate, const struct scene *scene)
@@ -89,7 +89,7 @@ static enum status candidate_try(const struct spec *spec, const struct candidate
     if (status != STATUS_OK)
         return status;
     struct grid grid = candidate_grid(candidate, &scene);
-    struct problem problem = {&scene.acquisition, 1, &grid, spec->precision};
+    struct problem problem = problem_make(&scene.acquisition, 1, &grid, spec->precision);
     status = imaging_open(spec, &problem, &imaging);
     if (status == STATUS_OK) {
         if (candidate->pairs && !(imaging.algorithm->work(imaging.plan).pairs > 0))

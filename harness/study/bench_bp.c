@@ -194,7 +194,7 @@ static enum status case_measure(struct bench *bench, const struct bench_case *on
         for (int m = 0; m < one->methods; m++)
             for (int p = 0; p < 1 + (m < one->doubles); p++)
                 for (int n = 0; n < 2 && status == STATUS_OK; n++) {
-                    const struct problem problem = {&scene->acquisition, 1, grid, (enum precision)p};
+                    const struct problem problem = problem_make(&scene->acquisition, 1, grid, (enum precision)p);
                     lines[m][p][n].threads = n == 0 ? 1 : bench->threads;
                     if (n == 0 ? m < one->alone : m < one->all && (bench->threads > 1 || m >= one->alone))
                         status = measure(&(struct subject){one, &methods[m], &problem, &echoes[p],
@@ -204,7 +204,7 @@ static enum status case_measure(struct bench *bench, const struct bench_case *on
     for (int m = 0; m < one->methods; m++)
         for (int p = 0; p < 2; p++)
             for (int n = 0; n < 2 && status == STATUS_OK; n++) {
-                const struct problem problem = {&scene->acquisition, 1, grid, (enum precision)p};
+                const struct problem problem = problem_make(&scene->acquisition, 1, grid, (enum precision)p);
                 if (lines[m][p][n].runs > 0)
                     report(bench, one, &methods[m], &problem, peak_median(lines, p, n), &lines[m][p][n]);
             }

@@ -64,8 +64,8 @@ static enum status scene_front(const char *name, FILE *file, struct bench_goals 
     enum status status = scene_load(name, SCENE_DIRECTORY, &scene);
     if (status != STATUS_OK)
         return status;
-    const struct problem exact = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE};
-    const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
+    const struct problem exact = scene_problem(&scene, PRECISION_DOUBLE);
+    const struct problem problem = scene_problem(&scene, PRECISION_FLOAT);
     status = scene_simulate(&scene, &recorded);
     if (status == STATUS_OK)
         status = echoes_convert(&recorded, PRECISION_FLOAT, &echoes);
@@ -149,7 +149,7 @@ static enum status receivers_measure(FILE *file, struct bench_goals *goals)
             status = few_receivers(&scene.acquisition, &echoes, counts[k], &few, &taken);
             if (status != STATUS_OK)
                 break;
-            const struct problem problem = {&few, 1, &grid, PRECISION_FLOAT};
+            const struct problem problem = problem_make(&few, 1, &grid, PRECISION_FLOAT);
             status = bench_once(text, &problem, &taken, 1, NULL, &work, &sample);
             rate[k][round] = work.pairs / bench_stage(&sample, "focus");
             ratio[k][round] = rate[k][round] / rate[0][round];
@@ -183,7 +183,7 @@ static enum status aperture_measure(FILE *file, struct bench_goals *goals)
     enum status status = bench_scene(scene_name, &scene, &echoes);
     if (status != STATUS_OK)
         return status;
-    const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
+    const struct problem problem = scene_problem(&scene, PRECISION_FLOAT);
     for (int k = 0; k < 2 && status == STATUS_OK; k++)
         status = bench_once(specs[k], &problem, &echoes, omp_get_max_threads(), NULL, NULL, &sample[k]);
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {

@@ -108,11 +108,11 @@ static enum status lines_measure(FILE *file, const struct scene *scene, const st
     for (size_t k = 0; k < sizeof subjects / sizeof *subjects; k++)
         for (int n = 0; n < subjects[k].sizes && status == STATUS_OK; n++) {
             const struct grid grid = middle_of(&scene->patches[0], &sizes[n]);
-            const struct problem problem = {&scene->acquisition, 1, &grid, PRECISION_FLOAT};
+            const struct problem problem = problem_make(&scene->acquisition, 1, &grid, PRECISION_FLOAT);
             status = line_measure(file, subjects[k].spec, &problem, echoes, -1);
         }
     const struct grid grid = middle_of(&scene->patches[0], &sizes[MIDDLE]);
-    const struct problem problem = {&scene->acquisition, 1, &grid, PRECISION_FLOAT};
+    const struct problem problem = problem_make(&scene->acquisition, 1, &grid, PRECISION_FLOAT);
     for (size_t k = 0; k < sizeof ranges / sizeof *ranges; k++)
         for (int n = 0; n < 8 && ranges[k].values[n] > 0 && status == STATUS_OK; n++) {
             char text[64];

@@ -184,7 +184,7 @@ enum status bench_rma(const char *directory, struct bench_goals *goals)
         return status;
     status = bench_scene("lbf21/real_size", &scene, &echoes);
     if (status == STATUS_OK) {
-        struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
+        struct problem problem = scene_problem(&scene, PRECISION_FLOAT);
         struct measured measured;
         status = measure(&problem, &echoes, &measured);
         if (status == STATUS_OK)

@@ -58,7 +58,7 @@ static enum status case_measure(const struct bench_case *c, const struct fft_sec
     enum status status = bench_scene(c->scene, &scene, &echoes);
     if (status != STATUS_OK)
         return status;
-    const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
+    const struct problem problem = scene_problem(&scene, PRECISION_FLOAT);
     status = spec_seconds(c->spec, &problem, &echoes, &seconds);
     echoes_free(&echoes);
     scene_free(&scene);

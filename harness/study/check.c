@@ -67,7 +67,7 @@ static void condition_print(FILE *stream, const struct condition *c)
 
 void check_warnings(FILE *stream, const struct scene *scene)
 {
-    const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, PRECISION_DOUBLE};
+    const struct problem problem = scene_problem(scene, PRECISION_DOUBLE);
     struct condition list[SCENE_CONDITIONS + CONDITIONS_MAX];
     char text[500];
     int count = scene_conditions(scene, list);

@@ -66,7 +66,8 @@ static double azimuth_resolution(const struct acquisition *a, double range)
 static void resolutions_lower(const struct acquisition *a, const struct grid *grid, double *x, double *r)
 {
     struct condition list[CONDITIONS_SCENE];
-    const int count = conditions_scene(&(struct problem){a, 1, grid, PRECISION_DOUBLE}, list);
+    const struct problem problem = problem_make(a, 1, grid, PRECISION_DOUBLE);
+    const int count = conditions_scene(&problem, list);
     for (int k = 0; k < count; k++)
         if (strcmp(list[k].name, "pixel_x") == 0)
             *x = fmin(*x, 2 * grid->x_step / list[k].value);

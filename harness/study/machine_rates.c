@@ -126,7 +126,7 @@ static enum status probe_spec(const struct bench *bench, const char *text, const
     enum status status = spec_parse(text, &spec);
     if (status != STATUS_OK)
         return status;
-    const struct problem problem = {acquisition, 1, grid, spec.precision};
+    const struct problem problem = problem_make(acquisition, 1, grid, spec.precision);
     status = (spec.algorithm->cost ? spec.algorithm->cost : spec.algorithm->forecast)(&problem, spec.options,
                                                                                       &probe->forecast);
     if (status == STATUS_OK)

@@ -20,8 +20,7 @@ enum status planned_make(const struct scene *scene, const struct budget *budget,
     *planned = (struct planned){.scene = scene, .budget = *budget};
     enum status status = STATUS_OK;
     for (int precision = 0; precision < 2 && status == STATUS_OK; precision++) {
-        const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches,
-                                        (enum precision)precision};
+        const struct problem problem = scene_problem(scene, (enum precision)precision);
         status = planner_choose(&problem, budget, &planned->choices[precision]);
     }
     return status;
@@ -186,8 +185,7 @@ void planned_print(FILE *stream, const struct planned *planned)
         const struct candidate *best = &choice->list[0];
         char name[CANDIDATE_NAME];
         const struct scene *scene = planned->scene;
-        const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches,
-                                        (enum precision)precision};
+        const struct problem problem = scene_problem(scene, (enum precision)precision);
         fprintf(stream, "\nLeft out, and the error that it adds:\n");
         planned_left_out(&problem, best, line_print, stream);
         candidate_name(best, name);

@@ -50,7 +50,7 @@ static enum status row_predict(const struct scene *scene, const struct measureme
              row->precision);
     if (spec_parse(text, &spec) != STATUS_OK)
         return STATUS_OK; /* of another program */
-    const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, spec.precision};
+    const struct problem problem = scene_problem(scene, spec.precision);
     enum status status = STATUS_UNSUPPORTED;
     if (spec.algorithm->forecast)
         status = spec.algorithm->forecast(&problem, spec.options, &forecast);

@@ -220,12 +220,14 @@ static bool lines_along_x(const struct problem *problem, const struct grid *grid
     return fabs(middle.x - tx.x) > fabs(middle.y - tx.y);
 }
 
-/* Hz: the band that holds all of the compressed echoes' energy but a share of `most`; the bandwidth at least. */
+/* Hz: the band that holds all of the compressed echoes' energy but a share of `most`; the bandwidth at least. NAN
+   without memory. */
 static double band_of(const struct acquisition *a, double most)
 {
     struct law_spectrum spectrum;
     double outside = 0;
-    law_spectrum(a, &spectrum);
+    if (!law_spectrum(a, &spectrum))
+        return NAN;
     for (int n = spectrum.count - 1; n > 0; n--) {
         outside += spectrum.weight[n];
         if (outside > most)
@@ -239,6 +241,8 @@ static enum status taps_make(struct tree *tree)
     const struct acquisition *a = tree->problem.acquisition;
     const double each = tree_error_each(&tree->settings);
     tree->band = band_of(a, each * each);
+    if (isnan(tree->band))
+        return STATUS_FAILED;
     const double least = 0.8 * a->sound_speed / (2 * tree->band * step_most(tree, 0)); /* what that leaves at least */
     enum status status = polar_taps_choose(each, fmax(ANGLE_LEAST, least), &tree->range);
     return status == STATUS_OK ? polar_taps_choose(each, ANGLE_LEAST, &tree->angle) : status;

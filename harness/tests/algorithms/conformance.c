@@ -17,7 +17,7 @@
 
 static struct problem problem_of(const struct scene *scene, enum precision precision)
 {
-    return (struct problem){&scene->acquisition, 1, scene->patches, precision};
+    return problem_make(&scene->acquisition, 1, scene->patches, precision);
 }
 
 /* ---- the algorithm ---- */

@@ -71,7 +71,7 @@ void factorised_check(enum factorised_kind kind, int stages, int count, const do
     struct echoes echoes;
     struct image exact;
     factorised_scene(kind, &a, &echoes);
-    const struct problem problem = {&a, 1, &factorised_grids[kind], PRECISION_DOUBLE};
+    const struct problem problem = problem_make(&a, 1, &factorised_grids[kind], PRECISION_DOUBLE);
     assert_int_equal(support_image("reference:precision=double", problem, &echoes, &exact), STATUS_OK);
     for (int k = 0; k < count; k++) {
         char spec[120];

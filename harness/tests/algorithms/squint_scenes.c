@@ -155,7 +155,7 @@ void make_imaged(const struct squint_sonar *sonar, double squint_rad, double ang
     scene_sq18(sonar, squint_rad, &out->scene);
     support_echoes(&out->scene, &out->echoes);
     patches_around(&out->scene, angle_rad, 0.04, 7, out->patches);
-    out->problem = (struct problem){&out->scene.acquisition, out->scene.point_count, out->patches, PRECISION_DOUBLE};
+    out->problem = problem_make(&out->scene.acquisition, out->scene.point_count, out->patches, PRECISION_DOUBLE);
     assert_int_equal(image_allocate(out->scene.point_count, out->patches, PRECISION_DOUBLE, &out->exact), STATUS_OK);
     exact_image(&out->scene, &out->echoes, 0.01 / (4 * 0.04), &out->exact);
 }

@@ -116,7 +116,7 @@ static void naive_sums(void **state)
         struct grid grid;
         struct echoes echoes;
         random_case(seed, &a, &grid, &echoes);
-        struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+        struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
         int method = (int)(seed % 3);
         struct image image;
         assert_int_equal(support_image(methods[method].spec, problem, &echoes, &image), STATUS_OK);
@@ -148,7 +148,7 @@ static void own_interpolator_claims_nothing(void **state)
     struct grid grid;
     struct echoes echoes;
     random_case(1, &a, &grid, &echoes);
-    struct problem problem = {&a, 1, &grid, PRECISION_FLOAT};
+    struct problem problem = problem_make(&a, 1, &grid, PRECISION_FLOAT);
     const struct bp_options options = {.phase_limit = 1e-4};
     for (int claims = 0; claims < 2; claims++) {
         const struct interpolator own = {.upsample = 1, .steps = 1, .taps = 1, .in_papers = claims};
@@ -171,7 +171,7 @@ static void zero_padding_counts_its_transform(void **state)
     struct echoes echoes;
     double published[2];
     random_case(1, &a, &grid, &echoes);
-    struct problem problem = {&a, 1, &grid, PRECISION_FLOAT};
+    struct problem problem = problem_make(&a, 1, &grid, PRECISION_FLOAT);
     const struct bp_options options = {.phase_limit = 1e-4};
     for (int n = 0; n < 2; n++) {
         const struct interpolator nearest = {.upsample = n ? 8 : 1, .steps = 1, .taps = 1, .in_papers = true};

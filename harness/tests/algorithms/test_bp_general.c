@@ -149,7 +149,7 @@ static void fast_near_exact(void **state)
         struct grid grid;
         struct echoes echoes;
         make_image_case(&image_cases[k], &a, &grid, &echoes);
-        struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+        struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
         double pairs = (double)a.pings * a.receivers * grid.x_count * grid.r_count, largest[2] = {0, 0}, peak = 0;
         int ties = 0, pixels = 0;
         for (int n = 0; n < a.samples * a.receivers * a.pings; n++)
@@ -210,7 +210,7 @@ static void instruction_sets_agree(void **state)
                     make_image_case(&image_cases[k], &a, &grid, &echoes);
                     if (n == 2)
                         grid.x_step = 0.173 / 7; /* on the pings' raster */
-                    struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+                    struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
                     snprintf(spec, sizeof spec, "%sprecision=%s,%s", methods[m].spec, p ? "double" : "float", paths[n]);
                     assert_int_equal(support_image(spec, problem, &echoes, &best), STATUS_OK);
                     for (int lower = 0; lower < 2; lower++) {
@@ -244,7 +244,7 @@ static void no_carrier_leaves_the_record(void **state)
         char spec[96];
         make_image_case(&image_cases[0], &a, &grid, &echoes);
         a.fc = carriers[n / 2 % 6];
-        struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+        struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
         snprintf(spec, sizeof spec, "%sprecision=double,exact=true", methods[n / 12].spec);
         assert_int_equal(support_image(spec, problem, &echoes, &exact), STATUS_OK);
         snprintf(spec, sizeof spec, "%sprecision=%s,engine=general", methods[n / 12].spec, n % 2 ? "double" : "float");
@@ -276,7 +276,7 @@ static void steps_fit_their_bits(void **state)
     struct echoes echoes;
     struct image images[2];
     make_image_case(&image_cases[0], &a, &grid, &echoes);
-    const struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+    const struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
     struct interpolator linear = {.upsample = 1, .steps = 4096, .taps = 2, .weights = weights_linear};
     void *plan;
     for (int exact = 0; exact < 2; exact++) {

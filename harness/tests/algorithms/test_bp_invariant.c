@@ -95,7 +95,7 @@ static void invariant_equals_exact(void **state)
         struct grid grid;
         struct echoes echoes;
         make_invariant_case(&invariant_cases[k], &a, &grid, &echoes);
-        struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+        struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
         for (size_t m = 0; m < sizeof invariant_specs / sizeof *invariant_specs; m++)
             for (int p = 0; p < 2; p++) {
                 struct image exact, invariant;
@@ -131,7 +131,7 @@ static void long_records_take_several_passes(void **state)
         struct spec spec;
         void *plan;
         make_invariant_case(&invariant_cases[last], &a, &grid, &echoes);
-        struct problem problem = {&a, 1, &grid, (enum precision)precision};
+        struct problem problem = problem_make(&a, 1, &grid, (enum precision)precision);
         assert_int_equal(spec_parse("bp_zeropad:factor=64,engine=invariant", &spec), STATUS_OK);
         assert_int_equal(spec.algorithm->plan(&problem, spec.options, &plan), STATUS_OK);
         const struct invariant *in = ((const struct bp *)plan)->state;
@@ -185,7 +185,7 @@ static void rows_cross_the_track(void **state)
         struct grid grid;
         struct echoes echoes;
         make_crossing(&crossings[k], &a, &grid, &echoes);
-        struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+        struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
         for (size_t n = 0; n < 2 * sizeof invariant_specs / sizeof *invariant_specs; n++) {
             struct image exact, invariant;
             char spec[96];
@@ -221,7 +221,7 @@ static void spread_is_asserted(void **state)
     struct grid grid;
     struct echoes echoes;
     make_crossing(&crossings[0], &a, &grid, &echoes);
-    const struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+    const struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
     const struct interpolator kernel = {.upsample = 1, .taps = 8, .first = -3, .weights = weights_flat};
     const struct bp_options options = {.engine = BP_ENGINE_INVARIANT, .phase_limit = 1e-4};
     for (int wrong = 0; wrong < 2; wrong++) {
@@ -295,7 +295,7 @@ static void jitter_takes_the_general_engine(void **state)
             a.velocity[p].x += cases[k].speed;
             a.velocity[p].z += cases[k].across;
         }
-        struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+        struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
         assert_true(acquisition_is_straight(&a, NULL)); /* straight enough for range migration */
         assert_string_equal(engine_of("bp_nearest", &problem), cases[k].engine);
         struct image exact, image;
@@ -320,7 +320,7 @@ static void auto_falls_back(void **state)
         a.velocity[p].x = 1;
     }
     struct grid grid = {-1, 0.02, 101, 20, 640, 4};
-    struct problem problem = {&a, 1, &grid, PRECISION_FLOAT};
+    struct problem problem = problem_make(&a, 1, &grid, PRECISION_FLOAT);
     struct spec spec;
     void *plan;
     assert_string_equal(engine_of("bp_nearest", &problem), "general");
@@ -385,7 +385,7 @@ static void exact_keeps_the_roots(void **state)
     struct echoes echoes;
     double difference[2];
     make_invariant_case(&invariant_cases[0], &a, &grid, &echoes);
-    struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+    struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
     for (int n = 0; n < 2; n++) {
         struct image image, roots;
         assert_int_equal(
@@ -412,7 +412,7 @@ static void steps_are_told_that_tables_take(void **state)
     (void)state;
     struct acquisition a = support_acquisition(18, 1, 400);
     struct grid grid = {-0.6, 0.02, 61, 20, 0.025, 9, 0};
-    const struct problem problem = {&a, 1, &grid, PRECISION_FLOAT};
+    const struct problem problem = problem_make(&a, 1, &grid, PRECISION_FLOAT);
     double step = 0, spacing = 0;
     for (int p = 0; p < a.pings; p++)
         a.tx[p].x = a.rx[p].x = p * 0.1600007;

@@ -84,7 +84,7 @@ static void phase_below_limit(void **state)
             struct echoes echoes;
             struct image images[2];
             random_pair((uint64_t)seed, &a, &grid, &echoes);
-            struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+            struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
             for (int n = 0; n < 2; n++) {
                 char spec[96];
                 snprintf(spec, sizeof spec, "bp_nearest:precision=%s,phase_limit=%g", precision_name((enum precision)n),
@@ -158,7 +158,7 @@ static void bends_keep_their_share(void **state)
             struct image image;
             char spec[96];
             bent_line(ranges[n % 5], limits[k], uniform(&random, 50e3, 300e3), &a, &grid, &echoes);
-            struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+            struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
             snprintf(spec, sizeof spec, "bp_nearest:engine=general,precision=float,phase_limit=%g", limits[k]);
             assert_int_equal(support_image(spec, problem, &echoes, &image), STATUS_OK);
             for (int j = 0; j < grid.x_count; j++) {

@@ -26,7 +26,7 @@ static void images_are_read(void **state)
         struct echoes echoes;
         struct factorised *plan;
         factorised_scene((enum factorised_kind)kind, &a, &echoes);
-        const struct problem problem = {&a, 1, &factorised_grids[kind], PRECISION_DOUBLE};
+        const struct problem problem = problem_make(&a, 1, &factorised_grids[kind], PRECISION_DOUBLE);
         const struct tree_settings settings = {1e-2, 4, 4, 2};
         assert_int_equal(factorised_plan(&problem, &settings, &plan), STATUS_OK);
         const double all = (double)factorised_grids[kind].x_count * factorised_grids[kind].r_count * a.pings
@@ -57,7 +57,7 @@ static void bits_and_precisions(void **state)
     struct echoes echoes;
     factorised_scene(CURVED, &a, &echoes);
     const struct grid *grid = &factorised_grids[CURVED];
-    const struct problem problem = {&a, 1, grid, PRECISION_DOUBLE};
+    const struct problem problem = problem_make(&a, 1, grid, PRECISION_DOUBLE);
     struct image first[2];
     for (int precision = 0; precision < 2; precision++)
         for (size_t k = 0; k < sizeof threads / sizeof *threads; k++) {
@@ -100,7 +100,7 @@ static void memory(void **state)
     struct stages stages;
     struct factorised *plan;
     factorised_scene(LIMITED, &a, &echoes);
-    const struct problem problem = {&a, 1, &factorised_grids[LIMITED], PRECISION_DOUBLE};
+    const struct problem problem = problem_make(&a, 1, &factorised_grids[LIMITED], PRECISION_DOUBLE);
     const struct tree_settings settings = {1e-2, 4, 4, 2};
     support_image_make(&factorised_grids[LIMITED], 1, PRECISION_DOUBLE, &image);
     omp_set_num_threads(1);

@@ -87,7 +87,7 @@ static void images_at_speed(void **state)
         for (int p = 0; p < PINGS; p++)
             a.t0[p] = floor(shortest * a.fs - SAMPLES / 2) / a.fs;
         support_noise(&a, &random, &echoes);
-        struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+        struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
         struct image exact, image;
         assert_int_equal(image_allocate(1, &grid, PRECISION_DOUBLE, &exact), STATUS_OK);
         for (int i = 0; i < ROWS * COLUMNS; i++) {

@@ -68,7 +68,7 @@ static void point(void **state)
     support_scene("study/point", &scene);
     support_echoes(&scene, &echoes);
     struct grid slice = {-1, 0.005, 401, 100.137, 1, 1};
-    struct problem problem = {&scene.acquisition, 1, &slice, PRECISION_DOUBLE};
+    struct problem problem = problem_make(&scene.acquisition, 1, &slice, PRECISION_DOUBLE);
     assert_int_equal(support_image("reference:precision=double", problem, &echoes, &exact), STATUS_OK);
     for (int k = 0; k < LAWS; k++) {
         struct error_metrics error = measure(laws[k].spec, &problem, &echoes, &exact);
@@ -109,7 +109,7 @@ static void speckle(void **state)
         seeded_scene(seed, &scene);
         assert_int_equal(scene.target_count, 40);
         support_echoes(&scene, &echoes);
-        struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE};
+        struct problem problem = problem_make(&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE);
         assert_int_equal(support_image("reference:precision=double", problem, &echoes, &exact), STATUS_OK);
         for (int k = 0; k < LAWS; k++)
             errors[k][seed - 1] = measure(laws[k].spec, &problem, &echoes, &exact).error;
@@ -165,7 +165,7 @@ static void flat_bands(void **state)
         struct image exact;
         support_flat_noise(rho, &a, &echoes);
         assert_int_equal(a.samples, PERIOD);
-        const struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+        const struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
         assert_int_equal(support_image("reference:precision=double", problem, &echoes, &exact), STATUS_OK);
         for (size_t k = 0; k < sizeof flat / sizeof *flat; k++) {
             const double error = measure(flat[k].spec, &problem, &echoes, &exact).error;

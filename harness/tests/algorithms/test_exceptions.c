@@ -105,7 +105,7 @@ static int image_faults(const char *scene, const char *text, struct problem prob
 
 static int scene_faults(const struct scene *scene, int spec_count)
 {
-    struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, PRECISION_DOUBLE};
+    struct problem problem = problem_make(&scene->acquisition, scene->patch_count, scene->patches, PRECISION_DOUBLE);
     struct echoes echoes;
     int faults = 0;
     support_echoes(scene, &echoes);

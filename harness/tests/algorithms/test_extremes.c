@@ -70,7 +70,7 @@ static void target_on_the_element_is_seen_from_broadside(void **state)
     struct scene scene = scene_of("on.cfg", &parts);
     struct echoes echoes;
     struct image image;
-    struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE};
+    struct problem problem = problem_make(&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE);
     /* On the transmitter the receiver, 0.04 m ahead, has its fourth null; on a receiver, at 4 nulls of its own,
        likewise. */
     assert_close(beam_weight(&scene, 4, 0, scene.acquisition.tx[4], 0, 150e3), 0, 1e-9);
@@ -108,7 +108,7 @@ static void amplitude_measured(const char *amplitude, double value, bool flush)
     struct scene unit = scene_of("unit.cfg", &parts);
     parts.targets = targets;
     struct scene scene = scene_of("scaled.cfg", &parts);
-    struct problem problem = {&unit.acquisition, unit.patch_count, unit.patches, PRECISION_FLOAT};
+    struct problem problem = problem_make(&unit.acquisition, unit.patch_count, unit.patches, PRECISION_FLOAT);
     struct echoes echoes, scaled_echoes;
     support_echoes(&unit, &echoes);
     support_echoes(&scene, &scaled_echoes);
@@ -348,7 +348,7 @@ static void control_counts_what_it_sums(void **state)
     for (int round = 0; round < 7; round++)
         for (int k = 0; k < 2; k++) {
             const struct scene *scene = k ? &outside : &inside;
-            struct problem problem = {&scene->acquisition, 1, scene->patches, PRECISION_FLOAT};
+            struct problem problem = problem_make(&scene->acquisition, 1, scene->patches, PRECISION_FLOAT);
             struct scalar_loop loop = scalar_loop_choose(&problem, &echoes);
             least[k] = fmin(least[k], scalar_loop_seconds(&loop));
             scalar_loop_free(&loop);
@@ -357,7 +357,7 @@ static void control_counts_what_it_sums(void **state)
         print_error("%g s inside, %g s outside\n", least[0], least[1]);
     assert_true(least[1] > 0.6 * least[0] && least[1] < 1.7 * least[0]);
     struct grid nowhere = {0, 1, 5, 1e5, 1, 5};
-    struct problem problem = {&inside.acquisition, 1, &nowhere, PRECISION_FLOAT};
+    struct problem problem = problem_make(&inside.acquisition, 1, &nowhere, PRECISION_FLOAT);
     struct scalar_loop none = scalar_loop_choose(&problem, &echoes);
     assert_true(isnan(scalar_loop_seconds(&none)));
     scalar_loop_free(&none);

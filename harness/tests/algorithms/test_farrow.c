@@ -171,7 +171,7 @@ static void images_follow_the_law(void **state)
         struct echoes echoes;
         struct image exact;
         support_flat_noise(bands[b], &a, &echoes);
-        struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+        struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
         assert_int_equal(support_image("reference:precision=double", problem, &echoes, &exact), STATUS_OK);
         for (int n = 0; n < 4 * (FARROW_MOST - FARROW_LEAST); n++) {
             const int degree = FARROW_LEAST + n / 4, factor = 1 + n % 2;
@@ -210,7 +210,7 @@ static void auto_takes_the_least(void **state)
     struct acquisition a;
     struct echoes echoes;
     support_flat_noise(0.5, &a, &echoes);
-    struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+    struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
     for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++) {
         struct image images[2];
         assert_int_equal(support_image(pairs[k].automatic, problem, &echoes, &images[0]), STATUS_OK);

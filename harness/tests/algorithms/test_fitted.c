@@ -144,7 +144,7 @@ static void images_follow_the_law(void **state)
         struct echoes echoes;
         struct image exact;
         support_flat_noise(sampled[b], &a, &echoes);
-        struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+        struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
         assert_int_equal(support_image("reference:precision=double", problem, &echoes, &exact), STATUS_OK);
         for (int n = 0; n < 18; n++) {
             const int taps = 2 + 2 * (n % 6), factor = 1 << n / 6;

@@ -34,7 +34,8 @@ static void load(double apart, double limit, double squint, double half, struct 
 /* Error of a SPEC's image, or -1 where grating_lobes refuses. */
 static double error_of(const char *spec, const struct scene *scene)
 {
-    const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, PRECISION_DOUBLE};
+    const struct problem problem =
+        problem_make(&scene->acquisition, scene->patch_count, scene->patches, PRECISION_DOUBLE);
     struct echoes echoes;
     struct image exact, image;
     double error = -1;
@@ -53,7 +54,8 @@ static double error_of(const char *spec, const struct scene *scene)
 
 static double ghosts_of(const struct scene *scene)
 {
-    const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, PRECISION_DOUBLE};
+    const struct problem problem =
+        problem_make(&scene->acquisition, scene->patch_count, scene->patches, PRECISION_DOUBLE);
     struct straight_track track;
     assert_true(acquisition_is_straight(&scene->acquisition, &track));
     return ghosts_condition(&problem, &track).value;
@@ -67,8 +69,9 @@ static double measured(double apart, double squint)
     struct image with, without;
     load(apart, 1, squint, 0.4, &scene);
     load(apart, LIMIT, squint, 0.4, &limited);
-    const struct problem all = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE};
-    const struct problem sampled = {&limited.acquisition, limited.patch_count, limited.patches, PRECISION_DOUBLE};
+    const struct problem all = problem_make(&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE);
+    const struct problem sampled =
+        problem_make(&limited.acquisition, limited.patch_count, limited.patches, PRECISION_DOUBLE);
     support_echoes(&scene, &echoes);
     assert_int_equal(support_image("reference:precision=double", all, &echoes, &with), STATUS_OK);
     assert_int_equal(support_image("reference:precision=double", sampled, &echoes, &without), STATUS_OK);
@@ -173,7 +176,7 @@ static void redundant_receivers(void **state)
     double error = error_of("rma_numeric", &scene);
     print_message("redundant receivers: %.4f\n", error);
     assert_true(error >= 0 && error < 0.05);
-    const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
+    const struct problem problem = problem_make(&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT);
     support_echoes(&scene, &echoes);
     assert_int_equal(support_image("rma_delay", problem, &echoes, &image), STATUS_UNSUPPORTED);
     assert_non_null(strstr(status_message(), "condition delay_near:"));
@@ -209,7 +212,7 @@ static void spacing_of_the_pings(void **state)
         support_write("scene.cfg", text);
         if (scene_load(path_of("scene.cfg"), SASBENCH_ROOT "/scenes", &scene) != STATUS_OK)
             fail_msg("%s", status_message());
-        const struct problem problem = {&scene.acquisition, 1, scene.patches, PRECISION_DOUBLE};
+        const struct problem problem = problem_make(&scene.acquisition, 1, scene.patches, PRECISION_DOUBLE);
         support_echoes(&scene, &echoes);
         assert_int_equal(support_image("reference:precision=double", problem, &echoes, &image), STATUS_OK);
         const double ghost = cabs(image_pixel(&image, 0, 0, 1)) / cabs(image_pixel(&image, 0, 0, 0));

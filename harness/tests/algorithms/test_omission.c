@@ -54,7 +54,7 @@ static void scene_make(const struct setup *s, struct scene *scene)
 static void image_by(const struct scene *scene, const struct acquisition *acquisition, const struct echoes *echoes,
                      struct image *image)
 {
-    const struct problem problem = {acquisition, scene->patch_count, scene->patches, PRECISION_DOUBLE};
+    const struct problem problem = problem_make(acquisition, scene->patch_count, scene->patches, PRECISION_DOUBLE);
     assert_int_equal(support_image("reference:precision=double", problem, echoes, image), STATUS_OK);
 }
 
@@ -70,7 +70,8 @@ static void apertures(const struct setup *s, const struct scene *scene, const st
                       const struct image *exact)
 {
     static const double errors[] = {0.1, 0.03};
-    const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, PRECISION_DOUBLE};
+    const struct problem problem =
+        problem_make(&scene->acquisition, scene->patch_count, scene->patches, PRECISION_DOUBLE);
     for (size_t k = 0; k < sizeof errors / sizeof *errors; k++) {
         struct acquisition limited = scene->acquisition;
         struct image image;
@@ -88,7 +89,7 @@ static void motions(const struct setup *s, const struct scene *scene, const stru
                     const struct image *exact)
 {
     const struct acquisition *a = &scene->acquisition;
-    const struct problem problem = {a, scene->patch_count, scene->patches, PRECISION_DOUBLE};
+    const struct problem problem = problem_make(a, scene->patch_count, scene->patches, PRECISION_DOUBLE);
     for (int motion = MOTION_NONE; motion <= MOTION_BROADSIDE; motion++) {
         struct scene altered;
         struct image image;
@@ -138,7 +139,8 @@ static void beams_that_end_at_once(void **state)
         struct image exact;
         if (scene_load(names[n], SASBENCH_ROOT "/scenes", &scene) != STATUS_OK)
             fail_msg("%s", status_message());
-        const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE};
+        const struct problem problem =
+            problem_make(&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE);
         support_echoes(&scene, &echoes);
         image_by(&scene, &scene.acquisition, &echoes, &exact);
         for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) {
@@ -170,10 +172,10 @@ static void pings_left_out(void **state)
     struct echoes echoes;
     scene_make(&setups[0], &scene);
     support_echoes(&scene, &echoes);
-    const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE};
+    const struct problem problem = problem_make(&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE);
     struct acquisition limited = scene.acquisition;
     limited.aperture_limit = 0.1;
-    const struct problem less = {&limited, scene.patch_count, scene.patches, PRECISION_DOUBLE};
+    const struct problem less = problem_make(&limited, scene.patch_count, scene.patches, PRECISION_DOUBLE);
     bool met[200];
     const int pings = limited.pings, count = pings_met(&less, met);
     assert_true(pings <= 200 && count < pings && count > pings / 4);
@@ -217,7 +219,7 @@ static void few_pings(void **state)
     (void)state;
     struct acquisition a = support_acquisition(5, 1, 64);
     const struct grid grid = {0, 0.01, 4, 10, 0.01, 4};
-    const struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+    const struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
     assert_true(isnan(aperture_error(&problem, 0.1)));
     assert_true(isinf(aperture_sine(&problem, 0.1)));
     acquisition_free(&a);

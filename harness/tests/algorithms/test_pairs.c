@@ -117,7 +117,7 @@ static void limits_count_from_the_axis(void **state)
                                   0.2,
                                   11,
                                   seed % 5 ? 0.8 * random_uniform(&random) - 0.4 : 0};
-        struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+        struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
         struct turned_problem turned;
         double expected = 0;
         for (int n = 0; n < 9 * 23 * 11; n++) {
@@ -150,7 +150,7 @@ static void engines_agree_on_the_track(void **state)
         a.aperture_limit = limits[n / 3 % 4];
         support_noise(&a, &random, &echoes);
         struct grid grid = {-16 * step, step, 33, firsts[n / 12], 0.05, 9};
-        struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+        struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
         assert_int_equal(support_image("bp_sinc:window=kaiser,exact=true,precision=double", problem, &echoes, &exact),
                          STATUS_OK);
         assert_int_equal(
@@ -175,7 +175,7 @@ static void plans_do_not_count(void **state)
     void *plan;
     make(&a, 300, 4, 2000, 0.5, 2);
     struct grid grid = {-20, 0.02, 2000, 5, 0.02, 2000};
-    struct problem problem = {&a, 1, &grid, PRECISION_FLOAT};
+    struct problem problem = problem_make(&a, 1, &grid, PRECISION_FLOAT);
     assert_int_equal(spec_parse("bp_nearest:engine=general", &spec), STATUS_OK);
     double begin = (double)clock();
     assert_int_equal(spec.algorithm->plan(&problem, spec.options, &plan), STATUS_OK);

@@ -89,7 +89,7 @@ static void images_are_right_or_refused(void **state)
     for (size_t k = 0; k < sizeof setups / sizeof *setups; k++) {
         const struct setup *s = &setups[k];
         struct scene scene = scene_of(s);
-        struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE};
+        struct problem problem = problem_make(&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE);
         struct echoes echoes;
         struct image exact, image;
         char spec[60], name[60];
@@ -182,7 +182,8 @@ static void wrong_images_are_refused(void **state)
         struct image image;
         support_write("scene.cfg", wrong[k].text);
         assert_int_equal(scene_load(path_of("scene.cfg"), SASBENCH_ROOT "/scenes", &scene), STATUS_OK);
-        const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE};
+        const struct problem problem =
+            problem_make(&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE);
         support_echoes(&scene, &echoes);
         assert_int_equal(support_image(wrong[k].spec, problem, &echoes, &image), STATUS_UNSUPPORTED);
         print_message("    %s\n", status_message());

@@ -102,7 +102,7 @@ static struct peak reference_peak(const struct recording *recording, const struc
         .x_count = 2 * REACH + 1,
         .r_count = 2 * REACH + 1,
     };
-    struct problem problem = {&recording->acquisition, 1, &cut, PRECISION_FLOAT};
+    struct problem problem = problem_make(&recording->acquisition, 1, &cut, PRECISION_FLOAT);
     struct image image;
     assert_int_equal(support_image("reference", problem, &recording->echoes, &image), STATUS_OK);
     struct peak peak = image_peak(&image, 1, expected);
@@ -121,7 +121,7 @@ static void focus(const struct recording *recording, const struct expected *expe
                    {"bp_nearest", false},
                    {"bp_linear", false}};
     const struct grid *grid = &recording->grid;
-    struct problem problem = {&recording->acquisition, 1, grid, PRECISION_FLOAT};
+    struct problem problem = problem_make(&recording->acquisition, 1, grid, PRECISION_FLOAT);
     for (int n = 0; n < count; n++) {
         struct peak exact = reference_peak(recording, &expected[n]);
         if (!is_at(&exact, expected[n].x_m, expected[n].r_m, expected[n].slack_m, expected[n].slack_m))

@@ -107,7 +107,7 @@ static void add_image(const struct scene *scene, int patch_count, const struct g
 {
     struct echoes pings;
     struct image image;
-    struct problem problem = {&scene->acquisition, patch_count, patches, PRECISION_DOUBLE};
+    struct problem problem = problem_make(&scene->acquisition, patch_count, patches, PRECISION_DOUBLE);
     support_echoes(scene, &pings);
     assert_int_equal(support_image("reference:precision=double", problem, &pings, &image), STATUS_OK);
     for (int k = 0; k < patch_count; k++)
@@ -146,7 +146,7 @@ static void exact_images(void **state)
         struct grid patches[17] = {{numbers->range.x, 1, 1, numbers->range.r_first, numbers->range.r_step, 25}};
         for (int n = 0; n < 16; n++)
             patches[1 + n] = (struct grid){numbers->pixels.x[n], 1, 1, numbers->pixels.r[n], 1, 1};
-        struct problem problem = {&heard[k].acquisition, 1, &slice, PRECISION_DOUBLE};
+        struct problem problem = problem_make(&heard[k].acquisition, 1, &slice, PRECISION_DOUBLE);
         struct image azimuth, others;
         double peak = sum_of_weights(numbers);
         assert_int_equal(support_image("reference:precision=double", problem, &echoes[k], &azimuth), STATUS_OK);
@@ -169,7 +169,7 @@ static void method_slices(void **state)
     for (int k = 0; k < SCENES; k++) {
         const struct reference_scene *numbers = &reference_scenes[k];
         struct grid slice = {numbers->azimuth.x_first, numbers->azimuth.x_step, 81, numbers->azimuth.r, 1, 1};
-        struct problem problem = {&heard[k].acquisition, 1, &slice, PRECISION_DOUBLE};
+        struct problem problem = problem_make(&heard[k].acquisition, 1, &slice, PRECISION_DOUBLE);
         double peak = sum_of_weights(numbers);
         int methods = k < 2 ? 7 : 6; /* the last, factor 32, takes long transforms: two scenes do */
         for (int m = 0; m < methods; m++) {
@@ -191,7 +191,8 @@ static void slice_metrics(void **state)
     (void)state;
     for (int k = 0; k < SCENES; k++) {
         const struct reference_metrics *expected = &reference_scenes[k].metrics;
-        struct problem problem = {&heard[k].acquisition, heard[k].patch_count, heard[k].patches, PRECISION_DOUBLE};
+        struct problem problem =
+            problem_make(&heard[k].acquisition, heard[k].patch_count, heard[k].patches, PRECISION_DOUBLE);
         struct image image;
         assert_int_equal(support_image("reference:precision=double", problem, &echoes[k], &image), STATUS_OK);
         struct slice_metrics m = metrics_slice(&image, &heard[k].acquisition, &heard[k].targets[0], AXIS_AZIMUTH);

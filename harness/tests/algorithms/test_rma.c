@@ -106,7 +106,7 @@ static void independent_numbers(void **state)
             [IMAGE] = {n->x_first, n->x_step, 24, n->r_first, n->r_step, 16},
             [SLICE] = {n->target[0].x - HALF * n->slice_step, n->slice_step, COUNT, n->target[0].r, 1, 1}};
         make_numbers(n, &scene, &echoes);
-        struct problem problem = {&scene.acquisition, 1, patches, PRECISION_DOUBLE}, both = problem;
+        struct problem problem = problem_make(&scene.acquisition, 1, patches, PRECISION_DOUBLE), both = problem;
         both.patch_count = 2;
         form("reference:precision=double", problem, &echoes, &exact);
         double worst = 0, peak = support_peak(&exact);
@@ -161,7 +161,7 @@ static void short_swath(void **state)
     struct echoes echoes;
     struct image exact;
     make_swath(&scene, &echoes);
-    struct problem problem = {&scene.acquisition, 1, &swath, PRECISION_DOUBLE};
+    struct problem problem = problem_make(&scene.acquisition, 1, &swath, PRECISION_DOUBLE);
     form("reference:precision=double", problem, &echoes, &exact);
     assert_true(swath_error("rma_lbf:blocks=5,spacing=uniform", problem, &echoes, &exact) <= 0.01);
     assert_true(swath_error("rma_numeric:blocks=5,spacing=uniform", problem, &echoes, &exact) <= 0.01);
@@ -196,7 +196,7 @@ static void other_ways(void **state)
     make_scene(&(struct rma_track){8, 40, 1066, 40e3, 0.044, -2.8, 0.8, 0.04}, &scene);
     add_targets(&scene, 3, targets);
     assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
-    struct problem problem = {&scene.acquisition, 1, &part, PRECISION_DOUBLE};
+    struct problem problem = problem_make(&scene.acquisition, 1, &part, PRECISION_DOUBLE);
     for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++) {
         struct image image;
         form(pairs[k].spec, problem, &echoes, &image);
@@ -224,7 +224,7 @@ static void columns(void **state)
     assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
     for (int k = 0; k < 4; k++)
         grids[k] = (struct grid){-0.1, 0.1 / parts[k], 2 * parts[k] + 1, 36.3, 0.1, 3};
-    form("rma_lbf:precision=double", (struct problem){&scene.acquisition, 4, grids, PRECISION_DOUBLE}, &echoes, &image);
+    form("rma_lbf:precision=double", problem_make(&scene.acquisition, 4, grids, PRECISION_DOUBLE), &echoes, &image);
     for (int k = 1; k < 4; k++)
         for (int n = 0; n < 9; n++) {
             double complex value = image_pixel(&image, k, n / 3, n % 3 * parts[k]);
@@ -247,7 +247,7 @@ static void recurrences(void **state)
                &scene); /* two whole groups and a part of one */
     add_targets(&scene, 1, r);
     assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
-    struct problem problem = {&scene.acquisition, 1, &grid, PRECISION_DOUBLE};
+    struct problem problem = problem_make(&scene.acquisition, 1, &grid, PRECISION_DOUBLE);
     for (int k = 0; k < 4; k++) {
         char spec[100], other[120];
         struct image image;
@@ -279,7 +279,7 @@ static void long_swath(void **state)
     assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
     for (int t = 0; t < 4; t++)
         patches[2 + t] = (struct grid){scene.targets[t].x - 0.16, 0.02, 17, targets[t] - 0.15, 0.03, 11};
-    struct problem problem = {&scene.acquisition, 6, patches, PRECISION_DOUBLE};
+    struct problem problem = problem_make(&scene.acquisition, 6, patches, PRECISION_DOUBLE);
     form("reference:precision=double", problem, &echoes, &exact);
     static const struct {
         const char *spec;
@@ -306,7 +306,7 @@ static void block_counts(void **state)
     struct scene scene;
     struct grid patches[2] = {{0, 1, 1, 40, 1, 1}, {0, 1, 1, 300, 1, 1}};
     make_scene(&(struct rma_track){2, 66, 12800, 24e3, 0.032, 0, speed * pri, 0.04}, &scene);
-    struct problem problem = {&scene.acquisition, 2, patches, PRECISION_DOUBLE};
+    struct problem problem = problem_make(&scene.acquisition, 2, patches, PRECISION_DOUBLE);
     struct work inverse = support_work("rma_lbf:blend=off", problem);
     struct work uniform = support_work("rma_lbf:blend=off,spacing=uniform", problem);
     print_message("%s, %s; skipped: %s\n", inverse.engine, uniform.engine, inverse.skipped);
@@ -330,7 +330,7 @@ static double small_error(const char *spec, struct scene *scene, double half_x)
     struct grid grid = {-half_x, 0.02, (int)(half_x / 0.01) + 1, 39.9, 0.05, 13};
     add_targets(scene, 1, r);
     assert_int_equal(scene_simulate(scene, &echoes), STATUS_OK);
-    struct problem problem = {&scene->acquisition, 1, &grid, PRECISION_DOUBLE};
+    struct problem problem = problem_make(&scene->acquisition, 1, &grid, PRECISION_DOUBLE);
     form("reference:precision=double", problem, &echoes, &exact);
     double error = swath_error(spec, problem, &echoes, &exact);
     image_free(&exact);
@@ -349,7 +349,7 @@ static void ghosts(void **state)
     struct image image;
     double away = 0.01 * 40.2 / (2 * 0.5);
     struct grid grid = {scene.targets[0].x, away, 2, 40.2, 1, 1};
-    struct problem problem = {&scene.acquisition, 1, &grid, PRECISION_DOUBLE};
+    struct problem problem = problem_make(&scene.acquisition, 1, &grid, PRECISION_DOUBLE);
     assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
     form("rma_lbf:precision=double", problem, &echoes, &image);
     double ghost = cabs(image_pixel(&image, 0, 0, 1)) / cabs(image_pixel(&image, 0, 0, 0));
@@ -368,7 +368,7 @@ static void one_receiver(void **state)
     make_scene(&(struct rma_track){300, 1, 400, 24e3, 0.048, -3.7, 0.025, 0.04}, &scene);
     assert_true(small_error("rma_lbf:precision=double", &scene, 0.2) < 0.01);
     struct grid grid = {0, 0.02, 3, 40, 0.5, 9};
-    struct problem problem = {&scene.acquisition, 1, &grid, PRECISION_FLOAT};
+    struct problem problem = problem_make(&scene.acquisition, 1, &grid, PRECISION_FLOAT);
     assert_non_null(strstr(support_work("rma_lbf", problem).skipped, "conversion"));
     free_scene(&scene);
 }

@@ -78,7 +78,7 @@ static void terms(void **state)
     struct straight_track track;
     struct rma_method method = {.spectrum = spectrum_compensated};
     make_deep(66, 20, &scene);
-    struct problem problem = {&scene.acquisition, 1, &swath, PRECISION_DOUBLE};
+    struct problem problem = problem_make(&scene.acquisition, 1, &swath, PRECISION_DOUBLE);
     assert_true(acquisition_is_straight(&scene.acquisition, &track));
     struct rma_view view = rma_view_of(&problem, &method, &track);
     double left[DELAY_TERMS];
@@ -142,7 +142,7 @@ static void deep_swath(void **state)
     assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
     for (int t = 0; t < TARGETS; t++)
         patches[t] = (struct grid){scene.targets[t].x - 0.16, 0.02, 17, deep_targets[t] - 0.72, 0.03, 49};
-    struct problem problem = {&scene.acquisition, TARGETS, patches, PRECISION_DOUBLE};
+    struct problem problem = problem_make(&scene.acquisition, TARGETS, patches, PRECISION_DOUBLE);
     form("reference:precision=double", problem, &echoes, &exact);
     for (size_t k = 0; k < sizeof runs / sizeof *runs; k++) {
         form(runs[k].spec, problem, &echoes, &image);
@@ -182,7 +182,7 @@ static void two_steps(void **state)
         struct acquisition *a = &scene.acquisition;
         add_targets(&scene, 2, targets);
         assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
-        struct problem problem = {a, 1, &part, PRECISION_DOUBLE};
+        struct problem problem = problem_make(a, 1, &part, PRECISION_DOUBLE);
         for (size_t n = 0; n < sizeof specs / sizeof *specs; n++) {
             const double folded = support_work(specs[n], problem).flops;
             for (int p = 0; p < a->pings; p++)

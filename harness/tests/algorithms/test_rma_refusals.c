@@ -32,7 +32,7 @@ static void refusals(void **state)
         make_scene(&(struct rma_track){cases[k].pings, 20, 400, 24e3, k == 6 ? 0 : 0.048, 0, 0.4, 0.04}, &scene);
         scene.acquisition.aperture_limit = cases[k].limit;
         scene.acquisition.tx[cases[k].pings - 1].y = cases[k].bend;
-        struct problem problem = {&scene.acquisition, 1, &cases[k].grid, PRECISION_FLOAT};
+        struct problem problem = problem_make(&scene.acquisition, 1, &cases[k].grid, PRECISION_FLOAT);
         assert_int_equal(spec_parse("rma_lbf", &spec), STATUS_OK);
         assert_int_equal(spec.algorithm->plan(&problem, spec.options, &plan), STATUS_UNSUPPORTED);
         print_message("    %s\n", status_message());
@@ -47,7 +47,7 @@ static void refusals(void **state)
 static const char *refusal(const char *text, struct scene *scene, double r)
 {
     struct grid grid = {-0.16, 0.01, 33, r, 0.025, 1};
-    struct problem problem = {&scene->acquisition, 1, &grid, PRECISION_DOUBLE};
+    struct problem problem = problem_make(&scene->acquisition, 1, &grid, PRECISION_DOUBLE);
     struct spec spec;
     void *plan;
     assert_int_equal(spec_parse(text, &spec), STATUS_OK);
@@ -123,7 +123,7 @@ static void short_track(void **state)
     add_targets(&scene, 1, r);
     scene.targets[0].x = 0;
     assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
-    struct problem problem = {a, 1, &grid, PRECISION_DOUBLE};
+    struct problem problem = problem_make(a, 1, &grid, PRECISION_DOUBLE);
     form("reference:precision=double", problem, &echoes, &exact);
     assert_true(swath_error("rma_numeric:precision=double", problem, &echoes, &exact) < 0.05);
     image_free(&exact);
@@ -155,7 +155,7 @@ static void sampled_much_too_fast(void **state)
     add_targets(&scene, 1, r);
     scene.targets[0].x = 0;
     assert_int_equal(scene_simulate(&scene, &echoes), STATUS_OK);
-    struct problem problem = {a, 1, &grid, PRECISION_DOUBLE};
+    struct problem problem = problem_make(a, 1, &grid, PRECISION_DOUBLE);
     form("reference:precision=double", problem, &echoes, &exact);
     assert_close(swath_error("rma_numeric:precision=double", problem, &echoes, &exact), 0, 0.02);
     image_free(&exact);

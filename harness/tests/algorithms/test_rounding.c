@@ -66,7 +66,7 @@ static int form_images(int mode, FILE *out)
     for (int n = 0; n < IMAGES; n++) {
         char spec[96];
         struct image images[3];
-        struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+        struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
         enum precision precision = n % 2 ? PRECISION_DOUBLE : PRECISION_FLOAT;
         snprintf(spec, sizeof spec, "%s,precision=%s", methods[n / 2 % METHODS].spec, precision_name(precision));
         setenv("SASBENCH_ISA", isas[n / 2 / METHODS], 1);

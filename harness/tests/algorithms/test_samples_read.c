@@ -154,8 +154,8 @@ static double left_out(const struct patch_case *c, const struct acquisition *a, 
     memcpy(grids, c->grids, sizeof c->grids);
     for (int k = 0; k < 2; k++)
         grids[c->patches + k] = (struct grid){-0.4, c->grids[0].x_step, 41, r[k], 1, 1, 0};
-    const struct problem part = {a, c->patches, grids, PRECISION_DOUBLE},
-                         all = {a, c->patches + 2, grids, part.precision};
+    const struct problem part = problem_make(a, c->patches, grids, PRECISION_DOUBLE),
+                         all = problem_make(a, c->patches + 2, grids, part.precision);
     const struct work work = support_work(text, part), whole_work = support_work(text, all);
     struct image image, whole;
     bool unread[SAMPLES];
@@ -198,7 +198,8 @@ static void samples_left_out(void **state)
         struct echoes echoes;
         make_case(c, raw, &a, &echoes);
         int first, last;
-        const int met = samples_met(&(struct problem){&a, c->patches, c->grids, PRECISION_DOUBLE}, &first, &last);
+        const struct problem problem = problem_make(&a, c->patches, c->grids, PRECISION_DOUBLE);
+        const int met = samples_met(&problem, &first, &last);
         for (size_t m = 0; m < 4 * sizeof methods / sizeof *methods; m++) {
             const struct method *method = &methods[m / 4];
             char text[100];
@@ -271,11 +272,11 @@ static void swaths_left_out(void **state)
         make_case(&cases[0], true, &a, &echoes);
         a.echo_sine = 0.02;
         compress(&a, &echoes, &whole, &compressed);
-        const struct problem problem = {&a, 1, cases[0].grids, PRECISION_DOUBLE};
+        const struct problem problem = problem_make(&a, 1, cases[0].grids, PRECISION_DOUBLE);
         read_by(runs[n].spec, problem, &from, &end);
         assert_true(from > SAMPLES / 4 && end < 3 * SAMPLES / 4);
         assert_int_equal(support_image(runs[n].spec, problem, &echoes, &image), STATUS_OK);
-        assert_int_equal(support_image(runs[n].spec, (struct problem){&whole, 1, cases[0].grids, PRECISION_DOUBLE},
+        assert_int_equal(support_image(runs[n].spec, problem_make(&whole, 1, cases[0].grids, PRECISION_DOUBLE),
                                        &compressed, &from_whole),
                          STATUS_OK);
         const double difference = support_difference(&image, &from_whole);
@@ -324,7 +325,7 @@ static void bounds_hold(void **state)
                                       a.tx[p].z + uniform(&random, -1, 1)};
         }
         const struct grid grid = {uniform(&random, -20, 20), 0.3, 11, uniform(&random, -30, 30), 0.4, 9, 0};
-        const struct problem problem = {&a, 1, &grid, PRECISION_DOUBLE};
+        const struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
         const struct sample_span span = pairs_samples(&problem, NULL, 0);
         int first, last;
         assert_true(span.first >= 0 && span.last <= SAMPLES - 1 && span.first <= span.last);

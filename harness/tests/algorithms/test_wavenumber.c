@@ -148,7 +148,7 @@ static void rotated_spectrum(void **state)
     scene_sq18(&sonar, radians(20), &scene);
     const struct acquisition *a = &scene.acquisition;
     const struct grid grid = {0, 0.04, 2, 15, 0.03, 1024, radians(20)};
-    const struct problem problem = {a, 1, &grid, PRECISION_DOUBLE};
+    const struct problem problem = problem_make(a, 1, &grid, PRECISION_DOUBLE);
     support_echoes(&scene, &echoes);
     struct wk *wk = planned("wk_squint:pad=2", &problem, &spec);
     wk_transform_double.range(wk, echoes.samples);
@@ -304,7 +304,7 @@ static void azimuth_kernels(void **state)
     struct grid patches[5];
     scene_sq18(&sonar_sq18, radians(20), &scene);
     patches_around(&scene, radians(20), 0.04, 7, patches);
-    const struct problem problem = {&scene.acquisition, 5, patches, PRECISION_DOUBLE};
+    const struct problem problem = problem_make(&scene.acquisition, 5, patches, PRECISION_DOUBLE);
     double worst = 0;
     for (int k = 0; k < 20; k++) {
         static const char *const taps[] = {"4", "6", "8", "12", "16"};
@@ -343,7 +343,7 @@ static void sizes(void **state)
     struct grid patches[5];
     scene_sq18(&sonar_sq18, radians(20), &scene);
     patches_around(&scene, radians(20), 0.04, 7, patches);
-    const struct problem problem = {&scene.acquisition, 5, patches, PRECISION_FLOAT};
+    const struct problem problem = problem_make(&scene.acquisition, 5, patches, PRECISION_FLOAT);
     double flops[5];
     for (int k = 0; k < 5; k++) {
         struct spec spec;
@@ -360,7 +360,7 @@ static void sizes(void **state)
 static void refuses(const struct acquisition *a, const struct grid *grid, const char *reason)
 {
     static const char *const specs[] = {"wk_classic", "wk_squint", "wk_polar"};
-    struct problem problem = {a, 1, grid, PRECISION_FLOAT};
+    struct problem problem = problem_make(a, 1, grid, PRECISION_FLOAT);
     for (int k = 0; k < 3; k++) {
         struct spec spec;
         void *plan;

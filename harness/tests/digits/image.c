@@ -8,7 +8,7 @@
 
 static enum status image_form(const struct scene *scene, const struct spec *spec)
 {
-    struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, spec->precision};
+    struct problem problem = problem_make(&scene->acquisition, scene->patch_count, scene->patches, spec->precision);
     struct echoes echoes, converted;
     struct image image;
     struct stages stages;

@@ -120,7 +120,7 @@ static void image_form(const struct algorithm *algorithm, const struct problem *
 
 static void echoes_image(struct bytes *bytes, const struct acquisition *a, const struct grid *grid)
 {
-    struct problem problem = {a, 1, grid, take_byte(bytes) % 2 ? PRECISION_DOUBLE : PRECISION_FLOAT};
+    struct problem problem = problem_make(a, 1, grid, take_byte(bytes) % 2 ? PRECISION_DOUBLE : PRECISION_FLOAT);
     struct echoes echoes, converted;
     _Alignas(max_align_t) char options[OPTIONS_SIZE];
     if (echoes_allocate(a, PRECISION_DOUBLE, &echoes) != STATUS_OK)

@@ -147,7 +147,7 @@ static void errors_are_known_or_not(void **state)
     const struct scene *const scenes[2] = {&known, &unknown};
     for (int k = 0; k < 2; k++) {
         struct image image;
-        const struct problem problem = {&scenes[k]->acquisition, 1, scenes[k]->patches, PRECISION_DOUBLE};
+        const struct problem problem = problem_make(&scenes[k]->acquisition, 1, scenes[k]->patches, PRECISION_DOUBLE);
         assert_int_equal(support_image("bp_sinc:taps=16,window=kaiser,precision=double", problem, &echoes[k], &image),
                          STATUS_OK);
         sharpness[k] = metrics_sharpness(&image);

@@ -105,7 +105,8 @@ static void reference_is_exact_on_extreme_scenes(void **state)
         if (scene_load(name, SCENE_DIRECTORY, &scene) != STATUS_OK)
             continue; /* which ones must be: test_stability */
         if (!exact_ideal_excludes(&scene)) {
-            const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE};
+            const struct problem problem =
+                problem_make(&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE);
             struct exact_sum *sums = calloc(exact_pixels(scene.patch_count, scene.patches), sizeof *sums);
             assert_non_null(sums);
             support_echoes(&scene, &echoes);
@@ -157,7 +158,8 @@ static void methods_are_their_own_sums(void **state)
     for (int odd = 0; odd < 2; odd++) { /* an odd record has no bin at fs/2 to share */
         scene.acquisition.samples -= odd;
         support_echoes(&scene, &echoes);
-        const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE};
+        const struct problem problem =
+            problem_make(&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE);
         struct exact_sum *sums = calloc(exact_pixels(scene.patch_count, scene.patches), sizeof *sums);
         assert_non_null(sums);
         for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {
@@ -185,7 +187,7 @@ static void twelfth_digit_is_seen(void **state)
     struct echoes echoes;
     const struct exact_reading reading = {.kind = EXACT_NEAREST, .upsample = 1, .phases = 1};
     support_echoes(&scene, &echoes);
-    const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE};
+    const struct problem problem = problem_make(&scene.acquisition, scene.patch_count, scene.patches, PRECISION_DOUBLE);
     assert_int_equal(exact_method(&problem, echoes.samples, &reading, right), STATUS_OK);
     scene.acquisition.sound_speed *= 1 + 1e-12;
     assert_int_equal(exact_method(&problem, echoes.samples, &reading, wrong), STATUS_OK);

@@ -91,7 +91,7 @@ static void subapertures_within_budget(void **state)
     static struct tally tally;
     support_scene("study/rail_sway", &scene);
     scene.acquisition.pings = 512;
-    const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
+    const struct problem problem = scene_problem(&scene, PRECISION_FLOAT);
     assert_int_equal(session_open(&scene, &session), STATUS_OK);
     for (size_t k = 0; k < sizeof budgets / sizeof *budgets; k++) {
         const struct budget budget = {budgets[k], 4e9};

@@ -259,7 +259,7 @@ static void refusals_compare(const struct scene *scene, const char *name, const 
 {
     static const double errors[] = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8}, shares[] = {0.5, 0.999, 2, 1e6};
     enum { ERRORS = sizeof errors / sizeof *errors, SHARES = sizeof shares / sizeof *shares };
-    const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, PRECISION_FLOAT};
+    const struct problem problem = scene_problem(scene, PRECISION_FLOAT);
     for (int k = 0; k < ERRORS * SHARES; k++) {
         const double error = errors[k / SHARES];
         const struct budget budget = {error, shares[k % SHARES] * least_bytes(sweep, error)};
@@ -294,7 +294,7 @@ static void scene_compare(const struct scene *scene, const char *name, bool time
         return;
     }
     for (int k = 0; k < BUDGETS; k++) {
-        const struct problem problem = {&scene->acquisition, scene->patch_count, scene->patches, PRECISION_FLOAT};
+        const struct problem problem = scene_problem(scene, PRECISION_FLOAT);
         const struct budget budget = {budgets[k], 4e9};
         assert_int_equal(planner_choose(&problem, &budget, &comparisons[k].choice), STATUS_OK);
         comparisons[k].chosen = comparisons[k].choice.found ? sweep_find(&sweep, &comparisons[k].choice.list[0]) : NULL;

@@ -37,7 +37,7 @@ static void choose_of(struct budget budget, enum precision precision, struct cho
 {
     struct scene scene;
     support_scene("study/quick", &scene);
-    const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, precision};
+    const struct problem problem = scene_problem(&scene, precision);
     assert_int_equal(planner_choose(&problem, &budget, choice), STATUS_OK);
     if (choice->plan)
         choice->list[0].algorithm->destroy(choice->plan);
@@ -123,7 +123,7 @@ static void nothing_fits(void **state)
     struct spec spec;
     void *plan;
     support_scene("study/quick", &scene);
-    const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
+    const struct problem problem = scene_problem(&scene, PRECISION_FLOAT);
     assert_int_equal(spec_parse("auto:error=1e-9", &spec), STATUS_OK);
     assert_int_equal(spec.algorithm->plan(&problem, spec.options, &plan), STATUS_UNSUPPORTED);
     assert_null(plan);
@@ -205,7 +205,7 @@ static void turned_axes(void **state)
     struct scene scene;
     struct choice choice;
     support_scene("gate/squint", &scene);
-    const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
+    const struct problem problem = scene_problem(&scene, PRECISION_FLOAT);
     const struct budget budget = {1e-3, 4e9};
     assert_int_equal(planner_choose(&problem, &budget, &choice), STATUS_OK);
     assert_true(choice.found && choice.list[0].forecast.record_values > 0);
@@ -254,7 +254,7 @@ static void migration_is_counted(void **state)
     double seconds[SPECS];
     struct scene scene;
     support_scene("study/far", &scene);
-    const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
+    const struct problem problem = scene_problem(&scene, PRECISION_FLOAT);
     for (int k = 0; k < SPECS; k++) {
         struct spec spec;
         struct forecast forecast;
@@ -287,7 +287,7 @@ static void migration_is_chosen(void **state)
         struct scene scene;
         struct choice choice;
         support_scene(cases[n].scene, &scene);
-        const struct problem problem = {&scene.acquisition, scene.patch_count, scene.patches, PRECISION_FLOAT};
+        const struct problem problem = scene_problem(&scene, PRECISION_FLOAT);
         const struct budget budget = {1e-2, 4e9};
         int slower = 0;
         assert_int_equal(planner_choose(&problem, &budget, &choice), STATUS_OK);
@@ -317,7 +317,7 @@ static struct forecast column_forecast(const char *text, double share)
     struct grid *grid = &scene.patches[0];
     grid->x_count = 1;
     grid->r_step = share * a->sound_speed / (2 * a->fs);
-    const struct problem problem = {a, 1, grid, PRECISION_FLOAT};
+    const struct problem problem = problem_make(a, 1, grid, PRECISION_FLOAT);
     assert_int_equal(spec_parse(text, &spec), STATUS_OK);
     assert_int_equal(spec.algorithm->forecast(&problem, spec.options, &forecast), STATUS_OK);
     spec_free(&spec);
