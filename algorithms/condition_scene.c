@@ -230,6 +230,6 @@ enum status condition_targets_shown(const struct problem *problem)
     return problem->target_count == 0
                ? STATUS_OK
                : status_set(STATUS_UNSUPPORTED,
-                            "no error can be planned: none of the scene's targets lies in the image, and errors are "
-                            "relative to what the image shows");
+                            "condition targets_shown: none of the scene's targets lies in the image, and no law tells "
+                            "an error relative to what leaks into it (cure: a grid about a target)");
 }

@@ -54,7 +54,8 @@ static enum status execute(const struct spec *spec, struct imaging *imaging, con
 /* The plan comes first: what cannot be imaged need not be simulated. */
 static enum status form_image(const struct spec *spec, const struct scene *scene, struct image *image, double *seconds)
 {
-    const struct problem problem = scene_problem(scene, spec->precision);
+    struct problem problem = scene_problem(scene, spec->precision);
+    problem.judged_count = 0; /* all of it is shown */
     struct imaging imaging;
     struct echoes simulated = {0}, recorded = {&scene->acquisition, PRECISION_DOUBLE, scene->recorded, 0};
     enum status status = imaging_open(spec, &problem, &imaging);

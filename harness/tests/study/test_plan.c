@@ -182,6 +182,7 @@ static void scene_is_judged(void)
 {
     support_write("wrong.cfg", "base = {\n@include \"study/quick.cfg\"\n};\n"
                                "track = { speed = -2.5; pri = 0.128; pings = 18; x_first = -5.0; };\n"
+                               "targets = { points = ( { x = 1.74; r = 19.92; } ); };\n"
                                "image = { angle = 5; x = { first = -0.5; step = 0.02; count = 51; };\n"
                                "r = { first = 19.5; step = 0.025; count = 41; }; };\n");
     char *text = plan_printed(path_of("wrong.cfg"), "1e-2");
