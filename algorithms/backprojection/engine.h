@@ -39,7 +39,8 @@ struct bp_engine {
     enum status (*applicable)(const struct bp *bp);
     /* What a plan would make for the pairs to read by, all records together: entries of tables, or blocks of pixels.
        Known from bp->problem, medium and table, before any plan; of a problem that is applicable. *residues: of tables,
-       columns from ping to ping, the fewest of all patches; 0 without tables. */
+       columns from ping to ping whose neighbours share loads, the fewest of all patches: 1 where the nearest fine step
+       is read, which none share; 0 without tables. */
     double (*units)(const struct bp *bp, double *residues);
     /* m: how far along the track beyond the pairs' places delays are evaluated; NULL: nowhere. */
     double (*beside)(const struct bp *bp);

@@ -185,7 +185,7 @@ double invariant_units(const struct bp *bp, double *residues)
         const double shifts =
             fmin(raster.pings + raster.residue_columns - 1, 2 * reach(&raster, grid, r) / raster.spacing + 1);
         units += (double)grid->r_count * raster_residues(&raster) * shifts;
-        *residues = fmin(*residues, raster_residues(&raster));
+        *residues = fmin(*residues, bp_whole(&bp->table) ? raster_residues(&raster) : 1);
     }
     return units * bp->problem.acquisition->receivers;
 }
