@@ -90,7 +90,7 @@ static enum status tabulate(struct bp *bp, const struct interpolator *in, const 
     return complete ? STATUS_OK : status_set(STATUS_FAILED, "no memory for interpolation weights");
 }
 
-static int met_count(const struct bp *bp)
+int bp_met_count(const struct bp *bp)
 {
     int count = 0;
     for (int p = 0; p < bp->problem.acquisition->pings; p++)
@@ -108,7 +108,7 @@ static void count_work(struct bp *bp, const struct interpolator *in)
     struct work *work = &bp->work;
     const double na = (double)a->pings * a->receivers, nr = a->samples, pixels = problem_pixels(&bp->problem);
     double all = na * pixels, transforms = na * (fft_flops(nr) + fft_flops(in->upsample * nr) + 6 * nr);
-    work->flops = (double)met_count(bp) * a->receivers * bp->shape.flops;
+    work->flops = (double)bp_met_count(bp) * a->receivers * bp->shape.flops;
     if (in->in_papers) {
         const bool kernel = in->steps == 0; /* each value is summed over one */
         const double beta = kernel ? 0 : in->steps - 1, points = kernel ? in->taps : in->steps;
@@ -267,8 +267,8 @@ struct work bp_work(const void *plan)
                           100 * (1 - work.pairs / all), a->aperture_limit < 1 ? " or the aperture limit" : "");
     if (bp->met)
         length += snprintf(work.skipped + length, sizeof work.skipped - (size_t)length,
-                           "%s%d of %d pings, which no pixel meets", length > 0 ? "; " : "", a->pings - met_count(bp),
-                           a->pings);
+                           "%s%d of %d pings, which no pixel meets", length > 0 ? "; " : "",
+                           a->pings - bp_met_count(bp), a->pings);
     bp_records_skipped(bp, work.skipped + length, sizeof work.skipped - (size_t)length, length > 0 ? "; " : "");
     return work;
 }
@@ -330,7 +330,7 @@ static void forecast_records(struct bp *bp, const struct interpolator *in, struc
 {
     const struct acquisition *a = bp->problem.acquisition;
     const struct traces_form form = bp_records_form(bp);
-    const double records = (double)met_count(bp) * a->receivers, fine = (form.count - 1.0) * in->upsample + 1;
+    const double records = (double)bp_met_count(bp) * a->receivers, fine = (form.count - 1.0) * in->upsample + 1;
     const int taps = forecast->kind == READ_BRANCHES && in->degree == 0 ? in->taps : 0; /* of a kernel's branches */
     forecast->units = bp->engine->units(bp, &forecast->residues);
     forecast->pair_flops =

@@ -60,6 +60,8 @@ static inline bool bp_met(const struct bp *bp, int ping)
 {
     return !bp->met || bp->met[ping];
 }
+/* Pings that any pixel meets. */
+int bp_met_count(const struct bp *bp);
 
 static inline size_t real_size(enum precision precision)
 {

@@ -94,7 +94,8 @@ static int step_of(int count)
     return (count + LOOKED_AT - 1) / LOOKED_AT;
 }
 
-/* Blocks of some pings and lines, times all of them. Exact delays count as the blocks that last as long. */
+/* Blocks of some pings that are met and of some lines, times all of them. Exact delays count as the blocks that last as
+   long. */
 static double general_units(const struct bp *bp, double *residues)
 {
     *residues = 0;
@@ -103,11 +104,13 @@ static double general_units(const struct bp *bp, double *residues)
     const double quintics = budget_quintics(bp->medium.phase_limit, problem->precision);
     const double finest = a->fs * bp->table.upsample;
     const int branches = bp->kernel.branches > 0 ? bp->kernel.branches : bp->table.branches;
-    const int pings = step_of(a->pings);
+    const int met = bp_met_count(bp), pings = step_of(met);
+    int passed = 0, looked_at = 0;
     double units = 0;
-    for (int p = pings / 2; p < a->pings; p += pings) {
-        if (!bp_met(bp, p))
+    for (int p = 0; p < a->pings; p++) {
+        if (!bp_met(bp, p) || passed++ % pings != pings / 2)
             continue;
+        looked_at++;
         const struct ping_box box = ping_box_make(a, p, problem->patch_count, problem->patches, quintics);
         const struct vector normal = acquisition_normal(a, p);
         for (int k = 0; k < problem->patch_count; k++) {
@@ -132,8 +135,7 @@ static double general_units(const struct bp *bp, double *residues)
                      * grid_line_count(grid, along_x) / looked;
         }
     }
-    const double looked = ceil((a->pings - pings / 2) / (double)pings);
-    return units * a->receivers * a->pings / looked;
+    return looked_at > 0 ? units * a->receivers * met / looked_at : 0;
 }
 
 /* A kernel's branches in place of its taps. */
@@ -215,6 +217,16 @@ static size_t batch_end(const struct general *general, const struct acquisition 
     return joined > 1 ? end - end % (joined * receivers) : end - end % receivers % BP_RECORDS;
 }
 
+/* Leave out the records of pings at a batch's ends that no pixel meets. */
+static void batch_trim(const struct bp *bp, size_t *first, size_t *end)
+{
+    const size_t receivers = (size_t)bp->problem.acquisition->receivers;
+    while (*first < *end && !bp_met(bp, (int)(*first / receivers)))
+        ++*first;
+    while (*first < *end && !bp_met(bp, (int)((*end - 1) / receivers)))
+        --*end;
+}
+
 /* Add the batch's pairs, records [first, first + count), to one line of patch k. */
 static void sum_line(const struct bp_lines *lines, int k, int number, size_t first, int count)
 {
@@ -237,9 +249,13 @@ static void general_execute(struct bp *bp, const struct echoes *echoes, struct i
     for (int k = 0; k < problem->patch_count; k++)
         memset(general->sums[k], 0,
                2 * (size_t)problem->patches[k].x_count * (size_t)problem->patches[k].r_count * size);
-    for (size_t first = 0, end; first < pairs; first = end) {
-        end = batch_end(general, problem->acquisition, first);
+    for (size_t begin = 0, next; begin < pairs; begin = next) {
+        next = batch_end(general, problem->acquisition, begin);
+        size_t first = begin, end = next;
+        batch_trim(bp, &first, &end);
         const int count = (int)(end - first);
+        if (count == 0)
+            continue;
 #pragma omp parallel for schedule(static)
         for (int n = 0; n < count; n++)
             if (bp_met(bp, (int)((first + (size_t)n) / (size_t)problem->acquisition->receivers)))
