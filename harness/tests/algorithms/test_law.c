@@ -200,6 +200,36 @@ static void flanks(void **state)
     scene_free(&scene);
 }
 
+/* The general engine's blocks are counted on pings that are met, however few of a long track they are: none of eight
+   that lie evenly over this one is. */
+static void few_pings_met(void **state)
+{
+    (void)state;
+    static const char *const tracks[] = {"pings = 18; x_first = -1.52;", "pings = 1714; x_first = -272.88;"};
+    double units[2], error[2];
+    for (int k = 0; k < 2; k++) {
+        struct scene scene;
+        struct session session;
+        char text[400];
+        snprintf(text, sizeof text,
+                 "base = {\n@include \"study/quick.cfg\"\n};\npulse = { kind = \"flat\"; };\naperture_limit = 0.06;\n"
+                 "track = { speed = 2.5; pri = 0.064; %s };\n",
+                 tracks[k]);
+        support_write("track.cfg", text);
+        support_scene(path_of("track.cfg"), &scene);
+        assert_int_equal(session_open(&scene, &session), STATUS_OK);
+        const struct problem problem = scene_problem(&scene, PRECISION_FLOAT);
+        units[k] = forecast_of("bp_sinc:engine=general", &problem).units;
+        predicted_over_measured(&session, "bp_sinc:engine=general", &error[k]);
+        session_close(&session);
+        scene_free(&scene);
+    }
+    if (!(units[0] > 0 && units[1] > 0.8 * units[0] && units[1] < 1.25 * units[0]))
+        fail_msg("%g blocks are planned, %g of the same pings on a long track", units[0], units[1]);
+    if (!(fabs(error[1] / error[0] - 1) < 1e-3))
+        fail_msg("the error is %g, %g of the same pings on a long track", error[0], error[1]);
+}
+
 /* Records that end where pixels lie: taps read zeros beyond, padded records go on. */
 static void cut_records(void **state)
 {
@@ -241,6 +271,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(known_targets, folder_make, folder_remove),
         cmocka_unit_test(judged_parts),
         cmocka_unit_test_setup_teardown(flanks, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(few_pings_met, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(cut_records, folder_make, folder_remove),
     };
     return cmocka_run_group_tests_name("law", tests, NULL, NULL);
