@@ -16,8 +16,8 @@ enum {
     TONES = 12,  /* frequencies of known targets, all together, two of each or more */
     COLUMNS = 13 /* evenly over the patch, and as many near the target */
 };
-/* An image of few targets may have more than one of many has in the middle; a few columns and frequencies of known ones
-   may have less than all have. */
+/* Targets may have more than those that stand for them; a few columns and frequencies of all that are known may have
+   less than all have. */
 static const double FEW_TARGETS = 1.4, KNOWN_TARGETS = 1.2;
 static const double FREQUENCY = 0.57735; /* of half the band, to either side: Gauss and Legendre's two */
 static const double NEAR = 4, DEEP = 0.05, APART = 1.4;
@@ -238,5 +238,7 @@ static double even_error(const struct rma_view *view)
 double azimuth_error(const struct rma_view *view)
 {
     const double known = known_error(view);
-    return isinf(known) ? FEW_TARGETS * even_error(view) : KNOWN_TARGETS * known;
+    if (isinf(known))
+        return FEW_TARGETS * even_error(view);
+    return (view->problem->target_count > KNOWN ? FEW_TARGETS : KNOWN_TARGETS) * known;
 }
