@@ -18,8 +18,8 @@ static const double node[GAUSS] = {0.0950125098376374, 0.2816035507792589, 0.458
 static const double weight[GAUSS] = {0.1894506104550685, 0.1826034150449236, 0.1691565193950025, 0.1495959888165767,
                                      0.1246289712555339, 0.0951585116824928, 0.0622535239386479, 0.0271524594117541};
 
-/* Pulses of more cycles of time and bandwidth have a flat spectrum. The flanks of others cost an interpolator that fails
-   at half the sampling rate up to 0.5 of their number, relative L2. */
+/* Pulses of more cycles of time and bandwidth have a flat spectrum. The flanks of others cost an interpolator that
+   fails at half the sampling rate up to 0.5 over their number, relative L2. */
 static const double FLAT = 20000;
 
 /* The replica's own, in bins whose nodes are their middles of energy: an interpolator's error grows steeply at the

@@ -14,9 +14,9 @@ struct pulse_band {
    Errors: STATUS_FAILED without memory. */
 enum status pulse_band_find(const struct acquisition *acquisition, int transform_length, struct pulse_band *band);
 
-/* The energy spectrum of the compressed pulse of raw echoes, |replica's spectrum|^4, of a replica whose magnitudes add up
-   to 1: energy[length] in FFTW's order, bin k at k fs/length; length >= pulse_length. Returned memory is the caller's to
-   free; NULL without memory, with STATUS_FAILED's message set. */
+/* The energy spectrum of the compressed pulse of raw echoes, |replica's spectrum|^4, as if the replica's magnitudes
+   added up to 1: energy[length] in FFTW's order, bin k at k fs/length; length >= pulse_length. Returned memory is the
+   caller's to free; NULL without memory, with STATUS_FAILED's message set. */
 double *pulse_energy(const struct acquisition *acquisition, int length);
 
 #endif

@@ -40,7 +40,8 @@ struct budget {
     bool every;   /* forecast the errors of all candidates, also of those that are slower for sure: takes seconds */
 };
 
-/* Errors: STATUS_UNSUPPORTED as condition_targets_shown, STATUS_FAILED without memory. Where nothing fits, found is false, and the reasons say why. */
+/* Errors: STATUS_UNSUPPORTED as condition_targets_shown, STATUS_FAILED without memory. Where nothing fits, found is
+   false, and the reasons say why. */
 enum status planner_choose(const struct problem *problem, const struct budget *budget, struct choice *choice);
 void choice_free(struct choice *choice);
 

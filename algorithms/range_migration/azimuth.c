@@ -85,8 +85,8 @@ static int known_tones(const struct rma_view *view, const struct grid *patch, st
     return count;
 }
 
-/* An echo that is `late` (s) belongs to another row: the share of the targets on the rows of `part`, or of the one known
-   target, for which that is a row of it as well. */
+/* An echo that is `late` (s) belongs to another row: the share of the targets on the rows of `part`, or of the one
+   known target, for which that is a row of it as well. */
 static double on_rows(const struct acquisition *a, const struct tone *target, const struct grid *part, double late)
 {
     const double deep = part->r_count * part->r_step + a->sound_speed / 2 / a->bandwidth; /* m */
