@@ -20,9 +20,20 @@ static const struct param params[] = {
     {.name = NULL},
 };
 
+static const struct wk_method method = {.name = "wk_classic"};
+
+static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
+{
+    return wk_forecast(problem, &method, options, forecast);
+}
+
+static enum status cost(const struct problem *problem, const void *options, struct forecast *forecast)
+{
+    return wk_cost(problem, &method, options, forecast);
+}
+
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
-    static const struct wk_method method = {.name = "wk_classic"};
     return wk_plan(problem, &method, options, plan);
 }
 
@@ -33,6 +44,8 @@ const struct algorithm wk_classic = {
     .options_size = sizeof(struct wk_options),
     .params = params,
     .conditions = wk_conditions,
+    .forecast = forecast,
+    .cost = cost,
     .plan = plan,
     .execute = wk_execute,
     .work = wk_work,

@@ -15,12 +15,31 @@ static const struct param params[] = {
     {.name = NULL},
 };
 
-static enum status plan(const struct problem *problem, const void *options, void **plan)
+static const struct wk_method method = {.name = "wk_squint", .rotates = true};
+
+static struct wk_options shared_of(const void *options)
 {
-    static const struct wk_method method = {.name = "wk_squint", .rotates = true};
     struct wk_options all = *(const struct wk_options *)options;
     all.unfold = WK_SUPPORT;
-    return wk_plan(problem, &method, &all, plan);
+    return all;
+}
+
+static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
+{
+    const struct wk_options shared = shared_of(options);
+    return wk_forecast(problem, &method, &shared, forecast);
+}
+
+static enum status cost(const struct problem *problem, const void *options, struct forecast *forecast)
+{
+    const struct wk_options shared = shared_of(options);
+    return wk_cost(problem, &method, &shared, forecast);
+}
+
+static enum status plan(const struct problem *problem, const void *options, void **plan)
+{
+    const struct wk_options shared = shared_of(options);
+    return wk_plan(problem, &method, &shared, plan);
 }
 
 const struct algorithm wk_squint = {
@@ -30,6 +49,8 @@ const struct algorithm wk_squint = {
     .options_size = sizeof(struct wk_options),
     .params = params,
     .conditions = wk_rotated_conditions,
+    .forecast = forecast,
+    .cost = cost,
     .plan = plan,
     .execute = wk_execute,
     .work = wk_work,

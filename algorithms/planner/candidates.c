@@ -36,6 +36,7 @@ static const struct {
     {"rma_pca", "", "limit", "0.785 0.1"},
     {"rma_wu", "", "limit", "0.785 0.1"},
     {"rma_numeric", "", "limit", "0.785 0.1 0.01"},
+    {"wk_squint", "", "taps", "4 6 8"},
 };
 
 /* Set a parameter of the table by its text. False where it is none, or takes no such value. */

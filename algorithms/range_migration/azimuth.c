@@ -1,8 +1,8 @@
 /* The azimuth of some targets at single frequencies (tone.h) against back projection's,  sum over p and m of
    s_pm exp(+j 2 pi F tau_m(x_p - x)).
 
-   Rows need not be looked at: to a column, a row is a delay, and by Parseval's theorem the energies of all rows are
-   those of all frequencies. Targets, rows and frequencies are taken in turn; their energies are summed as those of
+   Columns and rows are the track's, also of turned patches. Rows need not be looked at: to a column, a row is a delay,
+   and by Parseval's theorem the energies of all rows are those of all frequencies. Targets, rows and frequencies are taken in turn; their energies are summed as those of
    the image. */
 #include "range_migration/azimuth.h"
 
@@ -29,6 +29,30 @@ struct energies {
 
 /* ---- the targets ---- */
 
+/* In a grid's own axes: its middle and its sizes, a step about each pixel. */
+struct extent {
+    double x, r, width, depth; /* m */
+};
+
+static struct extent extent_of(const struct grid *g)
+{
+    return (struct extent){g->x_first + (g->x_count - 1) * g->x_step / 2, g->r_first + (g->r_count - 1) * g->r_step / 2,
+                           g->x_count * g->x_step, g->r_count * g->r_step};
+}
+
+/* Of a place on the track's axes. */
+static bool has_row(const struct grid *patch, double x, double r)
+{
+    const struct extent extent = extent_of(patch);
+    return fabs(grid_coordinates(patch, x, r).y - extent.r) <= extent.depth / 2;
+}
+
+static bool has_column(const struct grid *patch, double x, double r)
+{
+    const struct extent extent = extent_of(patch);
+    return fabs(grid_coordinates(patch, x, r).x - extent.x) <= extent.width / 2;
+}
+
 static int rows_of(const struct grid *patch)
 {
     const double near = patch->r_first, far = near + (patch->r_count - 1) * patch->r_step;
@@ -49,18 +73,15 @@ static int patch_tones(const struct rma_view *view, const struct grid *patch, in
         const double low = from * pow(far / from, (double)row / rows);
         const double high = from * pow(far / from, (row + 1.0) / rows);
         const double place = fmod(0.125 + turn * 0.618, 1); /* of the width: as even as any number of them may be */
-        list[n] = (struct tone){.r = (low + high) / 2,
-                                .x = patch->x_first - patch->x_step / 2 + place * width,
+        const struct vector at = grid_point(patch, ((low + high) / 2 - patch->r_first) / patch->r_step,
+                                            place * patch->x_count - 0.5);
+        list[n] = (struct tone){.r = at.y,
+                                .x = at.x,
                                 .frequency = a->fc + (turn / 2 + turn) % 2 * FREQUENCY * a->bandwidth
                                              - FREQUENCY * a->bandwidth / 2,
                                 .weight = (high - low) * width};
     }
     return count;
-}
-
-static bool has_row(const struct grid *patch, double r)
-{
-    return fabs(r - patch->r_first - (patch->r_count - 1) * patch->r_step / 2) <= patch->r_count * patch->r_step / 2;
 }
 
 /* Known targets on the patch's rows, each at frequencies evenly over the band. */
@@ -75,7 +96,7 @@ static int known_tones(const struct rma_view *view, const struct grid *patch, st
         most = fmax(most, cabs(problem->targets[k].amplitude));
     for (int n = 0; n < targets * tones && most > 0; n++) {
         const struct target *target = &problem->targets[(long long)(n / tones) * problem->target_count / targets];
-        if (has_row(patch, target->r))
+        if (has_row(patch, target->x, target->r))
             list[count++] = (struct tone){.known = true,
                                           .r = target->r,
                                           .x = target->x,
@@ -85,15 +106,19 @@ static int known_tones(const struct rma_view *view, const struct grid *patch, st
     return count;
 }
 
-/* An echo that is `late` (s) belongs to another row: the share of the targets on the rows of `part`, or of the one
-   known target, for which that is a row of it as well. */
-static double on_rows(const struct acquisition *a, const struct tone *target, const struct grid *part, double late)
+/* At column x an echo that is `late` (s) belongs to another row: the share of the targets on the rows of `part`, or of
+   the one known target, for which that is a row of it as well. */
+static double on_rows(const struct acquisition *a, const struct tone *target, const struct grid *part, double x,
+                      double late)
 {
-    const double deep = part->r_count * part->r_step + a->sound_speed / 2 / a->bandwidth; /* m */
-    const double behind = -late * a->sound_speed / 2, middle = part->r_first + (part->r_count - 1) * part->r_step / 2;
+    const struct extent extent = extent_of(part);
+    const double deep = extent.depth + a->sound_speed / 2 / a->bandwidth; /* m */
+    const double r = target->r - late * a->sound_speed / 2, row = grid_coordinates(part, x, r).y;
+    if (part->angle_rad != 0 && !has_column(part, x, r))
+        return 0;
     if (target->known)
-        return fabs(target->r + behind - middle) <= deep / 2;
-    return fmax(1 - fabs(behind) / deep, 0);
+        return fabs(row - extent.r) <= deep / 2;
+    return fmax(1 - fabs(row - grid_coordinates(part, target->x, target->r).y) / deep, 0);
 }
 
 /* Back projection at column x, and the share of its energy that lies on the rows of `part`. */
@@ -112,8 +137,8 @@ static double complex back_projection(const struct azimuth *azimuth, const struc
         const double beside =
             spectrum_delay(&view->setting, 0, target->r, at) - spectrum_delay(&view->setting, 0, target->r, u);
         all += seen * seen;
-        inside += seen * seen * on_rows(a, target, part, beside);
-        if (fabs(at) > a->aperture_limit * hypot(at, target->r))
+        inside += seen * seen * on_rows(a, target, part, x, beside);
+        if (fabs(at * cos(a->echo_squint) + target->r * sin(a->echo_squint)) > a->aperture_limit * hypot(at, target->r))
             continue;
         for (int m = 0; m < a->receivers; m++) {
             const double d = azimuth_offset(azimuth, m);
@@ -140,14 +165,27 @@ static void column_add(const struct azimuth *azimuth, const struct tone *target,
     energies->product += weight * formed * conj(exact);
 }
 
+/* The track's columns that hold something of `part`. */
+static void columns_of(const struct grid *part, double *first, double *last)
+{
+    *first = INFINITY;
+    *last = -INFINITY;
+    for (int k = 0; k < 4; k++) {
+        const double x = grid_point(part, k / 2 * part->r_count - 0.5, k % 2 * part->x_count - 0.5).x;
+        *first = fmin(*first, x);
+        *last = fmax(*last, x);
+    }
+}
+
 /* Evenly over the columns of `part`, and more of them about the target. */
 static void part_add(const struct azimuth *azimuth, const struct tone *target, const struct grid *part,
                      struct energies *energies)
 {
     const struct rma_view *view = azimuth->view;
     const struct acquisition *a = view->problem->acquisition;
-    const double width = part->x_count * part->x_step, first = part->x_first - part->x_step / 2;
-    const double wavelength = a->sound_speed / a->fc;
+    double first, last;
+    columns_of(part, &first, &last);
+    const double width = last - first, wavelength = a->sound_speed / a->fc;
     const double resolution = fmax(wavelength / (4 * fmin(condition_seen_sine(a), 1)),
                                    wavelength * target->r / 2 / (view->x_high - view->x_low + view->spacing));
     const double near = fmin(NEAR * resolution, width), step = 2 * near / COLUMNS, beside = width / COLUMNS;
@@ -165,10 +203,8 @@ static void part_add(const struct azimuth *azimuth, const struct tone *target, c
 /* Is the part one of the patch? */
 static bool lies_in(const struct grid *part, const struct grid *patch)
 {
-    const double beside = part->x_first + (part->x_count - 1) * part->x_step / 2 - patch->x_first
-                          - (patch->x_count - 1) * patch->x_step / 2;
-    return fabs(beside) <= patch->x_count * patch->x_step / 2
-           && has_row(patch, part->r_first + (part->r_count - 1) * part->r_step / 2);
+    const struct vector middle = grid_point(part, (part->r_count - 1) / 2.0, (part->x_count - 1) / 2.0);
+    return has_column(patch, middle.x, middle.y) && has_row(patch, middle.x, middle.y);
 }
 
 /* Where errors count in a patch. */
@@ -178,7 +214,7 @@ static void target_add(const struct azimuth *azimuth, const struct tone *target,
     const struct problem *problem = azimuth->view->problem;
     azimuth_form(azimuth, target);
     for (int k = 0; k < problem->judged_count && target->known; k++)
-        if (lies_in(&problem->judged[k], patch) && has_row(&problem->judged[k], target->r))
+        if (lies_in(&problem->judged[k], patch) && has_row(&problem->judged[k], target->x, target->r))
             part_add(azimuth, target, &problem->judged[k], energies);
     if (!target->known || problem->judged_count == 0)
         part_add(azimuth, target, patch, energies);

@@ -16,6 +16,9 @@ struct rma_view {
     bool converts;                 /* not a single receiver at the transmitter, which needs no formula */
     struct rma_bounds bounds;
     double beam_sine; /* of the echoes' beam at the transmitter; INFINITY: everything is seen */
+    /* Omega-k alone, which keeps all wavenumbers that the pings hold: */
+    double slope;  /* the middle of them, Kx over K_R */
+    double period; /* pings and zeros; 0: range migration */
 };
 
 struct rma_view rma_view_of(const struct problem *problem, const struct rma_method *method,
@@ -46,6 +49,11 @@ enum status rma_conditions_check(const struct rma_method *method, const struct c
 /* STATUS_UNSUPPORTED where track, axes or rows alone refuse; far cheaper than rma_conditions. */
 enum status rma_requirements_check(const struct problem *problem, const struct rma_method *method);
 
+/* Of the band, what an image keeps, +-*half cycles a sample, and *lost, the energy, relative, that lies beyond it, or at
+   half the sampling rate. Errors: STATUS_FAILED without memory. */
+enum status rma_band(const struct rma_view *view, double *half, double *lost);
+/* Error of an interpolated spectrum, relative L2, by `taps` taps where samples fill 1/oversampling of a transform. */
+double rma_interpolation_error(int taps, double oversampling);
 /* The forecast by a method, its errors alone. Errors: as rma_conditions_check. */
 enum status rma_forecast(const struct problem *problem, const struct rma_method *method,
                          const struct rma_options *options, struct forecast *forecast);

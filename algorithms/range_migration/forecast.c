@@ -11,9 +11,9 @@
 #include "range_migration/engine.h"
 
 static const int stolt_taps[] = {0, 4, 6, 8, 12, 16}; /* of rma_stolt_names; 0: a direct sum */
-/* Samples fill two thirds of the transform that is interpolated (RMA_OVERSAMPLING), after Kaiser's weight is taken off:
-   exp(-pi taps sqrt(1 - 2/3)), as of any such kernel, times what is measured. */
-static const double STOLT_SHARE = 4, STOLT_SLOPE = 0.57735;
+/* After Kaiser's weight is taken off: exp(-pi taps sqrt(1 - 1/oversampling)), as of any such kernel, times what is
+   measured. */
+static const double STOLT_SHARE = 4;
 /* rad, root mean square over a block, for each rad at its ends: a lone block is taken up to 1/(4 pi), several that
    blend leave less (docs/range_migration.md). */
 static const double BLOCK_SHARE = 0.08;
@@ -34,6 +34,11 @@ static double value_of(const char *name, const struct condition *list, int count
         if (strcmp(list[k].name, name) == 0)
             return list[k].value;
     return 0;
+}
+
+double rma_interpolation_error(int taps, double oversampling)
+{
+    return STOLT_SHARE * exp(-M_PI * sqrt(1 - 1 / oversampling) * taps);
 }
 
 /* What range migration keeps of the band. */
@@ -57,8 +62,8 @@ static double density_of_ends(const struct problem *problem)
     return (pow(fmax(before, 1), -2) + pow(fmax(after, 1), -2)) / (8 * M_PI * M_PI);
 }
 
-/* Raw echoes keep the pulse's band, wider by what tapers smear where the first row lets the records be cut, and by what
-   Stolt interpolation reads beyond it, where only samples have anything. */
+/* Raw echoes keep the pulse's band; range migration wider by what tapers smear where the first row lets the records be
+   cut, and by what Stolt interpolation reads beyond it, where only samples have anything. */
 static enum status raw_band(const struct rma_view *view, struct band *band, double *density)
 {
     const struct problem *problem = view->problem;
@@ -73,7 +78,7 @@ static enum status raw_band(const struct rma_view *view, struct band *band, doub
         nearest = fmin(nearest, problem->patches[k].r_first);
     if (status == STATUS_OK) {
         band->half = found.half_hz / a->fs;
-        if ((2 * nearest / a->sound_speed - a->t0[0]) * a->fs > fmax(2 * taper, pulse))
+        if (view->period == 0 && (2 * nearest / a->sound_speed - a->t0[0]) * a->fs > fmax(2 * taper, pulse))
             band->half += 2 / taper;
         if (view->method->terms > 0)
             band->half += RMA_GUARD / (a->samples + 2 * pulse);
@@ -96,6 +101,15 @@ static enum status band_of(const struct rma_view *view, struct band *band)
     enum status status = a->compressed ? STATUS_OK : raw_band(view, band, &density);
     const double ends = EDGE_BINS * density / (a->samples * a->bandwidth / a->fs + 2 * PULSE_PERIODS);
     band->lost += band->half >= 0.5 ? ends : pow(TAPERED, 2) * ends;
+    return status;
+}
+
+enum status rma_band(const struct rma_view *view, double *half, double *lost)
+{
+    struct band band;
+    const enum status status = band_of(view, &band);
+    *half = band.half;
+    *lost = band.lost;
     return status;
 }
 
@@ -129,7 +143,7 @@ enum status rma_forecast(const struct problem *problem, const struct rma_method 
                                     : lawless         ? INFINITY
                                                       : BLOCK_SHARE * options->limit;
     if (stolt_taps[options->stolt] > 0)
-        forecast->error[CAUSE_STOLT] = STOLT_SHARE * exp(-M_PI * STOLT_SLOPE * stolt_taps[options->stolt]);
+        forecast->error[CAUSE_STOLT] = rma_interpolation_error(stolt_taps[options->stolt], RMA_OVERSAMPLING);
     forecast->error[CAUSE_FLOAT] = ROUNDING[problem->precision];
     return STATUS_OK;
 }

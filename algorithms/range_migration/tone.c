@@ -65,10 +65,12 @@ static void echoes_fill(const struct azimuth *azimuth, const struct tone *target
     fftw_execute_dft(azimuth->over_pings, azimuth->echoes, azimuth->spectra);
 }
 
-/* Does range migration keep the wavenumber? (rma_line) */
+/* Does range migration keep the wavenumber? (rma_line) Omega-k keeps all. */
 static bool is_kept(const struct azimuth *azimuth, double frequency, double nu)
 {
     const struct rma_view *view = azimuth->view;
+    if (view->period > 0)
+        return true;
     const struct acquisition *a = view->problem->acquisition;
     const double c = view->setting.sound_speed, beta = view->setting.speed / c;
     const double sine = sine_of(view, a->fc, nu), edge = fmax(nu > 0 ? 1 + beta : 1 - beta, 1);
@@ -127,12 +129,13 @@ void azimuth_form(const struct azimuth *azimuth, const struct tone *target)
     const struct spectrum_setting *setting = &view->setting;
     const double c = setting->sound_speed, beta = setting->speed / c, frequency = target->frequency;
     const double f = frequency / ((1 - beta) * (1 + beta)), nu_step = 1 / (azimuth->period * view->spacing);
-    const int half = azimuth->wavenumbers / 2, receivers = view->problem->acquisition->receivers;
+    const int receivers = view->problem->acquisition->receivers;
+    const int first = (int)floor(view->slope * 2 * frequency / c / nu_step + 0.5) - azimuth->wavenumbers / 2;
     echoes_fill(azimuth, target);
     phasors_fill(azimuth, target);
     bool begun = false; /* those that are kept lie next to each other */
     memset(azimuth->wave, 0, (size_t)azimuth->wavenumbers * sizeof *azimuth->wave);
-    for (int q = -half; q < azimuth->wavenumbers - half; q++) {
+    for (int q = first; q < first + azimuth->wavenumbers; q++) {
         const double nu = q * nu_step, monostatic = spectrum_monostatic(setting, frequency, nu);
         if (isnan(monostatic) || !is_kept(azimuth, frequency, nu))
             continue;
@@ -141,10 +144,11 @@ void azimuth_form(const struct azimuth *azimuth, const struct tone *target)
         else
             turns_begin(azimuth, nu, nu_step);
         begun = true;
-        const int entry = (q % azimuth->period + azimuth->period) % azimuth->period;
+        const int place = (q % azimuth->wavenumbers + azimuth->wavenumbers) % azimuth->wavenumbers;
+        const int entry = place % azimuth->period;
         const double kappa = c * monostatic / (4 * M_PI);
         const double weight = f * sqrt(c * target->r / (2 * kappa * kappa * kappa)) * nu_step;
-        azimuth->wave[q < 0 ? q + azimuth->wavenumbers : q] =
+        azimuth->wave[place] =
             weight * turns(0.125 + target->r * monostatic / (2 * M_PI))
             * line_sum(azimuth, target, nu, azimuth->spectra + (size_t)entry * (size_t)receivers);
     }
@@ -157,7 +161,8 @@ bool azimuth_make(const struct rma_view *view, const struct grid *patch, struct 
     const double last = patch->x_first + (patch->x_count - 1) * patch->x_step;
     const double overhang = fmax(fmax(view->x_low - patch->x_first, last - view->x_high), 0);
     const double farthest = patch->r_first + (patch->r_count - 1) * patch->r_step;
-    const double pings = rma_period(a, &view->bounds, view->spacing, farthest, overhang);
+    const double pings =
+        view->period > 0 ? view->period : rma_period(a, &view->bounds, view->spacing, farthest, overhang);
     const double widest = atan(rma_focused(a, &view->bounds, patch->r_first) / patch->r_first);
     *azimuth = (struct azimuth){
         .view = view, .nearest = patch->r_first, .angle_step = 2 * fmin(1.05 * widest, WIDEST) / (AZIMUTH_ANGLES - 1)};

@@ -5,7 +5,8 @@
 
        image(x) = sum over nu of  w(F, nu) exp(+j 2 pi nu x) sum over m of  exp(-j phi_m(F, nu)) X_m(nu),
 
-   X_m(nu) periodic in nu as the pings sample it. This is done as it stands, for it costs little at one frequency. What
+   X_m(nu) periodic in nu as the pings sample it. Omega-k does so with a lone receiver and wavenumbers about a beam's
+   centroid. This is done as it stands, for it costs little at one frequency. What
    goes wrong in azimuth is all in it: wavenumbers that the receivers do not sample, what is seen and not focused, the
    ripple where the track ends, what stationary phase drops, the formula's own phase. */
 #ifndef SASBENCH_RANGE_MIGRATION_TONE_H
@@ -28,9 +29,9 @@ struct tone {
 /* What a patch's targets share. */
 struct azimuth {
     const struct rma_view *view;
-    double nearest;                   /* m: of the rows */
+    double nearest;                   /* m: of the rows; range migration alone */
     int period;                       /* pings and zeros after them; 0: too many */
-    int wavenumbers;                  /* period x receivers */
+    int wavenumbers;                  /* period x receivers: number q is q/(period spacing) */
     double complex *echoes, *spectra; /* [period][receivers] of one target, and their transform over the pings */
     double complex *wave;             /* [wavenumbers], then columns spacing/receivers apart from the first ping on */
     double angle_step;                /* rad: of AZIMUTH_ANGLES about broadside, as far as the transforms follow */
@@ -43,7 +44,7 @@ struct azimuth {
    worth it. */
 bool azimuth_make(const struct rma_view *view, const struct grid *patch, struct azimuth *azimuth);
 void azimuth_free(struct azimuth *azimuth);
-/* Fill `echoes` and range migration's image of them, `wave`. */
+/* Fill `echoes` and range migration's or omega-k's image of them, `wave`. */
 void azimuth_form(const struct azimuth *azimuth, const struct tone *target);
 
 /* Of receiver m, m ahead of the transmitter. */

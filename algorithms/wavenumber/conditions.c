@@ -1,5 +1,6 @@
 /* The conditions of omega-k (docs/conditions.md). */
 #include <math.h>
+#include <string.h>
 
 #include "range_migration/conditions.h"
 #include "range_migration/ghosts.h"
@@ -120,13 +121,19 @@ static void beam_conditions(const struct problem *problem, const struct straight
                                          "rows farther away, or a higher frequency"};
 }
 
-/* As range migration's, of a lone receiver at the transmitter. */
-static struct condition predicted_error(const struct problem *problem, const struct straight_track *track)
+struct rma_view wk_view_of(const struct problem *problem, const struct straight_track *track)
 {
     static const struct rma_method monostatic = {0};
     struct rma_view view = rma_view_of(problem, &monostatic, track);
     view.converts = false;
     view.bounds = (struct rma_bounds){.sine = rma_widest_sine(problem->acquisition), .way = INFINITY};
+    return view;
+}
+
+/* As range migration's. */
+static struct condition predicted_error(const struct problem *problem, const struct straight_track *track)
+{
+    const struct rma_view view = wk_view_of(problem, track);
     return (struct condition){"predicted_error",
                               prediction_error(&view),
                               0.1,
@@ -137,12 +144,11 @@ static struct condition predicted_error(const struct problem *problem, const str
                               "farther away"};
 }
 
-int wk_conditions(const struct problem *problem, const void *options, struct condition *list, int room)
+/* Those that cost little; the track is filled where all of them hold. */
+static int requirements(const struct problem *problem, struct condition all[CONDITIONS_MAX],
+                        struct straight_track *track)
 {
-    (void)options;
     const struct acquisition *a = problem->acquisition;
-    struct straight_track track;
-    struct condition all[CONDITIONS_MAX];
     int count = conditions_general(problem, all, CONDITIONS_MAX);
     all[0].limit = SLOWEST; /* subsonic */
     double aside = fmax(fabs(condition_offset(a, 0)), fabs(condition_offset(a, 2)));
@@ -160,14 +166,22 @@ int wk_conditions(const struct problem *problem, const void *options, struct con
                                       SEVERITY_REFUSE,
                                       "how far the receiver is from the transmitter along the track (wavelengths)",
                                       "range migration (rma_*), which takes that into account"};
-    if (azimuth_requirements(problem, all, &count, &track) && conditions_accept(all, count)) {
-        beam_conditions(problem, &track, all, &count);
-        if (conditions_accept(all, count))
-            all[count++] = predicted_error(problem, &track);
-        if (conditions_accept(all, count)) {
-            all[count] = ghosts_condition(problem, &track);
-            all[count++].severity = SEVERITY_REFUSE; /* nothing else here predicts what lies within a patch */
-        }
+    if (azimuth_requirements(problem, all, &count, track) && conditions_accept(all, count))
+        beam_conditions(problem, track, all, &count);
+    return count;
+}
+
+int wk_conditions(const struct problem *problem, const void *options, struct condition *list, int room)
+{
+    (void)options;
+    struct straight_track track;
+    struct condition all[CONDITIONS_MAX];
+    int count = requirements(problem, all, &track);
+    if (conditions_accept(all, count))
+        all[count++] = predicted_error(problem, &track);
+    if (conditions_accept(all, count)) {
+        all[count] = ghosts_condition(problem, &track);
+        all[count++].severity = SEVERITY_REFUSE; /* nothing else here predicts what lies within a patch */
     }
     for (int k = 0; k < count && k < room; k++)
         list[k] = all[k];
@@ -180,4 +194,25 @@ int wk_rotated_conditions(const struct problem *problem, const void *options, st
     if (count > 0)
         list[0].limit = SLOWEST_ROTATED;
     return count;
+}
+
+enum status wk_conditions_check(const struct problem *problem, const struct wk_method *method)
+{
+    struct condition all[CONDITIONS_MAX];
+    const int count = method->rotates ? wk_rotated_conditions(problem, NULL, all, CONDITIONS_MAX)
+                                      : wk_conditions(problem, NULL, all, CONDITIONS_MAX);
+    for (int k = 0; k < count; k++)
+        if (strcmp(all[k].name, "predicted_error") == 0 && isnan(all[k].value))
+            return status_set(STATUS_FAILED, "%s: no memory to predict the image's error", method->name);
+    return conditions_check(method->name, all, count);
+}
+
+enum status wk_requirements_check(const struct problem *problem, const struct wk_method *method)
+{
+    struct straight_track track;
+    struct condition all[CONDITIONS_MAX];
+    const int count = requirements(problem, all, &track);
+    if (method->rotates)
+        all[0].limit = SLOWEST_ROTATED;
+    return conditions_check(method->name, all, count);
 }

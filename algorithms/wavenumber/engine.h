@@ -18,6 +18,7 @@
 #include <math.h>
 
 #include "common/fit.h"
+#include "range_migration/conditions.h"
 #include "wavenumber/wk.h"
 
 struct polar_filter;
@@ -167,8 +168,26 @@ static inline double wk_ky(const struct wk *wk, double frequency, double kx0)
    what the pings hold, so that a beam broadside needs no unfolding. */
 double wk_centroid_slope(const struct acquisition *acquisition, const struct straight_track *track);
 
+/* A lone receiver at the transmitter, in range migration's terms. */
+struct rma_view wk_view_of(const struct problem *problem, const struct straight_track *track);
+/* STATUS_UNSUPPORTED as conditions_check, STATUS_FAILED without memory; the requirements are those that cost little. */
+enum status wk_conditions_check(const struct problem *problem, const struct wk_method *method);
+enum status wk_requirements_check(const struct problem *problem, const struct wk_method *method);
+
 /* ---- layout.c ---- */
 enum status wk_layout(struct wk *wk);
+/* Pings and zeros from ping to ping, that hold all pixels and echoes in the track's own axes, before they are made a
+   length of a transform. Errors: STATUS_FAILED without memory. */
+enum status wk_period(const struct wk *wk, double *period);
+
+/* ---- wk.c ---- */
+/* A plan that is laid out and no more, to be freed by wk_destroy; *wk is NULL without one. The conditions hold. */
+enum status wk_lay_out(const struct problem *problem, const struct wk_method *method, const struct wk_options *options,
+                       struct wk **wk);
+/* Ky bins that are interpolated for a patch, of all lines. */
+double wk_stolt_cells(const struct wk *wk, const struct wk_patch *patch);
+/* Add the work behind the compression. */
+void wk_count(struct wk *wk);
 
 /* ---- transform.c ---- */
 struct wk_transform {

@@ -354,6 +354,19 @@ static enum status lay_steps(struct wk *wk)
     return STATUS_OK;
 }
 
+enum status wk_period(const struct wk *wk, double *period)
+{
+    struct wk along = *wk; /* as if it did not turn */
+    along.method.rotates = false;
+    along.patches = NULL;
+    lay_track(&along);
+    const enum status status = lay_patches(&along);
+    if (status == STATUS_OK)
+        *period = fmax(whole_above(own_period(&along) / along.spacing + 1), along.pings);
+    free(along.patches);
+    return status;
+}
+
 enum status wk_layout(struct wk *wk)
 {
     static enum status (*const steps[])(struct wk *) = {lay_track, lay_range, lay_patches};

@@ -37,8 +37,7 @@ static const struct wk_transform *transform(const struct wk *wk)
     return wk->problem.precision == PRECISION_DOUBLE ? &wk_transform_double : &wk_transform_float;
 }
 
-/* Ky bins that are interpolated for a patch, of all lines. */
-static double stolt_cells(const struct wk *wk, const struct wk_patch *patch)
+double wk_stolt_cells(const struct wk *wk, const struct wk_patch *patch)
 {
     const double step = 2 * M_PI / (patch->length * patch->own.r_step), half = M_PI / wk->spacing;
     const double first = wk->fc + wk->band_first * wk->fs / wk->range_length;
@@ -57,7 +56,7 @@ static double stolt_cells(const struct wk *wk, const struct wk_patch *patch)
     return cells;
 }
 
-static void count_work(struct wk *wk)
+void wk_count(struct wk *wk)
 {
     struct work *work = &wk->work;
     const double lines = wk->lines, pings = wk->pings, band = wk->band;
@@ -69,7 +68,7 @@ static void count_work(struct wk *wk)
     for (int k = 0; k < wk->patch_count; k++) {
         const struct wk_patch *patch = &wk->patches[k];
         double rows = patch->own.r_count, columns = patch->own.x_count;
-        work->flops += stolt_cells(wk, patch) * (4.0 * wk->taps + 8) + lines * fft_flops(patch->length);
+        work->flops += wk_stolt_cells(wk, patch) * (4.0 * wk->taps + 8) + lines * fft_flops(patch->length);
         work->flops += rows
                        * (lines * 8 + columns * 8 + (patch->folds ? 1 : 2) * fft_flops(patch->columns)
                           + (patch->folds ? 0 : 6 * patch->columns));
@@ -82,39 +81,45 @@ static void count_work(struct wk *wk)
              turned && unfiltered ? "; " : "", unfiltered ? "filter (no target area)" : "");
 }
 
-enum status wk_plan(const struct problem *problem, const struct wk_method *method, const struct wk_options *options,
-                    void **plan)
+enum status wk_lay_out(const struct problem *problem, const struct wk_method *method, const struct wk_options *options,
+                       struct wk **made)
 {
-    struct condition conditions[CONDITIONS_MAX];
-    *plan = NULL;
-    int count = method->rotates ? wk_rotated_conditions(problem, options, conditions, CONDITIONS_MAX)
-                                : wk_conditions(problem, options, conditions, CONDITIONS_MAX);
-    for (int k = 0; k < count; k++)
-        if (strcmp(conditions[k].name, "predicted_error") == 0 && isnan(conditions[k].value))
-            return status_set(STATUS_FAILED, "%s: no memory to predict the image's error", method->name);
-    enum status status = conditions_check(method->name, conditions, count);
-    if (status != STATUS_OK)
-        return status;
-    struct wk *wk = calloc(1, sizeof *wk);
+    struct wk *wk = *made = calloc(1, sizeof *wk);
     if (!wk)
         return status_set(STATUS_FAILED, "no memory for %s", method->name);
     wk->problem = *problem;
     wk->method = *method;
     wk->options = *options;
+    const enum status status = wk_layout(wk);
+    if (status != STATUS_OK) {
+        wk_destroy(wk);
+        *made = NULL;
+    }
+    return status;
+}
+
+enum status wk_plan(const struct problem *problem, const struct wk_method *method, const struct wk_options *options,
+                    void **plan)
+{
+    struct wk *wk = NULL;
+    *plan = NULL;
+    enum status status = wk_conditions_check(problem, method);
+    if (status == STATUS_OK)
+        status = wk_lay_out(problem, method, options, &wk);
+    if (status != STATUS_OK)
+        return status;
     wk->threads = omp_get_max_threads();
     wk->record_loop = loops[isa_choose()][problem->precision].record;
     wk->line_loop = loops[isa_choose()][problem->precision].line;
     wk->row_loop = loops[isa_choose()][problem->precision].row;
     fit_nodes_fill(FIT_DEGREE + 1, wk->fit.nodes, wk->fit.powers);
     wk->work.bytes = sizeof *wk + (double)problem->patch_count * sizeof *wk->patches;
-    status = wk_layout(wk);
-    if (status == STATUS_OK)
-        status = transform(wk)->plan(wk);
+    status = transform(wk)->plan(wk);
     if (status != STATUS_OK) {
         wk_destroy(wk);
         return status;
     }
-    count_work(wk);
+    wk_count(wk);
     *plan = wk;
     return STATUS_OK;
 }

@@ -63,6 +63,13 @@ enum status wk_plan(const struct problem *problem, const struct wk_method *metho
 int wk_conditions(const struct problem *problem, const void *options, struct condition *list, int room);
 /* Of a method that rotates: of a slower platform. */
 int wk_rotated_conditions(const struct problem *problem, const void *options, struct condition *list, int room);
+/* Errors alone: INFINITY of a filter, and of an azimuth transform that is padded less than 1.25 times where axes are
+   turned. Errors: as wk_plan. */
+enum status wk_forecast(const struct problem *problem, const struct wk_method *method, const struct wk_options *options,
+                        struct forecast *forecast);
+/* The counts alone. */
+enum status wk_cost(const struct problem *problem, const struct wk_method *method, const struct wk_options *options,
+                    struct forecast *forecast);
 enum status wk_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
 struct work wk_work(const void *plan);
 void wk_destroy(void *plan);
