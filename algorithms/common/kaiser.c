@@ -21,3 +21,8 @@ double kaiser_transform(int taps, double shape, double place)
     double x = sqrt(fmax(shape * shape - M_PI * M_PI * taps * taps * place * place, 1e-12));
     return taps * exp(-shape) * sinh(x) / x;
 }
+
+double kaiser_error(int taps, double oversampling)
+{
+    return exp(-M_PI * taps * sqrt(1 - 1 / oversampling));
+}

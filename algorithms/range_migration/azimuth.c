@@ -8,6 +8,7 @@
 
 #include <math.h>
 
+#include "range_migration/limit.h"
 #include "range_migration/tone.h"
 
 enum {
@@ -19,6 +20,8 @@ enum {
 /* Targets may have more than those that stand for them; a few columns and frequencies of all that are known may have
    less than all have. */
 static const double FEW_TARGETS = 1.4, KNOWN_TARGETS = 1.2;
+/* Beside those that stand for all there may be others, which squinted patches see more of: measured. */
+static const double SQUINTED_TARGETS = 2;
 static const double FREQUENCY = 0.57735; /* of half the band, to either side: Gauss and Legendre's two */
 static const double NEAR = 4, DEEP = 0.05, APART = 1.4;
 
@@ -106,14 +109,14 @@ static int known_tones(const struct rma_view *view, const struct grid *patch, st
     return count;
 }
 
-/* At column x an echo that is `late` (s) belongs to another row: the share of the targets on the rows of `part`, or of
-   the one known target, for which that is a row of it as well. */
+/* The share of the targets on the rows of `part`, or of the one known target, whose echoes at column x belong to a row
+   of it as well, r of the track's for `target`. */
 static double on_rows(const struct acquisition *a, const struct tone *target, const struct grid *part, double x,
-                      double late)
+                      double r)
 {
     const struct extent extent = extent_of(part);
     const double deep = extent.depth + a->sound_speed / 2 / a->bandwidth; /* m */
-    const double r = target->r - late * a->sound_speed / 2, row = grid_coordinates(part, x, r).y;
+    const double row = grid_coordinates(part, x, r).y;
     if (part->angle_rad != 0 && !has_column(part, x, r))
         return 0;
     if (target->known)
@@ -134,11 +137,10 @@ static double complex back_projection(const struct azimuth *azimuth, const struc
         const double seen = condition_amplitude(a, target->r, u);
         if (seen == 0)
             continue;
-        const double beside =
-            spectrum_delay(&view->setting, 0, target->r, at) - spectrum_delay(&view->setting, 0, target->r, u);
+        const double row = tone_row(target->r, u, at);
         all += seen * seen;
-        inside += seen * seen * on_rows(a, target, part, x, beside);
-        if (fabs(at * cos(a->echo_squint) + target->r * sin(a->echo_squint)) > a->aperture_limit * hypot(at, target->r))
+        inside += seen * seen * on_rows(a, target, part, x, row);
+        if (fabs(at * cos(a->echo_squint) + row * sin(a->echo_squint)) > a->aperture_limit * hypot(at, row))
             continue;
         for (int m = 0; m < a->receivers; m++) {
             const double d = azimuth_offset(azimuth, m);
@@ -165,18 +167,6 @@ static void column_add(const struct azimuth *azimuth, const struct tone *target,
     energies->product += weight * formed * conj(exact);
 }
 
-/* The track's columns that hold something of `part`. */
-static void columns_of(const struct grid *part, double *first, double *last)
-{
-    *first = INFINITY;
-    *last = -INFINITY;
-    for (int k = 0; k < 4; k++) {
-        const double x = grid_point(part, k / 2 * part->r_count - 0.5, k % 2 * part->x_count - 0.5).x;
-        *first = fmin(*first, x);
-        *last = fmax(*last, x);
-    }
-}
-
 /* Evenly over the columns of `part`, and more of them about the target. */
 static void part_add(const struct azimuth *azimuth, const struct tone *target, const struct grid *part,
                      struct energies *energies)
@@ -184,7 +174,7 @@ static void part_add(const struct azimuth *azimuth, const struct tone *target, c
     const struct rma_view *view = azimuth->view;
     const struct acquisition *a = view->problem->acquisition;
     double first, last;
-    columns_of(part, &first, &last);
+    grid_columns(part, &first, &last);
     const double width = last - first, wavelength = a->sound_speed / a->fc;
     const double resolution = fmax(wavelength / (4 * fmin(condition_seen_sine(a), 1)),
                                    wavelength * target->r / 2 / (view->x_high - view->x_low + view->spacing));
@@ -204,7 +194,7 @@ static void part_add(const struct azimuth *azimuth, const struct tone *target, c
 static bool lies_in(const struct grid *part, const struct grid *patch)
 {
     const struct vector middle = grid_point(part, (part->r_count - 1) / 2.0, (part->x_count - 1) / 2.0);
-    return has_column(patch, middle.x, middle.y) && has_row(patch, middle.x, middle.y);
+    return grid_holds(patch, middle.x, middle.y);
 }
 
 /* Where errors count in a patch. */
@@ -273,8 +263,9 @@ static double even_error(const struct rma_view *view)
 
 double azimuth_error(const struct rma_view *view)
 {
-    const double known = known_error(view);
+    const double known = known_error(view), limit = view->period > 0 ? limit_error(view) : 0;
+    const double even = view->problem->acquisition->echo_squint != 0 ? SQUINTED_TARGETS : FEW_TARGETS;
     if (isinf(known))
-        return FEW_TARGETS * even_error(view);
-    return (view->problem->target_count > KNOWN ? FEW_TARGETS : KNOWN_TARGETS) * known;
+        return condition_worse(even * even_error(view), limit);
+    return condition_worse((view->problem->target_count > KNOWN ? FEW_TARGETS : KNOWN_TARGETS) * known, limit);
 }

@@ -49,11 +49,9 @@ enum status rma_conditions_check(const struct rma_method *method, const struct c
 /* STATUS_UNSUPPORTED where track, axes or rows alone refuse; far cheaper than rma_conditions. */
 enum status rma_requirements_check(const struct problem *problem, const struct rma_method *method);
 
-/* Of the band, what an image keeps, +-*half cycles a sample, and *lost, the energy, relative, that lies beyond it, or at
-   half the sampling rate. Errors: STATUS_FAILED without memory. */
-enum status rma_band(const struct rma_view *view, double *half, double *lost);
-/* Error of an interpolated spectrum, relative L2, by `taps` taps where samples fill 1/oversampling of a transform. */
-double rma_interpolation_error(int taps, double oversampling);
+/* What an image loses at the ends of the band, energy, relative: beyond what it keeps or up to `edge` (cycles a sample)
+   inside of that, or at half the sampling rate. Errors: STATUS_FAILED without memory. */
+enum status rma_band_lost(const struct rma_view *view, double edge, double *lost);
 /* The forecast by a method, its errors alone. Errors: as rma_conditions_check. */
 enum status rma_forecast(const struct problem *problem, const struct rma_method *method,
                          const struct rma_options *options, struct forecast *forecast);

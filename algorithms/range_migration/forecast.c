@@ -6,14 +6,13 @@
 #include <string.h>
 
 #include "common/fft_length.h"
+#include "common/kaiser.h"
 #include "common/pulse_band.h"
 #include "range_migration/azimuth.h"
 #include "range_migration/engine.h"
 
 static const int stolt_taps[] = {0, 4, 6, 8, 12, 16}; /* of rma_stolt_names; 0: a direct sum */
-/* After Kaiser's weight is taken off: exp(-pi taps sqrt(1 - 1/oversampling)), as of any such kernel, times what is
-   measured. */
-static const double STOLT_SHARE = 4;
+static const double STOLT_SHARE = 4; /* of kaiser_error: measured */
 /* rad, root mean square over a block, for each rad at its ends: a lone block is taken up to 1/(4 pi), several that
    blend leave less (docs/range_migration.md). */
 static const double BLOCK_SHARE = 0.08;
@@ -36,11 +35,6 @@ static double value_of(const char *name, const struct condition *list, int count
     return 0;
 }
 
-double rma_interpolation_error(int taps, double oversampling)
-{
-    return STOLT_SHARE * exp(-M_PI * sqrt(1 - 1 / oversampling) * taps);
-}
-
 /* What range migration keeps of the band. */
 struct band {
     double half; /* cycles a sample */
@@ -56,15 +50,16 @@ static double density_of_ends(const struct problem *problem)
     for (int k = 0; k < problem->patch_count; k++) {
         const struct grid *g = &problem->patches[k];
         const double last = g->r_first + (g->r_count - 1) * g->r_step;
-        before = fmin(before, (2 * g->r_first / a->sound_speed - a->t0[0]) * a->fs);
-        after = fmin(after, a->samples - 1 - (2 * last / a->sound_speed - a->t0[0]) * a->fs);
+        const double delay = 2 / cos(a->echo_squint - g->angle_rad) / a->sound_speed; /* s/m: along the beam's axis */
+        before = fmin(before, (g->r_first * delay - a->t0[0]) * a->fs);
+        after = fmin(after, a->samples - 1 - (last * delay - a->t0[0]) * a->fs);
     }
     return (pow(fmax(before, 1), -2) + pow(fmax(after, 1), -2)) / (8 * M_PI * M_PI);
 }
 
 /* Raw echoes keep the pulse's band; range migration wider by what tapers smear where the first row lets the records be
    cut, and by what Stolt interpolation reads beyond it, where only samples have anything. */
-static enum status raw_band(const struct rma_view *view, struct band *band, double *density)
+static enum status raw_band(const struct rma_view *view, double edge, struct band *band, double *density)
 {
     const struct problem *problem = view->problem;
     const struct acquisition *a = problem->acquisition;
@@ -84,7 +79,7 @@ static enum status raw_band(const struct rma_view *view, struct band *band, doub
             band->half += RMA_GUARD / (a->samples + 2 * pulse);
         for (int k = 0; k < length; k++) {
             total += energy[k];
-            outside += fmin(k, length - k) > band->half * length ? energy[k] : 0;
+            outside += fmin(k, length - k) > (band->half - edge) * length ? energy[k] : 0;
         }
         band->lost = outside / total;
         *density += PULSE_SHARE * energy[length / 2] / (total / length) * a->bandwidth / a->fs;
@@ -93,22 +88,24 @@ static enum status raw_band(const struct rma_view *view, struct band *band, doub
     return status;
 }
 
-static enum status band_of(const struct rma_view *view, struct band *band)
+static enum status band_of(const struct rma_view *view, double edge, struct band *band)
 {
     const struct acquisition *a = view->problem->acquisition;
-    double density = density_of_ends(view->problem);
+    const double cut = density_of_ends(view->problem);
+    double density = cut;
     *band = (struct band){fmin(fmax(a->bandwidth / a->fs, 32.0 / a->samples), 0.5), 0};
-    enum status status = a->compressed ? STATUS_OK : raw_band(view, band, &density);
+    enum status status = a->compressed ? STATUS_OK : raw_band(view, edge, band, &density);
     const double ends = EDGE_BINS * density / (a->samples * a->bandwidth / a->fs + 2 * PULSE_PERIODS);
     band->lost += band->half >= 0.5 ? ends : pow(TAPERED, 2) * ends;
+    if (view->period > 0) /* no tapers: all that the cuts have beyond the band */
+        band->lost += cut * (1 - 2 * (band->half - edge)) * a->fs / a->bandwidth;
     return status;
 }
 
-enum status rma_band(const struct rma_view *view, double *half, double *lost)
+enum status rma_band_lost(const struct rma_view *view, double edge, double *lost)
 {
     struct band band;
-    const enum status status = band_of(view, &band);
-    *half = band.half;
+    const enum status status = band_of(view, edge, &band);
     *lost = band.lost;
     return status;
 }
@@ -125,7 +122,7 @@ enum status rma_forecast(const struct problem *problem, const struct rma_method 
     struct straight_track track;
     acquisition_is_straight(problem->acquisition, &track);
     const struct rma_view view = rma_view_of(problem, method, &track);
-    status = band_of(&view, &band);
+    status = band_of(&view, 0, &band);
     if (status != STATUS_OK)
         return status;
     *forecast = (struct forecast){.sums_pairs = false};
@@ -143,7 +140,7 @@ enum status rma_forecast(const struct problem *problem, const struct rma_method 
                                     : lawless         ? INFINITY
                                                       : BLOCK_SHARE * options->limit;
     if (stolt_taps[options->stolt] > 0)
-        forecast->error[CAUSE_STOLT] = rma_interpolation_error(stolt_taps[options->stolt], RMA_OVERSAMPLING);
+        forecast->error[CAUSE_STOLT] = STOLT_SHARE * kaiser_error(stolt_taps[options->stolt], RMA_OVERSAMPLING);
     forecast->error[CAUSE_FLOAT] = ROUNDING[problem->precision];
     return STATUS_OK;
 }

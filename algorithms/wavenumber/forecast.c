@@ -4,25 +4,31 @@
 
 #include "backprojection/traces.h"
 #include "common/fft_length.h"
+#include "common/kaiser.h"
 #include "range_migration/azimuth.h"
 #include "wavenumber/engine.h"
 
 /* Padded less, what the record's ends leave beyond them depends on where targets are: no law. */
 static const double PADDED_LEAST = 1.25;
+/* What interpolation misses beyond the band's edges, where records are transformed with the lesser oversampling:
+   measured, 1e-4 to 8e-4. */
+static const double EDGES = 8e-4;
+static const double EDGE_BINS = 1; /* at either end of the band, that are interpolated from zeros beyond: measured */
 /* Rounding, relative L2: of the transforms. */
 static const double ROUNDING[] = {1e-6, 1e-13};
 
 /* Of all interpolations of the spectrum, and of the image where it is resampled along both its axes. */
 static double interpolations_error(const struct wk *wk)
 {
-    const double once = rma_interpolation_error(wk->taps, wk->oversampling);
     const double padded = (double)wk->azimuth_length / wk->pings;
-    double squares = once * once;
+    double squares = pow(kaiser_error(wk->taps, wk->oversampling), 2);
+    if (wk->oversampling < WK_OVERSAMPLING)
+        squares += EDGES * EDGES;
     if (wk->angle != 0)
-        squares += padded < PADDED_LEAST ? INFINITY : pow(rma_interpolation_error(wk->taps, padded), 2);
+        squares += padded < PADDED_LEAST ? INFINITY : pow(kaiser_error(wk->taps, padded), 2);
     for (int k = 0; k < wk->patch_count; k++)
         if (wk->patches[k].resampled)
-            return sqrt(squares + 2 * pow(rma_interpolation_error(wk->taps, WK_OVERSAMPLING), 2));
+            return sqrt(squares + 2 * pow(kaiser_error(wk->taps, WK_OVERSAMPLING), 2));
     return sqrt(squares);
 }
 
@@ -31,11 +37,11 @@ static enum status errors_fill(const struct wk *wk, struct forecast *forecast)
     struct straight_track track;
     acquisition_is_straight(wk->problem.acquisition, &track); /* as wk_conditions holds */
     struct rma_view view = wk_view_of(&wk->problem, &track);
-    double half, lost;
+    double lost;
     view.slope = wk->slope;
     enum status status = wk_period(wk, &view.period);
     if (status == STATUS_OK)
-        status = rma_band(&view, &half, &lost);
+        status = rma_band_lost(&view, EDGE_BINS / wk->range_length, &lost);
     if (status != STATUS_OK)
         return status;
     const double azimuth = azimuth_error(&view);
