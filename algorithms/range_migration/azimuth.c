@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-#include "range_migration/limit.h"
+#include "range_migration/aliases.h"
 #include "range_migration/tone.h"
 
 enum {
@@ -76,8 +76,8 @@ static int patch_tones(const struct rma_view *view, const struct grid *patch, in
         const double low = from * pow(far / from, (double)row / rows);
         const double high = from * pow(far / from, (row + 1.0) / rows);
         const double place = fmod(0.125 + turn * 0.618, 1); /* of the width: as even as any number of them may be */
-        const struct vector at = grid_point(patch, ((low + high) / 2 - patch->r_first) / patch->r_step,
-                                            place * patch->x_count - 0.5);
+        const struct vector at =
+            grid_point(patch, ((low + high) / 2 - patch->r_first) / patch->r_step, place * patch->x_count - 0.5);
         list[n] = (struct tone){.r = at.y,
                                 .x = at.x,
                                 .frequency = a->fc + (turn / 2 + turn) % 2 * FREQUENCY * a->bandwidth
@@ -263,9 +263,9 @@ static double even_error(const struct rma_view *view)
 
 double azimuth_error(const struct rma_view *view)
 {
-    const double known = known_error(view), limit = view->period > 0 ? limit_error(view) : 0;
+    const double known = known_error(view), aliases = view->period > 0 ? aliases_error(view) : 0;
     const double even = view->problem->acquisition->echo_squint != 0 ? SQUINTED_TARGETS : FEW_TARGETS;
     if (isinf(known))
-        return condition_worse(even * even_error(view), limit);
-    return condition_worse((view->problem->target_count > KNOWN ? FEW_TARGETS : KNOWN_TARGETS) * known, limit);
+        return condition_worse(even * even_error(view), aliases);
+    return condition_worse((view->problem->target_count > KNOWN ? FEW_TARGETS : KNOWN_TARGETS) * known, aliases);
 }

@@ -12,7 +12,7 @@
 #include "range_migration/engine.h"
 
 static const int stolt_taps[] = {0, 4, 6, 8, 12, 16}; /* of rma_stolt_names; 0: a direct sum */
-static const double STOLT_SHARE = 4; /* of kaiser_error: measured */
+static const double STOLT_SHARE = 4;                  /* of kaiser_error: measured */
 /* rad, root mean square over a block, for each rad at its ends: a lone block is taken up to 1/(4 pi), several that
    blend leave less (docs/range_migration.md). */
 static const double BLOCK_SHARE = 0.08;

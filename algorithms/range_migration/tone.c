@@ -148,9 +148,8 @@ void azimuth_form(const struct azimuth *azimuth, const struct tone *target)
         const int entry = place % azimuth->period;
         const double kappa = c * monostatic / (4 * M_PI);
         const double weight = f * sqrt(c * target->r / (2 * kappa * kappa * kappa)) * nu_step;
-        azimuth->wave[place] =
-            weight * turns(0.125 + target->r * monostatic / (2 * M_PI))
-            * line_sum(azimuth, target, nu, azimuth->spectra + (size_t)entry * (size_t)receivers);
+        azimuth->wave[place] = weight * turns(0.125 + target->r * monostatic / (2 * M_PI))
+                               * line_sum(azimuth, target, nu, azimuth->spectra + (size_t)entry * (size_t)receivers);
     }
     fftw_execute_dft(azimuth->to_columns, azimuth->wave, azimuth->wave);
 }

@@ -1,7 +1,7 @@
 /* At a single frequency, as in tone.h. Some columns and targets stand for all. By Parseval's theorem the image of a
    target, seen from pings with the amplitudes a, has the energy  sum of a^2 lambda r/(2 spacing cos^3 theta)  over all
    columns. */
-#include "range_migration/limit.h"
+#include "range_migration/aliases.h"
 
 #include <math.h>
 
@@ -18,14 +18,13 @@ struct energies {
     double image, lost;
 };
 
-/* Does omega-k keep what a ping `at` ahead of a pixel sees, and back projection leave it out? */
-static bool differs(const struct rma_view *view, double at, double row)
+/* Is what a ping `at` ahead of a pixel sees kept by omega-k or summed by back projection, and not both? */
+static bool differs(const struct rma_view *view, double at, double row, double frequency)
 {
     const struct acquisition *a = view->problem->acquisition;
-    const double way = hypot(at, row), sampled = a->sound_speed / a->fc / (4 * view->spacing);
-    if (!(fabs(at * cos(a->echo_squint) + row * sin(a->echo_squint)) > a->aperture_limit * way))
-        return false;
-    return fabs(at / way + view->slope) <= sampled;
+    const double way = hypot(at, row), sampled = a->sound_speed / frequency / (4 * view->spacing);
+    const bool summed = fabs(at * cos(a->echo_squint) + row * sin(a->echo_squint)) <= a->aperture_limit * way;
+    return summed != (fabs(at / way + view->slope) <= sampled);
 }
 
 /* The energy of echoes of a target at the pixels of `part` on one of the track's columns: the share of it that its pings
@@ -39,7 +38,7 @@ static double column_lost(const struct rma_view *view, const struct target *targ
     for (int p = 0; p < a->pings; p++) {
         const double u = view->x_low + p * view->spacing - target->x, at = u + target->x - x;
         const double row = tone_row(target->r, u, at), beyond = hypot(at, target->r) - hypot(u, target->r);
-        if (!differs(view, at, row))
+        if (!differs(view, at, row, frequency))
             continue;
         const double seen = condition_amplitude(a, target->r, u);
         sum += seen * turns(2 * frequency / a->sound_speed * beyond);
@@ -88,7 +87,7 @@ static void even_add(const struct rma_view *view, const struct grid *part, struc
     }
 }
 
-double limit_error(const struct rma_view *view)
+double aliases_error(const struct rma_view *view)
 {
     const struct problem *problem = view->problem;
     const bool judges = problem->target_count > 0 && problem->judged_count > 0;
@@ -96,8 +95,6 @@ double limit_error(const struct rma_view *view)
     const int all = judges ? problem->judged_count : problem->patch_count, parts = all < PARTS ? all : PARTS;
     const int targets = problem->target_count < KNOWN ? problem->target_count : KNOWN;
     struct energies energies = {0, 0};
-    if (!(problem->acquisition->aperture_limit < 1))
-        return 0;
     for (int k = 0; k < parts; k++) {
         const struct grid *part = &list[(long long)k * all / parts];
         for (int n = 0; n < targets; n++)
