@@ -12,8 +12,8 @@ double kaiser_value(int taps, double shape, double distance);
 /* What the kernel weights a sample by that lies `place` (a fraction of the transform) from its middle. */
 double kaiser_transform(int taps, double shape, double place);
 
-/* Relative error of an interpolation whose samples fill 1/oversampling of the transform and had their weights taken off:
-   exp(-pi taps sqrt(1 - 1/oversampling)), as of any such kernel, but for a factor of about 1. */
+/* Relative error of an interpolation whose samples fill 1/oversampling of the transform and had their weights taken
+   off: exp(-pi taps sqrt(1 - 1/oversampling)), as of any such kernel, but for a factor of about 1. */
 double kaiser_error(int taps, double oversampling);
 
 #endif

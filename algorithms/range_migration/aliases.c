@@ -27,8 +27,8 @@ static bool differs(const struct rma_view *view, double at, double row, double f
     return summed != (fabs(at / way + view->slope) <= sampled);
 }
 
-/* The energy of echoes of a target at the pixels of `part` on one of the track's columns: the share of it that its pings
-   have there. */
+/* The energy of echoes of a target at the pixels of `part` on one of the track's columns: the share of it that its
+   pings have there. */
 static double column_lost(const struct rma_view *view, const struct target *target, const struct grid *part, double x,
                           double frequency)
 {

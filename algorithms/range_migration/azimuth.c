@@ -2,8 +2,8 @@
    s_pm exp(+j 2 pi F tau_m(x_p - x)).
 
    Columns and rows are the track's, also of turned patches. Rows need not be looked at: to a column, a row is a delay,
-   and by Parseval's theorem the energies of all rows are those of all frequencies. Targets, rows and frequencies are taken in turn; their energies are summed as those of
-   the image. */
+   and by Parseval's theorem the energies of all rows are those of all frequencies. Targets, rows and frequencies are
+   taken in turn; their energies are summed as those of the image. */
 #include "range_migration/azimuth.h"
 
 #include <math.h>

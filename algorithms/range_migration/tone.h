@@ -50,8 +50,8 @@ void azimuth_form(const struct azimuth *azimuth, const struct tone *target);
 /* Of receiver m, m ahead of the transmitter. */
 double azimuth_offset(const struct azimuth *azimuth, int m);
 
-/* The row that an echo of a target at range r belongs to, from a ping u ahead of the target, at a column that the ping is
-   `at` ahead of: the range there of the same delay. 0: none. */
+/* The row that an echo of a target at range r belongs to, from a ping u ahead of the target, at a column that the ping
+   is `at` ahead of: the range there of the same delay. 0: none. */
 static inline double tone_row(double r, double u, double at)
 {
     return sqrt(fmax(r * r + u * u - at * at, 0));

@@ -262,9 +262,9 @@ static void cut_records(void **state)
     scene_free(&scene);
 }
 
-/* One receiver: omega-k on shipped scenes, and on those that its forecast was once far off on: pings beyond the aperture
-   limit within the wavenumbers that are sampled, records that end near the rows, flanks of a short chirp, a field about
-   a turned patch, targets seen far ahead on rows along the track. */
+/* One receiver: omega-k on shipped scenes, and on those that its forecast was once far off on: pings beyond the
+   aperture limit within the wavenumbers that are sampled, records that end near the rows, flanks of a short chirp, a
+   field about a turned patch, targets seen far ahead on rows along the track. */
 static void omega_k(void **state)
 {
     (void)state;
