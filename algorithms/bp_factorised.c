@@ -77,8 +77,8 @@ static enum status choose_stages(const struct problem *problem, struct tree_sett
     for (tried.stages = 1; status == STATUS_OK && tried.stages <= STAGES_MOST; tried.stages++) {
         struct factorised_cost cost;
         status = factorised_cost(problem, &tried, &cost);
-        if (status == STATUS_OK && cost.pairs < least) {
-            least = cost.pairs;
+        if (status == STATUS_OK && factorised_pairs(&cost) < least) {
+            least = factorised_pairs(&cost);
             *chosen = cost;
             settings->stages = tried.stages;
         }

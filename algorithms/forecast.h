@@ -46,9 +46,11 @@ struct forecast {
     double slowness;      /* of their length: times the seconds a FLOP of the lengths that FFTW is fast at */
     double kernel_flops;  /* of branches that stand for a kernel's taps */
     double record_values; /* complex ones that are put where pairs read them */
-    /* Where images of subapertures stand for pairs, what these take; 0 elsewhere. */
+    /* Where images of subapertures stand for pairs, what these take, and the pairs that are left, of which `units` are;
+       0 elsewhere. */
     double image_cost; /* in pairs */
     double image_flops;
+    double image_pairs;
     /* Of range migration, by algorithm.h's `cost`: */
     double migration[MIGRATIONS];
     double migration_flops; /* that are counted, all of them */

@@ -100,7 +100,7 @@ static enum status sums_fill(const struct setting *setting, struct candidate *ca
         status = pairs_of(&problem, &candidate->pairs);
     }
     if (f->image_cost > 0)
-        candidate->pairs = 0;
+        candidate->pairs = f->image_pairs;
     candidate->flops = candidate->pairs * f->pair_flops + f->image_flops + f->record_flops + f->kernel_flops;
     candidate->seconds = rates_sums(f, problem.precision, candidate->pairs);
     return status;

@@ -64,7 +64,7 @@ double rates_sums(const struct forecast *f, enum precision precision, double pai
     const double unit = rates.unit[engine][kind] + rates.unit_value[engine][kind] * (f->values + more);
     const double records = f->record_flops * f->slowness * rates.compress + f->kernel_flops * rates.filter
                            + f->record_values * rates.put[engine];
-    const double sums = f->image_cost > 0 ? f->image_cost * rates.image : pairs * pair + f->units * unit;
+    const double sums = pairs * pair + f->units * unit + f->image_cost * rates.image;
     return START + factor(precision) * (sums + records);
 }
 

@@ -14,6 +14,7 @@ struct draw {
     double c, fc, bandwidth, fs, r; /* m/s, Hz, m */
     double element, pitch, spacing; /* m: the transmitter's length */
     int receivers, pings, first, samples, pulse;
+    double x_first;        /* m: the transmitter of the first ping */
     double x_step, r_step; /* m */
 };
 
@@ -62,11 +63,23 @@ static void draw_track(struct random *random, struct draw *d)
     d->r_step = rounded(d->c / (2 * d->fs) * between(random, 0.3, 1));
     const double half = COLUMNS / 2 * d->x_step, seen = 2 * (d->r * tangent + half) / d->spacing;
     d->pings = (int)fmin(PINGS_MOST, ceil(seen) + 2);
+    d->x_first = -((d->pings - 1) * d->spacing + d->receivers * d->pitch / 2) / 2;
+    /* A ping must see the patch: where pings are so far apart that it lies between their beams, one is abreast of it. */
+    const double nearest = remainder(d->x_first, d->spacing);
+    if (fabs(nearest) > d->r * tangent + half)
+        d->x_first -= nearest;
     const double aside = fmin(d->r * tangent + half, (d->pings + 1) * d->spacing / 2 + half) + d->receivers * d->pitch;
     const double far = d->r + ROWS * d->r_step, late = 2 * (hypot(far, aside) - d->r) / d->c;
     d->pulse = random_uniform(random) < 0.5 ? 0 : (int)scale(random, 40, PULSE_MOST);
     d->first = (int)floor(2 * d->r / d->c * d->fs) - SPARE;
     d->samples = (int)fmin(SAMPLES_MOST, ceil(late * d->fs) + 2 * SPARE + d->pulse);
+}
+
+/* Nine digits; whole numbers with a decimal point, for the numbers of a list are all of one type. */
+static void range_write(FILE *stream, double first, double last)
+{
+    fprintf(stream, first == round(first) ? "[%.1f, " : "[%.9g, ", first);
+    fprintf(stream, last == round(last) ? "%.1f]" : "%.9g]", last);
 }
 
 void random_scene_write(FILE *stream, uint64_t seed)
@@ -88,12 +101,15 @@ void random_scene_write(FILE *stream, uint64_t seed)
             "array = { tx_length = %.9g; rx_length = %.9g; receivers = %d; first_offset = %.9g; pitch = %.9g; };\n",
             d.element, d.pitch, d.receivers, d.pitch, d.pitch);
     fprintf(stream, "track = { speed = %.9g; pri = %.9g; spacing = %.9g; pings = %d; x_first = %.9g; };\n",
-            d.spacing / pri, pri, d.spacing, d.pings, -((d.pings - 1) * d.spacing + d.receivers * d.pitch / 2) / 2);
+            d.spacing / pri, pri, d.spacing, d.pings, d.x_first);
     fprintf(stream, "record = { first_sample = %d; samples = %d; };\n", d.first > 0 ? d.first : 0, d.samples);
     fprintf(stream, "beam = { kind = \"txrx\"; truncation = \"tx\"; limit = 1.0; };\n");
     const double half_x = COLUMNS / 2 * d.x_step, depth = ROWS * d.r_step;
-    fprintf(stream, "targets = { fields = ( { x = [%.9g, %.9g]; r = [%.9g, %.9g]; count = 30; seed = %llu; } ); };\n",
-            -half_x, half_x, d.r, d.r + depth, (unsigned long long)seed);
+    fprintf(stream, "targets = { fields = ( { x = ");
+    range_write(stream, -half_x, half_x);
+    fprintf(stream, "; r = ");
+    range_write(stream, d.r, d.r + depth);
+    fprintf(stream, "; count = 30; seed = %llu; } ); };\n", (unsigned long long)seed);
     fprintf(stream,
             "image = { x = { first = %.9g; step = %.12g; count = %d; }; r = { first = %.9g; step = %.9g; count = %d; "
             "}; };\n",

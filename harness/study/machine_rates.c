@@ -234,6 +234,17 @@ static void records_fill(const struct probes *probes, struct rates *rates)
     rates->put[1] = fmax(rest, 0) / f->record_values;
 }
 
+/* Images of subapertures, beside the pairs that they are summed from; at least a tenth of all. */
+static void image_fill(const struct probe *probe, struct rates *rates)
+{
+    const struct forecast *f = &probe->forecast;
+    const double pair = rates->pair[0][f->kind] + rates->value[0][f->kind] * f->values,
+                 unit = rates->unit[0][f->kind] + rates->unit_value[0][f->kind] * f->values;
+    const double all = probe->total - probe->compress, sums = pair * f->image_pairs + unit * f->units;
+    fprintf(stderr, "DBG total %g compress %g records %g (pairs %g units %g) image_cost %g\n", probe->total, probe->compress, sums, f->image_pairs, f->units, f->image_cost);
+    rates->image = fmax(all - sums, 0.1 * all) / f->image_cost;
+}
+
 static void rates_fill(const struct probes *probes, struct rates *rates)
 {
     static const struct {
@@ -251,7 +262,7 @@ static void rates_fill(const struct probes *probes, struct rates *rates)
                 (const struct probe *[]){&probes->narrow[engine][kinds[k].few], &probes->narrow[engine][kinds[k].many]},
                 rates);
     records_fill(probes, rates);
-    rates->image = fmax(probes->images.total - probes->images.compress, 0) / probes->images.forecast.image_cost;
+    image_fill(&probes->images, rates);
     for (int k = 0; k < MIGRATIONS; k++) {
         const struct probe *of = k == MIGRATION_BLOCKS ? &probes->blocks : &probes->terms;
         rates->migrate[k] = of->parts[k] / of->forecast.migration[k];

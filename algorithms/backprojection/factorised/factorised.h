@@ -40,10 +40,14 @@ struct factorised {
 
 /* What some settings take beside the transforms of the records, counted on some of the lines of pixels. */
 struct factorised_cost {
-    double pairs;   /* in pairs of the general engine: by this the number of levels is chosen */
-    double records; /* of these, those of a record and a pixel or a place of an image */
-    double flops;   /* of all but those */
+    double records; /* pairs of a record and a pixel or a place of an image */
+    double blocks;  /* lines that they are summed for, one a record */
+    double images;  /* all else, in pairs of the general engine */
+    double flops;   /* of all but the pairs */
 };
+
+/* All of it in pairs of the general engine: by this the number of levels is chosen. */
+double factorised_pairs(const struct factorised_cost *cost);
 
 /* What some settings cost, and, in pairs, what back projection itself does: to be compared.
    Errors: as tree_make; STATUS_UNSUPPORTED where patches are turned by different angles. */

@@ -106,6 +106,8 @@ static bool scratch_make(struct factorised *plan)
         s->row = allocate(plan, row * size);
         if (!s->interleaved || !s->tx || !s->velocity || !s->rx || !s->boxes || !s->trace || !s->row)
             return false;
+        /* What lies behind a trace is computed with, unused: what memory holds may be subnormal, which is slow. */
+        memset(s->trace, 0, 2 * plan->trace_pitch * size);
         memset(s->row, 0, row * size);
         bytes = plan->bp.work.bytes - before;
         plan->bp.work.bytes = before;

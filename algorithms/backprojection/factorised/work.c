@@ -5,10 +5,11 @@
 
 #include "backprojection/factorised/factorised.h"
 
-/* What lines of places or pixels take: pairs of a pixel and a record, of a pixel and an image, samples of traces,
-   lines. */
+/* What lines of places or pixels take: pairs of a pixel and a record, of a pixel and an image, samples of traces;
+   lines that are read from images; lines of images times the pings that they are summed from; and lines of any kind
+   times such records. */
 struct amounts {
-    double records, images, traces, lines;
+    double records, images, traces, lines, pings, blocks;
 };
 
 /* `count` stretches of lines that are read from images of a level. */
@@ -28,7 +29,8 @@ static void count_images(const struct tree *tree, const struct subaperture *part
         const double places = (double)polar->lines * polar->places;
         if (part->level == 0) {
             sum->records += places * part->pings * tree->problem.acquisition->receivers;
-            sum->lines += (double)polar->lines * part->pings;
+            sum->pings += (double)polar->lines * part->pings;
+            sum->blocks += (double)polar->lines * part->pings * tree->problem.acquisition->receivers;
             continue;
         }
         const double rho = polar_step(tree, part->level, v)->rho;
@@ -37,10 +39,9 @@ static void count_images(const struct tree *tree, const struct subaperture *part
     }
 }
 
-/* Every `stride`th line of a patch, for one subaperture: what is read from its images; *direct: pixels times records
-   that are summed from its records. */
-static void count_pixels(const struct tree *tree, int subaperture, int patch, int stride, struct amounts *sum,
-                         double *direct)
+/* Every `stride`th line of a patch, for one subaperture: what is read from its images, and what is summed from its
+   records. */
+static void count_pixels(const struct tree *tree, int subaperture, int patch, int stride, struct amounts *sum)
 {
     const struct subaperture *part = &tree->subapertures[subaperture];
     const struct grid *grid = &tree->problem.patches[patch];
@@ -61,7 +62,8 @@ static void count_pixels(const struct tree *tree, int subaperture, int patch, in
             continue;
         tree_direct(tree, subaperture, patch, &line, &spans);
         for (int k = 0; k < spans.count; k++)
-            *direct += (spans.span[k].end - spans.span[k].begin) * records;
+            sum->records += (spans.span[k].end - spans.span[k].begin) * records;
+        sum->blocks += spans.count * records;
     }
 }
 
@@ -71,12 +73,21 @@ static int stride_of(const struct tree *tree, int patch)
     return lines > 64 ? lines / 32 : 1;
 }
 
-/* In pairs of the general engine, measured: what an image takes for each pixel, a trace for each sample, a line. */
-static double pairs_of(const struct tree *tree, const struct amounts *sum)
+/* In pairs of the general engine, measured: what an image takes for each pixel, a trace for each sample, a line,
+   and a ping that a line is summed from. */
+static double images_of(const struct tree *tree, const struct amounts *sum)
 {
-    static const double IMAGE = 1.2, TRACE = 1, TAP = 0.1, BRANCH = 0.05, LINE = 300;
+    static const double IMAGE = 1.2, TRACE = 1, TAP = 0.1, BRANCH = 0.05, LINE = 300, PING = 170;
     const double trace = TRACE + TAP * tree->angle.taps + BRANCH * tree->range.taps * tree->range.branches;
-    return sum->records + IMAGE * sum->images + trace * sum->traces + LINE * sum->lines;
+    return IMAGE * sum->images + trace * sum->traces + LINE * sum->lines + PING * sum->pings;
+}
+
+/* In pairs, measured: what a line takes for each record, beside its pixels. */
+static const double BLOCK = 130;
+
+double factorised_pairs(const struct factorised_cost *cost)
+{
+    return cost->records + BLOCK * cost->blocks + cost->images;
 }
 
 /* Of images, and lines through them. */
@@ -95,15 +106,15 @@ static struct factorised_cost tree_cost(const struct tree *tree)
         for (int k = 0; k < tree->problem.patch_count; k++) {
             const int stride = stride_of(tree, k);
             struct amounts some = {0};
-            double direct = 0;
-            count_pixels(tree, n, k, stride, &some, &direct);
-            all.records += stride * direct;
+            count_pixels(tree, n, k, stride, &some);
+            all.records += stride * some.records;
+            all.blocks += stride * some.blocks;
             all.images += stride * some.images;
             all.traces += stride * some.traces;
             all.lines += stride * some.lines;
         }
     }
-    return (struct factorised_cost){pairs_of(tree, &all), all.records, flops_of(tree, &all)};
+    return (struct factorised_cost){all.records, all.blocks, images_of(tree, &all), flops_of(tree, &all)};
 }
 
 enum status factorised_cost(const struct problem *problem, const struct tree_settings *settings,
@@ -126,7 +137,7 @@ enum status factorised_cost(const struct problem *problem, const struct tree_set
    its pixels, and a pixel on a slope of a sample a pixel. */
 static double pairs_about(const struct problem *problem, bool general)
 {
-    static const double LINE = 150, STEEP = 3.5;
+    static const double STEEP = 3.5;
     enum { LINES = 32, PINGS = 64 };
     const struct acquisition *a = problem->acquisition;
     double pairs = 0;
@@ -142,7 +153,7 @@ static double pairs_about(const struct problem *problem, bool general)
                 for (int i = 0; i < count; i++) {
                     const double pixels = spans[i].end - spans[i].begin;
                     const bool steep = general && blocks_steep(a, a->fs, p, &along, spans[i]);
-                    pairs += (double)stride * every * (pixels * (steep ? STEEP : 1) + (general ? LINE : 0));
+                    pairs += (double)stride * every * (pixels * (steep ? STEEP : 1) + (general ? BLOCK : 0));
                 }
             }
     }
@@ -174,8 +185,10 @@ enum status factorised_forecast(const struct problem *problem, const struct tree
     const double share = settings->error / sqrt(2 * settings->stages + 1);
     double *error = &forecast->error[CAUSE_INTERPOLATION]; /* of the records alone, which have a share of it */
     *error = hypot(settings->error, sqrt(fmax(*error * *error - share * share, 0)));
-    forecast->image_cost = cost->pairs;
-    forecast->image_flops = cost->flops + cost->records * forecast->pair_flops;
+    forecast->units = cost->blocks;
+    forecast->image_pairs = cost->records;
+    forecast->image_cost = cost->images;
+    forecast->image_flops = cost->flops;
     return STATUS_OK;
 }
 
@@ -193,10 +206,9 @@ bool factorised_count(struct factorised *plan)
         plan->flops += 6 * (double)tree->subapertures[n].values / 2;
         for (int k = 0; k < patches; k++) {
             struct amounts some = {0};
-            double direct = 0;
-            count_pixels(tree, n, k, 1, &some, &direct);
-            plan->needed[n * patches + k] = some.lines > 0 || direct > 0;
-            plan->direct += direct;
+            count_pixels(tree, n, k, 1, &some);
+            plan->needed[n * patches + k] = some.lines > 0 || some.records > 0;
+            plan->direct += some.records;
             all.images += some.images;
             all.traces += some.traces;
         }

@@ -1,4 +1,5 @@
-/* What `auto` chooses stays within its budgets on scenes drawn from seeds. */
+/* What `auto` chooses stays within its budgets on scenes drawn from seeds: a few by the built-in rates; with arguments,
+   ranges of seeds as 2001-2060, by those of this machine, where `plan` has measured them. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,11 +8,14 @@
 #include "measure/session.h"
 #include "measure/timing.h"
 #include "planner/planner.h"
+#include "study/machine_rates.h"
 #include "tests/support.h"
+
+enum { SEEDS_MOST = 1000, BUDGETS = 4 };
 
 /* What choices made of their budgets. */
 struct tally {
-    double used[4000]; /* measured error over the budget */
+    double used[SEEDS_MOST * BUDGETS]; /* measured error over the budget */
     int count, refused;
     int zero; /* choices on images of zeros, which have no error and must be zero as well */
 };
@@ -44,29 +48,42 @@ static void choice_measure(const struct session *session, const char *name, doub
     spec_free(&spec);
 }
 
-/* Measured errors within the budget, of other seeds than the planner was made with: a few, or as many as the
-   environment variable SASBENCH_RANDOM_SCENES says. */
+static void seed_measure(int seed, struct tally *tally)
+{
+    static const double budgets[BUDGETS] = {1e-1, 1e-2, 1e-3, 1e-4};
+    struct scene scene;
+    struct session session;
+    char name[32];
+    snprintf(name, sizeof name, "seed %d", seed);
+    support_random_scene(seed, &scene);
+    assert_int_equal(session_open(&scene, &session), STATUS_OK);
+    for (int k = 0; k < BUDGETS; k++)
+        choice_measure(&session, name, budgets[k], tally);
+    session_close(&session);
+    scene_free(&scene);
+}
+
+static int given;
+static char **ranges;
+
+/* Measured errors within the budget, of other seeds than the planner was made with. */
 static void within_budget(void **state)
 {
     (void)state;
-    static const double budgets[] = {1e-1, 1e-2, 1e-3, 1e-4};
-    enum { FIRST = 2001, BUDGETS = sizeof budgets / sizeof *budgets };
+    static char few[] = "2001-2006", *usual[] = {few};
     static struct tally tally;
-    const char *more = getenv("SASBENCH_RANDOM_SCENES");
-    const int seeds = more ? atoi(more) : 6;
-    int over = 0;
-    assert_true(seeds > 0 && seeds <= 1000);
-    for (int seed = FIRST; seed < FIRST + seeds; seed++) {
-        struct scene scene;
-        struct session session;
-        char name[32];
-        snprintf(name, sizeof name, "seed %d", seed);
-        support_random_scene(seed, &scene);
-        assert_int_equal(session_open(&scene, &session), STATUS_OK);
-        for (int k = 0; k < BUDGETS; k++)
-            choice_measure(&session, name, budgets[k], &tally);
-        session_close(&session);
-        scene_free(&scene);
+    int over = 0, seeds = 0;
+    if (given > 0)
+        machine_rates_use(NULL);
+    for (int k = 0; k < (given > 0 ? given : 1); k++) {
+        int first, last;
+        const char *range = (given > 0 ? ranges : usual)[k];
+        const int read = sscanf(range, "%d-%d", &first, &last);
+        if (read <= 0)
+            fail_msg("%s is no range of seeds: accepted is 2001-2060, or one seed", range);
+        last = read > 1 ? last : first;
+        for (int seed = first; seed <= last && seeds < SEEDS_MOST; seed++, seeds++)
+            seed_measure(seed, &tally);
     }
     assert_true(tally.count > 0);
     const double middle = median(tally.used, tally.count); /* sorts them */
@@ -107,11 +124,13 @@ static void subapertures_within_budget(void **state)
     scene_free(&scene);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(within_budget, folder_make, folder_remove),
         cmocka_unit_test(subapertures_within_budget),
     };
+    given = argc - 1;
+    ranges = argv + 1;
     return cmocka_run_group_tests_name("budgets_held", tests, NULL, NULL);
 }
