@@ -69,8 +69,12 @@ static enum status plan_direct(const struct problem *problem, double error, void
 static enum status choose_stages(const struct problem *problem, struct tree_settings *settings,
                                  struct factorised_cost *chosen)
 {
-    double least;
-    enum status status = factorised_cost_direct(problem, &least);
+    const struct interpolator branches = direct_branches(problem, settings->error);
+    struct forecast direct;
+    double least = INFINITY;
+    enum status status = bp_forecast(problem, &branches, &direct_options, &direct);
+    if (status == STATUS_OK)
+        status = factorised_cost_direct(problem, &direct, &least);
     struct tree_settings tried = *settings;
     settings->stages = 0;
     double pings = tried.base;

@@ -53,15 +53,16 @@ static enum status pairs_of(const struct problem *problem, double *pairs)
 /* Each pixel reads an image, each record is read by some lines of places of one. */
 static double reads_of(const struct problem *problem, double pairs)
 {
-    static const double LINES = 8, LINE = 300; /* of an image; pairs that one takes beside those of its places */
+    /* Of an image; pairs that one takes for a record and for a ping, beside those of its places; that a pixel takes. */
+    static const double LINES = 8, RECORD = 130, PING = 600, PIXEL = 1.4;
     const struct acquisition *a = problem->acquisition;
     const double pixels = problem_pixels(problem), step = a->sound_speed / (2 * a->fs);
     double places = 0;
     for (int k = 0; k < problem->patch_count; k++) {
         const struct grid *g = &problem->patches[k];
-        places += fmin(g->r_count * g->r_step, g->x_count * g->x_step) / step + LINE / a->receivers;
+        places += fmin(g->r_count * g->r_step, g->x_count * g->x_step) / step + RECORD + PING / a->receivers;
     }
-    return pixels + pairs / pixels * LINES * places;
+    return PIXEL * pixels + pairs / pixels * LINES * places;
 }
 
 /* Over the budget, or not. */

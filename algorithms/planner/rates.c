@@ -13,7 +13,7 @@ static struct rates rates = {
     .unit_value = {{[READ_BRANCHES] = 8.7e-10}, {[READ_TAPS] = 5.1e-10, [READ_BRANCHES] = 3.7e-10}},
     .compress = 1.6e-11,
     .filter = 1.3e-11,
-    .image = 1.1e-9,
+    .image = 3.8e-10,
     .put = {1.2e-9, 8.3e-10},
     .migrate = {[MIGRATION_RECORDS] = 2.2e-11,
                 [MIGRATION_SPREAD] = 2e-9,

@@ -201,7 +201,7 @@ static enum status round_run(const struct bench *bench, struct probes *probes)
                             narrow ? &probes->narrow[engine][n] : &probes->of[engine][n]);
     }
     if (status == STATUS_OK)
-        status = probe_spec(bench, "bp_factorised:stages=1", &bench->usual, &probes->images);
+        status = probe_spec(bench, "bp_factorised:stages=1,error=1e-3", &bench->usual, &probes->images);
     if (status == STATUS_OK)
         status = probe_spec(bench, "rma_lbf", &bench->usual, &probes->blocks);
     return status == STATUS_OK ? probe_spec(bench, "rma_delay", &bench->usual, &probes->terms) : status;
@@ -241,7 +241,6 @@ static void image_fill(const struct probe *probe, struct rates *rates)
     const double pair = rates->pair[0][f->kind] + rates->value[0][f->kind] * f->values,
                  unit = rates->unit[0][f->kind] + rates->unit_value[0][f->kind] * f->values;
     const double all = probe->total - probe->compress, sums = pair * f->image_pairs + unit * f->units;
-    fprintf(stderr, "DBG total %g compress %g records %g (pairs %g units %g) image_cost %g\n", probe->total, probe->compress, sums, f->image_pairs, f->units, f->image_cost);
     rates->image = fmax(all - sums, 0.1 * all) / f->image_cost;
 }
 

@@ -49,11 +49,12 @@ struct factorised_cost {
 /* All of it in pairs of the general engine: by this the number of levels is chosen. */
 double factorised_pairs(const struct factorised_cost *cost);
 
-/* What some settings cost, and, in pairs, what back projection itself does: to be compared.
+/* What some settings cost, and, in pairs, what back projection itself does, of which the forecast is given: to be
+   compared.
    Errors: as tree_make; STATUS_UNSUPPORTED where patches are turned by different angles. */
 enum status factorised_cost(const struct problem *problem, const struct tree_settings *settings,
                             struct factorised_cost *cost);
-enum status factorised_cost_direct(const struct problem *problem, double *pairs);
+enum status factorised_cost_direct(const struct problem *problem, const struct forecast *forecast, double *pairs);
 /* The forecast of settings whose cost is known. Errors: STATUS_FAILED without memory. */
 enum status factorised_forecast(const struct problem *problem, const struct tree_settings *settings,
                                 const struct factorised_cost *cost, struct forecast *forecast);

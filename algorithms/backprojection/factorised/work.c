@@ -77,7 +77,7 @@ static int stride_of(const struct tree *tree, int patch)
    and a ping that a line is summed from. */
 static double images_of(const struct tree *tree, const struct amounts *sum)
 {
-    static const double IMAGE = 1.2, TRACE = 1, TAP = 0.1, BRANCH = 0.05, LINE = 300, PING = 170;
+    static const double IMAGE = 1.4, TRACE = 6, TAP = 0.6, BRANCH = 0.12, LINE = 1600, PING = 600;
     const double trace = TRACE + TAP * tree->angle.taps + BRANCH * tree->range.taps * tree->range.branches;
     return IMAGE * sum->images + trace * sum->traces + LINE * sum->lines + PING * sum->pings;
 }
@@ -133,11 +133,9 @@ enum status factorised_cost(const struct problem *problem, const struct tree_set
     return status;
 }
 
-/* Pairs inside the aperture limit, of some lines and pings; those of the general engine with what a line takes beside
-   its pixels, and a pixel on a slope of a sample a pixel. */
-static double pairs_about(const struct problem *problem, bool general)
+/* Pairs inside the aperture limit, of some lines and pings. */
+static double pairs_about(const struct problem *problem)
 {
-    static const double STEEP = 3.5;
     enum { LINES = 32, PINGS = 64 };
     const struct acquisition *a = problem->acquisition;
     double pairs = 0;
@@ -150,25 +148,25 @@ static double pairs_about(const struct problem *problem, bool general)
                 struct pair_span spans[2];
                 const struct pixel_line along = grid_line(grid, false, n);
                 const int count = pair_spans(a, p, acquisition_normal(a, p), &along, spans);
-                for (int i = 0; i < count; i++) {
-                    const double pixels = spans[i].end - spans[i].begin;
-                    const bool steep = general && blocks_steep(a, a->fs, p, &along, spans[i]);
-                    pairs += (double)stride * every * (pixels * (steep ? STEEP : 1) + (general ? BLOCK : 0));
-                }
+                for (int i = 0; i < count; i++)
+                    pairs += (double)stride * every * (spans[i].end - spans[i].begin);
             }
     }
     return pairs * a->receivers;
 }
 
-enum status factorised_cost_direct(const struct problem *problem, double *pairs)
+enum status factorised_cost_direct(const struct problem *problem, const struct forecast *forecast, double *pairs)
 {
-    static const double INVARIANT = 0.3; /* of a pair of the general engine */
-    const struct condition invariant = invariant_condition(problem, SEVERITY_INFORM);
+    /* Of tables, in pairs of the general engine, measured: what a pair takes, more of it where the columns from ping to
+       ping are few and share no loads; an entry. */
+    static const double PAIR = 0.19, ALONE = 0.8, COLUMNS = 8, ENTRY = 6.6;
     struct problem seen = *problem;
     struct turned_problem turned;
     enum status status = problem_turn_back(&seen, &turned, NULL);
     if (status == STATUS_OK)
-        *pairs = condition_holds(&invariant) ? INVARIANT * pairs_about(&seen, false) : pairs_about(&seen, true);
+        *pairs = forecast->tables ? (PAIR + ALONE / fmin(forecast->residues, COLUMNS)) * pairs_about(&seen)
+                                        + ENTRY * forecast->units
+                                  : pairs_about(&seen) + BLOCK * forecast->units;
     turned_free(&turned);
     return status;
 }
