@@ -11,7 +11,7 @@
 #include "common/fft_length.h"
 #include "common/pulse_band.h"
 
-enum { GAUSS = 8, BINS = 48, FINER = 16, FRACTIONS = 256, IN_A_STEP = 8 };
+enum { GAUSS = 8, BINS = 48, FINER = 16, FRACTIONS = 256, IN_A_STEP = 8, LOW = 4, HARMONICS = LOW + 2 };
 /* The positive half of Gauss and Legendre's 16 points. */
 static const double node[GAUSS] = {0.0950125098376374, 0.2816035507792589, 0.4580167776572274, 0.6178762444026438,
                                    0.7554044083550030, 0.8656312023878318, 0.9445750230732326, 0.9894009349916499};
@@ -59,6 +59,16 @@ bool law_spectrum(const struct acquisition *a, struct law_spectrum *spectrum)
     return true;
 }
 
+static double square(double complex a)
+{
+    return creal(a) * creal(a) + cimag(a) * cimag(a);
+}
+
+static double complex product(double complex a, double complex b)
+{
+    return CMPLX(creal(a) * creal(b) - cimag(a) * cimag(b), creal(a) * cimag(b) + cimag(a) * creal(b));
+}
+
 /* H of Farrow branches of these gains (farrow_gains): what they make of exp(j 2 pi nu u), |u| <= 1/2, over it. */
 static double complex branches_response(int degree, const double *gains, double nu, double u)
 {
@@ -80,20 +90,82 @@ static double complex taps_response(const double *taps, int first, int count, do
     return sum;
 }
 
-double interpolation_error(const struct interpolator *in, const void *options, const struct law_spectrum *spectrum)
+/* Of one frequency: the Fourier coefficients of H - 1 over the fractions. */
+struct harmonics {
+    double complex mean;                /* of order 0 */
+    double complex first[HARMONICS][2]; /* of some orders, of either sign */
+    double spread;                      /* the mean of |H - 1|^2 */
+};
+
+/* The orders that scatter most: the first, and those of the steps between samples. */
+static void orders_fill(int steps, int orders[HARMONICS])
 {
-    double gains[LAW_NODES][FARROW_MOST + 1];             /* of branches */
-    double off[LAW_NODES] = {0}, spread[LAW_NODES] = {0}; /* means of the real part of H - 1, and of |H - 1|^2 */
+    for (int k = 0; k < HARMONICS; k++)
+        orders[k] = k < LOW ? k + 1 : (k - LOW + 1) * (steps > LOW ? steps : LOW);
+}
+
+/* The energy that is scattered over fractions, but for what falls outside of the image. */
+static double scattered(const struct harmonics *h, const int orders[HARMONICS], int upsample,
+                        const struct scatter *scatter)
+{
+    const double all = fmax(h->spread - square(h->mean), 0);
+    if (!scatter)
+        return all;
+    double rest = all, inside = 0;
+    for (int k = 0; k < HARMONICS; k++) {
+        if (k > 0 && orders[k] <= orders[k - 1])
+            continue;
+        const double energy = square(h->first[k][0]) + square(h->first[k][1]);
+        inside += energy * scatter_share(scatter, orders[k] * upsample);
+        rest -= energy;
+    }
+    return inside + fmax(rest, 0) * scatter->most;
+}
+
+/* Adds a fraction of a frequency, one of `count`. */
+static void harmonics_add(struct harmonics *h, double complex off, const double complex turns[HARMONICS], int count)
+{
+    h->mean += off / count;
+    h->spread += square(off) / count;
+    for (int k = 0; k < HARMONICS; k++) {
+        h->first[k][0] += product(off, turns[k]) / count;
+        h->first[k][1] += product(off, conj(turns[k])) / count;
+    }
+}
+
+/* Of all frequencies. */
+static double harmonics_error(const struct harmonics *list, const struct law_spectrum *spectrum,
+                              const struct interpolator *in, const int orders[HARMONICS], const struct scatter *scatter)
+{
+    double mean = 0, variance = 0;
+    for (int n = 0; n < spectrum->count; n++) {
+        mean += spectrum->weight[n] * creal(list[n].mean);
+        variance += spectrum->weight[n] * (square(list[n].mean) + scattered(&list[n], orders, in->upsample, scatter));
+    }
+    variance -= mean * mean;
+    return sqrt(fmax(variance, 0) / ((1 + mean) * (1 + mean) + variance)); /* <|H|^2> = |<H>|^2 + variance */
+}
+
+double interpolation_error(const struct interpolator *in, const void *options, const struct law_spectrum *spectrum,
+                           const struct scatter *scatter)
+{
+    double gains[LAW_NODES][FARROW_MOST + 1]; /* of branches */
+    struct harmonics list[LAW_NODES] = {{0}};
+    int orders[HARMONICS];
     const int steps = in->steps, rounded = steps > 0 ? IN_A_STEP * steps : 0;
     const int count = rounded > FRACTIONS ? rounded : steps > 0 ? FRACTIONS / steps * steps : FRACTIONS;
     double *taps = malloc((size_t)in->taps * sizeof *taps);
     if (!taps)
         return NAN;
+    orders_fill(steps, orders);
     for (int n = 0; n < spectrum->count && in->degree > 0; n++)
         farrow_gains(in->degree, spectrum->nu[n] / in->upsample, gains[n]);
     for (int k = 0; k < count; k++) {
         const double fraction = (k + 0.5) / count, place = steps > 0 ? floor(fraction * steps + 0.5) / steps : fraction;
         const int whole = (int)floor(place);
+        double complex turns[HARMONICS];
+        for (int m = 0; m < HARMONICS; m++)
+            turns[m] = cexp(-2 * I * M_PI * orders[m] * fraction);
         taps[0] = 1;
         if (in->weights)
             in->weights(options, place - whole, taps);
@@ -102,19 +174,11 @@ double interpolation_error(const struct interpolator *in, const void *options, c
             const double complex read = in->degree > 0 ? branches_response(in->degree, gains[n], nu, fraction - 0.5)
                                                        : taps_response(taps, whole + in->first, in->taps, nu, fraction);
             const double lost = in->preemphasis && nu > 0 ? pow(sin(M_PI * nu) / (M_PI * nu), 2) : 1;
-            const double complex response = read / lost;
-            off[n] += (creal(response) - 1) / count;
-            spread[n] += creal((response - 1) * conj(response - 1)) / count;
+            harmonics_add(&list[n], read / lost - 1, turns, count);
         }
     }
     free(taps);
-    double mean = 0, variance = 0;
-    for (int n = 0; n < spectrum->count; n++) {
-        mean += spectrum->weight[n] * off[n];
-        variance += spectrum->weight[n] * spread[n];
-    }
-    variance -= mean * mean;
-    return sqrt(fmax(variance, 0) / ((1 + mean) * (1 + mean) + variance)); /* <|H|^2> = |<H>|^2 + variance */
+    return harmonics_error(list, spectrum, in, orders, scatter);
 }
 
 /* A pulse sinc(B t) at d samples from a record's end is 1/(pi rho d), rho = B/fs, where the first tap reads zero, whose

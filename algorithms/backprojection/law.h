@@ -9,11 +9,12 @@
        E^2 = 1 - |<c_0>|^2 / <mean over delta of |H|^2>
 
    is the relative L2 error after one best complex gain. Part of what scatters may fall outside of an image: E is an
-   upper bound for a whole scene, and near it. */
+   upper bound for a whole scene, and near it. Where that part is known (scatter.h), it is left out. */
 #ifndef SASBENCH_BACKPROJECTION_LAW_H
 #define SASBENCH_BACKPROJECTION_LAW_H
 
 #include "backprojection/bp.h"
+#include "backprojection/scatter.h"
 
 enum { LAW_NODES = 48 };
 
@@ -27,9 +28,10 @@ struct law_spectrum {
 /* False without memory, with a message. */
 bool law_spectrum(const struct acquisition *acquisition, struct law_spectrum *spectrum);
 
-/* The error law; the interpolator's own upsampling divides the frequencies. NAN without memory. */
+/* The error law; the interpolator's own upsampling divides the frequencies. scatter NULL: all that scatters counts. NAN
+   without memory. */
 double interpolation_error(const struct interpolator *interpolator, const void *options,
-                           const struct law_spectrum *spectrum);
+                           const struct law_spectrum *spectrum, const struct scatter *scatter);
 
 /* The error by taps that read zero beyond the records' ends, relative L2 over an image of echoes that come from every
    pixel alike: 0 where no pixel lies within taps/2 samples of an end. */

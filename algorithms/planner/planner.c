@@ -9,8 +9,8 @@
 #include <string.h>
 
 #include "backprojection/omission.h"
-#include "backprojection/pairs.h"
-#include "backprojection/turned.h"
+#include "backprojection/scatter.h"
+#include "planner/amounts.h"
 #include "planner/candidates.h"
 #include "planner/rates.h"
 
@@ -27,7 +27,8 @@ static const double BUDGETED = 0.99;
 
 /* What all candidates of a problem share. */
 struct setting {
-    const struct problem *problem;
+    const struct problem *problem; /* with what forecasts may go by */
+    const struct problem *planned; /* as it is given: plans outlive that */
     const struct budget *budget;
     double pairs; /* of back projection */
     double reads; /* pairs that images of subapertures cannot do without */
@@ -37,32 +38,6 @@ void candidate_name(const struct candidate *candidate, char text[CANDIDATE_NAME]
 {
     snprintf(text, CANDIDATE_NAME, "%s%s%s", candidate->algorithm->name, *candidate->settings ? ":" : "",
              candidate->settings);
-}
-
-/* Of back projection, which sums along x and r: turned grids are turned back. */
-static enum status pairs_of(const struct problem *problem, double *pairs)
-{
-    struct problem along = *problem;
-    struct turned_problem turned = {0};
-    enum status status = problem_turn_back(&along, &turned, NULL);
-    *pairs = status == STATUS_OK ? pairs_count(&along) : 0;
-    turned_free(&turned);
-    return status;
-}
-
-/* Each pixel reads an image, each record is read by some lines of places of one. */
-static double reads_of(const struct problem *problem, double pairs)
-{
-    /* Of an image; pairs that one takes for a record and for a ping, beside those of its places; that a pixel takes. */
-    static const double LINES = 8, RECORD = 130, PING = 600, PIXEL = 1.4;
-    const struct acquisition *a = problem->acquisition;
-    const double pixels = problem_pixels(problem), step = a->sound_speed / (2 * a->fs);
-    double places = 0;
-    for (int k = 0; k < problem->patch_count; k++) {
-        const struct grid *g = &problem->patches[k];
-        places += fmin(g->r_count * g->r_step, g->x_count * g->x_step) / step + RECORD + PING / a->receivers;
-    }
-    return PIXEL * pixels + pairs / pixels * LINES * places;
 }
 
 /* Over the budget, or not. */
@@ -98,7 +73,7 @@ static enum status sums_fill(const struct setting *setting, struct candidate *ca
     if (candidate->sine < 1) {
         limited.aperture_limit = candidate->sine;
         problem.acquisition = &limited;
-        status = pairs_of(&problem, &candidate->pairs);
+        status = pairs_of_problem(&problem, &candidate->pairs);
     }
     if (f->image_cost > 0)
         candidate->pairs = f->image_pairs;
@@ -359,7 +334,7 @@ static enum status plan_fastest(const struct setting *setting, struct choice *ch
     *tried = best != NULL;
     if (!best)
         return STATUS_OK;
-    enum status status = best->algorithm->plan(setting->problem, best->options, &choice->plan);
+    enum status status = best->algorithm->plan(setting->planned, best->options, &choice->plan);
     if (status != STATUS_OK)
         return refused(best, status);
     best->bytes = best->algorithm->work(choice->plan).bytes;
@@ -415,17 +390,21 @@ static void reasons_fill(struct choice *choice)
     }
 }
 
-enum status planner_choose(const struct problem *problem, const struct budget *budget, struct choice *choice)
+enum status planner_choose(const struct problem *given, const struct budget *budget, struct choice *choice)
 {
-    struct setting setting = {.problem = problem, .budget = budget};
+    struct scatter scatter;
+    struct problem known = *given;
+    const struct problem *problem = &known;
+    struct setting setting = {.problem = problem, .planned = given, .budget = budget};
     *choice = (struct choice){.least = INFINITY, .list = malloc(CANDIDATES_MAX * sizeof *choice->list)};
     if (!choice->list)
         return status_set(STATUS_FAILED, "no memory for the candidates of a plan");
     choice->count = candidates_fill(choice->list);
     enum status status = condition_targets_shown(problem);
+    known.scatter = status == STATUS_OK && scatter_find(problem, &scatter) ? &scatter : NULL;
     if (status == STATUS_OK)
-        status = pairs_of(problem, &setting.pairs);
-    setting.reads = reads_of(problem, setting.pairs);
+        status = pairs_of_problem(problem, &setting.pairs);
+    setting.reads = reads_of_images(problem, setting.pairs);
     if (status == STATUS_OK)
         status = forecast_all(&setting, choice);
     if (status == STATUS_OK)

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "backprojection/scatter.h"
 #include "data/paths.h"
 #include "data/text_file.h"
 #include "measure/provenance.h"
@@ -38,7 +39,7 @@ static bool scene_same(const struct csv *csv, const struct scene *scene, const c
     return measured && strcmp(measured, hash) == 0;
 }
 
-static enum status row_predict(const struct scene *scene, const struct measurement *row,
+static enum status row_predict(const struct scene *scene, const struct scatter *scatter, const struct measurement *row,
                                struct predictions *predictions)
 {
     char text[400];
@@ -50,7 +51,8 @@ static enum status row_predict(const struct scene *scene, const struct measureme
              row->precision);
     if (spec_parse(text, &spec) != STATUS_OK)
         return STATUS_OK; /* of another program */
-    const struct problem problem = scene_problem(scene, spec.precision);
+    struct problem problem = scene_problem(scene, spec.precision);
+    problem.scatter = scatter;
     enum status status = STATUS_UNSUPPORTED;
     if (spec.algorithm->forecast)
         status = spec.algorithm->forecast(&problem, spec.options, &forecast);
@@ -71,10 +73,13 @@ static enum status scene_predict(const struct results *results, const char *name
     if (!given && scene_load(name, SCENE_DIRECTORY, &loaded) != STATUS_OK)
         return STATUS_OK;
     const struct scene *scene = given ? given : &loaded;
+    struct scatter scatter;
+    const struct problem problem = scene_problem(scene, PRECISION_FLOAT);
+    const bool found = scatter_find(&problem, &scatter);
     enum status status = STATUS_OK;
     for (int k = 0; k < results->csv.row_count && status == STATUS_OK && scene_same(&results->csv, scene, name); k++)
         if (strcmp(results->measurements[k].scene, name) == 0)
-            status = row_predict(scene, &results->measurements[k], predictions);
+            status = row_predict(scene, found ? &scatter : NULL, &results->measurements[k], predictions);
     scene_free(&loaded);
     return status;
 }

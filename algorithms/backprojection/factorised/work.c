@@ -164,9 +164,9 @@ enum status factorised_cost_direct(const struct problem *problem, const struct f
     struct turned_problem turned;
     enum status status = problem_turn_back(&seen, &turned, NULL);
     if (status == STATUS_OK)
-        *pairs = forecast->tables ? (PAIR + ALONE / fmin(forecast->residues, COLUMNS)) * pairs_about(&seen)
-                                        + ENTRY * forecast->units
-                                  : pairs_about(&seen) + BLOCK * forecast->units;
+        *pairs = forecast->tables
+                     ? (PAIR + ALONE / fmin(forecast->residues, COLUMNS)) * pairs_about(&seen) + ENTRY * forecast->units
+                     : pairs_about(&seen) + BLOCK * forecast->units;
     turned_free(&turned);
     return status;
 }

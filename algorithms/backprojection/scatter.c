@@ -1,0 +1,182 @@
+#include "backprojection/scatter.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "common/delay.h"
+
+enum {
+    TONES = 4,     /* targets, each at one frequency */
+    MOST = 600000, /* pairs of a pixel and a record, of all of them */
+    POWERS = 8     /* of two, up to the last order */
+};
+/* Those of whole samples, of finer grids, and of steps between samples (beta + 1). */
+static const int orders[SCATTER_ORDERS] = {1,  2,  3,  4,  5,  6,  7,  8,  9,  12, 16,
+                                           17, 18, 24, 32, 33, 34, 48, 64, 66, 96, 128};
+/* Other targets may have more than those that stand for them, and side lobes reach everywhere: measured. */
+static const double SHARE = 1.5, FLOOR = 2e-4;
+
+struct tone {
+    double x, r;      /* m */
+    double frequency; /* Hz */
+    double weight;
+};
+
+/* Echoes of a tone: [pings][receivers]. */
+struct pair {
+    double delay, amplitude;
+};
+
+struct energies {
+    double image, scattered[SCATTER_ORDERS];
+};
+
+static double complex turned(double cycles)
+{
+    const double angle = 2 * M_PI * (cycles - floor(cycles));
+    return CMPLX(cos(angle), sin(angle));
+}
+
+static double complex product(double complex a, double complex b)
+{
+    return CMPLX(creal(a) * creal(b) - cimag(a) * cimag(b), creal(a) * cimag(b) + cimag(a) * creal(b));
+}
+
+static double square(double complex a)
+{
+    return creal(a) * creal(a) + cimag(a) * cimag(a);
+}
+
+static int tones_fill(const struct problem *problem, int count, struct tone tones[TONES])
+{
+    const struct acquisition *a = problem->acquisition;
+    for (int n = 0; n < count; n++) {
+        const double even = fmod(0.3 + n * 0.618, 1), other = fmod(0.5 + n * 0.755, 1);
+        tones[n] = (struct tone){.frequency = a->fc + (fmod(0.2 + n * 0.57, 1) - 0.5) * a->bandwidth, .weight = 1};
+        if (problem->target_count > 0) {
+            const struct target *target = &problem->targets[(long long)n * problem->target_count / count];
+            tones[n].x = target->x;
+            tones[n].r = target->r;
+            tones[n].weight = square(target->amplitude);
+        } else {
+            const struct grid *g = &problem->patches[n % problem->patch_count];
+            const struct vector at = grid_point(g, even * g->r_count - 0.5, other * g->x_count - 0.5);
+            tones[n].x = at.x;
+            tones[n].r = at.y;
+        }
+    }
+    return count;
+}
+
+static void echoes_fill(const struct acquisition *a, const struct tone *tone, struct pair *echoes)
+{
+    const struct vector place = {tone->x, tone->r, 0};
+    for (int p = 0; p < a->pings; p++) {
+        const double u = a->tx[p].x - tone->x, r = hypot(tone->r - a->tx[p].y, a->tx[p].z);
+        for (int m = 0; m < a->receivers; m++) {
+            const struct vector rx = a->rx[(size_t)p * (size_t)a->receivers + (size_t)m];
+            *echoes++ = (struct pair){delay_exact(a->tx[p], rx, a->velocity[p], place, a->sound_speed),
+                                      condition_pair_amplitude(a, r, u, rx.x - a->tx[p].x)};
+        }
+    }
+}
+
+/* What one pair adds to a pixel's sums: of order 0, and of the others, of either sign. */
+static void pair_add(double complex main, double cycles, double complex *image, double complex sums[SCATTER_ORDERS][2])
+{
+    double complex powers[POWERS];
+    powers[0] = turned(cycles);
+    for (int k = 1; k < POWERS; k++)
+        powers[k] = product(powers[k - 1], powers[k - 1]);
+    *image += main;
+    for (int k = 0; k < SCATTER_ORDERS; k++) {
+        double complex turn = 1;
+        for (int bit = 0; bit < POWERS; bit++)
+            if (orders[k] >> bit & 1)
+                turn = product(turn, powers[bit]);
+        sums[k][0] += product(main, turn);
+        sums[k][1] += product(main, conj(turn));
+    }
+}
+
+static void pixel_add(const struct acquisition *a, const struct tone *tone, const struct pair *echoes,
+                      struct vector place, struct energies *energies)
+{
+    double complex image = 0, sums[SCATTER_ORDERS][2] = {{0}};
+    for (int p = 0; p < a->pings; p++, echoes += a->receivers) {
+        const double u = a->tx[p].x - place.x, r = hypot(place.y - a->tx[p].y, a->tx[p].z);
+        if (!(fabs(u * cos(a->echo_squint) + r * sin(a->echo_squint)) <= a->aperture_limit * hypot(u, r)))
+            continue;
+        for (int m = 0; m < a->receivers; m++) {
+            if (echoes[m].amplitude == 0)
+                continue;
+            const struct vector rx = a->rx[(size_t)p * (size_t)a->receivers + (size_t)m];
+            const double delay = delay_exact(a->tx[p], rx, a->velocity[p], place, a->sound_speed);
+            const double q = (delay - a->t0[p]) * a->fs;
+            if (q >= 0 && q <= a->samples - 1)
+                pair_add(echoes[m].amplitude * turned(tone->frequency * (delay - echoes[m].delay)), q, &image, sums);
+        }
+    }
+    energies->image += tone->weight * square(image);
+    for (int k = 0; k < SCATTER_ORDERS; k++)
+        energies->scattered[k] += tone->weight * (square(sums[k][0]) + square(sums[k][1])) / 2;
+}
+
+/* The pixels of a tone's row, to which other rows are other delays: by Parseval's theorem the energies of all rows are
+   those of all frequencies. */
+static void tone_add(const struct problem *problem, const struct tone *tone, const struct pair *echoes,
+                     struct energies *energies)
+{
+    const bool judged = problem->judged_count > 0;
+    const struct grid *grids = judged ? problem->judged : problem->patches;
+    for (int k = 0; k < (judged ? problem->judged_count : problem->patch_count); k++) {
+        const struct grid *g = &grids[k];
+        const double row = (grid_coordinates(g, tone->x, tone->r).y - g->r_first) / g->r_step;
+        if (fabs(row - (g->r_count - 1) / 2.0) <= g->r_count / 2.0)
+            for (int j = 0; j < g->x_count; j++)
+                pixel_add(problem->acquisition, tone, echoes, grid_point(g, row, j), energies);
+    }
+}
+
+/* How many tones the time allows. */
+static int tones_count(const struct problem *problem)
+{
+    const struct acquisition *a = problem->acquisition;
+    const bool judged = problem->judged_count > 0;
+    const struct grid *grids = judged ? problem->judged : problem->patches;
+    double columns = 0;
+    for (int k = 0; k < (judged ? problem->judged_count : problem->patch_count); k++)
+        columns += grids[k].x_count;
+    return (int)fmin(MOST / (columns * a->pings * a->receivers), TONES);
+}
+
+bool scatter_find(const struct problem *problem, struct scatter *scatter)
+{
+    const struct acquisition *a = problem->acquisition;
+    struct energies sum = {.image = 0};
+    struct tone tones[TONES];
+    const int count = a->noisy || !(a->echo_sine > 0 && condition_seen_sine(a) < INFINITY) ? 0 : tones_count(problem);
+    struct pair *echoes = count > 0 ? malloc((size_t)a->pings * (size_t)a->receivers * sizeof *echoes) : NULL;
+    if (!echoes)
+        return false;
+    tones_fill(problem, count, tones);
+    for (int n = 0; n < count; n++) {
+        echoes_fill(a, &tones[n], echoes);
+        tone_add(problem, &tones[n], echoes, &sum);
+    }
+    free(echoes);
+    scatter->most = 0;
+    for (int k = 0; k < SCATTER_ORDERS && sum.image > 0; k++) {
+        scatter->share[k] = fmin(SHARE * sum.scattered[k] / sum.image + FLOOR, 1);
+        scatter->most = fmax(scatter->most, scatter->share[k]);
+    }
+    return sum.image > 0;
+}
+
+double scatter_share(const struct scatter *scatter, int order)
+{
+    for (int k = 0; k < SCATTER_ORDERS; k++)
+        if (orders[k] == order)
+            return scatter->share[k];
+    return scatter->most;
+}
