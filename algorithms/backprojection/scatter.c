@@ -47,9 +47,12 @@ static double square(double complex a)
     return creal(a) * creal(a) + cimag(a) * cimag(a);
 }
 
-static int tones_fill(const struct problem *problem, int count, struct tone tones[TONES])
+static void tones_fill(const struct problem *problem, int count, struct tone tones[TONES])
 {
     const struct acquisition *a = problem->acquisition;
+    double most = 0;
+    for (int k = 0; k < problem->target_count; k++)
+        most = fmax(most, cabs(problem->targets[k].amplitude));
     for (int n = 0; n < count; n++) {
         const double even = fmod(0.3 + n * 0.618, 1), other = fmod(0.5 + n * 0.755, 1);
         tones[n] = (struct tone){.frequency = a->fc + (fmod(0.2 + n * 0.57, 1) - 0.5) * a->bandwidth, .weight = 1};
@@ -57,7 +60,7 @@ static int tones_fill(const struct problem *problem, int count, struct tone tone
             const struct target *target = &problem->targets[(long long)n * problem->target_count / count];
             tones[n].x = target->x;
             tones[n].r = target->r;
-            tones[n].weight = square(target->amplitude);
+            tones[n].weight = most > 0 ? square(target->amplitude / most) : 0;
         } else {
             const struct grid *g = &problem->patches[n % problem->patch_count];
             const struct vector at = grid_point(g, even * g->r_count - 0.5, other * g->x_count - 0.5);
@@ -65,7 +68,6 @@ static int tones_fill(const struct problem *problem, int count, struct tone tone
             tones[n].r = at.y;
         }
     }
-    return count;
 }
 
 static void echoes_fill(const struct acquisition *a, const struct tone *tone, struct pair *echoes)

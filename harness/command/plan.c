@@ -38,30 +38,6 @@ static enum status memory_parse(const char *text, double *bytes)
                             text);
 }
 
-/* The rates of this machine, measured where the cache has none. One that cannot be kept is measured again next time. */
-static enum status rates_need(void)
-{
-    char path[4096];
-    bool found, kept = true;
-    struct rates rates;
-    machine_rates_use(&found);
-    if (!found) {
-        enum status status = machine_rates_measure(&rates);
-        if (status != STATUS_OK)
-            return status;
-        kept = machine_rates_keep(&rates) == STATUS_OK;
-        if (!kept)
-            fprintf(stderr, "sasbench: warning: the machine's rates are not kept: %s\n", status_message());
-    }
-    machine_rates_path(path, sizeof path);
-    printf("Rates of this machine, %s; times repeat within %.0f %%: %s\n\n", found ? "measured before" : "measured now",
-           100 * rates_get()->noise,
-           !*path ? "not kept, for HOME is not set"
-           : kept ? path
-                  : "not kept");
-    return STATUS_OK;
-}
-
 static enum status plan_scene(const struct task *task, const struct scene *scene, const struct budget *budget)
 {
     struct planned planned;
@@ -101,7 +77,7 @@ enum status command_plan(const struct task *task)
     if (status == STATUS_OK)
         status = task_scenes("plan", task, 0, NULL, &scene, &count);
     if (status == STATUS_OK)
-        status = rates_need();
+        status = machine_rates_need();
     if (status == STATUS_OK)
         status = plan_scene(task, &scene[0], &budget);
     scenes_free(scene, count);

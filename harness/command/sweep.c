@@ -48,6 +48,15 @@ static enum status settings_load(const struct task *task, struct sweep_settings 
     return status;
 }
 
+/* Is there one that chooses by the machine's rates? */
+static bool settings_plan(const struct sweep_settings *settings)
+{
+    for (int k = 0; k < settings->count; k++)
+        if (strcmp(settings->specs[k].algorithm->name, "auto") == 0)
+            return true;
+    return false;
+}
+
 static enum status precision_check(const struct task *task)
 {
     if (!task->precision || strcmp(task->precision, "float") == 0 || strcmp(task->precision, "double") == 0)
@@ -81,12 +90,13 @@ enum status command_sweep(const struct task *task)
     struct scene *scenes = NULL;
     struct sweep_settings settings = {0};
     struct batch batch = {0};
-    machine_rates_use(NULL);
     enum status status = precision_check(task);
     if (status == STATUS_OK)
         status = settings_load(task, &settings);
     if (status == STATUS_OK)
         status = task_scenes("sweep", task, default_count, default_scenes, &scenes, &scene_count);
+    if (status == STATUS_OK && settings_plan(&settings))
+        status = machine_rates_need();
     if (status == STATUS_OK)
         status = batch_open(directory, scene_count * settings.count, false, &batch);
     batch.in_turn = true;
