@@ -36,6 +36,7 @@ struct acquisition {
     double echo_squint; /* rad: theta_t counts from the beam's axis, which points so far ahead of broadside (r > 0) */
     bool echo_tapers;   /* and their amplitude falls as both elements' sinc does */
     bool noisy;         /* noise, which comes from anywhere, is in the samples, or may be */
+    double noise; /* of the compressed echoes' energy, the share that is white noise, as far as it is known; 0: none */
     double aperture_limit;   /* back projection sums pairs with |sin theta_t| <= this only; INFINITY = all */
     struct target_area area; /* what is to be seen; a filter may take off the echoes of the rest */
     bool compressed;         /* the samples are range compressed: a unit target peaks at 1 */

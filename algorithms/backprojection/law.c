@@ -27,21 +27,25 @@ static const double FLAT = 20000;
 static bool replica_spectrum(const struct acquisition *a, struct law_spectrum *spectrum)
 {
     const int length = fft_length_fast((long long)fmax(2.0 * a->pulse_length, FINER * BINS));
-    double *energy = pulse_energy(a, length), sum = 0;
+    double *energy = pulse_energy(a, length), sum = 0, noise = 0;
     if (!energy)
         return false;
+    for (int k = 0; k < length; k++) {
+        sum += energy[k];
+        noise += sqrt(energy[k]);
+    }
+    for (int k = 0; k < length; k++) /* white noise is compressed to the square root of the echoes' energy */
+        energy[k] = (1 - a->noise) * energy[k] / sum + a->noise * sqrt(energy[k]) / noise;
     *spectrum = (struct law_spectrum){.count = BINS};
     for (int k = 0; k < length; k++) {
         const double nu = fmin(k, length - k) / (double)length;
         const int n = (int)fmin(2 * BINS * nu, BINS - 1);
         spectrum->nu[n] += nu * energy[k];
         spectrum->weight[n] += energy[k];
-        sum += energy[k];
     }
     free(energy);
     for (int n = 0; n < BINS; n++) {
         spectrum->nu[n] = spectrum->weight[n] > 0 ? spectrum->nu[n] / spectrum->weight[n] : (n + 0.5) / (2 * BINS);
-        spectrum->weight[n] /= sum;
     }
     return true;
 }
@@ -52,9 +56,15 @@ bool law_spectrum(const struct acquisition *a, struct law_spectrum *spectrum)
     if (!a->compressed && a->pulse_length * band <= FLAT)
         return replica_spectrum(a, spectrum);
     *spectrum = (struct law_spectrum){.count = GAUSS};
+    const double beside = a->compressed ? a->noise * (1 - band) : 0;
     for (int n = 0; n < GAUSS; n++) {
         spectrum->nu[n] = node[n] * band / 2;
-        spectrum->weight[n] = weight[n];
+        spectrum->weight[n] = weight[n] * (1 - beside);
+    }
+    for (int n = 0; n < 2 * GAUSS && beside > 0; n++) { /* from the band's edge to half the sampling rate */
+        const double place = n < GAUSS ? -node[GAUSS - 1 - n] : node[n - GAUSS];
+        spectrum->nu[spectrum->count] = (1 + band + place * (1 - band)) / 4;
+        spectrum->weight[spectrum->count++] = weight[n < GAUSS ? GAUSS - 1 - n : n - GAUSS] / 2 * beside;
     }
     return true;
 }

@@ -19,7 +19,7 @@
 enum { LAW_NODES = 48 };
 
 /* Positive frequencies and their share of the compressed echoes' energy: flat over the bandwidth, or, of raw echoes
-   whose pulse has flanks beyond it, the replica's own. The means of both signs of a frequency are the same but for the
+   whose pulse has flanks beyond it, the replica's own; with the noise of compressed echoes, which is white. The means of both signs of a frequency are the same but for the
    sign of their imaginary parts. */
 struct law_spectrum {
     int count;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "data/random.h"
+#include "scene/noise.h"
 #include "scene/simulate.h"
 
 enum status scene_out_of_memory(const struct reading *reading)
@@ -104,6 +105,9 @@ enum status scene_fill(struct reading *reading, config_setting_t *root)
     }
     if (status == STATUS_OK) {
         status = targets_fill(reading);
+    }
+    if (status == STATUS_OK) {
+        reading->scene.acquisition.noise = noise_of_scene(&reading->scene);
     }
     if (status == STATUS_OK) {
         status = image_fill(reading);

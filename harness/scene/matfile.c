@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "scene/matvar.h"
+#include "scene/noise.h"
 
 enum echo_variable {
     FORMAT,
@@ -324,8 +325,12 @@ enum status echo_file_read(const char *path, struct acquisition *acquisition, st
     }
     if (status == STATUS_OK) {
         *echoes = (struct echoes){acquisition, PRECISION_DOUBLE, variables[SAMPLES].values, 0};
+        status = noise_measure(echoes, &acquisition->noise);
+    }
+    if (status == STATUS_OK) {
         variables[SAMPLES].values = NULL;
     } else {
+        *echoes = (struct echoes){0};
         acquisition_free(acquisition);
     }
     variables_free(variables, ECHO_VARIABLES);

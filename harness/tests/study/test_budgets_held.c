@@ -8,6 +8,7 @@
 #include "measure/session.h"
 #include "measure/timing.h"
 #include "planner/planner.h"
+#include "scene/noise.h"
 #include "study/machine_rates.h"
 #include "tests/support.h"
 
@@ -48,7 +49,7 @@ static void choice_measure(const struct session *session, const char *name, doub
     spec_free(&spec);
 }
 
-static void seed_measure(int seed, struct tally *tally)
+static void seed_measure(int seed, double noise_std, struct tally *tally)
 {
     static const double budgets[BUDGETS] = {1e-1, 1e-2, 1e-3, 1e-4};
     struct scene scene;
@@ -56,6 +57,9 @@ static void seed_measure(int seed, struct tally *tally)
     char name[32];
     snprintf(name, sizeof name, "seed %d", seed);
     support_random_scene(seed, &scene);
+    scene.noise_std = noise_std;
+    scene.acquisition.noisy = noise_std > 0;
+    scene.acquisition.noise = noise_of_scene(&scene);
     assert_int_equal(session_open(&scene, &session), STATUS_OK);
     for (int k = 0; k < BUDGETS; k++)
         choice_measure(&session, name, budgets[k], tally);
@@ -83,7 +87,7 @@ static void within_budget(void **state)
             fail_msg("%s is no range of seeds: accepted is 2001-2060, or one seed", range);
         last = read > 1 ? last : first;
         for (int seed = first; seed <= last && seeds < SEEDS_MOST; seed++, seeds++)
-            seed_measure(seed, &tally);
+            seed_measure(seed, 0, &tally);
     }
     assert_true(tally.count > 0);
     const double middle = median(tally.used, tally.count); /* sorts them */
@@ -96,6 +100,22 @@ static void within_budget(void **state)
         fail_msg("%d of %d choices are over the budget, the worst %g times", over, tally.count,
                  tally.used[tally.count - 1]);
     assert_true(tally.refused <= seeds / 10);
+}
+
+/* Nor does noise, which has all frequencies that a compressed record can hold: of raw and of compressed echoes, faint
+   and far above them. */
+static void noisy_within_budget(void **state)
+{
+    (void)state;
+    static const double levels[] = {0.05, 1, 10};
+    static const int seeds[] = {7001, 7002, 7009, 7014}; /* two of either */
+    static struct tally tally;
+    for (int k = 0; k < 12; k++)
+        seed_measure(seeds[k / 3], levels[k % 3], &tally);
+    assert_int_equal(tally.count, 12 * BUDGETS);
+    const double middle = median(tally.used, tally.count); /* sorts them */
+    print_message("noisy: at most %.2f of the budget, median %.2f\n", tally.used[tally.count - 1], middle);
+    assert_true(tally.used[tally.count - 1] <= 1 && middle > 0.1);
 }
 
 /* On a curved track of many pings images of subapertures are chosen, with the error that the budget leaves them. */
@@ -128,6 +148,7 @@ int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(within_budget, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(noisy_within_budget, folder_make, folder_remove),
         cmocka_unit_test(subapertures_within_budget),
     };
     given = argc - 1;

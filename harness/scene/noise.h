@@ -1,0 +1,16 @@
+/* How much of the compressed echoes' energy is white noise: what acquisition.noise holds. */
+#ifndef SASBENCH_SCENE_NOISE_H
+#define SASBENCH_SCENE_NOISE_H
+
+#include "algorithm.h"
+#include "scene/scene.h"
+
+/* Of a scene whose acquisition and targets are made: its noise beside all of its targets' echoes. */
+double noise_of_scene(const struct scene *scene);
+
+/* Measured, of compressed echoes in double: the energy beyond the bandwidth, in some of the records, tapered so that
+   their ends do not count, over what white noise would have there. 0 of raw echoes, and where the band leaves nothing
+   to measure. *share is written. Errors: STATUS_FAILED without memory. */
+enum status noise_measure(const struct echoes *echoes, double *share);
+
+#endif
