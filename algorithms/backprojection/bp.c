@@ -355,7 +355,8 @@ enum status bp_forecast(const struct problem *problem, const struct interpolator
     if (status == STATUS_OK) {
         const bool general = bp.engine == &bp_general;
         struct law_spectrum spectrum;
-        const double law = law_spectrum(a, &spectrum) ? interpolation_error(in, options, &spectrum, problem->scatter) : NAN;
+        const double law =
+            law_spectrum(a, &spectrum) ? interpolation_error(in, options, &spectrum, problem->scatter) : NAN;
         forecast->tables = !general;
         const double ends = in->upsample == 1 && in->degree == 0 && in->taps > 1 ? law_ends(problem, in->taps) : 0;
         /* At fs = B the bin at fs/2 stands for both ends of the band. */

@@ -98,7 +98,7 @@ static enum status band_of(const struct rma_view *view, double edge, struct band
     const double ends = EDGE_BINS * density / (a->samples * a->bandwidth / a->fs + 2 * PULSE_PERIODS);
     band->lost += band->half >= 0.5 ? ends : pow(TAPERED, 2) * ends;
     band->lost += a->noise; /* it comes from all sides, beyond the wavenumbers and the band that are kept as well */
-    if (view->period > 0) /* no tapers: all that the cuts have beyond the band */
+    if (view->period > 0)   /* no tapers: all that the cuts have beyond the band */
         band->lost += cut * (1 - 2 * (band->half - edge)) * a->fs / a->bandwidth;
     return status;
 }
