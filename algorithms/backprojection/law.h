@@ -19,8 +19,8 @@
 enum { LAW_NODES = 48 };
 
 /* Positive frequencies and their share of the compressed echoes' energy: flat over the bandwidth, or, of raw echoes
-   whose pulse has flanks beyond it, the replica's own; with the noise of compressed echoes, which is white. The means of both signs of a frequency are the same but for the
-   sign of their imaginary parts. */
+   whose pulse has flanks beyond it, the replica's own; and of their noise, which is white in compressed echoes. The
+   means of both signs of a frequency are the same but for the sign of their imaginary parts. */
 struct law_spectrum {
     int count;
     double nu[LAW_NODES], weight[LAW_NODES]; /* cycles a sample, 0 to 1/2; their sum is 1 */

@@ -64,7 +64,7 @@ static void draw_track(struct random *random, struct draw *d)
     const double half = COLUMNS / 2 * d->x_step, seen = 2 * (d->r * tangent + half) / d->spacing;
     d->pings = (int)fmin(PINGS_MOST, ceil(seen) + 2);
     d->x_first = -((d->pings - 1) * d->spacing + d->receivers * d->pitch / 2) / 2;
-    /* A ping must see the patch: where pings are so far apart that it lies between their beams, one is abreast of it. */
+    /* A ping must see the patch: where they are so far apart that it lies between beams, one is abreast of it. */
     const double nearest = remainder(d->x_first, d->spacing);
     if (fabs(nearest) > d->r * tangent + half)
         d->x_first -= nearest;
