@@ -2,7 +2,6 @@
    round. */
 #include "backprojection/law.h"
 
-#include <complex.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -10,6 +9,7 @@
 #include "common/delay.h"
 #include "common/fft_length.h"
 #include "common/pulse_band.h"
+#include "common/turns.h"
 
 enum { GAUSS = 8, BINS = 48, FINER = 16, FRACTIONS = 256, IN_A_STEP = 8, LOW = 4, HARMONICS = LOW + 2 };
 /* The positive half of Gauss and Legendre's 16 points. */
@@ -69,24 +69,14 @@ bool law_spectrum(const struct acquisition *a, struct law_spectrum *spectrum)
     return true;
 }
 
-static double square(double complex a)
-{
-    return creal(a) * creal(a) + cimag(a) * cimag(a);
-}
-
-static double complex product(double complex a, double complex b)
-{
-    return CMPLX(creal(a) * creal(b) - cimag(a) * cimag(b), creal(a) * cimag(b) + cimag(a) * creal(b));
-}
-
 /* H of Farrow branches of these gains (farrow_gains): what they make of exp(j 2 pi nu u), |u| <= 1/2, over it. */
 static double complex branches_response(int degree, const double *gains, double nu, double u)
 {
-    static const double complex turns[] = {1, I};
+    static const double complex signs[] = {1, I};
     double power = 1;
     double complex sum = 0;
     for (int m = 0; m <= degree; m++, power *= u)
-        sum += turns[m % 2] * gains[m] * power;
+        sum += signs[m % 2] * gains[m] * power;
     return sum * cexp(-2 * I * M_PI * nu * u);
 }
 
@@ -133,13 +123,13 @@ static double scattered(const struct harmonics *h, const int orders[HARMONICS], 
 }
 
 /* Adds a fraction of a frequency, one of `count`. */
-static void harmonics_add(struct harmonics *h, double complex off, const double complex turns[HARMONICS], int count)
+static void harmonics_add(struct harmonics *h, double complex off, const double complex waves[HARMONICS], int count)
 {
     h->mean += off / count;
     h->spread += square(off) / count;
     for (int k = 0; k < HARMONICS; k++) {
-        h->first[k][0] += product(off, turns[k]) / count;
-        h->first[k][1] += product(off, conj(turns[k])) / count;
+        h->first[k][0] += product(off, waves[k]) / count;
+        h->first[k][1] += product(off, conj(waves[k])) / count;
     }
 }
 
@@ -173,9 +163,9 @@ double interpolation_error(const struct interpolator *in, const void *options, c
     for (int k = 0; k < count; k++) {
         const double fraction = (k + 0.5) / count, place = steps > 0 ? floor(fraction * steps + 0.5) / steps : fraction;
         const int whole = (int)floor(place);
-        double complex turns[HARMONICS];
+        double complex waves[HARMONICS];
         for (int m = 0; m < HARMONICS; m++)
-            turns[m] = cexp(-2 * I * M_PI * orders[m] * fraction);
+            waves[m] = cexp(-2 * I * M_PI * orders[m] * fraction);
         taps[0] = 1;
         if (in->weights)
             in->weights(options, place - whole, taps);
@@ -184,7 +174,7 @@ double interpolation_error(const struct interpolator *in, const void *options, c
             const double complex read = in->degree > 0 ? branches_response(in->degree, gains[n], nu, fraction - 0.5)
                                                        : taps_response(taps, whole + in->first, in->taps, nu, fraction);
             const double lost = in->preemphasis && nu > 0 ? pow(sin(M_PI * nu) / (M_PI * nu), 2) : 1;
-            harmonics_add(&list[n], read / lost - 1, turns, count);
+            harmonics_add(&list[n], read / lost - 1, waves, count);
         }
     }
     free(taps);

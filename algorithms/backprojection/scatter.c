@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "common/delay.h"
+#include "common/turns.h"
 
 enum {
     TONES = 4,     /* targets, each at one frequency */
@@ -30,22 +31,6 @@ struct pair {
 struct energies {
     double image, scattered[SCATTER_ORDERS];
 };
-
-static double complex turned(double cycles)
-{
-    const double angle = 2 * M_PI * (cycles - floor(cycles));
-    return CMPLX(cos(angle), sin(angle));
-}
-
-static double complex product(double complex a, double complex b)
-{
-    return CMPLX(creal(a) * creal(b) - cimag(a) * cimag(b), creal(a) * cimag(b) + cimag(a) * creal(b));
-}
-
-static double square(double complex a)
-{
-    return creal(a) * creal(a) + cimag(a) * cimag(a);
-}
 
 static void tones_fill(const struct problem *problem, int count, struct tone tones[TONES])
 {
@@ -87,7 +72,7 @@ static void echoes_fill(const struct acquisition *a, const struct tone *tone, st
 static void pair_add(double complex main, double cycles, double complex *image, double complex sums[SCATTER_ORDERS][2])
 {
     double complex powers[POWERS];
-    powers[0] = turned(cycles);
+    powers[0] = turns(cycles);
     for (int k = 1; k < POWERS; k++)
         powers[k] = product(powers[k - 1], powers[k - 1]);
     *image += main;
@@ -116,7 +101,7 @@ static void pixel_add(const struct acquisition *a, const struct tone *tone, cons
             const double delay = delay_exact(a->tx[p], rx, a->velocity[p], place, a->sound_speed);
             const double q = (delay - a->t0[p]) * a->fs;
             if (q >= 0 && q <= a->samples - 1)
-                pair_add(echoes[m].amplitude * turned(tone->frequency * (delay - echoes[m].delay)), q, &image, sums);
+                pair_add(echoes[m].amplitude * turns(tone->frequency * (delay - echoes[m].delay)), q, &image, sums);
         }
     }
     energies->image += tone->weight * square(image);

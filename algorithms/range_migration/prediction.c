@@ -23,6 +23,7 @@
 #include <string.h>
 
 #include "common/fft_length.h"
+#include "common/turns.h"
 
 enum {
     TARGETS = 3,      /* on a row */
@@ -84,12 +85,6 @@ static bool is_focused(const struct kernel *kernel, double place)
     if (squint == 0)
         return fabs(place) <= rma_focused(view->problem->acquisition, &view->bounds, r);
     return fabs(place * cos(squint) + r * sin(squint)) <= view->bounds.sine * hypot(place, r);
-}
-
-static double complex turns(double cycles)
-{
-    const double angle = 2 * M_PI * (cycles - floor(cycles));
-    return cos(angle) + I * sin(angle);
 }
 
 /* h of a receiver at offset d and one frequency, less the centroid's own turns. */

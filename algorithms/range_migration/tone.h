@@ -16,6 +16,7 @@
 #include <fftw3.h>
 #include <math.h>
 
+#include "common/turns.h"
 #include "range_migration/conditions.h"
 
 enum { AZIMUTH_ANGLES = 33 }; /* at which the formula's phase is computed, cubics between */
@@ -55,19 +56,6 @@ double azimuth_offset(const struct azimuth *azimuth, int m);
 static inline double tone_row(double r, double u, double at)
 {
     return sqrt(fmax(r * r + u * u - at * at, 0));
-}
-
-/* exp(+j 2 pi cycles) */
-static inline double complex turns(double cycles)
-{
-    const double angle = 2 * M_PI * (cycles - floor(cycles));
-    return cos(angle) + I * sin(angle);
-}
-
-/* Without C's own care for infinities. */
-static inline double complex product(double complex a, double complex b)
-{
-    return creal(a) * creal(b) - cimag(a) * cimag(b) + I * (creal(a) * cimag(b) + cimag(a) * creal(b));
 }
 
 #endif

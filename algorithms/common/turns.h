@@ -1,0 +1,27 @@
+/* Complex numbers in double: turns, products and squares. */
+#ifndef SASBENCH_COMMON_TURNS_H
+#define SASBENCH_COMMON_TURNS_H
+
+#include <complex.h>
+#include <math.h>
+
+/* exp(+j 2 pi cycles) */
+static inline double complex turns(double cycles)
+{
+    const double angle = 2 * M_PI * (cycles - floor(cycles));
+    return cos(angle) + I * sin(angle);
+}
+
+/* Without C's own care for infinities. */
+static inline double complex product(double complex a, double complex b)
+{
+    return creal(a) * creal(b) - cimag(a) * cimag(b) + I * (creal(a) * cimag(b) + cimag(a) * creal(b));
+}
+
+/* |a|^2 */
+static inline double square(double complex a)
+{
+    return creal(a) * creal(a) + cimag(a) * cimag(a);
+}
+
+#endif
