@@ -106,7 +106,7 @@ enum status scene_fill(struct reading *reading, config_setting_t *root)
     if (status == STATUS_OK) {
         status = targets_fill(reading);
     }
-    if (status == STATUS_OK) {
+    if (status == STATUS_OK && !*reading->echoes) { /* of recorded echoes it is measured */
         reading->scene.acquisition.noise = noise_of_scene(&reading->scene);
     }
     if (status == STATUS_OK) {

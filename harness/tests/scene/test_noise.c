@@ -1,8 +1,10 @@
 /* The share of noise in echoes: measured beyond their band, and stated by scenes. */
 #include <math.h>
+#include <stdio.h>
 
 #include "data/echo_data.h"
 #include "data/random.h"
+#include "scene/matfile.h"
 #include "scene/noise.h"
 #include "scene/simulate.h"
 #include "tests/support.h"
@@ -68,11 +70,37 @@ static void scenes_state_it(void **state)
     scene_free(&scene);
 }
 
+/* Of recorded echoes it is what is measured, whether a scene names them or not. */
+static void recorded_have_it(void **state)
+{
+    (void)state;
+    struct scene scene, recorded;
+    struct echoes echoes;
+    support_random_scene(7001, &scene);
+    scene.noise_std = 0.2;
+    support_echoes(&scene, &echoes);
+    const double share = measured(&echoes);
+    assert_int_equal(echo_file_write(path_of("noisy.mat"), &echoes, ""), STATUS_OK);
+    FILE *file = fopen(path_of("recorded.cfg"), "w");
+    assert_non_null(file);
+    fputs("echoes = \"noisy.mat\";\nimage = { x = { first = -1.0; step = 0.1; count = 20; }; "
+          "r = { first = 22.734; step = 0.01; count = 9; }; };\n",
+          file);
+    fclose(file);
+    support_scene(path_of("recorded.cfg"), &recorded);
+    print_message("%g recorded, %g measured\n", recorded.acquisition.noise, share);
+    assert_true(share > 0.05 && fabs(recorded.acquisition.noise - share) < 1e-3 * share);
+    echoes_free(&echoes);
+    scene_free(&recorded);
+    scene_free(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(known_shares),
         cmocka_unit_test_setup_teardown(scenes_state_it, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(recorded_have_it, folder_make, folder_remove),
     };
     return cmocka_run_group_tests_name("noise", tests, NULL, NULL);
 }
