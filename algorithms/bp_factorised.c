@@ -55,8 +55,7 @@ static const struct bp_options direct_options = {BP_ENGINE_AUTO, 0, 1e-4, 1};
 
 static struct interpolator direct_branches(const struct problem *problem, double error)
 {
-    const struct acquisition *a = problem->acquisition;
-    return (struct interpolator){.upsample = 1, .taps = 1, .degree = farrow_degree(error, a->bandwidth / a->fs)};
+    return (struct interpolator){.upsample = 1, .taps = 1, .degree = farrow_degree(error, problem->acquisition, 1)};
 }
 
 static enum status plan_direct(const struct problem *problem, double error, void **plan)

@@ -28,7 +28,8 @@ static const struct param params[] = {
     {PARAM(struct options, factor), .summary = "length of the padded spectrum over the record's", .initial = 1,
      .min = 1, .max = 2, .terse = true},
     {PARAM(struct options, error),
-     .summary = "degree=auto: relative L2 error of a record of flat spectrum and the acquisition's bandwidth",
+     .summary =
+         "degree=auto: relative L2 error of a record of flat spectrum over the acquisition's band, and of its noise",
      .initial = 1e-4, .min = 1e-8, .max = 0.1, .terse = true},
     BP_PARAMS,
     {.name = NULL},
@@ -38,9 +39,8 @@ static struct interpolator interpolator_of(const struct acquisition *a, const st
 {
     return (struct interpolator){.upsample = o->factor,
                                  .taps = 1,
-                                 .degree = o->degree == DEGREE_AUTO
-                                               ? farrow_degree(o->error, a->bandwidth / (a->fs * o->factor))
-                                               : FARROW_LEAST + o->degree - DEGREE_FIRST};
+                                 .degree = o->degree == DEGREE_AUTO ? farrow_degree(o->error, a, o->factor)
+                                                                    : FARROW_LEAST + o->degree - DEGREE_FIRST};
 }
 
 static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)

@@ -43,10 +43,18 @@ double farrow_error(int degree, double band)
     return sqrt(sum / MEANS);
 }
 
-int farrow_degree(double error, double band)
+/* Of the acquisition's echoes, on records of `upsample` times the sampling rate. */
+static double error_of(int degree, const struct acquisition *a, int upsample)
+{
+    const double echoes = farrow_error(degree, a->bandwidth / (a->fs * upsample));
+    const double noise = a->compressed ? a->noise : 0;
+    return noise > 0 ? hypot(sqrt(1 - noise) * echoes, sqrt(noise) * farrow_error(degree, 1.0 / upsample)) : echoes;
+}
+
+int farrow_degree(double error, const struct acquisition *a, int upsample)
 {
     int degree = FARROW_LEAST;
-    while (degree < FARROW_MOST && !(farrow_error(degree, band) <= error))
+    while (degree < FARROW_MOST && !(error_of(degree, a, upsample) <= error))
         degree++;
     return degree;
 }

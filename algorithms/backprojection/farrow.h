@@ -22,8 +22,9 @@ void farrow_gains(int degree, double nu, double *gains);
    sqrt(mean of the sum over n > degree of (2n+1) j_n(pi nu)^2). 0 < band <= 1. */
 double farrow_error(int degree, double band);
 
-/* The least degree whose a-priori error is at most `error`; FARROW_MOST if none is. */
-int farrow_degree(double error, double band);
+/* The least degree whose a-priori error is at most `error`, on records of `upsample` times the sampling rate, of the
+   acquisition's band and, compressed elsewhere, its noise at all frequencies; FARROW_MOST if none is. */
+int farrow_degree(double error, const struct acquisition *acquisition, int upsample);
 
 /* Branches 0 and 1 make all others, with neighbours at most `reach` values away:
 

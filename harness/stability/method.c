@@ -75,10 +75,10 @@ struct method method_of(const struct spec *spec, const char *engine, const struc
     }
     if (method.reading.kind == EXACT_POLYNOMIAL) {
         const int choice = (int)option_value(spec, "degree", 0);
-        const double band = acquisition->bandwidth / (acquisition->fs * method.reading.upsample);
         method.reading.phases = 1;
         method.reading.degree =
-            choice > 0 ? FARROW_LEAST + choice - 1 : farrow_degree(option_value(spec, "error", 0), band);
+            choice > 0 ? FARROW_LEAST + choice - 1
+                       : farrow_degree(option_value(spec, "error", 0), acquisition, method.reading.upsample);
     }
     if (method.reading.kind == EXACT_SINC) {
         method.reading.taps = (int)option_value(spec, "taps", 8);

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "measure/imaging.h"
+#include "scene/noise.h"
 #include "scene/random_scene.h"
 #include "scene/simulate.h"
 
@@ -29,6 +30,14 @@ void support_random_scene(int seed, struct scene *scene)
     random_scene_write(file, (uint64_t)seed);
     fclose(file);
     support_scene(path, scene);
+}
+
+void support_noisy_scene(int seed, double noise_std, struct scene *scene)
+{
+    support_random_scene(seed, scene);
+    scene->noise_std = noise_std;
+    scene->acquisition.noisy = noise_std > 0;
+    scene->acquisition.noise = noise_of_scene(scene);
 }
 
 void support_echoes(const struct scene *scene, struct echoes *echoes)

@@ -13,6 +13,8 @@
 void support_scene(const char *name, struct scene *scene);
 /* The random scene of a seed (scene/random_scene.h), written into the test's folder. */
 void support_random_scene(int seed, struct scene *scene);
+/* The same with noise of this standard deviation in each sample. */
+void support_noisy_scene(int seed, double noise_std, struct scene *scene);
 /* A scene's echoes in double. */
 void support_echoes(const struct scene *scene, struct echoes *echoes);
 /* Compressed echoes' acquisition at 150 kHz, B = 15 kHz, fs = 30 kHz, c = 1500 m/s: all places, velocities and t0 are

@@ -19,7 +19,7 @@ static const double RANGE_MOST = 3;    /* oversampling by small steps of a recor
 
 int tree_degree(const struct tree_settings *settings, const struct acquisition *a)
 {
-    return farrow_degree(tree_error_each(settings), a->bandwidth / a->fs);
+    return farrow_degree(tree_error_each(settings), a, 1);
 }
 
 double tree_phase_limit(const struct tree_settings *settings, const struct acquisition *a)

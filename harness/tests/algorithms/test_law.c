@@ -76,7 +76,17 @@ static const char *const interpolators[] = {
     "bp_farrow:degree=2", "bp_zeropad:factor=32", "bp_fitted:taps=4"};
 enum { INTERPOLATORS = sizeof interpolators / sizeof *interpolators, SEEDS_MOST = 100 };
 
-static void points_scene(int seed, int count, struct scene *scene);
+/* A random scene of which `count` points are all targets. */
+static void points_scene(int seed, int count, struct scene *scene)
+{
+    support_random_scene(seed, scene);
+    const struct grid *g = &scene->patches[0];
+    assert_true(scene->target_count >= count);
+    for (int n = 0; n < count; n++)
+        scene->targets[n] = (struct target){g->x_first + fmod(0.3 + 0.618 * n, 1) * (g->x_count - 1) * g->x_step,
+                                            g->r_first + fmod(0.4 + 0.382 * n, 1) * (g->r_count - 1) * g->r_step, 1};
+    scene->point_count = scene->target_count = count;
+}
 
 /* The laws of all interpolators over what is measured, of seeds from `first` on; with `points` targets in place of the
    field where that is not 0. */
@@ -125,6 +135,30 @@ static void measured_of_points(void **state)
     laws_compare(6201, 8, 2, 0.8);
 }
 
+/* Noise has frequencies beyond the band of compressed echoes: settings that are called by their error keep it. */
+static void noise_keeps_errors(void **state)
+{
+    (void)state;
+    static const char *const specs[] = {"bp_factorised:error=1e-3,stages=0", "bp_factorised:error=1e-3,stages=1",
+                                        "bp_factorised:error=1e-3,stages=2", "bp_farrow:degree=auto,error=1e-3"};
+    static const int seeds[] = {7001, 7005, 7009};
+    static const double levels[] = {0.05, 1};
+    for (int k = 0; k < 6; k++) {
+        struct scene scene;
+        struct session session;
+        support_noisy_scene(seeds[k / 2], levels[k % 2], &scene);
+        assert_true(scene.acquisition.compressed);
+        assert_int_equal(session_open(&scene, &session), STATUS_OK);
+        for (size_t n = 0; n < sizeof specs / sizeof *specs; n++) {
+            double error;
+            assert_true(predicted_over_measured(&session, specs[n], &error) > 0.9);
+            assert_true(error <= 1e-3);
+        }
+        session_close(&session);
+        scene_free(&scene);
+    }
+}
+
 /* Range migration's forecast is an estimate, too: of scenes that few and many pings see, near and far, whose records
    end near their rows. Of the second, azimuth alone says a quarter. */
 static void range_migration(void **state)
@@ -149,18 +183,6 @@ static void range_migration(void **state)
     print_message("predicted over measured: %.2f to %.2f, median %.2f\n", ratios[0], ratios[SEEDS - 1], middle);
     if (!(middle > 1 && middle < 2))
         fail_msg("the median of predicted over measured errors is %g, must be from 1 to 2", middle);
-}
-
-/* A random scene of which `count` points are all targets. */
-static void points_scene(int seed, int count, struct scene *scene)
-{
-    support_random_scene(seed, scene);
-    const struct grid *g = &scene->patches[0];
-    assert_true(scene->target_count >= count);
-    for (int n = 0; n < count; n++)
-        scene->targets[n] = (struct target){g->x_first + fmod(0.3 + 0.618 * n, 1) * (g->x_count - 1) * g->x_step,
-                                            g->r_first + fmod(0.4 + 0.382 * n, 1) * (g->r_count - 1) * g->r_step, 1};
-    scene->point_count = scene->target_count = count;
 }
 
 /* Of targets that are known it is near, and above what is measured. */
@@ -381,6 +403,7 @@ int main(void)
         cmocka_unit_test(closed_forms),
         cmocka_unit_test_setup_teardown(measured, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(measured_of_points, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(noise_keeps_errors, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(range_migration, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(known_targets, folder_make, folder_remove),
         cmocka_unit_test(judged_parts),

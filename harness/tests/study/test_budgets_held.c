@@ -8,7 +8,6 @@
 #include "measure/session.h"
 #include "measure/timing.h"
 #include "planner/planner.h"
-#include "scene/noise.h"
 #include "study/machine_rates.h"
 #include "tests/support.h"
 
@@ -56,10 +55,7 @@ static void seed_measure(int seed, double noise_std, struct tally *tally)
     struct session session;
     char name[32];
     snprintf(name, sizeof name, "seed %d", seed);
-    support_random_scene(seed, &scene);
-    scene.noise_std = noise_std;
-    scene.acquisition.noisy = noise_std > 0;
-    scene.acquisition.noise = noise_of_scene(&scene);
+    support_noisy_scene(seed, noise_std, &scene);
     assert_int_equal(session_open(&scene, &session), STATUS_OK);
     for (int k = 0; k < BUDGETS; k++)
         choice_measure(&session, name, budgets[k], tally);
