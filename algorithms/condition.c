@@ -101,6 +101,11 @@ double condition_beam_sine(const struct acquisition *a)
     return a->echo_tapers ? fmin(sine, quarter_sine(a)) : sine;
 }
 
+bool condition_beam_known(const struct acquisition *a)
+{
+    return !a->noisy && a->echo_sine > 0 && condition_seen_sine(a) < INFINITY;
+}
+
 double condition_seen_sine(const struct acquisition *a)
 {
     return a->echo_tapers ? fmin(a->echo_sine, LOBES * a->sound_speed / a->fc / a->tx_length) : condition_beam_sine(a);

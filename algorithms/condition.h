@@ -76,6 +76,8 @@ double condition_beam_sine(const struct acquisition *acquisition);
 double condition_cut_sine(const struct acquisition *acquisition);
 /* Does a ping see a place within condition_beam_sine of its beam's axis? */
 bool condition_sees(const struct acquisition *acquisition, int ping, struct vector place);
+/* Is it known where all that the echoes hold comes from: from within a known beam, without noise? */
+bool condition_beam_known(const struct acquisition *acquisition);
 /* |sin theta_t| up to which anything is seen at all: condition_beam_sine, but three nulls of a beam that tapers. */
 double condition_seen_sine(const struct acquisition *acquisition);
 /* Amplitude of the echo of a unit target r m beside a straight track along x, the transmitter u m ahead of it: 1 inside

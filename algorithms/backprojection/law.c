@@ -101,7 +101,7 @@ struct harmonics {
 static void orders_fill(int steps, int orders[HARMONICS])
 {
     for (int k = 0; k < HARMONICS; k++)
-        orders[k] = k < LOW ? k + 1 : (k - LOW + 1) * (steps > LOW ? steps : LOW);
+        orders[k] = k < LOW || steps <= LOW ? k + 1 : (k - LOW + 1) * steps;
 }
 
 /* The energy that is scattered over fractions, but for what falls outside of the image. */
@@ -113,8 +113,6 @@ static double scattered(const struct harmonics *h, const int orders[HARMONICS], 
         return all;
     double rest = all, inside = 0;
     for (int k = 0; k < HARMONICS; k++) {
-        if (k > 0 && orders[k] <= orders[k - 1])
-            continue;
         const double energy = square(h->first[k][0]) + square(h->first[k][1]);
         inside += energy * scatter_share(scatter, orders[k] * upsample);
         rest -= energy;
@@ -122,12 +120,12 @@ static double scattered(const struct harmonics *h, const int orders[HARMONICS], 
     return inside + fmax(rest, 0) * scatter->most;
 }
 
-/* Adds a fraction of a frequency, one of `count`. */
-static void harmonics_add(struct harmonics *h, double complex off, const double complex waves[HARMONICS], int count)
+/* Adds a fraction of a frequency, one of `count`; waves NULL: the orders are not asked for. */
+static void harmonics_add(struct harmonics *h, double complex off, const double complex *waves, int count)
 {
     h->mean += off / count;
     h->spread += square(off) / count;
-    for (int k = 0; k < HARMONICS; k++) {
+    for (int k = 0; k < HARMONICS && waves; k++) {
         h->first[k][0] += product(off, waves[k]) / count;
         h->first[k][1] += product(off, conj(waves[k])) / count;
     }
@@ -174,7 +172,7 @@ double interpolation_error(const struct interpolator *in, const void *options, c
             const double complex read = in->degree > 0 ? branches_response(in->degree, gains[n], nu, fraction - 0.5)
                                                        : taps_response(taps, whole + in->first, in->taps, nu, fraction);
             const double lost = in->preemphasis && nu > 0 ? pow(sin(M_PI * nu) / (M_PI * nu), 2) : 1;
-            harmonics_add(&list[n], read / lost - 1, waves, count);
+            harmonics_add(&list[n], read / lost - 1, scatter ? waves : NULL, count);
         }
     }
     free(taps);

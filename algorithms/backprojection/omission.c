@@ -48,7 +48,7 @@ static double aperture_law(const struct problem *problem, double sine, int *fewe
     const struct acquisition *a = problem->acquisition;
     double all = 0, beyond = 0;
     *fewest = a->pings;
-    if (a->echo_squint != 0 || a->noisy || !(a->echo_sine > 0 && condition_seen_sine(a) < INFINITY))
+    if (a->echo_squint != 0 || !condition_beam_known(a))
         return NAN;
     for (int k = 0; k < problem->patch_count; k++) {
         const struct grid *g = &problem->patches[k];

@@ -109,14 +109,21 @@ static void pixel_add(const struct acquisition *a, const struct tone *tone, cons
         energies->scattered[k] += tone->weight * (square(sums[k][0]) + square(sums[k][1])) / 2;
 }
 
+/* Where errors count. */
+static int grids_judged(const struct problem *problem, const struct grid **grids)
+{
+    *grids = problem->judged_count > 0 ? problem->judged : problem->patches;
+    return problem->judged_count > 0 ? problem->judged_count : problem->patch_count;
+}
+
 /* The pixels of a tone's row, to which other rows are other delays: by Parseval's theorem the energies of all rows are
    those of all frequencies. */
 static void tone_add(const struct problem *problem, const struct tone *tone, const struct pair *echoes,
                      struct energies *energies)
 {
-    const bool judged = problem->judged_count > 0;
-    const struct grid *grids = judged ? problem->judged : problem->patches;
-    for (int k = 0; k < (judged ? problem->judged_count : problem->patch_count); k++) {
+    const struct grid *grids;
+    const int count = grids_judged(problem, &grids);
+    for (int k = 0; k < count; k++) {
         const struct grid *g = &grids[k];
         const double row = (grid_coordinates(g, tone->x, tone->r).y - g->r_first) / g->r_step;
         if (fabs(row - (g->r_count - 1) / 2.0) <= g->r_count / 2.0)
@@ -129,10 +136,10 @@ static void tone_add(const struct problem *problem, const struct tone *tone, con
 static int tones_count(const struct problem *problem)
 {
     const struct acquisition *a = problem->acquisition;
-    const bool judged = problem->judged_count > 0;
-    const struct grid *grids = judged ? problem->judged : problem->patches;
+    const struct grid *grids;
+    const int count = grids_judged(problem, &grids);
     double columns = 0;
-    for (int k = 0; k < (judged ? problem->judged_count : problem->patch_count); k++)
+    for (int k = 0; k < count; k++)
         columns += grids[k].x_count;
     return (int)fmin(MOST / (columns * a->pings * a->receivers), TONES);
 }
@@ -142,7 +149,7 @@ bool scatter_find(const struct problem *problem, struct scatter *scatter)
     const struct acquisition *a = problem->acquisition;
     struct energies sum = {.image = 0};
     struct tone tones[TONES];
-    const int count = a->noisy || !(a->echo_sine > 0 && condition_seen_sine(a) < INFINITY) ? 0 : tones_count(problem);
+    const int count = condition_beam_known(a) ? tones_count(problem) : 0;
     struct pair *echoes = count > 0 ? malloc((size_t)a->pings * (size_t)a->receivers * sizeof *echoes) : NULL;
     if (!echoes)
         return false;

@@ -8,9 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "backprojection/factorised/factorised.h"
 #include "backprojection/omission.h"
+#include "backprojection/pairs.h"
 #include "backprojection/scatter.h"
-#include "planner/amounts.h"
+#include "backprojection/turned.h"
 #include "planner/candidates.h"
 #include "planner/rates.h"
 
@@ -38,6 +40,17 @@ void candidate_name(const struct candidate *candidate, char text[CANDIDATE_NAME]
 {
     snprintf(text, CANDIDATE_NAME, "%s%s%s", candidate->algorithm->name, *candidate->settings ? ":" : "",
              candidate->settings);
+}
+
+/* Of back projection, which sums along x and r: turned grids are turned back. */
+static enum status pairs_of(const struct problem *problem, double *pairs)
+{
+    struct problem along = *problem;
+    struct turned_problem turned = {0};
+    enum status status = problem_turn_back(&along, &turned, NULL);
+    *pairs = status == STATUS_OK ? pairs_count(&along) : 0;
+    turned_free(&turned);
+    return status;
 }
 
 /* Over the budget, or not. */
@@ -73,7 +86,7 @@ static enum status sums_fill(const struct setting *setting, struct candidate *ca
     if (candidate->sine < 1) {
         limited.aperture_limit = candidate->sine;
         problem.acquisition = &limited;
-        status = pairs_of_problem(&problem, &candidate->pairs);
+        status = pairs_of(&problem, &candidate->pairs);
     }
     if (f->image_cost > 0)
         candidate->pairs = f->image_pairs;
@@ -403,8 +416,8 @@ enum status planner_choose(const struct problem *given, const struct budget *bud
     enum status status = condition_targets_shown(problem);
     known.scatter = status == STATUS_OK && scatter_find(problem, &scatter) ? &scatter : NULL;
     if (status == STATUS_OK)
-        status = pairs_of_problem(problem, &setting.pairs);
-    setting.reads = reads_of_images(problem, setting.pairs);
+        status = pairs_of(problem, &setting.pairs);
+    setting.reads = factorised_least(problem, setting.pairs);
     if (status == STATUS_OK)
         status = forecast_all(&setting, choice);
     if (status == STATUS_OK)

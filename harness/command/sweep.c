@@ -49,7 +49,7 @@ static enum status settings_load(const struct task *task, struct sweep_settings 
 }
 
 /* Is there one that chooses by the machine's rates? */
-static bool settings_plan(const struct sweep_settings *settings)
+static bool settings_choose(const struct sweep_settings *settings)
 {
     for (int k = 0; k < settings->count; k++)
         if (strcmp(settings->specs[k].algorithm->name, "auto") == 0)
@@ -95,7 +95,7 @@ enum status command_sweep(const struct task *task)
         status = settings_load(task, &settings);
     if (status == STATUS_OK)
         status = task_scenes("sweep", task, default_count, default_scenes, &scenes, &scene_count);
-    if (status == STATUS_OK && settings_plan(&settings))
+    if (status == STATUS_OK && settings_choose(&settings))
         status = machine_rates_need();
     if (status == STATUS_OK)
         status = batch_open(directory, scene_count * settings.count, false, &batch);

@@ -55,6 +55,9 @@ double factorised_pairs(const struct factorised_cost *cost);
 enum status factorised_cost(const struct problem *problem, const struct tree_settings *settings,
                             struct factorised_cost *cost);
 enum status factorised_cost_direct(const struct problem *problem, const struct forecast *forecast, double *pairs);
+/* The least that images of subapertures take in place of `pairs`, in pairs: each pixel reads an image, each record is
+   read by some lines of places of one. */
+double factorised_least(const struct problem *problem, double pairs);
 /* The forecast of settings whose cost is known. Errors: STATUS_FAILED without memory. */
 enum status factorised_forecast(const struct problem *problem, const struct tree_settings *settings,
                                 const struct factorised_cost *cost, struct forecast *forecast);

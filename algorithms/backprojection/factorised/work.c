@@ -73,17 +73,16 @@ static int stride_of(const struct tree *tree, int patch)
     return lines > 64 ? lines / 32 : 1;
 }
 
-/* In pairs of the general engine, measured: what an image takes for each pixel, a trace for each sample, a line,
-   and a ping that a line is summed from. */
+/* In pairs of the general engine, measured: what an image takes for each pixel, a trace for each sample, its taps and
+   branches more, a line through an image, a ping that a line is summed from, and each of its records. */
+static const double IMAGE = 1.4, TRACE = 6, TAP = 0.6, BRANCH = 0.12, LINE = 1600, PING = 600, BLOCK = 130;
+
+/* All but the records. */
 static double images_of(const struct tree *tree, const struct amounts *sum)
 {
-    static const double IMAGE = 1.4, TRACE = 6, TAP = 0.6, BRANCH = 0.12, LINE = 1600, PING = 600;
     const double trace = TRACE + TAP * tree->angle.taps + BRANCH * tree->range.taps * tree->range.branches;
     return IMAGE * sum->images + trace * sum->traces + LINE * sum->lines + PING * sum->pings;
 }
-
-/* In pairs, measured: what a line takes for each record, beside its pixels. */
-static const double BLOCK = 130;
 
 double factorised_pairs(const struct factorised_cost *cost)
 {
@@ -153,6 +152,19 @@ static double pairs_about(const struct problem *problem)
             }
     }
     return pairs * a->receivers;
+}
+
+double factorised_least(const struct problem *problem, double pairs)
+{
+    static const double LINES = 8; /* of an image */
+    const struct acquisition *a = problem->acquisition;
+    const double pixels = problem_pixels(problem), step = a->sound_speed / (2 * a->fs);
+    double places = 0;
+    for (int k = 0; k < problem->patch_count; k++) {
+        const struct grid *g = &problem->patches[k];
+        places += fmin(g->r_count * g->r_step, g->x_count * g->x_step) / step + BLOCK + PING / a->receivers;
+    }
+    return IMAGE * pixels + pairs / pixels * LINES * places;
 }
 
 enum status factorised_cost_direct(const struct problem *problem, const struct forecast *forecast, double *pairs)
