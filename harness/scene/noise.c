@@ -2,10 +2,16 @@
 
 #include <fftw3.h>
 #include <math.h>
+#include <stdlib.h>
+
+#include "common/pulse_band.h"
 
 enum { RECORDS_MOST = 64 };
 static const double BINS_LEAST = 4;  /* beyond the band, to either side */
 static const double TAPER = 3.0 / 8; /* of white noise's energy, what a raised cosine leaves */
+static const double TAPERED = 2;     /* bins that it smears the band's edge over */
+/* Times what a pulse has beyond its band is not taken for noise: tapers and cut records change it. */
+static const double FLANKS = 2;
 
 /* The mean energy of a unit echo over some of the pings: those that do not see the target have none. */
 static double seen_of(const struct acquisition *a, const struct target *target)
@@ -38,44 +44,93 @@ double noise_of_scene(const struct scene *scene)
     return noise / (noise + echoes * a->fs / a->bandwidth);
 }
 
-/* Energy beyond the band. */
-static double outside_of(const fftw_complex *spectrum, int samples, int first)
+/* What a record's echoes have at its frequencies, by the pulse. */
+struct expected {
+    int first;     /* bins [first, samples - first] lie beyond the band */
+    double beyond; /* of their energy, the share that lies there */
+    double kept;   /* of white noise beside them, what compression keeps */
+};
+
+/* Of compressed echoes: nothing beyond the band, and all is kept. first = 0: there is nothing to measure, where the band
+   leaves too few bins, a record is shorter than the pulse, or the pulse has as much energy beyond its band as in it. */
+static enum status expected_make(const struct acquisition *a, struct expected *expected)
 {
-    double outside = 0;
+    const double first = ceil(a->bandwidth / a->fs / 2 * a->samples) + TAPERED;
+    double sum = 0, squares = 0, beyond = 0;
+    *expected = (struct expected){.kept = 1};
+    if (!(a->samples / 2.0 - first >= BINS_LEAST) || a->pulse_length > a->samples)
+        return STATUS_OK;
+    expected->first = (int)first;
+    if (a->compressed)
+        return STATUS_OK;
+    double *energy = pulse_energy(a, a->samples); /* the squares of the pulse's own */
+    if (!energy)
+        return STATUS_FAILED;
+    for (int k = 0; k < a->samples; k++) {
+        sum += sqrt(energy[k]);
+        squares += energy[k];
+        beyond += k >= expected->first && k <= a->samples - expected->first ? sqrt(energy[k]) : 0;
+    }
+    free(energy);
+    expected->beyond = FLANKS * beyond / sum;
+    expected->kept = sum * sum / (a->samples * squares);
+    if (!(expected->beyond < 1 - 2 * first / a->samples))
+        expected->first = 0;
+    return STATUS_OK;
+}
+
+/* Energies of some records: all, and what a taper leaves beyond the band. */
+struct energies {
+    double all, beyond;
+};
+
+static void record_add(const double complex *values, double most, int samples, int first, fftw_plan plan,
+                       fftw_complex *record, struct energies *sum)
+{
+    for (int i = 0; i < samples; i++) {
+        const double complex value = values[i] / most;
+        sum->all += creal(value * conj(value)) * samples;
+        record[i] = value * (0.5 - 0.5 * cos(2 * M_PI * (i + 0.5) / samples));
+    }
+    fftw_execute(plan);
     for (int k = first; k <= samples - first; k++)
-        outside += creal(spectrum[k] * conj(spectrum[k]));
-    return outside;
+        sum->beyond += creal(record[k] * conj(record[k])) / TAPER;
+}
+
+/* The share of the compressed echoes, whose energies are the sums of echoes and noise. */
+static double share_of(const struct energies *sum, const struct expected *expected, int samples)
+{
+    const double bins = samples - 2 * expected->first + 1;
+    const double noise = (sum->beyond - expected->beyond * sum->all) * samples / (bins - expected->beyond * samples);
+    const double of_noise = fmin(fmax(noise / sum->all, 0), 1);
+    return expected->kept * of_noise / (expected->kept * of_noise + 1 - of_noise);
 }
 
 enum status noise_measure(const struct echoes *echoes, double *share)
 {
     const struct acquisition *a = echoes->acquisition;
     const size_t records = (size_t)a->pings * (size_t)a->receivers, samples = (size_t)a->samples;
-    const double beyond = ceil(a->bandwidth / a->fs / 2 * a->samples) + 2; /* the taper's own width */
     const size_t step = (records + RECORDS_MOST - 1) / RECORDS_MOST;
+    const double complex *values = echoes->samples;
+    struct expected expected;
+    struct energies sum = {0, 0};
+    double most = 0;
     *share = 0;
-    if (!a->compressed || !(a->samples / 2.0 - beyond >= BINS_LEAST))
-        return STATUS_OK;
+    enum status status = expected_make(a, &expected);
+    if (status != STATUS_OK || expected.first == 0)
+        return status;
     fftw_complex *record = fftw_malloc(samples * sizeof *record);
     fftw_plan plan = record ? fftw_plan_dft_1d(a->samples, record, record, FFTW_FORWARD, FFTW_ESTIMATE) : NULL;
-    double outside = 0, all = 0, most = 0;
-    const double complex *values = echoes->samples;
     for (size_t i = 0; i < records * samples; i++)
         most = fmax(most, fmax(fabs(creal(values[i])), fabs(cimag(values[i]))));
-    for (size_t n = step / 2; n < records && plan && most > 0; n += step) {
-        for (size_t i = 0; i < samples; i++) {
-            const double complex value = values[n * samples + i] / most;
-            all += creal(value * conj(value)) * a->samples;
-            record[i] = value * (0.5 - 0.5 * cos(2 * M_PI * ((double)i + 0.5) / a->samples));
-        }
-        fftw_execute(plan);
-        outside += outside_of(record, a->samples, (int)beyond) / TAPER;
-    }
-    const enum status status = plan ? STATUS_OK : status_set(STATUS_FAILED, "no memory to measure the echoes' noise");
+    for (size_t n = step / 2; n < records && plan && most > 0; n += step)
+        record_add(values + n * samples, most, a->samples, expected.first, plan, record, &sum);
     if (plan)
         fftw_destroy_plan(plan);
+    else
+        status = status_set(STATUS_FAILED, "no memory to measure the echoes' noise");
     fftw_free(record);
-    if (all > 0)
-        *share = fmin(outside / all * a->samples / (a->samples - 2 * beyond + 1), 1);
+    if (sum.all > 0)
+        *share = share_of(&sum, &expected, a->samples);
     return status;
 }

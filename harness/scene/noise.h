@@ -8,9 +8,10 @@
 /* Of a scene whose acquisition and targets are made: its noise beside all of its targets' echoes. */
 double noise_of_scene(const struct scene *scene);
 
-/* Measured, of compressed echoes in double: the energy beyond the bandwidth, in some of the records, tapered so that
-   their ends do not count, over what white noise would have there. 0 of raw echoes, and where the band leaves nothing
-   to measure. *share is written. Errors: STATUS_FAILED without memory. */
+/* Measured, of echoes in double: the energy beyond the bandwidth, in some of the records, tapered so that their ends do
+   not count, over what white noise would have there; of raw echoes, but for what the pulse has there, and of what
+   compression keeps. 0 where the band or the records leave nothing to measure. *share is written. Errors:
+   STATUS_FAILED without memory. */
 enum status noise_measure(const struct echoes *echoes, double *share);
 
 #endif

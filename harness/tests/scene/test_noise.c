@@ -51,23 +51,26 @@ static void known_shares(void **state)
 static void scenes_state_it(void **state)
 {
     (void)state;
-    static const double levels[] = {0.02, 0.2, 2};
+    static const int seeds[] = {7001, 7009, 7002, 7014}; /* two of compressed echoes, two of raw ones */
+    static const double levels[] = {0, 0.2, 2};
     struct scene scene;
     struct echoes echoes;
     support_scene("study/quick", &scene);
     assert_true(noise_of_scene(&scene) == 0);
     scene_free(&scene);
-    support_random_scene(7001, &scene);
-    assert_true(scene.acquisition.compressed);
-    for (int k = 0; k < 3; k++) {
-        scene.noise_std = levels[k];
+    for (int n = 0; n < 12; n++) {
+        support_random_scene(seeds[n / 3], &scene);
+        scene.noise_std = levels[n % 3];
         support_echoes(&scene, &echoes);
         const double stated = noise_of_scene(&scene), share = measured(&echoes);
-        print_message("std %g: %g stated, %g measured\n", levels[k], stated, share);
-        assert_true(stated > 0 && stated < 1 && share > 0.5 * stated && share < 2 * stated);
+        print_message("%s, std %g: %g stated, %g measured\n", scene.acquisition.compressed ? "compressed" : "raw",
+                      levels[n % 3], stated, share);
+        assert_true(share < 2 * stated + 1e-9);
+        if (scene.acquisition.compressed || stated > 0.1) /* less is hidden by the pulse's flanks */
+            assert_true(stated < 1 && share > 0.5 * stated);
         echoes_free(&echoes);
+        scene_free(&scene);
     }
-    scene_free(&scene);
 }
 
 /* Of recorded echoes it is what is measured, whether a scene names them or not. */
