@@ -145,6 +145,9 @@ static void samples_print(const struct acquisition *a, const double complex *sam
     if (silent > 0)
         printf(", %.3g %% are zero", 100.0 * (double)silent / (double)count);
     printf("\n");
+    if (a->noise > 0.5e-4)
+        printf("noise        %.2g %% of the compressed echoes' energy, by what the samples have beyond the band\n",
+               100 * a->noise);
     if (!(imaginary > 0) && largest > 0)
         printf("             NO IMAGINARY PART: is this passband? Complex baseband is needed (docs/baseband.md)\n");
 }

@@ -162,6 +162,7 @@ static void files_are_told_and_shown(void **state)
     assert_holds(told, "fc 150000 Hz, bandwidth 15000 Hz, fs 30000 Hz");
     assert_holds(told, "ranges of 18 to 24.375 m");
     assert_holds(told, "uniform and straight, 0.16 m from ping to ping");
+    assert_null(strstr(told, "\nnoise "));
     grid_proposed(told, grid);
     free(told);
     const char *const image[ARGUMENTS_MAX] = {"image", "--echoes", "good.mat", grid, "-a", "bp_sinc", "-o", "seen.mat"};
@@ -183,6 +184,29 @@ static void files_are_told_and_shown(void **state)
     program_good(drawn);
     assert_int_equal(access(path_in("seen.png"), F_OK), 0);
     assert_int_equal(access(path_in("seen.svg"), F_OK), 0);
+}
+
+/* Noise is measured, told, and planned with: taps that are fitted to the band have 0.2 here. */
+static void noise_is_told(void **state)
+{
+    (void)state;
+    static const char *const simulate[ARGUMENTS_MAX] = {"simulate", "noisy.cfg", "-o", "noisy.mat"};
+    static const char *const info[ARGUMENTS_MAX] = {"info", "noisy.mat"};
+    static const char *const run[ARGUMENTS_MAX] = {
+        "run", "--echoes", "noisy.mat", "--grid=-0.5:0.02:51,19.8:0.02:21", "-a", "auto:error=1e-3", "-o", "noisy"};
+    struct csv rows;
+    text_write("noisy.cfg", "base = {\n@include \"study/quick.cfg\"\n};\npulse = { kind = \"flat\"; };\n"
+                            "noise = { std = 1.0; seed = 4; };\n");
+    program_good(simulate);
+    char *told = program_output(info);
+    assert_holds(told, "\nnoise        ");
+    free(told);
+    program_good(run);
+    csv_load("noisy/measurements.csv", &rows);
+    const double error = strtod(csv_cell(&rows, 0, csv_column(&rows, "error_gain")), NULL);
+    print_message("%s: %g\n", csv_cell(&rows, 0, csv_column(&rows, "engine")), error);
+    assert_true(error > 0 && error <= 1e-3);
+    csv_free(&rows);
 }
 
 /* One sample is another: so is the scene. */
@@ -350,6 +374,7 @@ int main(void)
         cmocka_unit_test(echoes_alone_are_a_scene),
         cmocka_unit_test(far_recordings_are_told),
         cmocka_unit_test(files_are_told_and_shown),
+        cmocka_unit_test(noise_is_told),
         cmocka_unit_test(content_tells_scenes_apart),
         cmocka_unit_test(mixtures_are_refused),
         cmocka_unit_test(recorded_sets_run),
