@@ -12,9 +12,26 @@
 #include "scene/matfile.h"
 #include "tests/command/program.h"
 
+/* Whether text goes on with part, where long lines are wrapped: runs of blanks and line breaks are alike. */
+static bool continues_with(const char *text, const char *part)
+{
+    static const char blanks[] = " \n";
+    while (*part) {
+        size_t of_part = strspn(part, blanks), of_text = strspn(text, blanks);
+        if (!of_part != !of_text || (!of_part && *part != *text))
+            return false;
+        part += of_part ? of_part : 1;
+        text += of_text ? of_text : 1;
+    }
+    return true;
+}
+
 static void assert_holds(const char *text, const char *part)
 {
-    if (!strstr(text, part))
+    const char *at = text;
+    while (*at && !continues_with(at, part))
+        at++;
+    if (!*at)
         fail_msg("no '%s' in: %s", part, text);
 }
 
