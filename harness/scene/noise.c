@@ -51,8 +51,9 @@ struct expected {
     double kept;   /* of white noise beside them, what compression keeps */
 };
 
-/* Of compressed echoes: nothing beyond the band, and all is kept. first = 0: there is nothing to measure, where the band
-   leaves too few bins, a record is shorter than the pulse, or the pulse has as much energy beyond its band as in it. */
+/* Of compressed echoes: nothing beyond the band, and all is kept. first = 0: there is nothing to measure, where the
+   band leaves too few bins, a record is shorter than the pulse, or the pulse has as much energy beyond its band as in
+   it. */
 static enum status expected_make(const struct acquisition *a, struct expected *expected)
 {
     const double first = ceil(a->bandwidth / a->fs / 2 * a->samples) + TAPERED;
