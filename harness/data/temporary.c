@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 static const char pattern[] = ".sasbench-";
@@ -19,6 +20,13 @@ static const char pattern[] = ".sasbench-";
 enum { NAMES_MAX = 2048 };
 static char *_Atomic names[NAMES_MAX];
 static volatile sig_atomic_t process_groups[PROCESSES_MOST];
+static volatile sig_atomic_t ending; /* a signal ends the program: nothing is made any more */
+
+static void wait_while_ending(void)
+{
+    while (ending)
+        pause();
+}
 
 static void name_add(const char *path)
 {
@@ -54,6 +62,7 @@ static bool name_beside(const char *path, char made[PATH_MAX])
 
 int temporary_file(const char *path, char made[PATH_MAX])
 {
+    wait_while_ending();
     int descriptor = name_beside(path, made) ? mkostemp(made, O_CLOEXEC) : -1;
     if (descriptor < 0)
         return -1;
@@ -66,6 +75,7 @@ int temporary_file(const char *path, char made[PATH_MAX])
 
 bool temporary_folder(const char *path, char made[PATH_MAX])
 {
+    wait_while_ending();
     bool good = name_beside(path, made) && mkdtemp(made);
     if (good)
         name_add(made);
@@ -144,18 +154,31 @@ void temporary_process_drop(pid_t group)
     group_change(group, 0);
 }
 
-/* Only what a handler may call: files first, then the folders that held them. */
+/* Files first, then the folders that held them. False if there are none. */
+static bool names_remove(void)
+{
+    bool found = false;
+    for (int k = 0; k < NAMES_MAX; k++)
+        if (names[k] && unlink(names[k]) == 0)
+            found = true;
+    for (int k = 0; k < NAMES_MAX; k++)
+        if (names[k] && rmdir(names[k]) == 0)
+            found = true;
+    return found;
+}
+
+/* Only what a handler may call. Other threads go on meanwhile: what they had begun to make is removed as well. */
 static void end(int number)
 {
+    enum { PASSES = 50, QUIET = 3 };
+    ending = 1;
     for (int k = 0; k < PROCESSES_MOST; k++)
         if (process_groups[k] > 0)
             kill(-(pid_t)process_groups[k], SIGKILL);
-    for (int k = 0; k < NAMES_MAX; k++)
-        if (names[k])
-            unlink(names[k]);
-    for (int k = 0; k < NAMES_MAX; k++)
-        if (names[k])
-            rmdir(names[k]);
+    for (int pass = 0, quiet = 0; pass < PASSES && quiet < QUIET; pass++) {
+        quiet = names_remove() ? 0 : quiet + 1;
+        nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+    }
     raise(number); /* SA_RESETHAND: it ends the program when this returns */
 }
 
