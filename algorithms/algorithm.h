@@ -60,6 +60,7 @@ struct problem {
     int judged_count;              /* 0: an error counts wherever it is */
     const struct grid *judged;     /* [judged_count] parts of patches where errors count, about these targets */
     const struct scatter *scatter; /* where errors of interpolation go (backprojection/scatter.h); NULL: unknown */
+    const struct few_pixels *few;  /* which carry them out (backprojection/few_pixels.h); NULL: unknown, or not few */
 };
 /* One of which nothing is known beforehand. */
 struct problem problem_make(const struct acquisition *acquisition, int patch_count, const struct grid *patches,

@@ -6,6 +6,7 @@
 #include "backprojection/engine.h"
 #include "backprojection/budget.h"
 #include "backprojection/kernel.h"
+#include "backprojection/few_pixels.h"
 #include "backprojection/law.h"
 #include "backprojection/omission.h"
 #include "common/fft_length.h"
@@ -342,11 +343,20 @@ static void forecast_records(struct bp *bp, const struct interpolator *in, struc
     forecast->record_values = records * fine * (forecast->kind == READ_BRANCHES ? forecast->values : 1);
 }
 
+/* NAN without memory. */
+static double error_between_samples(const struct problem *problem, const struct interpolator *in, const void *options)
+{
+    struct law_spectrum spectrum;
+    if (problem->few)
+        return few_pixels_error(problem->few, in, options);
+    return law_spectrum(problem->acquisition, &spectrum) ? interpolation_error(in, options, &spectrum, problem->scatter)
+                                                         : NAN;
+}
+
 enum status bp_forecast(const struct problem *problem, const struct interpolator *in, const void *options,
                         struct forecast *forecast)
 {
     const struct bp_options *given = options;
-    const struct acquisition *a = problem->acquisition;
     struct bp bp;
     *forecast = (struct forecast){.sums_pairs = true};
     enum status status = forecast_begin(problem, in, given, &bp);
@@ -354,13 +364,10 @@ enum status bp_forecast(const struct problem *problem, const struct interpolator
         status = forecast_reading(&bp, in, options, forecast);
     if (status == STATUS_OK) {
         const bool general = bp.engine == &bp_general;
-        struct law_spectrum spectrum;
-        const double law =
-            law_spectrum(a, &spectrum) ? interpolation_error(in, options, &spectrum, problem->scatter) : NAN;
+        const double law = error_between_samples(problem, in, options);
         forecast->tables = !general;
         const double ends = in->upsample == 1 && in->degree == 0 && in->taps > 1 ? law_ends(problem, in->taps) : 0;
-        /* At fs = B the bin at fs/2 stands for both ends of the band. */
-        forecast->error[CAUSE_INTERPOLATION] = hypot(hypot(law, ends), a->bandwidth < a->fs ? 0 : 1.0 / a->samples);
+        forecast->error[CAUSE_INTERPOLATION] = hypot(law, ends);
         forecast->error[CAUSE_DELAYS] = general ? DELAYS_SHARE * bp.medium.phase_limit : 1e-7;
         forecast->error[CAUSE_FLOAT] = ROUNDING[general][problem->precision];
         if (bp.limited.aperture_limit > 0) {

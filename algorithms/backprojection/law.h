@@ -1,10 +1,6 @@
-/* The error law of an interpolator, from its weights alone. At the frequency nu (cycles a sample) and the fraction
-   delta it makes of exp(j 2 pi nu q)
-
-       H(nu, delta) = sum over k of  h_k(delta) exp(j 2 pi nu (k - delta))
-
-   in place of 1. Over a scene all fractions are alike, and what depends on delta scatters over the image. With c_0(nu)
-   the mean of H over delta, and < > the mean over the echoes' energy spectrum,
+/* The error law of an interpolator, from its response H(nu, delta) alone (response.h). Over a scene all fractions are
+   alike, and what depends on delta scatters over the image. With c_0(nu) the mean of H over delta, and < > the mean over
+   the echoes' energy spectrum,
 
        E^2 = 1 - |<c_0>|^2 / <mean over delta of |H|^2>
 
@@ -14,19 +10,8 @@
 #define SASBENCH_BACKPROJECTION_LAW_H
 
 #include "backprojection/bp.h"
+#include "backprojection/law_spectrum.h"
 #include "backprojection/scatter.h"
-
-enum { LAW_NODES = 48 };
-
-/* Positive frequencies and their share of the compressed echoes' energy: flat over the bandwidth, or, of raw echoes
-   whose pulse has flanks beyond it, the replica's own; and of their noise, which is white in compressed echoes. The
-   means of both signs of a frequency are the same but for the sign of their imaginary parts. */
-struct law_spectrum {
-    int count;
-    double nu[LAW_NODES], weight[LAW_NODES]; /* cycles a sample, 0 to 1/2; their sum is 1 */
-};
-/* False without memory, with a message. */
-bool law_spectrum(const struct acquisition *acquisition, struct law_spectrum *spectrum);
 
 /* The error law; the interpolator's own upsampling divides the frequencies. scatter NULL: all that scatters counts. NAN
    without memory. */

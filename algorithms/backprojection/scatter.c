@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "common/delay.h"
+#include "backprojection/echo_pairs.h"
 #include "common/turns.h"
 
 enum {
@@ -21,11 +21,6 @@ struct tone {
     double x, r;      /* m */
     double frequency; /* Hz */
     double weight;
-};
-
-/* Echoes of a tone: [pings][receivers]. */
-struct pair {
-    double delay, amplitude;
 };
 
 struct energies {
@@ -55,70 +50,44 @@ static void tones_fill(const struct problem *problem, int count, struct tone ton
     }
 }
 
-static void echoes_fill(const struct acquisition *a, const struct tone *tone, struct pair *echoes)
-{
-    const struct vector place = {tone->x, tone->r, 0};
-    for (int p = 0; p < a->pings; p++) {
-        const double u = a->tx[p].x - tone->x, r = hypot(tone->r - a->tx[p].y, a->tx[p].z);
-        for (int m = 0; m < a->receivers; m++) {
-            const struct vector rx = a->rx[(size_t)p * (size_t)a->receivers + (size_t)m];
-            *echoes++ = (struct pair){delay_exact(a->tx[p], rx, a->velocity[p], place, a->sound_speed),
-                                      condition_pair_amplitude(a, r, u, rx.x - a->tx[p].x)};
-        }
-    }
-}
+/* Of a pixel, the sums over its pairs: of order 0, and of the others, of either sign. */
+struct sums {
+    double frequency; /* Hz */
+    double complex image, scattered[SCATTER_ORDERS][2];
+};
 
-/* What one pair adds to a pixel's sums: of order 0, and of the others, of either sign. */
-static void pair_add(double complex main, double cycles, double complex *image, double complex sums[SCATTER_ORDERS][2])
+static void pair_add(void *context, const struct echo_pair *pair, double delay, double q)
 {
+    struct sums *sums = context;
+    const double complex main = pair->amplitude * turns(sums->frequency * (delay - pair->delay));
     double complex powers[POWERS];
-    powers[0] = turns(cycles);
+    powers[0] = turns(q);
     for (int k = 1; k < POWERS; k++)
         powers[k] = product(powers[k - 1], powers[k - 1]);
-    *image += main;
+    sums->image += main;
     for (int k = 0; k < SCATTER_ORDERS; k++) {
         double complex turn = 1;
         for (int bit = 0; bit < POWERS; bit++)
             if (orders[k] >> bit & 1)
                 turn = product(turn, powers[bit]);
-        sums[k][0] += product(main, turn);
-        sums[k][1] += product(main, conj(turn));
+        sums->scattered[k][0] += product(main, turn);
+        sums->scattered[k][1] += product(main, conj(turn));
     }
 }
 
-static void pixel_add(const struct acquisition *a, const struct tone *tone, const struct pair *echoes,
+static void pixel_add(const struct acquisition *a, const struct tone *tone, const struct echo_pair *echoes,
                       struct vector place, struct energies *energies)
 {
-    double complex image = 0, sums[SCATTER_ORDERS][2] = {{0}};
-    for (int p = 0; p < a->pings; p++, echoes += a->receivers) {
-        const double u = a->tx[p].x - place.x, r = hypot(place.y - a->tx[p].y, a->tx[p].z);
-        if (!(fabs(u * cos(a->echo_squint) + r * sin(a->echo_squint)) <= a->aperture_limit * hypot(u, r)))
-            continue;
-        for (int m = 0; m < a->receivers; m++) {
-            if (echoes[m].amplitude == 0)
-                continue;
-            const struct vector rx = a->rx[(size_t)p * (size_t)a->receivers + (size_t)m];
-            const double delay = delay_exact(a->tx[p], rx, a->velocity[p], place, a->sound_speed);
-            const double q = (delay - a->t0[p]) * a->fs;
-            if (q >= 0 && q <= a->samples - 1)
-                pair_add(echoes[m].amplitude * turns(tone->frequency * (delay - echoes[m].delay)), q, &image, sums);
-        }
-    }
-    energies->image += tone->weight * square(image);
+    struct sums sums = {.frequency = tone->frequency};
+    echo_pairs_visit(a, echoes, place, pair_add, &sums);
+    energies->image += tone->weight * square(sums.image);
     for (int k = 0; k < SCATTER_ORDERS; k++)
-        energies->scattered[k] += tone->weight * (square(sums[k][0]) + square(sums[k][1])) / 2;
-}
-
-/* Where errors count. */
-static int grids_judged(const struct problem *problem, const struct grid **grids)
-{
-    *grids = problem->judged_count > 0 ? problem->judged : problem->patches;
-    return problem->judged_count > 0 ? problem->judged_count : problem->patch_count;
+        energies->scattered[k] += tone->weight * (square(sums.scattered[k][0]) + square(sums.scattered[k][1])) / 2;
 }
 
 /* The pixels of a tone's row, to which other rows are other delays: by Parseval's theorem the energies of all rows are
    those of all frequencies. */
-static void tone_add(const struct problem *problem, const struct tone *tone, const struct pair *echoes,
+static void tone_add(const struct problem *problem, const struct tone *tone, const struct echo_pair *echoes,
                      struct energies *energies)
 {
     const struct grid *grids;
@@ -150,12 +119,12 @@ bool scatter_find(const struct problem *problem, struct scatter *scatter)
     struct energies sum = {.image = 0};
     struct tone tones[TONES];
     const int count = condition_beam_known(a) ? tones_count(problem) : 0;
-    struct pair *echoes = count > 0 ? malloc((size_t)a->pings * (size_t)a->receivers * sizeof *echoes) : NULL;
+    struct echo_pair *echoes = count > 0 ? malloc((size_t)a->pings * (size_t)a->receivers * sizeof *echoes) : NULL;
     if (!echoes)
         return false;
     tones_fill(problem, count, tones);
     for (int n = 0; n < count; n++) {
-        echoes_fill(a, &tones[n], echoes);
+        echo_pairs_fill(a, (struct vector){tones[n].x, tones[n].r, 0}, echoes);
         tone_add(problem, &tones[n], echoes, &sum);
     }
     free(echoes);

@@ -9,9 +9,9 @@
 #include <string.h>
 
 #include "backprojection/factorised/factorised.h"
+#include "backprojection/known.h"
 #include "backprojection/omission.h"
 #include "backprojection/pairs.h"
-#include "backprojection/scatter.h"
 #include "backprojection/turned.h"
 #include "planner/candidates.h"
 #include "planner/rates.h"
@@ -405,23 +405,25 @@ static void reasons_fill(struct choice *choice)
 
 enum status planner_choose(const struct problem *given, const struct budget *budget, struct choice *choice)
 {
-    struct scatter scatter;
-    struct problem known = *given;
-    const struct problem *problem = &known;
+    struct known known = {.few = {.pixels = 0}};
+    struct problem forecast = *given;
+    const struct problem *problem = &forecast;
     struct setting setting = {.problem = problem, .planned = given, .budget = budget};
     *choice = (struct choice){.least = INFINITY, .list = malloc(CANDIDATES_MAX * sizeof *choice->list)};
     if (!choice->list)
         return status_set(STATUS_FAILED, "no memory for the candidates of a plan");
     choice->count = candidates_fill(choice->list);
     enum status status = condition_targets_shown(problem);
-    known.scatter = status == STATUS_OK && scatter_find(problem, &scatter) ? &scatter : NULL;
-    if (status == STATUS_OK)
+    if (status == STATUS_OK) {
+        known_find(&forecast, &known);
         status = pairs_of(problem, &setting.pairs);
+    }
     setting.reads = factorised_least(problem, setting.pairs);
     if (status == STATUS_OK)
         status = forecast_all(&setting, choice);
     if (status == STATUS_OK)
         status = plan_first(&setting, choice);
+    known_free(&known);
     if (status != STATUS_OK) {
         choice_free(choice);
         return status;

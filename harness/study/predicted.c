@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "backprojection/scatter.h"
+#include "backprojection/known.h"
 #include "data/paths.h"
 #include "data/text_file.h"
 #include "measure/provenance.h"
@@ -39,7 +39,7 @@ static bool scene_same(const struct csv *csv, const struct scene *scene, const c
     return measured && strcmp(measured, hash) == 0;
 }
 
-static enum status row_predict(const struct scene *scene, const struct scatter *scatter, const struct measurement *row,
+static enum status row_predict(const struct scene *scene, const struct problem *known, const struct measurement *row,
                                struct predictions *predictions)
 {
     char text[400];
@@ -52,7 +52,8 @@ static enum status row_predict(const struct scene *scene, const struct scatter *
     if (spec_parse(text, &spec) != STATUS_OK)
         return STATUS_OK; /* of another program */
     struct problem problem = scene_problem(scene, spec.precision);
-    problem.scatter = scatter;
+    problem.few = known->few;
+    problem.scatter = known->scatter;
     enum status status = STATUS_UNSUPPORTED;
     if (spec.algorithm->forecast)
         status = spec.algorithm->forecast(&problem, spec.options, &forecast);
@@ -73,13 +74,14 @@ static enum status scene_predict(const struct results *results, const char *name
     if (!given && scene_load(name, SCENE_DIRECTORY, &loaded) != STATUS_OK)
         return STATUS_OK;
     const struct scene *scene = given ? given : &loaded;
-    struct scatter scatter;
-    const struct problem problem = scene_problem(scene, PRECISION_FLOAT);
-    const bool found = scatter_find(&problem, &scatter);
+    struct known known;
+    struct problem problem = scene_problem(scene, PRECISION_FLOAT);
+    known_find(&problem, &known);
     enum status status = STATUS_OK;
     for (int k = 0; k < results->csv.row_count && status == STATUS_OK && scene_same(&results->csv, scene, name); k++)
         if (strcmp(results->measurements[k].scene, name) == 0)
-            status = row_predict(scene, found ? &scatter : NULL, &results->measurements[k], predictions);
+            status = row_predict(scene, &problem, &results->measurements[k], predictions);
+    known_free(&known);
     scene_free(&loaded);
     return status;
 }

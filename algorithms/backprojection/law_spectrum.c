@@ -1,0 +1,67 @@
+#include "backprojection/law_spectrum.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "common/fft_length.h"
+#include "common/pulse_band.h"
+
+enum { GAUSS = 8, BINS = LAW_NODES, FINER = 16 };
+/* The positive half of Gauss and Legendre's 16 points. */
+static const double node[GAUSS] = {0.0950125098376374, 0.2816035507792589, 0.4580167776572274, 0.6178762444026438,
+                                   0.7554044083550030, 0.8656312023878318, 0.9445750230732326, 0.9894009349916499};
+static const double weight[GAUSS] = {0.1894506104550685, 0.1826034150449236, 0.1691565193950025, 0.1495959888165767,
+                                     0.1246289712555339, 0.0951585116824928, 0.0622535239386479, 0.0271524594117541};
+
+/* Pulses of more cycles of time and bandwidth have a flat spectrum. The flanks of others cost an interpolator that
+   fails at half the sampling rate up to 0.5 over their number, relative L2. */
+static const double FLAT = 20000;
+
+/* The replica's own, in bins whose nodes are their middles of energy: an interpolator's error grows steeply at the
+   band's edges. False without memory. */
+static bool replica_spectrum(const struct acquisition *a, struct law_spectrum *spectrum)
+{
+    const int length = fft_length_fast((long long)fmax(2.0 * a->pulse_length, FINER * BINS));
+    double *energy = pulse_energy(a, length), sum = 0, amplitudes = 0;
+    if (!energy)
+        return false;
+    for (int k = 0; k < length; k++) {
+        sum += energy[k];
+        amplitudes += sqrt(energy[k]);
+    }
+    *spectrum = (struct law_spectrum){.count = BINS, .reach = BINS / 3.0};
+    for (int k = 0; k < length; k++) {
+        const double nu = fmin(k, length - k) / (double)length, amplitude = sqrt(energy[k]) / amplitudes;
+        /* White noise is compressed to what the echoes' amplitude is. */
+        const double both = (1 - a->noise) * energy[k] / sum + a->noise * amplitude;
+        const int n = (int)fmin(2 * BINS * nu, BINS - 1);
+        spectrum->nu[n] += nu * both;
+        spectrum->weight[n] += both;
+        spectrum->amplitude[n][2 * k > length] += amplitude;
+    }
+    free(energy);
+    for (int n = 0; n < BINS; n++) {
+        spectrum->nu[n] = spectrum->weight[n] > 0 ? spectrum->nu[n] / spectrum->weight[n] : (n + 0.5) / (2 * BINS);
+    }
+    return true;
+}
+
+bool law_spectrum(const struct acquisition *a, struct law_spectrum *spectrum)
+{
+    const double band = fmin(a->bandwidth / a->fs, 1);
+    if (!a->compressed && a->pulse_length * band <= FLAT)
+        return replica_spectrum(a, spectrum);
+    *spectrum = (struct law_spectrum){.count = GAUSS, .reach = GAUSS / 2 / band};
+    const double beside = a->compressed ? a->noise * (1 - band) : 0;
+    for (int n = 0; n < GAUSS; n++) {
+        spectrum->nu[n] = node[n] * band / 2;
+        spectrum->weight[n] = weight[n] * (1 - beside);
+        spectrum->amplitude[n][0] = spectrum->amplitude[n][1] = weight[n] / 2;
+    }
+    for (int n = 0; n < 2 * GAUSS && beside > 0; n++) { /* from the band's edge to half the sampling rate */
+        const double place = n < GAUSS ? -node[GAUSS - 1 - n] : node[n - GAUSS];
+        spectrum->nu[spectrum->count] = (1 + band + place * (1 - band)) / 4;
+        spectrum->weight[spectrum->count++] = weight[n < GAUSS ? GAUSS - 1 - n : n - GAUSS] / 2 * beside;
+    }
+    return true;
+}
