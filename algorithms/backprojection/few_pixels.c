@@ -15,8 +15,35 @@ enum {
     SUMS_MOST = 16000000 /* over pairs, pixels, targets and frequencies */
 };
 
-/* A record of few samples has another spectrum than its pulse: measured. */
-static const double SHARE = 1.25, FLOOR = 3e-5;
+/* What is measured lies up to a fifth above. */
+static const double SHARE = 1.2;
+
+/* Compressed echoes of known targets have the bins of their record's own transform that lie inside the band; many bins
+   are as good as a band. False without memory. */
+static bool spectrum_fill(const struct acquisition *a, struct law_spectrum *spectrum)
+{
+    const double bin = a->fs / a->samples, half = fmin(a->bandwidth, a->fs) / 2;
+    const int last = (int)floor(half / bin + 1e-6);
+    if (!a->compressed || last >= LAW_NODES) {
+        struct acquisition whole = *a;
+        if (a->compressed)
+            whole.bandwidth = fmin((2.0 * last + 1) * bin, a->fs);
+        return law_spectrum(&whole, spectrum);
+    }
+    double sum = 0;
+    *spectrum = (struct law_spectrum){.count = last + 1, .reach = a->samples / 2.0};
+    for (int k = 0; k <= last; k++) {
+        const bool halved = k == 0 || fabs(k * bin - a->bandwidth / 2) < 1e-6 * bin;
+        spectrum->nu[k] = (double)k / a->samples;
+        spectrum->weight[k] = halved ? 0.5 : 1;
+        sum += spectrum->weight[k];
+    }
+    for (int k = 0; k <= last; k++) {
+        spectrum->weight[k] /= sum;
+        spectrum->amplitude[k][0] = spectrum->amplitude[k][1] = spectrum->weight[k] / 2;
+    }
+    return true;
+}
 
 static int pixels_count(const struct problem *problem)
 {
@@ -88,7 +115,7 @@ bool few_pixels_find(const struct problem *problem, struct few_pixels *few)
     const double pairs = (double)a->pings * a->receivers, most = amplitude_most(problem);
     *few = (struct few_pixels){.pixels = pixels};
     if (!(most > 0) || !isfinite(most) || !condition_beam_known(a) || pixels > CELLS_MOST
-        || !law_spectrum(a, &few->spectrum) || (double)pixels * few->spectrum.count > CELLS_MOST
+        || !spectrum_fill(a, &few->spectrum) || (double)pixels * few->spectrum.count > CELLS_MOST
         || pairs * pixels * problem->target_count * few->spectrum.count > SUMS_MOST)
         return false;
     struct echo_pair *echoes = malloc((size_t)pairs * sizeof *echoes);
@@ -151,5 +178,5 @@ double few_pixels_error(const struct few_pixels *few, const struct interpolator 
     response_end(&response);
     free(values);
     const double error = of_exact > 0 && of_made > 0 ? sqrt(fmax(1 - square(both) / (of_made * of_exact), 0)) : 1;
-    return fmin(SHARE * error + FLOOR, interpolation_error(in, options, &few->spectrum, NULL));
+    return fmin(SHARE * error, interpolation_error(in, options, &few->spectrum, NULL));
 }

@@ -114,7 +114,7 @@ static void measured_of_rows(void **state)
         for (int k = 0; k < INTERPOLATORS; k++) {
             double error;
             const double ratio = predicted_over_measured(&session, interpolators[k], &error);
-            if (!(ratio > 0.85))
+            if (!(ratio > 0.95))
                 fail_msg("seed %d, %s: an error of %g is predicted, %g measured", seed, interpolators[k], ratio * error,
                          error);
             if (error > 1e-4)
