@@ -9,11 +9,11 @@
 #include <string.h>
 
 #include "backprojection/factorised/factorised.h"
-#include "backprojection/known.h"
 #include "backprojection/omission.h"
 #include "backprojection/pairs.h"
 #include "backprojection/turned.h"
 #include "planner/candidates.h"
+#include "planner/known.h"
 #include "planner/rates.h"
 
 /* Forecasts are means over scenes: what is planned with lies above. */
@@ -29,8 +29,8 @@ static const double BUDGETED = 0.99;
 
 /* What all candidates of a problem share. */
 struct setting {
-    const struct problem *problem; /* with what forecasts may go by */
-    const struct problem *planned; /* as it is given: plans outlive that */
+    const struct known *known;
+    const struct problem *problem; /* as it is given: plans outlive what is known of it */
     const struct budget *budget;
     double pairs; /* of back projection */
     double reads; /* pairs that images of subapertures cannot do without */
@@ -100,12 +100,12 @@ static enum status forecast_make(const struct setting *setting, struct candidate
 {
     const struct algorithm *algorithm = candidate->algorithm;
     char limit[16];
-    snprintf(limit, sizeof limit, "%.1e", PHASE_SHARE * setting->budget->error);
-    enum status status = algorithm->forecast(setting->problem, candidate->options, &candidate->forecast);
+    snprintf(limit, sizeof limit, "%.1e", PHASE_SHARE * setting->budget->error / setting->known->coarse);
+    enum status status = known_forecast(setting->known, algorithm, candidate->options, &candidate->forecast);
     if (status == STATUS_OK && candidate->forecast.sums_pairs
         && MARGIN * candidate->forecast.error[CAUSE_DELAYS] > DELAYS_MOST * setting->budget->error
         && candidate_set(candidate, "phase_limit", limit))
-        status = algorithm->forecast(setting->problem, candidate->options, &candidate->forecast);
+        status = known_forecast(setting->known, algorithm, candidate->options, &candidate->forecast);
     return status;
 }
 
@@ -135,7 +135,7 @@ static enum status migration_cost(const struct setting *setting, struct candidat
 static enum status migration_forecast(const struct setting *setting, struct candidate *candidate)
 {
     struct forecast forecast;
-    enum status status = candidate->algorithm->forecast(setting->problem, candidate->options, &forecast);
+    enum status status = known_forecast(setting->known, candidate->algorithm, candidate->options, &forecast);
     if (status == STATUS_OK) {
         memcpy(candidate->forecast.error, forecast.error, sizeof forecast.error);
         judge(setting, candidate);
@@ -181,14 +181,15 @@ static double sine_of(const struct problem *problem, double error)
 /* What is left of the budget beside a candidate's own error. */
 static double error_left(const struct setting *setting, const struct candidate *candidate)
 {
-    return sqrt(fmax(pow(setting->budget->error, 2) - pow(candidate->error, 2), 0)) / MARGIN;
+    return sqrt(fmax(pow(setting->budget->error, 2) - pow(candidate->error, 2), 0)) / (MARGIN * setting->known->coarse);
 }
 
 /* One candidate more: whichever is the fastest with as small an aperture as its error leaves room for. */
 static enum status limit_try(const struct setting *setting, struct choice *choice)
 {
     const struct problem *problem = setting->problem;
-    const double most = share_kept(problem, sine_of(problem, setting->budget->error / MARGIN));
+    const double most =
+        share_kept(problem, sine_of(problem, setting->budget->error / (MARGIN * setting->known->coarse)));
     const struct candidate *from = NULL;
     double least = LIMIT_PAYS * fastest(choice), sine = 1;
     for (int k = 0; k < choice->count; k++) {
@@ -272,7 +273,8 @@ static enum status costly_forecast(const struct setting *setting, const struct c
     }
     if (c->algorithm->cost)
         return migration_forecast(setting, c);
-    if (!*c->settings && !candidate_set_error(c, BUDGETED * setting->budget->error / MARGIN)) {
+    if (!*c->settings
+        && !candidate_set_error(c, BUDGETED * setting->budget->error / (MARGIN * setting->known->coarse))) {
         c->verdict = VERDICT_ERROR;
         snprintf(c->reason, sizeof c->reason, "does not take an error as small as the budget of %.2g",
                  setting->budget->error);
@@ -347,7 +349,7 @@ static enum status plan_fastest(const struct setting *setting, struct choice *ch
     *tried = best != NULL;
     if (!best)
         return STATUS_OK;
-    enum status status = best->algorithm->plan(setting->planned, best->options, &choice->plan);
+    enum status status = best->algorithm->plan(setting->problem, best->options, &choice->plan);
     if (status != STATUS_OK)
         return refused(best, status);
     best->bytes = best->algorithm->work(choice->plan).bytes;
@@ -403,19 +405,17 @@ static void reasons_fill(struct choice *choice)
     }
 }
 
-enum status planner_choose(const struct problem *given, const struct budget *budget, struct choice *choice)
+enum status planner_choose(const struct problem *problem, const struct budget *budget, struct choice *choice)
 {
-    struct known known = {.few = {.pixels = 0}};
-    struct problem forecast = *given;
-    const struct problem *problem = &forecast;
-    struct setting setting = {.problem = problem, .planned = given, .budget = budget};
+    struct known known = {.coarse = 1};
+    struct setting setting = {.known = &known, .problem = problem, .budget = budget};
     *choice = (struct choice){.least = INFINITY, .list = malloc(CANDIDATES_MAX * sizeof *choice->list)};
     if (!choice->list)
         return status_set(STATUS_FAILED, "no memory for the candidates of a plan");
     choice->count = candidates_fill(choice->list);
     enum status status = condition_targets_shown(problem);
     if (status == STATUS_OK) {
-        known_find(&forecast, &known);
+        known_find(problem, &known);
         status = pairs_of(problem, &setting.pairs);
     }
     setting.reads = factorised_least(problem, setting.pairs);

@@ -95,10 +95,10 @@ enum status command_sweep(const struct task *task)
         status = settings_load(task, &settings);
     if (status == STATUS_OK)
         status = task_scenes("sweep", task, default_count, default_scenes, &scenes, &scene_count);
-    if (status == STATUS_OK && settings_choose(&settings))
-        status = machine_rates_need();
     if (status == STATUS_OK)
         status = batch_open(directory, scene_count * settings.count, false, &batch);
+    if (status == STATUS_OK && settings_choose(&settings))
+        status = machine_rates_need();
     batch.in_turn = true;
     interruption_hold();
     for (int k = 0; k < scene_count && status == STATUS_OK && !interruption_seen(); k++) {

@@ -6,13 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "backprojection/known.h"
 #include "data/paths.h"
 #include "data/text_file.h"
 #include "measure/provenance.h"
 #include "measure/results.h"
 #include "measure/spec.h"
 #include "measure/timing.h"
+#include "planner/known.h"
 #include "show/plot.h"
 #include "study/sweep_group.h"
 
@@ -39,8 +39,7 @@ static bool scene_same(const struct csv *csv, const struct scene *scene, const c
     return measured && strcmp(measured, hash) == 0;
 }
 
-static enum status row_predict(const struct scene *scene, const struct problem *known, const struct measurement *row,
-                               struct predictions *predictions)
+static enum status row_predict(struct known *known, const struct measurement *row, struct predictions *predictions)
 {
     char text[400];
     struct spec spec;
@@ -51,12 +50,10 @@ static enum status row_predict(const struct scene *scene, const struct problem *
              row->precision);
     if (spec_parse(text, &spec) != STATUS_OK)
         return STATUS_OK; /* of another program */
-    struct problem problem = scene_problem(scene, spec.precision);
-    problem.few = known->few;
-    problem.scatter = known->scatter;
     enum status status = STATUS_UNSUPPORTED;
+    known->problem.precision = spec.precision;
     if (spec.algorithm->forecast)
-        status = spec.algorithm->forecast(&problem, spec.options, &forecast);
+        status = known_forecast(known, spec.algorithm, spec.options, &forecast);
     if (status == STATUS_OK && isfinite(forecast_error(&forecast))) {
         const double error = forecast_error(&forecast);
         predictions->list[predictions->count++] =
@@ -75,12 +72,12 @@ static enum status scene_predict(const struct results *results, const char *name
         return STATUS_OK;
     const struct scene *scene = given ? given : &loaded;
     struct known known;
-    struct problem problem = scene_problem(scene, PRECISION_FLOAT);
+    const struct problem problem = scene_problem(scene, PRECISION_FLOAT);
     known_find(&problem, &known);
     enum status status = STATUS_OK;
     for (int k = 0; k < results->csv.row_count && status == STATUS_OK && scene_same(&results->csv, scene, name); k++)
         if (strcmp(results->measurements[k].scene, name) == 0)
-            status = row_predict(scene, &problem, &results->measurements[k], predictions);
+            status = row_predict(&known, &results->measurements[k], predictions);
     known_free(&known);
     scene_free(&loaded);
     return status;

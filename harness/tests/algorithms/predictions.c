@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "backprojection/known.h"
+#include "planner/known.h"
 #include "measure/metrics.h"
 #include "tests/support.h"
 
@@ -23,14 +23,15 @@ double predicted_over_measured(const struct session *session, const char *text, 
     struct spec spec;
     assert_int_equal(spec_parse(text, &spec), STATUS_OK);
     assert_int_equal(session_image(session, &spec, &image), STATUS_OK);
-    struct problem problem = session_problem(session->scene, spec.algorithm, PRECISION_FLOAT);
+    const struct problem problem = session_problem(session->scene, spec.algorithm, PRECISION_FLOAT);
     struct known known;
-    const struct forecast whole = forecast_of(text, &problem);
+    struct forecast forecast;
     known_find(&problem, &known);
-    const struct forecast forecast = forecast_of(text, &problem);
+    assert_int_equal(known_forecast(&known, spec.algorithm, spec.options, &forecast), STATUS_OK);
     known_free(&known);
     const double predicted = forecast_error(&forecast);
-    assert_true(predicted <= forecast_error(&whole) * (1 + 1e-12));
+    const struct forecast whole = forecast_of(text, &problem);
+    assert_true(predicted <= known.coarse * forecast_error(&whole) * (1 + 1e-12));
     *error = metrics_error(&image, &session->reference).error_gain;
     print_message("%s, B/fs %.2f, %-30s predicted %.2e, measured %.2e, ratio %.2f\n", session->scene->name,
                   session->scene->acquisition.bandwidth / session->scene->acquisition.fs, text, predicted, *error,

@@ -3,7 +3,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "backprojection/known.h"
 #include "measure/metrics.h"
 #include "measure/session.h"
 #include "measure/timing.h"
@@ -131,6 +130,34 @@ static void measured_of_rows(void **state)
             middle, ratios[count - 1]);
 }
 
+/* Pixels that miss a target's peak show little of it, beside which errors are large. */
+static void measured_of_coarse_pixels(void **state)
+{
+    (void)state;
+    static const char *const specs[] = {"bp_nearest", "bp_linear:beta=8", "bp_farrow:degree=2", "bp_farrow:degree=3",
+                                        "bp_zeropad:factor=16"};
+    for (int seed = 6601; seed < 6613; seed++) {
+        struct scene scene;
+        struct session session;
+        points_scene(seed, 1, &scene);
+        struct grid *g = &scene.patches[0];
+        const struct target *target = &scene.targets[0];
+        g->x_step *= seed % 2 ? 3 : 0.5;
+        g->r_step *= seed % 2 ? 0.5 : 1.5;
+        g->x_first = target->x - (g->x_count / 2 - 0.5) * g->x_step;
+        g->r_first = target->r - (g->r_count / 2 - 0.5) * g->r_step;
+        assert_int_equal(session_open(&scene, &session), STATUS_OK);
+        for (size_t k = 0; k < sizeof specs / sizeof *specs; k++) {
+            double error;
+            const double ratio = predicted_over_measured(&session, specs[k], &error);
+            if (!(ratio > 0.88))
+                fail_msg("seed %d, %s: an error of %g is predicted, %g measured", seed, specs[k], ratio * error, error);
+        }
+        session_close(&session);
+        scene_free(&scene);
+    }
+}
+
 /* Noise has frequencies beyond the band of compressed echoes: settings that are called by their error keep it. */
 static void noise_keeps_errors(void **state)
 {
@@ -242,6 +269,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(measured, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(measured_of_points, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(measured_of_rows, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(measured_of_coarse_pixels, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(noise_keeps_errors, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(flanks, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(few_pings_met, folder_make, folder_remove),
