@@ -38,6 +38,7 @@ struct forecast {
     bool tables;          /* by the invariant engine */
     enum reading_kind kind;
     int values;        /* that a pair reads */
+    int finer;         /* how many values of a record stand for a sample */
     double units;      /* that are made for them: entries of tables, or blocks of pixels */
     double residues;   /* by tables: columns from ping to ping, of which neighbours share what they load */
     double pair_flops; /* of a pair */

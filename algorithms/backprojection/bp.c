@@ -366,6 +366,7 @@ enum status bp_forecast(const struct problem *problem, const struct interpolator
         const bool general = bp.engine == &bp_general;
         const double law = error_between_samples(problem, in, options);
         forecast->tables = !general;
+        forecast->finer = in->upsample;
         const double ends = in->upsample == 1 && in->degree == 0 && in->taps > 1 ? law_ends(problem, in->taps) : 0;
         forecast->error[CAUSE_INTERPOLATION] = hypot(law, ends);
         forecast->error[CAUSE_DELAYS] = general ? DELAYS_SHARE * bp.medium.phase_limit : 1e-7;
