@@ -9,7 +9,7 @@
 
 enum {
     TARGETS = 6,
-    PAIRS_MOST = 6000000, /* that are summed in all */
+    PAIRS_MOST = 6000000, /* that are summed in all, and rows */
     FINER_MOST = 1000     /* columns or rows, for one */
 };
 
@@ -62,22 +62,19 @@ static int finer_of(double step, double resolution)
     return (int)fmin(ceil(step / resolution), FINER_MOST);
 }
 
-/* Adds a target's energy in one grid, unless it lies beside it or takes too long. */
+/* Adds the energy of a target that a grid holds, unless that takes too long. */
 static void grid_add(const struct problem *problem, const struct target *target, const struct echo_pair *pairs,
                      const struct grid *g, double cell_x, double cell_r, double *left, struct means *sum)
 {
     const struct acquisition *a = problem->acquisition;
     const struct vector at = grid_coordinates(g, target->x, target->r);
-    const double column = (at.x - g->x_first) / g->x_step, row = (at.y - g->r_first) / g->r_step;
-    const int finer = finer_of(g->x_step, cell_x);
-    if (!(fabs(column - (g->x_count - 1) / 2.0) <= g->x_count / 2.0)
-        || !(fabs(row - (g->r_count - 1) / 2.0) <= g->r_count / 2.0))
-        return;
-    *left -= (double)a->pings * a->receivers * finer * g->x_count;
+    const double row = (at.y - g->r_first) / g->r_step;
+    const int columns = finer_of(g->x_step, cell_x), rows = finer_of(g->r_step, cell_r);
+    *left -= (double)a->pings * a->receivers * columns * g->x_count + (double)rows * g->r_count;
     if (*left < 0)
         return;
-    const struct means x = along_x(a, pairs, g, row, finer);
-    const struct means r = along_r(a, g, row, finer_of(g->r_step, cell_r));
+    const struct means x = along_x(a, pairs, g, row, columns);
+    const struct means r = along_r(a, g, row, rows);
     const double pixels = (double)g->x_count * g->r_count * square(target->amplitude);
     sum->shown += pixels * x.shown * r.shown;
     sum->fine += pixels * x.fine * r.fine;
@@ -103,7 +100,8 @@ double coarse_factor(const struct problem *problem)
         const struct target *target = &problem->targets[(long long)n * problem->target_count / targets];
         echo_pairs_fill(a, (struct vector){target->x, target->r, 0}, echoes);
         for (int k = 0; k < count; k++)
-            grid_add(problem, target, echoes, &grids[k], cell_x, cell_r, &left, &sum);
+            if (grid_holds(&grids[k], target->x, target->r))
+                grid_add(problem, target, echoes, &grids[k], cell_x, cell_r, &left, &sum);
     }
     free(echoes);
     return sum.shown > 0 && sum.fine > sum.shown ? sqrt(sum.fine / sum.shown) : 1;
