@@ -50,7 +50,8 @@ static struct means along_r(const struct acquisition *a, const struct grid *g, d
     const int count = (g->r_count - 1) * finer + 1;
     for (int i = 0; i < count; i++) {
         const double z = M_PI * 2 * a->bandwidth / a->sound_speed * ((double)i / finer - row) * g->r_step;
-        const double energy = fabs(z) > 1e-6 ? pow(sin(z) / z, 2) : 1;
+        /* Side lobes by their mean: a pulse's own have no zeros where those of a flat band are. */
+        const double energy = fabs(z) < M_PI / 2 ? pow(condition_sinc(z / M_PI), 2) : 1 / (2 * z * z);
         means.fine += energy / count;
         means.shown += i % finer == 0 ? energy / g->r_count : 0;
     }
@@ -93,7 +94,7 @@ double coarse_factor(const struct problem *problem)
     bool near = true;
     for (int k = 0; k < count; k++)
         near = near && grids[k].x_step <= cell_x && grids[k].r_step <= cell_r;
-    if (near || targets == 0 || pairs > PAIRS_MOST || !condition_beam_known(a))
+    if (near || targets == 0 || pairs > PAIRS_MOST || !echoes_known(problem))
         return 1;
     struct echo_pair *echoes = malloc((size_t)pairs * sizeof *echoes);
     for (int n = 0; n < targets && echoes; n++) {

@@ -5,6 +5,12 @@
 #include "common/delay.h"
 #include "condition.h"
 
+bool echoes_known(const struct problem *problem)
+{
+    const struct acquisition *a = problem->acquisition;
+    return condition_beam_known(a) || (problem->target_count > 0 && !a->noisy && a->echo_sine > 0);
+}
+
 void echo_pairs_fill(const struct acquisition *a, struct vector target, struct echo_pair *pairs)
 {
     for (int p = 0; p < a->pings; p++) {

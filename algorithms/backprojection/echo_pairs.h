@@ -10,6 +10,9 @@ struct echo_pair {
     double amplitude; /* 1; 0: the beam does not meet the target */
 };
 
+/* Is it known where the echoes come from: from within a known beam, or from known targets, without noise? */
+bool echoes_known(const struct problem *problem);
+
 /* Of a target at this place: pairs [pings][receivers]. */
 void echo_pairs_fill(const struct acquisition *acquisition, struct vector target, struct echo_pair *pairs);
 

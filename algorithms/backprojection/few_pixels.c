@@ -114,7 +114,7 @@ bool few_pixels_find(const struct problem *problem, struct few_pixels *few)
     const int pixels = pixels_count(problem);
     const double pairs = (double)a->pings * a->receivers, most = amplitude_most(problem);
     *few = (struct few_pixels){.pixels = pixels};
-    if (!(most > 0) || !isfinite(most) || !condition_beam_known(a) || pixels > CELLS_MOST
+    if (!(most > 0) || !isfinite(most) || !echoes_known(problem) || pixels > CELLS_MOST
         || !spectrum_fill(a, &few->spectrum) || (double)pixels * few->spectrum.count > CELLS_MOST
         || pairs * pixels * problem->target_count * few->spectrum.count > SUMS_MOST)
         return false;

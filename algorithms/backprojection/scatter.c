@@ -118,7 +118,7 @@ bool scatter_find(const struct problem *problem, struct scatter *scatter)
     const struct acquisition *a = problem->acquisition;
     struct energies sum = {.image = 0};
     struct tone tones[TONES];
-    const int count = condition_beam_known(a) ? tones_count(problem) : 0;
+    const int count = echoes_known(problem) ? tones_count(problem) : 0;
     struct echo_pair *echoes = count > 0 ? malloc((size_t)a->pings * (size_t)a->receivers * sizeof *echoes) : NULL;
     if (!echoes)
         return false;
