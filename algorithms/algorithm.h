@@ -65,6 +65,10 @@ struct problem {
 /* One of which nothing is known beforehand. */
 struct problem problem_make(const struct acquisition *acquisition, int patch_count, const struct grid *patches,
                             enum precision precision);
+/* The grids where errors count: returns how many. */
+int problem_judged(const struct problem *problem, const struct grid **grids);
+/* The greatest magnitude of the known targets' amplitudes; 0 without any. */
+double problem_amplitude_most(const struct problem *problem);
 
 /* The recorded samples, read only. */
 struct echoes {

@@ -221,8 +221,8 @@ static bool shows(const struct acquisition *a, const struct grid *g, const struc
 
 enum status condition_targets_shown(const struct problem *problem)
 {
-    const struct grid *parts = problem->judged_count > 0 ? problem->judged : problem->patches;
-    const int count = problem->judged_count > 0 ? problem->judged_count : problem->patch_count;
+    const struct grid *parts;
+    const int count = problem_judged(problem, &parts);
     for (int n = 0; n < problem->target_count; n++)
         for (int k = 0; k < count; k++)
             if (shows(problem->acquisition, &parts[k], &problem->targets[n]))

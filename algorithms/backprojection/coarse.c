@@ -87,7 +87,7 @@ double coarse_factor(const struct problem *problem)
     const double cell_x = a->sound_speed / (4 * a->fc * fmin(condition_seen_sine(a), 1));
     const double cell_r = a->sound_speed / (2 * a->bandwidth), pairs = (double)a->pings * a->receivers;
     const struct grid *grids;
-    const int count = grids_judged(problem, &grids);
+    const int count = problem_judged(problem, &grids);
     const int targets = problem->target_count < TARGETS ? problem->target_count : TARGETS;
     double left = PAIRS_MOST;
     struct means sum = {0};

@@ -41,9 +41,3 @@ void echo_pairs_visit(const struct acquisition *a, const struct echo_pair *pairs
         }
     }
 }
-
-int grids_judged(const struct problem *problem, const struct grid **grids)
-{
-    *grids = problem->judged_count > 0 ? problem->judged : problem->patches;
-    return problem->judged_count > 0 ? problem->judged_count : problem->patch_count;
-}

@@ -22,7 +22,4 @@ typedef void echo_pair_visit(void *context, const struct echo_pair *pair, double
 void echo_pairs_visit(const struct acquisition *acquisition, const struct echo_pair *pairs, struct vector pixel,
                       echo_pair_visit *visit, void *context);
 
-/* The grids where errors count: returns how many. */
-int grids_judged(const struct problem *problem, const struct grid **grids);
-
 #endif

@@ -48,7 +48,7 @@ static bool spectrum_fill(const struct acquisition *a, struct law_spectrum *spec
 static int pixels_count(const struct problem *problem)
 {
     const struct grid *grids;
-    const int count = grids_judged(problem, &grids);
+    const int count = problem_judged(problem, &grids);
     double pixels = 0;
     for (int k = 0; k < count; k++)
         pixels += (double)grids[k].x_count * grids[k].r_count;
@@ -80,22 +80,13 @@ static void pair_add(void *context, const struct echo_pair *pair, double delay, 
     }
 }
 
-/* The greatest amplitude of the targets. */
-static double amplitude_most(const struct problem *problem)
-{
-    double most = 0;
-    for (int k = 0; k < problem->target_count; k++)
-        most = fmax(most, cabs(problem->targets[k].amplitude));
-    return most;
-}
-
 /* What one target adds to all pixels; false where some are too far from it. */
 static bool target_add(const struct problem *problem, const struct echo_pair *pairs, double complex gain,
                        struct few_pixels *few)
 {
     const struct acquisition *a = problem->acquisition;
     const struct grid *grids;
-    const int count = grids_judged(problem, &grids);
+    const int count = problem_judged(problem, &grids);
     struct pixel pixel = {.spectrum = &few->spectrum, .fc = a->fc, .fs = a->fs, .gain = gain, .sums = few->sums};
     for (int n = 0; n < few->spectrum.count; n++)
         pixel.turns[n] = few->spectrum.nu[n] * a->fs;
@@ -112,7 +103,7 @@ bool few_pixels_find(const struct problem *problem, struct few_pixels *few)
 {
     const struct acquisition *a = problem->acquisition;
     const int pixels = pixels_count(problem);
-    const double pairs = (double)a->pings * a->receivers, most = amplitude_most(problem);
+    const double pairs = (double)a->pings * a->receivers, most = problem_amplitude_most(problem);
     *few = (struct few_pixels){.pixels = pixels};
     if (!(most > 0) || !isfinite(most) || !echoes_known(problem) || pixels > CELLS_MOST
         || !spectrum_fill(a, &few->spectrum) || (double)pixels * few->spectrum.count > CELLS_MOST

@@ -30,9 +30,7 @@ struct energies {
 static void tones_fill(const struct problem *problem, int count, struct tone tones[TONES])
 {
     const struct acquisition *a = problem->acquisition;
-    double most = 0;
-    for (int k = 0; k < problem->target_count; k++)
-        most = fmax(most, cabs(problem->targets[k].amplitude));
+    const double most = problem_amplitude_most(problem);
     for (int n = 0; n < count; n++) {
         const double even = fmod(0.3 + n * 0.618, 1), other = fmod(0.5 + n * 0.755, 1);
         tones[n] = (struct tone){.frequency = a->fc + (fmod(0.2 + n * 0.57, 1) - 0.5) * a->bandwidth, .weight = 1};
@@ -91,7 +89,7 @@ static void tone_add(const struct problem *problem, const struct tone *tone, con
                      struct energies *energies)
 {
     const struct grid *grids;
-    const int count = grids_judged(problem, &grids);
+    const int count = problem_judged(problem, &grids);
     for (int k = 0; k < count; k++) {
         const struct grid *g = &grids[k];
         const double row = (grid_coordinates(g, tone->x, tone->r).y - g->r_first) / g->r_step;
@@ -106,7 +104,7 @@ static int tones_count(const struct problem *problem)
 {
     const struct acquisition *a = problem->acquisition;
     const struct grid *grids;
-    const int count = grids_judged(problem, &grids);
+    const int count = problem_judged(problem, &grids);
     double columns = 0;
     for (int k = 0; k < count; k++)
         columns += grids[k].x_count;

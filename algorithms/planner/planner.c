@@ -53,6 +53,12 @@ static enum status pairs_of(const struct problem *problem, double *pairs)
     return status;
 }
 
+/* What a law may say where an error is allowed, which is planned with above it. */
+static double law_most(const struct setting *setting, double error)
+{
+    return error / (MARGIN * setting->known->coarse);
+}
+
 /* Over the budget, or not. */
 static void judge(const struct setting *setting, struct candidate *candidate)
 {
@@ -181,15 +187,14 @@ static double sine_of(const struct problem *problem, double error)
 /* What is left of the budget beside a candidate's own error. */
 static double error_left(const struct setting *setting, const struct candidate *candidate)
 {
-    return sqrt(fmax(pow(setting->budget->error, 2) - pow(candidate->error, 2), 0)) / (MARGIN * setting->known->coarse);
+    return law_most(setting, sqrt(fmax(pow(setting->budget->error, 2) - pow(candidate->error, 2), 0)));
 }
 
 /* One candidate more: whichever is the fastest with as small an aperture as its error leaves room for. */
 static enum status limit_try(const struct setting *setting, struct choice *choice)
 {
     const struct problem *problem = setting->problem;
-    const double most =
-        share_kept(problem, sine_of(problem, setting->budget->error / (MARGIN * setting->known->coarse)));
+    const double most = share_kept(problem, sine_of(problem, law_most(setting, setting->budget->error)));
     const struct candidate *from = NULL;
     double least = LIMIT_PAYS * fastest(choice), sine = 1;
     for (int k = 0; k < choice->count; k++) {
@@ -273,8 +278,7 @@ static enum status costly_forecast(const struct setting *setting, const struct c
     }
     if (c->algorithm->cost)
         return migration_forecast(setting, c);
-    if (!*c->settings
-        && !candidate_set_error(c, BUDGETED * setting->budget->error / (MARGIN * setting->known->coarse))) {
+    if (!*c->settings && !candidate_set_error(c, BUDGETED * law_most(setting, setting->budget->error))) {
         c->verdict = VERDICT_ERROR;
         snprintf(c->reason, sizeof c->reason, "does not take an error as small as the budget of %.2g",
                  setting->budget->error);

@@ -93,10 +93,8 @@ static int known_tones(const struct rma_view *view, const struct grid *patch, st
     const struct problem *problem = view->problem;
     const struct acquisition *a = problem->acquisition;
     const int targets = problem->target_count < KNOWN ? problem->target_count : KNOWN, tones = TONES / targets;
-    double most = 0;
+    const double most = problem_amplitude_most(problem);
     int count = 0;
-    for (int k = 0; k < problem->target_count; k++)
-        most = fmax(most, cabs(problem->targets[k].amplitude));
     for (int n = 0; n < targets * tones && most > 0; n++) {
         const struct target *target = &problem->targets[(long long)(n / tones) * problem->target_count / targets];
         if (has_row(patch, target->x, target->r))
