@@ -12,8 +12,8 @@
 
 enum { SEEDS = 12 };
 
-/* Of random scenes, whose field up to three points stand for if `points` is said: each is 0.9 or more, the median from 1
-   to `most`. */
+/* Of random scenes, with `points` those of up to three targets in place of the field: each forecast is 0.9 or more of
+   what is measured, the median from 1 to `most`. */
 static void seeds_compare(const int seeds[SEEDS], bool points, double most)
 {
     double ratios[SEEDS];
