@@ -5,27 +5,39 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <signal.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 static const char pattern[] = ".sasbench-";
 
 /* What exists now, for the signal handler. One that finds no place here is left to the next sweep. */
 enum { NAMES_MAX = 2048 };
-static char *_Atomic names[NAMES_MAX];
+static char *volatile names[NAMES_MAX];
 static volatile sig_atomic_t process_groups[PROCESSES_MOST];
-static volatile sig_atomic_t ending; /* a signal ends the program: nothing is made any more */
 
-static void wait_while_ending(void)
+/* Signals that end the program. */
+static const int numbers[] = {SIGHUP, SIGINT, SIGQUIT, SIGPIPE, SIGALRM, SIGTERM, SIGXCPU};
+enum { NUMBERS = sizeof numbers / sizeof *numbers };
+static pthread_t first; /* the thread that makes and removes files; OpenMP's others compute */
+
+void temporary_hold(sigset_t *before)
 {
-    while (ending)
-        pause();
+    sigset_t held;
+    sigemptyset(&held);
+    for (int k = 0; k < NUMBERS; k++)
+        sigaddset(&held, numbers[k]);
+    pthread_sigmask(SIG_BLOCK, &held, before);
+}
+
+void temporary_release(const sigset_t *before)
+{
+    pthread_sigmask(SIG_SETMASK, before, NULL);
 }
 
 static void name_add(const char *path)
@@ -62,11 +74,14 @@ static bool name_beside(const char *path, char made[PATH_MAX])
 
 int temporary_file(const char *path, char made[PATH_MAX])
 {
-    wait_while_ending();
+    sigset_t before;
+    temporary_hold(&before);
     int descriptor = name_beside(path, made) ? mkostemp(made, O_CLOEXEC) : -1;
+    if (descriptor >= 0)
+        name_add(made);
+    temporary_release(&before);
     if (descriptor < 0)
         return -1;
-    name_add(made);
     mode_t mask = umask(0); /* the rights of any new file, not mkstemp's */
     umask(mask);
     fchmod(descriptor, 0666 & ~mask);
@@ -75,10 +90,12 @@ int temporary_file(const char *path, char made[PATH_MAX])
 
 bool temporary_folder(const char *path, char made[PATH_MAX])
 {
-    wait_while_ending();
+    sigset_t before;
+    temporary_hold(&before);
     bool good = name_beside(path, made) && mkdtemp(made);
     if (good)
         name_add(made);
+    temporary_release(&before);
     return good;
 }
 
@@ -154,41 +171,36 @@ void temporary_process_drop(pid_t group)
     group_change(group, 0);
 }
 
-/* Files first, then the folders that held them. False if there are none. */
-static bool names_remove(void)
-{
-    bool found = false;
-    for (int k = 0; k < NAMES_MAX; k++)
-        if (names[k] && unlink(names[k]) == 0)
-            found = true;
-    for (int k = 0; k < NAMES_MAX; k++)
-        if (names[k] && rmdir(names[k]) == 0)
-            found = true;
-    return found;
-}
-
-/* Only what a handler may call. Other threads go on meanwhile: what they had begun to make is removed as well. */
+/* Only what a handler may call. On another thread it would work beside the first, which makes and removes files, or
+   ends the program meanwhile. */
 static void end(int number)
 {
-    enum { PASSES = 50, QUIET = 3 };
-    ending = 1;
-    for (int k = 0; k < PROCESSES_MOST; k++)
-        if (process_groups[k] > 0)
-            kill(-(pid_t)process_groups[k], SIGKILL);
-    for (int pass = 0, quiet = 0; pass < PASSES && quiet < QUIET; pass++) {
-        quiet = names_remove() ? 0 : quiet + 1;
-        nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+    if (!pthread_equal(pthread_self(), first)) {
+        pthread_kill(first, number);
+        return;
     }
-    raise(number); /* SA_RESETHAND: it ends the program when this returns */
+    for (int k = 0; k < PROCESSES_MOST; k++)
+        if (process_groups[k] > 0) {
+            kill(-(pid_t)process_groups[k], SIGKILL);
+            waitpid((pid_t)process_groups[k], NULL, 0); /* it writes no more */
+        }
+    for (int k = 0; k < NAMES_MAX; k++)
+        if (names[k])
+            unlink(names[k]);
+    for (int k = 0; k < NAMES_MAX; k++) /* the folders that held them */
+        if (names[k])
+            rmdir(names[k]);
+    signal(number, SIG_DFL);
+    raise(number); /* it ends the program when this returns */
 }
 
 void temporary_guard(void)
 {
-    static const int numbers[] = {SIGHUP, SIGINT, SIGQUIT, SIGPIPE, SIGALRM, SIGTERM, SIGXCPU};
-    struct sigaction action = {.sa_handler = end, .sa_flags = (int)SA_RESETHAND}, before;
-    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
+    struct sigaction action = {.sa_handler = end}, before;
+    first = pthread_self();
+    for (int k = 0; k < NUMBERS; k++)
         sigaddset(&action.sa_mask, numbers[k]);
-    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
+    for (int k = 0; k < NUMBERS; k++)
         if (sigaction(numbers[k], NULL, &before) == 0 && before.sa_handler == SIG_DFL)
             sigaction(numbers[k], &action, NULL);
 }

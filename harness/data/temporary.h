@@ -5,6 +5,7 @@
 #define SASBENCH_DATA_TEMPORARY_H
 
 #include <limits.h>
+#include <signal.h>
 #include <stdbool.h>
 #include <sys/types.h>
 
@@ -21,11 +22,16 @@ void temporary_remove(const char *made);
 /* What killed programs left in a folder that is ours alone (folder.h). */
 void temporary_sweep(const char *directory);
 
+/* Between these two no signal ends the program: what is made there is known when one does. `before` is the thread's
+   signal mask. */
+void temporary_hold(sigset_t *before);
+void temporary_release(const sigset_t *before);
 /* A process group that a signal ends together with the program, until it is dropped; of up to PROCESSES_MOST. */
 enum { PROCESSES_MOST = 16 };
 void temporary_process_add(pid_t group);
 void temporary_process_drop(pid_t group);
-/* From now on, signals that end the program remove first what is on its way. One that is ignored stays so. */
+/* From now on, signals that end the program remove first what is on its way. One that is ignored stays so. To be called
+   by the thread that makes temporary files, the only one that does. */
 void temporary_guard(void);
 
 #endif

@@ -49,8 +49,8 @@ void gnuplot_complaint(const char *log, char *text, size_t size)
     fclose(file);
 }
 
-/* gnuplot in a process group of its own, so that what it starts can be ended with it. */
-static int spawn(const char *script, const char *log, pid_t *child)
+/* gnuplot in a process group of its own, so that what it starts can be ended with it; `mask` is its signal mask. */
+static int spawn(const char *script, const char *log, const sigset_t *mask, pid_t *child)
 {
     /* --default-settings: the user's own gnuplot start-up files stay out. */
     char *arguments[] = {"gnuplot", "--default-settings", (char *)script, NULL};
@@ -72,7 +72,10 @@ static int spawn(const char *script, const char *log, pid_t *child)
         if (!error)
             error = posix_spawnattr_setsigdefault(&attributes, &usual);
         if (!error)
-            error = posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
+            error = posix_spawnattr_setsigmask(&attributes, mask);
+        if (!error)
+            error = posix_spawnattr_setflags(&attributes,
+                                             POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
         if (!error)
             error = posix_spawnp(child, "gnuplot", &actions, &attributes, arguments, environ);
         posix_spawnattr_destroy(&attributes);
@@ -84,10 +87,14 @@ static int spawn(const char *script, const char *log, pid_t *child)
 enum status gnuplot_start(const char *script, const char *log, struct gnuplot *gnuplot)
 {
     *gnuplot = (struct gnuplot){.begin = seconds_now()};
-    int error = spawn(script, log, &gnuplot->process);
+    sigset_t before;
+    temporary_hold(&before);
+    int error = spawn(script, log, &before, &gnuplot->process);
+    if (!error)
+        temporary_process_add(gnuplot->process);
+    temporary_release(&before);
     if (error)
         return status_set(STATUS_FAILED, "plot: cannot run gnuplot (Debian: gnuplot-nox): %s", strerror(error));
-    temporary_process_add(gnuplot->process);
     return STATUS_OK;
 }
 
