@@ -50,7 +50,7 @@ void machine_rates_path(char *path, size_t size)
 {
     const char *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
     *path = '\0';
-    if (cache && *cache)
+    if (cache && *cache == '/') /* relative ones are not followed, by the XDG rules */
         snprintf(path, size, "%s/sasbench/rates.csv", cache);
     else if (home && *home)
         snprintf(path, size, "%s/.cache/sasbench/rates.csv", home);
