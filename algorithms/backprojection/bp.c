@@ -10,6 +10,7 @@
 #include "backprojection/law.h"
 #include "backprojection/omission.h"
 #include "common/fft_length.h"
+#include "common/image_spectrum.h"
 #include "backprojection/pairs.h"
 
 /* The kernel's branches, where they are few enough; false without memory. In float they may be as far off as phase
@@ -349,8 +350,9 @@ static double error_between_samples(const struct problem *problem, const struct 
     struct law_spectrum spectrum;
     if (problem->few)
         return few_pixels_error(problem->few, in, options);
-    return law_spectrum(problem->acquisition, &spectrum) ? interpolation_error(in, options, &spectrum, problem->scatter)
-                                                         : NAN;
+    return law_spectrum(problem->acquisition, image_cells(problem), &spectrum)
+               ? interpolation_error(in, options, &spectrum, problem->scatter)
+               : NAN;
 }
 
 enum status bp_forecast(const struct problem *problem, const struct interpolator *in, const void *options,

@@ -6,6 +6,7 @@
 #include "backprojection/echo_pairs.h"
 #include "backprojection/law.h"
 #include "backprojection/response.h"
+#include "common/image_spectrum.h"
 #include "common/turns.h"
 #include "condition.h"
 
@@ -20,15 +21,16 @@ static const double SHARE = 1.2;
 
 /* Compressed echoes of known targets have the bins of their record's own transform that lie inside the band; many bins
    are as good as a band. False without memory. */
-static bool spectrum_fill(const struct acquisition *a, struct law_spectrum *spectrum)
+static bool spectrum_fill(const struct problem *problem, struct law_spectrum *spectrum)
 {
+    const struct acquisition *a = problem->acquisition;
     const double bin = a->fs / a->samples, half = fmin(a->bandwidth, a->fs) / 2;
     const int last = (int)floor(half / bin + 1e-6);
     if (!a->compressed || last >= LAW_NODES) {
         struct acquisition whole = *a;
         if (a->compressed)
             whole.bandwidth = fmin((2.0 * last + 1) * bin, a->fs);
-        return law_spectrum(&whole, spectrum);
+        return law_spectrum(&whole, image_cells(problem), spectrum);
     }
     double sum = 0;
     *spectrum = (struct law_spectrum){.count = last + 1, .reach = a->samples / 2.0};
@@ -40,6 +42,7 @@ static bool spectrum_fill(const struct acquisition *a, struct law_spectrum *spec
     }
     for (int k = 0; k <= last; k++) {
         spectrum->weight[k] /= sum;
+        spectrum->scattered[k] = spectrum->weight[k];
         spectrum->amplitude[k][0] = spectrum->amplitude[k][1] = spectrum->weight[k] / 2;
     }
     return true;
@@ -106,7 +109,7 @@ bool few_pixels_find(const struct problem *problem, struct few_pixels *few)
     const double pairs = (double)a->pings * a->receivers, most = problem_amplitude_most(problem);
     *few = (struct few_pixels){.pixels = pixels};
     if (!(most > 0) || !isfinite(most) || !echoes_known(problem) || pixels > CELLS_MOST
-        || !spectrum_fill(a, &few->spectrum) || (double)pixels * few->spectrum.count > CELLS_MOST
+        || !spectrum_fill(problem, &few->spectrum) || (double)pixels * few->spectrum.count > CELLS_MOST
         || pairs * pixels * problem->target_count * few->spectrum.count > SUMS_MOST)
         return false;
     struct echo_pair *echoes = malloc((size_t)pairs * sizeof *echoes);

@@ -59,7 +59,8 @@ static double harmonics_error(const struct harmonics *list, const struct law_spe
     double mean = 0, variance = 0;
     for (int n = 0; n < spectrum->count; n++) {
         mean += spectrum->weight[n] * creal(list[n].mean);
-        variance += spectrum->weight[n] * (square(list[n].mean) + scattered(&list[n], orders, in->upsample, scatter));
+        variance += spectrum->weight[n] * square(list[n].mean)
+                    + spectrum->scattered[n] * scattered(&list[n], orders, in->upsample, scatter);
     }
     variance -= mean * mean;
     return sqrt(fmax(variance, 0) / ((1 + mean) * (1 + mean) + variance)); /* <|H|^2> = |<H>|^2 + variance */

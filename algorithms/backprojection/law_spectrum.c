@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "common/fft_length.h"
+#include "common/image_spectrum.h"
 #include "common/pulse_band.h"
 
 enum { GAUSS = 8, BINS = LAW_NODES, FINER = 16 };
@@ -17,26 +18,34 @@ static const double weight[GAUSS] = {0.1894506104550685, 0.1826034150449236, 0.1
    fails at half the sampling rate up to 0.5 over their number, relative L2. */
 static const double FLAT = 20000;
 
+/* Hz: of bin k of a transform of `length`. */
+static double bin_frequency(const struct acquisition *a, int k, int length)
+{
+    return (2 * k > length ? k - length : k) * a->fs / length;
+}
+
 /* The replica's own, in bins whose nodes are their middles of energy: an interpolator's error grows steeply at the
    band's edges. False without memory. */
-static bool replica_spectrum(const struct acquisition *a, struct law_spectrum *spectrum)
+static bool replica_spectrum(const struct acquisition *a, double cells, struct law_spectrum *spectrum)
 {
     const int length = fft_length_fast((long long)fmax(2.0 * a->pulse_length, FINER * BINS));
-    double *energy = pulse_energy(a, length), sum = 0, amplitudes = 0;
+    double *energy = pulse_energy(a, length), shown = 0, amplitudes = 0;
     if (!energy)
         return false;
     for (int k = 0; k < length; k++) {
-        sum += energy[k];
+        shown += energy[k] * image_gain(a, cells, bin_frequency(a, k, length));
         amplitudes += sqrt(energy[k]);
     }
     *spectrum = (struct law_spectrum){.count = BINS, .reach = BINS / 3.0};
     for (int k = 0; k < length; k++) {
         const double nu = fmin(k, length - k) / (double)length, amplitude = sqrt(energy[k]) / amplitudes;
         /* White noise is compressed to what the echoes' amplitude is. */
-        const double both = (1 - a->noise) * energy[k] / sum + a->noise * amplitude;
+        const double echo = (1 - a->noise) * energy[k] / shown, noise = a->noise * amplitude;
+        const double both = echo * image_gain(a, cells, bin_frequency(a, k, length)) + noise;
         const int n = (int)fmin(2 * BINS * nu, BINS - 1);
         spectrum->nu[n] += nu * both;
         spectrum->weight[n] += both;
+        spectrum->scattered[n] += echo + noise;
         spectrum->amplitude[n][2 * k > length] += amplitude;
     }
     free(energy);
@@ -46,22 +55,30 @@ static bool replica_spectrum(const struct acquisition *a, struct law_spectrum *s
     return true;
 }
 
-bool law_spectrum(const struct acquisition *a, struct law_spectrum *spectrum)
+bool law_spectrum(const struct acquisition *a, double cells, struct law_spectrum *spectrum)
 {
     const double band = fmin(a->bandwidth / a->fs, 1);
     if (!a->compressed && a->pulse_length * band <= FLAT)
-        return replica_spectrum(a, spectrum);
+        return replica_spectrum(a, cells, spectrum);
     *spectrum = (struct law_spectrum){.count = GAUSS, .reach = GAUSS / 2 / band};
     const double beside = a->compressed ? a->noise * (1 - band) : 0;
+    double gain[GAUSS], shown = 0;
+    for (int n = 0; n < GAUSS; n++) {
+        const double frequency = node[n] * band / 2 * a->fs;
+        gain[n] = (image_gain(a, cells, frequency) + image_gain(a, cells, -frequency)) / 2;
+        shown += weight[n] * gain[n];
+    }
     for (int n = 0; n < GAUSS; n++) {
         spectrum->nu[n] = node[n] * band / 2;
-        spectrum->weight[n] = weight[n] * (1 - beside);
+        spectrum->scattered[n] = weight[n] / shown * (1 - beside);
+        spectrum->weight[n] = spectrum->scattered[n] * gain[n];
         spectrum->amplitude[n][0] = spectrum->amplitude[n][1] = weight[n] / 2;
     }
     for (int n = 0; n < 2 * GAUSS && beside > 0; n++) { /* from the band's edge to half the sampling rate */
+        const int m = spectrum->count++;
         const double place = n < GAUSS ? -node[GAUSS - 1 - n] : node[n - GAUSS];
-        spectrum->nu[spectrum->count] = (1 + band + place * (1 - band)) / 4;
-        spectrum->weight[spectrum->count++] = weight[n < GAUSS ? GAUSS - 1 - n : n - GAUSS] / 2 * beside;
+        spectrum->nu[m] = (1 + band + place * (1 - band)) / 4;
+        spectrum->weight[m] = spectrum->scattered[m] = weight[n < GAUSS ? GAUSS - 1 - n : n - GAUSS] / 2 * beside;
     }
     return true;
 }

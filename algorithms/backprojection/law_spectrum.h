@@ -2,21 +2,22 @@
 #ifndef SASBENCH_BACKPROJECTION_LAW_SPECTRUM_H
 #define SASBENCH_BACKPROJECTION_LAW_SPECTRUM_H
 
-#include "acquisition.h"
+#include "algorithm.h"
 
 enum { LAW_NODES = 48 };
 
-/* Positive frequencies and their share of the compressed echoes: flat over the bandwidth, or, of raw echoes whose pulse
+/* Positive frequencies and their share of the image (common/image_spectrum.h): of compressed echoes flat over the bandwidth, or, of raw echoes whose pulse
    has flanks beyond it, the replica's own; and of their noise, which is white in compressed echoes. The means of both
    signs of a frequency are the same but for the sign of their imaginary parts. */
 struct law_spectrum {
     int count;
     double nu[LAW_NODES];           /* cycles a sample, 0 to 1/2 */
-    double weight[LAW_NODES];       /* of the energy; their sum is 1 */
+    double weight[LAW_NODES];       /* of the image's energy; their sum is 1 */
+    double scattered[LAW_NODES];    /* where it has no focus: of the echoes' energy, in the same unit */
     double amplitude[LAW_NODES][2]; /* of a pulse without noise, at nu and at -nu; their sum is 1 */
     double reach;                   /* samples: from a pulse's middle, where its sum over these frequencies holds */
 };
-/* False without memory, with a message. */
-bool law_spectrum(const struct acquisition *acquisition, struct law_spectrum *spectrum);
+/* `cells` is image_cells of the problem. False without memory, with a message. */
+bool law_spectrum(const struct acquisition *acquisition, double cells, struct law_spectrum *spectrum);
 
 #endif

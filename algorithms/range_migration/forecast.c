@@ -7,6 +7,7 @@
 
 #include "common/fft_length.h"
 #include "common/kaiser.h"
+#include "common/image_spectrum.h"
 #include "common/pulse_band.h"
 #include "range_migration/azimuth.h"
 #include "range_migration/engine.h"
@@ -63,7 +64,7 @@ static enum status raw_band(const struct rma_view *view, double edge, struct ban
 {
     const struct problem *problem = view->problem;
     const struct acquisition *a = problem->acquisition;
-    const double pulse = PULSE_PERIODS * a->fs / a->bandwidth, taper = rma_taper(a);
+    const double pulse = PULSE_PERIODS * a->fs / a->bandwidth, taper = rma_taper(a), cells = image_cells(problem);
     const int length = fft_length_fast((long long)a->samples + a->pulse_length);
     struct pulse_band found;
     double nearest = INFINITY, total = 0, outside = 0;
@@ -78,6 +79,7 @@ static enum status raw_band(const struct rma_view *view, double edge, struct ban
         if (view->method->terms > 0)
             band->half += RMA_GUARD / (a->samples + 2 * pulse);
         for (int k = 0; k < length; k++) {
+            energy[k] *= image_gain(a, cells, (2 * k > length ? k - length : k) * a->fs / length);
             total += energy[k];
             outside += fmin(k, length - k) > (band->half - edge) * length ? energy[k] : 0;
         }

@@ -9,6 +9,7 @@
 #include "backprojection/factorised/grids.h"
 #include "backprojection/farrow.h"
 #include "backprojection/law.h"
+#include "common/image_spectrum.h"
 
 /* Steps of range, over a record's samples c/(2 fs), at most: runs of pixels are fastest below one sample a pixel
    (general/run.h), of a level's image as of the one that it is made of. */
@@ -222,11 +223,12 @@ static bool lines_along_x(const struct problem *problem, const struct grid *grid
 
 /* Hz: the band that holds all of the compressed echoes' energy but a share of `most`; the bandwidth at least. NAN
    without memory. */
-static double band_of(const struct acquisition *a, double most)
+static double band_of(const struct problem *problem, double most)
 {
+    const struct acquisition *a = problem->acquisition;
     struct law_spectrum spectrum;
     double outside = 0;
-    if (!law_spectrum(a, &spectrum))
+    if (!law_spectrum(a, image_cells(problem), &spectrum))
         return NAN;
     for (int n = spectrum.count - 1; n > 0; n--) {
         outside += spectrum.weight[n];
@@ -240,7 +242,7 @@ static enum status taps_make(struct tree *tree)
 {
     const struct acquisition *a = tree->problem.acquisition;
     const double each = tree_error_each(&tree->settings);
-    tree->band = band_of(a, each * each);
+    tree->band = band_of(&tree->problem, each * each);
     if (isnan(tree->band))
         return STATUS_FAILED;
     const double least = 0.8 * a->sound_speed / (2 * tree->band * step_most(tree, 0)); /* what that leaves at least */

@@ -1,0 +1,25 @@
+#include "common/image_spectrum.h"
+
+#include <math.h>
+
+#include "condition.h"
+
+double image_cells(const struct problem *problem)
+{
+    const struct acquisition *a = problem->acquisition;
+    const double cell = a->sound_speed / (4 * a->fc * fmin(condition_cut_sine(a), 1));
+    const struct grid *grids;
+    const int count = problem_judged(problem, &grids);
+    double width = 0;
+    for (int k = 0; k < count; k++) {
+        const struct grid *g = &grids[k];
+        width = fmax(width, fabs(g->x_count * g->x_step * cos(g->angle_rad))
+                                + fabs(g->r_count * g->r_step * sin(g->angle_rad)));
+    }
+    return width / cell;
+}
+
+double image_gain(const struct acquisition *a, double cells, double frequency)
+{
+    return fmin(fabs(a->fc / (a->fc + frequency)), cells) / fmin(1, cells);
+}
