@@ -225,7 +225,10 @@ static enum status parse(const struct command *command, int argc, char **argv, s
         if (letter == ':')
             return option_unknown(command, word, "needs a value");
         char given[16];
-        option_text(letter == '?' ? optopt : letter, given, sizeof given);
+        if (letter == '?' && strncmp(word, "--", 2) != 0)
+            snprintf(given, sizeof given, "-%c", optopt); /* no option has a capital letter */
+        else
+            option_text(letter == '?' ? optopt : letter, given, sizeof given);
         if (letter == '?' || !strchr(command->options, letter))
             return option_unknown(command, optopt || letter != '?' ? given : word, "is not one of this command");
         for (size_t k = 0; k < sizeof texts / sizeof *texts; k++)

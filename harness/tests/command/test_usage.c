@@ -34,6 +34,7 @@ static const struct refusal usages[] = {
     {{"--threads"}, {"'--threads' is not a command"}},
     {{"list", "all"}, {"list: 'all' is one argument too many"}},
     {{"list", "-o", "x"}, {"list: option '-o' is not one of this command", "accepted: none"}},
+    {{"sweep", "study/quick", "-P", "float"}, {"sweep: option '-P' is not one of this command", "--precision"}},
     {{"info"}, {"info: an argument is missing", "NAME"}},
     {{"info", "no_such_algorithm"}, {"'no_such_algorithm'", "accepted: reference, bp_nearest"}},
     {{"info", "bp_sinc", "bp_linear"}, {"info: 'bp_linear' is one argument too many"}},
