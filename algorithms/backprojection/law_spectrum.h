@@ -8,7 +8,8 @@ enum { LAW_NODES = 48 };
 
 /* Positive frequencies and their share of the image (common/image_spectrum.h): of the compressed echoes, flat over the
    bandwidth, or, of raw echoes whose pulse has flanks beyond it, the replica's own; and of their noise, which is white
-   in compressed echoes. The means of both signs of a frequency are the same but for the sign of their imaginary parts. */
+   in compressed echoes. The means of both signs of a frequency are the same but for the sign of their imaginary
+   parts. */
 struct law_spectrum {
     int count;
     double nu[LAW_NODES];           /* cycles a sample, 0 to 1/2 */
