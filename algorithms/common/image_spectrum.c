@@ -21,5 +21,5 @@ double image_cells(const struct problem *problem)
 
 double image_gain(const struct acquisition *a, double cells, double frequency)
 {
-    return fmin(fabs(a->fc / (a->fc + frequency)), cells) / fmin(1, cells);
+    return cells > 0 ? fmin(fabs(a->fc / (a->fc + frequency)), cells) / fmin(1, cells) : 1;
 }
