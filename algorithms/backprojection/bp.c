@@ -9,9 +9,9 @@
 #include "backprojection/few_pixels.h"
 #include "backprojection/law.h"
 #include "backprojection/omission.h"
+#include "backprojection/pairs.h"
 #include "common/fft_length.h"
 #include "common/image_spectrum.h"
-#include "backprojection/pairs.h"
 
 /* The kernel's branches, where they are few enough; false without memory. In float they may be as far off as phase
    factors are rounded (ROUNDING). */

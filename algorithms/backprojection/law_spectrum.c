@@ -18,12 +18,6 @@ static const double weight[GAUSS] = {0.1894506104550685, 0.1826034150449236, 0.1
    fails at half the sampling rate up to 0.5 over their number, relative L2. */
 static const double FLAT = 20000;
 
-/* Hz: of bin k of a transform of `length`. */
-static double bin_frequency(const struct acquisition *a, int k, int length)
-{
-    return (2 * k > length ? k - length : k) * a->fs / length;
-}
-
 /* The replica's own, in bins whose nodes are their middles of energy: an interpolator's error grows steeply at the
    band's edges. False without memory. */
 static bool replica_spectrum(const struct acquisition *a, double cells, struct law_spectrum *spectrum)
@@ -33,7 +27,7 @@ static bool replica_spectrum(const struct acquisition *a, double cells, struct l
     if (!energy)
         return false;
     for (int k = 0; k < length; k++) {
-        shown += energy[k] * image_gain(a, cells, bin_frequency(a, k, length));
+        shown += energy[k] * image_gain(a, cells, pulse_bin_frequency(a, k, length));
         amplitudes += sqrt(energy[k]);
     }
     *spectrum = (struct law_spectrum){.count = BINS, .reach = BINS / 3.0};
@@ -41,7 +35,7 @@ static bool replica_spectrum(const struct acquisition *a, double cells, struct l
         const double nu = fmin(k, length - k) / (double)length, amplitude = sqrt(energy[k]) / amplitudes;
         /* White noise is compressed to what the echoes' amplitude is. */
         const double echo = (1 - a->noise) * energy[k] / shown, noise = a->noise * amplitude;
-        const double both = echo * image_gain(a, cells, bin_frequency(a, k, length)) + noise;
+        const double both = echo * image_gain(a, cells, pulse_bin_frequency(a, k, length)) + noise;
         const int n = (int)fmin(2 * BINS * nu, BINS - 1);
         spectrum->nu[n] += nu * both;
         spectrum->weight[n] += both;

@@ -32,6 +32,11 @@ double *pulse_energy(const struct acquisition *a, int length)
     return energy;
 }
 
+double pulse_bin_frequency(const struct acquisition *a, int k, int length)
+{
+    return (2 * k > length ? k - length : k) * a->fs / length;
+}
+
 enum status pulse_band_find(const struct acquisition *a, int length, struct pulse_band *band)
 {
     *band = (struct pulse_band){fmin(a->fs / 2, fmax(a->bandwidth, 32 * a->fs / a->samples)), 0};

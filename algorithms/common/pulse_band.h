@@ -19,4 +19,7 @@ enum status pulse_band_find(const struct acquisition *acquisition, int transform
    caller's to free; NULL without memory, with STATUS_FAILED's message set. */
 double *pulse_energy(const struct acquisition *acquisition, int length);
 
+/* Hz, -fs/2 to fs/2: of its bin k. */
+double pulse_bin_frequency(const struct acquisition *acquisition, int k, int length);
+
 #endif

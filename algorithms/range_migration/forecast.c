@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "common/fft_length.h"
-#include "common/kaiser.h"
 #include "common/image_spectrum.h"
+#include "common/kaiser.h"
 #include "common/pulse_band.h"
 #include "range_migration/azimuth.h"
 #include "range_migration/engine.h"
@@ -79,7 +79,7 @@ static enum status raw_band(const struct rma_view *view, double edge, struct ban
         if (view->method->terms > 0)
             band->half += RMA_GUARD / (a->samples + 2 * pulse);
         for (int k = 0; k < length; k++) {
-            energy[k] *= image_gain(a, cells, (2 * k > length ? k - length : k) * a->fs / length);
+            energy[k] *= image_gain(a, cells, pulse_bin_frequency(a, k, length));
             total += energy[k];
             outside += fmin(k, length - k) > (band->half - edge) * length ? energy[k] : 0;
         }
