@@ -29,11 +29,11 @@ height = 85 + rows*panel_height + (rows - 1)*115 + bottom
 load plots."/style.gp"
 set output output
 
-# The lines of an algorithm's further settings, and those that no algorithm has.
+# The lines of an algorithm's further settings.
 array kind[|lines|]
 array member[|lines|]
 do for [l = 1:|lines|] {
-    kind[l] = family_number(algorithms[l]) > 0 ? family_number(algorithms[l]) : (l - 1)%|family_names| + 1
+    kind[l] = family_drawn(algorithms[l])
     member[l] = 0
     do for [k = 1:l - 1] { if (kind[k] == kind[l]) { member[l] = member[l] + 1 } }
 }

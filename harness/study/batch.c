@@ -364,8 +364,8 @@ enum status batch_open(const char *directory, int rows, bool details, struct bat
         table_header(stdout);
     }
     if (status == STATUS_OK && batch->threads > omp_get_num_procs())
-        fprintf(stderr, "sasbench: warning: %d threads share %d processors: times are not those of %d threads\n",
-                batch->threads, omp_get_num_procs(), batch->threads);
+        fprintf(stderr, "sasbench: warning: %d threads share %d processor%s: times are not those of %d threads\n",
+                batch->threads, omp_get_num_procs(), omp_get_num_procs() > 1 ? "s" : "", batch->threads);
     return status;
 }
 

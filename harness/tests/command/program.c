@@ -3,6 +3,7 @@
 
 #include <fts.h>
 #include <limits.h>
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -228,6 +229,9 @@ int inputs_make(void **state)
     /* The program's own temporary files are to be seen, too. */
     if (folder_make(state) != 0 || setenv("TMPDIR", folder, 1) != 0)
         return -1;
+    /* Where two threads share a processor the program says so, and good ends are quiet ones. */
+    if (omp_get_num_procs() < 2)
+        setenv("OMP_NUM_THREADS", "1", 1);
     memset(long_name, 'x', sizeof long_name - 1);
     if (mkdir(path_in("folder.cfg"), 0777) != 0 || mkdir(path_in("foreign"), 0777) != 0
         || mkdir(path_in("crowded"), 0777) != 0 || mkdir(path_in("crowded/targets.csv"), 0777) != 0)

@@ -1,6 +1,7 @@
 /* The whole program as a user meets it: help, images from scenes and files, runs and how they resume. */
 #include <fts.h>
 #include <math.h>
+#include <omp.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -293,6 +294,19 @@ static void interrupted_run_resumes(void **state)
     csv_free(&after);
 }
 
+static void threads_beyond_the_processors_are_told(void **state)
+{
+    (void)state;
+    char threads[12], said[60];
+    snprintf(threads, sizeof threads, "%d", omp_get_num_procs() + 1);
+    snprintf(said, sizeof said, "sasbench: warning: %s threads share %d processor", threads, omp_get_num_procs());
+    struct outcome outcome = program_run(
+        (const char *const[ARGUMENTS_MAX]){"run", "scene.cfg", "-a", "bp_nearest", "-o", "shared", "-t", threads});
+    assert_int_equal(outcome.status, 0);
+    assert_holds(outcome.err, said);
+    outcome_free(&outcome);
+}
+
 /* What all algorithms share is said of the first; of the others by name. Standard error does not cut into it. */
 static void check_says_each_condition_once(void **state)
 {
@@ -317,9 +331,13 @@ static void check_says_each_condition_once(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(help_list_and_info_tell_everything), cmocka_unit_test(check_says_each_condition_once),
-        cmocka_unit_test(file_and_scene_give_the_same_image), cmocka_unit_test(run_leaves_its_results_and_keeps_them),
-        cmocka_unit_test(unsupported_is_a_row_with_a_reason), cmocka_unit_test(interrupted_run_resumes),
+        cmocka_unit_test(help_list_and_info_tell_everything),
+        cmocka_unit_test(check_says_each_condition_once),
+        cmocka_unit_test(file_and_scene_give_the_same_image),
+        cmocka_unit_test(run_leaves_its_results_and_keeps_them),
+        cmocka_unit_test(unsupported_is_a_row_with_a_reason),
+        cmocka_unit_test(interrupted_run_resumes),
+        cmocka_unit_test(threads_beyond_the_processors_are_told),
     };
     return cmocka_run_group_tests(tests, inputs_make, folder_remove);
 }
