@@ -63,7 +63,7 @@ enum { SETTINGS = sizeof settings / sizeof *settings };
 /* To a power of ten not above a tenth of the slack, so that rounding elsewhere seldom shows in the text. */
 static void round_values(struct measurement *row, enum precision precision)
 {
-    for (const struct metric *metric = metrics; metric->name; metric++) {
+    for (const struct column *metric = metric_first(measurement_columns); metric; metric = metric_first(metric + 1)) {
         double value, slack = metric->absolute_slack[precision];
         memcpy(&value, (char *)row + metric->offset, sizeof value);
         slack = fmax(slack, metric->relative_slack * fabs(value));

@@ -1,4 +1,4 @@
-/* Two results, row by row (diff.h): rows are matched by their keys (diff_side.h), values judged by the metric table. */
+/* Two results, row by row (diff.h): rows are matched by their keys (diff_side.h), values judged by the columns' slacks. */
 #include "gate/diff.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 
 /* --- Judging ------------------------------------------------------------------------------------------------- */
 
-static enum verdict judge(const struct metric *metric, double before, double after, double *slack)
+static enum verdict judge(const struct column *metric, double before, double after, double *slack)
 {
     if (isnan(before))
         return VERDICT_NEW;
@@ -47,7 +47,7 @@ static double time_ratio(const struct measurement *old, const struct measurement
 struct judging {
     struct diff *diff;
     struct diff_side *old, *new;
-    const struct metric *metrics;
+    const struct column *columns;
     double *ratios; /* [ratio_count] of the times */
     int ratio_count;
     bool threads_differ;
@@ -91,11 +91,11 @@ static int status_rank(const char *status)
 
 /* Two rows' times; undefined on one side is no matter: a baseline has none. */
 static void judge_time(struct judging *judging, const struct row_key *key, const struct row_key *found,
-                       struct finding *finding)
+                       const struct column *metric, struct finding *finding)
 {
     const struct measurement *old = &judging->old->results.measurements[key->row];
     const struct measurement *new = &judging->new->results.measurements[found->row];
-    double ratio = time_ratio(old, new), limit = 1 + judging->metrics->relative_slack;
+    double ratio = time_ratio(old, new), limit = 1 + metric->relative_slack;
     bool same_threads = old->threads == new->threads;
     finding->verdict = VERDICTS;
     if (isnan(ratio) || !same_threads) {
@@ -104,7 +104,7 @@ static void judge_time(struct judging *judging, const struct row_key *key, const
     }
     judging->ratios[judging->ratio_count++] = ratio;
     finding->change = ratio - 1;
-    finding->slack = judging->metrics->relative_slack * finding->before;
+    finding->slack = metric->relative_slack * finding->before;
     finding->verdict = ratio > limit ? VERDICT_WORSE : ratio < 1 / limit ? VERDICT_BETTER : VERDICT_SAME;
 }
 
@@ -134,7 +134,8 @@ static enum status judge_pair(struct judging *judging, const struct row_key *key
     }
     struct finding row = {.before = NAN};
     enum status status = describe(diff, key, &row);
-    for (const struct metric *metric = judging->metrics; metric->name && status == STATUS_OK; metric++) {
+    for (const struct column *metric = metric_first(judging->columns); metric && status == STATUS_OK;
+         metric = metric_first(metric + 1)) {
         struct finding finding = row;
         if (csv_column(&old->csv, metric->name) < 0 || csv_column(&new->csv, metric->name) < 0)
             continue; /* files of another version */
@@ -147,7 +148,7 @@ static enum status judge_pair(struct judging *judging, const struct row_key *key
         finding.slack = metric->absolute_slack[precision];
         finding.change = NAN;
         if (metric->class == CLASS_TIME) {
-            judge_time(judging, key, found, &finding);
+            judge_time(judging, key, found, metric, &finding);
         } else if (isnan(finding.before) && isnan(finding.after)) {
             continue;
         } else {
@@ -223,10 +224,10 @@ static enum status note_side(struct diff *diff, const char *which, const char *p
 }
 
 /* Columns that only one of two versions of a file has. */
-static enum status note_versions(struct diff *diff, const struct diff_side sides[2], const struct metric *metrics_used)
+static enum status note_versions(struct diff *diff, const struct diff_side sides[2], const struct column *columns)
 {
     char names[300] = "";
-    for (const struct metric *metric = metrics_used; metric->name; metric++) {
+    for (const struct column *metric = metric_first(columns); metric; metric = metric_first(metric + 1)) {
         const bool old = csv_column(&sides[0].results.csv, metric->name) >= 0;
         const bool new = csv_column(&sides[1].results.csv, metric->name) >= 0;
         if (old != new)
@@ -258,9 +259,9 @@ static bool is_much(const struct finding *finding)
 }
 
 /* A fault can flatter as well as harm: the findings from `first` on that are better by much, or in many rows. */
-static void changes_find(struct diff *diff, int first, const struct metric *metrics_used)
+static void changes_find(struct diff *diff, int first, const struct column *columns)
 {
-    for (const struct metric *metric = metrics_used; metric->name; metric++) {
+    for (const struct column *metric = metric_first(columns); metric; metric = metric_first(metric + 1)) {
         int rows = 0;
         for (int k = first; k < diff->finding_count; k++)
             rows += is_betterment(&diff->findings[k]) && strcmp(diff->findings[k].metric, metric->name) == 0;
@@ -290,18 +291,18 @@ static enum status judge_files(struct diff *diff, const char *const paths[2], st
         return status_set(STATUS_INVALID, "%s holds %s and %s holds %s; two of the same kind are needed", paths[0],
                           sides[0].results.targets ? "targets" : "measurements", paths[1],
                           sides[1].results.targets ? "targets" : "measurements");
-    judging.metrics = sides[0].results.targets ? target_metrics : metrics;
+    judging.columns = sides[0].results.targets ? target_columns : measurement_columns;
     judging.ratios = calloc((size_t)sides[0].results.csv.row_count + 1, sizeof *judging.ratios);
     if (!judging.ratios)
         return status_set(STATUS_FAILED, "no memory for %d rows", sides[0].results.csv.row_count);
-    status = note_versions(diff, sides, judging.metrics);
+    status = note_versions(diff, sides, judging.columns);
     if (status != STATUS_OK) {
         free(judging.ratios);
         return status;
     }
     diff->to_baseline |= !csv_comment(&sides[0].results.csv, "program");
     status = judge_sides(&judging, measurements);
-    changes_find(diff, before, judging.metrics);
+    changes_find(diff, before, judging.columns);
     if (status == STATUS_OK && judging.threads_differ)
         status = diff_note(diff, "threads differ: times are not compared where they do");
     if (status == STATUS_OK && judging.ratio_count > 0) {
@@ -310,7 +311,7 @@ static enum status judge_files(struct diff *diff, const char *const paths[2], st
             diff,
             "time against the scalar reference loop: NEW takes %.3g of OLD (median of %d rows); a row alone is "
             "judged beyond a factor of %g, finer by compare --ab",
-            median(judging.ratios, count), count, 1 + metrics[0].relative_slack);
+            median(judging.ratios, count), count, 1 + metric_first(measurement_columns)->relative_slack);
     }
     free(judging.ratios);
     return status;

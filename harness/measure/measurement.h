@@ -30,17 +30,27 @@ struct target_row {
     double extent_m, position_error_m, phase_error_rad, width_m, pslr_db, islr_db;
 };
 
-/* The one metric table: CSV header, terminal table, plot labels and the regression gate come from it. */
-struct metric {
-    const char *name, *unit, *title;
+/* The one table of what the files hold: header, writer and reader of the CSV, the empty row, what the regression gate
+   judges and what a claim may ask for come from it. What the terminal and the report show is chosen there, with numbers
+   that follow from several (speed-up, rate). */
+struct column {
+    const char *name; /* NULL ends the table */
+    enum { COLUMN_TEXT, COLUMN_INTEGER, COLUMN_REAL } type;
+    size_t offset; /* of the field in struct measurement or target_row */
+    int since;     /* the version of the file that has it first */
+    /* Of a metric, a real number that is judged: */
+    const char *unit;                                                       /* NULL: no metric */
     enum { BETTER_NONE, BETTER_LOWER, BETTER_HIGHER, BETTER_SMALL } better; /* small: of magnitude */
     enum metric_class { CLASS_QUALITY, CLASS_WORK, CLASS_TIME } class;
     double absolute_slack[2]; /* by enum precision; a change within either slack is none */
     double relative_slack;
-    size_t offset; /* of the double in struct measurement or target_row */
 };
-extern const struct metric metrics[];        /* of struct measurement; name NULL ends the table */
-extern const struct metric target_metrics[]; /* of struct target_row */
+extern const struct column measurement_columns[], target_columns[];
+
+/* The first metric from a column on; NULL where there is none. */
+const struct column *metric_first(const struct column *columns);
+/* The field of a row becomes what is written as an empty one. */
+void column_clear(const struct column *column, void *row);
 
 /* A row before anything is measured: numbers undefined, status ok. Texts are borrowed. */
 struct measurement measurement_empty(const char *scene, const char *algorithm, const char *options,

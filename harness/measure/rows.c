@@ -1,4 +1,4 @@
-/* Columns, header and rows of results on disk (rows.h). */
+/* Header and rows of results on disk (rows.h). */
 #include "measure/rows.h"
 
 #include <inttypes.h>
@@ -8,57 +8,6 @@
 #include <string.h>
 
 #include "data/number.h"
-
-/* The braces are an initializer's. */
-/* clang-format off */
-#define M_TEXT(name) {#name, COLUMN_TEXT, offsetof(struct measurement, name), 1}
-#define M_INTEGER(name) {#name, COLUMN_INTEGER, offsetof(struct measurement, name), 1}
-#define M_REAL(name) {#name, COLUMN_REAL, offsetof(struct measurement, name), 1}
-#define M_REAL_SINCE(name, version) {#name, COLUMN_REAL, offsetof(struct measurement, name), version}
-#define T_TEXT(name) {#name, COLUMN_TEXT, offsetof(struct target_row, name), 1}
-#define T_INTEGER(name) {#name, COLUMN_INTEGER, offsetof(struct target_row, name), 1}
-#define T_REAL(name) {#name, COLUMN_REAL, offsetof(struct target_row, name), 1}
-/* clang-format on */
-
-static const struct column measurement_columns[] = {
-    M_TEXT(scene),
-    M_TEXT(algorithm),
-    M_TEXT(options),
-    M_TEXT(precision),
-    M_INTEGER(threads),
-    M_TEXT(engine),
-    M_TEXT(status),
-    M_TEXT(reason),
-    M_TEXT(skipped),
-    M_REAL(plan_s),
-    M_REAL(run_s),
-    M_REAL(run_min_s),
-    M_INTEGER(runs),
-    M_REAL(control_s),
-    M_TEXT(stages),
-    M_REAL(flops_published),
-    M_REAL(flops),
-    M_REAL(pairs),
-    M_REAL(bytes),
-    M_REAL(error),
-    M_REAL(error_gain),
-    M_REAL(phase_rms_rad),
-    M_REAL(width_m),
-    M_REAL(pslr_db),
-    M_REAL(islr_db),
-    M_REAL_SINCE(run_q1_s, 2),
-    M_REAL_SINCE(run_q3_s, 2),
-    M_REAL_SINCE(entropy, 2),
-    M_REAL_SINCE(contrast, 2),
-    M_REAL_SINCE(peak_over_median, 2),
-    {.name = NULL},
-};
-
-static const struct column target_columns[] = {
-    T_TEXT(scene),   T_TEXT(algorithm),  T_TEXT(options),  T_TEXT(precision),        T_INTEGER(target),
-    T_TEXT(axis),    T_TEXT(definition), T_REAL(extent_m), T_REAL(position_error_m), T_REAL(phase_error_rad),
-    T_REAL(width_m), T_REAL(pslr_db),    T_REAL(islr_db),  {.name = NULL},
-};
 
 const struct row_kind row_kinds[KINDS] = {
     {"measurements.csv", "sasbench measurements", 2, measurement_columns},
@@ -179,8 +128,10 @@ static enum status cell_parse(const struct csv *csv, int row, int index, const s
     if (!csv_number(cell, &value) || (integer && *cell && !(value >= 0 && value <= 1e9 && value == floor(value))))
         return status_set(STATUS_INVALID, "%s:%d: %s is '%s'; %s or nothing is needed", csv->path, csv->lines[row],
                           column->name, cell, integer ? "a whole number" : "a number");
-    if (integer)
-        *(int *)field = *cell ? (int)value : -1;
+    if (!*cell)
+        column_clear(column, out);
+    else if (integer)
+        *(int *)field = (int)value;
     else
         *(double *)field = value;
     return STATUS_OK;
@@ -193,8 +144,8 @@ enum status row_parse(const struct csv *csv, int row, const struct row_kind *kin
         const struct column *column = &kind->columns[k];
         if (k < csv->column_count)
             status = cell_parse(csv, row, k, column, out);
-        else /* columns are appended: an older version has none, and all of those are numbers */
-            *(double *)((char *)out + column->offset) = NAN;
+        else /* columns are appended: an older version has none */
+            column_clear(column, out);
     }
     return status;
 }

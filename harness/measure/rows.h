@@ -1,5 +1,4 @@
-/* Rows on disk: the columns of both files, their header, and how one row is written and read. Used within measure/
-   only. */
+/* Rows on disk: the header of both files, and how one row is written and read. Used within measure/ only. */
 #ifndef SASBENCH_MEASURE_ROWS_H
 #define SASBENCH_MEASURE_ROWS_H
 
@@ -8,15 +7,7 @@
 #include "measure/provenance.h"
 #include "measure/results.h"
 
-/* One column: where the value lies in the row's struct. Header, writer and reader all come from these tables. */
-struct column {
-    const char *name; /* NULL ends the table */
-    enum { COLUMN_TEXT, COLUMN_INTEGER, COLUMN_REAL } type;
-    size_t offset;
-    int since; /* the version of the file that has it first; what is appended later is COLUMN_REAL */
-};
-
-/* Both tables begin with the columns that tell one measurement from another. */
+/* The columns of both kinds begin with the columns that tell one measurement from another. */
 #define KEY_COLUMNS 4
 
 enum { KIND_MEASUREMENTS, KIND_TARGETS, KINDS };

@@ -21,7 +21,7 @@ enum { TEXTS_MAX = 5 };
 struct call {
     char text[TEXTS_MAX][200];
     const char *at[TEXTS_MAX];
-    const struct metric *metric;
+    const struct column *metric;
 };
 
 /* ---- checks of a call's texts ---- */
@@ -362,16 +362,16 @@ static const struct lookup lookups[] = {
 static const struct lookup image_lookup = {"", 2, "scene, SPEC", image_metric};
 static const struct lookup target_lookup = {"", 4, "scene, SPEC, definition, targets", target_metric};
 
-static const struct lookup *lookup_find(const char *name, const struct metric **metric)
+static const struct lookup *lookup_find(const char *name, const struct column **metric)
 {
     static const char target[] = "target_";
     for (size_t k = 0; k < sizeof lookups / sizeof *lookups; k++)
         if (strcmp(lookups[k].name, name) == 0)
             return &lookups[k];
-    for (*metric = metrics; (*metric)->name; (*metric)++)
+    for (*metric = metric_first(measurement_columns); *metric; *metric = metric_first(*metric + 1))
         if (strcmp((*metric)->name, name) == 0)
             return &image_lookup;
-    for (*metric = target_metrics; (*metric)->name; (*metric)++)
+    for (*metric = metric_first(target_columns); *metric; *metric = metric_first(*metric + 1))
         if (strncmp(name, target, sizeof target - 1) == 0 && strcmp((*metric)->name, name + sizeof target - 1) == 0)
             return &target_lookup;
     return NULL;
@@ -379,7 +379,7 @@ static const struct lookup *lookup_find(const char *name, const struct metric **
 
 bool lookup_known(const char *name)
 {
-    const struct metric *metric;
+    const struct column *metric;
     return lookup_find(name, &metric);
 }
 

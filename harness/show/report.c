@@ -145,19 +145,19 @@ static void machine_show(struct page *page, const struct folder *folder)
 }
 
 enum { MEASUREMENT_COLUMNS = 13 };
-static const struct page_column measurement_columns[MEASUREMENT_COLUMNS] = {{"algorithm", false},
-                                                                            {"run time", true},
-                                                                            {"speed-up", true},
-                                                                            {"plan", true},
-                                                                            {"GFLOP", true},
-                                                                            {"memory (MB)", true},
-                                                                            {"error", true},
-                                                                            {"error, best gain", true},
-                                                                            {"phase rms (rad)", true},
-                                                                            {"width (mm)", true},
-                                                                            {"PSLR (dB)", true},
-                                                                            {"ISLR (dB)", true},
-                                                                            {"engine, left out", false}};
+static const struct page_column shown_columns[MEASUREMENT_COLUMNS] = {{"algorithm", false},
+                                                                      {"run time", true},
+                                                                      {"speed-up", true},
+                                                                      {"plan", true},
+                                                                      {"GFLOP", true},
+                                                                      {"memory (MB)", true},
+                                                                      {"error", true},
+                                                                      {"error, best gain", true},
+                                                                      {"phase rms (rad)", true},
+                                                                      {"width (mm)", true},
+                                                                      {"PSLR (dB)", true},
+                                                                      {"ISLR (dB)", true},
+                                                                      {"engine, left out", false}};
 enum { LOBES_FIRST = 9 }; /* of width, PSLR and ISLR, in whose place scenes without targets show */
 static const struct page_column sharpness_columns[3] = {{"entropy", true}, {"contrast", true}, {"peak/median", true}};
 
@@ -230,7 +230,7 @@ static void measurements_show(struct page *page, const struct folder *folder)
         page_part_begin(page, folder->scenes[s], folder->scene_count > 1);
         const bool sharpness = scene_is_blind(folder, folder->scenes[s]);
         struct page_column columns[MEASUREMENT_COLUMNS];
-        memcpy(columns, measurement_columns, sizeof columns);
+        memcpy(columns, shown_columns, sizeof columns);
         if (sharpness)
             memcpy(columns + LOBES_FIRST, sharpness_columns, sizeof sharpness_columns);
         page_table_begin(page, MEASUREMENT_COLUMNS, columns, false);

@@ -158,7 +158,7 @@ static bool gate_passes(struct session *session, const char *spec_text, bool pla
     *metric = "";
     for (int k = diff.finding_count - 1; k >= 0; k--)
         if (diff.findings[k].verdict == VERDICT_WORSE)
-            for (const struct metric *m = metrics; m->name; m++)
+            for (const struct column *m = metric_first(measurement_columns); m; m = metric_first(m + 1))
                 if (strcmp(m->name, diff.findings[k].metric) == 0)
                     *metric = m->name;
     diff_free(&diff);

@@ -142,20 +142,39 @@ static void test_provenance(void **state)
     assert_int_equal(strlen(a.date), strlen("2000-01-01T00:00:00Z"));
 }
 
-/* The metric table names columns of the CSV and points to their values. */
-static void test_metric_table(void **state)
+/* Every field of a row is a column, in the same order, so that none is left as it was. */
+static void check_columns(const struct column *columns, size_t size)
+{
+    const struct column *column = columns;
+    assert_int_equal(column->offset, 0);
+    for (; column[1].name; column++)
+        if (column[1].offset - column->offset != 8)
+            fail_msg("a field between %s and %s is no column", column->name, column[1].name);
+    assert_int_equal(column->offset + 8, size);
+}
+
+static void test_columns(void **state)
 {
     (void)state;
-    struct measurement row = measurement_of("s", "a");
-    int count = 0;
-    for (const struct metric *metric = metrics; metric->name; metric++, count++) {
-        char column[64];
-        snprintf(column, sizeof column, ",%s", metric->name);
-        assert_non_null(strstr(MEASUREMENT_HEADER, column));
-        assert_true(metric->unit && metric->title
+    check_columns(measurement_columns, sizeof(struct measurement));
+    check_columns(target_columns, sizeof(struct target_row));
+    const struct measurement row = measurement_empty("s", "a", "", PRECISION_FLOAT), full = measurement_of("s", "a");
+    int count = 0, version = 1;
+    for (const struct column *column = measurement_columns; column->name; column++) {
+        const char *field = (const char *)&row + column->offset;
+        assert_true(column->since >= version); /* what a version adds is appended */
+        version = column->since;
+        if (column->type == COLUMN_REAL)
+            assert_true(isnan(*(const double *)field));
+        if (column->type == COLUMN_INTEGER)
+            assert_int_equal(*(const int *)field, -1);
+    }
+    for (const struct column *metric = metric_first(measurement_columns); metric; metric = metric_first(metric + 1)) {
+        count++;
+        assert_true(metric->type == COLUMN_REAL
                     && metric->absolute_slack[PRECISION_FLOAT] >= metric->absolute_slack[PRECISION_DOUBLE]
                     && metric->absolute_slack[PRECISION_DOUBLE] >= 0 && metric->relative_slack >= 0);
-        double value = *(const double *)((const char *)&row + metric->offset);
+        double value = *(const double *)((const char *)&full + metric->offset);
         if (strcmp(metric->name, "pslr_db") == 0)
             assert_close(value, -13.3, 0);
         if (strcmp(metric->name, "run_s") == 0)
@@ -279,7 +298,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_folder_made, results_make, results_remove),
         cmocka_unit_test_setup_teardown(test_full_disk, results_make, results_remove),
         cmocka_unit_test(test_provenance),
-        cmocka_unit_test(test_metric_table),
+        cmocka_unit_test(test_columns),
         cmocka_unit_test(test_table),
         cmocka_unit_test(test_narrow_table),
     };
