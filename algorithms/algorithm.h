@@ -88,7 +88,7 @@ struct image {
     void **pixels; /* [patch_count] of complex float or double [r_count][x_count] */
 };
 
-/* Where the seconds of one execute went. */
+/* Where the seconds of one execute went. There are 12 stages at most: the time of further names goes to the last. */
 struct stages {
     int count;
     double mark; /* monotonic clock at the last stages_begin or stages_end, s */

@@ -10,10 +10,11 @@ enum status {
 };
 
 /* Store the message (printf style, one line without newline, at most 1023 bytes) and return `status`, so that a
-   callee can write `return status_set(STATUS_INVALID, "...")`. One message for each thread, overwritten by the next. */
+   callee can write `return status_set(STATUS_INVALID, "...")`. One message for each thread, overwritten by the next;
+   what a worker of a parallel region sets reaches the thread that waits for it (of several the one set last). */
 enum status status_set(enum status status, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* The calling thread's last message; never NULL, valid until its next status_set. */
+/* The calling thread's last message, or that of its workers since; never NULL, valid until its next status_set. */
 const char *status_message(void);
 
 #endif

@@ -37,7 +37,7 @@ void stages_end(struct stages *stages, const char *name)
     while (i < stages->count && strcmp(stages->stage[i].name, name) != 0)
         i++;
     if (i > last)
-        i = last; /* a contributor with more stages sees the rest summed in the last one */
+        i = last;
     else if (i == stages->count)
         stages->stage[stages->count++].name = name;
     stages->stage[i].seconds += seconds;
