@@ -18,7 +18,7 @@ struct pair_span {
     int begin, end;
 };
 
-/* Lines of a grid: its rows (along_x) or its columns. */
+/* Lines of a grid: its rows (along_x) or its columns, in the grid's own axes. */
 int grid_line_count(const struct grid *grid, bool along_x);
 struct pixel_line grid_line(const struct grid *grid, bool along_x, int number);
 struct vector line_pixel(const struct pixel_line *line, int i);
@@ -55,7 +55,7 @@ struct sample_span {
 struct sample_span pairs_samples(const struct problem *problem, const bool *met, double beside);
 
 /* All pairs of a problem inside its records and its aperture limit: what a back projection sums. Exact, and the same on
-   every machine. */
+   every machine. Grids may be turned, which all else here does not ask (turned.h). NAN without memory to turn them. */
 double pairs_count(const struct problem *problem);
 
 /* Pixels of all patches. */

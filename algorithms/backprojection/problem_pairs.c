@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "backprojection/turned.h"
+
 /* m: the largest distance of a ping's receivers from its transmitter. */
 static double receivers_apart(const struct acquisition *a, int ping)
 {
@@ -234,21 +236,33 @@ static double count_time(const struct acquisition *a, const struct grid *grid, b
     return lines * (1 + search * a->receivers * searched / tried);
 }
 
+/* Pairs of a grid along x and r. */
+static double grid_pairs(const struct acquisition *a, const struct grid *grid)
+{
+    const bool along_x = count_time(a, grid, true) <= count_time(a, grid, false);
+    double pairs = 0;
+#pragma omp parallel for schedule(dynamic) reduction(+ : pairs)
+    for (int p = 0; p < a->pings; p++) {
+        const double apart = receivers_apart(a, p);
+        for (int n = grid_line_count(grid, along_x) - 1; n >= 0; n--) {
+            const struct pixel_line line = grid_line(grid, along_x, n);
+            pairs += line_pairs(a, p, apart, &line); /* whole numbers below 2^53: the order does not matter */
+        }
+    }
+    return pairs;
+}
+
 double pairs_count(const struct problem *problem)
 {
-    const struct acquisition *a = problem->acquisition;
     double pairs = 0;
     for (int k = 0; k < problem->patch_count; k++) {
-        const struct grid *grid = &problem->patches[k];
-        const bool along_x = count_time(a, grid, true) <= count_time(a, grid, false);
-#pragma omp parallel for schedule(dynamic) reduction(+ : pairs)
-        for (int p = 0; p < a->pings; p++) {
-            const double apart = receivers_apart(a, p);
-            for (int n = grid_line_count(grid, along_x) - 1; n >= 0; n--) {
-                const struct pixel_line line = grid_line(grid, along_x, n);
-                pairs += line_pairs(a, p, apart, &line); /* whole numbers below 2^53: the order does not matter */
-            }
-        }
+        struct problem patch = *problem;
+        struct turned_problem turned;
+        patch.patch_count = 1;
+        patch.patches = &problem->patches[k];
+        const bool fits = problem_turn_back(&patch, &turned, NULL) == STATUS_OK;
+        pairs += fits ? grid_pairs(patch.acquisition, patch.patches) : NAN;
+        turned_free(&turned);
     }
     return pairs;
 }

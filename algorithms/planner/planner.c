@@ -11,7 +11,6 @@
 #include "backprojection/factorised/factorised.h"
 #include "backprojection/omission.h"
 #include "backprojection/pairs.h"
-#include "backprojection/turned.h"
 #include "planner/candidates.h"
 #include "planner/known.h"
 #include "planner/rates.h"
@@ -42,15 +41,11 @@ void candidate_name(const struct candidate *candidate, char text[CANDIDATE_NAME]
              candidate->settings);
 }
 
-/* Of back projection, which sums along x and r: turned grids are turned back. */
+/* Of back projection. */
 static enum status pairs_of(const struct problem *problem, double *pairs)
 {
-    struct problem along = *problem;
-    struct turned_problem turned = {0};
-    enum status status = problem_turn_back(&along, &turned, NULL);
-    *pairs = status == STATUS_OK ? pairs_count(&along) : 0;
-    turned_free(&turned);
-    return status;
+    *pairs = pairs_count(problem);
+    return *pairs >= 0 ? STATUS_OK : STATUS_FAILED;
 }
 
 /* What a law may say where an error is allowed, which is planned with above it. */

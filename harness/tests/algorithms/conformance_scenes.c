@@ -21,6 +21,7 @@ const struct setting settings[SETTINGS] = {
     {"curved track in space", 8, 6, 0.04, 2.5, 30e3, 30, 29.75, false, false, 0.15, TRAIT_ANY_TRACK},
     {"monostatic", 48, 1, 0, 2.5, 30e3, 30, 29.75, true, false, 0.18, 0},
     {"aperture limit", 8, 6, 0.04, 2.5, 30e3, 30, 29.75, false, false, 0.15, TRAIT_APERTURE_LIMIT},
+    {"turned image", 8, 6, 0.04, 2.5, 30e3, 30, 29.75, true, false, 0.15, 0, 0.02},
 };
 /* A track that bends across and in depth by many wavelengths, on which the array turns as well; velocity and time of
    the first sample change from ping to ping. */
@@ -77,10 +78,11 @@ void make_scene(const struct setting *setting, struct scene *scene, struct grid 
         a->aperture_limit = 0.008; /* 0.24 m of an aperture of 0.84 m to either side */
     if (setting->raw)
         pulse_lfm(a->bandwidth, duration, a->fs, a->pulse_length, a->pulse);
-    *grid = (struct grid){-0.24, 0.02, 25, setting->r_first, 0.025, 21};
+    *grid = (struct grid){-0.24, 0.02, 25, setting->r_first, 0.025, 21, setting->angle};
     scene->target_count = scene->point_count = !setting->empty;
     scene->targets = calloc(1, sizeof *scene->targets);
-    scene->targets[0] = (struct target){0.011, setting->r, 1};
+    const struct vector place = grid_point(grid, (setting->r - grid->r_first) / grid->r_step, 0.251 / grid->x_step);
+    scene->targets[0] = (struct target){place.x, place.y, 1};
     assert_int_equal(acquisition_check(a, setting->name), STATUS_OK);
 }
 

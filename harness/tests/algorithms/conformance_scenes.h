@@ -12,9 +12,10 @@ struct setting {
     bool raw, empty;
     double bound; /* of the relative error: nearest neighbour's; at fs = B every short kernel loses much of the band */
     enum trait promise; /* which makes the scene: an algorithm with this trait may not refuse it */
+    double angle;       /* rad: of the image's axes */
 };
 
-enum { SETTINGS = 14, RAW = 1, MONOSTATIC = 12 };
+enum { SETTINGS = 15, RAW = 1, MONOSTATIC = 12 };
 extern const struct setting settings[SETTINGS];
 
 /* A scene whose only patch is *grid. */

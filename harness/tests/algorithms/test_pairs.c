@@ -7,6 +7,7 @@
 
 #include "backprojection/pairs.h"
 #include "backprojection/turned.h"
+#include "common/delay.h"
 #include "data/random.h"
 #include "tests/support.h"
 
@@ -124,14 +125,44 @@ static void limits_count_from_the_axis(void **state)
             struct vector p = grid_point(&grid, n / 9 / 23, n / 9 % 23);
             expected += fabs(sin(atan2(p.x - a.tx[n % 9].x, p.y) - a.echo_squint)) <= a.aperture_limit ? 2 : 0;
         }
+        const double whole = pairs_count(&problem); /* as an outside engine asks, which knows nothing of turning */
         assert_int_equal(problem_turn_back(&problem, &turned, NULL), STATUS_OK);
         assert_true(problem.patches[0].angle_rad == 0);
         double pairs = pairs_count(&problem);
-        if (pairs != expected)
-            fail_msg("seed %d: %g pairs, %g expected", (int)seed, pairs, expected);
+        if (pairs != expected || whole != expected)
+            fail_msg("seed %d: %g pairs, %g before the grid is turned, %g expected", (int)seed, pairs, whole, expected);
         turned_free(&turned);
         acquisition_free(&a);
     }
+}
+
+/* Patches in different axes are counted each in its own. */
+static void patches_count_in_their_own_axes(void **state)
+{
+    (void)state;
+    struct acquisition a;
+    double sum = 0;
+    make(&a, 9, 2, 700, 0.5, 2); /* the records end within the patches */
+    a.aperture_limit = 0.3;
+    const struct grid grids[] = {
+        {-3, 0.1, 40, 6, 0.1, 50, 0}, {2, 0.1, 30, 5, 0.2, 41, -0.7}, {0, 0.5, 9, 4, 2, 9, 0.4}};
+    for (int k = 0; k < 3; k++) {
+        const struct problem alone = problem_make(&a, 1, &grids[k], PRECISION_DOUBLE);
+        const double pairs = pairs_count(&alone), pixels = grids[k].x_count * grids[k].r_count;
+        double expected = 0;
+        for (int n = 0; n < 9 * 2 * (int)pixels; n++) {
+            const int pixel = n / 18, p = n / 2 % 9;
+            const struct vector at = grid_point(&grids[k], pixel / grids[k].x_count, pixel % grids[k].x_count);
+            const double q = (delay_exact(a.tx[p], a.rx[n % 18], a.velocity[p], at, a.sound_speed) - a.t0[p]) * a.fs;
+            expected += fabs(sin(atan2(at.x - a.tx[p].x, at.y))) <= a.aperture_limit && q >= 0 && q <= a.samples - 1;
+        }
+        assert_true(expected > 0 && expected < 18 * pixels);
+        assert_close(pairs, expected, 0);
+        sum += pairs;
+    }
+    const struct problem all = problem_make(&a, 3, grids, PRECISION_DOUBLE);
+    assert_close(pairs_count(&all), sum, 0);
+    acquisition_free(&a);
 }
 
 /* Pixels on the transmitters, in coordinates that double holds exactly or does not: both engines sum the same pairs. */
@@ -195,8 +226,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(spans_hold_the_cone),        cmocka_unit_test(spans_hold_oblique_cones),
-        cmocka_unit_test(limits_count_from_the_axis), cmocka_unit_test(engines_agree_on_the_track),
-        cmocka_unit_test(plans_do_not_count),
+        cmocka_unit_test(limits_count_from_the_axis), cmocka_unit_test(patches_count_in_their_own_axes),
+        cmocka_unit_test(engines_agree_on_the_track), cmocka_unit_test(plans_do_not_count),
     };
     return cmocka_run_group_tests_name("pairs", tests, NULL, NULL);
 }
