@@ -162,17 +162,28 @@ static enum status threads_parse(const char *text)
     return STATUS_OK;
 }
 
-static enum status option_unknown(const struct command *command, const char *option, const char *fault)
+/* Which of the command's options was meant by one that is none, or that its value stands without an option. */
+static void option_meant(const struct command *command, int letter, const char *option, char meant[SUGGESTION_TEXT])
 {
-    char accepted[160] = "", meant[80] = ";";
-    struct suggestion suggestion = suggestion_begin(option + strspn(option, "-"));
+    struct suggestion suggestion = suggestion_begin(option);
+    const char *bare = letter == 's' ? "SCENE" : letter == 'a' ? "SPEC" : "\n";
+    suggestion.before = "--";
     for (const struct option *o = long_options; o->name; o++)
-        if (strchr(command->options, o->val)) {
+        if (strchr(command->options, o->val))
             suggestion_offer(&suggestion, o->name);
+    suggestion_text(&suggestion, meant);
+    if (strstr(command->arguments, bare))
+        snprintf(meant, SUGGESTION_TEXT, "; %s stands without it: sasbench %s %.150s;", bare, command->name,
+                 command->arguments);
+}
+
+static enum status option_refuse(const struct command *command, const char *option, const char *fault,
+                                 const char *meant)
+{
+    char accepted[160] = "";
+    for (const struct option *o = long_options; o->name; o++)
+        if (strchr(command->options, o->val))
             text_append(accepted, sizeof accepted, "%s--%s", *accepted ? ", " : "", o->name);
-        }
-    if (suggestion.best)
-        snprintf(meant, sizeof meant, "; did you mean '--%s'?", suggestion.best);
     return status_set(STATUS_INVALID, "%s: option '%s' %s%s accepted: %s", command->name, option, fault, meant,
                       *accepted ? accepted : "none");
 }
@@ -188,13 +199,19 @@ static enum status spec_add(struct task *task, const char *text)
     return status;
 }
 
-/* An option as it is written: "-o"; those with capital letters have none. */
-static void option_text(int letter, char *text, size_t size)
+/* The option that getopt_long read last, as it is written: "-o", "--output". */
+static void option_given(char *const *argv, int letter, char *text, size_t size)
 {
-    snprintf(text, size, "-%c", letter);
-    for (const struct option *o = long_options; o->name; o++)
-        if (o->val == letter && letter < 'a')
-            snprintf(text, size, "--%s", o->name);
+    const char *word = argv[optind - 1];
+    if (optarg && optarg == word) /* its value stands by itself */
+        word = argv[optind - 2];
+    bool is_long = strncmp(word, "--", 2) == 0 && (letter != '?' || !optopt);
+    for (const struct option *o = long_options; o->name && letter == '?'; o++) /* one that takes no value has one */
+        is_long |= o->val == optopt && strncmp(word, "--", 2) == 0;
+    if (is_long)
+        snprintf(text, size, "%.*s", (int)strcspn(word, "="), word);
+    else
+        snprintf(text, size, "-%c", letter == '?' ? optopt : letter);
 }
 
 static enum status empty_refuse(const struct command *command, const char *what)
@@ -217,24 +234,22 @@ static enum status parse(const struct command *command, int argc, char **argv, s
     opterr = 0;
     for (int letter;
          status == STATUS_OK && (letter = getopt_long(argc, argv, ":o:s:e:a:g:t:h", long_options, NULL)) != -1;) {
-        const char *word = argv[optind - 1];
+        char given[80], meant[SUGGESTION_TEXT];
         if (letter == 'h') {
             *helped = true;
             return STATUS_OK;
         }
         if (letter == ':')
-            return option_unknown(command, word, "needs a value");
-        char given[16];
-        if (letter == '?' && strncmp(word, "--", 2) != 0)
-            snprintf(given, sizeof given, "-%c", optopt); /* no option has a capital letter */
-        else
-            option_text(letter == '?' ? optopt : letter, given, sizeof given);
-        if (letter == '?' || !strchr(command->options, letter))
-            return option_unknown(command, optopt || letter != '?' ? given : word, "is not one of this command");
+            return option_refuse(command, argv[optind - 1], "needs a value", ";");
+        option_given(argv, letter, given, sizeof given);
+        if (letter == '?' || !strchr(command->options, letter)) {
+            option_meant(command, letter, given, meant);
+            return option_refuse(command, given, "is not one of this command", meant);
+        }
         for (size_t k = 0; k < sizeof texts / sizeof *texts; k++)
             if (texts[k].letter == letter) {
                 if (*texts[k].field)
-                    return option_unknown(command, given, "is given twice");
+                    return option_refuse(command, given, "is given twice", ";");
                 if (!*optarg && !strchr("gt", letter)) /* which say themselves what they take */
                     return empty_refuse(command, given);
                 *texts[k].field = optarg;
@@ -262,9 +277,20 @@ static enum status parse(const struct command *command, int argc, char **argv, s
     return status;
 }
 
+/* Is it an option, whose command is missing ahead of it? */
+static bool is_option(const char *name)
+{
+    const char *bare = name + strspn(name, "-");
+    const size_t length = strcspn(bare, "=");
+    bool is = false;
+    for (const struct option *o = long_options; o->name && *name == '-'; o++)
+        is |= name[1] == '-' ? strncmp(bare, o->name, length) == 0 && !o->name[length] : *bare == o->val && !bare[1];
+    return is;
+}
+
 static enum status command_find(const char *name, const struct command **found)
 {
-    char names[300] = "", meant[80];
+    char names[300] = "", meant[SUGGESTION_TEXT];
     struct suggestion suggestion = suggestion_begin(name);
     for (size_t k = 0; k < sizeof commands / sizeof *commands; k++) {
         if (strcmp(commands[k].name, name) == 0) {
@@ -276,7 +302,12 @@ static enum status command_find(const char *name, const struct command **found)
         text_append(names, sizeof names, "%s, ", commands[k].name);
         suggestion_offer(&suggestion, commands[k].name);
     }
-    suggestion_text(&suggestion, meant, sizeof meant);
+    suggestion_offer(&suggestion, "--help");
+    suggestion_offer(&suggestion, "--version");
+    if (is_option(name))
+        snprintf(meant, sizeof meant, " but an option, which stands behind one: sasbench COMMAND %.80s;", name);
+    else
+        suggestion_text(&suggestion, meant);
     if (strcmp(name, "test") == 0)
         return status_set(STATUS_INVALID, "'test' is a command of the script ./sasbench: ./sasbench test [NAME ...]");
     return status_set(STATUS_INVALID, "'%s' is not a command%s accepted: %stest, --help, --version", name, meant,

@@ -9,6 +9,7 @@
 
 #include "data/number.h"
 #include "data/suggestion.h"
+#include "data/text_append.h"
 #include "param.h"
 
 /* Every algorithm takes `precision` beside its own table; it goes to spec.precision. */
@@ -22,19 +23,22 @@ static const struct param precision_param = {
     .choices = precision_names,
 };
 
-/* Names for a message: "a, b, c". Truncates where the message would anyway. */
+/* Names for a message: "a, b, c", and which of them was meant. Truncates where the message would anyway. */
 struct name_list {
-    char text[512];
-    size_t length;
+    char text[512], meant[SUGGESTION_TEXT];
+    struct suggestion suggestion;
 };
 
 static void name_list_add(struct name_list *list, const char *name)
 {
-    int added =
-        snprintf(list->text + list->length, sizeof list->text - list->length, "%s%s", list->length ? ", " : "", name);
-    list->length += (size_t)added;
-    if (list->length >= sizeof list->text)
-        list->length = sizeof list->text - 1;
+    text_append(list->text, sizeof list->text, "%s%s", *list->text ? ", " : "", name);
+    suggestion_offer(&list->suggestion, name);
+}
+
+static const char *name_list_meant(struct name_list *list)
+{
+    suggestion_text(&list->suggestion, list->meant);
+    return list->meant;
 }
 
 static int choice_count(const struct param *param)
@@ -76,14 +80,14 @@ static double value_number(const struct param *param, const char *value)
 
 static enum status choice_read(const char *place, const struct param *param, const char *value, double *out)
 {
-    struct name_list accepted = {.length = 0};
+    struct name_list accepted = {.suggestion = suggestion_begin(value)};
     *out = param_choice(param, value);
     if (*out >= 0)
         return STATUS_OK;
     for (int i = 0; param->choices[i]; i++)
         name_list_add(&accepted, param->choices[i]);
-    return status_set(STATUS_INVALID, "SPEC '%.100s': %s is '%.100s'; accepted: %s", place, param->name, value,
-                      accepted.text);
+    return status_set(STATUS_INVALID, "SPEC '%.100s': %s is '%.100s'%s accepted: %s", place, param->name, value,
+                      name_list_meant(&accepted), accepted.text);
 }
 
 static enum status value_read(const char *place, const struct param *param, const char *value, double *out)
@@ -109,7 +113,7 @@ static enum status setting_read(const char *place, char *setting, struct spec *s
                           place, setting);
     *value++ = '\0';
 
-    struct name_list accepted = {.length = 0};
+    struct name_list accepted = {.suggestion = suggestion_begin(setting)};
     int index = 0;
     const struct param *param = spec->algorithm->params;
     for (; param && param->name && strcmp(param->name, setting) != 0; param++, index++)
@@ -118,8 +122,8 @@ static enum status setting_read(const char *place, char *setting, struct spec *s
     if (is_precision) {
         name_list_add(&accepted, precision_param.name);
         if (strcmp(setting, precision_param.name) != 0)
-            return status_set(STATUS_INVALID, "SPEC '%.100s': unknown key '%.100s'; accepted: %s", place, setting,
-                              accepted.text);
+            return status_set(STATUS_INVALID, "SPEC '%.100s': unknown key '%.100s'%s accepted: %s", place, setting,
+                              name_list_meant(&accepted), accepted.text);
         param = &precision_param;
     }
     uint64_t bit = UINT64_C(1) << index;
@@ -167,16 +171,11 @@ static enum status spec_read(const char *place, char *copy, struct spec *spec)
         *rest++ = '\0';
     spec->algorithm = algorithm_find(copy);
     if (!spec->algorithm) {
-        struct name_list accepted = {.length = 0};
-        struct suggestion suggestion = suggestion_begin(copy);
-        char meant[80];
-        for (int i = 0; algorithms[i]; i++) {
+        struct name_list accepted = {.suggestion = suggestion_begin(copy)};
+        for (int i = 0; algorithms[i]; i++)
             name_list_add(&accepted, algorithms[i]->name);
-            suggestion_offer(&suggestion, algorithms[i]->name);
-        }
-        suggestion_text(&suggestion, meant, sizeof meant);
         return status_set(STATUS_INVALID, "SPEC '%.100s': unknown algorithm '%.100s'%s accepted: %s", place, copy,
-                          meant, accepted.text);
+                          name_list_meant(&accepted), accepted.text);
     }
     if (spec->algorithm->options_size > 0) {
         spec->options = calloc(1, spec->algorithm->options_size);

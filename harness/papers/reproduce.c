@@ -5,9 +5,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 
 #include "data/paths.h"
+#include "data/suggestion.h"
 #include "data/text_append.h"
 #include "measure/spec.h"
 #include "papers/figures.h"
@@ -22,26 +24,49 @@
 
 enum { NEEDS_MAX = 256 };
 
+/* As ids are written: "t3" for "table3", "f8" for "fig8" or "Figure 8". */
+static void id_brief(const char *id, char *brief, size_t size)
+{
+    static const char *const words[] = {"table", "figure", "fig"};
+    *brief = '\0';
+    while (*id) {
+        size_t length = 0;
+        for (size_t k = 0; k < sizeof words / sizeof *words && length == 0; k++)
+            if (strncasecmp(id, words[k], strlen(words[k])) == 0)
+                length = strlen(words[k]) + strspn(id + strlen(words[k]), " ._");
+        text_append(brief, size, "%c", *id);
+        id += length > 0 ? length : 1;
+    }
+}
+
 /* A table by its name, all claims, or one claim by its id. */
 static enum status id_select(const char *id, struct selection *selection)
 {
-    char accepted[900] = "";
+    char accepted[900] = "", brief[40], meant[SUGGESTION_TEXT];
     bool known = false;
+    id_brief(id, brief, sizeof brief);
+    struct suggestion suggestion = suggestion_begin(brief);
     for (int k = 0; paper_tables[k].id; k++) {
         bool same = strcmp(paper_tables[k].id, id) == 0;
         known |= same;
         selection->tables[k] |= same;
         text_append(accepted, sizeof accepted, "%s, ", paper_tables[k].id);
+        suggestion_offer(&suggestion, paper_tables[k].id);
     }
+    suggestion_offer(&suggestion, "claims");
+    suggestion_offer(&suggestion, "sensitivity");
     for (int k = 0; k < selection->claims->count; k++) {
         bool same = strcmp(selection->claims->claims[k].id, id) == 0 || strcmp(id, "claims") == 0;
         known |= same;
         selection->asked[k] |= same;
+        suggestion_offer(&suggestion, selection->claims->claims[k].id);
     }
+    suggestion_text(&suggestion, meant);
     return known ? STATUS_OK
                  : status_set(STATUS_INVALID,
-                              "reproduce: '%s' is not a table; accepted: %sa claim as bp22-4.1-1, or sensitivity alone",
-                              id, accepted);
+                              "reproduce: '%.100s' is not a table%s accepted: %sa claim as bp22-4.1-1, or sensitivity "
+                              "alone",
+                              id, meant, accepted);
 }
 
 static enum status select_all(const char *const *ids, int count, struct selection *selection)

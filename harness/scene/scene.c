@@ -36,18 +36,26 @@ static enum status file_read(struct reading *reading, const char *scene_director
     return status;
 }
 
-/* A name below the scenes that is none: what was meant, if one is near. */
+/* A name below the scenes that is none: what was meant, if one is near, or a SPEC. */
 static enum status unknown_name(const char *scene, const char *path, const char *scene_directory)
 {
+    char algorithm[40];
+    snprintf(algorithm, sizeof algorithm, "%.*s", (int)strcspn(scene, ":"), scene);
+    if (algorithm_find(algorithm)) {
+        return status_set(STATUS_INVALID,
+                          "%.300s: there is no such scene; an algorithm stands behind its option: "
+                          "--algorithm %.200s",
+                          path, scene);
+    }
     struct suggestion suggestion = suggestion_begin(scene);
-    char **names = NULL, meant[80];
+    char **names = NULL, meant[SUGGESTION_TEXT];
     int count = 0;
     enum status status = scene_names(scene_directory, &names, &count);
     for (int k = 0; k < count; k++) {
         suggestion_offer(&suggestion, names[k]);
     }
-    const bool near = suggestion.best != NULL;
-    suggestion_text(&suggestion, meant, sizeof meant);
+    const bool near = suggestion.count > 0;
+    suggestion_text(&suggestion, meant);
     scene_names_free(names, count);
     return status == STATUS_OK && near
                ? status_set(STATUS_INVALID,
