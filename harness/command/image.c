@@ -111,7 +111,7 @@ static enum status image_put(const struct task *task, const struct scene *scene,
     char label[320], title[640];
     picture_label(spec->algorithm->name, spec->text, precision_name(spec->precision), label, sizeof label);
     snprintf(title, sizeof title, "%.300s: %s", scene->name, label);
-    return picture_draw(task->output, image, title, range_db, scene);
+    return picture_draw(task->output, true, image, title, range_db, scene);
 }
 
 /* What is known to be wrong with the scene, before the work begins. */

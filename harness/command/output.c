@@ -53,7 +53,7 @@ enum status range_parse(const char *command, const char *text, double *range_db)
     return STATUS_OK;
 }
 
-enum status picture_draw(const char *path, const struct image *image, const char *title, double range_db,
+enum status picture_draw(const char *path, bool named, const struct image *image, const char *title, double range_db,
                          const struct scene *scene)
 {
     char footer[PROVENANCE_LINE];
@@ -63,7 +63,8 @@ enum status picture_draw(const char *path, const struct image *image, const char
                                           .footer = footer,
                                           .range_db = range_db,
                                           .targets = scene ? scene->targets : NULL,
-                                          .target_count = scene ? scene->point_count : 0};
+                                          .target_count = scene ? scene->point_count : 0,
+                                          .named = named};
     return plot_image(path, PLOT_DIRECTORY, &picture);
 }
 

@@ -49,7 +49,7 @@ static enum status plan_scene(const struct task *task, const struct scene *scene
         planned_print(stdout, &planned);
     }
     if (status == STATUS_OK && task->output)
-        status = text_file_open(task->output, &file);
+        status = text_file_open_named(task->output, &file);
     if (status == STATUS_OK && task->output) {
         planned_write(file.stream, &planned);
         status = text_file_close(&file, STATUS_OK);

@@ -25,7 +25,7 @@ enum status command_scenes(const struct task *task)
     }
     if (!has_extension(task->output, ".cfg"))
         return status_set(STATUS_INVALID, "scenes: -o %s must end with .cfg", task->output);
-    enum status status = text_file_open(task->output, &file);
+    enum status status = text_file_open_named(task->output, &file);
     if (status != STATUS_OK)
         return status;
     random_scene_write(file.stream, (uint64_t)seed);

@@ -45,7 +45,7 @@ enum status command_show(const struct task *task)
         return status;
     snprintf(title, sizeof title, "%s%s%s%s%s", *file.scene ? file.scene : task->names[0], *file.algorithm ? ": " : "",
              file.algorithm, *file.options ? ":" : "", file.options);
-    status = picture_draw(output, &file.image, title, range_db, NULL);
+    status = picture_draw(output, task->output, &file.image, title, range_db, NULL);
     if (status == STATUS_OK) {
         printf("%s: %s\n", output, title);
         image_describe(&file.image);

@@ -25,8 +25,9 @@ enum status picture_check(const char *command, const char *output);
 bool output_is_picture(const char *output); /* by its extension; NULL is none */
 /* --range: dB below the peak; NULL is the usual. Errors: STATUS_INVALID. */
 enum status range_parse(const char *command, const char *text, double *range_db);
-/* An image as a picture, the points of a scene (NULL: none) named in it. Errors: as plot_image. */
-enum status picture_draw(const char *path, const struct image *image, const char *title, double range_db,
+/* An image as a picture, the points of a scene (NULL: none) named in it; `named`: the path, by the user. Errors: as
+   plot_image. */
+enum status picture_draw(const char *path, bool named, const struct image *image, const char *title, double range_db,
                          const struct scene *scene);
 /* Its extent and its peak, for the terminal. */
 void image_describe(const struct image *image);

@@ -11,6 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "data/folder.h"
+
 static const char byte_order_mark[] = "\xef\xbb\xbf"; /* as spreadsheets write it */
 
 /* Far above what years of runs write; a bound, so that a wrong path cannot fill the memory. */
@@ -33,10 +35,11 @@ static bool array_grow(void *array, int count, size_t element_size)
 static enum status file_load(const char *path, char **text, size_t *size)
 {
     struct stat info;
-    int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); /* not blocking: a pipe would wait for a writer */
+    int descriptor = place_read(path, O_NONBLOCK); /* not blocking: a pipe would wait for a writer */
     FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "rb");
     if (!file) {
-        enum status status = status_set(STATUS_INVALID, "%s: %s; a readable CSV file is needed", path, strerror(errno));
+        enum status status = status_set(STATUS_INVALID, "%s: %s; a readable CSV file is needed", path,
+                                        errno == ELOOP ? "a symbolic link, which is not followed" : strerror(errno));
         if (descriptor >= 0)
             close(descriptor);
         return status;

@@ -1,6 +1,9 @@
-/* A folder of results, which belongs to one program at a time. */
+/* A folder of results, which belongs to one program at a time, and the places of files. */
 #ifndef SASBENCH_DATA_FOLDER_H
 #define SASBENCH_DATA_FOLDER_H
+
+#include <limits.h>
+#include <stdbool.h>
 
 #include "status.h"
 
@@ -9,7 +12,9 @@ enum status directory_make(const char *directory);
 
 /* Take a folder that exists, and sweep away what a killed program left on its way there. The lock is the kernel's: it
    goes with the process, whatever ends it, and leaves no file. A second program does not wait: it is refused at once.
-   Errors: STATUS_INVALID when another program works there, or for what is no folder. */
+   Until folder_leave, every path that begins with the folder's name leads into this very folder, whatever is put in
+   its place, and through no link. Errors: STATUS_INVALID when another program works there, for what is no folder, and
+   for one that another user owns or that all users share. */
 enum status folder_take(const char *directory, int *lock);
 /* The folder that a single file is written into, so that no second program writes the same one. Nothing is swept away:
    what else lies there is not ours alone. What is no regular file needs no lock, *lock is -1 then. Errors: as
@@ -17,5 +22,26 @@ enum status folder_take(const char *directory, int *lock);
 enum status folder_take_around(const char *path, int *lock);
 /* Accepts -1. */
 void folder_leave(int lock);
+
+/* Where a file is made: its name in a folder that is held open. What has that name already is replaced, also where it
+   is a link. */
+struct place {
+    int folder;
+    bool borrowed; /* of a folder that is taken */
+    char name[NAME_MAX + 1];
+};
+/* The place of a path. `named`: by the user, who means what a link stands for. False: errno says why. */
+bool place_open(const char *path, bool named, struct place *place);
+void place_close(struct place *place);
+/* Put a file made in the place's folder, and synced, under its name, which outlasts a power cut when this is true. */
+bool place_put(const struct place *place, const char *made);
+/* Open a file for reading: in a folder that is taken through no link. `flags`: more of them. -1: errno says why. */
+int place_read(const char *path, int flags);
+/* Whether a regular file is there, and no link. */
+bool place_is_file(const char *path);
+/* Remove a file, if it is there. */
+void place_clear(const char *path);
+/* Its content outlasts a power cut; true also where a file system cannot tell. */
+bool place_sync(int descriptor);
 
 #endif

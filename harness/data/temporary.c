@@ -1,5 +1,4 @@
 /* Temporary files and folders (temporary.h). */
-#define _GNU_SOURCE /* mkostemp */
 #include "data/temporary.h"
 
 #include <dirent.h>
@@ -10,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -18,7 +18,11 @@ static const char pattern[] = ".sasbench-";
 
 /* What exists now, for the signal handler. One that finds no place here is left to the next sweep. */
 enum { NAMES_MAX = 2048 };
-static char *volatile names[NAMES_MAX];
+struct name {
+    int folder; /* descriptor */
+    char text[];
+};
+static struct name *volatile names[NAMES_MAX];
 static volatile sig_atomic_t process_groups[PROCESSES_MOST];
 
 /* Signals that end the program. */
@@ -40,115 +44,163 @@ void temporary_release(const sigset_t *before)
     pthread_sigmask(SIG_SETMASK, before, NULL);
 }
 
-static void name_add(const char *path)
+static void name_add(int folder, const char *text)
 {
-    for (int k = 0; k < NAMES_MAX; k++)
-        if (!names[k]) {
-            names[k] = strdup(path);
-            return;
-        }
+    struct name *name = malloc(sizeof *name + strlen(text) + 1);
+    int k = 0;
+    while (k < NAMES_MAX && names[k])
+        k++;
+    if (!name || k == NAMES_MAX) {
+        free(name);
+        return;
+    }
+    name->folder = folder;
+    strcpy(name->text, text);
+    names[k] = name;
 }
 
-static void name_drop(const char *path)
+/* text NULL: all in the folder. */
+static void name_drop(int folder, const char *text)
 {
     for (int k = 0; k < NAMES_MAX; k++) {
-        char *name = names[k];
-        if (name && strcmp(name, path) == 0) {
+        struct name *name = names[k];
+        if (name && name->folder == folder && (!text || strcmp(name->text, text) == 0)) {
             names[k] = NULL;
-            free(name); /* which `path` may be */
-            return;
+            free(name);
         }
     }
 }
 
-/* "FOLDER/.sasbench-XXXXXX" for mkstemp and mkdtemp. */
-static bool name_beside(const char *path, char made[PATH_MAX])
+/* Opens under a name that nobody foresees, and that is not there yet: -1 where that cannot be. */
+static int made_open(int folder, char made[TEMPORARY_NAME], int (*open_new)(int folder, const char *name))
 {
-    const char *slash = strrchr(path, '/');
-    int folder = slash ? (int)(slash - path) + 1 : 0;
-    if (snprintf(made, PATH_MAX, "%.*s%sXXXXXX", folder, path, pattern) < PATH_MAX)
-        return true;
-    errno = ENAMETOOLONG;
-    return false;
-}
-
-int temporary_file(const char *path, char made[PATH_MAX])
-{
-    sigset_t before;
-    temporary_hold(&before);
-    int descriptor = name_beside(path, made) ? mkostemp(made, O_CLOEXEC) : -1;
-    if (descriptor >= 0)
-        name_add(made);
-    temporary_release(&before);
-    if (descriptor < 0)
-        return -1;
-    mode_t mask = umask(0); /* the rights of any new file, not mkstemp's */
-    umask(mask);
-    fchmod(descriptor, 0666 & ~mask);
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_";
+    unsigned char random[12];
+    int descriptor = -1;
+    errno = EEXIST;
+    for (int attempt = 0; attempt < 100 && descriptor < 0 && errno == EEXIST; attempt++) {
+        if (getrandom(random, sizeof random, 0) != (ssize_t)sizeof random)
+            return -1;
+        strcpy(made, pattern);
+        char *end = made + strlen(made);
+        for (size_t k = 0; k < sizeof random; k++)
+            *end++ = letters[random[k] % (sizeof letters - 1)];
+        *end = '\0';
+        descriptor = open_new(folder, made);
+    }
     return descriptor;
 }
 
-bool temporary_folder(const char *path, char made[PATH_MAX])
+static int file_open(int folder, const char *name)
+{
+    return openat(folder, name, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+}
+
+bool temporary_ours(int folder)
+{
+    struct stat info, made_info;
+    char made[TEMPORARY_NAME];
+    int made_file = made_open(folder, made, file_open);
+    bool ours = made_file >= 0 && fstat(folder, &info) == 0 && fstat(made_file, &made_info) == 0;
+    if (ours && !(ours = info.st_uid == made_info.st_uid))
+        errno = EPERM;
+    if (made_file >= 0) {
+        close(made_file);
+        temporary_remove(folder, made, -1);
+    }
+    return ours;
+}
+
+/* Between its making and its opening another may have put a folder of his own there. */
+static int folder_open(int folder, const char *name)
+{
+    if (mkdirat(folder, name, 0700) != 0)
+        return -1;
+    int descriptor = openat(folder, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    if (descriptor >= 0 && temporary_ours(descriptor))
+        return descriptor;
+    temporary_remove(folder, name, descriptor);
+    if (errno == EEXIST)
+        errno = EPERM; /* not to be tried again */
+    return -1;
+}
+
+static int made_known(int folder, char made[TEMPORARY_NAME], int (*open_new)(int folder, const char *name))
 {
     sigset_t before;
     temporary_hold(&before);
-    bool good = name_beside(path, made) && mkdtemp(made);
-    if (good)
-        name_add(made);
+    int descriptor = made_open(folder, made, open_new);
+    if (descriptor >= 0)
+        name_add(folder, made);
     temporary_release(&before);
-    return good;
+    return descriptor;
 }
 
-void temporary_inside(const char *path)
+int temporary_file(int folder, char made[TEMPORARY_NAME])
 {
-    name_drop(path);
-    name_add(path);
+    return made_known(folder, made, file_open);
 }
 
-void temporary_moved(const char *made)
+int temporary_folder(int folder, char made[TEMPORARY_NAME])
 {
-    name_drop(made);
+    return made_known(folder, made, folder_open);
 }
 
-/* A file, or a folder with the files in it. */
-static void remove_whole(int parent, const char *name)
+void temporary_inside(int inside, const char *name)
 {
-    if (unlinkat(parent, name, 0) == 0)
-        return;
-    int descriptor = openat(parent, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-    DIR *directory = descriptor < 0 ? NULL : fdopendir(descriptor);
-    if (directory) {
-        for (struct dirent *entry; (entry = readdir(directory));)
-            unlinkat(descriptor, entry->d_name, 0);
-        closedir(directory);
-    } else if (descriptor >= 0) {
-        close(descriptor);
-    }
-    unlinkat(parent, name, AT_REMOVEDIR);
+    name_drop(inside, name);
+    name_add(inside, name);
 }
 
-void temporary_remove(const char *made)
+void temporary_moved(int folder, const char *made)
+{
+    name_drop(folder, made);
+}
+
+/* What is in a folder, by `remove_one`. */
+static void all_remove(int folder, void (*remove_one)(int folder, const char *name))
+{
+    int copy = openat(folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    DIR *entries = copy < 0 ? NULL : fdopendir(copy);
+    for (struct dirent *entry; entries && (entry = readdir(entries));)
+        remove_one(folder, entry->d_name);
+    if (entries)
+        closedir(entries);
+    else if (copy >= 0)
+        close(copy);
+}
+
+static void file_remove(int folder, const char *name)
+{
+    unlinkat(folder, name, 0);
+}
+
+void temporary_remove(int folder, const char *made, int inside)
 {
     int reason = errno;
-    size_t length = strlen(made);
-    remove_whole(AT_FDCWD, made);
-    for (int k = 0; k < NAMES_MAX; k++) {
-        char *name = names[k];
-        if (name && strncmp(name, made, length) == 0 && (!name[length] || name[length] == '/'))
-            name_drop(name);
+    if (inside >= 0) {
+        all_remove(inside, file_remove);
+        name_drop(inside, NULL);
     }
+    unlinkat(folder, made, inside < 0 ? 0 : AT_REMOVEDIR);
+    name_drop(folder, made);
+    if (inside >= 0)
+        close(inside);
     errno = reason;
 }
 
-void temporary_sweep(const char *directory)
+static void left_remove(int folder, const char *name)
 {
-    DIR *entries = opendir(directory);
-    if (!entries)
+    if (strncmp(name, pattern, strlen(pattern)) != 0 || unlinkat(folder, name, 0) == 0)
         return;
-    for (struct dirent *entry; (entry = readdir(entries));)
-        if (strncmp(entry->d_name, pattern, strlen(pattern)) == 0)
-            remove_whole(dirfd(entries), entry->d_name);
-    closedir(entries);
+    int inside = openat(folder, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    if (inside >= 0)
+        temporary_remove(folder, name, inside);
+}
+
+void temporary_sweep(int folder)
+{
+    all_remove(folder, left_remove);
 }
 
 /* `old` becomes `new` in the list of groups; 0 is a free place. */
@@ -186,10 +238,10 @@ static void end(int number)
         }
     for (int k = 0; k < NAMES_MAX; k++)
         if (names[k])
-            unlink(names[k]);
+            unlinkat(names[k]->folder, names[k]->text, 0);
     for (int k = 0; k < NAMES_MAX; k++) /* the folders that held them */
         if (names[k])
-            rmdir(names[k]);
+            unlinkat(names[k]->folder, names[k]->text, AT_REMOVEDIR);
     signal(number, SIG_DFL);
     raise(number); /* it ends the program when this returns */
 }

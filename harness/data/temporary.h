@@ -4,23 +4,27 @@
 #ifndef SASBENCH_DATA_TEMPORARY_H
 #define SASBENCH_DATA_TEMPORARY_H
 
-#include <limits.h>
 #include <signal.h>
 #include <stdbool.h>
 #include <sys/types.h>
 
-/* An empty file open for writing, or an empty folder, beside `path`; `made` is its own path. -1 or false: errno says
-   why. Each is followed by temporary_moved or temporary_remove. */
-int temporary_file(const char *path, char made[PATH_MAX]);
-bool temporary_folder(const char *path, char made[PATH_MAX]);
-/* A file that will be made inside such a folder. */
-void temporary_inside(const char *path);
+enum { TEMPORARY_NAME = 24 };
+/* An empty file open for writing, or an empty folder that nobody else may enter, in an open folder; `made` is its name
+   there. Returns its descriptor; -1: errno says why. Each is followed by temporary_moved or temporary_remove, until
+   which `folder` stays open. */
+int temporary_file(int folder, char made[TEMPORARY_NAME]);
+int temporary_folder(int folder, char made[TEMPORARY_NAME]);
+/* Whether what we make in a folder belongs to whom the folder belongs to. errno says why not. */
+bool temporary_ours(int folder);
+/* A file that will be made inside such a folder, of which this is the descriptor. */
+void temporary_inside(int inside, const char *name);
 /* It has its place now. */
-void temporary_moved(const char *made);
-/* A folder with the files in it; errno stays. */
-void temporary_remove(const char *made);
+void temporary_moved(int folder, const char *made);
+/* `inside`: the descriptor of a folder, which is closed and removed with the files in it; -1 for a file. errno stays.
+ */
+void temporary_remove(int folder, const char *made, int inside);
 /* What killed programs left in a folder that is ours alone (folder.h). */
-void temporary_sweep(const char *directory);
+void temporary_sweep(int folder);
 
 /* Between these two no signal ends the program: what is made there is known when one does. `before` is the thread's
    signal mask. */

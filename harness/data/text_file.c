@@ -2,20 +2,18 @@
 #include "data/text_file.h"
 
 #include <errno.h>
-#include <limits.h>
+#include <fcntl.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "data/temporary.h"
-
 static void text_file_free(struct text_file *file)
 {
+    place_close(&file->place);
     free(file->path);
-    free(file->beside);
-    *file = (struct text_file){0};
+    *file = (struct text_file){.place.folder = -1};
 }
 
 /* The standard stream that `info` is, by whatever name it was given (/dev/stdout, a file that it is led into), or -1:
@@ -31,39 +29,43 @@ static int standard_stream(const struct stat *info)
 
 static FILE *beside_open(struct text_file *file)
 {
-    char made[PATH_MAX];
-    int descriptor = temporary_file(file->path, made);
-    if (descriptor < 0)
-        return NULL;
-    file->beside = strdup(made);
-    FILE *stream = file->beside ? fdopen(descriptor, "w") : NULL;
-    if (!stream) {
+    int descriptor = temporary_file(file->place.folder, file->beside);
+    FILE *stream = descriptor < 0 ? NULL : fdopen(descriptor, "w");
+    if (!stream && descriptor >= 0) {
         close(descriptor);
-        temporary_remove(made);
+        temporary_remove(file->place.folder, file->beside, -1);
     }
     return stream;
 }
 
-char *place_follow(const char *path)
+/* A folder would be found in the way only when all is written. */
+static bool folder_in_the_way(const struct place *place)
 {
     struct stat info;
-    bool link = lstat(path, &info) == 0 && S_ISLNK(info.st_mode);
-    return link ? realpath(path, NULL) : strdup(path);
+    if (fstatat(place->folder, place->name, &info, AT_SYMLINK_NOFOLLOW) != 0 || !S_ISDIR(info.st_mode))
+        return false;
+    errno = EISDIR;
+    return true;
 }
 
-enum status text_file_open(const char *path, struct text_file *file)
+static FILE *standard_open(int standard)
+{
+    int copy = fflush(standard == STDOUT_FILENO ? stdout : stderr) == 0 ? dup(standard) : -1;
+    return copy < 0 ? NULL : fdopen(copy, "w");
+}
+
+static enum status file_open(const char *path, bool named, struct text_file *file)
 {
     struct stat info;
-    bool exists = stat(path, &info) == 0;
+    bool exists = named && stat(path, &info) == 0;
     int standard = exists ? standard_stream(&info) : -1;
-    bool beside = standard < 0 && (!exists || S_ISREG(info.st_mode));
-    *file = (struct text_file){.path = beside ? place_follow(path) : strdup(path)};
-    if (file->path && standard >= 0) {
-        int copy = fflush(standard == STDOUT_FILENO ? stdout : stderr) == 0 ? dup(standard) : -1;
-        file->stream = copy < 0 ? NULL : fdopen(copy, "w");
-    } else if (file->path) {
-        file->stream = beside ? beside_open(file) : fopen(path, "w");
-    }
+    *file = (struct text_file){.path = strdup(path), .place.folder = -1};
+    if (file->path && standard >= 0)
+        file->stream = standard_open(standard);
+    else if (file->path && exists && !S_ISREG(info.st_mode))
+        file->stream = fopen(path, "w");
+    else if (file->path && place_open(path, named, &file->place) && !folder_in_the_way(&file->place))
+        file->stream = beside_open(file);
     if (file->stream)
         return STATUS_OK;
     enum status status =
@@ -72,18 +74,71 @@ enum status text_file_open(const char *path, struct text_file *file)
     return status;
 }
 
+enum status text_file_open(const char *path, struct text_file *file)
+{
+    return file_open(path, false, file);
+}
+
+enum status text_file_open_named(const char *path, struct text_file *file)
+{
+    return file_open(path, true, file);
+}
+
+/* Where an earlier write failed, what is left of it fails again, with the same errno. */
+bool stream_flush(FILE *stream)
+{
+    errno = 0;
+    if (fflush(stream) == 0 && !ferror(stream))
+        return true;
+    errno = errno ? errno : EIO;
+    return false;
+}
+
+bool stream_close(FILE *stream)
+{
+    bool flushed = stream_flush(stream);
+    int reason = errno;
+    bool closed = fclose(stream) == 0;
+    if (!flushed)
+        errno = reason;
+    return flushed && closed;
+}
+
+/* Whether all of it is on the disk, as far as it is a file that is. */
+static enum status file_sync(struct text_file *file, enum status status)
+{
+    if (status != STATUS_OK || (stream_flush(file->stream) && (!*file->beside || place_sync(fileno(file->stream)))))
+        return status;
+    return status_set(STATUS_FAILED, "%s: cannot be written: %s", file->path, strerror(errno));
+}
+
+static enum status file_put(struct text_file *file, enum status status)
+{
+    if (status == STATUS_OK && *file->beside && !place_put(&file->place, file->beside))
+        status = status_set(STATUS_FAILED, "%s: cannot be replaced: %s", file->path, strerror(errno));
+    if (*file->beside && status == STATUS_OK)
+        temporary_moved(file->place.folder, file->beside);
+    else if (*file->beside)
+        temporary_remove(file->place.folder, file->beside, -1);
+    text_file_free(file);
+    return status;
+}
+
 enum status text_file_close(struct text_file *file, enum status status)
 {
-    bool written = !ferror(file->stream);
-    written = fclose(file->stream) == 0 && written;
-    if (status == STATUS_OK && !written)
-        status = status_set(STATUS_FAILED, "%s: cannot be written: %s", file->path, strerror(errno));
-    if (status == STATUS_OK && file->beside && rename(file->beside, file->path) != 0)
-        status = status_set(STATUS_FAILED, "%s: cannot be replaced: %s", file->path, strerror(errno));
-    if (file->beside && status == STATUS_OK)
-        temporary_moved(file->beside);
-    else if (file->beside)
-        temporary_remove(file->beside);
-    text_file_free(file);
+    status = file_sync(file, status);
+    if (!stream_close(file->stream) && status == STATUS_OK)
+        status = status_set(STATUS_FAILED, "%s: cannot be closed: %s", file->path, strerror(errno));
+    return file_put(file, status);
+}
+
+enum status text_file_keep(struct text_file *file, FILE **stream)
+{
+    *stream = file->stream;
+    enum status status = file_put(file, file_sync(file, STATUS_OK));
+    if (status != STATUS_OK) {
+        fclose(*stream);
+        *stream = NULL;
+    }
     return status;
 }

@@ -210,7 +210,7 @@ enum status diff_markdown(const struct diff *diff, const char *path)
     enum status status = groups_make(diff, &groups);
     if (status != STATUS_OK)
         return status;
-    status = text_file_open(path, &file);
+    status = text_file_open_named(path, &file);
     if (status == STATUS_OK) {
         fprintf(file.stream, "## sasbench: %s\n\n", headline(diff));
         for (int k = 0; k < diff->note_count; k++) {
@@ -247,7 +247,7 @@ enum status diff_json(const struct diff *diff, const char *path)
 {
     struct text_file file;
     const char *between = "[";
-    enum status status = text_file_open(path, &file);
+    enum status status = text_file_open_named(path, &file);
     if (status != STATUS_OK)
         return status;
     for (int k = 0; k < diff->finding_count; k++) {

@@ -84,7 +84,7 @@ enum status measurements_write(const char *path, const char *note, const struct 
                                const struct measurement *rows, int row_count)
 {
     struct text_file text;
-    enum status status = text_file_open(path, &text);
+    enum status status = text_file_open_named(path, &text);
     if (status)
         return status;
     head_write(text.stream, &row_kinds[KIND_MEASUREMENTS], NULL, note, scenes, scene_count);

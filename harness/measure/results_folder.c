@@ -2,6 +2,7 @@
 #include "measure/results_folder.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,28 +22,29 @@ struct key {
 struct results_folder {
     int lock; /* of the folder */
     struct provenance provenance;
-    char *prefix, *paths[KINDS]; /* "FOLDER/", and the files in it */
-    FILE *files[KINDS];          /* open for appending */
-    struct scene_hash *scenes;   /* content of every scene that has rows */
+    char *paths[KINDS];        /* of its files */
+    FILE *files[KINDS];        /* open for appending */
+    struct scene_hash *scenes; /* content of every scene that has rows */
     int scene_count;
     struct csv earlier;       /* measurements.csv as the earlier run left it; rows point into it */
     struct measurement *rows; /* [earlier.row_count] */
     bool *dropped;            /* [earlier.row_count] the scene's content has changed since, or it is replaced */
 };
 
-static enum status flush_check(FILE *file, const char *path)
+/* A row that is done outlasts a power cut. */
+static enum status rows_done(FILE *file, const char *path)
 {
-    if (fflush(file) != 0 || ferror(file))
+    if (!stream_flush(file) || !place_sync(fileno(file)))
         return status_set(STATUS_FAILED, "%s: cannot be written: %s", path, strerror(errno));
     return STATUS_OK;
 }
 
-static char *text_join(const char *a, const char *b)
+static char *path_join(const char *directory, const char *name)
 {
-    size_t size = strlen(a) + strlen(b) + 1;
+    size_t size = strlen(directory) + strlen(name) + 2;
     char *joined = malloc(size);
     if (joined)
-        snprintf(joined, size, "%s%s", a, b);
+        snprintf(joined, size, "%s/%s", directory, name);
     return joined;
 }
 
@@ -72,8 +74,8 @@ static bool key_matches(const struct key *key, const char *scene, const char *al
 }
 
 /* One file anew from the rows of `old`, without those of `except` (NULL: of none) and without rows of targets whose
-   measurement is missing, made beside the old file and renamed when whole. */
-static enum status file_rewrite(const struct results_folder *folder, int kind, const struct csv old[KINDS],
+   measurement is missing, made beside the old file and renamed when whole; rows are then added to it. */
+static enum status file_rewrite(struct results_folder *folder, int kind, const struct csv old[KINDS],
                                 const struct key *except)
 {
     struct text_file text;
@@ -96,7 +98,7 @@ static enum status file_rewrite(const struct results_folder *folder, int kind, c
         }
         fputc('\n', file);
     }
-    return text_file_close(&text, STATUS_OK);
+    return text_file_keep(&text, &folder->files[kind]);
 }
 
 /* Both files anew. The measurements come first: a cut between the two leaves targets without a measurement, which the
@@ -110,9 +112,6 @@ static enum status folder_rewrite(struct results_folder *folder, const struct cs
         enum status status = file_rewrite(folder, k, old, except);
         if (status)
             return status;
-        folder->files[k] = fopen(folder->paths[k], "a");
-        if (!folder->files[k])
-            return status_set(STATUS_INVALID, "%s: cannot be written: %s", folder->paths[k], strerror(errno));
     }
     return STATUS_OK;
 }
@@ -206,13 +205,21 @@ static void kept_name(int kind, int number, char *name, size_t size)
     snprintf(name, size, "%.*s.%d.csv", (int)strcspn(row_kinds[kind].file, "."), row_kinds[kind].file, number);
 }
 
-/* Under another name; the file stays where it is until it is replaced, except where a file system knows no links. */
-static enum status file_keep(const char *path, const char *kept)
+static bool file_is(const struct results_folder *folder, const char *name)
 {
     struct stat info;
-    if (lstat(path, &info) != 0 || link(path, kept) == 0 || rename(path, kept) == 0)
+    return fstatat(folder->lock, name, &info, AT_SYMLINK_NOFOLLOW) == 0;
+}
+
+/* Under another name; the file stays where it is until it is replaced, except where a file system knows no links. */
+static enum status file_keep(const struct results_folder *folder, int kind, const char *kept)
+{
+    const int at = folder->lock;
+    const char *file = row_kinds[kind].file;
+    if (!file_is(folder, file) || linkat(at, file, at, kept, 0) == 0 || renameat(at, file, at, kept) == 0)
         return STATUS_OK;
-    return status_set(STATUS_INVALID, "%s: cannot be kept as %s: %s; name another folder", path, kept, strerror(errno));
+    return status_set(STATUS_INVALID, "%s: cannot be kept as %s: %s; name another folder", folder->paths[kind], kept,
+                      strerror(errno));
 }
 
 /* Keep the files under the next free number before they are begun anew, and tell why. */
@@ -221,23 +228,17 @@ static enum status files_keep(const struct results_folder *folder, const char *w
     char names[KINDS][64], told[KINDS * 64] = "";
     enum status status = STATUS_OK;
     bool taken = true;
-    for (int number = 1; taken && !status; number++) {
+    for (int number = 1; taken; number++) {
         taken = false;
-        for (int k = 0; k < KINDS && !status; k++) {
-            struct stat info;
+        for (int k = 0; k < KINDS; k++) {
             kept_name(k, number, names[k], sizeof names[k]);
-            char *kept = text_join(folder->prefix, names[k]);
-            taken |= kept && lstat(kept, &info) == 0;
-            status = kept ? STATUS_OK : status_set(STATUS_FAILED, "%s: no memory", names[k]);
-            free(kept);
+            taken |= file_is(folder, names[k]);
         }
     }
     for (int k = 0; k < KINDS && !status; k++) {
-        char *kept = text_join(folder->prefix, names[k]);
-        status = kept ? file_keep(folder->paths[k], kept) : status_set(STATUS_FAILED, "%s: no memory", names[k]);
-        if (!status && access(kept, F_OK) == 0)
+        status = file_keep(folder, k, names[k]);
+        if (!status && file_is(folder, names[k]))
             snprintf(told + strlen(told), sizeof told - strlen(told), "%s%s", *told ? " and " : "", names[k]);
-        free(kept);
     }
     if (!status) {
         fprintf(stderr, "sasbench: %s: ", folder->paths[KIND_MEASUREMENTS]);
@@ -269,10 +270,8 @@ static enum status folder_begin(struct results_folder *folder, const char *direc
     enum status status = directory_make(directory);
     if (!status)
         status = folder_take(directory, &folder->lock);
-    if (!status && !(folder->prefix = text_join(directory, "/")))
-        status = status_set(STATUS_FAILED, "%s: no memory", directory);
     for (int k = 0; k < KINDS && !status; k++) {
-        folder->paths[k] = text_join(folder->prefix, row_kinds[k].file);
+        folder->paths[k] = path_join(directory, row_kinds[k].file);
         status = folder->paths[k] ? file_read(folder->paths[k], &row_kinds[k], &old[k])
                                   : status_set(STATUS_FAILED, "%s: no memory", directory);
     }
@@ -311,7 +310,7 @@ enum status results_folder_open(const char *directory, const struct provenance *
     (*folder)->lock = -1;
     enum status status = folder_begin(*folder, directory);
     if (status) {
-        results_folder_close(*folder);
+        (void)results_folder_close(*folder);
         *folder = NULL;
     }
     return status;
@@ -386,7 +385,7 @@ static enum status rows_append(struct results_folder *folder, int kind, const vo
                           folder->paths[kind]);
     for (int k = 0; k < count; k++)
         row_write(file, row_kinds[kind].columns, (const char *)rows + (size_t)k * row_size);
-    return flush_check(file, folder->paths[kind]);
+    return rows_done(file, folder->paths[kind]);
 }
 
 enum status results_folder_targets(struct results_folder *folder, const struct target_row *rows, int count)
@@ -405,13 +404,14 @@ enum status results_folder_add(struct results_folder *folder, const struct measu
     return status ? status : rows_append(folder, KIND_MEASUREMENTS, row, 1, sizeof *row);
 }
 
-void results_folder_close(struct results_folder *folder)
+enum status results_folder_close(struct results_folder *folder)
 {
+    enum status status = STATUS_OK;
     if (!folder)
-        return;
+        return STATUS_OK;
     for (int k = 0; k < KINDS; k++) {
-        if (folder->files[k])
-            fclose(folder->files[k]);
+        if (folder->files[k] && !stream_close(folder->files[k]))
+            status = status_set(STATUS_FAILED, "%s: cannot be closed: %s", folder->paths[k], strerror(errno));
         free(folder->paths[k]);
     }
     for (int k = 0; k < folder->scene_count; k++)
@@ -419,8 +419,8 @@ void results_folder_close(struct results_folder *folder)
     free(folder->scenes);
     free(folder->rows);
     free(folder->dropped);
-    free(folder->prefix);
     csv_free(&folder->earlier);
     folder_leave(folder->lock);
     free(folder);
+    return status;
 }

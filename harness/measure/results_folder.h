@@ -20,10 +20,11 @@ enum status results_folder_scene(struct results_folder *folder, const char *scen
    is not finished: it gives way to the row that is added in its place. */
 const struct measurement *results_folder_find(const struct results_folder *folder, const char *scene,
                                               const char *algorithm, const char *options, const char *precision);
-/* Append and flush. The rows of a measurement's targets are added before the measurement itself: when that is there,
-   all of it is. Target rows without their measurement are dropped by the next run. Errors: STATUS_FAILED. */
+/* Append, onto the disk. The rows of a measurement's targets are added before the measurement itself: when that is
+   there, all of it is. Target rows without their measurement are dropped by the next run. Errors: STATUS_FAILED. */
 enum status results_folder_targets(struct results_folder *folder, const struct target_row *rows, int count);
 enum status results_folder_add(struct results_folder *folder, const struct measurement *row);
-void results_folder_close(struct results_folder *folder);
+/* Errors: STATUS_FAILED for a file that cannot be closed. Accepts NULL. */
+enum status results_folder_close(struct results_folder *folder);
 
 #endif

@@ -2,9 +2,9 @@
 #include "papers/echo_figures.h"
 
 #include <stdio.h>
-#include <unistd.h>
 
 #include "data/echo_data.h"
+#include "data/folder.h"
 #include "data/paths.h"
 #include "measure/filtering.h"
 #include "measure/provenance.h"
@@ -24,7 +24,7 @@ static const struct {
 static bool is_drawn(const char *directory, enum step step, char path[4200])
 {
     snprintf(path, 4200, "%s/figure-" ECHO_FIGURES "-%s.png", directory, steps[step].name);
-    return access(path, F_OK) == 0;
+    return place_is_file(path);
 }
 
 /* Records side by side, as an image over the transmitter's place and half the way of the sound. */

@@ -5,9 +5,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "data/echo_data.h"
+#include "data/folder.h"
 #include "data/paths.h"
 #include "data/text_file.h"
 #include "measure/metrics.h"
@@ -157,7 +157,7 @@ static bool wanted(const struct drawing *drawing, const char *id, bool asked, bo
         return false;
     picture_name(drawing, id, images ? drawing->set->scenes[s].scene : NULL, drawing->set->methods[m].label, path,
                  sizeof path);
-    return access(path, F_OK) != 0;
+    return !place_is_file(path);
 }
 
 /* One method's image of a scene: drawn, and its slices kept. `first`: the scene's first panel. */

@@ -8,6 +8,7 @@
 #include <strings.h>
 #include <sys/stat.h>
 
+#include "data/folder.h"
 #include "data/paths.h"
 #include "data/suggestion.h"
 #include "data/text_append.h"
@@ -187,7 +188,13 @@ enum status papers_reproduce(const char *const *ids, int count, const char *dire
         status = claims_read(CLAIMS_FILE, &claims);
     bool sensitivity = count == 1 && strcmp(ids[0], "sensitivity") == 0;
     if (status == STATUS_OK && sensitivity) {
-        status = sensitivity_study(directory, &claims, needs_measure);
+        int lock = -1;
+        status = directory_make(directory);
+        if (status == STATUS_OK)
+            status = folder_take(directory, &lock);
+        if (status == STATUS_OK)
+            status = sensitivity_study(directory, &claims, needs_measure);
+        folder_leave(lock);
         claims_free(&claims);
         return status;
     }

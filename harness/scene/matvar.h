@@ -2,9 +2,9 @@
 #ifndef SASBENCH_SCENE_MATVAR_H
 #define SASBENCH_SCENE_MATVAR_H
 
-#include <limits.h>
-
 #include "data/echo_data.h"
+#include "data/folder.h"
+#include "data/temporary.h"
 
 enum kind { KIND_TEXT, KIND_SCALAR, KIND_REAL, KIND_COMPLEX };
 
@@ -52,8 +52,10 @@ int mat5_count(const char *path);
    whose failure the writer is not closed) and writer_close need be looked at. */
 struct writer {
     const char *path;
-    char place[PATH_MAX];     /* the file that a symbolic link stands for, or `path` itself */
-    char temporary[PATH_MAX]; /* beside `place`: renamed when whole */
+    struct place place;          /* of the file that a symbolic link stands for, or of `path` itself */
+    char beside[TEMPORARY_NAME]; /* in the place's folder: renamed when whole */
+    int descriptor;              /* of that file */
+    char temporary[64];          /* its path */
     struct _mat_t *mat;
     int count; /* variables written */
     enum status status;

@@ -3,6 +3,7 @@
 #include "scene/matvar.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <hdf5.h>
 #include <matio.h>
 #include <stdio.h>
@@ -10,9 +11,6 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#include "data/temporary.h"
-#include "data/text_file.h"
 
 #define ACCEPTED "a new or regular file in a writable folder is needed"
 
@@ -24,46 +22,55 @@ static enum status write_failed(struct writer *writer)
 }
 
 /* The place that a path stands for, through symbolic links. */
-static enum status place_find(const char *path, char place[PATH_MAX])
+static enum status place_find(const char *path, struct place *place)
 {
-    char folder[PATH_MAX];
     struct stat old;
-    if (strlen(path) + NAME_MAX > sizeof folder)
+    place->folder = -1;
+    if (strlen(path) + NAME_MAX > PATH_MAX)
         return status_set(STATUS_INVALID, "%.100s...: cannot be written: path too long; " ACCEPTED, path);
     if (stat(path, &old) == 0 && !S_ISREG(old.st_mode))
         return status_set(STATUS_INVALID, "%s: cannot be written: it is not a regular file; " ACCEPTED, path);
-    char *followed = place_follow(path);
-    if (!followed)
-        return status_set(STATUS_INVALID, "%s: cannot be written: %s; " ACCEPTED, path, strerror(errno));
-    snprintf(place, PATH_MAX, "%s", followed);
-    snprintf(folder, sizeof folder, "%s", followed);
-    free(followed);
-    char *slash = strrchr(folder, '/');
-    if (slash)
-        slash[slash == folder] = 0;
-    if (!*path || access(slash ? folder : ".", W_OK | X_OK) != 0)
-        return status_set(STATUS_INVALID, "%s: cannot be written: %s; " ACCEPTED, path,
-                          strerror(*path ? errno : ENOENT));
-    return STATUS_OK;
+    errno = ENOENT;
+    if (*path && place_open(path, true, place) && faccessat(place->folder, ".", W_OK | X_OK, 0) == 0)
+        return STATUS_OK;
+    int reason = errno;
+    place_close(place);
+    return status_set(STATUS_INVALID, "%s: cannot be written: %s; " ACCEPTED, path, strerror(reason));
 }
 
 enum status matfile_place(const char *path)
 {
-    char place[PATH_MAX];
-    return place_find(path, place);
+    struct place place;
+    enum status status = place_find(path, &place);
+    place_close(&place);
+    return status;
+}
+
+static void writer_end(struct writer *writer)
+{
+    if (writer->status == STATUS_OK)
+        temporary_moved(writer->place.folder, writer->beside);
+    else
+        temporary_remove(writer->place.folder, writer->beside, -1);
+    close(writer->descriptor);
+    place_close(&writer->place);
 }
 
 /* Version 5 holds up to 2 GiB a variable. */
 enum status writer_open(struct writer *writer, const char *path, size_t largest_variable_bytes)
 {
     *writer = (struct writer){.path = path};
-    writer->status = place_find(path, writer->place);
+    writer->status = place_find(path, &writer->place);
     if (writer->status != STATUS_OK)
         return writer->status;
-    int descriptor = temporary_file(writer->place, writer->temporary);
-    if (descriptor < 0)
-        return write_failed(writer);
-    close(descriptor);
+    writer->descriptor = temporary_file(writer->place.folder, writer->beside);
+    if (writer->descriptor < 0) {
+        write_failed(writer);
+        place_close(&writer->place);
+        return writer->status;
+    }
+    /* libmatio opens by name what is there already, here through the folder that is held open. */
+    snprintf(writer->temporary, sizeof writer->temporary, "/proc/self/fd/%d/%s", writer->place.folder, writer->beside);
     matio_silence();
     H5dont_atexit(); /* its exit handler crashes after a full disk */
     bool fits_v5 = largest_variable_bytes < ((size_t)1 << 31) - 4096;
@@ -71,7 +78,7 @@ enum status writer_open(struct writer *writer, const char *path, size_t largest_
     writer->mat = Mat_CreateVer(writer->temporary, NULL, fits_v5 ? MAT_FT_MAT5 : MAT_FT_MAT73);
     if (!writer->mat) {
         write_failed(writer);
-        temporary_remove(writer->temporary);
+        writer_end(writer);
     }
     return writer->status;
 }
@@ -145,12 +152,8 @@ enum status writer_close(struct writer *writer)
         errno = ENOSPC;
         write_failed(writer);
     }
-    if (writer->status == STATUS_OK && rename(writer->temporary, writer->place) != 0) {
+    if (writer->status == STATUS_OK && !(place_sync(writer->descriptor) && place_put(&writer->place, writer->beside)))
         write_failed(writer);
-    }
-    if (writer->status == STATUS_OK)
-        temporary_moved(writer->temporary);
-    else
-        temporary_remove(writer->temporary);
+    writer_end(writer);
     return writer->status;
 }

@@ -1,4 +1,5 @@
 /* gnuplot as a process (gnuplot.h). */
+#define _GNU_SOURCE /* posix_spawn_file_actions_addfchdir_np */
 #include "show/gnuplot.h"
 
 #include <errno.h>
@@ -26,12 +27,17 @@ bool gnuplot_hung(void)
     return hung;
 }
 
-void gnuplot_complaint(const char *log, char *text, size_t size)
+void gnuplot_complaint(int log, char *text, size_t size)
 {
     snprintf(text, size, "no message");
-    FILE *file = fopen(log, "r");
-    if (!file)
+    int copy = dup(log);
+    FILE *file = copy < 0 ? NULL : fdopen(copy, "r");
+    if (!file) {
+        if (copy >= 0)
+            close(copy);
         return;
+    }
+    rewind(file);
     /* A failed statement, a '^' below its fault, then "SCRIPT" line N: REASON. */
     char line[512], statement[200] = "";
     while (fgets(line, sizeof line, file)) {
@@ -50,7 +56,7 @@ void gnuplot_complaint(const char *log, char *text, size_t size)
 }
 
 /* gnuplot in a process group of its own, so that what it starts can be ended with it; `mask` is its signal mask. */
-static int spawn(const char *script, const char *log, const sigset_t *mask, pid_t *child)
+static int spawn(int directory, const char *script, int picture, int log, const sigset_t *mask, pid_t *child)
 {
     /* --default-settings: the user's own gnuplot start-up files stay out. */
     char *arguments[] = {"gnuplot", "--default-settings", (char *)script, NULL};
@@ -66,9 +72,11 @@ static int spawn(const char *script, const char *log, const sigset_t *mask, pid_
         sigaddset(&usual, SIGXFSZ); /* which main ignores */
         error = posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
         if (!error)
-            error = posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log, O_WRONLY | O_CREAT, 0600);
+            error = posix_spawn_file_actions_adddup2(&actions, picture, STDOUT_FILENO);
         if (!error)
-            error = posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+            error = posix_spawn_file_actions_adddup2(&actions, log, STDERR_FILENO);
+        if (!error)
+            error = posix_spawn_file_actions_addfchdir_np(&actions, directory);
         if (!error)
             error = posix_spawnattr_setsigdefault(&attributes, &usual);
         if (!error)
@@ -84,12 +92,12 @@ static int spawn(const char *script, const char *log, const sigset_t *mask, pid_
     return error;
 }
 
-enum status gnuplot_start(const char *script, const char *log, struct gnuplot *gnuplot)
+enum status gnuplot_start(int directory, const char *script, int picture, int log, struct gnuplot *gnuplot)
 {
     *gnuplot = (struct gnuplot){.begin = seconds_now()};
     sigset_t before;
     temporary_hold(&before);
-    int error = spawn(script, log, &before, &gnuplot->process);
+    int error = spawn(directory, script, picture, log, &before, &gnuplot->process);
     if (!error)
         temporary_process_add(gnuplot->process);
     temporary_release(&before);

@@ -15,9 +15,9 @@ struct gnuplot {
     int exit_status; /* once it has ended, as waitpid gives it */
 };
 
-/* Let gnuplot run the file `script`; what it prints goes to the file `log`. Errors: STATUS_FAILED where gnuplot is
-   missing. */
-enum status gnuplot_start(const char *script, const char *log, struct gnuplot *gnuplot);
+/* Let gnuplot run the file `script` of the folder `directory`, in which it works. These three are descriptors: what it
+   writes to /dev/stdout goes to `picture`, what it prints to `log`. Errors: STATUS_FAILED where gnuplot is missing. */
+enum status gnuplot_start(int directory, const char *script, int picture, int log, struct gnuplot *gnuplot);
 /* Whether it has ended, without waiting for it. Errors: STATUS_FAILED where it takes longer than plot_seconds_most
    (plot.h) and is ended. */
 enum status gnuplot_poll(struct gnuplot *gnuplot, bool *ended);
@@ -26,6 +26,6 @@ void gnuplot_pause(void);
 /* Whether it was ended so: it would hang on every further picture. */
 bool gnuplot_hung(void);
 /* The first line of `log` that says something, for a message. */
-void gnuplot_complaint(const char *log, char *text, size_t size);
+void gnuplot_complaint(int log, char *text, size_t size);
 
 #endif

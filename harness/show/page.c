@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "data/folder.h"
 #include "data/shown_text.h"
 #include "show/page_style.h"
 
@@ -249,7 +250,7 @@ void page_table_end(struct page *page)
 static enum status file_read(const char *path, char **bytes, size_t *size)
 {
     struct stat info;
-    int descriptor = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    int descriptor = place_read(path, O_NOFOLLOW | O_NONBLOCK);
     FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "rb");
     *bytes = NULL;
     bool regular = file && fstat(descriptor, &info) == 0 && S_ISREG(info.st_mode);

@@ -4,9 +4,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "measure/metrics.h"
+#include "data/folder.h"
 #include "data/shown_text.h"
 #include "data/paths.h"
 
@@ -22,7 +22,7 @@ bool picture_exists(const char *directory, const char *scene, const char *label)
 {
     char path[4096];
     path_make(directory, scene, label, path, sizeof path);
-    return access(path, F_OK) == 0;
+    return place_is_file(path);
 }
 
 /* A picture that cannot be drawn is reported, but does not fail what was measured. */
@@ -44,7 +44,7 @@ enum status pictures_begin(const char *directory, const char *footer, const stru
     if (!pictures->lines)
         return status_set(STATUS_FAILED, "%s: no memory for slices", scene->name);
     path_make(directory, scene->name, NULL, path, sizeof path);
-    unlink(path);
+    place_clear(path);
     return STATUS_OK;
 }
 
@@ -73,7 +73,7 @@ void pictures_add(struct pictures *pictures, int index, const char *label, const
     const struct scene *scene = pictures->scene;
     char path[4096], title[700];
     path_make(pictures->directory, scene->name, label, path, sizeof path);
-    unlink(path);
+    place_clear(path);
     snprintf(title, sizeof title, "%s: %s", scene->name, label);
     const struct image_picture picture = {.image = image,
                                           .reference = pictures_exact(pictures, image),

@@ -3,7 +3,6 @@
 
 #include <math.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "show/plot_queue.h"
 
@@ -41,13 +40,13 @@ static void extent_write(FILE *preamble, const struct slice_line *lines, int cou
    each. */
 static enum status line_write(const struct plot *plot, const struct slice_line *line, int index, double extent)
 {
-    char name[32], path[PATH_MAX + 32];
+    char name[32];
+    FILE *file;
     snprintf(name, sizeof name, "line%d", index);
-    plot_file(plot, name, path);
-    plot_array_write(plot->preamble, "data", index, path);
-    FILE *file = fopen(path, "w");
-    if (!file)
-        return plot_file_failed(path);
+    plot_array_write(plot->preamble, "data", index, name);
+    enum status status = plot_file_open(plot, name, &file);
+    if (status != STATUS_OK)
+        return status;
     fprintf(file, "0 NaN NaN\n"); /* gnuplot refuses a file without a row */
     for (int k = 0; k < line->count; k++) {
         const bool near = fabs(line->position_m[k]) <= extent;
@@ -56,9 +55,7 @@ static enum status line_write(const struct plot *plot, const struct slice_line *
             fprintf(file, "%.9g %.6g %.6g\n", line->position_m[k], fmax(line->power_db[k], floor_db),
                     line->difference_db ? fmax(line->difference_db[k], floor_db) : NAN);
     }
-    bool written = !ferror(file);
-    written &= fclose(file) == 0;
-    return written ? STATUS_OK : plot_file_failed(path);
+    return plot_file_close(plot, file);
 }
 
 /* `slices`: they are cut to what they show. */
@@ -99,7 +96,7 @@ static enum status lines_draw(struct plot_queue *queue, const char *path, const 
                               const struct slices_picture *picture)
 {
     struct plot plot;
-    enum status status = plot_begin(&plot, path);
+    enum status status = plot_begin(&plot, path, false);
     if (status == STATUS_OK)
         status = lines_write(&plot, picture, slices);
     return plot_finish(&plot, status, queue, plots_directory, slices ? "slices.gp" : "phase.gp");
@@ -130,13 +127,13 @@ enum status plot_folder(const char *path, const char *plots_directory, const cha
     char script[64];
     snprintf(script, sizeof script, "%s.gp", name);
     *drawn = false;
-    enum status status = plot_begin(&plot, path);
+    enum status status = plot_begin(&plot, path, false);
     if (status == STATUS_OK) {
-        plot_variable(plot.preamble, "folder", folder);
+        plot_path_variable(plot.preamble, "folder", folder);
         plot_variable(plot.preamble, "scene", scene);
         status = plot_run(&plot, plots_directory, script);
     }
-    if (status == STATUS_OK && access(plot.output, F_OK) == 0) {
+    if (status == STATUS_OK && !plot_is_empty(&plot)) {
         *drawn = true;
         status = plot_place(&plot);
     }
@@ -148,9 +145,9 @@ enum status plot_csv(const char *path, const char *plots_directory, const char *
                      const char *footer)
 {
     struct plot plot;
-    enum status status = plot_begin(&plot, path);
+    enum status status = plot_begin(&plot, path, false);
     if (status == STATUS_OK) {
-        plot_variable(plot.preamble, "csv", csv);
+        plot_path_variable(plot.preamble, "csv", csv);
         plot_variable(plot.preamble, "footer", footer);
     }
     return plot_finish(&plot, status, NULL, plots_directory, script);

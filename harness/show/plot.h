@@ -16,6 +16,7 @@ struct image_picture {
     double range_db;               /* shown below the peak; 0: IMAGE_RANGE_DB */
     const struct target *targets;  /* [target_count] that are named in it */
     int target_count;
+    bool named; /* the path, by the user: a link there is followed */
 };
 enum status plot_image(const char *path, const char *plots_directory, const struct image_picture *picture);
 /* The same, drawn later (plot_queue.h): what is written until then fails here, the rest there. */

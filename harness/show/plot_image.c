@@ -155,20 +155,18 @@ static void curves_write(FILE *file, const struct layer *layer, int patch)
 /* One patch as a file; `array` of the script gets its path. */
 static enum status panel_write(const struct plot *plot, const char *array, const struct layer *layer, int patch)
 {
-    char name[32], path[PATH_MAX + 32];
+    char name[32];
+    FILE *file;
     snprintf(name, sizeof name, "%s%d", array, patch);
-    plot_file(plot, name, path);
-    FILE *file = fopen(path, "wb");
-    if (!file)
-        return plot_file_failed(path);
+    enum status status = plot_file_open(plot, name, &file);
+    if (status != STATUS_OK)
+        return status;
     if (shape_of(&layer->image->patches[patch]) == SHAPE_IMAGE)
         matrix_write(file, layer, patch);
     else
         curves_write(file, layer, patch);
-    bool written = !ferror(file);
-    written &= fclose(file) == 0;
-    plot_array_write(plot->preamble, array, patch, path);
-    return written ? STATUS_OK : plot_file_failed(path);
+    plot_array_write(plot->preamble, array, patch, name);
+    return plot_file_close(plot, file);
 }
 
 static double share(double place, double first, double step, int count)
@@ -180,13 +178,13 @@ static double share(double place, double first, double step, int count)
 static enum status targets_write(const struct plot *plot, const struct image_picture *picture, int patch, int *written)
 {
     const struct grid *grid = &picture->image->patches[patch];
-    char name[32], path[PATH_MAX + 32];
+    char name[32];
+    FILE *file;
     snprintf(name, sizeof name, "targets%d", patch);
-    plot_file(plot, name, path);
-    FILE *file = fopen(path, "w");
     *written = 0;
-    if (!file)
-        return plot_file_failed(path);
+    enum status status = plot_file_open(plot, name, &file);
+    if (status != STATUS_OK)
+        return status;
     for (int t = 0; t < picture->target_count && *written < NAMES_MAX; t++) {
         const struct vector at = grid_coordinates(grid, picture->targets[t].x, picture->targets[t].r);
         const double x = share(at.x, grid->x_first, grid->x_step, grid->x_count);
@@ -196,9 +194,8 @@ static enum status targets_write(const struct plot *plot, const struct image_pic
             ++*written;
         }
     }
-    const bool good = fclose(file) == 0;
-    plot_array_write(plot->preamble, "targets", patch, path);
-    return good ? STATUS_OK : plot_file_failed(path);
+    plot_array_write(plot->preamble, "targets", patch, name);
+    return plot_file_close(plot, file);
 }
 
 /* The numbers of a patch: its edges in m, what is taken off its places, how many curves, how many targets. */
@@ -282,7 +279,7 @@ static enum status image_draw(struct plot_queue *queue, const char *path, const 
                               const struct image_picture *picture)
 {
     struct plot plot;
-    enum status status = plot_begin(&plot, path);
+    enum status status = plot_begin(&plot, path, picture->named);
     if (status == STATUS_OK)
         status = image_write(&plot, picture);
     return plot_finish(&plot, status, queue, plots_directory, image_script);

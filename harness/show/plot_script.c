@@ -1,33 +1,51 @@
 /* Pictures in the making (plot_script.h). */
+#define _GNU_SOURCE /* memfd_create */
 #include "show/plot_script.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
-#include "data/temporary.h"
+#include "data/text_file.h"
 
-void plot_file(const struct plot *plot, const char *name, char path[PATH_MAX + 32])
+static enum status file_failed(const char *path)
 {
-    snprintf(path, PATH_MAX + 32, "%s/%.30s", plot->directory, name);
-    temporary_inside(path);
+    return status_set(STATUS_FAILED, "plot: '%.300s' cannot be drawn: %s", path, strerror(errno));
 }
 
-enum status plot_file_failed(const char *path)
+enum status plot_file_open(const struct plot *plot, const char *name, FILE **file)
 {
-    return status_set(STATUS_FAILED, "plot: cannot write '%s': %s", path, strerror(errno));
+    temporary_inside(plot->directory, name);
+    int descriptor = openat(plot->directory, name, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
+    *file = descriptor < 0 ? NULL : fdopen(descriptor, "w");
+    if (*file)
+        return STATUS_OK;
+    enum status status = file_failed(plot->path);
+    if (descriptor >= 0)
+        close(descriptor);
+    return status;
 }
 
-/* A gnuplot string: nothing but the single quote is special between single quotes. */
+enum status plot_file_close(const struct plot *plot, FILE *file)
+{
+    return stream_close(file) ? STATUS_OK : file_failed(plot->path);
+}
+
+/* A gnuplot string: nothing but the single quote is special between single quotes. Two of them are one in its manual,
+   but not at the beginning of a string (5.4). */
 static void text_write(FILE *file, const char *text)
 {
     fputc('\'', file);
-    for (; *text; text++) {
+    for (; *text; text++)
         if (*text == '\'')
-            fputc('\'', file);
-        fputc((unsigned char)*text < ' ' ? ' ' : *text, file);
-    }
+            fputs("'.\"\\047\".'", file);
+        else
+            fputc((unsigned char)*text < ' ' ? ' ' : *text, file);
     fputc('\'', file);
 }
 
@@ -36,6 +54,13 @@ void plot_variable(FILE *file, const char *name, const char *text)
     fprintf(file, "%s = ", name);
     text_write(file, text);
     fputc('\n', file);
+}
+
+void plot_path_variable(FILE *file, const char *name, const char *path)
+{
+    char *whole = realpath(path, NULL);
+    plot_variable(file, name, whole ? whole : path);
+    free(whole);
 }
 
 void plot_array(FILE *file, const char *name, int count)
@@ -61,24 +86,14 @@ static enum status hung_status(const char *path)
     return status_set(STATUS_FAILED, "plot: '%.300s' is not drawn: gnuplot did not end on a picture before", path);
 }
 
-enum status plot_begin(struct plot *plot, const char *path)
+enum status plot_begin(struct plot *plot, const char *path, bool named)
 {
-    *plot = (struct plot){.path = path};
+    *plot = (struct plot){.path = path, .named = named, .beside.folder = -1, .directory = -1, .picture = -1, .log = -1};
     if (gnuplot_hung())
         return hung_status(path);
-
-    /* gnuplot takes an output that begins with '|' for a command. */
-    char beside[PATH_MAX], name[PATH_MAX + 32];
-    if (snprintf(beside, sizeof beside, "%s%s", *path == '/' ? "" : "./", path) >= (int)sizeof beside)
-        return status_set(STATUS_FAILED, "plot: the path '%.200s' is too long", path);
-    if (!temporary_folder(beside, plot->directory)) {
-        *plot->directory = '\0';
-        return plot_file_failed(path);
-    }
-    plot_file(plot, is_svg(path) ? "picture.svg" : "picture.png", plot->output);
-    plot_file(plot, "run.gp", name);
-    plot->preamble = fopen(name, "w");
-    return plot->preamble ? STATUS_OK : plot_file_failed(name);
+    if (place_open(path, named, &plot->beside))
+        plot->directory = temporary_folder(plot->beside.folder, plot->made);
+    return plot->directory < 0 ? file_failed(path) : plot_file_open(plot, "run.gp", &plot->preamble);
 }
 
 /* Removes what is left; accepts a plot whose beginning failed. */
@@ -86,8 +101,13 @@ void plot_end(struct plot *plot)
 {
     if (plot->preamble)
         fclose(plot->preamble);
-    if (*plot->directory)
-        temporary_remove(plot->directory);
+    if (plot->directory >= 0)
+        temporary_remove(plot->beside.folder, plot->made, plot->directory);
+    place_close(&plot->beside);
+    if (plot->picture >= 0)
+        close(plot->picture);
+    if (plot->log >= 0)
+        close(plot->log);
 }
 
 enum status plot_prepare(struct plot *plot, const char *plots_directory, const char *script)
@@ -95,32 +115,35 @@ enum status plot_prepare(struct plot *plot, const char *plots_directory, const c
     plot->plots_directory = plots_directory;
     plot->script = script;
     plot_variable(plot->preamble, "format", is_svg(plot->path) ? "svg" : "png");
-    plot_variable(plot->preamble, "output", plot->output);
-    plot_variable(plot->preamble, "plots", plots_directory);
+    plot_variable(plot->preamble, "output", "/dev/stdout");
+    plot_path_variable(plot->preamble, "plots", plots_directory);
     fprintf(plot->preamble, "load plots.'/%s'\n", script);
-    bool written = !ferror(plot->preamble);
-    written &= fclose(plot->preamble) == 0;
+    FILE *preamble = plot->preamble;
     plot->preamble = NULL;
-    return written ? STATUS_OK : plot_file_failed(plot->directory);
+    return plot_file_close(plot, preamble);
 }
 
 enum status plot_start(struct plot *plot)
 {
-    char preamble[PATH_MAX + 32], log[PATH_MAX + 32];
     if (gnuplot_hung())
         return hung_status(plot->path);
-    plot_file(plot, "run.gp", preamble);
-    plot_file(plot, "log", log);
-    return gnuplot_start(preamble, log, &plot->gnuplot);
+    plot->picture = memfd_create("picture", MFD_CLOEXEC);
+    plot->log = memfd_create("log", MFD_CLOEXEC);
+    if (plot->picture < 0 || plot->log < 0)
+        return file_failed(plot->path);
+    return gnuplot_start(plot->directory, "run.gp", plot->picture, plot->log, &plot->gnuplot);
 }
 
 enum status plot_poll(struct plot *plot, bool *ended)
 {
     enum status status = gnuplot_poll(&plot->gnuplot, ended);
     if (status == STATUS_OK && *ended && plot->gnuplot.exit_status != 0) {
-        char complaint[400], log[PATH_MAX + 32];
-        plot_file(plot, "log", log);
-        gnuplot_complaint(log, complaint, sizeof complaint);
+        const int how = plot->gnuplot.exit_status;
+        char complaint[400];
+        if (WIFSIGNALED(how))
+            snprintf(complaint, sizeof complaint, "ended by signal %d (%s)", WTERMSIG(how), strsignal(WTERMSIG(how)));
+        else
+            gnuplot_complaint(plot->log, complaint, sizeof complaint);
         return status_set(STATUS_FAILED, "plot: gnuplot failed on '%s' with %s/%s: %s", plot->path,
                           plot->plots_directory, plot->script, complaint);
     }
@@ -141,29 +164,44 @@ enum status plot_run(struct plot *plot, const char *plots_directory, const char 
     return status;
 }
 
-/* Whether a picture reaches its end: gnuplot does not notice a full disk. */
-static bool picture_is_whole(const char *path)
+bool plot_is_empty(const struct plot *plot)
+{
+    struct stat info;
+    return fstat(plot->picture, &info) == 0 && info.st_size == 0;
+}
+
+/* Whether a picture reaches its end: gnuplot does not notice where it cannot write. */
+static bool picture_is_whole(const struct plot *plot, off_t size)
 {
     static const char png[] = "\0\0\0\0IEND\xae\x42\x60\x82", svg[] = "</svg>";
-    const char *wanted = is_svg(path) ? svg : png;
-    const size_t size = is_svg(path) ? sizeof svg - 1 : sizeof png - 1;
+    const bool text = is_svg(plot->path);
+    const char *wanted = text ? svg : png;
+    const size_t length = text ? sizeof svg - 1 : sizeof png - 1;
     char end[32];
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return false;
-    size_t count = fseek(file, -(long)sizeof end, SEEK_END) == 0 ? fread(end, 1, sizeof end, file) : 0;
-    fclose(file);
-    while (is_svg(path) && count > 0 && end[count - 1] == '\n')
+    const off_t from = size < (off_t)sizeof end ? 0 : size - (off_t)sizeof end;
+    ssize_t count = pread(plot->picture, end, sizeof end, from);
+    while (text && count > 0 && end[count - 1] == '\n')
         count--;
-    return count >= size && memcmp(end + count - size, wanted, size) == 0;
+    return count >= (ssize_t)length && memcmp(end + count - length, wanted, length) == 0;
 }
 
 /* Put the picture in its place. */
 enum status plot_place(const struct plot *plot)
 {
-    if (!picture_is_whole(plot->output))
-        return status_set(STATUS_FAILED, "plot: gnuplot left '%s' without its end (is the disk full?)", plot->path);
-    return rename(plot->output, plot->path) == 0 ? STATUS_OK : plot_file_failed(plot->path);
+    struct text_file file;
+    const off_t size = lseek(plot->picture, 0, SEEK_END);
+    if (!picture_is_whole(plot, size))
+        return status_set(STATUS_FAILED, "plot: gnuplot left '%s' without its end", plot->path);
+    char *bytes = mmap(NULL, (size_t)size, PROT_READ, MAP_PRIVATE, plot->picture, 0);
+    if (bytes == MAP_FAILED)
+        return file_failed(plot->path);
+    enum status status = plot->named ? text_file_open_named(plot->path, &file) : text_file_open(plot->path, &file);
+    if (status == STATUS_OK) {
+        fwrite(bytes, 1, (size_t)size, file.stream);
+        status = text_file_close(&file, STATUS_OK);
+    }
+    munmap(bytes, (size_t)size);
+    return status;
 }
 
 enum status plot_draw(struct plot *plot, const char *plots_directory, const char *script)

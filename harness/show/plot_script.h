@@ -1,12 +1,14 @@
 /* A picture in the making: data files and a short preamble of variables go to a temporary folder beside the picture,
-   then one of the scripts in plots/ draws them. The picture is drawn there, too, and renamed when whole. Used within
-   show/ only. */
+   in which gnuplot works: one of the scripts in plots/ draws them. The picture goes to memory, and to its place when it
+   is whole. Used within show/ only. */
 #ifndef SASBENCH_SHOW_PLOT_SCRIPT_H
 #define SASBENCH_SHOW_PLOT_SCRIPT_H
 
 #include <limits.h>
 #include <stdio.h>
 
+#include "data/folder.h"
+#include "data/temporary.h"
 #include "show/gnuplot.h"
 #include "status.h"
 
@@ -14,29 +16,35 @@ enum { PANELS_MAX = 8 }; /* more do not fit a picture */
 
 /* One picture in the making. */
 struct plot {
-    char directory[PATH_MAX];             /* temporary, with everything in it */
-    char output[PATH_MAX + 32];           /* the picture until it is whole */
+    struct place beside;                  /* whose folder holds the temporary one */
+    char made[TEMPORARY_NAME];            /* its name there */
+    int directory;                        /* its descriptor, -1: there is none */
+    int picture, log;                     /* files in memory: the picture until it is whole, what gnuplot prints; -1 */
     const char *path;                     /* the picture */
+    bool named;                           /* by the user: links are followed */
     FILE *preamble;                       /* sets the script's variables */
     const char *plots_directory, *script; /* that it is drawn with, once it is prepared */
     struct gnuplot gnuplot;
 };
 
-/* Errors: STATUS_FAILED. plot_end removes what is left, and accepts a plot whose beginning failed. */
-enum status plot_begin(struct plot *plot, const char *path);
+/* `named` as of text_file_open_named. Errors: STATUS_FAILED. plot_end removes what is left, and accepts a plot whose
+   beginning failed. */
+enum status plot_begin(struct plot *plot, const char *path, bool named);
 void plot_end(struct plot *plot);
-/* The path of a file in the temporary folder; the error of one that cannot be written. */
-void plot_file(const struct plot *plot, const char *name, char path[PATH_MAX + 32]);
-enum status plot_file_failed(const char *path);
+/* A new file in the temporary folder, by whose name the script finds it. Errors: STATUS_FAILED. */
+enum status plot_file_open(const struct plot *plot, const char *name, FILE **file);
+enum status plot_file_close(const struct plot *plot, FILE *file);
 
-/* Variables of the script: a text; an array of texts, index from 0. */
+/* Variables of the script: a text; a path, whatever folder gnuplot works in; an array of texts, index from 0. */
 void plot_variable(FILE *file, const char *name, const char *text);
+void plot_path_variable(FILE *file, const char *name, const char *path);
 void plot_array(FILE *file, const char *name, int count);
 void plot_array_write(FILE *file, const char *name, int index, const char *text);
 
 /* Draw with plots_directory/script, then put the picture in its place; or both. */
 enum status plot_run(struct plot *plot, const char *plots_directory, const char *script);
 enum status plot_place(const struct plot *plot);
+bool plot_is_empty(const struct plot *plot); /* it has drawn nothing */
 enum status plot_draw(struct plot *plot, const char *plots_directory, const char *script);
 
 /* plot_run in steps, for several at a time: prepare, start, poll until *ended. */

@@ -7,7 +7,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "data/folder.h"
 #include "show/plot.h"
 #include "show/plot_points.h"
 #include "measure/results.h"
@@ -83,6 +82,21 @@ static void drawings_make(struct folder *folder)
             else if (!drawn)
                 *drawing->path = '\0';
         }
+}
+
+/* What the page tells of drawings that are not there, for who does not read it. */
+static enum status drawings_check(const struct folder *folder)
+{
+    const char *fault = NULL;
+    int undrawn = 0;
+    for (int k = 0; k < folder->drawing_count; k++)
+        if (*folder->drawings[k].fault) {
+            fault = fault ? fault : folder->drawings[k].fault;
+            undrawn++;
+        }
+    return undrawn == 0 ? STATUS_OK
+                        : status_set(STATUS_FAILED, "%s: %d of %d drawings could not be drawn; the first: %s",
+                                     folder->directory, undrawn, folder->drawing_count, fault);
 }
 
 static enum status folder_read(const char *directory, struct folder *folder)
@@ -353,10 +367,7 @@ enum status report_write(const char *directory)
         long bytes;
     } pages[] = {{"report.html", PAGE_HTML, 0}, {"report.md", PAGE_MARKDOWN, REPORT_MARKDOWN_BYTES}};
     struct folder folder = {0};
-    int lock;
-    enum status status = folder_take(directory, &lock);
-    if (status == STATUS_OK)
-        status = folder_read(directory, &folder);
+    enum status status = folder_read(directory, &folder);
     for (size_t k = 0; k < sizeof pages / sizeof *pages && status == STATUS_OK; k++) {
         char path[4096];
         struct text_file file;
@@ -367,7 +378,8 @@ enum status report_write(const char *directory)
             status = text_file_close(&file, folder_show(&page, &folder));
         }
     }
+    if (status == STATUS_OK)
+        status = drawings_check(&folder);
     folder_free(&folder);
-    folder_leave(lock);
     return status;
 }

@@ -123,7 +123,7 @@ static void links_show(struct page *page, const struct picture *list, int count)
 static enum status scene_show(struct page *page, const char *directory, struct picture *list, int list_count,
                               double share, struct pictures_count *count)
 {
-    char beside[4200], small[PATH_MAX + 32];
+    char beside[4200], small[PATH_MAX];
     struct thumbnails thumbnails;
     double pixels;
     const int shown = 1 + thumbnails_choose(share, list_count - 1, &pixels);

@@ -14,7 +14,7 @@ void thumbnails_begin(struct thumbnails *thumbnails, const char *beside)
     static const char *const arrays[] = {"sources",       "outputs",     "source_width",
                                          "source_height", "small_width", "small_height"};
     *thumbnails = (struct thumbnails){.count = 0};
-    if (plot_begin(&thumbnails->plot, beside) != STATUS_OK) {
+    if (plot_begin(&thumbnails->plot, beside, false) != STATUS_OK) {
         thumbnails_end(thumbnails);
         return;
     }
@@ -34,7 +34,7 @@ static bool size_read(const char *path, int size[2])
     static const char head[] = "\x89PNG\r\n\x1a\n";
     unsigned char bytes[24];
     struct stat info;
-    const int file = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    const int file = place_read(path, O_NOFOLLOW | O_NONBLOCK);
     if (file < 0)
         return false;
     const bool read_whole =
@@ -49,24 +49,19 @@ static bool size_read(const char *path, int size[2])
     return size[0] > 0 && size[1] > 0 && size[0] <= SIDE_MOST && size[1] <= SIDE_MOST;
 }
 
-static void output_path(const struct thumbnails *thumbnails, int number, char path[PATH_MAX + 32])
-{
-    char name[32];
-    snprintf(name, sizeof name, "%d.jpg", number);
-    plot_file(&thumbnails->plot, name, path);
-}
-
 int thumbnails_add(struct thumbnails *thumbnails, const char *path, double pixels)
 {
     FILE *preamble = thumbnails->plot.preamble;
     int size[2], number = thumbnails->count;
-    char output[PATH_MAX + 32], source[PATH_MAX];
+    char output[32], source[NAME_MAX + 4];
+    const char *slash = strrchr(path, '/');
     if (!preamble || number == THUMBNAILS_MOST || !size_read(path, size)
-        || snprintf(source, sizeof source, "%s%s", *path == '/' ? "" : "./", path) >= (int)sizeof source)
+        || snprintf(source, sizeof source, "../%s", slash ? slash + 1 : path) >= (int)sizeof source)
         return -1;
     const double scale = fmin(1, sqrt(pixels / size[0] / size[1]));
     const int width = (int)fmax(1, size[0] * scale), height = (int)fmax(1, size[1] * scale);
-    output_path(thumbnails, number, output);
+    snprintf(output, sizeof output, "%d.jpg", number);
+    temporary_inside(thumbnails->plot.directory, output);
     plot_array_write(preamble, "sources", number, source);
     plot_array_write(preamble, "outputs", number, output);
     fprintf(preamble, "source_width[%d] = %d; source_height[%d] = %d\n", number + 1, size[0], number + 1, size[1]);
@@ -82,11 +77,15 @@ void thumbnails_draw(struct thumbnails *thumbnails, const char *plots_directory)
     (void)plot_run(&thumbnails->plot, plots_directory, "thumbnails.gp"); /* those before a faulty one are there */
 }
 
-bool thumbnails_path(const struct thumbnails *thumbnails, int number, char path[PATH_MAX + 32])
+bool thumbnails_path(const struct thumbnails *thumbnails, int number, char path[PATH_MAX])
 {
-    if (number < 0 || !*thumbnails->plot.directory)
-        return false;
-    output_path(thumbnails, number, path);
+    const struct plot *plot = &thumbnails->plot;
+    const char *slash = strrchr(plot->path, '/');
+    char name[32];
     struct stat info;
-    return stat(path, &info) == 0 && info.st_size > 0;
+    snprintf(name, sizeof name, "%d.jpg", number);
+    if (number < 0 || plot->directory < 0 || fstatat(plot->directory, name, &info, 0) != 0 || info.st_size == 0)
+        return false;
+    const int used = slash ? (int)(slash + 1 - plot->path) : 0;
+    return snprintf(path, PATH_MAX, "%.*s%s/%s", used, plot->path, plot->made, name) < PATH_MAX;
 }

@@ -373,7 +373,8 @@ enum status batch_close(struct batch *batch, enum status status)
 {
     if (!batch->results)
         return status;
-    results_folder_close(batch->results);
+    enum status closed = results_folder_close(batch->results);
+    status = status == STATUS_OK ? closed : status;
     batch->results = NULL;
     if (status == STATUS_OK && batch->failed)
         status = status_set(STATUS_FAILED, "at least one algorithm failed; the table and %s/measurements.csv say why",

@@ -314,7 +314,8 @@ static void pictures_are_the_same_in_every_locale(void **state)
     char path[4096];
     assert_true(plain && paths);
     before = before ? strdup(before) : NULL;
-    support_write("awk", "#!/bin/sh\necho \"$LC_ALL\" >> locales\nPATH=${PATH#*:}\nexec awk \"$@\"\n");
+    assert_int_equal(setenv("LOCALES", path_of("locales"), 1), 0);
+    support_write("awk", "#!/bin/sh\necho \"$LC_ALL\" >> \"$LOCALES\"\nPATH=${PATH#*:}\nexec awk \"$@\"\n");
     assert_int_equal(chmod("awk", 0755), 0);
     snprintf(path, sizeof path, "%s:%s", folder, paths);
     setenv("PATH", path, 1);

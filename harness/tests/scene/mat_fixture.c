@@ -12,7 +12,7 @@
 char directory[128];
 char path[160];
 
-int directory_make(void **state)
+int fixture_make(void **state)
 {
     (void)state;
     const char *parent = getenv("TMPDIR");

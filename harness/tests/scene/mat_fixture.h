@@ -22,7 +22,7 @@ struct mat_values {
 };
 
 /* Fixtures. */
-int directory_make(void **state);
+int fixture_make(void **state);
 int directory_remove(void **state);
 /* Nothing but . and .. and, perhaps, the one file. */
 void assert_no_temporary_files(void);

@@ -423,5 +423,5 @@ int main(void)
         cmocka_unit_test(recorded_files_are_read),
         cmocka_unit_test(unambiguous_shapes_are_taken),
     };
-    return cmocka_run_group_tests(tests, directory_make, directory_remove);
+    return cmocka_run_group_tests(tests, fixture_make, directory_remove);
 }

@@ -403,5 +403,5 @@ int main(void)
         cmocka_unit_test(damaged_files_do_no_harm),       cmocka_unit_test(wrong_images_are_refused),
         cmocka_unit_test(unwritable_places_are_refused),  cmocka_unit_test(full_disk_is_noticed),
     };
-    return cmocka_run_group_tests(tests, directory_make, directory_remove);
+    return cmocka_run_group_tests(tests, fixture_make, directory_remove);
 }
