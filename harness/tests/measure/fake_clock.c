@@ -1,0 +1,100 @@
+#include "tests/measure/fake_clock.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "measure/scalar_loop.h"
+#include "tests/assertions.h"
+
+struct fake_clock fake;
+
+/* What the linker calls in their place, and what it leaves us as theirs. */
+int __real_clock_gettime(clockid_t id, struct timespec *now);
+int __wrap_clock_gettime(clockid_t id, struct timespec *now);
+time_t __real_time(time_t *now);
+time_t __wrap_time(time_t *now);
+int __real_getrusage(int who, struct rusage *usage);
+int __wrap_getrusage(int who, struct rusage *usage);
+FILE *__real_fopen64(const char *path, const char *mode);
+FILE *__wrap_fopen64(const char *path, const char *mode);
+ssize_t __real_pread64(int file, void *bytes, size_t size, off_t offset);
+ssize_t __wrap_pread64(int file, void *bytes, size_t size, off_t offset);
+double __real_scalar_loop_seconds(const struct scalar_loop *loop);
+double __wrap_scalar_loop_seconds(const struct scalar_loop *loop);
+
+static const long long second = 1000000000;
+
+void fake_clock_begin(void)
+{
+    fake = (struct fake_clock){.on = true, .now = 1000 * second};
+}
+
+void fake_clock_pass(double seconds)
+{
+    fake.now += llround(1e9 * seconds);
+}
+
+int __wrap_clock_gettime(clockid_t id, struct timespec *now)
+{
+    if (!fake.on)
+        return __real_clock_gettime(id, now);
+    if (id != CLOCK_MONOTONIC && id != CLOCK_THREAD_CPUTIME_ID)
+        fail_msg("clock %d, which may be set, is read for a time", (int)id);
+    const long long at = id == CLOCK_MONOTONIC ? fake.now : fake.now - fake.waited;
+    *now = (struct timespec){at / second, at % second};
+    fake.now += id == CLOCK_MONOTONIC ? fake.tick : 0;
+    return 0;
+}
+
+/* Of dates alone: now a year ahead, then a year behind. */
+time_t __wrap_time(time_t *now)
+{
+    static int readings;
+    const time_t at = __real_time(now) + (fake.on ? (readings++ % 2 ? -1 : 1) * 31557600 : 0);
+    if (now)
+        *now = at;
+    return at;
+}
+
+int __wrap_getrusage(int who, struct rusage *usage)
+{
+    if (!fake.on)
+        return __real_getrusage(who, usage);
+    *usage = (struct rusage){.ru_stime = {fake.system / second, fake.system % second / 1000}};
+    return 0;
+}
+
+/* Linux's accounts of the threads: the first one has all the waiting. */
+FILE *__wrap_fopen64(const char *path, const char *mode)
+{
+    static char first[64], text[80];
+    snprintf(first, sizeof first, "/proc/self/task/%d/schedstat", (int)getpid());
+    if (!fake.on || strcmp(path, first) != 0)
+        return __real_fopen64(path, mode);
+    snprintf(text, sizeof text, "%lld %lld 7\n", fake.now, fake.waited);
+    return fmemopen(text, strlen(text), "r");
+}
+
+ssize_t __wrap_pread64(int file, void *bytes, size_t size, off_t offset)
+{
+    if (!fake.on)
+        return __real_pread64(file, bytes, size, offset);
+    return snprintf(bytes, size, "%lld %lld 7\n", fake.now, fake.waited);
+}
+
+/* The loop reads the clock before and after; between, what was told has passed. */
+double __wrap_scalar_loop_seconds(const struct scalar_loop *loop)
+{
+    if (!fake.on)
+        return __real_scalar_loop_seconds(loop);
+    const long long tick = fake.tick;
+    fake.tick = llround(1e9 * fake.control[fake.controls++]);
+    const double seconds = __real_scalar_loop_seconds(loop);
+    fake.now -= fake.tick; /* that of the second reading */
+    fake.tick = tick;
+    return seconds;
+}
