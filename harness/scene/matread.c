@@ -109,7 +109,7 @@ static const struct {
 };
 
 static const char *const class_names[] = {
-    [MAT_C_EMPTY] = "empty or of no MATLAB class (a plain HDF5 text or number)",
+    [MAT_C_EMPTY] = "empty, or its attribute MATLAB_class is no text of fixed length (h5py: numpy.bytes_('double'))",
     [MAT_C_CELL] = "a cell array",
     [MAT_C_STRUCT] = "a struct",
     [MAT_C_OBJECT] = "an object",
@@ -234,7 +234,7 @@ static enum status send_variable(const char *path, const struct wanted *wanted, 
                                  size_t file_size, int descriptor)
 {
     const char *name = wanted[index].name;
-    bool is_text = matvar->class_type == MAT_C_CHAR;
+    bool is_text = matvar->class_type == MAT_C_CHAR || matvar->class_type == MAT_C_UINT16; /* its codes */
     bool is_number = matvar->class_type >= MAT_C_DOUBLE && matvar->class_type <= MAT_C_UINT64;
     if (wanted[index].kind == KIND_TEXT ? !is_text : !is_number) {
         bool is_known = (size_t)matvar->class_type < sizeof class_names / sizeof *class_names;
@@ -305,7 +305,7 @@ static enum status send_variables(const char *path, const struct wanted *wanted,
     }
     bool sent[WANTED_MAX] = {false};
     char inside[64] = ""; /* the first struct, in which the variables may be */
-    enum status status = STATUS_OK;
+    enum status status = hdf5_prepare(path, wanted, count);
     matvar_t *matvar;
     while (status == STATUS_OK && (matvar = Mat_VarReadNextInfo(mat))) {
         for (int i = 0; i < count && status == STATUS_OK; i++) {

@@ -41,6 +41,11 @@ size_t variable_count(const struct variable *variable);
 bool variable_is_vector(const struct variable *variable); /* a row or a column */
 bool variable_has_shape(const struct variable *variable, size_t rows, size_t columns, size_t pages);
 
+/* Let HDF5 read names of MATLAB's classes as h5py writes them; those of no fixed length are empty, so that the variable
+   is one of no class and is not left out with all that follow. Errors: STATUS_INVALID for complex numbers whose parts
+   are not `real` and `imag`, of which libmatio would read nothing, silently. */
+enum status hdf5_prepare(const char *path, const struct wanted *wanted, int count);
+
 /* Keep libmatio from printing: what matters is in the status message. */
 void matio_silence(void);
 

@@ -48,7 +48,7 @@ struct cell cell_place(double place, double step)
 {
     const double digits = place == 0 ? 0 : ceil(log10(fabs(place) / step)) + 2;
     struct cell cell;
-    snprintf(cell.text, sizeof cell.text, "%.*g", (int)fmin(fmax(digits, 6), 15), place);
+    snprintf(cell.text, sizeof cell.text, "%.*g", (int)fmin(fmax(digits, 6), 15), place == 0 ? 0 : place); /* no -0 */
     return cell;
 }
 

@@ -175,10 +175,13 @@ static void track_print(const struct acquisition *a)
                                 : "no uniform straight track with receivers at constant offsets: back projection only");
     if (v->x == 0 && v->y == 0 && v->z == 0)
         printf("velocity     0: stop-and-hop\n");
-    else
-        printf("velocity     (%g, %g, %g) m/s\n", v->x, v->y, v->z);
-    printf("receivers    %g to %g m ahead of the transmitter (first ping)\n", condition_offset(a, 0),
-           condition_offset(a, 2));
+    else {
+        printf("velocity     ");
+        vector_print(v, 1);
+        printf(" m/s\n");
+    }
+    printf("receivers    %s to %s m ahead of the transmitter (first ping)\n",
+           cell_place(condition_offset(a, 0), wavelength).text, cell_place(condition_offset(a, 2), wavelength).text);
 }
 
 static void beam_print(const struct acquisition *a)

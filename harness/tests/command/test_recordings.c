@@ -151,6 +151,25 @@ static void far_recordings_are_told(void **state)
     outcome_free(&outcome);
 }
 
+/* Nothing of a file is -0: here the grid about one ping just before the origin begins there. */
+static void zeros_have_no_sign(void **state)
+{
+    (void)state;
+    static const char *const simulate[ARGUMENTS_MAX] = {"simulate", "one.cfg", "-o", "one.mat"};
+    static const char *const info[ARGUMENTS_MAX] = {"info", "one.mat"};
+    char grid[200];
+    text_write("one.cfg", "base = {\n@include \"study/quick.cfg\"\n};\narray = { receivers = 1; first_offset = -0.0; "
+                          "tx_length = 0.1; rx_length = 0.1; };\n"
+                          "track = { speed = 2.5; pri = 0.064; pings = 1; x_first = -1e-4; };\n");
+    program_good(simulate);
+    char *told = program_output(info);
+    grid_proposed(told, grid);
+    assert_int_equal(strncmp(grid, "--grid=0:", 9), 0);
+    assert_null(strstr(told, "-0,"));
+    assert_null(strstr(told, "-0 "));
+    free(told);
+}
+
 /* What `info` proposes is imaged, drawn, shown again and told. */
 static void files_are_told_and_shown(void **state)
 {
@@ -373,6 +392,7 @@ int main(void)
         cmocka_unit_test(file_measures_as_the_scene_does),
         cmocka_unit_test(echoes_alone_are_a_scene),
         cmocka_unit_test(far_recordings_are_told),
+        cmocka_unit_test(zeros_have_no_sign),
         cmocka_unit_test(files_are_told_and_shown),
         cmocka_unit_test(noise_is_told),
         cmocka_unit_test(content_tells_scenes_apart),
