@@ -1,0 +1,59 @@
+#!/bin/sh
+# The script ./sasbench with a meson and a ninja that only say what they were asked: what it builds, tells and counts.
+# Usage: front_door.sh SOURCE_ROOT. Prints what is not as expected; exit status 1 if anything is.
+set -eu
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+mkdir "$folder/bin" "$folder/root"
+cp "$1/sasbench" "$folder/root"
+cat >"$folder/bin/meson" <<'END'
+#!/bin/sh
+case $1 in
+    setup) mkdir -p "$2/harness" "$2/meson-logs" && printf '#!/bin/sh\necho "the program: $*"\n' >"$2/harness/sasbench"
+        chmod +x "$2/harness/sasbench" ;;
+    test) cp "${0%/bin/*}/log" "$3/meson-logs/testlog.json"; exit 1 ;;
+esac
+END
+cat >"$folder/bin/ninja" <<'END'
+#!/bin/sh
+shift 2
+echo "ninja: Entering directory"
+echo "[0/2] Generating harness/commit.h with a custom command"
+echo "[1/2] building ${*:-all}"
+echo "a warning"
+[ ! -e "${0%/bin/*}/broken" ]
+END
+chmod +x "$folder/bin/meson" "$folder/bin/ninja"
+cat >"$folder/log" <<'END'
+{"name": "a", "result": "OK", "returncode": 0}
+{"name": "b", "result": "EXPECTEDFAIL", "returncode": 1}
+{"name": "c", "stdout": "\"result\": \"OK\"", "result": "FAIL", "returncode": 1}
+{"name": "d", "result": "FAIL", "returncode": -11}
+{"name": "e", "result": "TIMEOUT", "returncode": -15}
+{"name": "f", "result": "SKIP", "returncode": 77}
+{"name": "g", "result": "INTERRUPT", "returncode": -15}
+{"name": "h", "result": "FAIL", "returncode": -9}
+END
+
+# Texts that the script says, given the arguments in $1, on both streams; each further one is a line of its own.
+says()
+{
+    arguments=$1
+    shift
+    # shellcheck disable=SC2086
+    (PATH="$folder/bin:$PATH" EXTRA_PACKAGES='' "$folder/root/sasbench" $arguments 2>&1 || echo "status $?") >"$folder/said"
+    printf '%s\n' "$@" >"$folder/expected"
+    diff "$folder/expected" "$folder/said" || { echo "front_door: ./sasbench $arguments"; failed=1; }
+}
+
+failed=0
+building="sasbench: building in $folder/root/build (once, some minutes)"
+says list "$building" '[1/2] building harness/sasbench' 'a warning' 'the program: list'
+says test '[1/2] building harness/sasbench' 'a warning' '[1/2] building all' 'a warning' \
+    '2 passed, 3 failed, 1 skipped, 2 interrupted' 'status 1'
+sed -i '/INTERRUPT\|-9/d' "$folder/log"
+says test '[1/2] building harness/sasbench' 'a warning' '[1/2] building all' 'a warning' \
+    '2 passed, 3 failed, 1 skipped' 'status 1'
+touch "$folder/broken"
+says list '[1/2] building harness/sasbench' 'a warning' 'sasbench: the build failed' 'status 1'
+exit "$failed"
