@@ -10,6 +10,7 @@
 #include "common/fft_length.h"
 #include "common/isa.h"
 #include "common/memory.h"
+#include "common/progress.h"
 #include "range_migration/engine.h"
 
 const char *const rma_spacing_names[] = {"uniform", "inverse", NULL};
@@ -255,8 +256,10 @@ static void migrate(const struct rma *rma, const struct rma_swath *swath, struct
 #pragma omp parallel num_threads(rma->threads) reduction(+ : seconds[:RMA_STAGES])
     {
 #pragma omp for schedule(dynamic)
-        for (int turn = 0; turn < swath->wavenumbers; turn += rma_turns(rma))
+        for (int turn = 0; turn < swath->wavenumbers; turn += rma_turns(rma)) {
             column(rma, swath, omp_get_thread_num(), turn, seconds);
+            progress_step();
+        }
     }
     stages_share(stages, RMA_STAGES, stage_names, seconds);
 }
@@ -271,6 +274,8 @@ enum status rma_execute(void *plan, const struct echoes *echoes, struct image *i
     for (const struct rma_swath *swath = rma->swaths; swath < rma->swaths + rma->swath_count; swath++) {
         transform(rma)->spread(rma, swath);
         stages_end(stages, "spread");
+        const double done = (double)(swath - rma->swaths) / rma->swath_count;
+        progress_part(done, done + 1.0 / rma->swath_count, swath->wavenumbers / rma_turns(rma));
         migrate(rma, swath, stages);
         for (int k = 0; k < swath->patch_count; k++)
             transform(rma)->inverse(rma, swath, &swath->patches[k], image->pixels[swath->patches[k].index]);

@@ -10,6 +10,7 @@
 
 #include "common/fft_length.h"
 #include "common/isa.h"
+#include "common/progress.h"
 #include "wavenumber/engine.h"
 
 const char *const wk_taps_names[] = {"4", "6", "8", "12", "16", NULL};
@@ -127,9 +128,12 @@ enum status wk_plan(const struct problem *problem, const struct wk_method *metho
 static void focus_lines(const struct wk *wk, struct stages *stages)
 {
     double seconds[WK_STAGES] = {0}, sum = 0;
+    progress_part(0, 1, wk->lines / WK_TILE);
 #pragma omp parallel for schedule(static) num_threads(wk->threads) reduction(+ : seconds[:WK_STAGES])
-    for (int first = 0; first < wk->lines; first += WK_TILE)
+    for (int first = 0; first < wk->lines; first += WK_TILE) {
         wk->line_loop(wk, omp_get_thread_num(), first, seconds);
+        progress_step();
+    }
     /* The threads' time in each stage, as shares of the time that passed. */
     for (int k = 0; k < WK_STAGES; k++)
         sum += seconds[k];

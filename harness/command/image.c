@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "data/echo_data.h"
+#include "data/progress_line.h"
 #include "measure/imaging.h"
 #include "measure/outcome.h"
 #include "scene/matfile.h"
@@ -58,11 +59,14 @@ static enum status form_image(const struct spec *spec, const struct scene *scene
     problem.judged_count = 0; /* all of it is shown */
     struct imaging imaging;
     struct echoes simulated = {0}, recorded = {&scene->acquisition, PRECISION_DOUBLE, scene->recorded, 0};
+    progress_line(false, "%s: plan of %s", scene->name, spec->algorithm->name);
     enum status status = imaging_open(spec, &problem, &imaging);
     if (status != STATUS_OK)
         return status;
+    progress_line(false, "%s: echoes", scene->name);
     if (!scene->recorded)
         status = scene_simulate(scene, &simulated);
+    progress_line(false, "%s: image by %s", scene->name, spec->algorithm->name);
     if (status == STATUS_OK)
         status = execute(spec, &imaging, scene->recorded ? &recorded : &simulated, image, seconds);
     echoes_free(&simulated);
@@ -144,6 +148,7 @@ enum status command_image(const struct task *task)
         return status;
     warn(&task->specs[0], &scene);
     status = form_image(&task->specs[0], &scene, &image, &seconds);
+    progress_line_clear();
     if (status == STATUS_OK) {
         status = image_put(task, &scene, &image, range_db);
         if (status == STATUS_OK) {

@@ -13,6 +13,7 @@
 #include "measure/outcome.h"
 #include "show/table.h"
 #include "data/paths.h"
+#include "data/progress_line.h"
 #include "measure/timing.h"
 
 /* 8 rounds decide between identical programs on a quiet machine. */
@@ -195,12 +196,10 @@ static enum status contest_round(struct contest *contest, int round, const struc
         struct unit *unit = &contest->units[k];
         if (unit->skipped || unit->decided)
             continue;
-        if (isatty(STDERR_FILENO))
-            fprintf(stderr, "\r\033[Kround %d: %s %s\r", round + 1, unit->scene, unit->spec);
+        progress_line(false, "round %d: %s %s", round + 1, unit->scene, unit->spec);
         status = unit_round(contest, unit, round);
     }
-    if (isatty(STDERR_FILENO))
-        fprintf(stderr, "\r\033[K");
+    progress_line_clear();
     for (int k = 0; k < 2; k++)
         ab_process_stop(&contest->processes[k]);
     return status;

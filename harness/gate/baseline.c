@@ -5,11 +5,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "data/echo_data.h"
 #include "data/folder.h"
 #include "data/paths.h"
+#include "data/progress_line.h"
 
 static const char *const scene_list[] = {"gate/points", "gate/field", "gate/blocks", "gate/squint"};
 enum { SCENES = sizeof scene_list / sizeof *scene_list };
@@ -168,13 +168,11 @@ enum status baseline_write(const char *path)
     if (status == STATUS_OK)
         status = folder_take_around(path, &lock);
     for (int k = 0; k < SCENES && status == STATUS_OK; k++) {
-        if (isatty(STDERR_FILENO))
-            fprintf(stderr, "\r\033[K[%d/%d] %s\r", k + 1, SCENES, scene_list[k]);
+        progress_line(false, "[%d/%d] %s", k + 1, SCENES, scene_list[k]);
         status = measure_scene(scene_list[k], specs, count, &scenes[k], rows, reasons, &row_count);
         hashes[k] = (struct scene_hash){scenes[k].name, scenes[k].hash};
     }
-    if (isatty(STDERR_FILENO))
-        fprintf(stderr, "\r\033[K");
+    progress_line_clear();
     if (status == STATUS_OK)
         status = measurements_write(path, "baseline: quality and work, no seconds; made by ./sasbench baseline", hashes,
                                     SCENES, rows, row_count);

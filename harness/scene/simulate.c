@@ -11,6 +11,7 @@
 #include "common/delay.h"
 #include "common/fft_length.h"
 #include "common/memory.h"
+#include "common/progress.h"
 #include "data/echo_data.h"
 #include "data/random.h"
 
@@ -306,6 +307,7 @@ enum status scene_simulate(const struct scene *scene, struct echoes *echoes)
     if (status == STATUS_OK) {
         double complex *samples = (double complex *)echoes->samples;
         long long pairs = (long long)a->pings * a->receivers, unfit = pairs;
+        progress_part(0, 1, (int)pairs);
 #pragma omp parallel for schedule(dynamic, 8) reduction(min : unfit)
         for (long long k = 0; k < pairs; k++) {
             simulate_pair(scene, &replica, (int)(k / a->receivers), (int)(k % a->receivers),
@@ -313,6 +315,7 @@ enum status scene_simulate(const struct scene *scene, struct echoes *echoes)
                           samples + (size_t)k * (size_t)a->samples);
             if (k < unfit && !is_finite(samples + (size_t)k * (size_t)a->samples, a->samples))
                 unfit = k;
+            progress_step();
         }
         if (unfit < pairs) {
             echoes_free(echoes);

@@ -8,6 +8,7 @@
 
 #include "data/folder.h"
 #include "data/paths.h"
+#include "data/progress_line.h"
 #include "measure/provenance.h"
 #include "show/plot.h"
 #include "stability/table.h"
@@ -212,11 +213,9 @@ enum status stability_run(const struct stability_request *request, const char *e
     if (status == STATUS_OK)
         stability_table_head(run.spec_count, run.specs);
     for (int k = 0; k < run.scene_count && status == STATUS_OK; k++) {
-        if (isatty(STDERR_FILENO))
-            fprintf(stderr, "[%d/%d] %s\r", k + 1, run.scene_count, run.scenes[k]);
+        progress_line(false, "[%d/%d] %s", k + 1, run.scene_count, run.scenes[k]);
         status = scene_judge(&run, k);
-        if (isatty(STDERR_FILENO))
-            fprintf(stderr, "\033[K");
+        progress_line_clear();
         if (status == STATUS_OK)
             stability_table_line(run.spec_count, run.rows + k * run.spec_count);
     }

@@ -6,10 +6,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "data/echo_data.h"
 #include "data/interruption.h"
+#include "data/progress_line.h"
 #include "show/pictures.h"
 #include "measure/outcome.h"
 #include "show/table.h"
@@ -189,24 +189,11 @@ static void to_go_format(const struct batch *batch, char *text, size_t size)
                  left < 90 ? left : left / 60);
 }
 
-/* On a terminal a line that is written over; elsewhere a line a minute. */
-static void progress(struct batch *batch, const char *scene, const char *what)
+static void progress(const struct batch *batch, const char *scene, const char *what)
 {
-    const bool terminal = isatty(STDERR_FILENO);
-    const double now = seconds_now();
     char left[60];
-    if (!terminal && now - batch->told < 60)
-        return;
     to_go_format(batch, left, sizeof left);
-    batch->told = now;
-    fprintf(stderr, terminal ? "\r\033[K[%d/%d%s] %s %s\r" : "[%d/%d%s] %s %s\n", batch->done + 1, batch->rows, left,
-            scene, what);
-}
-
-static void progress_clear(void)
-{
-    if (isatty(STDERR_FILENO))
-        fprintf(stderr, "\r\033[K");
+    progress_line(true, "[%d/%d%s] %s %s", batch->done + 1, batch->rows, left, scene, what);
 }
 
 /* All rounds but the last, which measure() adds, of the settings from `first` on that are to be measured. */
@@ -310,7 +297,7 @@ enum status batch_scene(struct batch *batch, const struct scene *scene, int spec
     if (status == STATUS_OK && visited) {
         progress(batch, scene->name, "echoes and exact image");
         if (visit_open(batch, scene, spec_count, specs, &visit) != STATUS_OK) {
-            progress_clear();
+            progress_line_clear();
             return fail_scene(batch, scene, spec_count, specs);
         }
     }
@@ -328,7 +315,7 @@ enum status batch_scene(struct batch *batch, const struct scene *scene, int spec
             status = measure(batch, &visit, k);
         else if (visited && batch->details)
             redraw(&visit, k, row);
-        progress_clear();
+        progress_line_clear();
         if (row && status == STATUS_OK)
             table_row(stdout, row);
         fflush(stdout);
@@ -357,7 +344,7 @@ enum status batch_open(const char *directory, int rows, bool details, struct bat
                             .rows = rows};
     provenance_fill(&provenance, batch->threads);
     provenance_line(batch->footer);
-    batch->begin = batch->told = seconds_now();
+    batch->begin = seconds_now();
     enum status status = results_folder_open(directory, &provenance, &batch->results);
     if (status == STATUS_OK) {
         supervisor_keeps(directory);

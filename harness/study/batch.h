@@ -20,7 +20,7 @@ struct batch {
     int undrawn;        /* pictures that could not be drawn */
     /* For the progress line: */
     int done, rows, measured; /* rows behind, rows in all, rows measured now */
-    double begin, told;       /* monotonic clock, s: at the start, at the last line */
+    double begin;             /* monotonic clock, s: at the start */
     struct spent spent;       /* where the time went */
     double drawn_s;
 };

@@ -6,6 +6,7 @@
 
 #include "backprojection/budget.h"
 #include "backprojection/factorised/factorised.h"
+#include "common/progress.h"
 
 /* re, im of some values times exp(-j angle) from tables of cosines and sines. */
 #define TURN(real)                                                                                                     \
@@ -251,6 +252,7 @@ static void subaperture_form(const struct forming *forming, int subaperture)
                 line_of_pixels(plan, subaperture, k, n);
         }
     stages_end(forming->stages, "pixels");
+    progress_step();
 }
 
 void factorised_execute(struct factorised *plan, const struct echoes *echoes, struct image *image,
@@ -263,6 +265,7 @@ void factorised_execute(struct factorised *plan, const struct echoes *echoes, st
         const struct grid *grid = &tree->problem.patches[k];
         memset(plan->sums[k], 0, 2 * (size_t)grid->x_count * (size_t)grid->r_count * size);
     }
+    progress_part(0, 1, tree->first[tree->settings.stages]);
     for (int n = tree->first[tree->settings.stages - 1]; n < tree->first[tree->settings.stages]; n++)
         subaperture_form(&forming, n);
     for (int k = 0; k < tree->problem.patch_count; k++)

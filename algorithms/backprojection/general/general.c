@@ -12,6 +12,7 @@
 #include "backprojection/budget.h"
 #include "backprojection/general/lines.h"
 #include "common/memory.h"
+#include "common/progress.h"
 
 enum {
     BATCH_BYTES = 1 << 20, /* rows of one batch: they stay in the second-level cache while all lines read them */
@@ -263,10 +264,16 @@ static void general_execute(struct bp *bp, const struct echoes *echoes, struct i
                                (char *)general->interleaved + (size_t)omp_get_thread_num() * scratch,
                                (char *)general->rows + (size_t)n * general->layout.record * size);
         stages_end(stages, "compress");
+        const double share = (double)(next - begin) / (double)pairs / problem->patch_count;
         for (int k = 0; k < problem->patch_count; k++) {
+            const int numbers = grid_line_count(&problem->patches[k], general->along_x[k]);
+            const double done = (double)begin / (double)pairs + share * k;
+            progress_part(done, done + share, numbers);
 #pragma omp parallel for schedule(dynamic)
-            for (int n = 0; n < grid_line_count(&problem->patches[k], general->along_x[k]); n++)
+            for (int n = 0; n < numbers; n++) {
                 sum_line(&lines, k, n, first, count);
+                progress_step();
+            }
         }
         stages_end(stages, "focus");
     }

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "backprojection/invariant/plan.h"
+#include "common/progress.h"
 
 enum { ROWS_SUMMED = 4 /* image rows of one task */ };
 
@@ -134,6 +135,7 @@ static void sum_rows(const struct bp *bp, int k, int first, int count)
                                    .im = re + half * size,
                                    .stride = in->strides[k]};
         in->row(&row);
+        progress_step();
     }
 }
 
@@ -175,8 +177,13 @@ static void invariant_execute(struct bp *bp, const struct echoes *echoes, struct
             in->slab.step_first = pass * in->slab.step_count;
             fill_slab(bp, echoes, first, count);
             stages_end(stages, "compress");
-            for (int k = 0; k < in->patch_count; k++)
+            const double passes = ceil((double)receivers / in->receivers) * in->passes,
+                         done = first / in->receivers * in->passes + pass;
+            for (int k = 0; k < in->patch_count; k++) {
+                const double sums = passes * in->patch_count, sum = done * in->patch_count + k;
+                progress_part(sum / sums, (sum + 1) / sums, bp->problem.patches[k].r_count);
                 sum_rows(bp, k, first, count);
+            }
             stages_end(stages, "focus");
         }
     }
