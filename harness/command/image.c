@@ -1,10 +1,12 @@
 /* The commands `simulate` and `image`. */
+#include <inttypes.h>
 #include <stdio.h>
 
 #include "data/echo_data.h"
 #include "data/progress_line.h"
 #include "measure/imaging.h"
 #include "measure/outcome.h"
+#include "measure/provenance.h"
 #include "scene/matfile.h"
 #include "scene/simulate.h"
 #include "show/plot.h"
@@ -53,7 +55,8 @@ static enum status execute(const struct spec *spec, struct imaging *imaging, con
 }
 
 /* The plan comes first: what cannot be imaged need not be simulated. */
-static enum status form_image(const struct spec *spec, const struct scene *scene, struct image *image, double *seconds)
+static enum status form_image(const struct spec *spec, const struct scene *scene, struct image *image,
+                              struct image_origin *origin, double *seconds)
 {
     struct problem problem = scene_problem(scene, spec->precision);
     problem.judged_count = 0; /* all of it is shown */
@@ -63,6 +66,8 @@ static enum status form_image(const struct spec *spec, const struct scene *scene
     enum status status = imaging_open(spec, &problem, &imaging);
     if (status != STATUS_OK)
         return status;
+    const struct work work = imaging.algorithm->work(imaging.plan);
+    snprintf(origin->engine, sizeof origin->engine, "%s", work.engine);
     progress_line(false, "%s: echoes", scene->name);
     if (!scene->recorded)
         status = scene_simulate(scene, &simulated);
@@ -105,16 +110,30 @@ static enum status scene_open(const struct task *task, struct scene *scene)
     return status;
 }
 
+/* What is known of an image but for its engine. */
+static void origin_fill(const struct task *task, const struct scene *scene, struct image_origin *origin)
+{
+    const struct spec *spec = &task->specs[0];
+    struct provenance provenance;
+    provenance_fill(&provenance, 1);
+    *origin = (struct image_origin){.fc = scene->acquisition.fc, .sound_speed = scene->acquisition.sound_speed};
+    snprintf(origin->algorithm, sizeof origin->algorithm, "%s", spec->algorithm->name);
+    snprintf(origin->options, sizeof origin->options, "%s", spec->text);
+    snprintf(origin->scene, sizeof origin->scene, "%s", task->scene ? scene->name : task->echoes);
+    snprintf(origin->scene_hash, sizeof origin->scene_hash, "%016" PRIx64, scene->hash);
+    snprintf(origin->commit, sizeof origin->commit, "%s", provenance.commit);
+    snprintf(origin->date, sizeof origin->date, "%s", provenance.date);
+}
+
 static enum status image_put(const struct task *task, const struct scene *scene, const struct image *image,
-                             double range_db)
+                             const struct image_origin *origin, double range_db)
 {
     const struct spec *spec = &task->specs[0];
     if (!output_is_picture(task->output))
-        return image_file_write(task->output, image, spec->algorithm->name, spec->text,
-                                task->scene ? scene->name : task->echoes);
-    char label[320], title[640];
+        return image_file_write(task->output, image, origin);
+    char label[320], title[1000];
     picture_label(spec->algorithm->name, spec->text, precision_name(spec->precision), label, sizeof label);
-    snprintf(title, sizeof title, "%.300s: %s", scene->name, label);
+    snprintf(title, sizeof title, "%.300s: %s%s", scene->name, label, origin_choice(origin).text);
     return picture_draw(task->output, true, image, title, range_db, scene);
 }
 
@@ -137,6 +156,7 @@ enum status command_image(const struct task *task)
 {
     struct scene scene;
     struct image image;
+    struct image_origin origin;
     double range_db, seconds = 0;
     machine_rates_use(NULL);
     enum status status = check_usage(task);
@@ -147,12 +167,13 @@ enum status command_image(const struct task *task)
     if (status != STATUS_OK)
         return status;
     warn(&task->specs[0], &scene);
-    status = form_image(&task->specs[0], &scene, &image, &seconds);
+    origin_fill(task, &scene, &origin);
+    status = form_image(&task->specs[0], &scene, &image, &origin, &seconds);
     progress_line_clear();
     if (status == STATUS_OK) {
-        status = image_put(task, &scene, &image, range_db);
+        status = image_put(task, &scene, &image, &origin, range_db);
         if (status == STATUS_OK) {
-            printf("%s: %s of %s, %s\n", task->output, task->specs[0].algorithm->name, scene.name,
+            printf("%s: %s of %s%s, %s\n", task->output, origin.algorithm, scene.name, origin_choice(&origin).text,
                    cell_time(seconds).text);
             image_describe(&image);
         }

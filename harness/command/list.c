@@ -69,8 +69,10 @@ static enum status file_info(const char *path)
         status = image_file_open(path, &file);
     if (status != STATUS_OK)
         return status;
-    printf("%s: an image%s%s%s%s%s%s\n", path, *file.scene ? " of " : "", file.scene, *file.algorithm ? " by " : "",
-           file.algorithm, *file.options ? ":" : "", file.options);
+    const struct image_origin *o = &file.origin;
+    printf("%s: an image%s%s%s%s%s%s%s\n", path, *o->scene ? " of " : "", o->scene, *o->algorithm ? " by " : "",
+           o->algorithm, *o->options ? ":" : "", o->options, origin_choice(o).text);
+    origin_print(o);
     image_describe(&file.image);
     image_file_close(&file);
     return STATUS_OK;

@@ -6,6 +6,7 @@
 
 #include "command/task.h"
 #include "data/number.h"
+#include "data/text_append.h"
 #include "measure/metrics.h"
 #include "measure/provenance.h"
 #include "scene/matfile.h"
@@ -66,6 +67,39 @@ enum status picture_draw(const char *path, bool named, const struct image *image
                                           .target_count = scene ? scene->point_count : 0,
                                           .named = named};
     return plot_image(path, PLOT_DIRECTORY, &picture);
+}
+
+struct choice_text origin_choice(const struct image_origin *origin)
+{
+    struct choice_text choice = {""};
+    if (strcmp(origin->algorithm, "auto") == 0 && *origin->engine)
+        snprintf(choice.text, sizeof choice.text, " chose %s", origin->engine);
+    return choice;
+}
+
+/* "NAME VALUE, NAME VALUE", of those that are not empty. */
+static void pairs_print(const char *const pairs[][2], int count)
+{
+    char text[1200] = "";
+    for (int k = 0; k < count; k++)
+        if (*pairs[k][1])
+            text_append(text, sizeof text, "%s%s %s", *text ? ", " : "", pairs[k][0], pairs[k][1]);
+    if (*text)
+        table_text(stdout, 2, text);
+}
+
+void origin_print(const struct image_origin *origin)
+{
+    char fc[40] = "", speed[40] = "";
+    if (!isnan(origin->fc))
+        snprintf(fc, sizeof fc, "%g Hz", origin->fc);
+    if (!isnan(origin->sound_speed))
+        snprintf(speed, sizeof speed, "%g m/s", origin->sound_speed);
+    pairs_print((const char *const[][2]){{"engine", origin->engine}, {"fc", fc}, {"sound speed", speed}}, 3);
+    pairs_print((const char *const[][2]){{"of the scene's content", origin->scene_hash},
+                                         {"by commit", origin->commit},
+                                         {"on", origin->date}},
+                3);
 }
 
 void image_describe(const struct image *image)

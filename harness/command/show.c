@@ -30,7 +30,7 @@ static enum status file_open(const char *path, struct image_file *file)
 enum status command_show(const struct task *task)
 {
     struct image_file file;
-    char output[4200], title[700];
+    char output[4200], title[1200];
     double range_db;
     if (task->output)
         snprintf(output, sizeof output, "%s", task->output);
@@ -43,11 +43,13 @@ enum status command_show(const struct task *task)
         status = file_open(task->names[0], &file);
     if (status != STATUS_OK)
         return status;
-    snprintf(title, sizeof title, "%s%s%s%s%s", *file.scene ? file.scene : task->names[0], *file.algorithm ? ": " : "",
-             file.algorithm, *file.options ? ":" : "", file.options);
+    const struct image_origin *o = &file.origin;
+    snprintf(title, sizeof title, "%s%s%s%s%s%s", *o->scene ? o->scene : task->names[0], *o->algorithm ? ": " : "",
+             o->algorithm, *o->options ? ":" : "", o->options, origin_choice(o).text);
     status = picture_draw(output, task->output, &file.image, title, range_db, NULL);
     if (status == STATUS_OK) {
         printf("%s: %s\n", output, title);
+        origin_print(o);
         image_describe(&file.image);
     }
     image_file_close(&file);

@@ -29,6 +29,13 @@ enum status range_parse(const char *command, const char *text, double *range_db)
    plot_image. */
 enum status picture_draw(const char *path, bool named, const struct image *image, const char *title, double range_db,
                          const struct scene *scene);
+struct image_origin;
+/* " chose SETTING" of an image by `auto`, else empty. */
+struct choice_text {
+    char text[280];
+} origin_choice(const struct image_origin *origin);
+/* What is known of an image beside its scene, algorithm and options, for the terminal. */
+void origin_print(const struct image_origin *origin);
 /* Its extent and its peak, for the terminal. */
 void image_describe(const struct image *image);
 

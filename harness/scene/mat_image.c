@@ -1,5 +1,6 @@
 /* Image files: which variables they have, in which shapes. */
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,8 +40,37 @@ static const char *patch_name(const char *name, int patch, char *text, size_t si
     return text;
 }
 
-enum status image_file_write(const char *path, const struct image *image, const char *algorithm, const char *options,
-                             const char *scene)
+/* What a file says of itself, each a text or a number of struct image_origin. */
+static const struct {
+    struct wanted wanted;
+    size_t offset; /* of the field */
+} sayings[] = {
+    {{"algorithm", KIND_TEXT, true, "a text"}, offsetof(struct image_origin, algorithm)},
+    {{"options", KIND_TEXT, true, "a text"}, offsetof(struct image_origin, options)},
+    {{"scene", KIND_TEXT, true, "a text"}, offsetof(struct image_origin, scene)},
+    {{"engine", KIND_TEXT, true, "a text"}, offsetof(struct image_origin, engine)},
+    {{"scene_hash", KIND_TEXT, true, "a text"}, offsetof(struct image_origin, scene_hash)},
+    {{"commit", KIND_TEXT, true, "a text"}, offsetof(struct image_origin, commit)},
+    {{"date", KIND_TEXT, true, "a text"}, offsetof(struct image_origin, date)},
+    {{"fc", KIND_SCALAR, true, "a scalar in Hz"}, offsetof(struct image_origin, fc)},
+    {{"sound_speed", KIND_SCALAR, true, "a scalar in m/s"}, offsetof(struct image_origin, sound_speed)},
+};
+enum { SAYINGS = sizeof sayings / sizeof *sayings };
+
+static void sayings_write(struct writer *writer, const struct image_origin *origin)
+{
+    for (int k = 0; k < SAYINGS; k++) {
+        const char *field = (const char *)origin + sayings[k].offset;
+        const double *number = (const void *)field;
+        if (sayings[k].wanted.kind == KIND_TEXT) {
+            write_text(writer, sayings[k].wanted.name, field);
+        } else if (!isnan(*number)) {
+            write_reals(writer, sayings[k].wanted.name, 1, 1, 1, number);
+        }
+    }
+}
+
+enum status image_file_write(const char *path, const struct image *image, const struct image_origin *origin)
 {
     size_t largest = 0;
     for (int k = 0; k < image->patch_count; k++) {
@@ -64,9 +94,7 @@ enum status image_file_write(const char *path, const struct image *image, const 
             write_reals(&writer, patch_name("angle", k, text, sizeof text), 1, 1, 1, &grid->angle_rad);
         }
     }
-    write_text(&writer, "algorithm", algorithm);
-    write_text(&writer, "options", options);
-    write_text(&writer, "scene", scene);
+    sayings_write(&writer, origin);
     return writer_close(&writer);
 }
 
@@ -187,26 +215,31 @@ static enum status patch_add(const char *path, struct image_file *file, bool *mo
     return status;
 }
 
-/* The texts that a file says of itself, as far as it does; other than plain signs become '?'. */
-static enum status texts_read(const char *path, struct image_file *file)
+/* As far as a file says them; other than plain signs become '?'. */
+static enum status sayings_read(const char *path, struct image_origin *origin)
 {
-    static const struct wanted wanted[] = {{"algorithm", KIND_TEXT, true, "a text"},
-                                           {"options", KIND_TEXT, true, "a text"},
-                                           {"scene", KIND_TEXT, true, "a text"}};
-    char *const texts[] = {file->algorithm, file->options, file->scene};
-    struct variable variables[3];
-    enum status status = variables_read(path, wanted, 3, variables);
+    struct wanted wanted[SAYINGS];
+    struct variable variables[SAYINGS];
+    for (int k = 0; k < SAYINGS; k++) {
+        wanted[k] = sayings[k].wanted;
+    }
+    *origin = (struct image_origin){.fc = NAN, .sound_speed = NAN};
+    enum status status = variables_read(path, wanted, SAYINGS, variables);
     if (status != STATUS_OK) {
         return status;
     }
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < SAYINGS; k++) {
+        char *field = (char *)origin + sayings[k].offset;
         const size_t count = variables[k].values ? variable_count(&variables[k]) : 0;
-        for (size_t i = 0; i < count && i < sizeof file->scene - 1; i++) {
+        if (wanted[k].kind == KIND_SCALAR && count > 0) {
+            *(double *)(void *)field = creal(variables[k].values[0]);
+        }
+        for (size_t i = 0; wanted[k].kind == KIND_TEXT && i < count && i < sizeof origin->scene - 1; i++) {
             const double code = creal(variables[k].values[i]);
-            texts[k][i] = code >= ' ' && code <= '~' ? (char)code : '?';
+            field[i] = code >= ' ' && code <= '~' ? (char)code : '?';
         }
     }
-    variables_free(variables, 3);
+    variables_free(variables, SAYINGS);
     return STATUS_OK;
 }
 
@@ -232,7 +265,7 @@ enum status image_file_open(const char *path, struct image_file *file)
         status = patch_add(path, file, &more);
     }
     if (status == STATUS_OK) {
-        status = texts_read(path, file);
+        status = sayings_read(path, &file->origin);
     }
     if (status != STATUS_OK) {
         image_file_close(file);

@@ -17,21 +17,27 @@ enum status echo_file_write(const char *path, const struct echoes *echoes, const
 /* Can a file be made here? Asked before long work whose result goes there. Errors: STATUS_INVALID. */
 enum status matfile_place(const char *path);
 
-/* Write an image with x, r, angle (of turned axes), algorithm, options and scene (texts). The second patch is image_2,
-   x_2, r_2, and so on. Same rules. */
-enum status image_file_write(const char *path, const struct image *image, const char *algorithm, const char *options,
-                             const char *scene);
+/* What an image file says of itself: texts of plain signs, empty where it says nothing, and numbers, NAN likewise. */
+struct image_origin {
+    char algorithm[260], options[260], scene[260];
+    char engine[260]; /* what the plan chose, as the column `engine`: of `auto` the setting */
+    char scene_hash[260], commit[260], date[260];
+    double fc, sound_speed; /* Hz, m/s */
+};
+
+/* Write an image with x, r, angle (of turned axes), and what is said of it, each a variable. The second patch is
+   image_2, x_2, r_2, and so on. Same rules. */
+enum status image_file_write(const char *path, const struct image *image, const struct image_origin *origin);
 
 /* Read an image file's first patch back: *grid from x, r (uniform to 1e-6 of a step) and angle, pixels malloc'ed
    complex double [r_count][x_count]. Errors: STATUS_INVALID. */
 enum status image_file_read(const char *path, struct grid *grid, double complex **pixels);
 
-/* All patches of an image file, and what it says of itself (texts may be empty). Errors: as image_file_read; nothing to
-   close then. */
+/* All patches of an image file, and what it says of itself. Errors: as image_file_read; nothing to close then. */
 struct image_file {
     struct image image; /* double */
     struct grid *patches;
-    char algorithm[200], options[200], scene[200];
+    struct image_origin origin;
 };
 enum status image_file_open(const char *path, struct image_file *file);
 void image_file_close(struct image_file *file);

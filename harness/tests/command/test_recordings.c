@@ -187,6 +187,8 @@ static void files_are_told_and_shown(void **state)
     const char *const image[ARGUMENTS_MAX] = {"image", "--echoes", "good.mat", grid, "-a", "bp_sinc", "-o", "seen.mat"};
     static const char *const show[ARGUMENTS_MAX] = {"show", "seen.mat", "--range", "40"};
     static const char *const about[ARGUMENTS_MAX] = {"info", "seen.mat"};
+    static const char *const chosen[ARGUMENTS_MAX] = {"image",          "--scene", "study/quick", "-a",
+                                                      "auto:error=0.1", "-o",      "seen.mat"};
     static const char *const drawn[ARGUMENTS_MAX] = {"image",   "--scene", "study/quick", "-a",
                                                      "bp_sinc", "-o",      "seen.svg"};
     char *line = program_output(image);
@@ -198,7 +200,17 @@ static void files_are_told_and_shown(void **state)
     free(line);
     line = program_output(about);
     assert_holds(line, "seen.mat: an image of good.mat by bp_sinc:taps=8,window=none");
+    assert_holds(line, "\n  engine general, fc 150000 Hz, sound speed 1500 m/s\n  of the scene's content ");
+    assert_holds(line, ", by commit ");
+    assert_holds(line, ", on 20");
     assert_non_null(strstr(line, "peak "));
+    free(line);
+    line = program_output(chosen);
+    assert_holds(line, "seen.mat: auto of study/quick chose bp_");
+    free(line);
+    line = program_output(show);
+    assert_holds(line, "seen.png: study/quick: auto:error=0.1 chose bp_");
+    assert_holds(line, "\n  engine bp_");
     free(line);
     program_good(drawn);
     assert_int_equal(access(path_in("seen.png"), F_OK), 0);

@@ -99,6 +99,16 @@ static void what_varies_from_ping_to_ping_comes_back(void **state)
 static const struct grid grids[] = {
     {-1, 0.02, 3, 40, 0.5, 4, 0.3}, {0.1, 1, 1, -2, 0.1, 6}, {0.1, 0.3, 5, 7, 1, 1}, {3, 1, 1, 4, 1, 1}};
 
+static const struct image_origin origin = {.algorithm = "bp_linear",
+                                           .options = "beta=8",
+                                           .scene = "of/here",
+                                           .engine = "invariant",
+                                           .scene_hash = "0123456789abcdef",
+                                           .commit = "4fedc99",
+                                           .date = "2026-11-25T09:45:24Z",
+                                           .fc = 150e3,
+                                           .sound_speed = 1500.25};
+
 static void images_come_back_as_matlab_has_them(void **state)
 {
     (void)state;
@@ -115,7 +125,7 @@ static void images_come_back_as_matlab_has_them(void **state)
                 }
             }
             struct image one = {1, grid, image.precision, &image.pixels[patch]};
-            assert_ok(image_file_write(path, &one, "bp_linear", patch == 0 ? "" : "beta=8", "scene"));
+            assert_ok(image_file_write(path, &one, &origin));
 
             struct grid back;
             double complex *pixels;
@@ -164,7 +174,7 @@ static void all_patches_come_back(void **state)
     for (int patch = 0; patch < 4; patch++) {
         ((double complex *)image.pixels[patch])[0] = patch + 1;
     }
-    assert_ok(image_file_write(path, &image, "bp_linear", "beta=8", "of/here"));
+    assert_ok(image_file_write(path, &image, &origin));
     assert_ok(image_file_open(path, &file));
     assert_int_equal(file.image.patch_count, 4);
     for (int patch = 0; patch < 4; patch++) {
@@ -174,28 +184,35 @@ static void all_patches_come_back(void **state)
         assert_true(back->angle_rad == grids[patch].angle_rad);
         assert_true(image_pixel(&file.image, patch, 0, 0) == patch + 1);
     }
-    assert_string_equal(file.algorithm, "bp_linear");
-    assert_string_equal(file.options, "beta=8");
-    assert_string_equal(file.scene, "of/here");
+    assert_memory_equal(&file.origin, &origin, sizeof origin);
     image_file_close(&file);
-    assert_ok(image_file_write(path, &image, "bp_nearest", "", "of/here")); /* an algorithm without options */
+    const struct image_origin little = {.algorithm = "bp_nearest", .fc = NAN, .sound_speed = NAN}; /* no options */
+    assert_ok(image_file_write(path, &image, &little));
     bool is = false;
     assert_ok(image_file_is(path, &is));
     assert_true(is);
     assert_ok(image_file_open(path, &file));
-    assert_string_equal(file.algorithm, "bp_nearest");
-    assert_string_equal(file.options, "");
+    assert_string_equal(file.origin.algorithm, "bp_nearest");
+    assert_string_equal(file.origin.options, "");
+    assert_true(isnan(file.origin.fc) && isnan(file.origin.sound_speed));
     image_file_close(&file);
     image_free(&image);
 
     static const char *const names[] = {"image", "x", "r", "image_2", "x_2"};
     static const double value[2] = {1, 2};
-    mat_t *mat = Mat_CreateVer(path, NULL, MAT_FT_MAT5);
-    for (int k = 0; k < 5; k++) {
-        variable_add(mat, &(struct mat_values){names[k], MAT_C_DOUBLE, MAT_T_DOUBLE, {1, 1, 1}, value, NULL}, true);
+    for (int count = 3; count <= 5; count += 2) {
+        mat_t *mat = Mat_CreateVer(path, NULL, MAT_FT_MAT5);
+        for (int k = 0; k < count; k++) {
+            variable_add(mat, &(struct mat_values){names[k], MAT_C_DOUBLE, MAT_T_DOUBLE, {1, 1, 1}, value, NULL}, true);
+        }
+        Mat_Close(mat);
+        assert_int_equal(image_file_open(path, &file), count == 3 ? STATUS_OK : STATUS_INVALID);
+        if (count == 3) { /* says nothing of itself */
+            assert_string_equal(file.origin.date, "");
+            assert_true(isnan(file.origin.fc));
+            image_file_close(&file);
+        }
     }
-    Mat_Close(mat);
-    assert_int_equal(image_file_open(path, &file), STATUS_INVALID);
     assert_non_null(strstr(status_message(), "variable `r_2` is missing"));
 }
 

@@ -338,7 +338,7 @@ static void wrong_images_are_refused(void **state)
     }
     struct image image;
     assert_ok(image_allocate(1, &grid, PRECISION_FLOAT, &image));
-    assert_ok(image_file_write(path, &image, "a", "b", "c"));
+    assert_ok(image_file_write(path, &image, &(struct image_origin){.algorithm = "a", .fc = NAN, .sound_speed = NAN}));
     assert_echoes_invalid("`format` is missing");
     image_free(&image);
 }
