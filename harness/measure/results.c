@@ -8,12 +8,30 @@
 #include "data/text_file.h"
 #include "measure/rows.h"
 
+/* No figure may be made of a time that is none. */
+static enum status times_check(const struct csv *csv, int row, const struct measurement *measurement)
+{
+    const struct {
+        const char *name;
+        double seconds;
+    } times[] = {{"run_s", measurement->run_s},
+                 {"run_min_s", measurement->run_min_s},
+                 {"run_q1_s", measurement->run_q1_s},
+                 {"run_q3_s", measurement->run_q3_s},
+                 {"control_s", measurement->control_s}};
+    for (size_t k = 0; k < sizeof times / sizeof *times; k++)
+        if (times[k].seconds <= 0)
+            return status_set(STATUS_INVALID, "%s:%d: %s is '%s'; a number > 0 or nothing is needed", csv->path,
+                              csv->lines[row], times[k].name, csv_cell(csv, row, csv_column(csv, times[k].name)));
+    return STATUS_OK;
+}
+
 static enum status measurement_check(const struct csv *csv, int row, const struct measurement *measurement)
 {
     static const char *const known[] = {"ok", "unsupported", "failed"};
     for (size_t k = 0; k < sizeof known / sizeof *known; k++)
         if (strcmp(measurement->status, known[k]) == 0)
-            return STATUS_OK;
+            return times_check(csv, row, measurement);
     return status_set(STATUS_INVALID, "%s:%d: status is '%s'; ok, unsupported or failed is needed", csv->path,
                       csv->lines[row], measurement->status);
 }

@@ -23,7 +23,7 @@ struct results {
     struct target_row *target_rows;   /* [csv.row_count], or NULL */
 };
 /* Errors: STATUS_INVALID naming file, line, column and value: not a file of ours or of another version, other columns,
-   a number that is none or not finite, a status that is none. */
+   a number that is none or not finite, a time that is not above 0, a status that is none. */
 enum status results_read(const char *path, struct results *results);
 void results_free(struct results *results);
 /* A whole measurements file without provenance, the same on every machine. `note` is one line that says what it is and

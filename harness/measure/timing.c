@@ -11,6 +11,7 @@
 
 #include "backprojection/pairs.h"
 #include "common/clock.h"
+#include "data/echo_data.h"
 #include "measure/imaging.h"
 
 static int compare_double(const void *a, const void *b)
@@ -191,7 +192,14 @@ enum status timing_measure(const struct spec *spec, const struct problem *proble
             sorted[k] = samples->control[k];
         timing->control_s = median(sorted, samples->controls) * pairs;
         samples_evaluate(samples, timing);
+        if (timing->run_min_s <= 0 || timing->control_s <= 0)
+            status = status_set(STATUS_FAILED,
+                                "a run of %s takes %g s, of the scalar reference loop %g s: the system's "
+                                "clock stands still",
+                                spec->algorithm->name, timing->run_min_s, timing->control_s);
     }
+    if (status != STATUS_OK)
+        image_free(image);
     return status;
 }
 

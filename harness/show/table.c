@@ -39,6 +39,8 @@ struct cell cell_significant(double value, const char *unit)
 
 struct cell cell_time(double seconds)
 {
+    if (seconds <= 0)
+        return cell_significant(NAN, "");
     if (seconds < 0.9995e-3)
         return cell_significant(1e6 * seconds, " us");
     return seconds < 0.9995 ? cell_significant(1e3 * seconds, " ms") : cell_significant(seconds, " s");

@@ -29,8 +29,8 @@ struct cell {
     char text[24];
 };
 struct cell cell_significant(double value, const char *unit); /* three digits, the unit directly behind; "-" for NAN */
-struct cell cell_time(double seconds);
-struct cell cell_place(double place, double step); /* six digits, or as many as tell places a step apart */
+struct cell cell_time(double seconds);                        /* "-" also for 0: below what the clock tells */
+struct cell cell_place(double place, double step);            /* six digits, or as many as tell places a step apart */
 /* The row's SPEC as on the command line, so that it can be taken from here; float is the default there. */
 void measurement_spec(const struct measurement *row, char *text, size_t size);
 
