@@ -186,10 +186,37 @@ static void zero_padding_counts_its_transform(void **state)
     acquisition_free(&a);
 }
 
+/* Against values of another program, which summed the Bessel function's series: the last taps lie at the window's edge.
+   A whole sample is itself. */
+static void sinc_weights_are_windowed(void **state)
+{
+    (void)state;
+    static const struct {
+        int taps;
+        double beta, fraction, w[8];
+    } cases[] = {
+        {8,
+         5,
+         0.25,
+         {-0.0115847635, 0.0466115998, -0.144077369, 0.892489092, 0.277273324, -0.0822561849, 0.0247605933,
+          -0.00421441999}},
+        {4, 5, 0.5, {-0.0489230272, 0.552596886, 0.552596886, -0.0489230272}},
+        {4, 0, 0.5, {-0.212206591, 0.636619772, 0.636619772, -0.212206591}},
+        {4, 5, 0, {0, 1, 0, 0}},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        double w[8];
+        sinc_weights(cases[k].taps, cases[k].beta, cases[k].fraction, w);
+        for (int n = 0; n < cases[k].taps; n++)
+            assert_close(w[n], cases[k].w[n], 1e-9);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(naive_sums),
+        cmocka_unit_test(sinc_weights_are_windowed),
         cmocka_unit_test(zero_padding_counts_its_transform),
         cmocka_unit_test(own_interpolator_claims_nothing),
     };

@@ -223,6 +223,34 @@ static void test_lobes_cut(void **state)
     assert_non_null(strstr(m.reason, "sidelobe is cut by the slice's end at -1.2 m"));
 }
 
+/* A sidelobe on either side counts by every definition, in PSLR and ISLR: a neighbour of a tenth of the power, whose
+   main lobe has a tenth of the energy. */
+static void test_either_side(void **state)
+{
+    (void)state;
+    struct slice_metrics sides[2];
+    const double all = 1.1 - (1 / 60. + 0.05 / 36 + 0.05 / 84) / (M_PI * M_PI); /* some zeros away the slice ends */
+    for (int side = 0; side < 2; side++) {
+        memset(power, 0, sizeof power);
+        lobe_add(0, 1, 0.05);
+        lobe_add(side ? 1.2 : -1.2, 0.1, 0.05);
+        sides[side] = metrics_of_power(power, SAMPLES, -MIDDLE * 1e-3, 1e-3, 0.02);
+        assert_string_equal(sides[side].reason, "");
+        assert_close(sides[side].pslr_db[DEFINITION_NULL], -10, 0.01);
+        assert_close(sides[side].pslr_db[DEFINITION_PIXEL], -10, 0.01);
+        assert_close(sides[side].islr_db[DEFINITION_NULL], 10 * log10(all / 0.902823 - 1), 0.005);
+    }
+    for (int d = 0; d < 3; d++)
+        assert_close(sides[0].islr_db[d], sides[1].islr_db[d], 1e-9);
+    assert_close(sides[0].width_m, sides[1].width_m, 1e-12);
+    /* -3 dB: 0.7220 of a sinc squared's energy lies between. Pixels: five of them, 0.4 zeros apart. */
+    double five = 1;
+    for (int k = 1; k <= 2; k++)
+        five += 2 * pow(sinc(0.4 * k), 2);
+    assert_close(sides[0].islr_db[DEFINITION_3DB], 10 * log10(all / 0.722 - 1), 0.02);
+    assert_close(sides[0].islr_db[DEFINITION_PIXEL], 10 * log10(all * 2.5 / five - 1), 0.02);
+}
+
 /* The main lobe of five pixels, and one at least to either side of it. */
 static void test_pixels_cut(void **state)
 {
@@ -368,6 +396,7 @@ int main(void)
         cmocka_unit_test(test_pixel_definition),
         cmocka_unit_test(test_sinc),
         cmocka_unit_test(test_several_peaks),
+        cmocka_unit_test(test_either_side),
         cmocka_unit_test(test_lobes_cut),
         cmocka_unit_test(test_pixels_cut),
         cmocka_unit_test(test_nothing_to_measure),

@@ -91,6 +91,61 @@ static void test_folder_made(void **state)
     assert_int_equal(rmdir(outer), 0);
 }
 
+static void check_rights(const char *path, mode_t mask)
+{
+    struct stat info;
+    assert_int_equal(stat(path, &info), 0);
+    if ((info.st_mode & 0777) != (0666 & ~mask))
+        fail_msg("%s has the rights %03o under umask %03o", path, (unsigned)info.st_mode & 0777, (unsigned)mask);
+}
+
+/* New files are readable as any program's, by the user's umask, whether made in place or beside it. */
+static void test_rights_follow_umask(void **state)
+{
+    (void)state;
+    static const mode_t masks[] = {022, 027, 077, 0};
+    char beside[320];
+    snprintf(beside, sizeof beside, "%s/beside.csv", results_directory);
+    for (size_t k = 0; k < sizeof masks / sizeof *masks; k++) {
+        const mode_t before = umask(masks[k]);
+        struct results_folder *results = open_ok("c1", 2);
+        assert_int_equal(results_folder_scene(results, "s", 1), STATUS_OK);
+        results_folder_close(results);
+        assert_int_equal(measurements_write(beside, "a note", NULL, 0, NULL, 0), STATUS_OK);
+        check_rights(measurements_path, masks[k]);
+        check_rights(targets_path, masks[k]);
+        check_rights(beside, masks[k]);
+        assert_true(remove(measurements_path) == 0 && remove(targets_path) == 0 && remove(beside) == 0);
+        assert_int_equal(umask(before), masks[k]);
+    }
+}
+
+/* A time that is none makes no figure. */
+static void test_times_are_positive(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *times, *fault; /* plan_s to control_s */
+    } cases[] = {{"1,0,0,3,1,", "measurements.csv:9: run_s is '0'; a number > 0 or nothing is needed"},
+                 {"1,-0.5,1,3,1,", ":9: run_s is '-0.5'"},
+                 {"1,1,-0,3,1,", ":9: run_min_s is '-0'"},
+                 {"1,1,1,3,-2,", ":9: control_s is '-2'"}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct results read;
+        char text[2000];
+        snprintf(text, sizeof text,
+                 "# sasbench measurements 2\n" PROVENANCE MEASUREMENT_HEADER "s,a,,float,2,,ok,,,%s,,,,,,,,,,,,,,,\n",
+                 cases[k].times);
+        file_write(measurements_path, "w", text);
+        assert_int_equal(results_read(measurements_path, &read), STATUS_INVALID);
+        if (!strstr(status_message(), cases[k].fault))
+            fail_msg("'%s' is not '%s'", status_message(), cases[k].fault);
+    }
+    assert_string_equal(cell_time(0).text, "-");
+    assert_string_equal(cell_time(-1e-3).text, "-");
+    assert_string_equal(cell_time(2e-3).text, "2 ms");
+}
+
 /* A full disk, acted by a limit of the file size: said at once, and the next run finds whole rows only. */
 static void test_full_disk(void **state)
 {
@@ -296,6 +351,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_foreign_files, results_make, results_remove),
         cmocka_unit_test_setup_teardown(test_unwritable, results_make, results_remove),
         cmocka_unit_test_setup_teardown(test_folder_made, results_make, results_remove),
+        cmocka_unit_test_setup_teardown(test_rights_follow_umask, results_make, results_remove),
+        cmocka_unit_test_setup_teardown(test_times_are_positive, results_make, results_remove),
         cmocka_unit_test_setup_teardown(test_full_disk, results_make, results_remove),
         cmocka_unit_test(test_provenance),
         cmocka_unit_test(test_columns),
