@@ -1,12 +1,8 @@
-/* Sharpness of images, differences of slices, spread of times. */
+/* Sharpness of images, differences of slices. */
 #include <math.h>
 #include <stdlib.h>
-#include <sys/mman.h>
-#include <time.h>
 
 #include "measure/metrics.h"
-#include "measure/outcome.h"
-#include "measure/timing.h"
 #include "tests/support.h"
 
 /* A tenth more of the exact image is -20 dB of its peak away everywhere that the slice has it. */
@@ -88,145 +84,11 @@ static void test_sharpness(void **state)
     image_free(&image);
 }
 
-static void test_quartiles(void **state)
-{
-    (void)state;
-    const double sorted[] = {1, 2, 4, 8, 16};
-    assert_close(quantile(sorted, 5, 0.25), 2, 0);
-    assert_close(quantile(sorted, 5, 0.75), 8, 0);
-    assert_close(quantile(sorted, 4, 0.25), 1.75, 1e-12);
-    assert_close(quantile(sorted, 5, 1), 16, 0);
-    assert_close(quantile(sorted, 1, 0.75), 1, 0);
-    assert_true(isnan(quantile(sorted, 0, 0.5)));
-    assert_close(timing_spread(&(struct timing){.run_s = 2, .run_q1_s = 1.9, .run_q3_s = 2.3}), 0.2, 1e-12);
-}
-
-/* Rounds of a setting are put together; one alone is timed at least three times. */
-static void test_rounds_add_up(void **state)
-{
-    (void)state;
-    static struct timing_samples samples;
-    struct scene scene;
-    struct session session;
-    struct spec spec;
-    struct outcome outcome;
-    support_scene("study/quick", &scene);
-    assert_int_equal(spec_parse("bp_nearest", &spec), STATUS_OK);
-    assert_int_equal(session_open(&scene, &session), STATUS_OK);
-    int before = 0;
-    for (int round = 1; round < TIMING_ROUNDS; round++) {
-        outcome_round(&session, &spec, &samples);
-        assert_true(samples.runs > before && samples.elapsed > 0 && samples.controls == 4 * round);
-        before = samples.runs;
-    }
-    outcome_measure(&session, &spec, EFFORT_WHOLE, &samples, &outcome);
-    assert_string_equal(outcome.row.status, "ok");
-    assert_true(samples.runs > before && outcome.row.runs == samples.runs && samples.controls == 4 * TIMING_ROUNDS);
-    double sorted[TIMING_RUNS];
-    for (int k = 0; k < samples.runs; k++)
-        sorted[k] = samples.seconds[k];
-    assert_close(outcome.row.run_s, median(sorted, samples.runs), 0);
-    assert_close(outcome.row.run_min_s, sorted[0], 0);
-    double low, high;
-    measurement_interval(&outcome.row, &low, &high);
-    assert_true(low <= outcome.row.run_s && high >= outcome.row.run_s);
-    outcome_free(&outcome);
-    spec_free(&spec);
-    session_close(&session);
-    scene_free(&scene);
-}
-
-/* A method that takes as long as is asked for, and at first has the system clear memory for `clearing_s`. */
-static double pause_s, clearing_s;
-static int plan_made;
-
-static enum status pause_plan(const struct problem *problem, const void *options, void **plan)
-{
-    (void)problem, (void)options;
-    *plan = &plan_made;
-    return STATUS_OK;
-}
-
-static enum status pause_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages)
-{
-    (void)plan, (void)echoes, (void)image;
-    for (const double begin = seconds_now(); seconds_now() - begin < clearing_s;) {
-        const size_t bytes = 16 << 20;
-        char *memory = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-        assert_true(memory != MAP_FAILED);
-        for (size_t k = 0; k < bytes; k += 4096)
-            memory[k] = 1;
-        munmap(memory, bytes);
-    }
-    clearing_s = 0;
-    nanosleep(&(struct timespec){.tv_nsec = (long)(1e9 * pause_s)}, NULL);
-    stages_end(stages, "focus");
-    return STATUS_OK;
-}
-
-static struct work pause_work(const void *plan)
-{
-    (void)plan;
-    return (struct work){.pairs = 1};
-}
-
-static void pause_destroy(void *plan)
-{
-    (void)plan;
-}
-
-/* Where hundreds are measured, a long run is not repeated, a short one as often as quartiles need, and the scalar
-   reference loop is timed once a second. A first run in which the system clears memory is not counted. */
-static void test_effort_follows_the_run(void **state)
-{
-    (void)state;
-    static const struct {
-        double pause_s, clearing_s;
-        enum effort effort;
-        int least, most;
-    } cases[] = {{0.31, 0, EFFORT_BRIEF, 1, 1},   {0.06, 0, EFFORT_BRIEF, 2, 3},
-                 {0.06, 0.3, EFFORT_BRIEF, 2, 3}, {0, 0, EFFORT_BRIEF, 5, TIMING_RUNS},
-                 {0.11, 0, EFFORT_WHOLE, 3, 5},   {0, 0, EFFORT_WHOLE, 5, TIMING_RUNS}};
-    const struct algorithm pause = {
-        .name = "pause", .plan = pause_plan, .execute = pause_execute, .work = pause_work, .destroy = pause_destroy};
-    const struct spec spec = {.algorithm = &pause};
-    struct scene scene;
-    struct session session;
-    support_scene("study/quick", &scene);
-    assert_int_equal(session_open(&scene, &session), STATUS_OK);
-    const struct problem problem = session_problem(&scene, &pause, PRECISION_FLOAT);
-    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        struct image image;
-        struct timing timing;
-        const double measured = session.control.measured;
-        pause_s = cases[k].pause_s;
-        clearing_s = cases[k].clearing_s;
-        assert_int_equal(timing_measure(&spec, &problem, &session.echoes[PRECISION_FLOAT], &session.control,
-                                        cases[k].effort, NULL, &image, &timing),
-                         STATUS_OK);
-        assert_in_range(timing.runs, cases[k].least, cases[k].most);
-        assert_true(timing.run_s >= pause_s && timing.spent_s >= timing.runs * pause_s && timing.control_s > 0);
-        assert_true(isfinite(timing.run_q1_s) == (timing.runs >= 4));
-        if (cases[k].clearing_s > 0)
-            assert_true(timing.run_s < cases[k].clearing_s);
-        if (cases[k].effort == EFFORT_BRIEF)
-            assert_true(session.control.measured == measured || session.control.measured - measured > 1);
-        else
-            assert_true(session.control.measured > measured);
-        image_free(&image);
-    }
-    session_close(&session);
-    scene_free(&scene);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_slice_difference),
         cmocka_unit_test(test_sharpness),
-        cmocka_unit_test(test_quartiles),
-        cmocka_unit_test(test_rounds_add_up),
-        cmocka_unit_test(test_effort_follows_the_run),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -130,6 +130,19 @@ static const double pairs_timed = 262144; /* of the scalar reference loop */
 
 /* --- What timing makes of runs -------------------------------------------------------------------------------- */
 
+static void quartiles_between_two(void **state)
+{
+    (void)state;
+    const double sorted[] = {1, 2, 4, 8, 16};
+    assert_close(quantile(sorted, 5, 0.25), 2, 0);
+    assert_close(quantile(sorted, 5, 0.75), 8, 0);
+    assert_close(quantile(sorted, 4, 0.25), 1.75, 1e-12);
+    assert_close(quantile(sorted, 5, 1), 16, 0);
+    assert_close(quantile(sorted, 1, 0.75), 1, 0);
+    assert_true(isnan(quantile(sorted, 0, 0.5)));
+    assert_close(timing_spread(&(struct timing){.run_s = 2, .run_q1_s = 1.9, .run_q3_s = 2.3}), 0.2, 1e-12);
+}
+
 /* Median, minimum, quartiles; how often is repeated; whether the first run counts. */
 static void runs_are_summed_up(void **state)
 {
@@ -432,6 +445,9 @@ static void figures_reach_the_report(void **state)
     assert_close(row.run_min_s, 0.18, readings_s);
     assert_close(row.run_q1_s, 0.2, readings_s);
     assert_close(row.run_q3_s, 0.23, readings_s);
+    double low, high;
+    measurement_interval(&row, &low, &high);
+    assert_true(low == row.run_q1_s && high == row.run_q3_s);
     assert_close(row.control_s, 1.024e9 / pairs_timed * 0.01, 1e-6);
     assert_close(row.pairs, 1.024e9, 0);
     assert_close(row.flops, 6.46e8, 0);
@@ -462,6 +478,7 @@ static void busy_waiting_takes_its_time(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(quartiles_between_two),
         cmocka_unit_test(runs_are_summed_up),
         cmocka_unit_test(stages_are_of_the_median_run),
         cmocka_unit_test(control_is_for_all_pairs),

@@ -44,7 +44,7 @@ static void folder_fill(void)
     rows[8].status = "failed";
     rows[8].reason = "no & memory";
     for (int k = 7; k < 9; k++)
-        rows[k].run_s = rows[k].error = NAN;
+        rows[k].run_s = rows[k].run_min_s = rows[k].error = NAN;
     record_rows(rows, sizeof rows / sizeof *rows);
     support_write("cheapest.csv", "# sasbench cheapest 1\nscene,cost,error_below,algorithm,options,precision,run_s,"
                                   "speed_up,flops,error,error_gain,pslr_db,islr_db\n"
