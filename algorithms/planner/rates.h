@@ -26,6 +26,8 @@ struct rates {
    everywhere. rates_set is called before any plan is made, by one thread. */
 const struct rates *rates_get(void);
 void rates_set(const struct rates *rates);
+/* Can they be measured: none is negative or beyond reason, and whatever is counted takes time? */
+bool rates_plausible(const struct rates *rates);
 
 /* With all threads that OpenMP has: the seconds that a forecast's sums take of `pairs` pairs; those of its range
    migration. */

@@ -56,12 +56,12 @@ void machine_rates_path(char *path, size_t size)
         snprintf(path, size, "%s/.cache/sasbench/rates.csv", home);
 }
 
-/* What rates depend on, beside the program. */
+/* What rates depend on: another build may be faster. */
 static void owner_format(char *text, size_t size)
 {
     struct provenance provenance;
     provenance_fill(&provenance, 1);
-    snprintf(text, size, "%s, %s", provenance.machine, provenance.isa);
+    snprintf(text, size, "%s, %s, program %s", provenance.machine, provenance.isa, provenance.program);
 }
 
 void machine_rates_use(bool *found)
@@ -84,8 +84,9 @@ void machine_rates_use(bool *found)
                 break;
             while (row < csv.row_count && strcmp(csv_cell(&csv, row, name), wanted) != 0)
                 row++;
-            whole = row < csv.row_count && csv_number(csv_cell(&csv, row, value), rate) && *rate >= 0 && *rate < 1e3;
+            whole = row < csv.row_count && csv_number(csv_cell(&csv, row, value), rate);
         }
+        whole = whole && rates_plausible(&rates);
     }
     csv_free(&csv);
     if (whole)
@@ -98,6 +99,8 @@ enum status machine_rates_keep(const struct rates *rates)
 {
     char path[4096], directory[4096], owner[300];
     struct text_file file;
+    if (!rates_plausible(rates))
+        return status_set(STATUS_FAILED, "the times that were measured make no sense; the built-in rates are used");
     rates_set(rates);
     machine_rates_path(path, sizeof path);
     if (!*path)

@@ -23,6 +23,10 @@ FILE *__real_fopen64(const char *path, const char *mode);
 FILE *__wrap_fopen64(const char *path, const char *mode);
 ssize_t __real_pread64(int file, void *bytes, size_t size, off_t offset);
 ssize_t __wrap_pread64(int file, void *bytes, size_t size, off_t offset);
+double __real_cos(double angle);
+double __wrap_cos(double angle);
+void __real_sincos(double angle, double *sine, double *cosine);
+void __wrap_sincos(double angle, double *sine, double *cosine);
 double __real_scalar_loop_seconds(const struct scalar_loop *loop);
 double __wrap_scalar_loop_seconds(const struct scalar_loop *loop);
 
@@ -86,15 +90,32 @@ ssize_t __wrap_pread64(int file, void *bytes, size_t size, off_t offset)
     return snprintf(bytes, size, "%lld %lld 7\n", fake.now, fake.waited);
 }
 
+/* Of the scalar reference loop, each pair has a phasor. */
+static long phasors;
+
+double __wrap_cos(double angle)
+{
+    phasors++;
+    return __real_cos(angle);
+}
+
+void __wrap_sincos(double angle, double *sine, double *cosine)
+{
+    phasors++;
+    __real_sincos(angle, sine, cosine);
+}
+
 /* The loop reads the clock before and after; between, what was told has passed. */
 double __wrap_scalar_loop_seconds(const struct scalar_loop *loop)
 {
     if (!fake.on)
         return __real_scalar_loop_seconds(loop);
     const long long tick = fake.tick;
+    const long before = phasors;
     fake.tick = llround(1e9 * fake.control[fake.controls++]);
     const double seconds = __real_scalar_loop_seconds(loop);
     fake.now -= fake.tick; /* that of the second reading */
     fake.tick = tick;
+    assert_int_equal(phasors - before, FAKE_PAIRS);
     return seconds;
 }

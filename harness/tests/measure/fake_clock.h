@@ -5,6 +5,8 @@
 
 #include <stdbool.h>
 
+enum { FAKE_PAIRS = 262144 }; /* that a run of the scalar reference loop sums */
+
 /* All in ns. */
 extern struct fake_clock {
     bool on;               /* else the system's own */

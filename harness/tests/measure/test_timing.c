@@ -126,7 +126,7 @@ static struct timing timed(enum effort effort, struct timing_samples *samples)
 
 static const double slack_s = 1e-11; /* what is lost of a second of a clock at 1000 s */
 static const double steady[] = {0.008, 0.008, 0.008, 0.008};
-static const double pairs_timed = 262144; /* of the scalar reference loop */
+static const double pairs_timed = FAKE_PAIRS;
 
 /* --- What timing makes of runs -------------------------------------------------------------------------------- */
 

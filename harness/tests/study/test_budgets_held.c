@@ -74,7 +74,7 @@ static void within_budget(void **state)
     static struct tally tally;
     int over = 0, seeds = 0;
     if (given > 0)
-        machine_rates_use(NULL);
+        assert_int_equal(machine_rates_need(), STATUS_OK);
     for (int k = 0; k < (given > 0 ? given : 1); k++) {
         int first, last;
         const char *range = (given > 0 ? ranges : usual)[k];

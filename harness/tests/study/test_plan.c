@@ -8,6 +8,7 @@
 
 #include "command/task.h"
 #include "data/csv.h"
+#include "measure/provenance.h"
 #include "planner/planner.h"
 #include "planner/rates.h"
 #include "study/machine_rates.h"
@@ -133,13 +134,27 @@ static void nothing_fits(void **state)
     scene_free(&scene);
 }
 
-/* Rates go to the cache and come from there; those of another machine are not taken. */
+/* The kept file with the first of one text in it replaced: are its rates taken? */
+static bool rates_taken(const char *kept, const char *old, const char *new)
+{
+    const char *at = strstr(kept, old);
+    char text[8192];
+    bool found;
+    assert_non_null(at);
+    snprintf(text, sizeof text, "%.*s%s%s", (int)(at - kept), kept, new, at + strlen(old));
+    support_write("cache/sasbench/rates.csv", text);
+    machine_rates_use(&found);
+    return found;
+}
+
+/* Rates go to the cache and come from there; those of another machine, instruction set or program are not taken, nor
+   is a file that lacks one or holds what no machine can have. */
 static void rates_are_kept(void **state)
 {
     (void)state;
     const struct rates before = *rates_get();
     struct rates made = before;
-    char path[4096];
+    struct provenance provenance;
     bool found;
     setenv("XDG_CACHE_HOME", path_of("cache"), 1);
     machine_rates_use(&found);
@@ -150,10 +165,36 @@ static void rates_are_kept(void **state)
     machine_rates_use(&found);
     assert_true(found);
     assert_close(rates_get()->migrate[MIGRATION_FOCUS], 1.25e-9, 1e-15);
-    machine_rates_path(path, sizeof path);
-    support_write("cache/sasbench/rates.csv", "# machine: another\nrate,value\nmigrate,1\n");
-    machine_rates_use(&found);
-    assert_false(found);
+    rates_set(&before);
+    provenance_fill(&provenance, 1);
+    char *kept = support_read("cache/sasbench/rates.csv");
+    assert_non_null(kept);
+    static const char *const faults[][2] = {
+        {"\nmigrate_focus,1.25e-09", "\nmigrate_focus,0"},
+        {"\nmigrate_focus,1.25e-09", "\nmigrate_focus,-1e-9"},
+        {"\nmigrate_focus,1.25e-09", "\nmigrate_focus,nan"},
+        {"\nmigrate_focus,1.25e-09", "\nmigrate_focus,inf"},
+        {"\nmigrate_focus,1.25e-09", "\nmigrate_focus,1e-2"},
+        {"\nmigrate_focus,1.25e-09", "\nmigrate_focus,"},
+        {"\nmigrate_focus,1.25e-09", ""},
+        {"\ndoubled,1.9", "\ndoubled,0"},
+        {"\ngeneral_nearest_pair,2e-10", "\ngeneral_nearest_pair,0"},
+        {"\ngeneral_taps_unit,5.3e-08", "\ngeneral_taps_unit,-5e-8"},
+    };
+    assert_false(rates_taken(kept, provenance.machine, "another"));
+    char isa[32];
+    snprintf(isa, sizeof isa, ", %s, program ", provenance.isa);
+    assert_false(rates_taken(kept, isa, ", v0, program "));
+    assert_false(rates_taken(kept, provenance.program, "0123456789abcdef"));
+    for (size_t k = 0; k < sizeof faults / sizeof *faults; k++)
+        if (rates_taken(kept, faults[k][0], faults[k][1]))
+            fail_msg("taken in spite of '%s'", faults[k][1]);
+    assert_memory_equal(rates_get(), &before, sizeof before);
+    assert_true(rates_taken(kept, "general_taps_unit,5.3e-08", "general_taps_unit,0")); /* what noise may make */
+    free(kept);
+    const struct rates none = {.doubled = 1};
+    assert_int_equal(machine_rates_keep(&none), STATUS_FAILED);
+    assert_true(rates_get()->migrate[MIGRATION_FOCUS] > 0);
     setenv("XDG_CACHE_HOME", path_of("cache/sasbench/rates.csv"), 1); /* no folder */
     assert_int_not_equal(machine_rates_keep(&made), STATUS_OK);
     rates_set(&before);
