@@ -91,7 +91,7 @@ ssize_t __wrap_pread64(int file, void *bytes, size_t size, off_t offset)
 }
 
 /* Of the scalar reference loop, each pair has a phasor. */
-static long phasors;
+static _Thread_local long phasors;
 
 double __wrap_cos(double angle)
 {
