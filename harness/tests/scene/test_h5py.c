@@ -103,5 +103,5 @@ int main(void)
     const struct CMUnitTest tests[] = {cmocka_unit_test(padded_classes_are_read),
                                        cmocka_unit_test(classes_of_any_length_are_refused),
                                        cmocka_unit_test(other_names_of_parts_are_refused)};
-    return cmocka_run_group_tests(tests, directory_make, directory_remove);
+    return cmocka_run_group_tests(tests, fixture_make, directory_remove);
 }
