@@ -109,12 +109,15 @@ bool place_open(const char *path, bool named, struct place *place)
     const char *name;
     char *followed = named ? link_follow(path) : strdup(path);
     place->folder = followed ? way_open(followed, &name, &place->borrowed) : -1;
-    if (place->folder >= 0 && snprintf(place->name, sizeof place->name, "%s", name) >= (int)sizeof place->name) {
+    if (place->folder >= 0
+        && snprintf(place->name, sizeof place->name, "%s", *name ? name : ".") >= (int)sizeof place->name) {
         place_close(place);
         errno = ENAMETOOLONG;
     }
     int reason = errno;
     free(followed);
+    if (named && place->folder >= 0)
+        temporary_sweep(place->folder, false);
     errno = reason;
     return place->folder >= 0;
 }
@@ -187,34 +190,38 @@ static enum status name_check(const char *directory)
     return STATUS_OK;
 }
 
+/* One folder, which outlasts a power cut; false: errno says why not. */
+static bool one_make(const char *path)
+{
+    struct place place;
+    bool made = place_open(path, false, &place) && mkdirat(place.folder, place.name, 0777) == 0;
+    int reason = errno;
+    if (made)
+        place_sync(place.folder);
+    place_close(&place);
+    errno = reason;
+    return made;
+}
+
 enum status directory_make(const char *directory)
 {
     struct stat info;
     enum status status = name_check(directory);
-    struct place place;
-    const char *rest;
-    if (status == STATUS_OK && taken_find(directory, &rest)) {
-        bool made =
-            place_open(directory, false, &place) && (mkdirat(place.folder, place.name, 0777) == 0 || errno == EEXIST);
-        if (!made)
-            status = status_set(STATUS_INVALID, "%s: cannot be made: %s; name a folder that can be written", directory,
-                                strerror(errno));
-        place_close(&place);
-        return status;
-    }
     char *path = status == STATUS_OK ? strdup(directory) : NULL;
     if (status == STATUS_OK && !path)
         status = status_set(STATUS_FAILED, "%s: no memory", directory);
     if (status != STATUS_OK)
         return status;
+    for (size_t length = strlen(path); length > 1 && path[length - 1] == '/'; length--)
+        path[length - 1] = '\0';
     for (char *at = path; *at; at++) {
         if (*at == '/' && at != path) {
             *at = '\0';
-            mkdir(path, 0777); /* the last one tells whether it went well */
+            one_make(path); /* the last one tells whether it went well */
             *at = '/';
         }
     }
-    if (mkdir(path, 0777) != 0 && (errno != EEXIST || stat(path, &info) != 0 || !S_ISDIR(info.st_mode)))
+    if (!one_make(path) && (errno != EEXIST || stat(path, &info) != 0 || !S_ISDIR(info.st_mode)))
         status = status_set(STATUS_INVALID, "%s: cannot be made: %s; name a folder that can be written", directory,
                             strerror(errno));
     free(path);
@@ -287,7 +294,7 @@ static enum status take(const char *directory, bool ours, int *lock)
         return status;
     }
     if (ours)
-        temporary_sweep(descriptor);
+        temporary_sweep(descriptor, true);
     *lock = descriptor;
     return STATUS_OK;
 }

@@ -30,7 +30,8 @@ struct place {
     bool borrowed; /* of a folder that is taken */
     char name[NAME_MAX + 1];
 };
-/* The place of a path. `named`: by the user, who means what a link stands for. False: errno says why. */
+/* The place of a path. `named`: by the user, who means what a link stands for; what
+   killed programs left beside it is removed. False: errno says why. */
 bool place_open(const char *path, bool named, struct place *place);
 void place_close(struct place *place);
 /* Put a file made in the place's folder, and synced, under its name, which outlasts a power cut when this is true. */

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/random.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -71,6 +72,15 @@ static void name_drop(int folder, const char *text)
     }
 }
 
+/* Lock what was made. False: a sweep took it for one that is left, before it was locked. */
+static bool mark(int descriptor)
+{
+    struct stat info;
+    if (flock(descriptor, LOCK_EX | LOCK_NB) != 0)
+        return errno != EWOULDBLOCK; /* without locks nobody sweeps it, either */
+    return fstat(descriptor, &info) != 0 || info.st_nlink > 0;
+}
+
 /* Opens under a name that nobody foresees, and that is not there yet: -1 where that cannot be. */
 static int made_open(int folder, char made[TEMPORARY_NAME], int (*open_new)(int folder, const char *name))
 {
@@ -87,6 +97,11 @@ static int made_open(int folder, char made[TEMPORARY_NAME], int (*open_new)(int 
             *end++ = letters[random[k] % (sizeof letters - 1)];
         *end = '\0';
         descriptor = open_new(folder, made);
+        if (descriptor >= 0 && !mark(descriptor)) {
+            close(descriptor);
+            descriptor = -1;
+            errno = EEXIST;
+        }
     }
     return descriptor;
 }
@@ -198,9 +213,21 @@ static void left_remove(int folder, const char *name)
         temporary_remove(folder, name, inside);
 }
 
-void temporary_sweep(int folder)
+/* Only where no process holds it. */
+static void dead_remove(int folder, const char *name)
 {
-    all_remove(folder, left_remove);
+    if (strncmp(name, pattern, strlen(pattern)) != 0)
+        return;
+    int held = openat(folder, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (held >= 0 && flock(held, LOCK_EX | LOCK_NB) == 0)
+        left_remove(folder, name);
+    if (held >= 0)
+        close(held);
+}
+
+void temporary_sweep(int folder, bool ours)
+{
+    all_remove(folder, ours ? left_remove : dead_remove);
 }
 
 /* `old` becomes `new` in the list of groups; 0 is a free place. */

@@ -1,6 +1,6 @@
 /* What is on its way to its place: files and folders made beside it, under names of one pattern that no user gives.
    They go when a signal ends the program, and what a killed one left is swept away by the next that works in the
-   folder. */
+   folder: each is locked by who makes it, until its process ends. */
 #ifndef SASBENCH_DATA_TEMPORARY_H
 #define SASBENCH_DATA_TEMPORARY_H
 
@@ -10,7 +10,7 @@
 
 enum { TEMPORARY_NAME = 24 };
 /* An empty file open for writing, or an empty folder that nobody else may enter, in an open folder; `made` is its name
-   there. Returns its descriptor; -1: errno says why. Each is followed by temporary_moved or temporary_remove, until
+   there. Returns its descriptor, by which it is locked; -1: errno says why. Each is followed by temporary_moved or temporary_remove, until
    which `folder` stays open. */
 int temporary_file(int folder, char made[TEMPORARY_NAME]);
 int temporary_folder(int folder, char made[TEMPORARY_NAME]);
@@ -23,8 +23,8 @@ void temporary_moved(int folder, const char *made);
 /* `inside`: the descriptor of a folder, which is closed and removed with the files in it; -1 for a file. errno stays.
  */
 void temporary_remove(int folder, const char *made, int inside);
-/* What killed programs left in a folder that is ours alone (folder.h). */
-void temporary_sweep(int folder);
+/* What killed programs left. `ours`: the folder is ours alone (folder.h), also where a file system knows no locks. */
+void temporary_sweep(int folder, bool ours);
 
 /* Between these two no signal ends the program: what is made there is known when one does. `before` is the thread's
    signal mask. */

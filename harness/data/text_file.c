@@ -11,9 +11,11 @@
 
 static void text_file_free(struct text_file *file)
 {
+    if (file->held >= 0)
+        close(file->held);
     place_close(&file->place);
     free(file->path);
-    *file = (struct text_file){.place.folder = -1};
+    *file = (struct text_file){.place.folder = -1, .held = -1};
 }
 
 /* The standard stream that `info` is, by whatever name it was given (/dev/stdout, a file that it is led into), or -1:
@@ -29,12 +31,13 @@ static int standard_stream(const struct stat *info)
 
 static FILE *beside_open(struct text_file *file)
 {
-    int descriptor = temporary_file(file->place.folder, file->beside);
-    FILE *stream = descriptor < 0 ? NULL : fdopen(descriptor, "w");
-    if (!stream && descriptor >= 0) {
-        close(descriptor);
+    file->held = temporary_file(file->place.folder, file->beside);
+    int copy = file->held < 0 ? -1 : fcntl(file->held, F_DUPFD_CLOEXEC, 0);
+    FILE *stream = copy < 0 ? NULL : fdopen(copy, "w");
+    if (!stream && copy >= 0)
+        close(copy);
+    if (!stream && file->held >= 0)
         temporary_remove(file->place.folder, file->beside, -1);
-    }
     return stream;
 }
 
@@ -59,7 +62,7 @@ static enum status file_open(const char *path, bool named, struct text_file *fil
     struct stat info;
     bool exists = named && stat(path, &info) == 0;
     int standard = exists ? standard_stream(&info) : -1;
-    *file = (struct text_file){.path = strdup(path), .place.folder = -1};
+    *file = (struct text_file){.path = strdup(path), .place.folder = -1, .held = -1};
     if (file->path && standard >= 0)
         file->stream = standard_open(standard);
     else if (file->path && exists && !S_ISREG(info.st_mode))
@@ -68,8 +71,11 @@ static enum status file_open(const char *path, bool named, struct text_file *fil
         file->stream = beside_open(file);
     if (file->stream)
         return STATUS_OK;
+    /* A full disk may be free again for the same call. */
+    const bool full = errno == ENOSPC || errno == EDQUOT || errno == EIO;
     enum status status =
-        status_set(STATUS_INVALID, "%s: cannot be written: %s; name a place that can", path, strerror(errno));
+        full ? status_set(STATUS_FAILED, "%s: cannot be written: %s", path, strerror(errno))
+             : status_set(STATUS_INVALID, "%s: cannot be written: %s; name a place that can", path, strerror(errno));
     text_file_free(file);
     return status;
 }

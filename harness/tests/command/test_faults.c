@@ -22,7 +22,7 @@
 /* A line of the shell, in the folder; returns its exit status. */
 static int shell(const char *line)
 {
-    char command[2000];
+    char command[3000];
     snprintf(command, sizeof command, "cd '%s' && { %s; } >>out 2>>err", folder, line);
     int status = system(command);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
@@ -344,6 +344,40 @@ static void files_beyond_the_limit(void **state)
     }
 }
 
+#define SWEEP                                                                                                          \
+    "\"$SASBENCH_PROGRAM\" sweep study/quick -a bp_zeropad:factor=2 -a bp_zeropad:factor=4 -a bp_zeropad:factor=8 -o " \
+    "r"
+
+/* What a report lacks is told where it is called, too, with the reason. */
+static void reports_that_lack_drawings(void **state)
+{
+    (void)state;
+    assert_shell(SWEEP " && rm r/*.svg r/*.png && mkdir r/study_quick-error_time.svg; rm -f err", 0);
+    assert_shell("\"$SASBENCH_PROGRAM\" report r", 1);
+    assert_says("err", "sasbench: r: 1 of 4 drawings could not be drawn; the first: error_time could not be drawn: "
+                       "r/study_quick-error_time.svg: cannot be written: Is a directory");
+    assert_shell("test -s r/report.html && test -s r/report.md && rmdir r/study_quick-error_time.svg", 0);
+    assert_nothing_temporary();
+    assert_shell("\"$SASBENCH_PROGRAM\" report r && test $(ls r | grep -c svg) = 4", 0);
+}
+
+/* Disks of all sizes up to that of a whole report: it is whole, or its failure names the disk. */
+static void reports_on_full_disks(void **state)
+{
+    (void)state;
+    if (shell("unshare -rm mount -t tmpfs tmpfs .") != 0)
+        skip(); /* where no file system can be mounted, not even in a name space of one's own */
+    assert_shell(SWEEP " && rm r/*.svg r/*.png && mkdir m", 0);
+    assert_shell("rm -f err; unshare -rm sh -c 'mount -t tmpfs tmpfs m; full=0; for size in $(seq 40 12 400); do"
+                 " mount -o remount,size=${size}k m; rm -rf m/r; cp -r r m/r 2>/dev/null || continue;"
+                 " \"$SASBENCH_PROGRAM\" report m/r 2>said; code=$?; cat said >&2;"
+                 " if [ $code = 0 ]; then [ -s m/r/report.html ] && [ $(ls m/r | grep -c svg) = 4 ] || exit 3;"
+                 " else full=1; [ $code = 1 ] && [ $(wc -l <said) = 1 ] && grep -q \"No space left on device\" said || "
+                 "exit 4; fi;"
+                 " ls -A m/r | grep -q \"^[.]sasbench\" && exit 5; done; exit $((1 - full))'",
+                 0);
+}
+
 /* Filtered echoes replace a file whole or not at all. */
 static void filtered_echoes_are_whole(void **state)
 {
@@ -380,6 +414,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(standard_output_by_name, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(folder_names, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(files_beyond_the_limit, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(reports_that_lack_drawings, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(reports_on_full_disks, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(filtered_echoes_are_whole, folder_make, folder_remove),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
 
@@ -237,12 +238,45 @@ static void killed_reproduction_resumes(void **state)
     check_resumed("reproduce", REPRODUCE("reproduce"), REPRODUCE("reproduce-killed"));
 }
 
+/* A file that the user named is the old one or a new one that is whole, whenever the command is killed; what it had
+   begun goes with the next. */
+static void killed_files_are_whole(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *arguments[ARGUMENTS_MAX], *file;
+    } commands[] = {
+        {{"simulate", "study/quick", "-o", "files/echoes.mat"}, "files/echoes.mat"},
+        {{"image", "--scene", "study/quick", "-a", "bp_sinc", "-o", "files/image.mat"}, "files/image.mat"},
+        {{"image", "--scene", "study/quick", "-a", "bp_sinc", "-o", "files/image.png"}, "files/image.png"},
+    };
+    struct random random = random_seed(9, 0);
+    assert_int_equal(mkdir(path_of("files"), 0777), 0);
+    for (size_t c = 0; c < COUNT_OF(commands); c++) {
+        size_t whole_size, size;
+        const double duration = seconds_of(commands[c].arguments);
+        free(bytes_read(commands[c].file, &whole_size));
+        for (int k = 0, count = 5 * kills_wanted(); k < count; k++) {
+            text_write(commands[c].file, "old\n");
+            kill_after(commands[c].arguments, duration * random_uniform(&random), SIGKILL);
+            char *bytes = bytes_read(commands[c].file, &size);
+            if (strcmp(bytes, "old\n") != 0 && labs((long)size - (long)whole_size) > 100) /* the date is packed, too */
+                fail_msg("%s has %zu bytes, the whole one %zu", commands[c].file, size, whole_size);
+            free(bytes);
+        }
+        program_good(commands[c].arguments);
+    }
+    char *names = names_of("files");
+    assert_string_equal(names, ".\n..\nechoes.mat\nimage.mat\nimage.png\n");
+    free(names);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(killed_run_resumes),          cmocka_unit_test(killed_sweep_resumes),
-        cmocka_unit_test(interrupted_run_is_told),     cmocka_unit_test(interrupted_sweep_leaves_tables),
-        cmocka_unit_test(killed_reproduction_resumes),
+        cmocka_unit_test(killed_run_resumes),      cmocka_unit_test(killed_sweep_resumes),
+        cmocka_unit_test(interrupted_run_is_told), cmocka_unit_test(interrupted_sweep_leaves_tables),
+        cmocka_unit_test(killed_files_are_whole),  cmocka_unit_test(killed_reproduction_resumes),
     };
     return cmocka_run_group_tests(tests, inputs_make, folder_remove);
 }
