@@ -92,6 +92,7 @@ static enum status check_scalars(const struct acquisition *a, const char *place)
         {"fs", " Hz", a->fs, false},
         {"bandwidth", " Hz", a->bandwidth, false},
         {"wavelength (sound_speed/fc)", " m", a->sound_speed / a->fc, false},
+        {"pri", " s", a->pri, true},
         {"tx_length", " m", a->tx_length, true},
         {"rx_length", " m", a->rx_length, true},
     };

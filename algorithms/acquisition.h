@@ -31,6 +31,7 @@ struct acquisition {
     struct vector *tx;           /* [pings] m: transmitter at emission */
     struct vector *rx;           /* [pings][receivers] m: receivers at the transmitter's emission */
     struct vector *velocity;     /* [pings] m/s: of the receivers during propagation; zero = stop-and-hop */
+    double pri;                  /* s: from each ping to the next; 0 = unknown */
     double tx_length, rx_length; /* m: element lengths along the track; 0 = unknown */
     double echo_sine;            /* the echoes come from |sin theta_t| <= this; 0 = unknown, INFINITY = from anywhere */
     double echo_squint; /* rad: theta_t counts from the beam's axis, which points so far ahead of broadside (r > 0) */

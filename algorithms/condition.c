@@ -157,6 +157,7 @@ struct extent {
     double delay;  /* s: the longest that lies in a record */
     double places; /* samples: the largest magnitude of a sample coordinate */
     double slope;  /* s/m: the steepest along the track, less that on the beam's axis */
+    int ends[2];   /* receivers at the ends of the array, however it lies and is numbered */
 };
 
 /* m: how far ping p stands from where it would see a place on its beam's axis; beyond the axis it is negative. Seen are
@@ -208,12 +209,25 @@ static struct vector place_at_edge(const struct acquisition *a, double sine, int
     return (struct vector){place.x + inside, place.y, place.z};
 }
 
+/* The receiver farthest from `from`, at the first ping. */
+static int receiver_farthest(const struct acquisition *a, struct vector from)
+{
+    int farthest = 0;
+    double most = -1;
+    for (int m = 0; m < a->receivers; m++) {
+        const double away = hypot(hypot(a->rx[m].x - from.x, a->rx[m].y - from.y), a->rx[m].z - from.z);
+        farthest = away > most ? m : farthest;
+        most = fmax(most, away);
+    }
+    return farthest;
+}
+
 static void extent_add_pings(const struct acquisition *a, double sine, struct vector p, const int pings[3],
                              struct extent *extent)
 {
     const double step = a->sound_speed / a->fc / 100, axis = -2 * sin(a->echo_squint) / a->sound_speed;
     for (int n = 0; n < 6; n++) {
-        const int ping = pings[n / 2], m = n % 2 ? a->receivers - 1 : 0;
+        const int ping = pings[n / 2], m = extent->ends[n % 2];
         const int next = n / 2 == 0 ? ping - 1 : n / 2 == 1 ? ping + 1 : -1;
         if (ping < 0)
             continue;
@@ -260,8 +274,10 @@ static void extent_search(const struct acquisition *a, double sine, const struct
 
 static struct extent extent_of(const struct problem *problem)
 {
-    const double sine = condition_beam_sine(problem->acquisition);
-    struct extent extent = {0, 0, 0};
+    const struct acquisition *a = problem->acquisition;
+    const double sine = condition_beam_sine(a);
+    struct extent extent = {.ends = {receiver_farthest(a, a->rx[0])}};
+    extent.ends[1] = receiver_farthest(a, a->rx[extent.ends[0]]);
     for (int k = 0; k < problem->patch_count; k++) {
         const struct grid *g = &problem->patches[k];
         bool seen = false;
@@ -269,12 +285,12 @@ static struct extent extent_of(const struct problem *problem)
             double u = n < 4 ? n % 2 : 0.5, w = n < 4 ? n / 2 : 0.5;
             const struct vector place = grid_point(g, w * (g->r_count - 1), u * (g->x_count - 1));
             int pings[3];
-            pings_seeing(problem->acquisition, sine, place, pings);
-            extent_add_pings(problem->acquisition, sine, place, pings, &extent);
+            pings_seeing(a, sine, place, pings);
+            extent_add_pings(a, sine, place, pings, &extent);
             seen = seen || pings[0] >= 0;
         }
         if (!seen)
-            extent_search(problem->acquisition, sine, g, &extent);
+            extent_search(a, sine, g, &extent);
     }
     return extent;
 }
@@ -287,22 +303,63 @@ static void add(struct condition *list, int room, int *count, struct condition c
         list[(*count)++] = condition;
 }
 
-static double speed_of(const struct acquisition *a)
+double condition_slope(const struct problem *problem)
+{
+    return extent_of(problem).slope;
+}
+
+static double length_of(struct vector v)
+{
+    return sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
+
+double condition_speed(const struct acquisition *a)
 {
     double fastest = 0;
     for (int p = 0; p < a->pings; p++)
-        fastest = fmax(fastest, sqrt(pow(a->velocity[p].x, 2) + pow(a->velocity[p].y, 2) + pow(a->velocity[p].z, 2)));
+        fastest = fmax(fastest, length_of(a->velocity[p]));
     return fastest;
+}
+
+/* s: the way from ping p to the next over the mean speed of both; 0 where they do not move. */
+static double interval_after(const struct acquisition *a, int p)
+{
+    const struct vector *tx = a->tx + p;
+    const double speed = (length_of(a->velocity[p]) + length_of(a->velocity[p + 1])) / 2;
+    const double way = length_of((struct vector){tx[1].x - tx[0].x, tx[1].y - tx[0].y, tx[1].z - tx[0].z});
+    return speed > 0 ? way / speed : 0;
+}
+
+/* s: the time from ping to ping; where it is not stated the median of what the ways take, which a way from one leg to
+   the next does not change. 0: unknown, nothing moves. */
+static double ping_interval(const struct acquisition *a)
+{
+    double low = 0, high = 0;
+    int moving = 0;
+    if (a->pri > 0)
+        return a->pri;
+    for (int p = 0; p + 1 < a->pings; p++) {
+        high = fmax(high, interval_after(a, p));
+        moving += interval_after(a, p) > 0;
+    }
+    for (int k = 0; k < 50; k++) {
+        const double middle = (low + high) / 2;
+        int below = 0;
+        for (int p = 0; p + 1 < a->pings; p++)
+            below += interval_after(a, p) > 0 && interval_after(a, p) <= middle;
+        *(2 * below >= moving ? &high : &low) = middle;
+    }
+    return high;
 }
 
 int conditions_general(const struct problem *problem, struct condition *list, int room)
 {
     const struct acquisition *a = problem->acquisition;
     const struct extent extent = extent_of(problem);
-    double speed = speed_of(a);
+    const double interval = ping_interval(a);
     int count = 0;
     add(list, room, &count,
-        (struct condition){"subsonic", 1 - speed / a->sound_speed, 0, true, SEVERITY_REFUSE, "1 - |v|/c",
+        (struct condition){"subsonic", 1 - condition_speed(a) / a->sound_speed, 0, true, SEVERITY_REFUSE, "1 - |v|/c",
                            "a lower speed"});
     add(list, room, &count,
         (struct condition){"sampled", a->bandwidth / a->fs, 1, false, SEVERITY_REFUSE, "bandwidth over sampling rate",
@@ -314,8 +371,7 @@ int conditions_general(const struct problem *problem, struct condition *list, in
     add(list, room, &count,
         (struct condition){"index_digits", extent.places, INT_MAX, false, SEVERITY_REFUSE,
                            "the largest sample coordinate that is read", "shorter records"});
-    if (a->pings > 1 && speed > 0) {
-        double interval = fabs(a->tx[a->pings - 1].x - a->tx[0].x) / (a->pings - 1) / speed;
+    if (a->pings > 1 && interval > 0) {
         struct condition unambiguous = {
             "unambiguous",
             extent.delay / interval,
@@ -327,72 +383,5 @@ int conditions_general(const struct problem *problem, struct condition *list, in
         condition_cure_add(&unambiguous, " than %.3g s", extent.delay);
         add(list, room, &count, unambiguous);
     }
-    return count;
-}
-
-/* Phase centres lie M d/2 from ping to ping without gaps, or n deep where the spacing is a whole part of that. */
-struct condition condition_ghost(const struct acquisition *a, double spacing)
-{
-    const double half = fabs(condition_offset(a, 2) - condition_offset(a, 0)) / (a->receivers - 1) * a->receivers / 2;
-    const double even = half / fmax(1, round(half / fabs(spacing))), speed = speed_of(a);
-    struct condition ghost = {"ghost",
-                              fabs(fabs(spacing) / even - 1),
-                              1e-3,
-                              false,
-                              SEVERITY_WARN,
-                              "gaps or overlaps from ping to ping, which make ghosts: the spacing over half the array, "
-                              "or over a whole part of it, less 1",
-                              ""};
-    condition_cure_add(&ghost, "pings %.5g m apart in place of %.5g m", even, fabs(spacing));
-    if (speed > 0)
-        condition_cure_add(&ghost, ", a PRI of %.5g s at %.5g m/s", even / speed, speed);
-    return ghost;
-}
-
-/* Near enough to a uniform straight track that gaps between the pings are what `track` has: no ping is farther off than
-   a quarter of the spacing along the track, or the spacing across it, and the receivers stay where they are on it. */
-static bool is_sampled_evenly(const struct acquisition *a, struct straight_track *track)
-{
-    if (acquisition_is_straight(a, track))
-        return true;
-    acquisition_unevenness(a, track);
-    const double spacing = fabs(track->spacing);
-    for (int p = 0; p < a->pings; p++) {
-        const struct vector *rx = a->rx + (size_t)p * (size_t)a->receivers;
-        if (!(fabs(a->tx[p].x - track->x_first - p * track->spacing) <= spacing / 4
-              && fmax(fabs(a->tx[p].y - a->tx[0].y), fabs(a->tx[p].z - a->tx[0].z)) <= spacing))
-            return false;
-        for (int m = 0; m < a->receivers; m++)
-            if (!(fabs(rx[m].x - a->tx[p].x - a->rx[m].x + a->tx[0].x) <= spacing / 4))
-                return false;
-    }
-    return spacing > 0;
-}
-
-struct condition condition_doppler(const struct problem *problem, double spacing)
-{
-    const struct acquisition *a = problem->acquisition;
-    return (struct condition){"doppler",
-                              (a->fc + a->bandwidth / 2) * extent_of(problem).slope * 2 * fabs(spacing) / a->receivers,
-                              1.05,
-                              false,
-                              SEVERITY_WARN,
-                              "the widest azimuth wavenumber in the beam over what the receivers sample, M/(2 spacing)",
-                              "pings closer together, more receivers, a narrower beam or a lower speed"};
-}
-
-int conditions_sampled(const struct problem *problem, struct condition *list, int room)
-{
-    const struct acquisition *a = problem->acquisition;
-    struct straight_track track;
-    int count = conditions_general(problem, list, room);
-    add(list, room, &count,
-        (struct condition){"above_dc", a->fc - a->bandwidth / 2, 0, true, SEVERITY_WARN,
-                           "the lowest frequency fc - B/2 (Hz)", "a higher carrier or a narrower band"});
-    if (a->pings < 2 || !is_sampled_evenly(a, &track))
-        return count;
-    add(list, room, &count, condition_doppler(problem, track.spacing));
-    if (a->receivers > 1)
-        add(list, room, &count, condition_ghost(a, track.spacing));
     return count;
 }

@@ -52,7 +52,7 @@ int conditions_general(const struct problem *problem, struct condition *list, in
    have. */
 int conditions_sampled(const struct problem *problem, struct condition *list, int room);
 
-enum { CONDITIONS_SCENE = 8 };
+enum { CONDITIONS_SCENE = 9 };
 /* Fill `list` with what the scene must fulfil whichever algorithm images it, and return the number: units, pixels as
    fine as the image's resolution, pixels and patches within the records, pixels within the beam, the beam within the
    records. All of them warn. */
@@ -65,8 +65,14 @@ enum status condition_targets_shown(const struct problem *problem);
 /* Of a straight track, `spacing` m from ping to ping: how much of the azimuth band is sampled; with several receivers,
    ghosts. */
 struct condition condition_doppler(const struct problem *problem, double spacing);
+/* Let the cure be what the echoes do not say of their beam, where they do not. */
+void condition_beam_named(const struct acquisition *acquisition, struct condition *condition);
 struct condition condition_ghost(const struct acquisition *acquisition, double spacing);
 
+/* m/s: of the fastest ping. */
+double condition_speed(const struct acquisition *acquisition);
+/* s/m: the steepest delay along x, less that on the beam's axis, over places of the patches and pings that see them. */
+double condition_slope(const struct problem *problem);
 /* Offset of the receiver that is n/2 of the way from the least to the greatest, m along the track; n = 0, 1, 2. */
 double condition_offset(const struct acquisition *acquisition, int n);
 /* |sin theta_t| up to which the echoes count: their stated truncation, where both elements' amplitude falls to a

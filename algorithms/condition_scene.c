@@ -12,6 +12,7 @@ enum {
 
 /* Of the shortest an element, a pitch or a pixel is, and the widest a band: what lies beyond was typed in kHz. */
 static const double WAVELENGTH_MOST = 10, CARRIER_MOST = 2000;
+static const double SPACING_MOST = 0.01;  /* of the way from ping to ping */
 static const double CUT_PIXELS_MOST = 20; /* %: a swath may end with the records, or with the track */
 static const double CUT_MOST = 0.05;      /* of a place's echoes, before it counts as cut */
 
@@ -38,10 +39,15 @@ static double axis_component(struct vector slope, const struct grid *g, int axis
                      : slope.x * sin(g->angle_rad) + slope.y * cos(g->angle_rad);
 }
 
+static double distance(struct vector a, struct vector b)
+{
+    return sqrt(pow(b.x - a.x, 2) + pow(b.y - a.y, 2) + pow(b.z - a.z, 2));
+}
+
 /* Unit vector from a to b, added to `sum`. */
 static void direction_add(struct vector a, struct vector b, struct vector *sum)
 {
-    const double length = sqrt(pow(b.x - a.x, 2) + pow(b.y - a.y, 2) + pow(b.z - a.z, 2));
+    const double length = distance(a, b);
     if (!(length > 0))
         return;
     sum->x += (b.x - a.x) / length;
@@ -157,27 +163,56 @@ static double longest_step(const struct problem *problem)
     const struct acquisition *a = problem->acquisition;
     double longest = fmax(a->tx_length, a->rx_length);
     if (a->receivers > 1)
-        longest = fmax(longest, fabs(a->rx[1].x - a->rx[0].x));
+        longest = fmax(longest, distance(a->rx[0], a->rx[1]));
     if (a->pings > 1)
-        longest =
-            fmax(longest, hypot(hypot(a->tx[1].x - a->tx[0].x, a->tx[1].y - a->tx[0].y), a->tx[1].z - a->tx[0].z));
+        longest = fmax(longest, distance(a->tx[0], a->tx[1]));
     for (int k = 0; k < problem->patch_count; k++)
         longest = fmax(longest, fmax(problem->patches[k].x_step, problem->patches[k].r_step));
     return longest;
 }
 
-enum { WAVELENGTH, NARROW_BAND, PIXEL_X, PIXEL_R, PIXELS_MET, PATCHES_MET, PIXELS_SEEN, BEAM_IN_RECORD };
+/* How far the ways that speed and pri tell lie off those between the pings: both are stated, but for stop-and-hop. */
+struct motion {
+    double off;         /* of the whole track, over its length; 0 where nothing moves or no pri is known */
+    double told, found; /* m: the mean way from ping to ping */
+};
+
+static struct motion motion_of(const struct acquisition *a)
+{
+    struct motion motion = {0, 0, 0};
+    struct vector way = {0, 0, 0}; /* by trapezoids: speeds made of differences of places tell it exactly */
+    if (a->pings < 2 || !(a->pri > 0))
+        return motion;
+    for (int p = 0; p + 1 < a->pings; p++) {
+        const struct vector *v = a->velocity + p;
+        const struct vector step = {(v[0].x + v[1].x) / 2 * a->pri, (v[0].y + v[1].y) / 2 * a->pri,
+                                    (v[0].z + v[1].z) / 2 * a->pri};
+        way = (struct vector){way.x + step.x, way.y + step.y, way.z + step.z};
+        motion.told += distance((struct vector){0, 0, 0}, step) / (a->pings - 1);
+        motion.found += distance(a->tx[p], a->tx[p + 1]) / (a->pings - 1);
+    }
+    const struct vector *first = a->tx, *last = a->tx + a->pings - 1;
+    if (motion.told > 0 && motion.found > 0)
+        motion.off = distance((struct vector){last->x - first->x, last->y - first->y, last->z - first->z}, way)
+                     / (motion.found * (a->pings - 1));
+    return motion;
+}
+
+enum { WAVELENGTH, NARROW_BAND, PING_SPACING, PIXEL_X, PIXEL_R, PIXELS_MET, PATCHES_MET, PIXELS_SEEN, BEAM_IN_RECORD };
 
 int conditions_scene(const struct problem *problem, struct condition list[CONDITIONS_SCENE])
 {
     const struct acquisition *a = problem->acquisition;
     const struct survey survey = survey_make(problem);
+    const struct motion motion = motion_of(a);
     struct condition all[CONDITIONS_SCENE] = {
         [WAVELENGTH] = {"wavelength", a->sound_speed / a->fc / longest_step(problem), WAVELENGTH_MOST, false,
                         SEVERITY_WARN, "the wavelength over the longest of element, pitch, ping spacing and pixel",
                         "fc in Hz, not kHz"},
         [NARROW_BAND] = {"narrow_band", a->fc / a->bandwidth, CARRIER_MOST, false, SEVERITY_WARN,
                          "the carrier over the bandwidth", "bandwidth and fs in Hz, not kHz"},
+        [PING_SPACING] = {"ping_spacing", motion.off, SPACING_MOST, false, SEVERITY_WARN,
+                          "how far speed times pri lies off the way from ping to ping, over it", ""},
         [PIXEL_X] = {"pixel_x", survey.x.worst, 1, false, SEVERITY_WARN,
                      "the pixels' step along x over the resolution there",
                      "a smaller step, or targets may fall between the pixels"},
@@ -197,6 +232,10 @@ int conditions_scene(const struct problem *problem, struct condition list[CONDIT
                             "how many of the pixels lose echoes from inside the beam at the ends of the records (%)",
                             "longer records, or a grid farther from their ends"},
     };
+    condition_cure_add(&all[PING_SPACING],
+                       "speed times pri is %.5g m, the pings lie %.5g m apart: one of speed, pri and spacing is to be "
+                       "another; or speed 0, stop-and-hop",
+                       motion.told, motion.found);
     for (int k = PIXEL_X; k <= PIXEL_R; k++)
         if (!condition_holds(&all[k]))
             condition_cure_add(&all[k], ": at most %.3g m",

@@ -188,17 +188,19 @@ static struct condition formula(const struct rma_view *view)
                               "lower speed"};
 }
 
-static struct condition predicted_error(const struct rma_view *view)
+struct condition rma_predicted_error(const struct rma_view *view)
 {
     double error = prediction_error(view);
-    return (struct condition){"predicted_error",
-                              error,
-                              ERROR_LIMIT,
-                              false,
-                              error <= view->method->error_limit ? SEVERITY_WARN : SEVERITY_REFUSE,
-                              "the error predicted for azimuth slices through point targets (relative L2)",
-                              "more pings in the beam, columns within the track, pings closer together, or rows "
-                              "farther away"};
+    struct condition condition = {"predicted_error",
+                                  error,
+                                  ERROR_LIMIT,
+                                  false,
+                                  error <= view->method->error_limit ? SEVERITY_WARN : SEVERITY_REFUSE,
+                                  "the error predicted for azimuth slices through point targets (relative L2)",
+                                  "more pings in the beam, columns within the track, pings closer together, or rows "
+                                  "farther away"};
+    condition_beam_named(view->problem->acquisition, &condition);
+    return condition;
 }
 
 bool azimuth_requirements(const struct problem *problem, struct condition *list, int *count,
@@ -254,7 +256,7 @@ static int prediction_conditions(const struct rma_view *view, const struct strai
                                  int count)
 {
     struct condition causes[] = {condition_doppler(view->problem, track->spacing), formula(view)};
-    struct condition error = predicted_error(view);
+    struct condition error = rma_predicted_error(view);
     if (view->problem->acquisition->receivers > 1)
         all[count++] = condition_ghost(view->problem->acquisition, track->spacing);
     all[count++] = spa_amplitude(view);

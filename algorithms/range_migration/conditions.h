@@ -43,6 +43,9 @@ bool azimuth_requirements(const struct problem *problem, struct condition *list,
    for that of its transmitter. Its value is NAN without memory. */
 int rma_conditions(const struct problem *problem, const struct rma_method *method, struct condition *list, int room);
 
+/* The last of them, which refuses beyond the method's error_limit. */
+struct condition rma_predicted_error(const struct rma_view *view);
+
 /* STATUS_UNSUPPORTED as conditions_check, STATUS_FAILED where a value is NAN without memory. */
 enum status rma_conditions_check(const struct rma_method *method, const struct condition *list, int count);
 

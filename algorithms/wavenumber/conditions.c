@@ -112,6 +112,7 @@ static void beam_conditions(const struct problem *problem, const struct straight
                            "the widest azimuth wavenumber in the beam, off its centroid, over what the pings sample, "
                            "1/(2 spacing)",
                            "pings closer together, or a narrower beam"};
+    condition_beam_named(problem->acquisition, &all[*count - 1]);
     all[(*count)++] = (struct condition){"stationary",
                                          worst.stationary,
                                          0.01,
@@ -128,20 +129,6 @@ struct rma_view wk_view_of(const struct problem *problem, const struct straight_
     view.converts = false;
     view.bounds = (struct rma_bounds){.sine = rma_widest_sine(problem->acquisition), .way = INFINITY};
     return view;
-}
-
-/* As range migration's. */
-static struct condition predicted_error(const struct problem *problem, const struct straight_track *track)
-{
-    const struct rma_view view = wk_view_of(problem, track);
-    return (struct condition){"predicted_error",
-                              prediction_error(&view),
-                              0.1,
-                              false,
-                              SEVERITY_REFUSE,
-                              "the error predicted for azimuth slices through point targets (relative L2)",
-                              "more pings in the beam, columns within the track, pings closer together, or rows "
-                              "farther away"};
 }
 
 /* Those that cost little; the track is filled where all of them hold. */
@@ -177,8 +164,10 @@ int wk_conditions(const struct problem *problem, const void *options, struct con
     struct straight_track track;
     struct condition all[CONDITIONS_MAX];
     int count = requirements(problem, all, &track);
-    if (conditions_accept(all, count))
-        all[count++] = predicted_error(problem, &track);
+    if (conditions_accept(all, count)) {
+        const struct rma_view view = wk_view_of(problem, &track);
+        all[count++] = rma_predicted_error(&view);
+    }
     if (conditions_accept(all, count)) {
         all[count] = ghosts_condition(problem, &track);
         all[count++].severity = SEVERITY_REFUSE; /* nothing else here predicts what lies within a patch */

@@ -80,7 +80,7 @@ static enum status check_places(const struct reading *reading)
     }
     const struct acquisition *a = &reading->scene.acquisition;
     double last_offset = reading->first_offset_m + (a->receivers - 1) * reading->pitch_m;
-    double spacing = reading->spacing_m != 0 ? reading->spacing_m : reading->speed_m_s * reading->pri_s;
+    double spacing = reading->spacing_m != 0 ? reading->spacing_m : reading->speed_m_s * a->pri;
     double last = reading->x_offset_m + reading->x_first_m + (a->pings - 1) * spacing;
     if (key_member(reading->track, "spacing")) {
         if (!(reading->spacing_m != 0)) {

@@ -49,7 +49,7 @@ static const struct key keys[] = {
     {"array", "first_offset", "m", &REAL, AT(reading, first_offset_m), 0, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
     {"array", "pitch", "m", &REAL, AT(reading, pitch_m), 0, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
     {"track", "speed", "m/s", &REAL, AT(reading, speed_m_s), 0, ANY, NULL},
-    {"track", "pri", "s", &REAL, AT(reading, pri_s), REQUIRED, POSITIVE, NULL},
+    {"track", "pri", "s", &REAL, AT(reading, scene.acquisition.pri), REQUIRED, POSITIVE, NULL},
     {"track", "spacing", "m", &LATER_REAL, AT(reading, spacing_m), 0, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
     {"track", "pings", "", &INTEGER, AT(reading, scene.acquisition.pings), 0, 1, INT_MAX, NULL},
     {"track", "x_first", "m", &REAL, AT(reading, x_first_m), 0, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},

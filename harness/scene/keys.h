@@ -25,9 +25,9 @@ struct reading {
     struct pose *poses; /* [pings] malloc'ed; NULL until they are made */
     config_setting_t *base, *sonar, *pulse, *array, *track, *record, *beam, *area, *targets, *noise, *image;
     double first_offset_m, pitch_m;
-    double speed_m_s, pri_s, spacing_m, x_first_m; /* spacing 0: that of speed and pri */
-    double squint_deg, angle_deg;                  /* of the beam; of the image's axes */
-    double x_offset_m;                             /* added to every x of transmitters, targets and pixels */
+    double speed_m_s, spacing_m, x_first_m; /* spacing 0: that of speed and pri */
+    double squint_deg, angle_deg;           /* of the beam; of the image's axes */
+    double x_offset_m;                      /* added to every x of transmitters, targets and pixels */
     int first_sample;
     double time_offset_s; /* added to the time of each record's first sample */
     config_setting_t *points, *fields;

@@ -22,6 +22,7 @@ enum echo_variable {
     TX,
     RX,
     VELOCITY,
+    PRI,
     TX_LENGTH,
     RX_LENGTH,
     BEAM_LIMIT,
@@ -47,6 +48,7 @@ static const struct wanted echo_variables[ECHO_VARIABLES] = {
     [TX] = {"tx", KIND_REAL, false, "a real array [3 x P] in m"},
     [RX] = {"rx", KIND_REAL, false, "a real array [3 x M x P] in m"},
     [VELOCITY] = {"velocity", KIND_REAL, false, "a real array [3 x 1] or [3 x P] in m/s"},
+    [PRI] = {"pri", KIND_SCALAR, true, "a scalar in s"},
     [TX_LENGTH] = {"tx_length", KIND_SCALAR, true, "a scalar in m"},
     [RX_LENGTH] = {"rx_length", KIND_SCALAR, true, "a scalar in m"},
     [BEAM_LIMIT] = {"beam_limit", KIND_SCALAR, true, "a scalar in (0, 1]"},
@@ -244,12 +246,6 @@ static enum status normalise_pulse(const char *path, const struct variable *v)
     return STATUS_OK;
 }
 
-static struct vector vector_at(const struct variable *variable, size_t index)
-{
-    const double complex *v = variable->values + 3 * index;
-    return (struct vector){creal(v[0]), creal(v[1]), creal(v[2])};
-}
-
 static enum status acquisition_fill(const char *path, const struct variable *v, struct acquisition *a)
 {
     a->sound_speed = scalar_or(&v[SOUND_SPEED], 0);
@@ -259,6 +255,7 @@ static enum status acquisition_fill(const char *path, const struct variable *v, 
     a->samples = (int)v[SAMPLES].dims[0];
     a->receivers = (int)v[SAMPLES].dims[1];
     a->pings = (int)v[SAMPLES].dims[2];
+    a->pri = scalar_or(&v[PRI], 0);
     a->tx_length = scalar_or(&v[TX_LENGTH], 0);
     a->rx_length = scalar_or(&v[RX_LENGTH], 0);
     a->aperture_limit = scalar_or(&v[BEAM_LIMIT], INFINITY);
@@ -279,10 +276,10 @@ static enum status acquisition_fill(const char *path, const struct variable *v, 
     bool one_t0 = variable_count(&v[T0]) == 1, one_velocity = variable_count(&v[VELOCITY]) == 3;
     for (size_t p = 0, receivers = (size_t)a->receivers; p < (size_t)a->pings; p++) {
         a->t0[p] = creal(v[T0].values[one_t0 ? 0 : p]);
-        a->tx[p] = vector_at(&v[TX], p);
-        a->velocity[p] = vector_at(&v[VELOCITY], one_velocity ? 0 : p);
+        a->tx[p] = variable_vector(&v[TX], p);
+        a->velocity[p] = variable_vector(&v[VELOCITY], one_velocity ? 0 : p);
         for (size_t m = 0; m < receivers; m++) {
-            a->rx[p * receivers + m] = vector_at(&v[RX], p * receivers + m);
+            a->rx[p * receivers + m] = variable_vector(&v[RX], p * receivers + m);
         }
     }
     for (int k = 0; k < a->pulse_length; k++) {
@@ -421,6 +418,7 @@ enum status echo_file_write(const char *path, const struct echoes *echoes, const
         {"fc", a->fc, true},
         {"bandwidth", a->bandwidth, true},
         {"sound_speed", a->sound_speed, true},
+        {"pri", a->pri, a->pri > 0},
         {"tx_length", a->tx_length, a->tx_length > 0},
         {"rx_length", a->rx_length, a->rx_length > 0},
         {"beam_limit", a->aperture_limit, a->aperture_limit <= 1},

@@ -87,3 +87,9 @@ enum status variable_transpose(struct variable *variable)
     variable->dims[1] = rows;
     return STATUS_OK;
 }
+
+struct vector variable_vector(const struct variable *variable, size_t index)
+{
+    const double complex *v = variable->values + 3 * index;
+    return (struct vector){creal(v[0]), creal(v[1]), creal(v[2])};
+}

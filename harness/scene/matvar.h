@@ -37,6 +37,8 @@ enum status variables_check(const char *path, const struct wanted *wanted, int c
 enum status positions_check(const char *path, const char *name, const struct variable *positions, double wavelength);
 /* [rows x columns] to [columns x rows]. Errors: STATUS_FAILED without memory. */
 enum status variable_transpose(struct variable *variable);
+/* Number `index` of vectors that follow one another, as in [3 x M x P]. */
+struct vector variable_vector(const struct variable *variable, size_t index);
 size_t variable_count(const struct variable *variable);
 bool variable_is_vector(const struct variable *variable); /* a row or a column */
 bool variable_has_shape(const struct variable *variable, size_t rows, size_t columns, size_t pages);

@@ -30,6 +30,7 @@ static void recording_hash(const struct scene *scene, uint64_t *hash)
         {a->tx, pings * sizeof *a->tx},
         {a->rx, records * sizeof *a->rx},
         {a->velocity, pings * sizeof *a->velocity},
+        {&a->pri, a->pri > 0 ? sizeof a->pri : 0}, /* a file without it has the hash that it had before there was one */
         {&a->tx_length, sizeof a->tx_length},
         {&a->rx_length, sizeof a->rx_length},
         {&a->echo_sine, sizeof a->echo_sine},

@@ -62,12 +62,6 @@ static enum status csv_poses(struct reading *reading, const char *path)
     return status;
 }
 
-static struct vector vector_at(const struct variable *variable, size_t index)
-{
-    const double complex *v = variable->values + 3 * index;
-    return (struct vector){creal(v[0]), creal(v[1]), creal(v[2])};
-}
-
 static enum status mat_poses(struct reading *reading, const char *path)
 {
     enum { TX, YAW, VELOCITY, VARIABLES };
@@ -90,11 +84,11 @@ static enum status mat_poses(struct reading *reading, const char *path)
     if (status == STATUS_OK)
         status = poses_allocate(reading, path, pings);
     for (size_t p = 0; p < pings && status == STATUS_OK; p++) {
-        reading->poses[p].tx = vector_at(&v[TX], p);
+        reading->poses[p].tx = variable_vector(&v[TX], p);
         if (v[YAW].values)
             reading->poses[p].yaw = creal(v[YAW].values[p]) * degree;
         if (v[VELOCITY].values)
-            reading->poses[p].velocity = vector_at(&v[VELOCITY], p);
+            reading->poses[p].velocity = variable_vector(&v[VELOCITY], p);
     }
     reading->measured_velocity = v[VELOCITY].values != NULL;
     variables_free(v, VARIABLES);
@@ -143,7 +137,7 @@ static enum status measured_read(struct reading *reading, const char *path)
         return scene_out_of_memory(reading);
     for (int p = 0; p < pings; p++)
         places[p] = reading->poses[p].tx;
-    velocity_add(reading->poses, places, pings, reading->pri_s);
+    velocity_add(reading->poses, places, pings, reading->scene.acquisition.pri);
     free(places);
     return STATUS_OK;
 }
@@ -155,9 +149,9 @@ static enum status straight_poses(struct reading *reading)
     if (!reading->poses)
         return scene_out_of_memory(reading);
     for (int p = 0; p < pings; p++) {
-        reading->poses[p].tx.x =
-            reading->x_first_m
-            + (reading->spacing_m != 0 ? p * reading->spacing_m : p * reading->speed_m_s * reading->pri_s);
+        reading->poses[p].tx.x = reading->x_first_m
+                                 + (reading->spacing_m != 0 ? p * reading->spacing_m
+                                                            : p * reading->speed_m_s * reading->scene.acquisition.pri);
         reading->poses[p].velocity.x = reading->speed_m_s;
     }
     return STATUS_OK;
@@ -195,7 +189,8 @@ static void error_make(const struct motion_keys *keys, int index, const struct r
     struct random random = random_seed(keys->seed, (uint64_t)index);
     double walked = 0;
     for (int p = 0; p < reading->scene.acquisition.pings; p++) {
-        values[p] = keys->amplitude * sin(2 * M_PI * (p * reading->pri_s / keys->period_s) + keys->phase_deg * degree);
+        values[p] = keys->amplitude
+                    * sin(2 * M_PI * (p * reading->scene.acquisition.pri / keys->period_s) + keys->phase_deg * degree);
         if (keys->walk > 0) {
             values[p] = walked;
             walked += keys->walk * M_SQRT2 * creal(random_normal(&random)); /* whose parts have a variance of 1/2 */
@@ -226,7 +221,7 @@ static enum status error_add(struct reading *reading, int index, struct pose *po
         poses[p].tx.z += places[p].z;
         poses[p].yaw += keys.axis == YAW_AXIS ? values[p] * degree : 0;
     }
-    velocity_add(poses, places, pings, reading->pri_s);
+    velocity_add(poses, places, pings, reading->scene.acquisition.pri);
     return STATUS_OK;
 }
 

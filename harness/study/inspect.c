@@ -180,6 +180,8 @@ static void track_print(const struct acquisition *a)
         vector_print(v, 1);
         printf(" m/s\n");
     }
+    if (a->pri > 0)
+        printf("pri          %g s\n", a->pri);
     printf("receivers    %s to %s m ahead of the transmitter (first ping)\n",
            cell_place(condition_offset(a, 0), wavelength).text, cell_place(condition_offset(a, 2), wavelength).text);
 }
