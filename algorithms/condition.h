@@ -52,10 +52,10 @@ int conditions_general(const struct problem *problem, struct condition *list, in
    have. */
 int conditions_sampled(const struct problem *problem, struct condition *list, int room);
 
-enum { CONDITIONS_SCENE = 9 };
+enum { CONDITIONS_SCENE = 10 };
 /* Fill `list` with what the scene must fulfil whichever algorithm images it, and return the number: units, pixels as
    fine as the image's resolution, pixels and patches within the records, pixels within the beam, the beam within the
-   records. All of them warn. */
+   records. All of them warn. Without patches: units and what is stated of the pings alone. */
 int conditions_scene(const struct problem *problem, struct condition list[CONDITIONS_SCENE]);
 
 /* STATUS_UNSUPPORTED where none of the problem's known targets lies in the image, within a resolution cell or pixel:

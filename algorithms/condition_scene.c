@@ -12,6 +12,8 @@ enum {
 
 /* Of the shortest an element, a pitch or a pixel is, and the widest a band: what lies beyond was typed in kHz. */
 static const double WAVELENGTH_MOST = 10, CARRIER_MOST = 2000;
+/* Wavelengths: sound of 100 kHz is absorbed by 500 dB each way, of 1 kHz by 100 dB. m/s: what is faster is no sound. */
+static const double AWAY_MOST = 1e6, SOUND_MOST = 1e4;
 static const double SPACING_MOST = 0.01;  /* of the way from ping to ping */
 static const double CUT_PIXELS_MOST = 20; /* %: a swath may end with the records, or with the track */
 static const double CUT_MOST = 0.05;      /* of a place's echoes, before it counts as cut */
@@ -198,7 +200,27 @@ static struct motion motion_of(const struct acquisition *a)
     return motion;
 }
 
-enum { WAVELENGTH, NARROW_BAND, PING_SPACING, PIXEL_X, PIXEL_R, PIXELS_MET, PATCHES_MET, PIXELS_SEEN, BEAM_IN_RECORD };
+/* Wavelengths to the end of the records, of sound alone. */
+static double wavelengths_away(const struct acquisition *a)
+{
+    double end = 0;
+    for (int p = 0; p < a->pings; p++)
+        end = fmax(end, a->t0[p] + (a->samples - 1) / a->fs);
+    return a->sound_speed < SOUND_MOST ? end * a->fc / 2 : 0;
+}
+
+enum {
+    WAVELENGTH,
+    NARROW_BAND,
+    FAR_AWAY,
+    PING_SPACING,
+    PIXEL_X,
+    PIXEL_R,
+    PIXELS_MET,
+    PATCHES_MET,
+    PIXELS_SEEN,
+    BEAM_IN_RECORD
+};
 
 int conditions_scene(const struct problem *problem, struct condition list[CONDITIONS_SCENE])
 {
@@ -211,6 +233,9 @@ int conditions_scene(const struct problem *problem, struct condition list[CONDIT
                         "fc in Hz, not kHz"},
         [NARROW_BAND] = {"narrow_band", a->fc / a->bandwidth, CARRIER_MOST, false, SEVERITY_WARN,
                          "the carrier over the bandwidth", "bandwidth and fs in Hz, not kHz"},
+        [FAR_AWAY] = {"far_away", wavelengths_away(a), AWAY_MOST, false, SEVERITY_WARN,
+                      "wavelengths from the sonar to the end of its records, on which sound is absorbed",
+                      "t0 in s, not ms; fs in Hz, not kHz"},
         [PING_SPACING] = {"ping_spacing", motion.off, SPACING_MOST, false, SEVERITY_WARN,
                           "how far speed times pri lies off the way from ping to ping, over it", ""},
         [PIXEL_X] = {"pixel_x", survey.x.worst, 1, false, SEVERITY_WARN,
@@ -244,9 +269,10 @@ int conditions_scene(const struct problem *problem, struct condition list[CONDIT
         condition_cure_add(&all[k], ", which hold ranges of %.4g to %.4g m", survey.nearest, survey.farthest);
     condition_cure_add(&all[PIXELS_SEEN], ", which runs from x = %.9g to %.9g m%s", a->tx[0].x, a->tx[a->pings - 1].x,
                        a->echo_squint != 0 ? ", the beam squinted" : "");
-    for (int k = 0; k < CONDITIONS_SCENE; k++)
+    const int count = problem->patch_count > 0 ? CONDITIONS_SCENE : PIXEL_X;
+    for (int k = 0; k < count; k++)
         list[k] = all[k];
-    return CONDITIONS_SCENE;
+    return count;
 }
 
 static bool shows(const struct acquisition *a, const struct grid *g, const struct target *target)

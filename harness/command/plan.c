@@ -43,7 +43,7 @@ static enum status plan_scene(const struct task *task, const struct scene *scene
     struct planned planned;
     struct text_file file;
     printf("%s\n", scene->name);
-    check_warnings(stdout, scene);
+    check_warnings(stdout, scene, false);
     enum status status = planned_make(scene, budget, &planned);
     if (status == STATUS_OK) {
         planned_print(stdout, &planned);

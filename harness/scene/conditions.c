@@ -1,7 +1,7 @@
 /* What a scene must fulfil whichever algorithm images it (scene.h). */
 #include <math.h>
 
-#include "scene/scene.h"
+#include "scene/conjugated.h"
 
 /* Recorded samples of a real signal were never turned into baseband; rounding leaves less of an imaginary part. */
 static const double REAL_SHARE = 1e-9;
@@ -22,7 +22,7 @@ int scene_conditions(const struct scene *scene, struct condition list[SCENE_COND
 {
     const struct problem problem = scene_problem(scene, PRECISION_DOUBLE);
     int count = conditions_scene(&problem, list);
-    if (scene->recorded)
+    if (scene->recorded) {
         list[count++] = (struct condition){"imaginary",
                                            imaginary_share(scene),
                                            REAL_SHARE,
@@ -30,5 +30,7 @@ int scene_conditions(const struct scene *scene, struct condition list[SCENE_COND
                                            SEVERITY_WARN,
                                            "the largest imaginary part of the echoes over the largest sample",
                                            "complex baseband, see docs/baseband.md"};
+        list[count++] = conjugated_condition(scene);
+    }
     return count;
 }

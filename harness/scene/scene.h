@@ -69,7 +69,7 @@ enum status scenes_tell_apart(struct scene *a, struct scene *b);
 
 /* Fill `list` with the conditions of the scene by itself, conditions_scene and what its recorded samples say, and
    return the number. All of them warn. */
-enum { SCENE_CONDITIONS = CONDITIONS_SCENE + 1 };
+enum { SCENE_CONDITIONS = CONDITIONS_SCENE + 2 };
 int scene_conditions(const struct scene *scene, struct condition list[SCENE_CONDITIONS]);
 
 /* The folder below the scenes that `stability` alone goes through: some of its scenes must be refused. */

@@ -281,7 +281,7 @@ static void heading_print(const struct scene *scene)
     snprintf(what, sizeof what, "%s, %.2g %% of the recorded ranges, %s echoes", size,
              100 * fmin(imaged_m / recorded_m, 1), a->compressed ? "compressed" : "raw");
     table_scene(stdout, scene->name, what);
-    check_warnings(stdout, scene);
+    check_warnings(stdout, scene, false);
 }
 
 enum status batch_scene(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs)

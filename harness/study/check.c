@@ -65,13 +65,17 @@ static void condition_print(FILE *stream, const struct condition *c)
         table_text(stream, 11, words);
 }
 
-void check_warnings(FILE *stream, const struct scene *scene)
+void check_warnings(FILE *stream, const struct scene *scene, bool proposed)
 {
-    const struct problem problem = scene_problem(scene, PRECISION_DOUBLE);
+    struct problem problem = scene_problem(scene, PRECISION_DOUBLE);
     struct condition list[SCENE_CONDITIONS + CONDITIONS_MAX];
     char text[500];
     int count = scene_conditions(scene, list);
     count += conditions_sampled(&problem, list + count, CONDITIONS_MAX);
+    if (proposed) { /* pixels that follow from units say nothing of them */
+        problem.patch_count = 0;
+        conditions_scene(&problem, list);
+    }
     for (int k = 0; k < count; k++)
         if (list[k].severity == SEVERITY_WARN && !condition_holds(&list[k])) {
             outcome_warning(&list[k], text, sizeof text);

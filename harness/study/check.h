@@ -8,8 +8,9 @@
 #include "measure/spec.h"
 #include "scene/scene.h"
 
-/* Print what is known to be wrong with a scene, and what any image of it shows, before any work. */
-void check_warnings(FILE *stream, const struct scene *scene);
+/* Print what is known to be wrong with a scene, and what any image of it shows, before any work. `proposed`: its pixels
+   are no one's, but follow from what the scene says. */
+void check_warnings(FILE *stream, const struct scene *scene, bool proposed);
 /* Print the conditions of the scene by itself. */
 void check_scene(FILE *stream, const struct scene *scene);
 

@@ -10,6 +10,7 @@
 #include "data/echo_data.h"
 #include "scene/matfile.h"
 #include "show/table.h"
+#include "study/check.h"
 
 enum { PIXELS_MOST = 1000 };
 
@@ -84,7 +85,7 @@ bool inspect_grid(const struct acquisition *a, struct grid *grid, bool *cut)
     *grid = (struct grid){0};
     if (!ranges_find(a, &nearest, &farthest))
         return false;
-    const double middle = (nearest + farthest) / 2;
+    const double middle = (nearest + farthest) / 2, ahead = middle * tan(a->echo_squint);
     double resolution_x = azimuth_resolution(a, middle), resolution_r = range_resolution;
     const struct vector origin = {0, 0, 0};
     bool around_origin = true; /* every ping sees it, and looks down at it from afar */
@@ -94,8 +95,8 @@ bool inspect_grid(const struct acquisition *a, struct grid *grid, bool *cut)
     }
     if (acquisition_is_straight(a, &track)) {
         const double last = track.x_first + (a->pings - 1) * track.spacing;
-        x_low = fmin(track.x_first, last) + condition_offset(a, 0) / 2;
-        x_high = fmax(track.x_first, last) + condition_offset(a, 2) / 2;
+        x_low = fmin(track.x_first, last) + condition_offset(a, 0) / 2 + ahead;
+        x_high = fmax(track.x_first, last) + condition_offset(a, 2) / 2 + ahead;
         r_low = fmax(nearest, range_resolution);
         r_high = farthest;
     } else if (around_origin) {
@@ -128,13 +129,10 @@ bool inspect_grid(const struct acquisition *a, struct grid *grid, bool *cut)
 static void samples_print(const struct acquisition *a, const double complex *samples)
 {
     const size_t count = (size_t)a->samples * (size_t)a->receivers * (size_t)a->pings;
-    double largest = 0, energy = 0, imaginary = 0;
+    double largest = 0, energy = 0;
     size_t silent = 0;
-    for (size_t n = 0; n < count; n++) {
-        const double re = creal(samples[n]), im = cimag(samples[n]);
-        largest = fmax(largest, hypot(re, im));
-        imaginary = fmax(imaginary, fabs(im));
-    }
+    for (size_t n = 0; n < count; n++)
+        largest = fmax(largest, cabs(samples[n]));
     for (size_t n = 0; n < count && largest > 0; n++) {
         const double share = cabs(samples[n]) / largest;
         energy += share * share;
@@ -148,8 +146,6 @@ static void samples_print(const struct acquisition *a, const double complex *sam
     if (a->noise > 0.5e-4)
         printf("noise        %.2g %% of the compressed echoes' energy, by what the samples have beyond the band\n",
                100 * a->noise);
-    if (!(imaginary > 0) && largest > 0)
-        printf("             NO IMAGINARY PART: is this passband? Complex baseband is needed (docs/baseband.md)\n");
 }
 
 static void vector_print(const struct vector *v, double step)
@@ -202,26 +198,28 @@ static void beam_print(const struct acquisition *a)
     printf("\n");
 }
 
-static void grid_print(const struct acquisition *a)
+/* False where there is none. */
+static bool grid_print(const struct acquisition *a, struct grid *grid)
 {
-    struct grid grid;
     bool cut;
-    if (!inspect_grid(a, &grid, &cut)) {
+    if (!inspect_grid(a, grid, &cut)) {
         printf("grid         none found: no pixel (x, r, 0) beside the track is at a range that all records hold. "
                "Check t0 (s)\n"
                "             and the positions (m): of a map projection, take off an origin near the track\n");
-        return;
+        return false;
     }
-    printf("grid to try  --grid=%s:%g:%d,%s:%g:%d\n", cell_place(grid.x_first, grid.x_step).text, grid.x_step,
-           grid.x_count, cell_place(grid.r_first, grid.r_step).text, grid.r_step, grid.r_count);
+    printf("grid to try  --grid=%s:%g:%d,%s:%g:%d\n", cell_place(grid->x_first, grid->x_step).text, grid->x_step,
+           grid->x_count, cell_place(grid->r_first, grid->r_step).text, grid->r_step, grid->r_count);
     if (cut)
         printf("             (the middle of what was recorded: at most %d pixels along each axis)\n", PIXELS_MOST);
+    return true;
 }
 
 enum status inspect_echoes(const char *path)
 {
     struct acquisition a;
     struct echoes echoes;
+    struct grid grid;
     enum status status = echo_file_read(path, &a, &echoes);
     if (status != STATUS_OK)
         return status;
@@ -238,7 +236,10 @@ enum status inspect_echoes(const char *path)
            a.sound_speed * a.t0[0] / 2, a.sound_speed * end / 2);
     track_print(&a);
     beam_print(&a);
-    grid_print(&a);
+    const bool found = grid_print(&a, &grid);
+    const struct scene scene = {
+        .acquisition = a, .recorded = (double complex *)echoes.samples, .patch_count = found, .patches = &grid};
+    check_warnings(stdout, &scene, true);
     echoes_free(&echoes);
     acquisition_free(&a);
     return STATUS_OK;

@@ -4,7 +4,7 @@
 
 #include "scene/scene.h"
 
-/* Print it. Errors: as echo_file_read. */
+/* Print it, with warnings of what is probably wrong in it. Errors: as echo_file_read. */
 enum status inspect_echoes(const char *path);
 
 /* A grid that shows what was recorded: on a straight track from its first to its last ping and over the ranges of the

@@ -217,6 +217,52 @@ static void files_are_told_and_shown(void **state)
     assert_int_equal(access(path_in("seen.svg"), F_OK), 0);
 }
 
+enum mistake { NONE, CARRIER, FREQUENCIES, SAMPLING, DELAY, INTERVAL, PLACES, CONJUGATED, PASSBAND };
+
+static void mistake_make(enum mistake mistake, struct acquisition *a, double complex *samples)
+{
+    const size_t count = (size_t)a->pings * (size_t)a->receivers * (size_t)a->samples;
+    a->fc /= mistake == CARRIER || mistake == FREQUENCIES ? 1e3 : 1;
+    a->fs /= mistake == SAMPLING || mistake == FREQUENCIES ? 1e3 : 1;
+    a->bandwidth /= mistake == SAMPLING || mistake == FREQUENCIES ? 1e3 : 1;
+    a->pri *= mistake == INTERVAL ? 1e3 : 1;
+    for (int p = 0; p < a->pings; p++) {
+        a->t0[p] *= mistake == DELAY ? 1e3 : 1;
+        a->tx[p].x *= mistake == PLACES ? 1e3 : 1;
+        for (int m = 0; m < a->receivers; m++)
+            a->rx[p * a->receivers + m].x *= mistake == PLACES ? 1e3 : 1;
+    }
+    for (size_t n = 0; n < count && mistake >= CONJUGATED; n++)
+        samples[n] = mistake == CONJUGATED ? conj(samples[n]) : creal(samples[n]);
+}
+
+/* kHz for Hz, ms for s, mm for m, the other sign of the phase, a lost part: `info` warns, and only then. */
+static void mistakes_are_told(void **state)
+{
+    (void)state;
+    static const char *const names[] = {
+        [NONE] = NULL,           [CARRIER] = "wavelength",    [FREQUENCIES] = "wavelength", [SAMPLING] = "narrow_band",
+        [DELAY] = "far_away",    [INTERVAL] = "ping_spacing", [PLACES] = "ping_spacing",    [CONJUGATED] = "conjugated",
+        [PASSBAND] = "imaginary"};
+    static const char *const info[ARGUMENTS_MAX] = {"info", "wrong.mat"};
+    for (enum mistake k = NONE; k <= PASSBAND; k++) {
+        struct acquisition a;
+        struct echoes echoes;
+        char name[80] = "warning";
+        assert_int_equal(echo_file_read(path_in("good.mat"), &a, &echoes), STATUS_OK);
+        mistake_make(k, &a, (double complex *)echoes.samples);
+        assert_int_equal(echo_file_write(path_in("wrong.mat"), &echoes, NULL), STATUS_OK);
+        echoes_free(&echoes);
+        acquisition_free(&a);
+        char *told = program_output(info);
+        if (names[k])
+            snprintf(name, sizeof name, "warning: condition %s:", names[k]);
+        if (!strstr(told, name) != !names[k])
+            fail_msg("mistake %d, '%s' expected: %s", k, names[k] ? name : "no warning", told);
+        free(told);
+    }
+}
+
 /* Noise is measured, told, and planned with: taps that are fitted to the band have 0.2 here. */
 static void noise_is_told(void **state)
 {
@@ -406,6 +452,7 @@ int main(void)
         cmocka_unit_test(far_recordings_are_told),
         cmocka_unit_test(zeros_have_no_sign),
         cmocka_unit_test(files_are_told_and_shown),
+        cmocka_unit_test(mistakes_are_told),
         cmocka_unit_test(noise_is_told),
         cmocka_unit_test(content_tells_scenes_apart),
         cmocka_unit_test(mixtures_are_refused),
