@@ -71,6 +71,8 @@ static void each_broken_promise_is_refused(void **state)
         {&a.fs, 19999, "bandwidth is 20000 Hz; at most fs = 19999 Hz"},
         {&a.bandwidth, 0, "bandwidth is 0"},
         {&a.bandwidth, INFINITY, "bandwidth is inf"},
+        {&a.pri, -0.1, "pri is -0.1 s; a finite number >= 0"},
+        {&a.pri, INFINITY, "pri is inf"},
         {&a.tx_length, -0.1, "tx_length is -0.1"},
         {&a.tx_length, NAN, "tx_length is"},
         {&a.rx_length, INFINITY, "rx_length is inf"},

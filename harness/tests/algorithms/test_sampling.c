@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "measure/spec.h"
 #include "scene/scene.h"
 #include "tests/support.h"
 
@@ -218,6 +219,33 @@ static void an_unknown_beam_is_named(void **state)
     acquisition_free(&a);
 }
 
+/* And what range migration refuses for it. */
+static void refusals_name_the_unknown_beam(void **state)
+{
+    (void)state;
+    static const struct grid grid = {-0.1, 0.02, 11, 19.9, 0.025, 9, 0};
+    static const char *const specs[] = {"rma_lbf", "rma_pca", "rma_wu", "rma_numeric", "rma_delay"};
+    struct vector offset[RECEIVERS] = {{0, 0, 0}};
+    for (size_t k = 0; k < sizeof specs / sizeof *specs; k++)
+        for (int known = 0; known < 2; known++) {
+            for (int m = 0; m < RECEIVERS; m++)
+                offset[m].x = 0.04 * (m + 1);
+            struct acquisition a = make(0.16, offset);
+            struct spec spec;
+            void *plan;
+            a.tx_length = known ? element : 0;
+            const struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
+            assert_int_equal(spec_parse(specs[k], &spec), STATUS_OK);
+            const enum status status = spec.algorithm->plan(&problem, spec.options, &plan);
+            print_message("%s: %s\n", specs[k], status == STATUS_OK ? "planned" : status_message());
+            assert_int_equal(status, known ? STATUS_OK : STATUS_UNSUPPORTED);
+            assert_true(known || strstr(status_message(), "cure: tx_length and rx_length"));
+            spec.algorithm->destroy(plan);
+            spec_free(&spec);
+            acquisition_free(&a);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -226,6 +254,7 @@ int main(void)
         cmocka_unit_test(unknown_times_are_not_made_up),
         cmocka_unit_test_setup_teardown(speed_and_spacing_agree, folder_make, folder_remove),
         cmocka_unit_test(an_unknown_beam_is_named),
+        cmocka_unit_test(refusals_name_the_unknown_beam),
     };
     return cmocka_run_group_tests_name("sampling", tests, NULL, NULL);
 }

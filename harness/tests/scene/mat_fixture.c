@@ -76,6 +76,7 @@ struct acquisition make_acquisition(int samples, int receivers, int pings, bool 
                             .samples = samples,
                             .receivers = receivers,
                             .pings = pings,
+                            .pri = 0.3,
                             .tx_length = 0.04,
                             .rx_length = 0.03,
                             .aperture_limit = 0.25,

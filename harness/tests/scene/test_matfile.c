@@ -19,6 +19,7 @@ static void assert_same_echoes(const struct echoes *written, const struct echoes
         {a->samples, b->samples},
         {a->receivers, b->receivers},
         {a->pings, b->pings},
+        {a->pri, b->pri},
         {a->tx_length, b->tx_length},
         {a->rx_length, b->rx_length},
         {a->aperture_limit, b->aperture_limit},
