@@ -1,0 +1,109 @@
+/* The row of an image that is known: the exact one times one gain. */
+#include <math.h>
+#include <string.h>
+
+#include "measure/metrics.h"
+#include "measure/outcome.h"
+#include "tests/support.h"
+
+static struct scene scene;
+static struct session session;
+static const double complex gain = 0.9 * (0.955336489125606 + 0.29552020666134 * I); /* of phase .3 rad */
+
+static enum status copy_plan(const struct problem *problem, const void *options, void **plan)
+{
+    (void)problem, (void)options;
+    *plan = &session;
+    return STATUS_OK;
+}
+
+static enum status copy_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages)
+{
+    (void)plan, (void)echoes;
+    for (int k = 0; k < image->patch_count; k++)
+        for (int i = 0; i < image->patches[k].r_count; i++)
+            for (int j = 0; j < image->patches[k].x_count; j++)
+                support_pixel_set(image, k, i, j, gain * image_pixel(&session.reference, k, i, j));
+    stages_end(stages, "copy");
+    return STATUS_OK;
+}
+
+static struct work copy_work(const void *plan)
+{
+    (void)plan;
+    return (struct work){.flops = 1, .pairs = 2, .bytes = 3, .published = {{"a paper", 4}}, .engine = "copy"};
+}
+
+static void copy_destroy(void *plan)
+{
+    (void)plan;
+}
+
+static void check_target(const struct target_row *row, const struct slice_metrics *slice)
+{
+    static const char *const definitions[] = {"null", "3db", "pixel"};
+    int d = 0;
+    while (d < 2 && strcmp(row->definition, definitions[d]) != 0)
+        d++;
+    assert_close(row->extent_m, slice->extent_m, 0);
+    assert_close(row->position_error_m, slice->position_error_m, 1e-12);
+    assert_close(row->phase_error_rad, 0.3, 1e-9);
+    assert_close(row->width_m, slice->width_m, 1e-12);
+    if (!isnan(slice->pslr_db[d]))
+        assert_close(row->pslr_db, slice->pslr_db[d], 1e-9);
+    assert_close(row->islr_db, slice->islr_db[d], 1e-9);
+}
+
+/* Errors of the gain; lobes and sharpness, which no gain changes, as of the exact image: medians of two targets are
+   their means. */
+static void row_of_a_gain(void **state)
+{
+    (void)state;
+    const struct algorithm copy = {
+        .name = "copy", .plan = copy_plan, .execute = copy_execute, .work = copy_work, .destroy = copy_destroy};
+    const struct spec spec = {.algorithm = &copy, .precision = PRECISION_DOUBLE};
+    struct outcome outcome;
+    struct slice_metrics azimuth[2], range[2];
+    support_scene("gate/points", &scene);
+    assert_int_equal(scene.point_count, 2);
+    assert_int_equal(session_open(&scene, &session), STATUS_OK);
+    outcome_measure(&session, &spec, EFFORT_NONE, NULL, &outcome);
+    const struct measurement *row = &outcome.row;
+    assert_string_equal(row->status, "ok");
+    assert_string_equal(row->precision, "double");
+    assert_string_equal(row->engine, "copy");
+    assert_close(row->flops, 1, 0);
+    assert_close(row->pairs, 2, 0);
+    assert_close(row->bytes, 3, 0);
+    assert_close(row->flops_published, 4, 0);
+    assert_close(row->error, cabs(gain - 1), 1e-9);
+    assert_true(row->error_gain < 1e-9);
+    assert_close(row->phase_rms_rad, 0.3, 1e-9);
+    assert_true(isnan(row->run_s) && isnan(row->control_s) && row->runs < 0);
+    for (int t = 0; t < 2; t++) {
+        azimuth[t] = metrics_slice(&session.reference, &scene.acquisition, &scene.targets[t], AXIS_AZIMUTH);
+        range[t] = metrics_slice(&session.reference, &scene.acquisition, &scene.targets[t], AXIS_RANGE);
+    }
+    assert_close(row->width_m, (azimuth[0].width_m + azimuth[1].width_m) / 2, 1e-12);
+    assert_close(row->pslr_db, (azimuth[0].pslr_db[0] + azimuth[1].pslr_db[0]) / 2, 1e-9);
+    assert_close(row->islr_db, (azimuth[0].islr_db[0] + azimuth[1].islr_db[0]) / 2, 1e-9);
+    assert_int_equal(outcome.target_count, 2 * 5); /* three definitions along azimuth, two along range */
+    for (int k = 0; k < outcome.target_count; k++) {
+        const struct target_row *target = &outcome.targets[k];
+        assert_int_equal(target->target, k / 5);
+        check_target(target, strcmp(target->axis, "azimuth") == 0 ? &azimuth[k / 5] : &range[k / 5]);
+    }
+    const struct sharpness sharpness = metrics_sharpness(&session.reference);
+    assert_close(row->entropy, sharpness.entropy, 1e-9);
+    assert_close(row->contrast, sharpness.contrast, 1e-9);
+    assert_close(row->peak_over_median, sharpness.peak_over_median, 1e-9);
+    outcome_free(&outcome);
+    session_close(&session);
+    scene_free(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(row_of_a_gain)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
