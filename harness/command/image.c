@@ -4,6 +4,7 @@
 
 #include "data/echo_data.h"
 #include "data/progress_line.h"
+#include "measure/darkness.h"
 #include "measure/imaging.h"
 #include "measure/outcome.h"
 #include "measure/provenance.h"
@@ -36,6 +37,25 @@ enum status command_simulate(const struct task *task)
     return status;
 }
 
+static void warnings_print(const struct condition *list, int count)
+{
+    char text[400];
+    for (int k = 0; k < count; k++)
+        if (list[k].severity == SEVERITY_WARN && !condition_holds(&list[k])) {
+            outcome_warning(&list[k], text, sizeof text);
+            fprintf(stderr, "sasbench: %s\n", text);
+        }
+}
+
+/* What the image shows to be wrong. */
+static void warn_of_image(const struct echoes *echoes, const struct image *image)
+{
+    const struct darkness darkness = image_darkness(echoes, image);
+    const struct condition dark = darkness_condition(&darkness);
+    progress_line_clear();
+    warnings_print(&dark, 1);
+}
+
 static enum status execute(const struct spec *spec, struct imaging *imaging, const struct echoes *from,
                            struct image *image, double *seconds)
 {
@@ -50,6 +70,8 @@ static enum status execute(const struct spec *spec, struct imaging *imaging, con
     *seconds = seconds_now() - begin;
     if (status == STATUS_OK)
         status = imaging_finish(imaging, &echoes, image);
+    if (status == STATUS_OK)
+        warn_of_image(&echoes, image);
     echoes_free(&echoes);
     return status;
 }
@@ -142,14 +164,9 @@ static void warn(const struct spec *spec, const struct scene *scene)
 {
     const struct problem problem = scene_problem(scene, spec->precision);
     struct condition list[SCENE_CONDITIONS + CONDITIONS_MAX];
-    char text[400];
     int count = scene_conditions(scene, list);
     count += algorithm_conditions(spec->algorithm, &problem, spec->options, list + count, CONDITIONS_MAX);
-    for (int k = 0; k < count; k++)
-        if (list[k].severity == SEVERITY_WARN && !condition_holds(&list[k])) {
-            outcome_warning(&list[k], text, sizeof text);
-            fprintf(stderr, "sasbench: %s\n", text);
-        }
+    warnings_print(list, count);
 }
 
 enum status command_image(const struct task *task)

@@ -10,6 +10,7 @@
 
 #include "backprojection/pairs.h"
 #include "data/echo_data.h"
+#include "measure/darkness.h"
 #include "measure/imaging.h"
 #include "measure/metrics.h"
 
@@ -200,13 +201,19 @@ static void warnings_add(const struct condition *list, int count, struct outcome
         }
 }
 
-/* What fails without refusing: behind the other reasons, so that a table finds it there. */
+/* What fails without refusing: behind the other reasons, so that a table finds it there. Where there is no exact image,
+   this one tells how dark it is. */
 static void warnings_fill(const struct session *session, const struct spec *spec, const struct problem *problem,
                           struct outcome *outcome)
 {
     struct condition list[CONDITIONS_MAX];
     int count = algorithm_conditions(spec->algorithm, problem, spec->options, list, CONDITIONS_MAX);
     warnings_add(session->conditions, session->condition_count, outcome);
+    if (*session->no_reference) {
+        const struct darkness darkness = image_darkness(&session->echoes[spec->precision], &outcome->image);
+        const struct condition dark = darkness_condition(&darkness);
+        warnings_add(&dark, 1, outcome);
+    }
     warnings_add(list, count, outcome);
 }
 

@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "data/echo_data.h"
+#include "measure/darkness.h"
 #include "measure/imaging.h"
 #include "scene/simulate.h"
 
@@ -36,7 +37,10 @@ static enum status form_reference(struct session *session)
     if (status != STATUS_OK)
         return status;
     status = session_image(session, &spec, &session->reference);
-    if (status != STATUS_OK)
+    if (status == STATUS_OK) {
+        const struct darkness darkness = image_darkness(&session->echoes[PRECISION_DOUBLE], &session->reference);
+        session->conditions[session->condition_count++] = darkness_condition(&darkness);
+    } else
         snprintf(session->no_reference, sizeof session->no_reference, "%s", status_message());
     spec_free(&spec);
     return STATUS_OK;

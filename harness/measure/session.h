@@ -18,7 +18,8 @@ struct session {
     struct echoes echoes[2];   /* by enum precision; extreme ones divided by one power of two, which images keep */
     struct image reference;    /* double, on the patches where images are compared; no patches without one */
     char no_reference[512];    /* why there is none: refused, or no memory; else empty */
-    struct condition conditions[SCENE_CONDITIONS]; /* [condition_count] of the scene by itself */
+    struct condition
+        conditions[SCENE_CONDITIONS + 1]; /* [condition_count] of the scene by itself and its exact image */
     int condition_count;
     struct control control; /* beside what is timed */
     struct spent spent;     /* so far, but for the control */

@@ -1,0 +1,150 @@
+/* How dark an image is beside its echoes (darkness.h). */
+#include "measure/darkness.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+
+#include "backprojection/pairs.h"
+#include "backprojection/traces.h"
+#include "common/delay.h"
+#include "common/turns.h"
+#include "data/echo_data.h"
+
+static const double NOISE_MOST = 2; /* 1: echoes that do not know each other, but for the chance of few pixels */
+enum { VISITS = 1 << 18, RECORDS_LEAST = 256 };
+
+/* The plastic number's first two powers below 1: points frac(n a), frac(n b) are spread evenly over a square, however
+   many there are, and over every band of its rows or columns. */
+static const double SPREAD_R = 0.7548776662466927, SPREAD_X = 0.5698402909980532;
+
+struct survey {
+    const struct echoes *echoes;
+    const struct image *image;
+    struct traces *traces;
+    double pixels;           /* of all patches */
+    int records, pairs;      /* that are read, of so many */
+    int visits;              /* pixels of a record */
+    double sine;             /* |sin theta_t| up to which a ping sees a pixel */
+    double complex *scratch; /* [threads][2][samples]: a record, and compressed */
+};
+
+/* Of the image, in units of the samples as they are in memory. */
+static double image_energy(const struct image *image, int exponent)
+{
+    double sum = 0;
+    for (int p = 0; p < image->patch_count; p++)
+        for (int i = 0; i < image->patches[p].r_count; i++)
+            for (int j = 0; j < image->patches[p].x_count; j++) {
+                const double complex value = image_pixel(image, p, i, j);
+                sum += square(CMPLX(ldexp(creal(value), -exponent), ldexp(cimag(value), -exponent)));
+            }
+    return sum;
+}
+
+/* A record, compressed. */
+static const double complex *record_read(const struct survey *survey, int pair)
+{
+    const struct echoes *echoes = survey->echoes;
+    const size_t samples = (size_t)echoes->acquisition->samples, first = (size_t)pair * samples;
+    const int thread = omp_get_thread_num();
+    double complex *record = survey->scratch + 2 * samples * (size_t)thread;
+    for (size_t n = 0; n < samples; n++)
+        record[n] = echoes->precision == PRECISION_DOUBLE ? ((const double complex *)echoes->samples)[first + n]
+                                                          : ((const float complex *)echoes->samples)[first + n];
+    traces_fill_double(survey->traces, thread, record, record + samples);
+    return record + samples;
+}
+
+/* Energy of one pair at one pixel. */
+static double pair_energy(const struct survey *survey, int pair, struct vector normal, struct vector pixel,
+                          const double complex *record)
+{
+    const struct acquisition *a = survey->echoes->acquisition;
+    const int ping = pair / a->receivers;
+    const struct vector tx = a->tx[ping], way = {pixel.x - tx.x, pixel.y - tx.y, pixel.z - tx.z};
+    const double along = way.x * normal.x + way.y * normal.y + way.z * normal.z;
+    if (fabs(along) > survey->sine * sqrt(way.x * way.x + way.y * way.y + way.z * way.z))
+        return 0;
+    const double delay = delay_exact(tx, a->rx[pair], a->velocity[ping], pixel, a->sound_speed);
+    const double place = (delay - a->t0[ping]) * a->fs;
+    return place >= 0 && place <= a->samples - 1 ? square(record[lrint(place)]) : 0;
+}
+
+/* Energy of one record at all pixels, as far as some of them tell. */
+static double record_energy(const struct survey *survey, int index)
+{
+    const struct acquisition *a = survey->echoes->acquisition;
+    const int pair = (int)(((long long)index * 2 + 1) * survey->pairs / (2LL * survey->records));
+    const struct vector normal = acquisition_normal(a, pair / a->receivers);
+    const double complex *record = record_read(survey, pair);
+    double energy = 0;
+    for (int p = 0; p < survey->image->patch_count; p++) {
+        const struct grid *g = &survey->image->patches[p];
+        const double pixels = (double)g->r_count * g->x_count, share = survey->visits * pixels / survey->pixels;
+        const bool all = survey->visits >= survey->pixels;
+        const int count = all ? (int)pixels : (int)ceil(share);
+        double sum = 0;
+        for (int n = 0; n < count; n++) {
+            const double at = n + (double)count * index, r = at * SPREAD_R, x = at * SPREAD_X;
+            const int i = all ? n / g->x_count : (int)((r - floor(r)) * g->r_count);
+            const int j = all ? n % g->x_count : (int)((x - floor(x)) * g->x_count);
+            sum += pair_energy(survey, pair, normal, grid_point(g, i, j), record);
+        }
+        energy += sum * pixels / count;
+    }
+    return energy;
+}
+
+static double echo_energy(struct survey *survey)
+{
+    double *energies = malloc((size_t)survey->records * sizeof *energies), sum = 0;
+    if (!energies)
+        return NAN;
+#pragma omp parallel for schedule(dynamic)
+    for (int n = 0; n < survey->records; n++)
+        energies[n] = record_energy(survey, n);
+    for (int n = 0; n < survey->records; n++)
+        sum += energies[n];
+    free(energies);
+    return sum * survey->pairs / survey->records;
+}
+
+struct darkness image_darkness(const struct echoes *echoes, const struct image *image)
+{
+    const struct acquisition *a = echoes->acquisition;
+    const struct problem problem = problem_make(a, image->patch_count, image->patches, image->precision);
+    const struct traces_form form = {.upsample = 1};
+    const int threads = omp_get_max_threads();
+    struct survey survey = {.echoes = echoes,
+                            .image = image,
+                            .pixels = problem_pixels(&problem),
+                            .pairs = a->pings * a->receivers,
+                            .sine = fmin(a->aperture_limit, condition_beam_sine(a))};
+    struct traces_shape shape;
+    survey.records = (int)fmin(survey.pairs, fmax(RECORDS_LEAST, VISITS / survey.pixels));
+    survey.visits = (int)fmin(survey.pixels, VISITS / survey.records);
+    survey.scratch = malloc(2 * (size_t)a->samples * (size_t)threads * sizeof *survey.scratch);
+    const bool ready = survey.scratch && traces_plan_double(a, &form, threads, &shape, &survey.traces) == STATUS_OK;
+    const double met = ready ? echo_energy(&survey) : NAN, shown = image_energy(image, echoes->exponent);
+    traces_destroy_double(survey.traces);
+    free(survey.scratch);
+    return (struct darkness){ldexp(sqrt(met / survey.pixels), echoes->exponent),
+                             ldexp(sqrt(shown / survey.pixels), echoes->exponent), met == 0 ? 0 : met / shown};
+}
+
+struct condition darkness_condition(const struct darkness *darkness)
+{
+    struct condition condition = {"dark_image",
+                                  darkness->ratio,
+                                  NOISE_MOST,
+                                  false,
+                                  SEVERITY_WARN,
+                                  "the energy of the echoes that reach the pixels over that of the image",
+                                  "a grid that holds what is bright"};
+    condition_cure_add(&condition,
+                       "; the image's rms is %.3g, that of its echoes %.3g: so much larger may errors be relative to "
+                       "the image than to the echoes",
+                       darkness->image, darkness->echoes);
+    return condition;
+}
