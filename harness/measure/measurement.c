@@ -2,7 +2,6 @@
 #include "measure/measurement.h"
 
 #include <math.h>
-#include <stdbool.h>
 
 #include "data/echo_data.h"
 
@@ -100,6 +99,15 @@ struct measurement measurement_empty(const char *scene, const char *algorithm, c
     row.precision = precision_name(precision);
     row.status = "ok";
     return row;
+}
+
+bool measurement_is_cheaper(const struct measurement *row, const struct measurement *best, size_t cost,
+                            double error_most)
+{
+    const double mine = *(const double *)((const char *)row + cost);
+    const double other = best ? *(const double *)((const char *)best + cost) : INFINITY;
+    return row->error <= error_most && mine > 0
+           && (mine < other || (best && mine == other && row->run_s < best->run_s));
 }
 
 void measurement_interval(const struct measurement *row, double *low, double *high)

@@ -2,6 +2,7 @@
 #ifndef SASBENCH_MEASURE_MEASUREMENT_H
 #define SASBENCH_MEASURE_MEASUREMENT_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "algorithm.h"
@@ -55,6 +56,11 @@ void column_clear(const struct column *column, void *row);
 /* A row before anything is measured: numbers undefined, status ok. Texts are borrowed. */
 struct measurement measurement_empty(const char *scene, const char *algorithm, const char *options,
                                      enum precision precision);
+
+/* Whether a row has an error up to error_most and costs less (the double at the offset `cost`; of equal ones the faster)
+   than the cheapest so far, which may be NULL: what the tables of a sweep and the summary of a report call cheapest. */
+bool measurement_is_cheaper(const struct measurement *row, const struct measurement *best, size_t cost,
+                            double error_most);
 
 /* s: the quartiles of the runs, or both the median where there are none. */
 void measurement_interval(const struct measurement *row, double *low, double *high);

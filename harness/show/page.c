@@ -218,7 +218,7 @@ void page_row_note(struct page *page, const char *name, const char *note)
     if (row_left_out(page))
         return;
     if (page->format == PAGE_HTML) {
-        fputs("<tr>", page->stream);
+        fputs(*name ? "<tr>" : "<tr class=\"below\">", page->stream);
         name_write(page, name);
         fprintf(page->stream, "<td class=\"note\" colspan=\"%d\">", page->column_count - 1);
         text_write(page, note);

@@ -46,7 +46,7 @@ void page_contents(struct page *page, int count, const char *const *ids, const c
 
 /* A table scrolls sideways on a narrow screen; with `stack` its rows fall apart into blocks there, as suits long
    texts. `columns` stays borrowed until page_table_end. A row has a cell for each column, the first being its name;
-   page_row_note writes one text in place of all others. */
+   page_row_note writes one text in place of all others; without a name it belongs to the row above. */
 void page_table_begin(struct page *page, int count, const struct page_column *columns, bool stack);
 void page_row(struct page *page, const struct page_cell *cells);
 void page_row_note(struct page *page, const char *name, const char *note);

@@ -21,6 +21,8 @@ const char page_style[] =
     "td.number { white-space: nowrap; }\n"
     "td.long { min-width: 12rem; }\n"
     ".note { color: #8a4b00; }\n"
+    ".below .note { color: #444; padding-top: 0; }\n"
+    "tr:has(+ .below) > * { border-bottom: none; }\n"
     ".good { background: #d9f0e0; }\n"
     ".soft { background: #fdf1cd; }\n"
     ".bad { background: #f9d9d4; }\n"

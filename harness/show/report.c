@@ -2,7 +2,6 @@
 #include "show/report.h"
 
 #include <dirent.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -10,10 +9,10 @@
 #include "show/plot.h"
 #include "show/plot_points.h"
 #include "measure/results.h"
+#include "show/report_measurements.h"
 #include "show/report_pictures.h"
 #include "show/report_summary.h"
 #include "show/report_tables.h"
-#include "show/table.h"
 #include "data/paths.h"
 #include "data/text_file.h"
 
@@ -158,104 +157,6 @@ static void machine_show(struct page *page, const struct folder *folder)
     page_table_end(page);
 }
 
-enum { MEASUREMENT_COLUMNS = 13 };
-static const struct page_column shown_columns[MEASUREMENT_COLUMNS] = {{"algorithm", false},
-                                                                      {"run time", true},
-                                                                      {"speed-up", true},
-                                                                      {"plan", true},
-                                                                      {"GFLOP", true},
-                                                                      {"memory (MB)", true},
-                                                                      {"error", true},
-                                                                      {"error, best gain", true},
-                                                                      {"phase rms (rad)", true},
-                                                                      {"width (mm)", true},
-                                                                      {"PSLR (dB)", true},
-                                                                      {"ISLR (dB)", true},
-                                                                      {"engine, left out", false}};
-enum { LOBES_FIRST = 9 }; /* of width, PSLR and ISLR, in whose place scenes without targets show */
-static const struct page_column sharpness_columns[3] = {{"entropy", true}, {"contrast", true}, {"peak/median", true}};
-
-/* Is nothing measured of any target? */
-static bool scene_is_blind(const struct folder *folder, const char *scene)
-{
-    bool sharpness = false;
-    for (int k = 0; k < folder->results.csv.row_count; k++) {
-        const struct measurement *row = &folder->results.measurements[k];
-        if (strcmp(row->scene, scene) != 0)
-            continue;
-        if (isfinite(row->pslr_db) || isfinite(row->width_m))
-            return false;
-        sharpness |= isfinite(row->entropy);
-    }
-    return sharpness;
-}
-
-static void measurement_show(struct page *page, const struct measurement *row, bool sharpness)
-{
-    char spec[512], note[1200], texts[MEASUREMENT_COLUMNS][32] = {""};
-    struct page_cell cells[MEASUREMENT_COLUMNS];
-    measurement_spec(row, spec, sizeof spec);
-    if (strcmp(row->status, "ok") != 0) {
-        snprintf(note, sizeof note, "%s: %s", row->status, row->reason);
-        page_row_note(page, spec, note);
-        return;
-    }
-    const struct {
-        double value;
-        const char *format;
-    } numbers[] = {{1e-9 * row->flops, "%.3g"},
-                   {1e-6 * row->bytes, "%.3g"},
-                   {row->error, "%.2e"},
-                   {row->error_gain, "%.2e"},
-                   {row->phase_rms_rad, "%.2e"},
-                   {sharpness ? row->entropy : 1e3 * row->width_m, "%.2f"},
-                   {sharpness ? row->contrast : row->pslr_db, "%.2f"},
-                   {sharpness ? row->peak_over_median : row->islr_db, "%.2f"}};
-    snprintf(texts[1], sizeof texts[1], "%s", cell_time(row->run_s).text);
-    if (isfinite(row->run_q1_s) && isfinite(row->run_q3_s))
-        snprintf(texts[1], sizeof texts[1], "%.12s (-%.1f, +%.1f %%)", cell_time(row->run_s).text,
-                 fmin(999, 100 * (1 - row->run_q1_s / row->run_s)), fmin(999, 100 * (row->run_q3_s / row->run_s - 1)));
-    snprintf(texts[2], sizeof texts[2], "%s", cell_significant(row->control_s / row->run_s, "x").text);
-    snprintf(texts[3], sizeof texts[3], "%s", cell_time(row->plan_s).text);
-    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
-        if (isfinite(numbers[k].value))
-            snprintf(texts[4 + k], sizeof texts[4 + k], numbers[k].format, numbers[k].value);
-    for (int k = 0; k < MEASUREMENT_COLUMNS; k++)
-        cells[k] = (struct page_cell){texts[k], NULL};
-    const char *const notes[] = {row->skipped, row->reason};
-    size_t used = (size_t)snprintf(note, sizeof note, "%s", row->engine);
-    for (size_t k = 0; k < sizeof notes / sizeof *notes; k++)
-        if (*notes[k] && used < sizeof note)
-            used += (size_t)snprintf(note + used, sizeof note - used, "%s%s", used ? "; " : "", notes[k]);
-    cells[0] = (struct page_cell){spec, NULL};
-    cells[MEASUREMENT_COLUMNS - 1] = (struct page_cell){note, "long"};
-    page_row(page, cells);
-}
-
-static void measurements_show(struct page *page, const struct folder *folder)
-{
-    page_heading(page, 2, "measurements", "Measurements");
-    page_paragraph(
-        page, "Run time: median seconds from the echoes in memory to the complex image; speed-up: against the scalar "
-              "reference loop timed beside. In parentheses the quartiles of the runs. Errors: relative L2 "
-              "against the exact image. Width, PSLR and ISLR: medians over the targets, azimuth, main lobe "
-              "from first minimum to first minimum; without targets the image's sharpness.");
-    for (int s = 0; s < folder->scene_count; s++) {
-        page_part_begin(page, folder->scenes[s], folder->scene_count > 1);
-        const bool sharpness = scene_is_blind(folder, folder->scenes[s]);
-        struct page_column columns[MEASUREMENT_COLUMNS];
-        memcpy(columns, shown_columns, sizeof columns);
-        if (sharpness)
-            memcpy(columns + LOBES_FIRST, sharpness_columns, sizeof sharpness_columns);
-        page_table_begin(page, MEASUREMENT_COLUMNS, columns, false);
-        for (int row = 0; row < folder->results.csv.row_count; row++)
-            if (strcmp(folder->results.measurements[row].scene, folder->scenes[s]) == 0)
-                measurement_show(page, &folder->results.measurements[row], sharpness);
-        page_table_end(page);
-        page_part_end(page, folder->scene_count > 1);
-    }
-}
-
 static enum status plots_show(struct page *page, const struct folder *folder)
 {
     enum status status = STATUS_OK;
@@ -350,7 +251,7 @@ static enum status folder_show(struct page *page, const struct folder *folder)
         status = plots_show(page, folder);
     tables_show(page, folder, false);
     if (is_measured(folder) && (html || folder->results.csv.row_count <= MARKDOWN_ROWS))
-        measurements_show(page, folder);
+        report_measurements_show(page, &folder->results, folder->scene_count, folder->scenes);
     else if (is_measured(folder))
         page_paragraph(page, "All measurements are in measurements.csv and report.html.");
     if (status == STATUS_OK && html)

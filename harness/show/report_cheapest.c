@@ -52,7 +52,8 @@ static void scene_show(struct page *page, const struct csv *csv, int first, int 
             const bool timed = csv_number(cell_of(csv, row, "run_s"), &run_s);
             picture_label(cell_of(csv, row, "algorithm"), cell_of(csv, row, "options"), cell_of(csv, row, "precision"),
                           label, sizeof label);
-            snprintf(texts[k], sizeof texts[k], "%s%s%s", label, timed ? ", " : "", timed ? cell_time(run_s).text : "");
+            snprintf(texts[k], sizeof texts[k], "%s%s%s%s", label, timed ? ", " : "",
+                     timed ? cell_time(run_s).text : "", *cell_of(csv, row, "noise") ? "~" : "");
         }
     for (int k = 0; k < decade_count; k++)
         cells[k + 1] = (struct page_cell){texts[k], NULL};

@@ -26,7 +26,7 @@ static void plans_summary_show(struct page *page, const struct csv *csv)
     static const struct page_column columns[COLUMNS] = {{"scene", false},  {"budget", false},
                                                         {"chosen", false}, {"time (s)", true},
                                                         {"error", true},   {"what is left out", false}};
-    page_table_begin(page, COLUMNS, columns, false);
+    page_table_begin(page, COLUMNS, columns, true);
     for (int row = 0; row < csv->row_count; row++) {
         struct page_cell cells[COLUMNS];
         char label[160], numbers[COLUMNS][32];
@@ -102,6 +102,7 @@ const struct report_table report_tables[REPORT_TABLES] = {
          "What auto chose before it formed an image, and why not others: of each algorithm the fastest setting that is "
          "within the error, or the nearest to it. Times and errors are predicted; the measured ones are below.",
      .group = "scene",
+     .stack = true,
      .folded = true,
      .summary = plans_summary_show,
      .columns = {{"options", "budget", SHOW_ONCE},

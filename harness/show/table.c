@@ -46,6 +46,19 @@ struct cell cell_time(double seconds)
     return seconds < 0.9995 ? cell_significant(1e3 * seconds, " ms") : cell_significant(seconds, " s");
 }
 
+bool is_noisy(const struct measurement *row)
+{
+    return strstr(row->reason, OUTCOME_NOISE) != NULL;
+}
+
+struct cell cell_run_time(const struct measurement *row)
+{
+    struct cell cell = cell_time(row->run_s);
+    if (is_noisy(row))
+        strcat(cell.text, "~");
+    return cell;
+}
+
 struct cell cell_place(double place, double step)
 {
     const double digits = place == 0 ? 0 : ceil(log10(fabs(place) / step)) + 2;
@@ -202,17 +215,25 @@ static bool is_warned(const char *text)
     return false;
 }
 
-/* All but that of a noisy time, which has its mark, and those that were said. */
+bool warning_next(const char **at, char *text, size_t size)
+{
+    for (const char *warning; (warning = strstr(*at, OUTCOME_WARNING));) {
+        const char *end = strstr(warning, "; " OUTCOME_WARNING);
+        *at = end ? end + 2 : "";
+        snprintf(text, size, "%.*s", end ? (int)(end - warning) : (int)size - 1, warning);
+        if (strncmp(text, OUTCOME_NOISE, strlen(OUTCOME_NOISE)) != 0)
+            return true;
+    }
+    return false;
+}
+
+/* Those that were not said. */
 static void warnings_print(FILE *stream, const char *reason)
 {
     char text[1024];
-    for (const char *next, *warning = strstr(reason, OUTCOME_WARNING); warning; warning = next) {
-        const char *end = strstr(warning, "; " OUTCOME_WARNING);
-        next = end ? end + 2 : NULL;
-        snprintf(text, sizeof text, "%.*s", end ? (int)(end - warning) : (int)sizeof text - 1, warning);
-        if (strncmp(text, OUTCOME_NOISE, strlen(OUTCOME_NOISE)) != 0 && !is_warned(text))
+    while (warning_next(&reason, text, sizeof text))
+        if (!is_warned(text))
             table_warning(stream, text);
-    }
 }
 
 static void ok_print(FILE *stream, const struct measurement *row, const char *spec)
@@ -228,15 +249,13 @@ static void ok_print(FILE *stream, const struct measurement *row, const char *sp
         last[1] = cell_significant(row->contrast, "");
         last[2] = cell_significant(row->peak_over_median, "");
     }
-    struct cell time = cell_time(row->run_s);
-    if (strstr(row->reason, OUTCOME_NOISE))
-        strcat(time.text, "~");
     if (own_line)
         print_wrapped(stream, 2, spec);
-    line_print(stream, (const char *const[]){
-                           own_line ? "" : spec, time.text, cell_significant(row->control_s / row->run_s, "x").text,
-                           cell_rate(row).text, cell_error(row->error).text, cell_error(row->error_gain).text,
-                           cell_error(row->phase_rms_rad).text, last[0].text, last[1].text, last[2].text});
+    line_print(stream,
+               (const char *const[]){own_line ? "" : spec, cell_run_time(row).text,
+                                     cell_significant(row->control_s / row->run_s, "x").text, cell_rate(row).text,
+                                     cell_error(row->error).text, cell_error(row->error_gain).text,
+                                     cell_error(row->phase_rms_rad).text, last[0].text, last[1].text, last[2].text});
     warnings_print(stream, row->reason);
 }
 

@@ -31,6 +31,11 @@ struct cell {
 struct cell cell_significant(double value, const char *unit); /* three digits, the unit directly behind; "-" for NAN */
 struct cell cell_time(double seconds);                        /* "-" also for 0: below what the clock tells */
 struct cell cell_place(double place, double step);            /* six digits, or as many as tell places a step apart */
+struct cell cell_run_time(const struct measurement *row);     /* with ~ where it is noisy */
+bool is_noisy(const struct measurement *row);
+/* The next warning in a row's reason, of which *at is what is left. Noise is none: it has its mark. False at the
+   end. */
+bool warning_next(const char **at, char *text, size_t size);
 /* The row's SPEC as on the command line, so that it can be taken from here; float is the default there. */
 void measurement_spec(const struct measurement *row, char *text, size_t size);
 

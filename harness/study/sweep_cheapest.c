@@ -25,13 +25,13 @@ static bool is_candidate(const struct group *group, int k, double below, const c
 }
 
 /* The cheapest row with an error up to `below`, of equal ones the fastest; -1 if no row comes that far. */
-static int cheapest_find(const struct group *group, double below, const char *begins)
+static int cheapest_find(const struct group *group, int c, double below, const char *begins)
 {
     int best = -1;
     for (int k = 0; k < group->count; k++)
         if (is_candidate(group, k, below, begins)
-            && (best < 0 || group->cost[k] < group->cost[best]
-                || (group->cost[k] == group->cost[best] && group->rows[k]->run_s < group->rows[best]->run_s)))
+            && measurement_is_cheaper(group->rows[k], best < 0 ? NULL : group->rows[best], sweep_costs[c].offset,
+                                      below))
             best = k;
     return best;
 }
@@ -60,7 +60,7 @@ static void row_tell(const struct measurement *row, const char *threshold, const
     char spec[512], tied[2000];
     measurement_spec(row, spec, sizeof spec);
     shown_make(spec);
-    printf("    %7s  %8s %8s %9s  %7.1e  %s\n", threshold, cell_time(row->run_s).text,
+    printf("    %7s  %8s %8s %9s  %7.1e  %s\n", threshold, cell_run_time(row).text,
            cell_significant(row->control_s / row->run_s, "x").text, cell_significant(1e-6 * row->flops, "").text,
            row->error, spec);
     if (!*ties)
@@ -85,11 +85,11 @@ static void family_write(struct group *group, size_t family, int c, FILE *file)
 {
     const char *begins = families[family].begins;
     const bool told = is_told(group, family, c);
-    int best = cheapest_find(group, 1, begins);
+    int best = cheapest_find(group, c, 1, begins);
     if (best >= 0 && told)
         printf("  %s %s\n      below      time speed-up     MFLOP    error  setting\n", families[family].title,
                sweep_costs[c].title);
-    for (int decade = 0; best >= 0; decade--, best = cheapest_find(group, pow(10, decade), begins)) {
+    for (int decade = 0; best >= 0; decade--, best = cheapest_find(group, c, pow(10, decade), begins)) {
         const struct measurement *row = group->rows[best];
         char threshold[16], ties[1800];
         snprintf(threshold, sizeof threshold, "1e%d", decade);
@@ -102,7 +102,8 @@ static void family_write(struct group *group, size_t family, int c, FILE *file)
                      (double[]){row->run_s, row->control_s / row->run_s, row->flops, row->error, row->error_gain,
                                 row->pslr_db, row->islr_db},
                      7, false);
-        fields_write(file, (const char *const[]){families[family].name, ties, NULL}, NULL, 0, true);
+        fields_write(file, (const char *const[]){families[family].name, ties, is_noisy(row) ? "~" : "", NULL}, NULL, 0,
+                     true);
     }
 }
 

@@ -72,7 +72,7 @@ static const struct {
     [FRONTS] = {"fronts.csv", "sasbench fronts 2", "scene,cost,algorithm,options,precision,value,error,tie"},
     [CHEAPEST] = {"cheapest.csv", "sasbench cheapest 2",
                   "scene,cost,error_below,algorithm,options,precision,run_s,speed_up,flops,error,error_gain,pslr_db,"
-                  "islr_db,family,ties"},
+                  "islr_db,family,ties,noise"},
     [SLOPES] = {"slopes.csv", "sasbench slopes 1",
                 "scene,algorithm,options,precision,setting,part,first,last,rate_first,rate_last,points,slope,"
                 "error_first,error_last,residual_log10"},

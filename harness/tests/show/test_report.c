@@ -7,6 +7,7 @@
 
 #include "show/plot.h"
 #include "show/report.h"
+#include "study/sweep_tables.h"
 #include "tests/show/report_fixture.h"
 #include "tests/support.h"
 
@@ -103,9 +104,9 @@ static void test_everything_is_on_the_page(void **state)
     assert_true(html && markdown);
     struct parser *page = page_parse(html);
     /* Summary, machine, three scenes, cheapest of all scenes and of one, slopes, choices of all scenes and plans of
-       one, predictions, rules, two papers, two reproduced tables. */
+       one, predictions, rules, two papers, two reproduced tables; below each of 12 images how it was made. */
     assert_int_equal(page->tables, 16);
-    assert_int_equal(page->rows, 16 + 14 + 9 + 1 + 1 + 1 + 1 + 2 + 1 + 1 + 4 + 3 + 3);
+    assert_int_equal(page->rows, 16 + 14 + 12 + 9 + 1 + 1 + 1 + 1 + 2 + 1 + 1 + 4 + 3 + 3);
     assert_holds(markdown, "|a|error=0.01|bp_fitted:taps=4|0.02|0.0051|left out: double precision: 3e-07|");
     assert_true(!strstr(markdown, "over the budget"));
     assert_holds(html, "error 0.2 is over the budget");
@@ -115,8 +116,8 @@ static void test_everything_is_on_the_page(void **state)
     assert_true(!strstr(markdown, "Predicted errors"));
     assert_holds(html, "<h2 id=\"summary\">Summary</h2>");
     assert_holds(html, "<a href=\"#summary\">");
-    assert_holds(html, "class=\"good\">9.0e-02, 33.3x</td>"); /* of scene a: no other has an error below 0.1 */
-    assert_holds(markdown, "|9.0e-02, 33.3x, fastest|");
+    assert_holds(html, "class=\"good\">1.0e-01, 50x</td>"); /* of scene a: the fastest with an error up to 0.1 */
+    assert_holds(markdown, "|1.0e-01, 50x, fastest|");
     /* All four of two scenes; the third has neither an upsampling rate nor an exact image to compare lobes with. */
     assert_int_equal(page->drawings, 4 + 4 + 2);
     /* Slices, one image, one figure of `phase`: the picture without a row is not of these results. */
@@ -153,6 +154,73 @@ static void test_everything_is_on_the_page(void **state)
     assert_null(strstr(html, "could not be drawn"));
     assert_links_lead_somewhere(html, page);
     free(page);
+    free(html);
+    free(markdown);
+}
+
+/* What the summary marks is what cheapest.csv has, and a noisy time has its mark in both; tables are no wider than a
+   page. */
+static void test_summary_and_cheapest_agree(void **state)
+{
+    (void)state;
+    enum { ROWS = 12 };
+    static char names[ROWS][16];
+    struct measurement rows[ROWS];
+    for (int k = 0; k < ROWS; k++) { /* from fast and rough to slow and exact: the fourth is enough */
+        snprintf(names[k], sizeof names[k], "bp_%c", 'a' + k);
+        rows[k] = row_of("s", k == 4 ? names[3] : names[k], k == 4 ? "taps=8" : "", 0.01 * (k + 1), 0.8 / (1 << k));
+        rows[k].reason = k == 3 ? "warning: times scatter: the middle half of 5 runs spans 60 % of the median" : "";
+    }
+    record_rows(rows, ROWS);
+    assert_int_equal(sweep_tables(folder, NULL, 0, NULL), STATUS_OK);
+    assert_int_equal(report_write(folder), STATUS_OK);
+    char *html = support_read("report.html"), *markdown = support_read("report.md");
+    assert_holds(markdown, "|scene|bp_a|bp_b|bp_c|bp_d|bp_f|bp_g|\n");
+    assert_holds(markdown, "|scene|bp_h|bp_i|bp_j|bp_k|bp_l|\n");
+    assert_holds(markdown, "|s|8.0e-01, 100x|4.0e-01, 50x|2.0e-01, 33.3x|1.0e-01, 25x\\~, fastest|2.5e-02, 16.7x|");
+    assert_holds(markdown, "|fastest with an error up to|1e0|1e-1|1e-2|1e-3|\n|---|---|---|---|---|\n"
+                           "|s|bp_a, 10 ms|bp_d, 40 ms\\~|");
+    assert_null(strstr(strstr(markdown, ", fastest") + 1, ", fastest"));
+    assert_holds(html, "class=\"good\">1.0e-01, 25x~</td>");
+    free(html);
+    free(markdown);
+}
+
+static int count_of(const char *text, const char *part)
+{
+    int count = 0;
+    for (; (text = strstr(text, part)); text++)
+        count++;
+    return count;
+}
+
+/* A scene's warnings stand ahead of its rows, once; one of some rows has a number there; one of a single row stands
+   below it. */
+static void test_warnings_stand_once(void **state)
+{
+    (void)state;
+    struct measurement rows[] = {row_of("a", "reference", "", 0.9, 1e-6), row_of("a", "bp_nearest", "", 0.01, 0.2),
+                                 row_of("a", "bp_sinc", "taps=8", 0.02, 0.1), row_of("b", "bp_nearest", "", 0.01, 0.2),
+                                 row_of("b", "rma_wu", "", NAN, NAN)};
+    rows[0].reason = "warning: condition pixel_x: too <coarse>";
+    rows[1].reason = "no point targets; warning: condition pixel_x: too <coarse>; warning: condition ghost: two";
+    rows[2].reason = "warning: condition pixel_x: too <coarse>; warning: condition ghost: two; warning: condition own: "
+                     "one; warning: times scatter: much";
+    rows[3].reason = "warning: condition pixel_x: alone";
+    rows[4].status = "unsupported";
+    record_rows(rows, sizeof rows / sizeof *rows);
+    assert_int_equal(report_write(folder), STATUS_OK);
+    char *html = support_read("report.html"), *markdown = support_read("report.md");
+    assert_holds(html, "<p>warning: condition pixel_x: too &lt;coarse&gt;</p>\n"
+                       "<p>Of 2 of 3 images, warning 2: condition ghost: two</p>\n<div");
+    assert_holds(html, "colspan=\"11\">invariant; no point targets; warning 2</td>");
+    assert_holds(html, "colspan=\"11\">invariant; warning 2; warning: condition own: one</td>");
+    assert_holds(html, "<p>warning: condition pixel_x: alone</p>");
+    assert_holds(markdown, "|bp_sinc:taps=8|20 ms\\~|");
+    assert_int_equal(count_of(html, "too &lt;coarse"), 1);
+    assert_int_equal(count_of(markdown, "condition ghost"), 1);
+    assert_int_equal(count_of(html, "scatter"), 0);
+    assert_int_equal(count_of(html, "alone"), 1);
     free(html);
     free(markdown);
 }
@@ -339,6 +407,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_everything_is_on_the_page, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(test_summary_and_cheapest_agree, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(test_warnings_stand_once, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(test_sweeps_are_brief, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(test_failures_alone_make_a_page, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(test_faults_leave_the_old_pages, folder_make, folder_remove),
