@@ -9,10 +9,12 @@
 /* clang-format off */
 #define M_COLUMN(type, name, since) {#name, COLUMN_##type, offsetof(struct measurement, name), since, .unit = NULL}
 #define M_METRIC(name, since, unit, better, class, of_float, of_double, relative) \
-    {#name, COLUMN_REAL, offsetof(struct measurement, name), since, unit, better, class, {of_float, of_double}, relative}
+    {#name,  COLUMN_REAL, offsetof(struct measurement, name), since, unit, better, \
+     class, {of_float, of_double}, relative}
 #define T_COLUMN(type, name) {#name, COLUMN_##type, offsetof(struct target_row, name), 1, .unit = NULL}
 #define T_METRIC(name, unit, better, of_float, of_double, relative) \
-    {#name, COLUMN_REAL, offsetof(struct target_row, name), 1, unit, better, CLASS_QUALITY, {of_float, of_double}, relative}
+    {#name,         COLUMN_REAL,           offsetof(struct target_row, name), 1, unit, better, \
+     CLASS_QUALITY, {of_float, of_double}, relative}
 /* clang-format on */
 
 /* Slacks of quality are about a hundred times what compilers and instruction sets make of the same source: rounding,

@@ -4,6 +4,7 @@
 #include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -163,10 +164,15 @@ void page_table_begin(struct page *page, int count, const struct page_column *co
     fputc('\n', page->stream);
 }
 
+long page_room(const struct page *page)
+{
+    return page->bytes_most > 0 ? page->bytes_most - ftell(page->stream) : LONG_MAX;
+}
+
 /* Is there no room for a further row? */
 static bool row_left_out(struct page *page)
 {
-    bool full = page->bytes_most > 0 && ftell(page->stream) > page->bytes_most;
+    bool full = page_room(page) < 0;
     page->rows_left_out += full;
     return full;
 }

@@ -32,6 +32,9 @@ struct page_cell {
     const char *class; /* of the HTML cell: good, soft, bad, open, long; NULL for none */
 };
 
+/* Bytes that are left for rows; LONG_MAX without a limit. */
+long page_room(const struct page *page);
+
 void page_begin(struct page *page, const char *title);
 void page_end(struct page *page);
 

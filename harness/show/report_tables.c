@@ -152,10 +152,10 @@ const struct report_table report_tables[REPORT_TABLES] = {
      .first = true,
      .columns = {{"id", "id", SHOW_TEXT},
                  {"section", "section", SHOW_TEXT},
-                 {"claim", "claim", SHOW_TEXT},
+                 {"claim", "claim", SHOW_TEXT, .detail = true},
                  {"verdict", "as printed", SHOW_VERDICT},
                  {"corrected", "corrected", SHOW_VERDICT},
-                 {"evidence", "evidence", SHOW_TEXT}}},
+                 {"evidence", "evidence", SHOW_TEXT, .detail = true}}},
     {.file = "reproduced.csv",
      .id = "reproduced",
      .title = "Papers' tables",
@@ -172,7 +172,7 @@ const struct report_table report_tables[REPORT_TABLES] = {
                  {"paper", "paper", SHOW_NUMBER},
                  {"ours", "ours", SHOW_NUMBER},
                  {"difference", "difference", SHOW_NUMBER},
-                 {"assumption", "assumption", SHOW_ONCE}}},
+                 {"assumption", "assumption", SHOW_ONCE, .detail = true}}},
     [REPORT_STABILITY] =
         {.file = "stability.csv",
          .id = "stability",
@@ -193,7 +193,7 @@ const struct report_table report_tables[REPORT_TABLES] = {
                      {"spread", "spread", SHOW_NUMBER},
                      {"same_bits", "same bits", SHOW_TEXT},
                      {"finite", "finite", SHOW_TEXT},
-                     {"reason", "reason", SHOW_TEXT}}},
+                     {"reason", "reason", SHOW_TEXT, .detail = true}}},
 };
 
 enum status report_table_read(const char *directory, const struct report_table *table, struct csv *csv)
@@ -245,13 +245,27 @@ static void verdicts_count_show(struct page *page, const struct report_table *ta
     }
 }
 
-static void rows_show(struct page *page, const struct report_table *table, const struct csv *csv, const char *group)
+/* Bytes of what the table shows, without the signs between. */
+static long size_find(const struct report_table *table, const struct csv *csv)
+{
+    long size = 0;
+    for (int k = 0; k < REPORT_COLUMNS && table->columns[k].title; k++)
+        for (int row = 0; row < csv->row_count; row++)
+            size += (long)strlen(cell_of(csv, row, table->columns[k].name));
+    return size;
+}
+
+static void rows_show(struct page *page, const struct report_table *table, const struct csv *csv, const char *group,
+                      bool details)
 {
     struct page_column columns[REPORT_COLUMNS];
     const char *above[REPORT_COLUMNS] = {NULL};
-    int count = 0;
-    for (; count < REPORT_COLUMNS && table->columns[count].title; count++)
-        columns[count] = (struct page_column){table->columns[count].title, table->columns[count].show == SHOW_NUMBER};
+    int count = 0, shown[REPORT_COLUMNS];
+    for (int k = 0; k < REPORT_COLUMNS && table->columns[k].title; k++)
+        if (details || !table->columns[k].detail) {
+            columns[count] = (struct page_column){table->columns[k].title, table->columns[k].show == SHOW_NUMBER};
+            shown[count++] = k;
+        }
     page_table_begin(page, count, columns, table->stack);
     for (int row = 0; row < csv->row_count; row++) {
         struct page_cell cells[REPORT_COLUMNS];
@@ -259,14 +273,15 @@ static void rows_show(struct page *page, const struct report_table *table, const
         if (group && strcmp(csv_cell(csv, row, csv_column(csv, table->group)), group) != 0)
             continue;
         for (int k = 0; k < count; k++) {
-            const char *text = cell_of(csv, row, table->columns[k].name);
+            const char *text = cell_of(csv, row, table->columns[shown[k]].name);
+            const int show = (int)table->columns[shown[k]].show;
             double value;
             cells[k] = (struct page_cell){text, NULL};
-            if (table->columns[k].show == SHOW_VERDICT)
+            if (show == SHOW_VERDICT)
                 cells[k].class = verdict_class(text);
-            if (table->columns[k].show == SHOW_ONCE && above[k] && strcmp(above[k], text) == 0)
+            if (show == SHOW_ONCE && above[k] && strcmp(above[k], text) == 0)
                 cells[k].text = "";
-            if (table->columns[k].show == SHOW_NUMBER && csv_number(text, &value)) {
+            if (show == SHOW_NUMBER && csv_number(text, &value)) {
                 snprintf(numbers[k], sizeof numbers[k], "%.4g", value);
                 cells[k].text = isnan(value) ? "" : numbers[k];
             }
@@ -294,11 +309,34 @@ static bool group_seen(const struct csv *csv, int column, int row)
     return false;
 }
 
+static void groups_show(struct page *page, const struct report_table *table, const struct csv *csv, int column,
+                        bool details)
+{
+    int left_out = 0;
+    for (int row = 0; row < csv->row_count; row++) {
+        char title[400];
+        left_out += page_room(page) < 0;
+        if (page_room(page) < 0 || group_seen(csv, column, row))
+            continue;
+        group_title(table, csv_cell(csv, row, column), title, sizeof title);
+        page_part_begin(page, title, table->folded);
+        rows_show(page, table, csv, csv_cell(csv, row, column), details);
+        page_part_end(page, table->folded);
+    }
+    if (left_out > 0) {
+        char text[200];
+        snprintf(text, sizeof text, "%s and report.html have what is left out here.", table->file);
+        page_paragraph(page, text);
+    }
+}
+
 void report_table_show(struct page *page, const struct report_table *table, const struct csv *csv)
 {
     const bool brief = table->folded && page->format == PAGE_MARKDOWN;
+    const long room = page_room(page);
     if (csv->row_count == 0 || (brief && !table->summary))
         return;
+    const bool details = size_find(table, csv) <= room / 2;
     page_heading(page, 2, table->id, table->title);
     page_paragraph(page, table->text);
     verdicts_count_show(page, table, csv);
@@ -306,15 +344,11 @@ void report_table_show(struct page *page, const struct report_table *table, cons
         table->summary(page, csv);
     if (brief)
         return;
+    if (!details)
+        page_paragraph(page, "The texts are in report.html.");
     int column = table->group ? csv_column(csv, table->group) : -1;
     if (column < 0)
-        rows_show(page, table, csv, NULL);
-    for (int row = 0; column >= 0 && row < csv->row_count; row++)
-        if (!group_seen(csv, column, row)) {
-            char title[400];
-            group_title(table, csv_cell(csv, row, column), title, sizeof title);
-            page_part_begin(page, title, table->folded);
-            rows_show(page, table, csv, csv_cell(csv, row, column));
-            page_part_end(page, table->folded);
-        }
+        rows_show(page, table, csv, NULL, details);
+    else
+        groups_show(page, table, csv, column, details);
 }

@@ -19,7 +19,8 @@ struct report_table {
         const char *name, *title;
         enum { SHOW_TEXT, SHOW_NUMBER, SHOW_VERDICT, SHOW_ONCE } show; /* once: not again in the rows below */
         bool later;                                                    /* files of an older version have none */
-    } columns[REPORT_COLUMNS];                                         /* title NULL ends */
+        bool detail;           /* not in the Markdown of a file that takes more than half of the room that is left */
+    } columns[REPORT_COLUMNS]; /* title NULL ends */
 };
 enum { REPORT_TABLES = 8, REPORT_STABILITY = 7 };
 extern const struct report_table report_tables[REPORT_TABLES];

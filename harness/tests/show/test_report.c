@@ -164,7 +164,7 @@ static void test_summary_and_cheapest_agree(void **state)
 {
     (void)state;
     enum { ROWS = 12 };
-    static char names[ROWS][16];
+    char names[ROWS][16];
     struct measurement rows[ROWS];
     for (int k = 0; k < ROWS; k++) { /* from fast and rough to slow and exact: the fourth is enough */
         snprintf(names[k], sizeof names[k], "bp_%c", 'a' + k);
@@ -188,10 +188,8 @@ static void test_summary_and_cheapest_agree(void **state)
 
 static int count_of(const char *text, const char *part)
 {
-    int count = 0;
-    for (; (text = strstr(text, part)); text++)
-        count++;
-    return count;
+    const char *next = strstr(text, part);
+    return next ? 1 + count_of(next + 1, part) : 0;
 }
 
 /* A scene's warnings stand ahead of its rows, once; one of some rows has a number there; one of a single row stands
@@ -375,6 +373,35 @@ static void test_images_beyond_are_links(void **state)
     free(html);
 }
 
+/* Of the papers' tables the Markdown keeps every row, without the long texts where these take too much. */
+static void test_markdown_keeps_the_tables(void **state)
+{
+    (void)state;
+    enum { CLAIMS = 170, NUMBERS = 250 };
+    struct measurement row = row_of("a", "bp_nearest", "", 0.1, 0.1);
+    record_rows(&row, 1);
+    FILE *claims = fopen(path_of("claims.csv"), "w"), *reproduced = fopen(path_of("reproduced.csv"), "w");
+    assert_true(claims && reproduced);
+    fputs("id,paper,section,claim,verdict,corrected,evidence\n", claims);
+    for (int k = 0; k < CLAIMS; k++)
+        fprintf(claims, "x-%d,%s,4.1,%200s,holds,,%600s\n", k, k % 3 ? "BP22" : "ZP15", "claimed", "evident");
+    fputs("table,item,quantity,definition,unit,paper,ours,difference,assumption\n", reproduced);
+    for (int k = 0; k < NUMBERS; k++)
+        fprintf(reproduced, "bp22_t%d,T%d,pslr_db,null,dB,-14.62,-13.46,1.159,%300s\n", k % 9, k, "assumed");
+    assert_int_equal(fclose(claims) | fclose(reproduced), 0);
+    assert_int_equal(report_write(folder), STATUS_OK);
+    char *html = support_read("report.html"), *markdown = support_read("report.md");
+    assert_true(strlen(markdown) < 65536);
+    assert_int_equal(count_of(markdown, "|4.1|holds||\n"), CLAIMS);
+    assert_int_equal(count_of(markdown, "|-13.46|1.159|\n"), NUMBERS);
+    assert_null(strstr(markdown, "left out here"));
+    assert_int_equal(count_of(markdown, "The texts are in report.html."), 2);
+    assert_int_equal(count_of(html, "evident"), CLAIMS);
+    assert_null(strstr(html, "The texts are"));
+    free(html);
+    free(markdown);
+}
+
 static void test_pages_stay_small(void **state)
 {
     (void)state;
@@ -415,6 +442,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_stability_alone_makes_a_page, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(test_images_are_thumbnails, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(test_images_beyond_are_links, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(test_markdown_keeps_the_tables, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(test_pages_stay_small, folder_make, folder_remove),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
