@@ -322,9 +322,6 @@ static enum status layout_draw(struct drawing *drawing)
     status = text_file_close(&file, status);
     if (status == STATUS_OK)
         report(drawing, plot_csv(picture, PLOT_DIRECTORY, "layout.gp", csv, drawing->footer));
-    plot_path_svg(picture);
-    if (status == STATUS_OK)
-        report(drawing, plot_csv(picture, PLOT_DIRECTORY, "layout.gp", csv, drawing->footer));
     return status;
 }
 

@@ -133,10 +133,13 @@ void pictures_draw(struct pictures *pictures)
                                                .line_count = count / panels,
                                                .panel_titles = titles,
                                                .lines = lines};
-        if (pictures->queue.count == PLOT_QUEUE_MOST)
-            plot_queue_draw(&pictures->queue, tell, pictures);
-        if (plot_slices_later(&pictures->queue, path, PLOT_DIRECTORY, &picture) != STATUS_OK)
-            tell(pictures);
+        for (int svg = 0; svg < 2; svg++) { /* curves are for papers, too */
+            if (pictures->queue.count == PLOT_QUEUE_MOST)
+                plot_queue_draw(&pictures->queue, tell, pictures);
+            if (plot_slices_later(&pictures->queue, path, PLOT_DIRECTORY, &picture) != STATUS_OK)
+                tell(pictures);
+            plot_path_svg(path);
+        }
     }
     plot_queue_draw(&pictures->queue, tell, pictures);
     free(lines);

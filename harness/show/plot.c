@@ -145,12 +145,17 @@ enum status plot_csv(const char *path, const char *plots_directory, const char *
                      const char *footer)
 {
     struct plot plot;
+    char beside[4200];
+    snprintf(beside, sizeof beside, "%s", path);
+    plot_path_svg(beside);
     enum status status = plot_begin(&plot, path, false);
     if (status == STATUS_OK) {
         plot_path_variable(plot.preamble, "csv", csv);
         plot_variable(plot.preamble, "footer", footer);
     }
-    return plot_finish(&plot, status, NULL, plots_directory, script);
+    status = plot_finish(&plot, status, NULL, plots_directory, script);
+    return status == STATUS_OK && strcmp(beside, path) != 0 ? plot_csv(beside, plots_directory, script, csv, footer)
+                                                            : status;
 }
 
 void picture_label(const char *algorithm, const char *options, const char *precision, char *label, size_t size)

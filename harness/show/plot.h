@@ -55,7 +55,7 @@ extern const char *const folder_plots[];
 enum status plot_folder(const char *path, const char *plots_directory, const char *name, const char *folder,
                         const char *scene, bool *drawn);
 
-/* A script about one CSV file, into `path`, which ends in .png or .svg; footer: where the file is from. */
+/* A script about one CSV file, into `path`, a PNG, and as SVG beside it; footer: where the file is from. */
 enum status plot_csv(const char *path, const char *plots_directory, const char *script, const char *csv,
                      const char *footer);
 

@@ -33,7 +33,8 @@ struct folder {
     struct csv csvs[REPORT_TABLES]; /* column_count 0: not there */
     struct drawing *drawings;       /* [drawing_count] */
     int drawing_count;
-    struct dirent **files; /* [file_count] PNG files of `phase`, `reproduce`, `sweep` and `stability`, by name */
+    struct dirent **
+        files; /* [file_count] PNG files of `phase`, `reproduce`, `sweep` and `stability`, by name; curves have an SVG beside */
     int file_count;
 };
 
@@ -180,7 +181,8 @@ static enum status plots_show(struct page *page, const struct folder *folder)
     return status;
 }
 
-/* What `phase` and `reproduce` drew as the papers do, and what `stability` and `sweep` drew of the whole. */
+/* What `phase` and `reproduce` drew as the papers do, and what `stability` and `sweep` drew of the whole: as SVG where
+   that is there. */
 static enum status figures_show(struct page *page, const struct folder *folder)
 {
     enum status status = STATUS_OK;
@@ -190,8 +192,15 @@ static enum status figures_show(struct page *page, const struct folder *folder)
         return STATUS_OK;
     page_heading(page, 2, "figures", "Figures");
     for (int k = 0; k < folder->file_count && status == STATUS_OK; k++) {
-        snprintf(path, sizeof path, "%s/%s", folder->directory, folder->files[k]->d_name);
-        status = report_picture_show(page, path, NULL, folder->files[k]->d_name, &count);
+        const char *name = folder->files[k]->d_name;
+        char beside[4096];
+        snprintf(path, sizeof path, "%s/%s", folder->directory, name);
+        snprintf(beside, sizeof beside, "%s", path);
+        plot_path_svg(beside);
+        if (report_room(page, beside, 1, &(struct pictures_count){0}))
+            status = page_drawing(page, beside, name);
+        else
+            status = report_picture_show(page, path, NULL, name, &count);
     }
     report_left_out_show(page, &count);
     return status;

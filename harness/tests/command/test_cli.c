@@ -8,6 +8,7 @@
 #include <string.h>
 #include <sys/wait.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "data/csv.h"
 #include "scene/matfile.h"
@@ -212,6 +213,7 @@ static void run_leaves_its_results_and_keeps_them(void **state)
     assert_true(good >= 5); /* reference and the back projections image everything */
     assert_int_equal(rows_with_status(&first, "failed"), 0);
     assert_int_equal(pictures_count("results/quick"), good + 1);
+    assert_int_equal(access(path_in("results/quick/study_quick-slices.svg"), F_OK), 0);
     for (int row = 0; row < first.row_count; row++) {
         double run_s, error;
         if (strcmp(csv_cell(&first, row, csv_column(&first, "status")), "ok") != 0)
