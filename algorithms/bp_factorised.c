@@ -151,8 +151,7 @@ static enum status execute(void *plan, const struct echoes *echoes, struct image
     const struct planned *planned = plan;
     if (planned->direct)
         return bp_execute(planned->direct, echoes, image, stages);
-    factorised_execute(planned->tree, echoes, image, stages);
-    return STATUS_OK;
+    return factorised_execute(planned->tree, echoes, image, stages);
 }
 
 static struct work work(const void *plan)

@@ -128,7 +128,7 @@ static void line_add(const struct factorised *plan, int subaperture, int view, c
     const struct subaperture *part = &plan->tree.subapertures[subaperture];
     const struct polar *polar = &part->polars[view];
     const struct polar_step *step = polar_step(&plan->tree, part->level, view);
-    const struct factorised_scratch *scratch = &plan->scratch[omp_get_thread_num()];
+    struct factorised_scratch *scratch = &plan->scratch[omp_get_thread_num()];
     const struct problem *problem = &plan->bp.problem;
     const double c = plan->bp.medium.sound_speed;
     const struct polar_image image = {(const char *)image_of(plan, subaperture)
@@ -146,8 +146,13 @@ static void line_add(const struct factorised *plan, int subaperture, int view, c
                         q = line_pixel(to->line, span.end - 1);
     const double a = hypot(p.x - centre.x, p.y - centre.y), b = hypot(q.x - centre.x, q.y - centre.y);
     const int first = (int)floor(fmin(a, b) / step->rho) - 1, count = (int)floor(fmax(a, b) / step->rho) + 3 - first;
-    plan->trace(&image, &to->crossing, first, count, scratch->trace, plan->trace_pitch, &plan->polar_layout,
-                scratch->row);
+    const int before = first - image.range->taps / 2 + 1, behind = first + count + image.range->taps / 2;
+    if (before < image.place_first || behind > image.place_first + image.places) {
+        scratch->outside += span.end - span.begin;
+        return;
+    }
+    scratch->outside += plan->trace(&image, &to->crossing, first, count, scratch->trace, plan->trace_pitch,
+                                    &plan->polar_layout, scratch->row);
     struct bp_medium medium = plan->bp.medium;
     medium.fs = c / (2 * step->rho);
     medium.first = 0;
@@ -255,12 +260,15 @@ static void subaperture_form(const struct forming *forming, int subaperture)
     progress_step();
 }
 
-void factorised_execute(struct factorised *plan, const struct echoes *echoes, struct image *image,
-                        struct stages *stages)
+enum status factorised_execute(struct factorised *plan, const struct echoes *echoes, struct image *image,
+                               struct stages *stages)
 {
     const struct tree *tree = &plan->tree;
     const struct forming forming = {plan, echoes, stages};
     const size_t size = real_size(plan->bp.problem.precision);
+    long long outside = 0;
+    for (int n = 0; n < plan->threads; n++)
+        plan->scratch[n].outside = 0;
     for (int k = 0; k < tree->problem.patch_count; k++) {
         const struct grid *grid = &tree->problem.patches[k];
         memset(plan->sums[k], 0, 2 * (size_t)grid->x_count * (size_t)grid->r_count * size);
@@ -272,4 +280,11 @@ void factorised_execute(struct factorised *plan, const struct echoes *echoes, st
         bp_lines_store(plan->bp.problem.precision, &tree->problem.patches[k], tree->along_x[k], plan->sums[k],
                        image->pixels[k]);
     stages_end(stages, "store");
+    for (int n = 0; n < plan->threads; n++)
+        outside += plan->scratch[n].outside;
+    return outside == 0 ? STATUS_OK
+                        : status_set(STATUS_FAILED,
+                                     "bp_factorised: %lld values lie outside of subapertures' images and were read as "
+                                     "zero: a fault of this program; stages=0 does without images",
+                                     outside);
 }

@@ -13,6 +13,7 @@ struct factorised_scratch {
     struct vector *rx;            /* [base][receivers] */
     struct ping_box *boxes;       /* [base] */
     void *trace, *row;            /* trace.h */
+    long long outside;            /* of an execution: what would be read outside of images, and is zero */
 };
 
 struct factorised {
@@ -67,8 +68,9 @@ enum status factorised_plan(const struct problem *problem, const struct tree_set
                             struct factorised **out);
 /* Fill needed, direct and add to flops, line by line; false without memory. The images' part of factorised_plan. */
 bool factorised_count(struct factorised *plan);
-void factorised_execute(struct factorised *plan, const struct echoes *echoes, struct image *image,
-                        struct stages *stages);
+/* Errors: STATUS_FAILED where images would be read outside of their grids, which is a fault of the tree. */
+enum status factorised_execute(struct factorised *plan, const struct echoes *echoes, struct image *image,
+                               struct stages *stages);
 /* FLOPs; bytes; pairs are 0. */
 struct work factorised_work(const struct factorised *plan);
 void factorised_destroy(struct factorised *plan);

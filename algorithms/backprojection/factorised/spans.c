@@ -11,7 +11,19 @@ static struct pair_span whole_pixels(double first, double last, int count)
     return first <= last ? (struct pair_span){(int)first, (int)last + 1} : (struct pair_span){0, 0};
 }
 
-/* Pixels of a line along the axis that lie inside a grid: distance and sine change monotonically on either side. */
+/* Leave distances rho from `near` to `far` that have slope rho <= value. */
+static void leave_distances(double slope, double value, double *near, double *far)
+{
+    if (slope > 0)
+        *far = fmin(*far, value / slope);
+    else if (slope < 0)
+        *near = fmax(*near, value / slope);
+    else if (!(value >= 0)) /* 0, of either sign */
+        *far = -INFINITY;
+}
+
+/* Pixels of a line along the axis that lie inside a grid: their distance changes monotonically on either side, and
+   low <= across/rho <= high. */
 static struct pair_span inside_grid(const struct tree *tree, const struct subaperture *part, int view,
                                     const struct pixel_line *line)
 {
@@ -21,12 +33,9 @@ static struct pair_span inside_grid(const struct tree *tree, const struct subape
     if (polar->lines == 0)
         return (struct pair_span){0, 0};
     polar_turn(axes, line->x_first - part->x, line->r_first - part->y, &along, &across);
-    const double away = fabs(across), most = across < 0 ? -polar->low : polar->high;
-    const double least = across < 0 ? -polar->high : polar->low;
-    if (!(most >= 0) || (across == 0 && !(polar->low <= 0 && polar->high >= 0)))
-        return (struct pair_span){0, 0};
-    near = fmax(near, away > 0 ? away / most : 0);
-    far = least > 0 ? fmin(far, away / least) : far;
+    leave_distances(polar->low, across, &near, &far);
+    leave_distances(-polar->high, -across, &near, &far);
+    const double away = fabs(across);
     if (!(near <= far && far > away))
         return (struct pair_span){0, 0};
     const double low = sqrt(fmax(0, near * near - away * away)), high = sqrt(far * far - away * away);

@@ -23,6 +23,7 @@ typedef int vector_mask __attribute__((vector_size(VECTOR_BYTES)));
 struct crossings {
     _Alignas(64) int line[TRACE_PLACES];  /* the one below */
     _Alignas(64) real rest[TRACE_PLACES]; /* -1/2 to 1/2 from there to the next */
+    int beside[TRACE_PLACES];             /* 1: where the image's lines end, which are not to be read */
 };
 
 INLINE vector_real load(const real *values)
@@ -36,18 +37,22 @@ INLINE vector_real select_from(vector_mask mask, vector_real yes, vector_real no
     return (vector_real)(((vector_mask)yes & mask) | ((vector_mask)no & ~mask));
 }
 
-/* Lines and fractions at places [place, place + count), and the last ones again up to a whole vector. */
-static void cross(const struct polar_image *image, const struct polar_crossing *line, int place, int count,
-                  struct crossings *at)
+/* Lines and fractions at places [place, place + count), and the last ones again up to a whole vector. Returns how many
+   lie beside the lines. */
+static int cross(const struct polar_image *image, const struct polar_crossing *line, int place, int count,
+                 struct crossings *at)
 {
     const double square = line->offset * line->offset, across = line->offset * line->cosine, one = 1 / image->sine;
     const double least = image->angle->taps / 2 - 1, most = image->lines - 1 - image->angle->taps / 2;
     const double step = image->rho, sine = line->sine, first = image->line_first;
-#pragma omp simd
+    int outside = 0;
+#pragma omp simd reduction(+ : outside)
     for (int i = 0; i < count; i++) {
         const double rho = (place + i) * step, left = rho * rho - square;
         double n = (sqrt(left > 0 ? left : 0) * sine + across) / rho * one - first;
-        n = n > least ? n : least; /* the image's ends; nothing else becomes a line */
+        at->beside[i] = !(n >= least && n <= most);
+        outside += at->beside[i];
+        n = n > least ? n : least; /* no NaN, either, becomes a line */
         n = n < most ? n : most;
         const double whole = floor(n);
         at->line[i] = (int)whole;
@@ -57,6 +62,7 @@ static void cross(const struct polar_image *image, const struct polar_crossing *
         at->line[i] = at->line[count - 1];
         at->rest[i] = at->rest[count - 1];
     }
+    return outside;
 }
 
 /* The coefficients of some taps in the file's precision. */
@@ -114,20 +120,27 @@ INLINE void interpolate(int taps, const struct polar_image *image, const struct 
     }
 }
 
-/* Values along the line at places [first, first + count), with whole vectors behind them. */
-INLINE void follow(int taps, const struct polar_image *image, const struct polar_crossing *line, int first, int count,
-                   real *re, real *im)
+/* Values along the line at places [first, first + count), with whole vectors behind them. Returns how many are
+   read as zero. */
+INLINE int follow(int taps, const struct polar_image *image, const struct polar_crossing *line, int first, int count,
+                  real *re, real *im)
 {
     struct crossings at;
     struct coefficients weights;
+    int outside = 0;
     convert(image->angle, &weights);
     for (int begin = 0; begin < count; begin += TRACE_PLACES) {
         const int run = count - begin < TRACE_PLACES ? count - begin : TRACE_PLACES;
-        cross(image, line, first + begin, run, &at);
+        const int beside = cross(image, line, first + begin, run, &at);
         for (int i = 0; i < run; i += LANES)
             interpolate(taps, image, &weights, &at, i, (size_t)(first + begin + i - image->place_first),
                         (vector_real *)(re + begin + i), (vector_real *)(im + begin + i));
+        for (int i = 0; beside > 0 && i < run; i++)
+            if (at.beside[i])
+                re[begin + i] = im[begin + i] = 0;
+        outside += beside;
     }
+    return outside;
 }
 
 /* LANES samples of a part of a branch. Where the row is cut into blocks, which begin half a vector apart, they are one
@@ -167,18 +180,19 @@ INLINE void filter(int taps, const struct polar_taps *range, const real *re, con
     }
 }
 
-void POLAR_TRACE(const struct polar_image *image, const struct polar_crossing *line, int first, int count, void *trace,
-                 size_t trace_pitch, const struct bp_layout *layout, void *row)
+int POLAR_TRACE(const struct polar_image *image, const struct polar_crossing *line, int first, int count, void *trace,
+                size_t trace_pitch, const struct bp_layout *layout, void *row)
 {
     const int before = image->range->taps / 2 - 1, all = count + image->range->taps - 1;
     real *re = trace, *im = re + trace_pitch;
+    int outside;
     switch (image->angle->taps) { /* constants, so that weights stay in registers */
-    case 2: follow(2, image, line, first - before, all, re, im); break;
-    case 4: follow(4, image, line, first - before, all, re, im); break;
-    case 6: follow(6, image, line, first - before, all, re, im); break;
-    case 8: follow(8, image, line, first - before, all, re, im); break;
-    case 10: follow(10, image, line, first - before, all, re, im); break;
-    default: follow(12, image, line, first - before, all, re, im); break;
+    case 2: outside = follow(2, image, line, first - before, all, re, im); break;
+    case 4: outside = follow(4, image, line, first - before, all, re, im); break;
+    case 6: outside = follow(6, image, line, first - before, all, re, im); break;
+    case 8: outside = follow(8, image, line, first - before, all, re, im); break;
+    case 10: outside = follow(10, image, line, first - before, all, re, im); break;
+    default: outside = follow(12, image, line, first - before, all, re, im); break;
     }
     switch (image->range->taps) {
     case 2: filter(2, image->range, re, im, count, layout, row); break;
@@ -188,4 +202,5 @@ void POLAR_TRACE(const struct polar_image *image, const struct polar_crossing *l
     case 10: filter(10, image->range, re, im, count, layout, row); break;
     default: filter(12, image->range, re, im, count, layout, row); break;
     }
+    return outside;
 }

@@ -24,10 +24,10 @@ struct polar_crossing {
 
 /* Fill `row`, of `layout`, with the Farrow branches (of range->branches) of samples [first, first + count) of the
    image along the line: sample j at rho = j step. `trace`: real [2][trace_pitch], scratch for count + taps - 1 values
-   and a whole vector. Samples' places, with half the taps to either side, lie in the image. */
-typedef void polar_trace_function(const struct polar_image *image, const struct polar_crossing *line, int first,
-                                  int count, void *trace, size_t trace_pitch, const struct bp_layout *layout,
-                                  void *row);
+   and a whole vector. Samples' places, with half the taps to either side, lie in the image's. Returns how many of them
+   cross beside its lines, where zero is read: none in a tree as it should be. */
+typedef int polar_trace_function(const struct polar_image *image, const struct polar_crossing *line, int first,
+                                 int count, void *trace, size_t trace_pitch, const struct bp_layout *layout, void *row);
 polar_trace_function polar_trace_float_baseline, polar_trace_double_baseline;
 polar_trace_function polar_trace_float_v3, polar_trace_double_v3;
 polar_trace_function polar_trace_float_v4, polar_trace_double_v4;

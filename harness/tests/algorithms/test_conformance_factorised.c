@@ -1,7 +1,9 @@
 /* Factorised back projection with a tree: the pixels that it sums from records; bits, instruction sets, memory. */
+#include <math.h>
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "backprojection/factorised/factorised.h"
 #include "tests/algorithms/factorised_scenes.h"
@@ -138,13 +140,56 @@ static void memory(void **state)
     acquisition_free(&a);
 }
 
+/* A tree whose grids claim to hold more than they do: what lies beside their lines, or before their places, is zero and
+   counted, and there is no image. */
+static void reads_outside_fail(void **state)
+{
+    (void)state;
+    struct acquisition a;
+    struct echoes echoes;
+    struct image image;
+    factorised_scene(SIDES, &a, &echoes);
+    const struct tree_settings settings = {1e-2, 4, 4, 2};
+    for (int precision = 0; precision < 2; precision++)
+        for (int places = -1; places < 2; places++) { /* -1: as it is */
+            const struct grid *grid = &factorised_grids[SIDES];
+            const struct problem problem = problem_make(&a, 1, grid, (enum precision)precision);
+            struct factorised *plan;
+            struct echoes converted;
+            struct stages stages;
+            assert_int_equal(factorised_plan(&problem, &settings, &plan), STATUS_OK);
+            assert_int_equal(echoes_convert(&echoes, problem.precision, &converted), STATUS_OK);
+            support_image_make(grid, 1, problem.precision, &image);
+            for (int n = 0; n < plan->tree.first[2] && places >= 0; n++)
+                for (int view = 0; view < plan->tree.views; view++) {
+                    struct polar *polar = &plan->tree.subapertures[n].polars[view];
+                    if (places)
+                        polar->near *= 0.5;
+                    polar->low = places ? polar->low : -0.99;
+                    polar->high = places ? polar->high : 0.99;
+                }
+            stages_begin(&stages);
+            const enum status status = factorised_execute(plan, &converted, &image, &stages);
+            assert_int_equal(status, places < 0 ? STATUS_OK : STATUS_FAILED);
+            if (places >= 0) {
+                print_message("%s\n", status_message());
+                assert_non_null(strstr(status_message(), "outside of subapertures' images"));
+            }
+            assert_true(isfinite(support_peak(&image)));
+            factorised_destroy(plan);
+            image_free(&image);
+            echoes_free(&converted);
+        }
+    echoes_free(&echoes);
+    acquisition_free(&a);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_kind_is_imaged),
-        cmocka_unit_test(images_are_read),
-        cmocka_unit_test(bits_and_precisions),
-        cmocka_unit_test(memory),
+        cmocka_unit_test(every_kind_is_imaged), cmocka_unit_test(images_are_read),
+        cmocka_unit_test(bits_and_precisions),  cmocka_unit_test(memory),
+        cmocka_unit_test(reads_outside_fail),
     };
     return cmocka_run_group_tests_name("conformance_factorised", tests, NULL, NULL);
 }
