@@ -53,25 +53,34 @@ static int conditions(const struct problem *problem, const void *options, struct
 /* Without images: back projection by polynomials. */
 static const struct bp_options direct_options = {BP_ENGINE_AUTO, 0, 1e-4, 1};
 
-static struct interpolator direct_branches(const struct problem *problem, double error)
+static enum status direct_branches(const struct problem *problem, double error, struct interpolator *branches)
 {
-    return (struct interpolator){.upsample = 1, .taps = 1, .degree = farrow_degree(error, problem->acquisition, 1)};
+    const int degree = farrow_degree_choose(error, problem, 1);
+    *branches = (struct interpolator){.upsample = 1, .taps = 1, .degree = degree};
+    return degree > 0 ? STATUS_OK : STATUS_FAILED;
 }
 
 static enum status plan_direct(const struct problem *problem, double error, void **plan)
 {
-    const struct interpolator branches = direct_branches(problem, error);
-    return bp_plan(problem, &branches, &direct_options, plan);
+    struct interpolator branches;
+    const enum status status = direct_branches(problem, error, &branches);
+    return status == STATUS_OK ? bp_plan(problem, &branches, &direct_options, plan) : status;
+}
+
+static enum status forecast_direct(const struct problem *problem, double error, struct forecast *forecast)
+{
+    struct interpolator branches;
+    const enum status status = direct_branches(problem, error, &branches);
+    return status == STATUS_OK ? bp_forecast(problem, &branches, &direct_options, forecast) : status;
 }
 
 /* The number of levels that takes the least work; 0 where back projection itself does. */
 static enum status choose_stages(const struct problem *problem, struct tree_settings *settings,
                                  struct factorised_cost *chosen)
 {
-    const struct interpolator branches = direct_branches(problem, settings->error);
     struct forecast direct;
     double least = INFINITY;
-    enum status status = bp_forecast(problem, &branches, &direct_options, &direct);
+    enum status status = forecast_direct(problem, settings->error, &direct);
     if (status == STATUS_OK)
         status = factorised_cost_direct(problem, &direct, &least);
     struct tree_settings tried = *settings;
@@ -118,8 +127,7 @@ static enum status forecast(const struct problem *problem, const void *given, st
         return status;
     if (settings.stages > 0)
         return factorised_forecast(problem, &settings, &cost, forecast);
-    const struct interpolator branches = direct_branches(problem, options->error);
-    return bp_forecast(problem, &branches, &direct_options, forecast);
+    return forecast_direct(problem, options->error, forecast);
 }
 
 static enum status plan(const struct problem *problem, const void *given, void **out)

@@ -28,31 +28,33 @@ static const struct param params[] = {
     {PARAM(struct options, factor), .summary = "length of the padded spectrum over the record's", .initial = 1,
      .min = 1, .max = 2, .terse = true},
     {PARAM(struct options, error),
-     .summary =
-         "degree=auto: relative L2 error of a record of flat spectrum over the acquisition's band, and of its noise",
-     .initial = 1e-4, .min = 1e-8, .max = 0.1, .terse = true},
+     .summary = "degree=auto: relative L2 error of the image, by the spectrum of echoes and noise", .initial = 1e-4,
+     .min = 1e-8, .max = 0.1, .terse = true},
     BP_PARAMS,
     {.name = NULL},
 };
 
-static struct interpolator interpolator_of(const struct acquisition *a, const struct options *o)
+static enum status interpolator_make(const struct problem *problem, const struct options *o, struct interpolator *in)
 {
-    return (struct interpolator){.upsample = o->factor,
-                                 .taps = 1,
-                                 .degree = o->degree == DEGREE_AUTO ? farrow_degree(o->error, a, o->factor)
-                                                                    : FARROW_LEAST + o->degree - DEGREE_FIRST};
+    const int degree = o->degree == DEGREE_AUTO ? farrow_degree_choose(o->error, problem, o->factor)
+                                                : FARROW_LEAST + o->degree - DEGREE_FIRST;
+    *in = (struct interpolator){.upsample = o->factor, .taps = 1, .degree = degree};
+    return degree > 0 ? STATUS_OK : STATUS_FAILED;
 }
 
 static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
 {
-    const struct interpolator interpolator = interpolator_of(problem->acquisition, options);
-    return bp_forecast(problem, &interpolator, options, forecast);
+    struct interpolator interpolator;
+    const enum status status = interpolator_make(problem, options, &interpolator);
+    return status == STATUS_OK ? bp_forecast(problem, &interpolator, options, forecast) : status;
 }
 
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
-    const struct interpolator interpolator = interpolator_of(problem->acquisition, options);
-    return bp_plan(problem, &interpolator, options, plan);
+    struct interpolator interpolator;
+    *plan = NULL;
+    const enum status status = interpolator_make(problem, options, &interpolator);
+    return status == STATUS_OK ? bp_plan(problem, &interpolator, options, plan) : status;
 }
 
 const struct algorithm bp_farrow = {

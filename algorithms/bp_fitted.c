@@ -6,8 +6,11 @@
    9.2e-3, 1.3e-3, 2.0e-4 for 4, 6, 8 taps at fs = 2B, 0.094, 0.047, 0.024 at fs = 1.2 B; factor = 2 with 6 taps 1.7e-5
    and 4.0e-4. Two to six times below Kaiser-windowed taps of the same length. Frequencies beyond the band are not
    fitted: the tails of a raw chirp are interpolated worse than by bp_farrow. */
+#include <math.h>
+
 #include "backprojection/bp.h"
 #include "backprojection/fitted.h"
+#include "backprojection/law_spectrum.h"
 
 struct options {
     struct bp_options bp;
@@ -36,31 +39,37 @@ static void weights(const void *options, double fraction, double *w)
     fitted_weights(&((const struct planned *)options)->fitted, fraction, w);
 }
 
-static struct interpolator interpolator_of(const struct acquisition *a, const struct options *o,
-                                           struct planned *planned)
+static enum status interpolator_make(const struct acquisition *a, const struct options *o, struct planned *planned,
+                                     struct interpolator *in)
 {
     const int upsample = 1 << o->factor;
+    const double band = law_band_fitted(a);
+    if (isnan(band))
+        return STATUS_FAILED;
     *planned = (struct planned){.bp = o->bp};
-    fitted_make(o->taps, a->bandwidth / (a->fs * upsample), &planned->fitted);
-    return (struct interpolator){.upsample = upsample, .taps = o->taps, .first = 1 - o->taps / 2, .weights = weights};
+    fitted_make(o->taps, fmin(band / (a->fs * upsample), 1), &planned->fitted);
+    *in = (struct interpolator){.upsample = upsample, .taps = o->taps, .first = 1 - o->taps / 2, .weights = weights};
+    return STATUS_OK;
 }
 
 static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
 {
     struct planned planned;
-    const struct interpolator fitted = interpolator_of(problem->acquisition, options, &planned);
-    return bp_forecast(problem, &fitted, &planned, forecast);
+    struct interpolator fitted;
+    const enum status status = interpolator_make(problem->acquisition, options, &planned, &fitted);
+    return status == STATUS_OK ? bp_forecast(problem, &fitted, &planned, forecast) : status;
 }
 
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
     const struct options *o = options;
     struct planned planned;
+    struct interpolator fitted;
     *plan = NULL;
     if (o->taps % 2)
         return status_set(STATUS_UNSUPPORTED, "bp_fitted: taps is %d, must be even", o->taps);
-    const struct interpolator fitted = interpolator_of(problem->acquisition, o, &planned);
-    return bp_plan(problem, &fitted, &planned, plan);
+    const enum status status = interpolator_make(problem->acquisition, o, &planned, &fitted);
+    return status == STATUS_OK ? bp_plan(problem, &fitted, &planned, plan) : status;
 }
 
 const struct algorithm bp_fitted = {

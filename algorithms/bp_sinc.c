@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "backprojection/bp.h"
+#include "backprojection/law_spectrum.h"
 
 enum window { WINDOW_NONE, WINDOW_KAISER, WINDOW_KAISER_BAND };
 
@@ -41,10 +42,12 @@ static void weights(const void *options, double fraction, double *w)
     sinc_weights(planned->taps, planned->beta, fraction, w);
 }
 
-static struct planned planned_of(const struct acquisition *a, const struct options *o)
+static enum status planned_make(const struct acquisition *a, const struct options *o, struct planned *planned)
 {
-    const double betas[] = {0, 5, 0.5 * M_PI * o->taps * (1 - a->bandwidth / a->fs)};
-    return (struct planned){o->bp, o->taps, betas[o->window]};
+    const double band = o->window == WINDOW_KAISER_BAND ? law_band_fitted(a) : a->bandwidth;
+    const double betas[] = {0, 5, 0.5 * M_PI * o->taps * (1 - fmin(band / a->fs, 1))};
+    *planned = (struct planned){o->bp, o->taps, betas[o->window]};
+    return isnan(band) ? STATUS_FAILED : STATUS_OK;
 }
 
 static struct interpolator interpolator_of(const struct options *o)
@@ -55,19 +58,21 @@ static struct interpolator interpolator_of(const struct options *o)
 
 static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
 {
-    const struct planned planned = planned_of(problem->acquisition, options);
+    struct planned planned;
     const struct interpolator sinc = interpolator_of(options);
-    return bp_forecast(problem, &sinc, &planned, forecast);
+    const enum status status = planned_make(problem->acquisition, options, &planned);
+    return status == STATUS_OK ? bp_forecast(problem, &sinc, &planned, forecast) : status;
 }
 
 static enum status plan(const struct problem *problem, const void *options, void **plan)
 {
-    const struct planned planned = planned_of(problem->acquisition, options);
+    struct planned planned;
     const struct interpolator sinc = interpolator_of(options);
     *plan = NULL;
     if (sinc.taps % 2)
         return status_set(STATUS_UNSUPPORTED, "bp_sinc: taps is %d, must be even", sinc.taps);
-    return bp_plan(problem, &sinc, &planned, plan);
+    const enum status status = planned_make(problem->acquisition, options, &planned);
+    return status == STATUS_OK ? bp_plan(problem, &sinc, &planned, plan) : status;
 }
 
 const struct algorithm bp_sinc = {

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "common/bessel.h"
+#include "common/image_spectrum.h"
 
 void farrow_gains(int degree, double nu, double *gains)
 {
@@ -43,20 +44,28 @@ double farrow_error(int degree, double band)
     return sqrt(sum / MEANS);
 }
 
-/* Of the acquisition's echoes, on records of `upsample` times the sampling rate. */
-static double error_of(int degree, const struct acquisition *a, int upsample)
+static double error_of(int degree, const struct law_spectrum *spectrum, int upsample)
 {
-    const double echoes = farrow_error(degree, a->bandwidth / (a->fs * upsample));
-    const double noise = a->compressed ? a->noise : 0;
-    return noise > 0 ? hypot(sqrt(1 - noise) * echoes, sqrt(noise) * farrow_error(degree, 1.0 / upsample)) : echoes;
+    double sum = 0;
+    for (int n = 0; n < spectrum->count; n++)
+        sum += spectrum->weight[n] * left_out(degree, spectrum->nu[n] / upsample);
+    return sqrt(sum);
 }
 
-int farrow_degree(double error, const struct acquisition *a, int upsample)
+int farrow_degree(double error, const struct law_spectrum *spectrum, int upsample)
 {
     int degree = FARROW_LEAST;
-    while (degree < FARROW_MOST && !(error_of(degree, a, upsample) <= error))
+    while (degree < FARROW_MOST && !(error_of(degree, spectrum, upsample) <= error))
         degree++;
     return degree;
+}
+
+int farrow_degree_choose(double error, const struct problem *problem, int upsample)
+{
+    struct law_spectrum spectrum;
+    return law_spectrum(problem->acquisition, image_cells(problem), &spectrum)
+               ? farrow_degree(LAW_SHARE * error, &spectrum, upsample)
+               : 0;
 }
 
 int farrow_reach(int degree, int upsample, enum precision precision)

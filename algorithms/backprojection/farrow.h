@@ -10,7 +10,7 @@
 #ifndef SASBENCH_BACKPROJECTION_FARROW_H
 #define SASBENCH_BACKPROJECTION_FARROW_H
 
-#include "algorithm.h"
+#include "backprojection/law_spectrum.h"
 
 enum { FARROW_LEAST = 2, FARROW_MOST = 9 }; /* degrees */
 
@@ -22,9 +22,11 @@ void farrow_gains(int degree, double nu, double *gains);
    sqrt(mean of the sum over n > degree of (2n+1) j_n(pi nu)^2). 0 < band <= 1. */
 double farrow_error(int degree, double band);
 
-/* The least degree whose a-priori error is at most `error`, on records of `upsample` times the sampling rate, of the
-   acquisition's band and, compressed elsewhere, its noise at all frequencies; FARROW_MOST if none is. */
-int farrow_degree(double error, const struct acquisition *acquisition, int upsample);
+/* The least degree whose a-priori error is at most `error`, on records of `upsample` times the sampling rate and of
+   that spectrum; FARROW_MOST if none is. */
+int farrow_degree(double error, const struct law_spectrum *spectrum, int upsample);
+/* For the images of a problem to have at most `error`. 0 without memory, with a message. */
+int farrow_degree_choose(double error, const struct problem *problem, int upsample);
 
 /* Branches 0 and 1 make all others, with neighbours at most `reach` values away:
 

@@ -14,9 +14,8 @@ static const double node[GAUSS] = {0.0950125098376374, 0.2816035507792589, 0.458
 static const double weight[GAUSS] = {0.1894506104550685, 0.1826034150449236, 0.1691565193950025, 0.1495959888165767,
                                      0.1246289712555339, 0.0951585116824928, 0.0622535239386479, 0.0271524594117541};
 
-/* Pulses of more cycles of time and bandwidth have a flat spectrum. The flanks of others cost an interpolator that
-   fails at half the sampling rate up to 0.5 over their number, relative L2. */
-static const double FLAT = 20000;
+/* Of the energy of pulses of some cycles, that of their flanks: more of it outside of a band is a band elsewhere. */
+static const double FLANKS = 0.01;
 
 /* The replica's own, in bins whose nodes are their middles of energy: an interpolator's error grows steeply at the
    band's edges. False without memory. */
@@ -52,10 +51,10 @@ static bool replica_spectrum(const struct acquisition *a, double cells, struct l
 bool law_spectrum(const struct acquisition *a, double cells, struct law_spectrum *spectrum)
 {
     const double band = fmin(a->bandwidth / a->fs, 1);
-    if (!a->compressed && a->pulse_length * band <= FLAT)
+    if (!a->compressed)
         return replica_spectrum(a, cells, spectrum);
     *spectrum = (struct law_spectrum){.count = GAUSS, .reach = GAUSS / 2 / band};
-    const double beside = a->compressed ? a->noise * (1 - band) : 0;
+    const double beside = a->noise * (1 - band);
     double gain[GAUSS], shown = 0;
     for (int n = 0; n < GAUSS; n++) {
         const double frequency = node[n] * band / 2 * a->fs;
@@ -75,4 +74,25 @@ bool law_spectrum(const struct acquisition *a, double cells, struct law_spectrum
         spectrum->weight[m] = spectrum->scattered[m] = weight[n < GAUSS ? GAUSS - 1 - n : n - GAUSS] / 2 * beside;
     }
     return true;
+}
+
+double law_band(const struct law_spectrum *spectrum, const struct acquisition *a, double outside)
+{
+    double sum = 0;
+    for (int n = spectrum->count - 1; n > 0; n--) {
+        sum += spectrum->weight[n];
+        if (sum > outside)
+            return fmax(a->bandwidth, a->fs * (spectrum->nu[n] + spectrum->nu[n - 1]));
+    }
+    return a->bandwidth;
+}
+
+double law_band_fitted(const struct acquisition *a)
+{
+    struct acquisition echoes = *a;
+    struct law_spectrum spectrum;
+    if (a->compressed)
+        return a->bandwidth;
+    echoes.noise = 0;
+    return law_spectrum(&echoes, 0, &spectrum) ? law_band(&spectrum, a, FLANKS) : NAN;
 }

@@ -6,10 +6,14 @@
 
 enum { LAW_NODES = 48 };
 
-/* Positive frequencies and their share of the image (common/image_spectrum.h): of the compressed echoes, flat over the
-   bandwidth, or, of raw echoes whose pulse has flanks beyond it, the replica's own; and of their noise, which is white
-   in compressed echoes. The means of both signs of a frequency are the same but for the sign of their imaginary
-   parts. */
+/* Of an error that is asked for, what laws may take: a sixth is left for echoes that crowd at a band's edge, as those
+   of a small image may. */
+#define LAW_SHARE 0.85
+
+/* Positive frequencies and their share of the image (common/image_spectrum.h): of compressed echoes, flat over the
+   bandwidth, or, of raw ones, the replica's own, which has flanks beyond it and may lie off the carrier; and of their
+   noise, which is white in compressed echoes. The means of both signs of a frequency are the same but for the sign of
+   their imaginary parts. */
 struct law_spectrum {
     int count;
     double nu[LAW_NODES];           /* cycles a sample, 0 to 1/2 */
@@ -20,5 +24,12 @@ struct law_spectrum {
 };
 /* `cells` is image_cells of the problem. False without memory, with a message. */
 bool law_spectrum(const struct acquisition *acquisition, double cells, struct law_spectrum *spectrum);
+
+/* Hz: the width of the band about the carrier that holds all of the image's energy but a share of `outside`; the
+   bandwidth at least. */
+double law_band(const struct law_spectrum *spectrum, const struct acquisition *acquisition, double outside);
+/* Hz: the width of the band about the carrier that kernels are fitted to: the bandwidth, and more of raw echoes whose
+   pulse lies off the carrier. NAN without memory, with a message. */
+double law_band_fitted(const struct acquisition *acquisition);
 
 #endif

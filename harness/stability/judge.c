@@ -266,7 +266,8 @@ struct stability_verdict trial_judge(const struct trial *trial, int spec)
     if (!statuses_judge(trial, spec, &verdict))
         return verdict;
     const struct attempt *usual = trial_attempt(trial, 0, spec);
-    const struct method method = method_of(&trial->specs[spec], usual->engine, &trial->scene->acquisition);
+    const struct problem problem = scene_problem(trial->scene, trial->specs[spec].precision);
+    const struct method method = method_of(&trial->specs[spec], usual->engine, &problem);
     const struct view ideal = ideal_of(trial), first = {.pixels = trial_image(trial, 0, spec)};
     verdict = (struct stability_verdict){.error_most = method.error_most,
                                          .error = ideal.sums || ideal.pixels ? 0 : NAN,

@@ -47,8 +47,9 @@ static void interpolated_delays(const struct spec *spec, const struct acquisitio
     method->reading.slack_point = is_float ? 0x1p-17 : 0x1p-19;
 }
 
-struct method method_of(const struct spec *spec, const char *engine, const struct acquisition *acquisition)
+struct method method_of(const struct spec *spec, const char *engine, const struct problem *problem)
 {
+    const struct acquisition *acquisition = problem->acquisition;
     struct method method = {.error_most = ERROR_MOST, .weight = CHOICES, .reading = {.upsample = 1}};
     for (int k = 0; k < LAWS; k++)
         if (strcmp(spec->algorithm->name, laws[k].name) == 0) {
@@ -78,7 +79,7 @@ struct method method_of(const struct spec *spec, const char *engine, const struc
         method.reading.phases = 1;
         method.reading.degree =
             choice > 0 ? FARROW_LEAST + choice - 1
-                       : farrow_degree(option_value(spec, "error", 0), acquisition, method.reading.upsample);
+                       : farrow_degree_choose(option_value(spec, "error", 0), problem, method.reading.upsample);
     }
     if (method.reading.kind == EXACT_SINC) {
         method.reading.taps = (int)option_value(spec, "taps", 8);

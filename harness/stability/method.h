@@ -17,6 +17,6 @@ struct method {
 
 /* `engine` is what the plan says of itself (struct work). A method that is not known has no reading, and the widest
  * error. */
-struct method method_of(const struct spec *spec, const char *engine, const struct acquisition *acquisition);
+struct method method_of(const struct spec *spec, const char *engine, const struct problem *problem);
 
 #endif

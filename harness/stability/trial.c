@@ -131,7 +131,7 @@ static void exact_make(struct trial *trial)
     enum status status = trial->ideal_excludes ? STATUS_OK : exact_ideal(scene, trial->ideal);
     for (int k = 0; k < trial->spec_count && status == STATUS_OK && scene->acquisition.compressed; k++) {
         const struct attempt *attempt = trial_attempt(trial, 0, k);
-        const struct method method = method_of(&trial->specs[k], attempt->engine, &scene->acquisition);
+        const struct method method = method_of(&trial->specs[k], attempt->engine, &problem);
         struct exact_sum *sums = trial->exact + (size_t)k * trial->pixels;
         if (method.has_reading && attempt->status == STATUS_OK) {
             status = exact_method(&problem, trial->samples, &method.reading, sums);

@@ -45,6 +45,7 @@ struct factorised_cost {
     double blocks;  /* lines that they are summed for, one a record */
     double images;  /* all else, in pairs of the general engine */
     double flops;   /* of all but the pairs */
+    int degree;     /* of the records' polynomials */
 };
 
 /* All of it in pairs of the general engine: by this the number of levels is chosen. */

@@ -155,7 +155,7 @@ static enum status reading_make(struct factorised *plan)
 {
     struct bp *bp = &plan->bp;
     const struct acquisition *a = bp->problem.acquisition;
-    const int degree = tree_degree(&plan->tree.settings, a), branches = plan->tree.range.branches;
+    const int degree = plan->tree.degree, branches = plan->tree.range.branches;
     bp->medium =
         (struct bp_medium){a->sound_speed, a->fc, a->fs, 0, a->samples - 1, tree_phase_limit(&plan->tree.settings, a)};
     bp->table = (struct bp_table){.reading = BP_BRANCHES,

@@ -8,7 +8,6 @@
 #include "backprojection/budget.h"
 #include "backprojection/factorised/grids.h"
 #include "backprojection/farrow.h"
-#include "backprojection/law.h"
 #include "common/image_spectrum.h"
 
 /* Steps of range, over a record's samples c/(2 fs), at most: runs of pixels are fastest below one sample a pixel
@@ -17,11 +16,6 @@ static const double STEP_MOST = 0.93, STEP_NEXT = 0.975;
 static const double RATE_LEAST = 10;   /* lines a unit of s: a single ping would need hardly any */
 static const double ANGLE_LEAST = 1.1; /* oversampling */
 static const double RANGE_MOST = 3;    /* oversampling by small steps of a record that is sampled far finer */
-
-int tree_degree(const struct tree_settings *settings, const struct acquisition *a)
-{
-    return farrow_degree(tree_error_each(settings), a, 1);
-}
 
 double tree_phase_limit(const struct tree_settings *settings, const struct acquisition *a)
 {
@@ -221,30 +215,15 @@ static bool lines_along_x(const struct problem *problem, const struct grid *grid
     return fabs(middle.x - tx.x) > fabs(middle.y - tx.y);
 }
 
-/* Hz: the band that holds all of the compressed echoes' energy but a share of `most`; the bandwidth at least. NAN
-   without memory. */
-static double band_of(const struct problem *problem, double most)
-{
-    const struct acquisition *a = problem->acquisition;
-    struct law_spectrum spectrum;
-    double outside = 0;
-    if (!law_spectrum(a, image_cells(problem), &spectrum))
-        return NAN;
-    for (int n = spectrum.count - 1; n > 0; n--) {
-        outside += spectrum.weight[n];
-        if (outside > most)
-            return fmax(a->bandwidth, a->fs * (spectrum.nu[n] + spectrum.nu[n - 1]));
-    }
-    return a->bandwidth;
-}
-
 static enum status taps_make(struct tree *tree)
 {
     const struct acquisition *a = tree->problem.acquisition;
     const double each = tree_error_each(&tree->settings);
-    tree->band = band_of(&tree->problem, each * each);
-    if (isnan(tree->band))
+    struct law_spectrum spectrum;
+    if (!law_spectrum(a, image_cells(&tree->problem), &spectrum))
         return STATUS_FAILED;
+    tree->band = law_band(&spectrum, a, each * each);
+    tree->degree = farrow_degree(each, &spectrum, 1);
     const double least = 0.8 * a->sound_speed / (2 * tree->band * step_most(tree, 0)); /* what that leaves at least */
     enum status status = polar_taps_choose(each, fmax(ANGLE_LEAST, least), &tree->range);
     return status == STATUS_OK ? polar_taps_choose(each, ANGLE_LEAST, &tree->angle) : status;

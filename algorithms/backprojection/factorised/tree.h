@@ -23,6 +23,7 @@
 
 #include "algorithm.h"
 #include "backprojection/factorised/taps.h"
+#include "backprojection/law_spectrum.h"
 #include "backprojection/pairs.h"
 
 enum { STAGES_MOST = 6 }; /* levels of images */
@@ -69,14 +70,12 @@ struct tree_settings {
 };
 
 /* The error of one interpolation. An image's is the root of the sum of squares of the records' and of two each time
-   that images are read; a sixth is left for echoes that crowd at a band's edge: the law is of a flat band. */
+   that images are read. */
 static inline double tree_error_each(const struct tree_settings *settings)
 {
-    return 0.85 * settings->error / sqrt(2 * settings->stages + 1);
+    return LAW_SHARE * settings->error / sqrt(2 * settings->stages + 1);
 }
 
-/* Of the records' polynomials, which share the error with the images' taps. */
-int tree_degree(const struct tree_settings *settings, const struct acquisition *acquisition);
 /* rad: what quintics may change phases by, in proportion to the error that is asked for. */
 double tree_phase_limit(const struct tree_settings *settings, const struct acquisition *acquisition);
 
@@ -85,6 +84,7 @@ struct tree {
     struct tree_settings settings;
     struct polar_taps range, angle;
     double band;                /* Hz: of the compressed echoes, but for as little energy as the error allows */
+    int degree;                 /* of the records' polynomials, which share the error with the images' taps */
     int views;                  /* two a patch: patch 2 + side */
     bool *along_x;              /* [patch_count] the lines' direction */
     int first[STAGES_MOST + 1]; /* of a level's subapertures; behind the last level, their number */

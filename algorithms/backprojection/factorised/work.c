@@ -113,7 +113,7 @@ static struct factorised_cost tree_cost(const struct tree *tree)
             all.lines += stride * some.lines;
         }
     }
-    return (struct factorised_cost){all.records, all.blocks, images_of(tree, &all), flops_of(tree, &all)};
+    return (struct factorised_cost){all.records, all.blocks, images_of(tree, &all), flops_of(tree, &all), tree->degree};
 }
 
 enum status factorised_cost(const struct problem *problem, const struct tree_settings *settings,
@@ -187,7 +187,7 @@ enum status factorised_forecast(const struct problem *problem, const struct tree
                                 const struct factorised_cost *cost, struct forecast *forecast)
 {
     const struct acquisition *a = problem->acquisition;
-    const struct interpolator records = {.upsample = 1, .taps = 1, .degree = tree_degree(settings, a)};
+    const struct interpolator records = {.upsample = 1, .taps = 1, .degree = cost->degree};
     const struct bp_options options = {.engine = BP_ENGINE_GENERAL, .phase_limit = tree_phase_limit(settings, a)};
     const enum status status = bp_forecast(problem, &records, &options, forecast);
     if (status != STATUS_OK)

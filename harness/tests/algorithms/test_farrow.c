@@ -61,15 +61,17 @@ static void law_has_its_figures(void **state)
     for (int k = 0; k < 2; k++)
         for (int degree = 2; degree <= 7; degree++)
             assert_close(farrow_error(degree, figures[k].band) / figures[k].error[degree - 2], 1, 0.005);
-    struct acquisition a = {.fs = 1, .bandwidth = 0.7, .compressed = true};
-    for (int degree = FARROW_LEAST; degree < FARROW_MOST; degree++) { /* the least that is enough, at its very bound */
-        a.noise = 0;
-        assert_int_equal(farrow_degree(farrow_error(degree, 0.7), &a, 1), degree);
-        assert_int_equal(farrow_degree(farrow_error(degree, 0.7) * 0.999, &a, 1), degree + 1);
-        assert_int_equal(farrow_degree(farrow_error(degree, 0.35), &a, 2), degree);
-        a.noise = 1; /* has all frequencies */
-        assert_int_equal(farrow_degree(farrow_error(degree, 1), &a, 1), degree);
-        assert_int_equal(farrow_degree(farrow_error(degree, 1) * 0.999, &a, 1), degree + 1);
+    struct acquisition a = {.fc = 10, .fs = 1, .bandwidth = 0.7, .compressed = true};
+    struct law_spectrum echoes, noise;
+    assert_true(law_spectrum(&a, 0, &echoes));
+    a.noise = 1; /* has all frequencies */
+    assert_true(law_spectrum(&a, 0, &noise));
+    for (int degree = FARROW_LEAST; degree < FARROW_MOST; degree++) { /* the least that is enough, near its bound */
+        assert_int_equal(farrow_degree(farrow_error(degree, 0.7) * 1.01, &echoes, 1), degree);
+        assert_int_equal(farrow_degree(farrow_error(degree, 0.7) * 0.99, &echoes, 1), degree + 1);
+        assert_int_equal(farrow_degree(farrow_error(degree, 0.35) * 1.01, &echoes, 2), degree);
+        assert_int_equal(farrow_degree(farrow_error(degree, 1) * 1.01, &noise, 1), degree);
+        assert_int_equal(farrow_degree(farrow_error(degree, 1) * 0.99, &noise, 1), degree + 1);
     }
     assert_true(farrow_error(FARROW_MOST, 1) <= 1e-8); /* any `error` that bp_farrow accepts is reached */
 }
