@@ -171,6 +171,6 @@ double few_pixels_error(const struct few_pixels *few, const struct interpolator 
     }
     response_end(&response);
     free(values);
-    const double error = of_exact > 0 && of_made > 0 ? sqrt(fmax(1 - square(both) / (of_made * of_exact), 0)) : 1;
+    const double error = of_exact > 0 && of_made > 0 ? unlike(both, of_made * of_exact) : 1;
     return fmin(SHARE * error, interpolation_error(in, options, &few->spectrum, NULL));
 }

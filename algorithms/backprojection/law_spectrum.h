@@ -6,10 +6,6 @@
 
 enum { LAW_NODES = 48 };
 
-/* Of an error that is asked for, what laws may take: a sixth is left for echoes that crowd at a band's edge, as those
-   of a small image may. */
-#define LAW_SHARE 0.85
-
 /* Positive frequencies and their share of the image (common/image_spectrum.h): of compressed echoes, flat over the
    bandwidth, or, of raw ones, the replica's own, which has flanks beyond it and may lie off the carrier; and of their
    noise, which is white in compressed echoes. The means of both signs of a frequency are the same but for the sign of

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "common/delay.h"
+#include "common/turns.h"
 
 enum { PINGS_LEAST = 10, FREQUENCIES = 3 };
 static const double abscissas[FREQUENCIES] = {-0.7745966692414834, 0, 0.7745966692414834};
@@ -146,7 +147,7 @@ static double profile_error(const struct problem *problem, double sine)
         }
     }
     const double power = whole * limited;
-    return power > 0 ? sqrt(fmax(0, 1 - creal(both * conj(both)) / power)) : 1;
+    return power > 0 ? unlike(both, power) : 1;
 }
 
 /* Of a problem that has a law. */
@@ -234,5 +235,5 @@ double motion_error(const struct problem *problem, enum motion motion)
             sum += share;
         }
     }
-    return sum > 0 ? sqrt(fmax(0, 1 - creal(mean * conj(mean)) / (sum * power))) : NAN;
+    return sum > 0 ? unlike(mean, sum * power) : NAN;
 }

@@ -24,4 +24,12 @@ static inline double square(double complex a)
     return creal(a) * creal(a) + cimag(a) * cimag(a);
 }
 
+/* sqrt(1 - |both|^2/power): what two signals do not have in common. What rounding makes negative is 0; NaN stays, which
+   fmax would make 0. */
+static inline double unlike(double complex both, double power)
+{
+    const double left = 1 - square(both) / power;
+    return left < 0 ? 0 : sqrt(left);
+}
+
 #endif

@@ -8,6 +8,7 @@
 
 #include <math.h>
 
+#include "common/turns.h"
 #include "range_migration/aliases.h"
 #include "range_migration/tone.h"
 
@@ -229,7 +230,7 @@ static double energies_error(const struct energies *sum, bool made)
         return NAN;
     if (!(sum->image > 0 && sum->formed > 0))
         return INFINITY;
-    return sqrt(fmax(1 - creal(sum->product * conj(sum->product)) / sum->image / sum->formed, 0));
+    return unlike(sum->product, sum->image * sum->formed);
 }
 
 /* Of known targets. */

@@ -45,8 +45,8 @@ static void slopes(const struct tree *tree, const struct subaperture *part, stru
     const double c = a->sound_speed, dx = place.x - part->x, dy = place.y - part->y, rho = hypot(dx, dy);
     const double step = 1e-4 * rho, ex = dx / rho * step, ey = dy / rho * step;
     const int pings = part->pings < PINGS_MOST ? part->pings : PINGS_MOST;
-    *along = *across = 0;
-    for (int n = 0; n < pings; n++) {
+    *along = *across = rho > 0 ? 0 : INFINITY; /* no ray leads to the centre: fmax would leave out its NaN */
+    for (int n = 0; n < pings && rho > 0; n++) {
         const int p = part->ping + (pings > 1 ? (int)((long long)n * (part->pings - 1) / (pings - 1)) : 0);
         const struct vector *rx = a->rx + (size_t)p * (size_t)a->receivers;
         int ends[4] = {0};

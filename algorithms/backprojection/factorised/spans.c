@@ -6,9 +6,10 @@
 /* Leave pixels [begin, end) of the whole numbers between two reals. */
 static struct pair_span whole_pixels(double first, double last, int count)
 {
+    const bool some = first <= last; /* and both are numbers */
     first = ceil(fmax(first, 0));
     last = floor(fmin(last, count - 1.0));
-    return first <= last ? (struct pair_span){(int)first, (int)last + 1} : (struct pair_span){0, 0};
+    return some && first <= last ? (struct pair_span){(int)first, (int)last + 1} : (struct pair_span){0, 0};
 }
 
 /* Leave distances rho from `near` to `far` that have slope rho <= value. */
