@@ -61,7 +61,7 @@ static void bare_sampling_holds(void **state)
     (void)state;
     static const double oversampling[] = {1, 1.005, 1.01, 1.05};
     for (size_t k = 0; k < sizeof oversampling / sizeof *oversampling; k++)
-        near_trees(100 + 9 * (int)k, 9, oversampling[k]);
+        near_trees(100 + 3 * (int)k, 3, oversampling[k]);
 }
 
 /* The taps' own error, against the exponential at random frequencies of the band. */
