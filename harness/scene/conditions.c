@@ -1,10 +1,14 @@
 /* What a scene must fulfil whichever algorithm images it (scene.h). */
 #include <math.h>
 
+#include "common/delay.h"
 #include "scene/conjugated.h"
 
 /* Recorded samples of a real signal were never turned into baseband; rounding leaves less of an imaginary part. */
 static const double REAL_SHARE = 1e-9;
+
+/* rad, as of the formulas of range migration; more blurs. */
+static const double MOTION_MOST = 0.1;
 
 static double imaginary_share(const struct scene *scene)
 {
@@ -16,6 +20,56 @@ static double imaginary_share(const struct scene *scene)
         largest = fmax(largest, fmax(fabs(creal(scene->recorded[n])), fabs(cimag(scene->recorded[n]))));
     }
     return largest > 0 ? imaginary / largest : 1;
+}
+
+enum { MOTION_PINGS = 2000, MOTION_NODES = 3 };
+
+/* rad: two-way phase at fc. */
+struct motion {
+    double count, squares, most;
+};
+
+/* What the true places of pings that see a pixel change in its phases, by the outermost receivers and a middle one. */
+static void motion_add(const struct scene *scene, struct vector pixel, struct motion *motion)
+{
+    const struct acquisition *told = &scene->acquisition, *flown = scene->flown;
+    const double c = told->sound_speed;
+    const int step = 1 + told->pings / MOTION_PINGS;
+    for (int p = 0; p < told->pings; p += step) {
+        if (!condition_sees(told, p, pixel))
+            continue;
+        for (int n = 0; n < 3; n++) {
+            const size_t k = (size_t)p * (size_t)told->receivers + (size_t)(n * (told->receivers - 1) / 2);
+            const double phase = 2 * M_PI * told->fc
+                                 * (delay_exact(flown->tx[p], flown->rx[k], flown->velocity[p], pixel, c)
+                                    - delay_exact(told->tx[p], told->rx[k], told->velocity[p], pixel, c));
+            motion->count++;
+            motion->squares += phase * phase;
+            motion->most = fmax(motion->most, fabs(phase));
+        }
+    }
+}
+
+/* Over corners, edges and middle of every patch. */
+static struct condition motion_condition(const struct scene *scene)
+{
+    struct motion motion = {0, 0, 0};
+    for (int k = 0; k < scene->patch_count; k++)
+        for (int n = 0; n < MOTION_NODES * MOTION_NODES; n++) {
+            const struct grid *g = &scene->patches[k];
+            const double u = n % MOTION_NODES / (MOTION_NODES - 1.0), w = n / MOTION_NODES / (MOTION_NODES - 1.0);
+            motion_add(scene, grid_point(g, w * (g->r_count - 1), u * (g->x_count - 1)), &motion);
+        }
+    struct condition condition = {
+        "motion",
+        motion.count > 0 ? sqrt(motion.squares / motion.count) : 0,
+        MOTION_MOST,
+        false,
+        SEVERITY_WARN,
+        "motion errors unknown to the imager, which no error counts: rms of the two-way phase (rad)",
+        ""};
+    condition_cure_add(&condition, "track.errors_known = true, or smaller errors; the most is %.3g rad", motion.most);
+    return condition;
 }
 
 int scene_conditions(const struct scene *scene, struct condition list[SCENE_CONDITIONS])
@@ -32,5 +86,7 @@ int scene_conditions(const struct scene *scene, struct condition list[SCENE_COND
                                            "complex baseband, see docs/baseband.md"};
         list[count++] = conjugated_condition(scene);
     }
+    if (scene->flown)
+        list[count++] = motion_condition(scene);
     return count;
 }

@@ -67,9 +67,9 @@ struct problem scene_problem(const struct scene *scene, enum precision precision
    STATUS_FAILED without memory. */
 enum status scenes_tell_apart(struct scene *a, struct scene *b);
 
-/* Fill `list` with the conditions of the scene by itself, conditions_scene and what its recorded samples say, and
-   return the number. All of them warn. */
-enum { SCENE_CONDITIONS = CONDITIONS_SCENE + 2 };
+/* Fill `list` with the conditions of the scene by itself, conditions_scene, what its recorded samples say and what its
+   motion does that the imager is not told of, and return the number. All of them warn. */
+enum { SCENE_CONDITIONS = CONDITIONS_SCENE + 3 };
 int scene_conditions(const struct scene *scene, struct condition list[SCENE_CONDITIONS]);
 
 /* The folder below the scenes that `stability` alone goes through: some of its scenes must be refused. */

@@ -244,12 +244,48 @@ static void wrong_tracks_are_refused(void **state)
     }
 }
 
+/* Motion errors that the imager is not told of are a condition of the scene: the rms of their two-way phase. */
+static void phases_of_unknown_errors_are_told(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *track;
+        double value; /* NAN: no such condition */
+    } cases[] = {
+        /* 1 mm across the track: 4 pi/lambda of it */
+        {EVEN "errors = ( { axis = \"sway\"; amplitude = 1e-3; period = 1e9; phase = 90.0; } );", 4 * M_PI * 0.1},
+        {EVEN "errors = ( { axis = \"sway\"; amplitude = 1e-5; period = 1e9; phase = 90.0; } );", 4 * M_PI * 1e-3},
+        {EVEN "errors = ( { axis = \"sway\"; amplitude = 1e-3; period = 1e9; phase = 90.0; } ); errors_known = true;",
+         NAN},
+        /* half a degree about the transmitter: of 8 receivers the nearest is .35 mm off, m = 3 1.4, the farthest 2.8 */
+        {EVEN "errors = ( { axis = \"yaw\"; amplitude = 0.5; period = 1e9; phase = 90.0; } );", 2 * M_PI * 0.182},
+        {EVEN, NAN},
+    };
+    for (size_t n = 0; n < COUNT_OF(cases); n++) {
+        struct scene scene;
+        struct condition list[SCENE_CONDITIONS];
+        double value = NAN;
+        load(cases[n].track, &scene);
+        for (int k = 0, count = scene_conditions(&scene, list); k < count; k++)
+            if (strcmp(list[k].name, "motion") == 0) {
+                value = list[k].value;
+                assert_int_equal(list[k].severity, SEVERITY_WARN);
+                assert_int_equal(condition_holds(&list[k]), value < 0.1);
+            }
+        if (isnan(cases[n].value))
+            assert_true(isnan(value));
+        else
+            assert_close(value / cases[n].value, 1, 0.02);
+        scene_free(&scene);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(measured_places_are_taken), cmocka_unit_test(matlab_places_are_taken),
         cmocka_unit_test(errors_are_known_or_not),   cmocka_unit_test(walks_are_drawn_by_their_seeds),
-        cmocka_unit_test(wrong_tracks_are_refused),
+        cmocka_unit_test(wrong_tracks_are_refused),  cmocka_unit_test(phases_of_unknown_errors_are_told),
     };
     return cmocka_run_group_tests(tests, folder_make, folder_remove);
 }
