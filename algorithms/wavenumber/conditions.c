@@ -7,6 +7,7 @@
 #include "range_migration/prediction.h"
 #include "range_migration/spectrum.h"
 #include "wavenumber/engine.h"
+#include "wavenumber/filter.h"
 
 static const double SLOWEST = 0.1;          /* of 1 - |v|/c, as in range migration */
 static const double SLOWEST_ROTATED = 0.78; /* beyond, axes turned by the angle at rest leave 7 % and more */
@@ -175,6 +176,16 @@ int wk_conditions(const struct problem *problem, const void *options, struct con
     for (int k = 0; k < count && k < room; k++)
         list[k] = all[k];
     return count < room ? count : room;
+}
+
+int wk_filter_conditions(const struct problem *problem, const void *options, struct condition *list, int room)
+{
+    const struct wk_options *given = options;
+    const struct acquisition *a = problem->acquisition;
+    int count = wk_conditions(problem, options, list, room);
+    if (count < room && a->area.half_x > 0 && polar_filter_check(a, "wk_polar") == STATUS_OK)
+        list[count++] = polar_filter_kept(a, &(struct polar_setting){given->subapertures, given->curvature});
+    return count;
 }
 
 int wk_rotated_conditions(const struct problem *problem, const void *options, struct condition *list, int room)

@@ -38,31 +38,6 @@ struct polar_filter {
     FFTW(plan) range_forward, range_inverse, track_forward, track_inverse;
 };
 
-/* Sine of the angle off broadside under which the area's centre is seen from x. */
-static double centre_sine(const struct acquisition *a, double x)
-{
-    return (a->area.x - x) / hypot(a->area.x - x, a->area.r);
-}
-
-/* The factor of upsampling that `count` sub-apertures ask for. */
-static double upsampling_for(const struct polar_filter *f, int count)
-{
-    const struct acquisition *a = f->acquisition;
-    double beam = 2 * (a->echo_sine > 0 && a->echo_sine < 1 ? a->echo_sine : 0), widest = 0;
-    if (beam == 0)
-        beam = a->tx_length > 0 ? fmin(2, a->sound_speed / a->fc / a->tx_length) : 2;
-    beam = fmin(beam, a->sound_speed / a->fc / (2 * fabs(f->spacing)));
-    for (int s = 0; s < count; s++) {
-        double first = round((double)s * f->pings / count), last = round((s + 1.0) * f->pings / count) - 1;
-        double x0 = a->tx[0].x + first * f->spacing, x1 = a->tx[0].x + last * f->spacing;
-        widest = fmax(widest, fabs(centre_sine(a, x0) - centre_sine(a, x1)));
-    }
-    double factor = 1, needed = 2 * f->kc * (beam + widest) * fabs(f->spacing) / (2 * M_PI);
-    while (factor < needed)
-        factor *= 2;
-    return factor;
-}
-
 static void *take(struct polar_filter *f, size_t count, size_t size, double share)
 {
     size_t bytes = (count * size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
@@ -84,11 +59,11 @@ static bool plan_apertures(struct polar_filter *f)
     const int count = f->shape.subapertures;
     for (int s = 0; s < count; s++) {
         struct aperture *p = &f->apertures[s];
-        int first = (int)round((double)s * f->pings / count), end = (int)round((s + 1.0) * f->pings / count);
+        const int first = polar_filter_begin(a, count, s), end = polar_filter_begin(a, count, s + 1);
         p->begin = first * f->up;
         p->end = end * f->up;
         p->x = a->tx[0].x + (first + end - 1) / 2.0 * f->spacing;
-        p->sine = centre_sine(a, p->x);
+        p->sine = polar_filter_sine(a, p->x);
         p->rho = hypot(a->area.x - p->x, a->area.r);
         p->length = 2 * (p->end - p->begin);
         p->forward = plan_strip(p->length, f->scratch, FFTW_FORWARD);
@@ -149,17 +124,14 @@ enum status REAL_NAME(polar_filter_plan)(const struct acquisition *a, const stru
                                .samples = a->samples,
                                .length = fft_length_fast(a->samples),
                                .shape = {setting->subapertures, 1, 0, sizeof *f}};
-    int most = a->pings / 2 > 1 ? a->pings / 2 : 1;
+    const int most = polar_filter_most(a);
     double up = 0;
-    if (f->shape.subapertures == 0)
-        for (f->shape.subapertures = 1; f->shape.subapertures < most; f->shape.subapertures++)
-            if (upsampling_for(f, f->shape.subapertures) == 1)
-                break;
+    f->shape.subapertures = polar_filter_subapertures(a, setting->subapertures);
     if (f->shape.subapertures > most)
         status = status_set(STATUS_UNSUPPORTED,
                             "polar-format filter: condition subapertures: %d sub-apertures of %d pings; at most %d",
                             f->shape.subapertures, a->pings, most);
-    if (status == STATUS_OK && !((up = upsampling_for(f, f->shape.subapertures)) <= UPSAMPLING_MOST))
+    if (status == STATUS_OK && !((up = polar_filter_upsampling(a, f->shape.subapertures)) <= UPSAMPLING_MOST))
         status = status_set(STATUS_UNSUPPORTED,
                             "polar-format filter: condition upsampling: %d sub-apertures need %g times upsampling; at "
                             "most %d (cure: more "

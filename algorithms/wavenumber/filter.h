@@ -35,6 +35,19 @@ struct polar_shape {
    target area at r > 0 that lies in the records. Errors: STATUS_UNSUPPORTED; `place` begins the message. */
 enum status polar_filter_check(const struct acquisition *acquisition, const char *place);
 
+/* Of echoes that the check holds: the most sub-apertures they have; how many there are where `asked` is 0, else
+   `asked`; the first ping of the s-th of `count`; and the factor of upsampling, 1, 2, 4, ..., that `count` ask for. */
+int polar_filter_most(const struct acquisition *acquisition);
+int polar_filter_subapertures(const struct acquisition *acquisition, int asked);
+int polar_filter_begin(const struct acquisition *acquisition, int count, int s);
+double polar_filter_upsampling(const struct acquisition *acquisition, int count);
+/* Sine of the angle off broadside under which the area's centre is seen from x (m). */
+double polar_filter_sine(const struct acquisition *acquisition, double x);
+
+/* "area_kept", a warning where a target inside the area loses more than half of its energy: predicted dB, the worst of
+   nine places out to 0.8 of the area. */
+struct condition polar_filter_kept(const struct acquisition *acquisition, const struct polar_setting *setting);
+
 /* Errors: those of the check, STATUS_FAILED without memory; *filter is NULL then. */
 enum status polar_filter_plan_float(const struct acquisition *acquisition, const struct polar_setting *setting,
                                     int threads, struct polar_shape *shape, struct polar_filter **filter);

@@ -61,6 +61,8 @@ struct wk_method {
 enum status wk_plan(const struct problem *problem, const struct wk_method *method, const struct wk_options *options,
                     void **plan);
 int wk_conditions(const struct problem *problem, const void *options, struct condition *list, int room);
+/* Of a method that filters, with what that takes off its own targets. */
+int wk_filter_conditions(const struct problem *problem, const void *options, struct condition *list, int room);
 /* Of a method that rotates: of a slower platform. */
 int wk_rotated_conditions(const struct problem *problem, const void *options, struct condition *list, int room);
 /* Errors alone: INFINITY of a filter, and of an azimuth transform that is padded less than 1.25 times where axes are

@@ -9,25 +9,26 @@
 
 #include "scene/simulate.h"
 #include "wavenumber/filter.h"
+#include "wavenumber/wk.h"
+
+extern const struct algorithm wk_polar;
 
 enum { TARGETS = 9, INSIDE = 4, EDGE = 3 };
 
 /* Energies of each target alone behind the filter, and of what the filter changes, over that ahead of it. */
-static void energies(const struct polar_setting *setting, double energy[TARGETS], double change[TARGETS],
-                     struct polar_shape *shape)
+static void scene_energies(const struct scene *scene, const struct polar_setting *setting, double energy[TARGETS],
+                           double change[TARGETS], struct polar_shape *shape)
 {
-    struct scene scene, alone;
-    scene_pf05(&scene);
-    alone = scene;
+    struct scene alone = *scene;
     alone.target_count = alone.point_count = 1;
-    const struct acquisition *a = &scene.acquisition;
+    const struct acquisition *a = &scene->acquisition;
     const size_t count = (size_t)a->samples * (size_t)a->pings;
     double complex *filtered = malloc(count * sizeof *filtered);
     struct polar_filter *filter;
     assert_int_equal(polar_filter_plan_double(a, setting, 8, shape, &filter), STATUS_OK);
     for (int k = 0; k < TARGETS; k++) {
         struct echoes echoes;
-        alone.targets = &scene.targets[k];
+        alone.targets = &scene->targets[k];
         support_echoes(&alone, &echoes);
         const double complex *samples = echoes.samples;
         memcpy(filtered, samples, count * sizeof *filtered);
@@ -44,6 +45,14 @@ static void energies(const struct polar_setting *setting, double energy[TARGETS]
     }
     polar_filter_destroy_double(filter);
     free(filtered);
+}
+
+static void energies(const struct polar_setting *setting, double energy[TARGETS], double change[TARGETS],
+                     struct polar_shape *shape)
+{
+    struct scene scene;
+    scene_pf05(&scene);
+    scene_energies(&scene, setting, energy, change, shape);
     squint_scene_free(&scene);
 }
 
@@ -170,6 +179,63 @@ static void refusals(void **state)
     squint_scene_free(&scene);
 }
 
+/* What the filter takes off targets all over its own area is predicted, and warned of beyond half of their energy. */
+static void own_targets_lost_are_warned_of(void **state)
+{
+    (void)state;
+    static const struct {
+        struct target_area area;
+        struct polar_setting setting;
+    } cases[] = {
+        {{0, 30, 5, 10}, {0, false}},  {{0, 30, 5, 10}, {4, false}},  {{0, 30, 5, 1}, {1, false}},
+        {{0, 30, 5, 0.3}, {0, false}}, {{0, 30, 5, 0.3}, {1, true}},  {{0, 30, 2, 0.3}, {2, false}},
+        {{0, 30, 2, 0.3}, {4, true}},  {{0, 30, 0.3, 5}, {2, false}}, {{0, 30, 0.3, 5}, {1, true}},
+        {{2, 40, 3, 0.5}, {1, false}}, {{1, 25, 1, 0.2}, {1, false}},
+    };
+    int warned = 0;
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+        struct scene scene;
+        struct polar_shape shape;
+        double energy[TARGETS], change[TARGETS], measured = 0;
+        const struct target_area *area = &cases[n].area;
+        scene_pf05(&scene);
+        scene.acquisition.area = *area;
+        for (int k = 0; k < TARGETS; k++)
+            scene.targets[k] = (struct target){area->x + 0.8 * (k % 3 - 1) * area->half_x,
+                                               area->r + 0.8 * (k / 3 - 1) * area->half_r, 1};
+        scene_energies(&scene, &cases[n].setting, energy, change, &shape);
+        for (int k = 0; k < TARGETS; k++)
+            measured = worse_of(measured, -decibels(energy[k]));
+        const struct condition kept = polar_filter_kept(&scene.acquisition, &cases[n].setting);
+        assert_close(kept.value, measured, 0.5 + 0.2 * measured);
+        if (fabs(measured - 3) > 0.5)
+            assert_int_equal(condition_holds(&kept), measured <= 3);
+        warned += !condition_holds(&kept);
+        squint_scene_free(&scene);
+    }
+    assert_true(warned >= 4);
+}
+
+/* Rows carry it: `wk_polar` alone, and only where there is an area. */
+static void conditions_have_the_loss(void **state)
+{
+    (void)state;
+    struct scene scene;
+    struct condition list[CONDITIONS_MAX];
+    const struct wk_options options = {.taps = 2, .subapertures = 2};
+    scene_pf05(&scene);
+    const struct problem problem = scene_problem(&scene, PRECISION_FLOAT);
+    scene.acquisition.area = (struct target_area){0, 30, 2, 0.3};
+    const int count = wk_polar.conditions(&problem, &options, list, CONDITIONS_MAX);
+    assert_string_equal(list[count - 1].name, "area_kept");
+    assert_int_equal(list[count - 1].severity, SEVERITY_WARN);
+    assert_false(condition_holds(&list[count - 1]));
+    assert_non_null(strstr(list[count - 1].cure, "subapertures=4 in place of 2"));
+    scene.acquisition.area = (struct target_area){0};
+    assert_int_equal(wk_polar.conditions(&problem, &options, list, CONDITIONS_MAX), count - 1);
+    squint_scene_free(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -177,6 +243,8 @@ int main(void)
         cmocka_unit_test(curvature),
         cmocka_unit_test(harmless),
         cmocka_unit_test(refusals),
+        cmocka_unit_test(own_targets_lost_are_warned_of),
+        cmocka_unit_test(conditions_have_the_loss),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
