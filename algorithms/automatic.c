@@ -17,8 +17,8 @@ struct options {
 static const struct param params[] = {
     {PARAM(struct options, error), .summary = "relative L2 error of the image after one best complex gain, at most",
      .initial = 1e-3, .min = 1e-12, .max = 1, .sweep = "1e-1 1e-2 1e-3 1e-4 1e-5"},
-    {PARAM(struct options, memory), .summary = "GB that the plan may hold", .initial = 4, .min = 1e-6, .max = 1e6,
-     .terse = true},
+    {PARAM(struct options, memory), .summary = "GB that the process may take, echoes and image among them",
+     .initial = 4, .min = 1e-6, .max = 1e6, .terse = true},
     {.name = NULL},
 };
 

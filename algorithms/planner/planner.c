@@ -13,6 +13,7 @@
 #include "backprojection/pairs.h"
 #include "planner/candidates.h"
 #include "planner/known.h"
+#include "planner/process.h"
 #include "planner/rates.h"
 
 /* Forecasts are means over scenes: what is planned with lies above. */
@@ -351,7 +352,7 @@ static enum status plan_fastest(const struct setting *setting, struct choice *ch
     enum status status = best->algorithm->plan(setting->problem, best->options, &choice->plan);
     if (status != STATUS_OK)
         return refused(best, status);
-    best->bytes = best->algorithm->work(choice->plan).bytes;
+    best->bytes = process_bytes(setting->problem, best->algorithm->work(choice->plan).bytes);
     if (best->bytes <= setting->budget->bytes) {
         best->verdict = VERDICT_CHOSEN;
         choice->found = true;
@@ -360,7 +361,7 @@ static enum status plan_fastest(const struct setting *setting, struct choice *ch
     best->algorithm->destroy(choice->plan);
     choice->plan = NULL;
     best->verdict = VERDICT_MEMORY;
-    snprintf(best->reason, sizeof best->reason, "its plan holds %.3g MB, more than %.3g MB", best->bytes / 1e6,
+    snprintf(best->reason, sizeof best->reason, "its process takes %.3g MB, more than %.3g MB", best->bytes / 1e6,
              setting->budget->bytes / 1e6);
     return general_try(setting, best, choice);
 }

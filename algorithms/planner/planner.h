@@ -19,7 +19,7 @@ struct candidate {
     double error;             /* relative L2 that is planned with; INFINITY where there is no forecast */
     double seconds;           /* of a run; INFINITY where unknown; of bp_factorised without a forecast a lower bound */
     double flops, pairs;      /* counted; NAN where unknown */
-    double bytes;             /* of the plan; NAN where none was made */
+    double bytes;             /* of the process (process.h); NAN where no plan was made */
     enum verdict verdict;
     char reason[480]; /* why it is not chosen; empty for the one that is */
 };
@@ -36,7 +36,7 @@ struct choice {
 /* What is asked for. */
 struct budget {
     double error; /* relative L2 of the complex image after one best complex gain, > 0 */
-    double bytes; /* that the plan may hold */
+    double bytes; /* that the process may take */
     bool every;   /* forecast the errors of all candidates, also of those that are slower for sure: takes seconds */
 };
 

@@ -106,7 +106,7 @@ static const struct {
     {'R', "    --range DB        what a picture shows below its peak, 60 dB unless given"},
     {'P', "    --precision WHICH float or double; both unless given, or a SPEC says"},
     {'E', "    --error E         of the image after one gain (L2), 1e-3 unless given"},
-    {'Y', "    --memory BYTES    that a plan may hold, 4G unless given"},
+    {'Y', "    --memory BYTES    that the process of the image may take, 4G unless given (2GB, 512MiB)"},
     {'S', "    --seed N          a whole number from 0 to 1e15"},
     {'A', "    --at FILE.csv     points: columns d, r, F, f, fc, v, c"},
     {'B', "    --ab              run two programs side by side and compare their times"},

@@ -21,20 +21,25 @@ static enum status error_parse(const char *text, double *error)
                : status_set(STATUS_INVALID, "plan: --error is '%s', must be a number above 0, at most 1", text);
 }
 
-/* "4G": bytes. */
+/* "4G", "2GB", "512MiB": bytes. */
 static enum status memory_parse(const char *text, double *bytes)
 {
-    static const char suffixes[] = "kMGT";
-    const char *end = text ? number_read(text, bytes) : "", *suffix = end && *end ? strchr(suffixes, *end) : NULL;
+    static const char prefixes[] = "kMGTK"; /* KiB, and kB */
+    const char *end = text ? number_read(text, bytes) : "", *prefix = end && *end ? strchr(prefixes, *end) : NULL;
     if (!text)
         *bytes = 4e9;
-    if (suffix) {
-        *bytes *= pow(1000, (double)(suffix - suffixes) + 1);
-        end++;
+    if (prefix) {
+        const bool binary = end[1] == 'i';
+        *bytes *= pow(binary ? 1024 : 1000, (double)((prefix - prefixes) % 4) + 1);
+        end += 1 + binary;
     }
-    return end && !*end && *bytes > 0
+    if (end && *end == 'B')
+        end++;
+    return end && !*end && *bytes > 0 && *bytes < INFINITY
                ? STATUS_OK
-               : status_set(STATUS_INVALID, "plan: --memory is '%s', must be bytes above 0; k, M, G or T may follow",
+               : status_set(STATUS_INVALID,
+                            "plan: --memory is '%s', must be bytes above 0: 4e9, or with k, M, G, T, Ki, Mi, Gi or Ti "
+                            "and B behind, as 2GB, 512MiB",
                             text);
 }
 

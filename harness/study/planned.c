@@ -189,12 +189,13 @@ void planned_print(FILE *stream, const struct planned *planned)
         fprintf(stream, "\nLeft out, and the error that it adds:\n");
         planned_left_out(&problem, best, line_print, stream);
         candidate_name(best, name);
-        fprintf(stream, "\nChosen: %s%s%s, about %s, %s of memory\n", name,
+        const double plan = best->algorithm->work(choice->plan).bytes;
+        fprintf(stream, "\nChosen: %s%s%s, about %s; the process takes %s of memory, %s of them the plan\n", name,
                 precision == PRECISION_FLOAT ? ""
                 : *best->settings            ? ","
                                              : ":",
                 precision == PRECISION_FLOAT ? "" : "precision=double", cell_time(best->seconds).text,
-                cell_significant(1e-6 * best->bytes, " MB").text);
+                cell_significant(1e-6 * best->bytes, " MB").text, cell_significant(1e-6 * plan, " MB").text);
         passage_print(stream, scene, best->seconds);
     }
 }

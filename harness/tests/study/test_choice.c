@@ -14,6 +14,7 @@
 #include "measure/session.h"
 #include "measure/timing.h"
 #include "planner/candidates.h"
+#include "planner/process.h"
 #include "study/machine_rates.h"
 #include "study/sweep_settings.h"
 #include "tests/support.h"
@@ -262,8 +263,9 @@ static void refusals_compare(const struct scene *scene, const char *name, const 
     const struct problem problem = scene_problem(scene, PRECISION_FLOAT);
     for (int k = 0; k < ERRORS * SHARES; k++) {
         const double error = errors[k / SHARES];
-        const struct budget budget = {error, shares[k % SHARES] * least_bytes(sweep, error)};
-        const struct setting *finest = sweep_finest(sweep, budget.bytes);
+        const double plan_bytes = shares[k % SHARES] * least_bytes(sweep, error);
+        const struct budget budget = {error, process_bytes(&problem, plan_bytes)};
+        const struct setting *finest = sweep_finest(sweep, plan_bytes);
         struct choice choice;
         assert_int_equal(planner_choose(&problem, &budget, &choice), STATUS_OK);
         if (choice.found)

@@ -282,8 +282,26 @@ static void command_writes(void **state)
     task.error = "-1";
     assert_int_equal(command_plan(&task), STATUS_INVALID);
     task.error = NULL;
-    task.memory = "4X";
-    assert_int_equal(command_plan(&task), STATUS_INVALID);
+    static const char *const wrong[] = {"4X", "4 GB", "4GBB", "4iB", "4Bi", "-1G", "0", "MiB", "1e400", "4gb", "nan"};
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+        task.memory = wrong[k];
+        assert_int_equal(command_plan(&task), STATUS_INVALID);
+        assert_non_null(
+            strstr(status_message(), "must be bytes above 0: 4e9, or with k, M, G, T, Ki, Mi, Gi or Ti and B"));
+    }
+    /* The least that the process takes decides; each says as much, or a byte less. */
+    task.error = "1e-2";
+    static const char *const enough[] = {"1T", "1TB", "1Ti", "4000000000", "4000000000B", "0.5GiB", "512MiB", "99e6kB"};
+    for (size_t k = 0; k < sizeof enough / sizeof *enough; k++) {
+        task.memory = enough[k];
+        if (command_plan(&task) != STATUS_OK)
+            fail_msg("%s: %s", enough[k], status_message());
+    }
+    static const char *const little[] = {"1M", "16MB", "15MiB", "16000k", "15000KiB", "1.6e7B"};
+    for (size_t k = 0; k < sizeof little / sizeof *little; k++) {
+        task.memory = little[k];
+        assert_int_equal(command_plan(&task), STATUS_FAILED);
+    }
 }
 
 /* What range migration takes is counted without a plan: the plan's FLOPs, and a time of which the terms over the
