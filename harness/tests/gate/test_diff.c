@@ -100,6 +100,7 @@ static void values_are_judged_by_the_metric_table(void **state)
         {",1,0.9,", ",2.2,1.9,", "run_s", VERDICT_WORSE},
         {",1,0.9,", ",2.2,1.0,", NULL, VERDICT_SAME},       /* the least time says otherwise */
         {",1,0.9,5,2,", ",3,2.7,5,6,", NULL, VERDICT_SAME}, /* a slower machine: the control took as much longer */
+        {",1,0.9,5,2,", ",3,9,5,6,", NULL, VERDICT_SAME},   /* of the median alone */
         {",1,0.9,5,2,", ",0.4,0.3,5,2,", "run_s", VERDICT_BETTER},
         {"float,2,", "float,1,", NULL, VERDICT_SAME},
         {",0.1,1,0.9,5,2,", ",,,,,,", NULL, VERDICT_SAME}, /* a baseline has no times */

@@ -1,9 +1,12 @@
-/* The row of an image that is known: the exact one times one gain. */
+/* The row of an image that is known, the exact one times one gain; a row's figures in the report. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "measure/metrics.h"
 #include "measure/outcome.h"
+#include "measure/results_folder.h"
+#include "show/report.h"
 #include "tests/support.h"
 
 static struct scene scene;
@@ -102,8 +105,43 @@ static void row_of_a_gain(void **state)
     scene_free(&scene);
 }
 
+/* Each figure of a row in its column of the report, in its unit. */
+static void columns_of_the_report(void **state)
+{
+    (void)state;
+    const struct provenance provenance = {.machine = "m", .commit = "abc", .program = "def", .date = "now"};
+    struct results_folder *results;
+    struct measurement row = measurement_empty("a", "bp_nearest", "", PRECISION_FLOAT);
+    row.plan_s = 0.01;
+    row.run_s = 0.25;
+    row.run_q1_s = 0.2;
+    row.run_q3_s = 0.275;
+    row.control_s = 3;
+    row.flops = 0.75e9;
+    row.bytes = 12.5e6;
+    row.error = 0.125;
+    row.error_gain = 0.0625;
+    row.phase_rms_rad = 0.5;
+    row.width_m = 0.04;
+    row.pslr_db = -13.25;
+    row.islr_db = -10.5;
+    assert_int_equal(results_folder_open(folder, &provenance, &results), STATUS_OK);
+    assert_int_equal(results_folder_scene(results, row.scene, 1), STATUS_OK);
+    assert_int_equal(results_folder_add(results, &row), STATUS_OK);
+    results_folder_close(results);
+    assert_int_equal(report_write(folder), STATUS_OK);
+    char *page = support_read("report.md");
+    assert_non_null(page);
+    assert_non_null(strstr(page, "|bp_nearest|250 ms (-20.0, +10.0 %)|12x|10 ms|0.75|12.5|1.25e-01|6.25e-02|5.00e-01|"
+                                 "40.00|-13.25|-10.50|"));
+    free(page);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(row_of_a_gain)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(row_of_a_gain),
+        cmocka_unit_test_setup_teardown(columns_of_the_report, folder_make, folder_remove),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -278,7 +278,7 @@ static void test_table(void **state)
             assert_non_null(strstr(line, " 333 ms "));
             assert_non_null(strstr(line, " 6x "));
             assert_non_null(strstr(line, " 37 Gp/s "));
-            assert_non_null(strstr(line, " 38.40 -13.30 -10.40"));
+            assert_non_null(strstr(line, " 1.0e-07       - 1.0e-03  38.40 -13.30 -10.40"));
         }
         if (strncmp(line, "  bp_linear:beta=8,precision=double ", 36) == 0)
             assert_true(strstr(line, " 25 us ") && strstr(line, " 40 GF/s "));
