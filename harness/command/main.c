@@ -314,15 +314,6 @@ static enum status command_find(const char *name, const struct command **found)
                       names);
 }
 
-/* One line, whatever the arguments that it quotes hold. */
-static void print_error(const char *message)
-{
-    fflush(stdout); /* what it is about stands ahead of it where both go to one place */
-    fputs("sasbench: ", stderr);
-    shown_write(stderr, message);
-    fputc('\n', stderr);
-}
-
 /* Where a standard stream is closed, a results file would take its number, and what is printed would land in it. */
 static void streams_open(void)
 {
@@ -378,6 +369,6 @@ int main(int argc, char **argv)
     free(task.specs);
     if (status == STATUS_OK)
         return 0;
-    print_error(status_message());
+    shown_note(status_message());
     return status == STATUS_FAILED ? 1 : 2;
 }

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "data/interruption.h"
+#include "data/shown_text.h"
 #include "study/batch.h"
 #include "study/machine_rates.h"
 #include "study/predicted.h"
@@ -76,7 +77,7 @@ static int draw(const char *directory, const struct scene *scene)
             snprintf(name, sizeof name, "%s.%s", folder_plots[k], formats[f]);
             picture_path(directory, scene->name, name, path, sizeof path);
             if (plot_folder(path, PLOT_DIRECTORY, folder_plots[k], directory, scene->name, &drawn) != STATUS_OK) {
-                fprintf(stderr, "sasbench: %s\n", status_message());
+                shown_note(status_message());
                 undrawn++;
             }
         }
@@ -114,7 +115,7 @@ enum status command_sweep(const struct task *task)
     if (status == STATUS_OK && !interruption_seen())
         status = predicted_write(directory, scenes, scene_count, &predicted);
     if (predicted && status == STATUS_OK && predicted_draw(directory) != STATUS_OK) {
-        fprintf(stderr, "sasbench: %s\n", status_message());
+        shown_note(status_message());
         batch.undrawn++;
     }
     fflush(stdout); /* the signal leaves no time */

@@ -5,6 +5,8 @@
 #include <stdbool.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 size_t shown_length(const char *text)
 {
@@ -40,6 +42,29 @@ void shown_write(FILE *stream, const char *text)
         else
             fputc('?', stream);
         text += length ? length : 1;
+    }
+}
+
+void shown_note(const char *text)
+{
+    struct winsize size;
+    const bool terminal = isatty(STDERR_FILENO) && ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+    char line[1100];
+    snprintf(line, sizeof line, "sasbench: %s", text);
+    shown_make(line);
+    fflush(stdout);
+    for (const char *at = line; *at;) {
+        size_t length = strlen(at);
+        if (terminal && length > size.ws_col) {
+            length = size.ws_col;
+            while (length > 0 && at[length] != ' ')
+                length--;
+            if (length == 0) /* a path stays whole */
+                length = strcspn(at, " ");
+        }
+        fprintf(stderr, "%.*s\n", (int)length, at);
+        at += length;
+        at += *at == ' ';
     }
 }
 

@@ -14,6 +14,10 @@ void shown_write(FILE *stream, const char *text);
 /* The same in place. */
 void shown_make(char *text);
 
+/* "sasbench: TEXT" on standard error, behind what was printed so far: one line, on a terminal broken at blanks to its
+   width. */
+void shown_note(const char *text);
+
 /* For Markdown, in a paragraph, a list or a cell of a table: read as it is written, without effect. */
 void shown_markdown(FILE *stream, const char *text);
 

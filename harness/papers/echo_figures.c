@@ -6,6 +6,7 @@
 #include "data/echo_data.h"
 #include "data/folder.h"
 #include "data/paths.h"
+#include "data/shown_text.h"
 #include "measure/filtering.h"
 #include "measure/provenance.h"
 #include "papers/sources.h"
@@ -49,7 +50,7 @@ static enum status records_draw(const struct acquisition *a, const double comple
     provenance_line(footer);
     if (plot_image(path, PLOT_DIRECTORY, &(struct image_picture){.image = &image, .title = title, .footer = footer})
         != STATUS_OK) {
-        fprintf(stderr, "sasbench: %s\n", status_message());
+        shown_note(status_message());
         ++*undrawn;
     }
     image_free(&image);

@@ -9,6 +9,7 @@
 #include "data/echo_data.h"
 #include "data/folder.h"
 #include "data/paths.h"
+#include "data/shown_text.h"
 #include "data/text_file.h"
 #include "measure/metrics.h"
 #include "measure/provenance.h"
@@ -140,7 +141,7 @@ static void report(const struct drawing *drawing, enum status status)
 {
     if (status == STATUS_OK)
         return;
-    fprintf(stderr, "sasbench: %s\n", status_message());
+    shown_note(status_message());
     ++*drawing->undrawn;
 }
 

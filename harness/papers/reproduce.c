@@ -10,6 +10,7 @@
 
 #include "data/folder.h"
 #include "data/paths.h"
+#include "data/shown_text.h"
 #include "data/suggestion.h"
 #include "data/text_append.h"
 #include "measure/spec.h"
@@ -218,7 +219,7 @@ enum status papers_reproduce(const char *const *ids, int count, const char *dire
         if (status == STATUS_OK && need_count > 0)
             status = predicted_write(directory, NULL, 0, &predicted);
         if (predicted && status == STATUS_OK && predicted_draw(directory) != STATUS_OK) {
-            fprintf(stderr, "sasbench: %s\n", status_message());
+            shown_note(status_message());
             batch.undrawn++;
         }
         status = batch_close(&batch, status);

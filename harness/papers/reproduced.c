@@ -94,26 +94,12 @@ static bool table_has_lines(const struct paper_table *table, const struct reprod
     return has;
 }
 
-/* One table, a row a printed number, a column a definition. */
-static void table_print(const struct paper_table *table, const struct reproduced *lines, int count)
+/* A row a printed number, a column each of `columns` definitions from `first` on. */
+static void columns_print(const struct paper_table *table, const struct reproduced *lines, int count,
+                          const char *const *definitions, int first, int columns)
 {
-    const char *definitions[COLUMNS_MAX];
-    char assumed[1000];
-    int columns = 0;
-    for (int k = 0; k < count; k++) {
-        int c = 0;
-        while (c < columns && strcmp(definitions[c], lines[k].definition) != 0)
-            c++;
-        if (strcmp(lines[k].table, table->id) == 0 && c == columns && columns < COLUMNS_MAX)
-            definitions[columns++] = lines[k].definition;
-    }
-    printf("\n%s  %s\n", table->id, table->title);
-    for (int c = 0; c < columns; c++)
-        printf("  (%d) %s\n", c + 1, definitions[c]);
-    snprintf(assumed, sizeof assumed, "assumed: %s", table->assumption);
-    table_text(stdout, 2, assumed);
     printf("  %-36s %-15s %10s", "", "", "paper");
-    for (int c = 0; c < columns; c++)
+    for (int c = first; c < first + columns; c++)
         printf(" %10s %-10s", (char[]){'(', (char)('1' + c), ')', '\0'}, "");
     printf("\n");
     for (int k = 0; k < count;) {
@@ -128,7 +114,7 @@ static void table_print(const struct paper_table *table, const struct reproduced
             if (isfinite(l->paper))
                 snprintf(paper, sizeof paper, "%.5g", l->paper);
             printf("  %-36s %-15s %10s", item, l->quantity, paper);
-            for (int c = 0; c < columns; c++) {
+            for (int c = first; c < first + columns; c++) {
                 int n = k;
                 while (n < end && strcmp(lines[n].definition, definitions[c]) != 0)
                     n++;
@@ -141,6 +127,30 @@ static void table_print(const struct paper_table *table, const struct reproduced
         }
         k = end;
     }
+}
+
+/* One table, in bands of as many definitions as a line holds. */
+static void table_print(const struct paper_table *table, const struct reproduced *lines, int count)
+{
+    const char *definitions[COLUMNS_MAX];
+    char assumed[1000];
+    int columns = 0, band = 2;
+    for (int k = 0; k < count; k++) {
+        int c = 0;
+        while (c < columns && strcmp(definitions[c], lines[k].definition) != 0)
+            c++;
+        if (strcmp(lines[k].table, table->id) == 0 && c == columns && columns < COLUMNS_MAX)
+            definitions[columns++] = lines[k].definition;
+    }
+    printf("\n%s  %s\n", table->id, table->title);
+    for (int c = 0; c < columns; c++)
+        printf("  (%d) %s\n", c + 1, definitions[c]);
+    snprintf(assumed, sizeof assumed, "assumed: %s", table->assumption);
+    table_text(stdout, 2, assumed);
+    while (table_fits(stdout, 65 + 22 * ((size_t)band + 1)))
+        band++;
+    for (int c = 0; c < columns || c == 0; c += band)
+        columns_print(table, lines, count, definitions, c, columns - c < band ? columns - c : band);
     notes_print(table, lines, count);
 }
 

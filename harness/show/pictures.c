@@ -29,9 +29,7 @@ bool picture_exists(const char *directory, const char *scene, const char *label)
 static void tell(void *to)
 {
     struct pictures *pictures = to;
-    fputs("sasbench: ", stderr);
-    shown_write(stderr, status_message());
-    fputc('\n', stderr);
+    shown_note(status_message());
     pictures->undrawn++;
 }
 

@@ -310,7 +310,8 @@ void table_work(FILE *stream, const char *spec, const struct work *work)
     for (int k = 0; k < (int)(sizeof work->published / sizeof *work->published) && work->published[k].source; k++)
         used += snprintf(text + used, sizeof text - (size_t)used, ", %.1e %.60s", work->published[k].flops,
                          work->published[k].source);
-    if (table.width == WIDTH_WIDE) {
+    const size_t width = (size_t)table.spec_width;
+    if (table.width == WIDTH_WIDE && strlen(spec) <= width && 3 + width + strlen(text) <= WIDTH_WIDE) {
         fprintf(stream, "  %-*s %s\n", table.spec_width, spec, text);
     } else {
         print_wrapped(stream, 2, spec);

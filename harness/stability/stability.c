@@ -9,6 +9,7 @@
 #include "data/folder.h"
 #include "data/paths.h"
 #include "data/progress_line.h"
+#include "data/shown_text.h"
 #include "measure/provenance.h"
 #include "show/plot.h"
 #include "stability/table.h"
@@ -181,7 +182,7 @@ static enum status run_write(const struct run *run, const char *directory)
         status = stability_expected_write(expected, count, run->rows);
     provenance_line(footer);
     if (status == STATUS_OK && plot_csv(picture, PLOT_DIRECTORY, "stability.gp", measured, footer) != STATUS_OK)
-        fprintf(stderr, "sasbench: %s\n", status_message());
+        shown_note(status_message());
     return status;
 }
 

@@ -27,10 +27,9 @@ enum status bench_file(const char *directory, const char *name,
         return status;
     status = text_file_close(&file, measure_into(file.stream, goals));
     provenance_line(footer);
-    for (int k = 0; k < 2 && status == STATUS_OK; k++) {
-        snprintf(picture, sizeof picture, "%s/%s.%s", directory, name, k ? "svg" : "png");
+    snprintf(picture, sizeof picture, "%s/%s.png", directory, name);
+    if (status == STATUS_OK)
         status = plot_csv(picture, PLOT_DIRECTORY, script, csv, footer);
-    }
     if (status == STATUS_OK)
         printf("\nResults: %s/%s.csv, %s.png, %s.svg\n", directory, name, name, name);
     return status;

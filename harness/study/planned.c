@@ -53,11 +53,13 @@ static void candidate_print(FILE *stream, const struct candidate *candidate)
 {
     char name[CANDIDATE_NAME], cells[CAUSES + 1][16];
     candidate_name(candidate, name);
-    fprintf(stream, "%c %-30s %9s %8s", candidate->verdict == VERDICT_CHOSEN ? '>' : ' ', name,
-            cell_time(candidate->seconds).text, error_text(candidate->error, cells[CAUSES]));
+    fprintf(stream, "%c %-26s", candidate->verdict == VERDICT_CHOSEN ? '>' : ' ', name);
+    if (strlen(name) > 26) /* a line of its own */
+        fprintf(stream, "\n%28s", "");
+    fprintf(stream, " %8s %7s", cell_time(candidate->seconds).text, error_text(candidate->error, cells[CAUSES]));
     for (int k = 0; k < CAUSES; k++)
-        fprintf(stream, " %8s", error_text(candidate->forecast.error[k], cells[k]));
-    fprintf(stream, " %9s\n", cell_significant(1e-9 * candidate->flops, " GF").text);
+        fprintf(stream, " %7s", error_text(candidate->forecast.error[k], cells[k]));
+    fprintf(stream, " %8s\n", cell_significant(1e-9 * candidate->flops, " GF").text);
 }
 
 bool planned_nearest(const struct choice *choice, int k)
@@ -170,8 +172,8 @@ void planned_print(FILE *stream, const struct planned *planned)
     int shown = 0;
     fprintf(stream, "Within the error of %.2g after one gain, in %s:\n", planned->budget.error,
             precision_name((enum precision)precision));
-    fprintf(stream, "  %-30s %9s %8s %8s %8s %8s %8s %8s %8s %8s %9s\n", "candidate", "time", "error", "interp.",
-            "delays", "spectrum", "blocks", "stolt", "aperture", "float", "work");
+    fprintf(stream, "  %-26s %8s %7s %7s %7s %7s %7s %7s %7s %7s %8s\n", "candidate", "time", "error", "interp.",
+            "delays", "spectr.", "blocks", "stolt", "apert.", "float", "work");
     for (int k = 0; k < choice->count; k++)
         if (choice->list[k].verdict <= VERDICT_SLOWER) {
             candidate_print(stream, &choice->list[k]);

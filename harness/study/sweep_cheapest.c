@@ -60,9 +60,15 @@ static void row_tell(const struct measurement *row, const char *threshold, const
     char spec[512], tied[2000];
     measurement_spec(row, spec, sizeof spec);
     shown_make(spec);
-    printf("    %7s  %8s %8s %9s  %7.1e  %s\n", threshold, cell_run_time(row).text,
+    printf("    %7s  %8s %8s %9s  %7.1e  ", threshold, cell_run_time(row).text,
            cell_significant(row->control_s / row->run_s, "x").text, cell_significant(1e-6 * row->flops, "").text,
-           row->error, spec);
+           row->error);
+    if (table_fits(stdout, 52 + strlen(spec)))
+        puts(spec);
+    else {
+        putchar('\n');
+        table_text(stdout, 8, spec);
+    }
     if (!*ties)
         return;
     snprintf(tied, sizeof tied, "as fast, within the noise: %s", ties);

@@ -2,10 +2,12 @@
 #include <fts.h>
 #include <math.h>
 #include <omp.h>
+#include <pty.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -81,6 +83,14 @@ static void help_list_and_info_tell_everything(void **state)
         free(info);
     }
     free(list);
+}
+
+/* Without a terminal, and COLUMNS unset: as wide as a wide one. */
+static void assert_lines_fit(const char *text)
+{
+    for (; *text; text += strcspn(text, "\n") + (text[strcspn(text, "\n")] == '\n'))
+        if (strcspn(text, "\n") > 110)
+            fail_msg("%zu columns: %.*s", strcspn(text, "\n"), (int)strcspn(text, "\n"), text);
 }
 
 static void file_and_scene_give_the_same_image(void **state)
@@ -197,6 +207,7 @@ static void run_leaves_its_results_and_keeps_them(void **state)
     struct csv first, second;
     char *table = program_output(run);
     assert_holds(table, "study/quick");
+    assert_lines_fit(table);
     int count = 0;
     for (; algorithms[count]; count++)
         assert_holds(table, algorithms[count]->name);
@@ -296,6 +307,42 @@ static void interrupted_run_resumes(void **state)
     csv_free(&after);
 }
 
+/* On a terminal a message is broken at blanks; elsewhere it is one line. */
+static void messages_fit_the_terminal(void **state)
+{
+    (void)state;
+    static const char *const wrong[ARGUMENTS_MAX] = {"info", "no_such_algorithm"};
+    const struct winsize size = {.ws_col = 60, .ws_row = 24};
+    char text[4096] = "";
+    size_t length = 0;
+    int master, slave, status;
+    assert_int_equal(openpty(&master, &slave, NULL, NULL, &size), 0);
+    FILE *err = fdopen(slave, "w");
+    pid_t child = program_start(wrong, err, err);
+    assert_int_equal(waitpid(child, &status, 0), child);
+    fclose(err);
+    for (ssize_t got; (got = read(master, text + length, sizeof text - 1 - length)) > 0;)
+        length += (size_t)got;
+    close(master);
+    struct outcome outcome = program_run(wrong);
+    int lines = 0;
+    for (char *line = strtok(text, "\r\n"); line; line = strtok(NULL, "\r\n"), lines++)
+        if (strlen(line) > 60 || !strstr(outcome.err, line))
+            fail_msg("%zu columns, or another text: %s", strlen(line), line);
+    assert_in_range(lines, 3, 20);
+    assert_ptr_equal(strchr(outcome.err, '\n') + 1, outcome.err + strlen(outcome.err));
+    outcome_free(&outcome);
+}
+
+static void plans_fit_a_line(void **state)
+{
+    (void)state;
+    char *plan = program_output((const char *const[ARGUMENTS_MAX]){"plan", "study/quick", "--error", "1e-3"});
+    assert_holds(plan, "candidate");
+    assert_lines_fit(plan);
+    free(plan);
+}
+
 static void threads_beyond_the_processors_are_told(void **state)
 {
     (void)state;
@@ -339,6 +386,8 @@ int main(void)
         cmocka_unit_test(run_leaves_its_results_and_keeps_them),
         cmocka_unit_test(unsupported_is_a_row_with_a_reason),
         cmocka_unit_test(interrupted_run_resumes),
+        cmocka_unit_test(messages_fit_the_terminal),
+        cmocka_unit_test(plans_fit_a_line),
         cmocka_unit_test(threads_beyond_the_processors_are_told),
     };
     return cmocka_run_group_tests(tests, inputs_make, folder_remove);
