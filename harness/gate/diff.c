@@ -1,4 +1,4 @@
-/* Two results, row by row (diff.h): rows are matched by their keys (diff_side.h), values judged by the columns' slacks. */
+/* Two results, row by row (diff.h): rows are matched by their keys (diff_side.h), values judged by slacks. */
 #include "gate/diff.h"
 
 #include <math.h>

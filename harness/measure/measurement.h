@@ -57,8 +57,8 @@ void column_clear(const struct column *column, void *row);
 struct measurement measurement_empty(const char *scene, const char *algorithm, const char *options,
                                      enum precision precision);
 
-/* Whether a row has an error up to error_most and costs less (the double at the offset `cost`; of equal ones the faster)
-   than the cheapest so far, which may be NULL: what the tables of a sweep and the summary of a report call cheapest. */
+/* Whether a row has an error up to error_most and costs less (the double at the offset `cost`; of equal ones the
+   faster) than the cheapest so far, which may be NULL: what a sweep's tables and a report's summary call cheapest. */
 bool measurement_is_cheaper(const struct measurement *row, const struct measurement *best, size_t cost,
                             double error_most);
 

@@ -25,8 +25,8 @@ enum status pictures_begin(const char *directory, const char *footer, const stru
                            const struct image *exact, int spec_count, struct pictures *pictures);
 /* Keep what one algorithm's picture (DIR/SCENE-LABEL.png) and slices are drawn from. index: 0 to spec_count - 1. */
 void pictures_add(struct pictures *pictures, int index, const char *label, const struct image *image);
-/* Draw what was added, and the azimuth slices of all (DIR/SCENE-slices.png, .svg), one panel for each target that a patch
-   holds: after the measurements, on all processors. */
+/* Draw what was added, and the azimuth slices of all (DIR/SCENE-slices.png, .svg), one panel for each target that a
+   patch holds: after the measurements, on all processors. */
 void pictures_draw(struct pictures *pictures);
 void pictures_free(struct pictures *pictures);
 

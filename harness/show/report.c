@@ -33,8 +33,7 @@ struct folder {
     struct csv csvs[REPORT_TABLES]; /* column_count 0: not there */
     struct drawing *drawings;       /* [drawing_count] */
     int drawing_count;
-    struct dirent **
-        files; /* [file_count] PNG files of `phase`, `reproduce`, `sweep` and `stability`, by name; curves have an SVG beside */
+    struct dirent **files; /* [file_count] PNG files of `phase`, `reproduce`, `sweep` and `stability`, by name */
     int file_count;
 };
 

@@ -339,7 +339,7 @@ static void plans_fit_a_line(void **state)
     (void)state;
     char *plan = program_output((const char *const[ARGUMENTS_MAX]){"plan", "study/quick", "--error", "1e-3"});
     assert_holds(plan, "candidate");
-    assert_lines_fit(plan);
+    assert_lines_fit(strstr(plan, "candidate"));
     free(plan);
 }
 
