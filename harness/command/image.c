@@ -4,6 +4,7 @@
 
 #include "data/echo_data.h"
 #include "data/progress_line.h"
+#include "data/shown_text.h"
 #include "measure/darkness.h"
 #include "measure/imaging.h"
 #include "measure/outcome.h"
@@ -43,7 +44,7 @@ static void warnings_print(const struct condition *list, int count)
     for (int k = 0; k < count; k++)
         if (list[k].severity == SEVERITY_WARN && !condition_holds(&list[k])) {
             outcome_warning(&list[k], text, sizeof text);
-            fprintf(stderr, "sasbench: %s\n", text);
+            shown_note(text);
         }
 }
 
