@@ -5,6 +5,8 @@
 
 #include <stdbool.h>
 
+#include "algorithm.h"
+
 enum { FAKE_PAIRS = 262144 }; /* that a run of the scalar reference loop sums */
 
 /* All in ns. */
@@ -22,5 +24,18 @@ extern struct fake_clock {
 void fake_clock_begin(void);
 /* Time passes. */
 void fake_clock_pass(double seconds);
+
+/* --- An algorithm whose runs take what they are told --- */
+
+enum { RUNS_TOLD = 8 };
+extern struct told {
+    double seconds[RUNS_TOLD]; /* of one run after the other; from the first 0 on as the one before */
+    double clearing_s;         /* of the first run, the system's */
+    double waited;             /* threads without a processor in each run */
+    double pairs;
+    bool busy; /* look at the clock until the time is over */
+} told;
+extern int runs_done;                  /* since it was set to 0 */
+extern const struct algorithm telling; /* planning takes 4 ms */
 
 #endif

@@ -16,70 +16,6 @@
 #include "tests/measure/fake_clock.h"
 #include "tests/support.h"
 
-/* --- An algorithm whose runs take what they are told ---------------------------------------------------------- */
-
-enum { RUNS_TOLD = 8 };
-static struct told {
-    double seconds[RUNS_TOLD]; /* of one run after the other; from the first 0 on as the one before */
-    double clearing_s;         /* of the first run, the system's */
-    double waited;             /* threads without a processor in each run */
-    double pairs;
-    bool busy; /* look at the clock until the time is over */
-} told;
-static int runs_done;
-static int plan_made;
-
-static enum status told_plan(const struct problem *problem, const void *options, void **plan)
-{
-    (void)problem, (void)options;
-    if (fake.on)
-        fake_clock_pass(0.004);
-    *plan = &plan_made;
-    return STATUS_OK;
-}
-
-static void spend(double seconds)
-{
-    if (told.busy)
-        for (const double end = seconds_now() + seconds; seconds_now() < end;)
-            ;
-    else
-        fake_clock_pass(seconds);
-}
-
-/* A quarter to compress, the rest to focus in two parts. */
-static enum status told_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages)
-{
-    (void)plan, (void)echoes, (void)image;
-    int n = runs_done++;
-    fake.system += n == 0 ? llround(1e9 * told.clearing_s) : 0;
-    n = n < RUNS_TOLD ? n : RUNS_TOLD - 1;
-    while (n > 0 && told.seconds[n] == 0)
-        n--;
-    const double seconds = told.seconds[n];
-    spend(0.25 * seconds);
-    stages_end(stages, "compress");
-    spend(0.5 * seconds);
-    stages_end(stages, "focus");
-    spend(0.25 * seconds);
-    stages_end(stages, "focus");
-    fake.waited += llround(1e9 * told.waited * seconds);
-    return STATUS_OK;
-}
-
-static struct work told_work(const void *plan)
-{
-    (void)plan;
-    return (struct work){.flops = 6.46e8, .pairs = told.pairs, .engine = "told"};
-}
-
-static void told_destroy(void *plan)
-{
-    (void)plan;
-}
-
-static const struct algorithm telling = {
-    .name = "telling", .plan = told_plan, .execute = told_execute, .work = told_work, .destroy = told_destroy};
 static const struct spec spec = {.algorithm = &telling};
 
 static struct scene scene;
@@ -456,7 +392,7 @@ static void figures_reach_the_report(void **state)
     assert_int_equal(report_write(folder), STATUS_OK);
     char *page = support_read("report.md");
     assert_non_null(page);
-    assert_non_null(strstr(page, "\n|telling|200 ms (-0.0, +15.0 %)|195x|4 ms|0.646|"));
+    assert_non_null(strstr(page, "\n|telling|200 ms\\~ (-0.0, +15.0 %)|195x|4 ms|0.646|"));
     free(page);
     results_free(&results);
 }
