@@ -53,32 +53,6 @@ void matio_silence(void)
     Mat_LogInitFunc("sasbench", discard_log);
 }
 
-int mat5_count(const char *path)
-{
-    unsigned char header[128];
-    struct stat status;
-    FILE *file = fopen(path, "rb");
-    bool is_readable = file && fstat(fileno(file), &status) == 0 && fread(header, sizeof header, 1, file) == 1;
-    bool is_little_endian = is_readable && header[126] == 'I';
-    off_t next = sizeof header;
-    int count = 0;
-    while (is_readable && next < status.st_size) {
-        unsigned char tag[8]; /* type and length, 4 bytes each */
-        is_readable = fseeko(file, next, SEEK_SET) == 0 && fread(tag, sizeof tag, 1, file) == 1;
-        uint32_t length = 0;
-        for (int i = 0; i < 4; i++) {
-            length = length << 8 | tag[is_little_endian ? 7 - i : 4 + i];
-        }
-        next += (off_t)sizeof tag + length;
-        count++;
-    }
-    bool is_whole = is_readable && next == status.st_size;
-    if (file) {
-        fclose(file);
-    }
-    return is_whole ? count : -1;
-}
-
 /* ---- The child ---- */
 
 #define DEFINE_LOAD(type)                                                                                              \
@@ -230,8 +204,9 @@ static bool send_values(mat_complex_split_t parts, enum matio_types type, size_t
     return true;
 }
 
+/* `place` is the variable's element in a file of version 5. */
 static enum status send_variable(const char *path, const struct wanted *wanted, int index, mat_t *mat, matvar_t *matvar,
-                                 size_t file_size, int descriptor)
+                                 const struct mat5 *place, size_t file_size, int descriptor)
 {
     const char *name = wanted[index].name;
     bool is_text = matvar->class_type == MAT_C_CHAR || matvar->class_type == MAT_C_UINT16; /* its codes */
@@ -255,6 +230,11 @@ static enum status send_variable(const char *path, const struct wanted *wanted, 
         return status;
     }
     size_t count = variable_count(&packet.variable);
+    const struct stored stored = {name, count, matvar->isComplex != 0, matvar->class_type == MAT_C_CHAR};
+    status = place->file ? mat5_check(path, &stored, place) : mat73_check(path, &stored);
+    if (status != STATUS_OK) {
+        return status;
+    }
     mat_complex_split_t parts;
     if (Mat_VarReadDataAll(mat, matvar) != 0 || !variable_parts(matvar, count, &parts)) {
         return status_set(STATUS_INVALID, "%s: variable `%s` is damaged or cut short; a whole file is needed", path,
@@ -300,7 +280,8 @@ static enum status send_variables(const char *path, const struct wanted *wanted,
     if (!mat || Mat_GetVersion(mat) == MAT_FT_MAT4) {
         return status_set(STATUS_INVALID, "%s: is not a MATLAB file of version 5 or 7.3%s", path, other_format(path));
     }
-    if (Mat_GetVersion(mat) == MAT_FT_MAT5 && mat5_count(path) < 0) {
+    struct mat5 place = {0};
+    if (Mat_GetVersion(mat) == MAT_FT_MAT5 && (mat5_count(path) < 0 || !mat5_open(&place, path))) {
         return status_set(STATUS_INVALID, "%s: is cut short or damaged; a whole MATLAB file is needed", path);
     }
     bool sent[WANTED_MAX] = {false};
@@ -308,9 +289,10 @@ static enum status send_variables(const char *path, const struct wanted *wanted,
     enum status status = hdf5_prepare(path, wanted, count);
     matvar_t *matvar;
     while (status == STATUS_OK && (matvar = Mat_VarReadNextInfo(mat))) {
+        mat5_next(&place); /* in step with libmatio */
         for (int i = 0; i < count && status == STATUS_OK; i++) {
             if (!sent[i] && matvar->name && strcmp(matvar->name, wanted[i].name) == 0) {
-                status = send_variable(path, wanted, i, mat, matvar, file_size, descriptor);
+                status = send_variable(path, wanted, i, mat, matvar, &place, file_size, descriptor);
                 sent[i] = true;
             }
         }
@@ -319,6 +301,7 @@ static enum status send_variables(const char *path, const struct wanted *wanted,
         }
         Mat_VarFree(matvar);
     }
+    mat5_close(&place);
     for (int i = 0; i < count && status == STATUS_OK && *inside; i++) {
         if (!sent[i] && !wanted[i].is_optional) {
             status = status_set(

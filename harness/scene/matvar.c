@@ -27,6 +27,13 @@ void variables_free(struct variable *variables, int count)
     }
 }
 
+enum status storage_refuse(const char *path, const char *name, const char *part, size_t found, size_t needed)
+{
+    return status_set(STATUS_INVALID,
+                      "%s: variable `%s` has %zu bytes%s, its dimensions need %zu; a whole file is needed", path, name,
+                      found, part, needed);
+}
+
 enum status variables_check(const char *path, const struct wanted *wanted, int count, const struct variable *variables)
 {
     for (int i = 0; i < count; i++) {

@@ -2,6 +2,10 @@
 #ifndef SASBENCH_SCENE_MATVAR_H
 #define SASBENCH_SCENE_MATVAR_H
 
+#include <stdint.h>
+#include <stdio.h>
+#include <sys/types.h>
+
 #include "data/echo_data.h"
 #include "data/folder.h"
 #include "data/temporary.h"
@@ -51,9 +55,33 @@ enum status hdf5_prepare(const char *path, const struct wanted *wanted, int coun
 /* Keep libmatio from printing: what matters is in the status message. */
 void matio_silence(void);
 
-/* Variables in a version 5 file by their stated lengths; -1 when these do not end where the file does. libmatio takes
-   a file that was cut short for one with fewer variables, and does not notice a full disk either. */
+/* Top-level elements of a version 5 file, one after the other by their stated lengths. */
+struct mat5 {
+    FILE *file;
+    bool is_little_endian;
+    uint32_t type, length;   /* of the element at hand */
+    off_t first, next, size; /* where its data and what follows it begin; where the file ends */
+};
+/* False where there is none; what was opened is closed. */
+bool mat5_open(struct mat5 *file, const char *path);
+bool mat5_next(struct mat5 *file);
+void mat5_close(struct mat5 *file);
+
+/* Variables in a version 5 file; -1 when their lengths do not end where the file does. libmatio takes a file that was cut
+   short for one with fewer variables, and does not notice a full disk either. */
 int mat5_count(const char *path);
+
+/* What libmatio takes a variable for: it reads what the dimensions ask for, whether that is there or not. */
+struct stored {
+    const char *name;
+    size_t count;
+    bool is_complex, is_text;
+};
+/* Are all its numbers in the file, in the element at hand (version 5), in a data set of this file (7.3)? Errors:
+   STATUS_INVALID, with the length found and the one needed. */
+enum status mat5_check(const char *path, const struct stored *stored, const struct mat5 *file);
+enum status mat73_check(const char *path, const struct stored *stored);
+enum status storage_refuse(const char *path, const char *name, const char *part, size_t found, size_t needed);
 
 /* A file on its way. The first failure is kept and what follows it does nothing, so that only writer_open (after
    whose failure the writer is not closed) and writer_close need be looked at. */
