@@ -146,6 +146,11 @@ static enum status chunks_check(const char *path, const char *name, struct data_
     return found >= needed ? STATUS_OK : storage_refuse(path, name, "", found, needed);
 }
 
+bool mat73_has(const char *path, const char *name)
+{
+    return H5Lexists(H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT), name, H5P_DEFAULT) > 0;
+}
+
 enum status mat73_check(const char *path, const struct stored *stored)
 {
     struct data_set set;

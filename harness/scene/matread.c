@@ -246,30 +246,19 @@ static enum status send_variable(const char *path, const struct wanted *wanted, 
     return STATUS_OK;
 }
 
-/* What a file that is no MATLAB file of these versions probably is, and how to write one that is. */
-static const char *other_format(const char *path)
+/* libmatio ends its list without a word at what it cannot read, and what follows is as if it were not there. */
+static enum status rest_check(const char *path, const struct wanted *wanted, int count, const bool *sent,
+                              struct mat5 *place)
 {
-    static const struct {
-        const char *begin, *text;
-    } formats[] = {
-        {"# Created by Octave", ": it is in Octave's text format; save -v7 FILE.mat writes MATLAB's"},
-        {"Octave-1-", ": it is in Octave's binary format; save -v7 FILE.mat writes MATLAB's"},
-        {"\x93NUMPY", ": it is a NumPy array; scipy.io.savemat writes MATLAB files"},
-        {"PK", ": it is a zip archive (NumPy's .npz?); scipy.io.savemat writes MATLAB files"},
-        {"\x89HDF", ": it is HDF5 without MATLAB's head; save -v7.3 (MATLAB) or save -v7 (Octave) writes it"},
-    };
-    char begin[32] = "";
-    FILE *file = fopen(path, "rb");
-    if (file) {
-        begin[fread(begin, 1, sizeof begin - 1, file)] = '\0';
-        fclose(file);
+    bool is_whole = !place->file || !mat5_next(place);
+    for (int i = 0; i < count && !place->file; i++) {
+        is_whole = is_whole && (sent[i] || !mat73_has(path, wanted[i].name));
     }
-    for (size_t k = 0; k < sizeof formats / sizeof *formats; k++) {
-        if (strncmp(begin, formats[k].begin, strlen(formats[k].begin)) == 0) {
-            return formats[k].text;
-        }
-    }
-    return "; save -v7 writes one (MATLAB, Octave), and scipy.io.savemat";
+    return is_whole ? STATUS_OK
+                    : status_set(STATUS_INVALID,
+                                 "%s: holds something that cannot be read before a variable that is needed: it is "
+                                 "damaged, or has an HDF5 group of its own; a whole MATLAB file is needed",
+                                 path);
 }
 
 static enum status send_variables(const char *path, const struct wanted *wanted, int count, size_t file_size,
@@ -278,7 +267,8 @@ static enum status send_variables(const char *path, const struct wanted *wanted,
     matio_silence();
     mat_t *mat = Mat_Open(path, MAT_ACC_RDONLY);
     if (!mat || Mat_GetVersion(mat) == MAT_FT_MAT4) {
-        return status_set(STATUS_INVALID, "%s: is not a MATLAB file of version 5 or 7.3%s", path, other_format(path));
+        return status_set(STATUS_INVALID, "%s: is not a MATLAB file of version 5 or 7.3%s", path,
+                          file_other_format(path));
     }
     struct mat5 place = {0};
     if (Mat_GetVersion(mat) == MAT_FT_MAT5 && (mat5_count(path) < 0 || !mat5_open(&place, path))) {
@@ -300,6 +290,9 @@ static enum status send_variables(const char *path, const struct wanted *wanted,
             snprintf(inside, sizeof inside, "%.60s", matvar->name);
         }
         Mat_VarFree(matvar);
+    }
+    if (status == STATUS_OK) {
+        status = rest_check(path, wanted, count, sent, &place);
     }
     mat5_close(&place);
     for (int i = 0; i < count && status == STATUS_OK && *inside; i++) {

@@ -2,6 +2,7 @@
 #include "scene/matvar.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -32,6 +33,31 @@ enum status storage_refuse(const char *path, const char *name, const char *part,
     return status_set(STATUS_INVALID,
                       "%s: variable `%s` has %zu bytes%s, its dimensions need %zu; a whole file is needed", path, name,
                       found, part, needed);
+}
+
+const char *file_other_format(const char *path)
+{
+    static const struct {
+        const char *begin, *text;
+    } formats[] = {
+        {"# Created by Octave", ": it is in Octave's text format; save -v7 FILE.mat writes MATLAB's"},
+        {"Octave-1-", ": it is in Octave's binary format; save -v7 FILE.mat writes MATLAB's"},
+        {"\x93NUMPY", ": it is a NumPy array; scipy.io.savemat writes MATLAB files"},
+        {"PK", ": it is a zip archive (NumPy's .npz?); scipy.io.savemat writes MATLAB files"},
+        {"\x89HDF", ": it is HDF5 without MATLAB's head; save -v7.3 (MATLAB) or save -v7 (Octave) writes it"},
+    };
+    char begin[32] = "";
+    FILE *file = fopen(path, "rb");
+    if (file) {
+        begin[fread(begin, 1, sizeof begin - 1, file)] = '\0';
+        fclose(file);
+    }
+    for (size_t k = 0; k < sizeof formats / sizeof *formats; k++) {
+        if (strncmp(begin, formats[k].begin, strlen(formats[k].begin)) == 0) {
+            return formats[k].text;
+        }
+    }
+    return "; save -v7 writes one (MATLAB, Octave), and scipy.io.savemat";
 }
 
 enum status variables_check(const char *path, const struct wanted *wanted, int count, const struct variable *variables)

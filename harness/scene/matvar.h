@@ -81,6 +81,9 @@ struct stored {
    STATUS_INVALID, with the length found and the one needed. */
 enum status mat5_check(const char *path, const struct stored *stored, const struct mat5 *file);
 enum status mat73_check(const char *path, const struct stored *stored);
+bool mat73_has(const char *path, const char *name);
+/* What a file that is no MATLAB file of these versions probably is, and how to write one that is. */
+const char *file_other_format(const char *path);
 enum status storage_refuse(const char *path, const char *name, const char *part, size_t found, size_t needed);
 
 /* A file on its way. The first failure is kept and what follows it does nothing, so that only writer_open (after

@@ -352,12 +352,40 @@ static void numbers_that_hdf5_would_make_up_are_refused(void **state)
     }
 }
 
+/* What libmatio cannot read is the end of its list. */
+static void what_hides_variables_is_refused(void **state)
+{
+    (void)state;
+    const struct element area = {"area", MAT_C_DOUBLE, MAT_T_DOUBLE, 1, 4, 1, false, 1, {SIZE_MAX}};
+    const double nothing = 0;
+    struct acquisition a;
+    struct echoes echoes;
+    file_make(&area, 2);
+    assert_ok(echo_file_read(path, &a, &echoes));
+    assert_true(a.area.half_r == 4);
+    acquisition_free(&a);
+    echoes_free(&echoes);
+    file_make(&(struct element){"tx_length", MAT_C_DOUBLE, MAT_T_DOUBLE, 1, 1, 1, false, 0.1, {SIZE_MAX}}, 0);
+    data_add(MAT_T_DOUBLE, &nothing, sizeof nothing, 8);
+    element_add(&area);
+    bytes_write(made.bytes, made.size);
+    assert_echoes_invalid("holds something that cannot be read before a variable that is needed");
+    Mat_Close(file_begin(MAT_FT_MAT73, false, ""));
+    const hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+    const hid_t group = H5Gcreate2(file, "group", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    H5Gclose(H5Gcreate2(group, "group", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+    H5Gclose(group);
+    H5Fclose(file);
+    assert_echoes_invalid("holds something that cannot be read before a variable that is needed");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_short_element_is_refused),
         cmocka_unit_test(each_stored_type_is_read_or_refused),
         cmocka_unit_test(numbers_that_hdf5_would_make_up_are_refused),
+        cmocka_unit_test(what_hides_variables_is_refused),
     };
     mallopt(M_PERTURB, 0xa5);
     return cmocka_run_group_tests(tests, directory_make, directory_remove);
