@@ -20,6 +20,8 @@
 #include "measure/provenance.h"
 #include "show/table.h"
 
+enum { THREADS_MOST = 1024 };
+
 struct command {
     const char *name, *arguments, *summary;
     const char *options; /* the letters of the options it takes */
@@ -152,13 +154,18 @@ static void help_command(const struct command *command)
     fputs(exit_text, stdout);
 }
 
+/* `text` NULL: as many as OpenMP would begin, by its own variable or the machine's processors. */
 static enum status threads_parse(const char *text)
 {
-    long long threads;
-    const char *end = whole_read(text, 1, 1024, &threads);
+    const char *variable = getenv("OMP_NUM_THREADS");
+    long long threads = omp_get_max_threads();
+    const char *end = text ? whole_read(text, 1, THREADS_MOST, &threads) : "";
     if (!end || *end)
-        return status_set(STATUS_INVALID, "--threads is '%s', must be a whole number from 1 to 1024", text);
-    omp_set_num_threads((int)threads);
+        return status_set(STATUS_INVALID, "--threads is '%s', must be a whole number from 1 to %d", text, THREADS_MOST);
+    if (threads > THREADS_MOST && variable)
+        return status_set(STATUS_INVALID, "OMP_NUM_THREADS is '%s', must be a whole number from 1 to %d", variable,
+                          THREADS_MOST);
+    omp_set_num_threads(threads < THREADS_MOST ? (int)threads : THREADS_MOST);
     return STATUS_OK;
 }
 
@@ -266,7 +273,7 @@ static enum status parse(const struct command *command, int argc, char **argv, s
     for (int k = 0; k < task->name_count && status == STATUS_OK; k++)
         if (!*task->names[k])
             status = empty_refuse(command, "an argument");
-    if (status == STATUS_OK && threads)
+    if (status == STATUS_OK)
         status = threads_parse(threads);
     if (status == STATUS_OK && task->name_count < command->names_least)
         return status_set(STATUS_INVALID, "%s: an argument is missing: sasbench %s %s", command->name, command->name,

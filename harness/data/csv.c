@@ -2,16 +2,13 @@
    of single fields. */
 #include "data/csv.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <locale.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-#include "data/folder.h"
+#include "data/shown_text.h"
+#include "data/text_read.h"
 
 static const char byte_order_mark[] = "\xef\xbb\xbf"; /* as spreadsheets write it */
 
@@ -32,34 +29,12 @@ static bool array_grow(void *array, int count, size_t element_size)
     return elements;
 }
 
-static enum status file_load(const char *path, char **text, size_t *size)
+static enum status file_load(const char *path, char **text)
 {
-    struct stat info;
-    int descriptor = place_read(path, O_NONBLOCK); /* not blocking: a pipe would wait for a writer */
-    FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "rb");
-    if (!file) {
-        enum status status = status_set(STATUS_INVALID, "%s: %s; a readable CSV file is needed", path,
-                                        errno == ELOOP ? "a symbolic link, which is not followed" : strerror(errno));
-        if (descriptor >= 0)
-            close(descriptor);
-        return status;
-    }
-    enum status status = STATUS_OK;
-    if (fstat(fileno(file), &info) != 0 || !S_ISREG(info.st_mode) || (size_t)info.st_size > SIZE_MAX_BYTES)
-        status = status_set(STATUS_INVALID, "%s: not a CSV file: a regular file of at most %zu bytes is needed", path,
-                            SIZE_MAX_BYTES);
-    if (!status && !(*text = malloc((size_t)info.st_size + 1)))
-        status = status_set(STATUS_FAILED, "%s: no memory for %lld bytes", path, (long long)info.st_size);
-    if (!status) {
-        *size = fread(*text, 1, (size_t)info.st_size, file);
-        (*text)[*size] = '\0';
-        if (ferror(file))
-            status = status_set(STATUS_INVALID, "%s: cannot be read: %s", path, strerror(errno));
-        else if (memchr(*text, '\0', *size))
-            status = status_set(STATUS_INVALID, "%s: holds a zero byte; text is needed", path);
-    }
-    fclose(file);
-    return status;
+    char reason[TEXT_REASON_SIZE];
+    size_t length;
+    const enum status status = text_read(path, SIZE_MAX_BYTES, text, &length, reason);
+    return status == STATUS_OK ? STATUS_OK : status_set(status, "%s: %s; a readable CSV file is needed", path, reason);
 }
 
 /* Where the parser stands. Fields are unquoted in place: what is written never overtakes what is read. */
@@ -157,26 +132,20 @@ static enum status row_read(struct cursor *cursor, struct csv *csv, int *cell_co
     return STATUS_OK;
 }
 
-/* Of ASCII, or of the second set (U+0080 to U+009F), which terminals obey as well. */
-static bool is_control(const char *at)
-{
-    unsigned char first = (unsigned char)at[0], second = first ? (unsigned char)at[1] : 0;
-    return (first > 0 && first < ' ') || first == 0x7f || (first == 0xc2 && second >= 0x80 && second < 0xa0);
-}
-
 /* Texts go to terminals, web pages and gnuplot, where control characters are commands: none are accepted but line
    ends. */
 static enum status controls_refuse(const char *path, const char *text)
 {
     int line = 1;
+    uint32_t code;
     const char *start = text;
     for (const char *at = text; *at; at++) {
         if (*at == '\n') {
             line++;
             start = at + 1;
-        } else if (is_control(at) && !(*at == '\r' && at[1] == '\n')) {
+        } else if (control_length(at, &code) > 0 && !(*at == '\r' && at[1] == '\n')) {
             return status_set(STATUS_INVALID, "%s:%d:%td: control character 0x%02x; text is needed", path, line,
-                              at - start + 1, (unsigned char)(*at == (char)0xc2 ? at[1] : *at));
+                              at - start + 1, (unsigned)code);
         }
     }
     return STATUS_OK;
@@ -185,19 +154,18 @@ static enum status controls_refuse(const char *path, const char *text)
 enum status csv_read(const char *path, enum csv_tail tail, struct csv *csv)
 {
     *csv = (struct csv){0};
-    size_t size = 0;
-    enum status status = file_load(path, &csv->text, &size);
+    enum status status = file_load(path, &csv->text);
     if (!status && !(csv->path = strdup(path)))
         status = status_set(STATUS_FAILED, "%s: no memory", path);
     if (!status && tail == CSV_TAIL_DROP) {
         char *newline = strrchr(csv->text, '\n');
         *(newline ? newline + 1 : csv->text) = '\0';
     }
-    if (!status)
-        status = controls_refuse(path, csv->text);
     struct cursor cursor = {path, csv->text, 1};
     if (!status && strncmp(csv->text, byte_order_mark, strlen(byte_order_mark)) == 0)
         cursor.at += strlen(byte_order_mark);
+    if (!status)
+        status = controls_refuse(path, cursor.at);
     int cell_count = 0;
     while (!status && *cursor.at) {
         if (*cursor.at == '#') {
@@ -279,10 +247,12 @@ void csv_write_text(FILE *file, const char *text)
     bool quoted = *text == '#' || strpbrk(text, ",\"");
     if (quoted)
         fputc('"', file);
-    for (; *text; text++) {
+    for (size_t length; *text; text += length > 0 ? length : 1) {
+        uint32_t code;
+        length = control_length(text, &code);
         if (*text == '"')
             fputc('"', file);
-        fputc(is_control(text) ? '?' : *text, file);
+        fputc(length > 0 ? '?' : *text, file);
     }
     if (quoted)
         fputc('"', file);

@@ -8,19 +8,45 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-size_t shown_length(const char *text)
+/* Bytes of the character in UTF-8 and its number; 0 where there is none. */
+static size_t character_read(const char *text, uint32_t *code)
 {
     const unsigned char *at = (const unsigned char *)text;
-    size_t length = at[0] < 0x80 ? 1 : at[0] < 0xc2 ? 0 : at[0] < 0xe0 ? 2 : at[0] < 0xf0 ? 3 : at[0] < 0xf5 ? 4 : 0;
-    if (length == 1)
-        return at[0] >= ' ' && at[0] != 0x7f;
-    for (size_t k = 1; k < length; k++)
+    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
+    const size_t length = at[0] < 0x80   ? 1
+                          : at[0] < 0xc2 ? 0
+                          : at[0] < 0xe0 ? 2
+                          : at[0] < 0xf0 ? 3
+                          : at[0] < 0xf5 ? 4
+                                         : 0;
+    *code = length < 2 ? at[0] : at[0] & (0x7fu >> length);
+    for (size_t k = 1; k < length; k++) {
         if ((at[k] & 0xc0) != 0x80)
             return 0;
-    bool longer_than_needed = (at[0] == 0xe0 && at[1] < 0xa0) || (at[0] == 0xf0 && at[1] < 0x90);
-    bool no_character = (at[0] == 0xed && at[1] >= 0xa0) || (at[0] == 0xf4 && at[1] >= 0x90);
-    bool control = at[0] == 0xc2 && at[1] < 0xa0;
-    return longer_than_needed || no_character || control ? 0 : length;
+        *code = *code << 6 | (at[k] & 0x3fu);
+    }
+    const bool is_none = *code < least[length] || *code > 0x10ffff || (*code >= 0xd800 && *code <= 0xdfff);
+    return is_none ? 0 : length;
+}
+
+size_t control_length(const char *text, uint32_t *code)
+{
+    static const struct {
+        uint32_t first, last;
+    } controls[] = {{0x1, 0x1f},      {0x7f, 0x9f},     {0xad, 0xad},     {0x61c, 0x61c},
+                    {0x180e, 0x180e}, {0x200b, 0x200b}, {0x200e, 0x200f}, {0x2028, 0x202e},
+                    {0x2060, 0x206f}, {0xfeff, 0xfeff}, {0xfff9, 0xfffb}, {0xe0000, 0xe0fff}};
+    const size_t length = character_read(text, code);
+    for (size_t k = 0; k < sizeof controls / sizeof *controls; k++)
+        if (*code >= controls[k].first && *code <= controls[k].last)
+            return length;
+    return 0;
+}
+
+size_t shown_length(const char *text)
+{
+    uint32_t code;
+    return control_length(text, &code) > 0 ? 0 : character_read(text, &code);
 }
 
 void shown_make(char *text)

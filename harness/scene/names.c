@@ -6,6 +6,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "data/shown_text.h"
+
 bool scene_has_extension(const char *path)
 {
     size_t length = strlen(path), extension = strlen(SCENE_EXTENSION);
@@ -34,12 +36,11 @@ static char *name_of(const char *full_path, int parts)
 
 static bool has_controls(const char *text)
 {
-    for (; *text; text++) {
-        if ((unsigned char)*text < ' ' || *text == 0x7f) {
-            return true;
-        }
+    uint32_t code;
+    while (*text && control_length(text, &code) == 0) {
+        text++;
     }
-    return false;
+    return *text;
 }
 
 /* A scene has one name, however its path is written: below `directory` its path there, elsewhere that of its file. */

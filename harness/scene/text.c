@@ -5,9 +5,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
+#include "data/text_read.h"
 #include "scene/text.h"
 
 #define INCLUDE_DEPTH 10                /* also ends files that include themselves */
@@ -189,55 +189,30 @@ static enum status room_make(struct scene_text *text, size_t length, const char 
     return STATUS_OK;
 }
 
-static enum status file_read(FILE *file, const char *path, char **content, size_t *length)
-{
-    size_t size = 0;
-    *content = NULL;
-    *length = 0;
-    ssize_t count = getdelim(content, &size, '\0', file);
-    if (count < 0 && !feof(file)) {
-        return status_set(STATUS_INVALID, "%.300s: cannot be read: %s; must be a readable file", path, strerror(errno));
-    }
-    if (count > 0 && (*content)[count - 1] == '\0') {
-        return status_set(STATUS_INVALID, "%.300s: holds a zero byte at offset %zd, must be text", path, count - 1);
-    }
-    *length = count > 0 ? (size_t)count : 0;
-    return STATUS_OK;
-}
-
 /* `asked_by` (NULL for the scene itself) is the file that includes this one. */
 static enum status file_expand(struct scene_text *text, const char *path, const struct source *asked_by)
 {
-    struct stat about;
-    FILE *file = NULL;
-    const char *reason = "not a regular file";
-    if (stat(path, &about) != 0 || (S_ISREG(about.st_mode) && !(file = fopen(path, "rb")))) {
-        reason = strerror(errno);
-    }
-    if (!file && asked_by) {
-        return status_set(STATUS_INVALID,
+    char *content, reason[TEXT_REASON_SIZE];
+    size_t length;
+    enum status status = text_read(path, TEXT_MAX, &content, &length, reason);
+    if (status != STATUS_OK && asked_by) {
+        return status_set(status,
                           "%.300s:%d: @include of %.200s: %s; must be a readable file, its path "
                           "absolute, or from the folder of this file, or from %.200s",
                           asked_by->path, asked_by->line, path, reason, text->scene_directory);
     }
-    if (!file) {
-        return status_set(STATUS_INVALID,
+    if (status != STATUS_OK) {
+        return status_set(status,
                           "%.300s: scene is not readable: %s; must be the path of a .cfg file, or "
                           "the name of a shipped scene without .cfg",
                           path, reason);
     }
     struct source source = {.path = path, .line = 1, .depth = asked_by ? asked_by->depth + 1 : 0};
-    char *content;
-    size_t length;
-    enum status status = file_read(file, path, &content, &length);
+    status = room_make(text, length, path);
     if (status == STATUS_OK) {
-        status = room_make(text, length, path);
-    }
-    if (status == STATUS_OK) {
-        status = content_expand(text, &source, length > 0 ? content : "");
+        status = content_expand(text, &source, content);
     }
     free(content);
-    fclose(file);
     return status;
 }
 

@@ -281,7 +281,7 @@ static void only_regular_pictures_are_shown(void **state)
     alarm(60);
     assert_int_equal(report_write(folder), STATUS_INVALID);
     alarm(0);
-    assert_non_null(strstr(status_message(), "claims.csv: not a CSV file"));
+    assert_non_null(strstr(status_message(), "claims.csv: not a regular file; a readable CSV file"));
 }
 
 static void pages_are_utf8_whatever_the_names_are(void **state)

@@ -1,6 +1,7 @@
 /* Command lines that are refused: each with exit status 2 and one line that names what is wrong and what is accepted;
    nothing is written. */
 #include <stdlib.h>
+#include <unistd.h>
 
 #include "tests/command/program.h"
 
@@ -244,12 +245,32 @@ static void unknown_instruction_sets_are_refused(void **state)
     unsetenv("SASBENCH_ISA");
 }
 
+/* As --threads is, which goes before it. */
+static void threads_of_the_environment_have_a_bound(void **state)
+{
+    (void)state;
+    static const char *const simulate[ARGUMENTS_MAX] = {"simulate", "study/quick", "-o", "x.mat"};
+    static const char *const given[ARGUMENTS_MAX] = {"simulate", "study/quick", "-o", "x.mat", "--threads", "2"};
+    static const char *const many[] = {"1025", "20000", "99999", "2000000000"};
+    char before[32];
+    snprintf(before, sizeof before, "%s", getenv("OMP_NUM_THREADS") ? getenv("OMP_NUM_THREADS") : "2");
+    for (size_t k = 0; k < COUNT_OF(many); k++) {
+        const char *const says[SAYS_MAX] = {"OMP_NUM_THREADS is '", many[k], "a whole number from 1 to 1024"};
+        setenv("OMP_NUM_THREADS", many[k], 1);
+        assert_true(is_refused(simulate, says));
+    }
+    free(program_output(given));
+    unlink(path_in("x.mat"));
+    setenv("OMP_NUM_THREADS", before, 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bad_usage_is_refused),
         cmocka_unit_test(bad_places_are_refused),
         cmocka_unit_test(unknown_instruction_sets_are_refused),
+        cmocka_unit_test(threads_of_the_environment_have_a_bound),
     };
     return cmocka_run_group_tests(tests, inputs_make, folder_remove);
 }

@@ -396,7 +396,7 @@ static void names_are_shown_without_effect(void **state)
     FILE *stream = fmemopen(text, sizeof text - 1, "w");
     struct finding odd = {.verdict = VERDICT_GONE,
                           .scene = "a\x1b[31mb\xc2\x9b"
-                                   "c\xff",
+                                   "c\xff\u202e",
                           .spec = "\t",
                           .detail = "\x7f",
                           .metric = "row",
@@ -411,7 +411,7 @@ static void names_are_shown_without_effect(void **state)
     assert_int_equal(diff_note(&diff, "\x1b[2J"), STATUS_OK);
     diff_print(&diff, stream);
     fclose(stream);
-    assert_non_null(strstr(text, "a?[31mb??c? ? ?\n"));
+    assert_non_null(strstr(text, "a?[31mb??c???? ? ?\n"));
     for (const char *at = text; *at; at++)
         assert_true(*at == '\n' || ((unsigned char)*at >= ' ' && *at != 0x7f));
     assert_non_null(strstr(text, "?[2J\n"));
@@ -420,6 +420,8 @@ static void names_are_shown_without_effect(void **state)
     assert_int_equal(diff_add(&diff, &odd), STATUS_OK);
     assert_int_equal(diff_json(&diff, path_of("out.json")), STATUS_OK);
     assert_non_null(strstr(text_read("out.json"), "a\\ufffd[31mb\\ufffd\\ufffdc\\ufffd"));
+    assert_int_equal(diff_markdown(&diff, path_of("out.md")), STATUS_OK);
+    assert_non_null(strstr(text_read("out.md"), "b??c????"));
     diff_free(&diff);
 }
 

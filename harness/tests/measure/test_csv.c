@@ -69,6 +69,9 @@ static void test_csv_faults(void **state)
         {"a\n\"b\tc\"\n", ":2:3: control character 0x09"},
         {"# k: v\x07\na\n", ":1:7: control character 0x07"},
         {"a\nb\x7f\n", ":2:2: control character 0x7f"},
+        {"a\nb\xc2\x9b\n", ":2:2: control character 0x9b"},
+        {"a\nb\u202e\n", ":2:2: control character 0x202e"}, /* turns the line around */
+        {"a\n\ufeff\n", ":2:1: control character 0xfeff"},
     };
     struct csv csv;
     for (size_t k = 0; k < sizeof faults / sizeof *faults; k++) {
@@ -86,6 +89,9 @@ static void test_csv_faults(void **state)
     assert_int_equal(csv_read(results_directory, CSV_TAIL_KEEP, &csv), STATUS_INVALID);
     assert_int_equal(csv_read(targets_path, CSV_TAIL_KEEP, &csv), STATUS_INVALID);
     assert_int_equal(csv_read("/dev/zero", CSV_TAIL_KEEP, &csv), STATUS_INVALID);
+    assert_int_equal(truncate(measurements_path, (off_t)3 << 30), 0);
+    assert_int_equal(csv_read(measurements_path, CSV_TAIL_KEEP, &csv), STATUS_INVALID);
+    assert_non_null(strstr(status_message(), "has 3221225472 bytes, must have at most 268435456; a readable CSV file"));
     assert_int_equal(mkfifo(targets_path, 0600), 0);
     assert_int_equal(csv_read(targets_path, CSV_TAIL_KEEP, &csv), STATUS_INVALID); /* without a wait for a writer */
     remove(targets_path);

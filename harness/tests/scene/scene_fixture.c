@@ -97,7 +97,8 @@ int scene_folder_remove(void **state)
 {
     (void)state;
     const char *const files[] = {"scene.cfg",    "other.cfg",     "third.cfg",       "_part.cfg",
-                                 "sub/deep.cfg", "sub/_part.cfg", "sub/.hidden.cfg", "sub/text.txt"};
+                                 "sub/deep.cfg", "sub/_part.cfg", "sub/.hidden.cfg", "sub/text.txt",
+                                 "fifo.cfg",     "large.cfg",     "inner.cfg"};
     for (size_t i = 0; i < COUNT_OF(files); i++) {
         unlink(scene_path(files[i]));
     }

@@ -174,6 +174,46 @@ static void includes_have_bounds(void **state)
     assert_message_has("0.cfg: the scene is too long with this file, must have at most 67108864 bytes", "length");
 }
 
+/* Nothing but texts of a sane size is read, by whatever name it comes, nor waited for. */
+static void only_regular_files_are_read(void **state)
+{
+    (void)state;
+    char fifo[300], large[300], text[700];
+    snprintf(fifo, sizeof fifo, "%s", scene_path("fifo.cfg"));
+    snprintf(large, sizeof large, "%s", scene_path("large.cfg"));
+    assert_int_equal(mkfifo(fifo, 0600), 0);
+    scene_write("large.cfg", "#");
+    assert_int_equal(truncate(large, (off_t)3 << 30), 0);
+    const struct {
+        const char *path, *says;
+    } files[] = {
+        {fifo, "not a regular file"},
+        {"/dev/zero", "not a regular file"},
+        {"/dev/tty", "not a regular file"},
+        {"/dev", "not a regular file"},
+        {"/proc/kmsg", ""}, /* by who asks and what was logged: not permitted, or nothing there, or no file */
+        {"/proc/self/status", "not a file of a disk"},
+        {large, "has 3221225472 bytes, must have at most 67108864"},
+    };
+    struct scene scene;
+    alarm(60);
+    for (size_t k = 0; k < sizeof files / sizeof *files; k++) {
+        snprintf(text, sizeof text, "# within\n@include \"%s\"\n", files[k].path);
+        scene_write("inner.cfg", text);
+        assert_int_equal(scene_load_text(text, &scene), STATUS_INVALID);
+        assert_message_has(files[k].path, "include");
+        assert_message_has(files[k].says, "include");
+        assert_int_equal(scene_load_text("@include \"inner.cfg\"\n", &scene), STATUS_INVALID);
+        assert_message_has(scene_path("inner.cfg:2: @include of "), "nested");
+        assert_message_has(files[k].says, "nested");
+    }
+    assert_int_equal(scene_load(fifo, SHIPPED, &scene), STATUS_INVALID);
+    assert_message_has("fifo.cfg: scene is not readable: not a regular file", "scene");
+    assert_int_equal(scene_load(large, SHIPPED, &scene), STATUS_INVALID);
+    assert_message_has("large.cfg: scene is not readable: has 3221225472 bytes", "scene");
+    alarm(0);
+}
+
 static void hash_follows_the_content(void **state)
 {
     (void)state;
@@ -247,6 +287,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(includes_are_relative_to_their_file, scene_folder_make, scene_folder_remove),
         cmocka_unit_test_setup_teardown(errors_name_the_line_of_their_file, scene_folder_make, scene_folder_remove),
         cmocka_unit_test_setup_teardown(includes_have_bounds, scene_folder_make, scene_folder_remove),
+        cmocka_unit_test_setup_teardown(only_regular_files_are_read, scene_folder_make, scene_folder_remove),
         cmocka_unit_test_setup_teardown(hash_follows_the_content, scene_folder_make, scene_folder_remove),
         cmocka_unit_test_setup_teardown(names_are_found_below_the_folder, scene_folder_make, scene_folder_remove),
     };

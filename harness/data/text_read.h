@@ -1,0 +1,16 @@
+/* A text file in memory. */
+#ifndef SASBENCH_DATA_TEXT_READ_H
+#define SASBENCH_DATA_TEXT_READ_H
+
+#include <stddef.h>
+
+#include "status.h"
+
+enum { TEXT_REASON_SIZE = 160 };
+
+/* The whole text of the regular file at `path`, of `most` bytes at most: *text, the caller's to free, ends with a zero
+   byte that *length does not count. Reads nothing else, and waits for nobody: not for the writer of a pipe, not for the
+   kernel's log. Errors, with why in `reason`: STATUS_INVALID, or STATUS_FAILED without memory. */
+enum status text_read(const char *path, size_t most, char **text, size_t *length, char reason[TEXT_REASON_SIZE]);
+
+#endif
