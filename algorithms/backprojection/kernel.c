@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { MOST = KERNEL_BRANCHES_MOST };
+enum { MOST = KERNEL_BRANCHES_MOST, BRANCHES_LEAST = 2 /* one alone would be read as single samples */ };
 
 /* Coefficients of z^m in the Chebyshev polynomials T_n(z). */
 static void chebyshev(double powers[MOST][MOST])
@@ -34,7 +34,7 @@ int kernel_branches(const struct interpolator *interpolator, const void *options
             series[n * taps + t] = sum * (n == 0 ? 1 : 2) / MOST;
         }
     int count = MOST;
-    for (; count > 1; count--) { /* what is cut off adds up */
+    for (; count > BRANCHES_LEAST; count--) { /* what is cut off adds up */
         double largest = 0;
         for (int t = 0; t < taps; t++)
             largest = fmax(largest, fabs(series[(count - 1) * taps + t]));

@@ -168,12 +168,41 @@ static void images_follow_the_law(void **state)
     }
 }
 
+/* Of a tone the weights hardly depend on the fraction: one branch would do, and is not taken for none. */
+static void tones_are_read_as_branches(void **state)
+{
+    (void)state;
+    static const char *const methods[] = {"bp_fitted:taps=8,factor=1", "bp_fitted:taps=4,factor=4"};
+    const struct grid grid = {-2.0, 0.171 / 7, 161, 21.03, 0.017, 61};
+    struct acquisition a;
+    struct echoes echoes;
+    support_flat_noise(1e-12, &a, &echoes);
+    struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
+    for (int n = 0; n < 4; n++) {
+        const char *precision = n % 2 ? "double" : "float";
+        struct image image, plain;
+        char spec[120];
+        snprintf(spec, sizeof spec, "%s,engine=general,precision=%s", methods[n / 2], precision);
+        assert_int_equal(support_image(spec, problem, &echoes, &image), STATUS_OK);
+        snprintf(spec, sizeof spec, "%s,exact=true,precision=double", methods[n / 2]);
+        assert_int_equal(support_image(spec, problem, &echoes, &plain), STATUS_OK);
+        const double error = metrics_error(&image, &plain).error;
+        print_message("%s in %s: %.3g off the plain path\n", methods[n / 2], precision, error);
+        assert_true(error < 1e-4);
+        image_free(&plain);
+        image_free(&image);
+    }
+    echoes_free(&echoes);
+    acquisition_free(&a);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(weights_solve_the_equations),
         cmocka_unit_test(law_has_its_figures),
         cmocka_unit_test(images_follow_the_law),
+        cmocka_unit_test(tones_are_read_as_branches),
     };
     return cmocka_run_group_tests_name("fitted", tests, NULL, NULL);
 }
