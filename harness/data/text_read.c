@@ -59,8 +59,12 @@ static enum status descriptor_read(int descriptor, size_t most, char **text, siz
 
 enum status text_read(const char *path, size_t most, char **text, size_t *length, char reason[TEXT_REASON_SIZE])
 {
+    struct stat info;
     *text = NULL;
     *length = 0;
+    if (lstat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISLNK(info.st_mode)) { /* devices may act when opened */
+        return reason_set(reason, STATUS_INVALID, "not a regular file");
+    }
     const int descriptor = place_read(path, O_NONBLOCK | O_NOCTTY);
     if (descriptor < 0) {
         return reason_set(reason, STATUS_INVALID, "%s",

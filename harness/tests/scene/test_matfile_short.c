@@ -388,5 +388,5 @@ int main(void)
         cmocka_unit_test(what_hides_variables_is_refused),
     };
     mallopt(M_PERTURB, 0xa5);
-    return cmocka_run_group_tests(tests, directory_make, directory_remove);
+    return cmocka_run_group_tests(tests, fixture_make, directory_remove);
 }
