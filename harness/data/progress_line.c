@@ -36,8 +36,8 @@ static void tell(bool terminal)
     int room = sizeof line.text;
     if (terminal && ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) /* or it would wrap */
         room = (int)fmax(0, size.ws_col - 1.0 - (double)strlen(since) - (double)strlen(share));
-    const int length = snprintf(text, sizeof text, terminal ? "\r\033[K%.*s%s%s\r" : "%.*s%s%s\n", room, line.text,
-                                since, share);
+    const int length =
+        snprintf(text, sizeof text, terminal ? "\r\033[K%.*s%s%s\r" : "%.*s%s%s\n", room, line.text, since, share);
     line.told = now;
     if (write(STDERR_FILENO, text, (size_t)length) < 0)
         return; /* nobody reads on */

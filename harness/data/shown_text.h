@@ -7,9 +7,9 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* Bytes of the control character at `text`, of which *code becomes the number; 0 where none stands. Beside those of ASCII
-   and of U+0080 to U+009F, what cannot be seen but turns, hides or breaks the text around it (U+202E); the joiners
-   U+200C and U+200D, which some scripts are written with, are none. */
+/* Bytes of the control character at `text`, of which *code becomes the number; 0 where none stands. Beside those of
+   ASCII and of U+0080 to U+009F, what cannot be seen but turns, hides or breaks the text around it (U+202E); the
+   joiners U+200C and U+200D, which some scripts are written with, are none. */
 size_t control_length(const char *text, uint32_t *code);
 /* Bytes of the character at `text`, which is not its end: 0 for a control character and for what is not UTF-8. */
 size_t shown_length(const char *text);

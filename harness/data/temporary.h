@@ -10,8 +10,8 @@
 
 enum { TEMPORARY_NAME = 24 };
 /* An empty file open for writing, or an empty folder that nobody else may enter, in an open folder; `made` is its name
-   there. Returns its descriptor, by which it is locked; -1: errno says why. Each is followed by temporary_moved or temporary_remove, until
-   which `folder` stays open. */
+   there. Returns its descriptor, by which it is locked; -1: errno says why. Each is followed by temporary_moved or
+   temporary_remove, until which `folder` stays open. */
 int temporary_file(int folder, char made[TEMPORARY_NAME]);
 int temporary_folder(int folder, char made[TEMPORARY_NAME]);
 /* Whether what we make in a folder belongs to whom the folder belongs to. errno says why not. */

@@ -67,8 +67,8 @@ bool mat5_open(struct mat5 *file, const char *path);
 bool mat5_next(struct mat5 *file);
 void mat5_close(struct mat5 *file);
 
-/* Variables in a version 5 file; -1 when their lengths do not end where the file does. libmatio takes a file that was cut
-   short for one with fewer variables, and does not notice a full disk either. */
+/* Variables in a version 5 file; -1 when their lengths do not end where the file does. libmatio takes a file that was
+   cut short for one with fewer variables, and does not notice a full disk either. */
 int mat5_count(const char *path);
 
 /* What libmatio takes a variable for: it reads what the dimensions ask for, whether that is there or not. */

@@ -90,8 +90,8 @@ static struct work work_of(const char *text, const struct scene *scene, const st
     return work;
 }
 
-/* Back projection: the transforms, 6 of a product for each of their bins, and for each pair 8, and 4 for each value but a
-   nearest one. Others: the share of the transforms, half to .85 of all, is what it was when this was written; a count
+/* Back projection: the transforms, 6 of a product for each of their bins, and for each pair 8, and 4 for each value but
+   a nearest one. Others: the share of the transforms, half to .85 of all, is what it was when this was written; a count
    that is off by a tenth is seen. */
 static void transforms_are_counted(void **state)
 {

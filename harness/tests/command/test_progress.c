@@ -1,5 +1,5 @@
-/* What those who wait see: a line on a terminal, with the seconds and the share that is done, and no trace of it behind;
-   every algorithm says how far it is. */
+/* What those who wait see: a line on a terminal, with the seconds and the share that is done, and no trace of it
+   behind; every algorithm says how far it is. */
 #include <math.h>
 #include <pty.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* A clock that goes as it is told. The program's calls of the system that measure time are linked to these (meson.build,
-   `timed`), so that every figure made of times can be asserted to the last digit. */
+/* A clock that goes as it is told. The program's calls of the system that measure time are linked to these
+   (meson.build, `timed`), so that every figure made of times can be asserted to the last digit. */
 #ifndef SASBENCH_TEST_FAKE_CLOCK_H
 #define SASBENCH_TEST_FAKE_CLOCK_H
 

@@ -106,7 +106,7 @@ static void noise_is_not_told(void **state)
     }
 }
 
-/* One ping that stops and hops before a short array, and its image beside the target: where its mirror image is, too. */
+/* One ping that stops and hops before a short array, and its image beside the target: where its mirror image is. */
 static void mirror_images_are_not_told(void **state)
 {
     (void)state;

@@ -1,6 +1,6 @@
 /* MATLAB files whose variables hold fewer numbers than their dimensions say: libmatio and HDF5 would read on beyond
-   them, fill up with zeros, or leave memory as it was. What is allocated here is poisoned, so that none of this can look
-   like a number that is meant. */
+   them, fill up with zeros, or leave memory as it was. What is allocated here is poisoned, so that none of this can
+   look like a number that is meant. */
 #include <hdf5.h>
 #include <malloc.h>
 #include <math.h>
