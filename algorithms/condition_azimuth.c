@@ -2,41 +2,40 @@
    wavenumbers that they tell apart. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "algorithm.h"
 
-static int place_order(const void *a, const void *b)
+/* Phase centre of a receiver along the track (m), with a `period` > 0 within one. */
+static double centre_of(const struct acquisition *a, int receiver, double period)
 {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
+    const double place = (a->rx[receiver].x - a->tx[0].x) / 2;
+    return period > 0 ? place - period * floor(place / period) : place;
+}
+
+/* The first centre from a place on; INFINITY without one. */
+static double centre_next(const struct acquisition *a, double period, double from)
+{
+    double next = INFINITY;
+    for (int m = 0; m < a->receivers; m++) {
+        const double place = centre_of(a, m, period);
+        next = place >= from && place < next ? place : next;
+    }
+    return next;
 }
 
 /* Phase centres, half the receivers' offsets, that lie `apart` m and more from each other along the track; rows and
    arrays across it share places. With a `period` > 0 places come again after so many m, as from ping to ping. *extent
-   (m, may be NULL): from the first of those counted to the last. 0: without memory. */
+   (m, may be NULL): from the first of those counted to the last. */
 static int centres_count(const struct acquisition *a, double period, double apart, double *extent)
 {
-    double *places = malloc((size_t)a->receivers * sizeof *places), last;
+    const double first = centre_next(a, period, -INFINITY);
+    double last = first;
     int count = 1;
-    if (!places)
-        return 0;
-    for (int m = 0; m < a->receivers; m++) {
-        places[m] = (a->rx[m].x - a->tx[0].x) / 2;
-        places[m] -= period > 0 ? period * floor(places[m] / period) : 0;
-    }
-    qsort(places, (size_t)a->receivers, sizeof *places, place_order);
-    last = places[0];
-    for (int m = 1; m < a->receivers; m++)
-        if (places[m] - last >= apart) {
-            last = places[m];
-            count++;
-        }
+    for (double next; isfinite(next = centre_next(a, period, last + apart)) && count < a->receivers; last = next)
+        count++;
     if (extent)
-        *extent = last - places[0];
-    count -= period > 0 && count > 1 && places[0] + period - last < apart;
-    free(places);
-    return count;
+        *extent = last - first;
+    return count - (period > 0 && count > 1 && first + period - last < apart);
 }
 
 /* Those that sample the track: half of an even step counts as one place. */
@@ -101,10 +100,9 @@ void condition_beam_named(const struct acquisition *a, struct condition *conditi
 struct condition condition_doppler(const struct problem *problem, double spacing)
 {
     const struct acquisition *a = problem->acquisition;
-    const int centres = centres_sampling(a, spacing);
     struct condition doppler = {
         "doppler",
-        centres > 0 ? (a->fc + a->bandwidth / 2) * condition_slope(problem) * 2 * fabs(spacing) / centres : NAN,
+        (a->fc + a->bandwidth / 2) * condition_slope(problem) * 2 * fabs(spacing) / centres_sampling(a, spacing),
         1.05,
         false,
         SEVERITY_WARN,
