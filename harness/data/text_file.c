@@ -90,13 +90,24 @@ enum status text_file_open_named(const char *path, struct text_file *file)
     return file_open(path, true, file);
 }
 
-/* Where an earlier write failed, what is left of it fails again, with the same errno. */
+/* Why a file could not grow before: a full disk is one still, and its file is to be dropped. */
+static int reason_now(int descriptor)
+{
+    struct stat info;
+    if (fstat(descriptor, &info) != 0 || !S_ISREG(info.st_mode))
+        return EIO;
+    const int reason = posix_fallocate(descriptor, info.st_size, 1 << 16);
+    const bool cut = ftruncate(descriptor, info.st_size) == 0;
+    return cut && (reason == ENOSPC || reason == EDQUOT || reason == EFBIG) ? reason : EIO;
+}
+
+/* Where an earlier write failed, errno has changed since: often what is left of it fails again, with the same. */
 bool stream_flush(FILE *stream)
 {
     errno = 0;
     if (fflush(stream) == 0 && !ferror(stream))
         return true;
-    errno = errno ? errno : EIO;
+    errno = errno ? errno : reason_now(fileno(stream));
     return false;
 }
 

