@@ -1,6 +1,7 @@
 /* Links in a folder of results: whoever may write there must not make us write elsewhere. The program's path is in the
    environment variable SASBENCH_PROGRAM. */
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -188,7 +189,9 @@ static void places_that_are_none(void **state)
     assert_int_equal(text_file_open(path, &file), STATUS_INVALID);
     assert_non_null(strstr(status_message(), "Is a directory"));
     snprintf(path, sizeof path, "%s/b.csv", path_of("r"));
-    text_put(path, "b\n"); /* does not wait for a reader */
+    const int reader = open(path, O_RDWR | O_CLOEXEC); /* so that writing into it would not wait for one */
+    text_put(path, "b\n");
+    close(reader);
     assert_shell("test -f r/b.csv", 0);
     assert_int_equal(folder_take(path_of("shared"), &lock), STATUS_INVALID);
     assert_non_null(strstr(status_message(), "all users share this folder"));
