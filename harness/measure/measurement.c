@@ -92,7 +92,7 @@ void column_clear(const struct column *column, void *row)
 struct measurement measurement_empty(const char *scene, const char *algorithm, const char *options,
                                      enum precision precision)
 {
-    struct measurement row;
+    struct measurement row = {0};
     for (const struct column *column = measurement_columns; column->name; column++)
         column_clear(column, &row);
     row.scene = scene;

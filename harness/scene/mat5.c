@@ -103,7 +103,7 @@ static size_t plain_take(struct source *source, unsigned char *to, size_t size)
 
 static size_t packed_take(struct source *source, unsigned char *to, size_t size)
 {
-    unsigned char nowhere[INPUT_SIZE];
+    unsigned char nowhere[INPUT_SIZE] = {0};
     z_stream *stream = &source->stream;
     size_t taken = 0;
     for (int result = Z_OK; taken < size && result == Z_OK;) {
