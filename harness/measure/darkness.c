@@ -37,7 +37,8 @@ static double image_energy(const struct image *image, int exponent)
         for (int i = 0; i < image->patches[p].r_count; i++)
             for (int j = 0; j < image->patches[p].x_count; j++) {
                 const double complex value = image_pixel(image, p, i, j);
-                sum += square(CMPLX(ldexp(creal(value), -exponent), ldexp(cimag(value), -exponent)));
+                const double real = ldexp(creal(value), -exponent), imaginary = ldexp(cimag(value), -exponent);
+                sum += real * real + imaginary * imaginary;
             }
     return sum;
 }

@@ -4,7 +4,8 @@
 
 #include "scene/matvar.h"
 
-/* Texts of the same length keep their bytes, those of no fixed length become empty. */
+/* Texts of the same length keep their bytes, those of no fixed length become empty. The parameters are HDF5's. */
+/* NOLINTNEXTLINE(readability-function-size) */
 static herr_t text_convert(hid_t from, hid_t to, H5T_cdata_t *data, size_t count, size_t stride, size_t aside_stride,
                            void *texts, void *aside, hid_t properties)
 {

@@ -382,6 +382,31 @@ static enum status echoes_restore(const char *path, const struct echoes *echoes,
     return status;
 }
 
+static void write_scalars(struct writer *writer, const struct acquisition *a)
+{
+    const struct {
+        const char *name;
+        double value;
+        bool is_written;
+    } scalars[] = {
+        {"compressed", a->compressed, true},
+        {"fs", a->fs, true},
+        {"fc", a->fc, true},
+        {"bandwidth", a->bandwidth, true},
+        {"sound_speed", a->sound_speed, true},
+        {"pri", a->pri, a->pri > 0},
+        {"tx_length", a->tx_length, a->tx_length > 0},
+        {"rx_length", a->rx_length, a->rx_length > 0},
+        {"beam_limit", a->aperture_limit, a->aperture_limit <= 1},
+        {"echo_sine", a->echo_sine, a->echo_sine > 0},
+        {"echo_tapers", a->echo_tapers, a->echo_sine > 0},
+        {"echo_squint", a->echo_squint, a->echo_squint != 0},
+    };
+    for (size_t i = 0; i < sizeof scalars / sizeof *scalars; i++)
+        if (scalars[i].is_written)
+            write_reals(writer, scalars[i].name, 1, 1, 1, &scalars[i].value);
+}
+
 enum status echo_file_write(const char *path, const struct echoes *echoes, const char *description)
 {
     const struct acquisition *a = echoes->acquisition;
@@ -408,29 +433,7 @@ enum status echo_file_write(const char *path, const struct echoes *echoes, const
         size_t length = (size_t)a->pulse_length;
         write_complex(&writer, "pulse", (size_t[]){length, 1, 1}, PRECISION_DOUBLE, a->pulse, length, 1);
     }
-    const struct {
-        const char *name;
-        double value;
-        bool is_written;
-    } scalars[] = {
-        {"compressed", a->compressed, true},
-        {"fs", a->fs, true},
-        {"fc", a->fc, true},
-        {"bandwidth", a->bandwidth, true},
-        {"sound_speed", a->sound_speed, true},
-        {"pri", a->pri, a->pri > 0},
-        {"tx_length", a->tx_length, a->tx_length > 0},
-        {"rx_length", a->rx_length, a->rx_length > 0},
-        {"beam_limit", a->aperture_limit, a->aperture_limit <= 1},
-        {"echo_sine", a->echo_sine, a->echo_sine > 0},
-        {"echo_tapers", a->echo_tapers, a->echo_sine > 0},
-        {"echo_squint", a->echo_squint, a->echo_squint != 0},
-    };
-    for (size_t i = 0; i < sizeof scalars / sizeof *scalars; i++) {
-        if (scalars[i].is_written) {
-            write_reals(&writer, scalars[i].name, 1, 1, 1, &scalars[i].value);
-        }
-    }
+    write_scalars(&writer, a);
     if (a->area.half_x > 0) {
         write_reals(&writer, "area", 1, 4, 1, &a->area.x);
     }

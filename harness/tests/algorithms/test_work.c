@@ -63,8 +63,8 @@ static void execute_note(const void *plan)
         __real_##fftw##_execute_dft(plan, in, out);                                                                    \
     }
 /* clang-format on */
-COUNTED(fftw)
-COUNTED(fftwf)
+COUNTED(fftw)  /* NOLINT(readability-function-size): the parameters are FFTW's */
+COUNTED(fftwf) /* NOLINT(readability-function-size) */
 
 /* What a plan counts, and by *share what of it are transforms that its run executes. */
 static struct work work_of(const char *text, const struct scene *scene, const struct echoes echoes[2], double *share)

@@ -67,51 +67,53 @@ static void compare_texts(const char *old, const char *new, struct diff *diff)
         fail_msg("%s", status_message());
 }
 
+static const struct {
+    const char *before, *after; /* what is put in place of it in the row */
+    const char *metric;         /* of the finding that is not the same; NULL: all are */
+    enum verdict verdict;
+} changes[] = {
+    {",0.1,0.05,", ",0.10009,0.05,", NULL, VERDICT_SAME},
+    {",0.1,0.05,", ",0.1002,0.05,", "error", VERDICT_WORSE},
+    {",0.1,0.05,", ",0.0998,0.05,", "error", VERDICT_BETTER},
+    {",0.1,0.05,", ",,0.05,", "error", VERDICT_GONE},
+    {"1000,4096", "1001,4096", "pairs", VERDICT_WORSE}, /* neither way is better: any change is to be seen */
+    {"1000,4096", "999,4096", "pairs", VERDICT_WORSE},
+    {"1000,4096", "1000,4095", "bytes", VERDICT_BETTER},
+    {"1e6,1e6,", "1e6,1000001,", "flops", VERDICT_WORSE},
+    {"1e6,1e6,", "1000001,1e6,", "flops_published", VERDICT_WORSE},
+    {"-13.3", "-13.297", "pslr_db", VERDICT_WORSE},
+    {"-13.3", "-13.299", NULL, VERDICT_SAME},
+    {"-10.4", "-10.41", "islr_db", VERDICT_BETTER},
+    {"-10.4", "-10.5", "islr_db", VERDICT_CHANGED}, /* a fault may flatter */
+    {"-10.4", "10.4", "islr_db", VERDICT_WORSE},
+    {"1000,4096", "1000,4000", "bytes", VERDICT_CHANGED},
+    {"0.04,", "0.0401,", "width_m", VERDICT_WORSE},
+    {",ok,,", ",failed,no memory,", "status", VERDICT_WORSE},
+    {",ok,,", ",unsupported,,", "status", VERDICT_WORSE},
+    {"s,a,", "s,b,", "row", VERDICT_GONE},
+    {"beta=8", "beta=9", "row", VERDICT_GONE},
+    {",1,0.9,", ",1.6,1.5,", NULL, VERDICT_SAME}, /* two runs cannot tell less than a factor */
+    {",1,0.9,", ",1.98,1.8,", NULL, VERDICT_SAME},
+    {",1,0.9,", ",2.2,1.9,", "run_s", VERDICT_WORSE},
+    {",1,0.9,", ",2.2,1.0,", NULL, VERDICT_SAME},       /* the least time says otherwise */
+    {",1,0.9,5,2,", ",3,2.7,5,6,", NULL, VERDICT_SAME}, /* a slower machine: the control took as much longer */
+    {",1,0.9,5,2,", ",3,9,5,6,", NULL, VERDICT_SAME},   /* of the median alone */
+    {",1,0.9,5,2,", ",0.4,0.3,5,2,", "run_s", VERDICT_BETTER},
+    {"float,2,", "float,1,", NULL, VERDICT_SAME},
+    {",0.1,1,0.9,5,2,", ",,,,,,", NULL, VERDICT_SAME}, /* a baseline has no times */
+};
+
 static void values_are_judged_by_the_metric_table(void **state)
 {
     (void)state;
-    static const struct {
-        const char *before, *after; /* what is put in place of it in the row */
-        const char *metric;         /* of the finding that is not the same; NULL: all are */
-        enum verdict verdict;
-    } cases[] = {
-        {",0.1,0.05,", ",0.10009,0.05,", NULL, VERDICT_SAME},
-        {",0.1,0.05,", ",0.1002,0.05,", "error", VERDICT_WORSE},
-        {",0.1,0.05,", ",0.0998,0.05,", "error", VERDICT_BETTER},
-        {",0.1,0.05,", ",,0.05,", "error", VERDICT_GONE},
-        {"1000,4096", "1001,4096", "pairs", VERDICT_WORSE}, /* neither way is better: any change is to be seen */
-        {"1000,4096", "999,4096", "pairs", VERDICT_WORSE},
-        {"1000,4096", "1000,4095", "bytes", VERDICT_BETTER},
-        {"1e6,1e6,", "1e6,1000001,", "flops", VERDICT_WORSE},
-        {"1e6,1e6,", "1000001,1e6,", "flops_published", VERDICT_WORSE},
-        {"-13.3", "-13.297", "pslr_db", VERDICT_WORSE},
-        {"-13.3", "-13.299", NULL, VERDICT_SAME},
-        {"-10.4", "-10.41", "islr_db", VERDICT_BETTER},
-        {"-10.4", "-10.5", "islr_db", VERDICT_CHANGED}, /* a fault may flatter */
-        {"-10.4", "10.4", "islr_db", VERDICT_WORSE},
-        {"1000,4096", "1000,4000", "bytes", VERDICT_CHANGED},
-        {"0.04,", "0.0401,", "width_m", VERDICT_WORSE},
-        {",ok,,", ",failed,no memory,", "status", VERDICT_WORSE},
-        {",ok,,", ",unsupported,,", "status", VERDICT_WORSE},
-        {"s,a,", "s,b,", "row", VERDICT_GONE},
-        {"beta=8", "beta=9", "row", VERDICT_GONE},
-        {",1,0.9,", ",1.6,1.5,", NULL, VERDICT_SAME}, /* two runs cannot tell less than a factor */
-        {",1,0.9,", ",1.98,1.8,", NULL, VERDICT_SAME},
-        {",1,0.9,", ",2.2,1.9,", "run_s", VERDICT_WORSE},
-        {",1,0.9,", ",2.2,1.0,", NULL, VERDICT_SAME},       /* the least time says otherwise */
-        {",1,0.9,5,2,", ",3,2.7,5,6,", NULL, VERDICT_SAME}, /* a slower machine: the control took as much longer */
-        {",1,0.9,5,2,", ",3,9,5,6,", NULL, VERDICT_SAME},   /* of the median alone */
-        {",1,0.9,5,2,", ",0.4,0.3,5,2,", "run_s", VERDICT_BETTER},
-        {"float,2,", "float,1,", NULL, VERDICT_SAME},
-        {",0.1,1,0.9,5,2,", ",,,,,,", NULL, VERDICT_SAME}, /* a baseline has no times */
-    };
-    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    for (size_t k = 0; k < sizeof changes / sizeof *changes; k++) {
         char old[2048], new[2048];
         struct diff diff;
         snprintf(old, sizeof old, HEAD ROW);
-        const char *at = strstr(ROW, cases[k].before);
+        const char *at = strstr(ROW, changes[k].before);
         assert_non_null(at);
-        snprintf(new, sizeof new, HEAD "%.*s%s%s", (int)(at - ROW), ROW, cases[k].after, at + strlen(cases[k].before));
+        snprintf(new, sizeof new, HEAD "%.*s%s%s", (int)(at - ROW), ROW, changes[k].after,
+                 at + strlen(changes[k].before));
         compare_texts(old, new, &diff);
         for (int n = 0; n < diff.note_count; n++)
             if (strstr(diff.notes[n], "a row alone is judged"))
@@ -120,12 +122,12 @@ static void values_are_judged_by_the_metric_table(void **state)
         for (int n = diff.finding_count - 1; n >= 0; n--)
             if (diff.findings[n].verdict != VERDICT_SAME)
                 changed = &diff.findings[n];
-        bool fails = cases[k].metric
-                     && (cases[k].verdict == VERDICT_WORSE || cases[k].verdict == VERDICT_GONE
-                         || cases[k].verdict == VERDICT_CHANGED);
-        if ((changed != NULL) != (cases[k].metric != NULL) || (diff_judge(&diff) != STATUS_OK) != fails
-            || (changed && (strcmp(changed->metric, cases[k].metric) != 0 || changed->verdict != cases[k].verdict)))
-            fail_msg("%s -> %s: %s %s", cases[k].before, cases[k].after, changed ? changed->metric : "",
+        bool fails = changes[k].metric
+                     && (changes[k].verdict == VERDICT_WORSE || changes[k].verdict == VERDICT_GONE
+                         || changes[k].verdict == VERDICT_CHANGED);
+        if ((changed != NULL) != (changes[k].metric != NULL) || (diff_judge(&diff) != STATUS_OK) != fails
+            || (changed && (strcmp(changed->metric, changes[k].metric) != 0 || changed->verdict != changes[k].verdict)))
+            fail_msg("%s -> %s: %s %s", changes[k].before, changes[k].after, changed ? changed->metric : "",
                      changed ? verdict_names[changed->verdict] : "nothing");
         diff_free(&diff);
     }
