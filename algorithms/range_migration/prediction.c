@@ -28,7 +28,7 @@
 enum {
     TARGETS = 3,      /* on a row */
     COLUMNS = 17,     /* of a slice: evenly over the patch, and as many near the target */
-    PINGS = 40,       /* that are summed, at most */
+    PINGS = 512,      /* that are summed, at most: fewer than see a target alias where the beam is wide */
     RECEIVERS = 12,   /* that are summed, at most */
     TABLES = 5,       /* receivers whose errors are tabulated: each stands for those nearest to it */
     FREQUENCIES = 3,  /* of the band: Gauss and Legendre's */
