@@ -192,7 +192,7 @@ void planned_print(FILE *stream, const struct planned *planned)
         planned_left_out(&problem, best, line_print, stream);
         candidate_name(best, name);
         const double plan = best->algorithm->work(choice->plan).bytes;
-        fprintf(stream, "\nChosen: %s%s%s, about %s; the process takes %s of memory, %s of them the plan\n", name,
+        fprintf(stream, "\nChosen: %s%s%s, about %s\nThe process takes %s of memory, %s of them the plan.\n", name,
                 precision == PRECISION_FLOAT ? ""
                 : *best->settings            ? ","
                                              : ":",
