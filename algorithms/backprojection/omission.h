@@ -1,7 +1,7 @@
 /* What an image loses where something is left out of the geometry: laws from the acquisition alone. Relative L2
    errors of the complex image after one best complex gain.
 
-   Both are means over the pings that see a pixel, weighted by the energy that each brings into the image's azimuth
+   They are means over the pings that see a pixel, weighted by the energy that each brings into the image's azimuth
    spectrum: by stationary phase A^2 (1 - s^2)^(-3/2) a ping, s the sine of its angle off broadside and A the echo's
    amplitude. */
 #ifndef SASBENCH_BACKPROJECTION_OMISSION_H
@@ -24,15 +24,5 @@ double aperture_planned(const struct problem *problem, double sine);
 double aperture_least(const struct problem *problem, double error);
 /* The inverse of the law: the least sine that loses at most `error`; INFINITY where there is no law. */
 double aperture_sine(const struct problem *problem, double error);
-
-/* The receivers' motion while the echo travels: left out altogether, or taken to last as long as the way to the pixel
-   and back broadside (2 r/c); in the middle of the wanted pixels. With e the phase factor by which a pair is then off,
-
-       E^2 = 1 - |<e>|^2 / (<|mean over receivers of e|^2> + sum over j of phi_j <|DFT_j of e over the receivers|^2>):
-
-   differences between receivers repeat with every ping and make ghosts, j lambda r/(2 spacing) beside a target; phi_j
-   is the share of them inside the image. NAN where no ping sees the pixel. */
-enum motion { MOTION_NONE, MOTION_BROADSIDE };
-double motion_error(const struct problem *problem, enum motion motion);
 
 #endif

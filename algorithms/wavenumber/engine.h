@@ -147,13 +147,6 @@ struct wk {
     void *range_forward, *azimuth_forward;
 };
 
-/* Own wavenumbers to frequency: F (Hz) of Kx, Ky (rad/m) in the track's axes. */
-static inline double wk_frequency(const struct wk *wk, double kx, double ky)
-{
-    double c = wk->sound_speed, beta = wk->speed / c, scale = c / (4 * M_PI);
-    return beta * scale * kx + scale * sqrt(kx * kx + (1 - beta) * (1 + beta) * ky * ky);
-}
-
 /* Ky0 of frequency F at Kx0, both in the own axes; NAN where evanescent. */
 static inline double wk_ky(const struct wk *wk, double frequency, double kx0)
 {

@@ -131,20 +131,18 @@ static bool read_list(const struct key *key, config_setting_t *setting, void *fi
     return !setting || config_setting_is_list(setting);
 }
 
-const struct type REAL = {"a number", read_real, sizeof(double), false};
-const struct type LATER_REAL = {"a number", read_real, sizeof(double), true};
-const struct type INTEGER = {"an integer", read_integer, sizeof(int), false};
-const struct type SEED = {"an integer", read_seed, sizeof(uint64_t), false};
-const struct type BOOLEAN = {"true or false", read_boolean, sizeof(bool), false};
-const struct type LATER_BOOLEAN = {"true or false", read_boolean, sizeof(bool), true};
-const struct type CHOICE = {"one of", read_choice, sizeof(int), false};
-const struct type TEXT = {"a text of one line", read_text, 0, false};
-const struct type SPAN = {"[min, max] with min <= max, each", read_span, 2 * sizeof(double), false};
+const struct type REAL = {"a number", read_real, sizeof(double)};
+const struct type INTEGER = {"an integer", read_integer, sizeof(int)};
+const struct type SEED = {"an integer", read_seed, sizeof(uint64_t)};
+const struct type BOOLEAN = {"true or false", read_boolean, sizeof(bool)};
+const struct type CHOICE = {"one of", read_choice, sizeof(int)};
+const struct type TEXT = {"a text of one line", read_text, 0};
+const struct type SPAN = {"[min, max] with min <= max, each", read_span, 2 * sizeof(double)};
 const struct type AMPLITUDE = {"0 or of magnitude >= 1e-300, a number or [re, im], each", read_amplitude,
-                               sizeof(double complex), false};
-const struct type LEVEL = {"0 or >= 1e-300, a number", read_level, sizeof(double), false};
-const struct type GROUP = {"a group { ... }", read_group, 0, false};
-const struct type LIST = {"a list ( ... )", read_list, 0, false};
+                               sizeof(double complex)};
+const struct type LEVEL = {"0 or >= 1e-300, a number", read_level, sizeof(double)};
+const struct type GROUP = {"a group { ... }", read_group, 0};
+const struct type LIST = {"a list ( ... )", read_list, 0};
 
 void key_accepted_append(char *text, size_t size, const struct key *key)
 {

@@ -24,11 +24,9 @@ struct type {
     const char *accepts;
     bool (*read)(const struct key *key, config_setting_t *setting, void *field);
     size_t bytes; /* of the field that enter the hash; 0 = none */
-    bool later;   /* a type of keys that scenes did not have at first: only where one is given does it enter the hash */
 };
 
-extern const struct type REAL, LATER_REAL, INTEGER, SEED, BOOLEAN, LATER_BOOLEAN, CHOICE, TEXT, SPAN, AMPLITUDE, LEVEL,
-    GROUP, LIST;
+extern const struct type REAL, INTEGER, SEED, BOOLEAN, CHOICE, TEXT, SPAN, AMPLITUDE, LEVEL, GROUP, LIST;
 
 /* What a key accepts, in words, at the end of a text. */
 void key_accepted_append(char *text, size_t size, const struct key *key);

@@ -26,7 +26,7 @@ static const struct key keys[] = {
     {"", "echoes", "", &TEXT, AT(reading, echoes), 0, 0, 0, NULL},
     {"", "full_size", "", &BOOLEAN, AT(reading, scene.full_size), false, 0, 0, NULL},
     {"", "aperture_limit", "", &REAL, AT(reading, scene.acquisition.aperture_limit), INFINITY, ABOVE_0, 1, NULL},
-    {"", "x_offset", "m", &LATER_REAL, AT(reading, x_offset_m), 0, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
+    {"", "x_offset", "m", &REAL, AT(reading, x_offset_m), 0, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
     {"", "sonar", "", &GROUP, AT(reading, sonar), 0, 0, 0, NULL},
     {"", "pulse", "", &GROUP, AT(reading, pulse), 0, 0, 0, NULL},
     {"", "array", "", &GROUP, AT(reading, array), 0, 0, 0, NULL},
@@ -50,12 +50,12 @@ static const struct key keys[] = {
     {"array", "pitch", "m", &REAL, AT(reading, pitch_m), 0, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
     {"track", "speed", "m/s", &REAL, AT(reading, speed_m_s), 0, ANY, NULL},
     {"track", "pri", "s", &REAL, AT(reading, scene.acquisition.pri), REQUIRED, POSITIVE, NULL},
-    {"track", "spacing", "m", &LATER_REAL, AT(reading, spacing_m), 0, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
+    {"track", "spacing", "m", &REAL, AT(reading, spacing_m), 0, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
     {"track", "pings", "", &INTEGER, AT(reading, scene.acquisition.pings), 0, 1, INT_MAX, NULL},
     {"track", "x_first", "m", &REAL, AT(reading, x_first_m), 0, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
     {"track", "file", "", &TEXT, AT(reading, track_file), 0, 0, 0, NULL},
     {"track", "errors", "", &LIST, AT(reading, motion), 0, 0, 0, NULL},
-    {"track", "errors_known", "", &LATER_BOOLEAN, AT(reading, errors_known), false, 0, 0, NULL},
+    {"track", "errors_known", "", &BOOLEAN, AT(reading, errors_known), false, 0, 0, NULL},
     {"track.errors", "axis", "", &CHOICE, AT(motion_keys, axis), 0, 0, 0, motion_names},
     {"track.errors", "amplitude", "m, or degrees of yaw", &REAL, AT(motion_keys, amplitude), 0, -1e6, 1e6, NULL},
     {"track.errors", "period", "s", &REAL, AT(motion_keys, period_s), 0, POSITIVE, NULL},
@@ -63,20 +63,17 @@ static const struct key keys[] = {
     {"track.errors", "walk", "m, or degrees of yaw", &REAL, AT(motion_keys, walk), 0, ABOVE_0, 1e6, NULL},
     {"track.errors", "seed", "", &SEED, AT(motion_keys, seed), 0, 0, SEED_MAX, NULL},
     {"record", "first_sample", "", &INTEGER, AT(reading, first_sample), REQUIRED, INT_MIN, INT_MAX, NULL},
-    {"record", "time_offset", "s", &LATER_REAL, AT(reading, time_offset_s), 0, ANY, NULL},
+    {"record", "time_offset", "s", &REAL, AT(reading, time_offset_s), 0, ANY, NULL},
     {"record", "samples", "", &INTEGER, AT(reading, scene.acquisition.samples), REQUIRED, 2, INT_MAX, NULL},
     {"beam", "kind", "", &CHOICE, AT(reading, scene.beam.kind), BEAM_RECT, 0, 0, beam_names},
     {"beam", "truncation", "", &CHOICE, AT(reading, scene.beam.truncation), TRUNCATION_NONE, 0, 0, truncation_names},
     {"beam", "limit", "", &REAL, AT(reading, scene.beam.limit), 0, POSITIVE, NULL},
     {"beam", "per_frequency", "", &BOOLEAN, AT(reading, scene.beam.per_frequency), false, 0, 0, NULL},
-    {"beam", "squint", "degrees", &LATER_REAL, AT(reading, squint_deg), 0, -89.9, 89.9, NULL},
-    {"area", "x", "m", &LATER_REAL, AT(reading, scene.acquisition.area.x), 0, -COORDINATE_MAX_M, COORDINATE_MAX_M,
-     NULL},
-    {"area", "r", "m", &LATER_REAL, AT(reading, scene.acquisition.area.r), 0, ABOVE_0, COORDINATE_MAX_M, NULL},
-    {"area", "half_x", "m", &LATER_REAL, AT(reading, scene.acquisition.area.half_x), 0, ABOVE_0, COORDINATE_MAX_M,
-     NULL},
-    {"area", "half_r", "m", &LATER_REAL, AT(reading, scene.acquisition.area.half_r), 0, ABOVE_0, COORDINATE_MAX_M,
-     NULL},
+    {"beam", "squint", "degrees", &REAL, AT(reading, squint_deg), 0, -89.9, 89.9, NULL},
+    {"area", "x", "m", &REAL, AT(reading, scene.acquisition.area.x), 0, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
+    {"area", "r", "m", &REAL, AT(reading, scene.acquisition.area.r), 0, ABOVE_0, COORDINATE_MAX_M, NULL},
+    {"area", "half_x", "m", &REAL, AT(reading, scene.acquisition.area.half_x), 0, ABOVE_0, COORDINATE_MAX_M, NULL},
+    {"area", "half_r", "m", &REAL, AT(reading, scene.acquisition.area.half_r), 0, ABOVE_0, COORDINATE_MAX_M, NULL},
     {"targets", "points", "", &LIST, AT(reading, points), 0, 0, 0, NULL},
     {"targets", "fields", "", &LIST, AT(reading, fields), 0, 0, 0, NULL},
     {"targets.points", "x", "m", &REAL, AT(target, x), REQUIRED, -COORDINATE_MAX_M, COORDINATE_MAX_M, NULL},
@@ -88,7 +85,7 @@ static const struct key keys[] = {
     {"targets.fields", "seed", "", &SEED, AT(scatter_field, seed), REQUIRED, 0, SEED_MAX, NULL},
     {"noise", "std", "", &LEVEL, AT(reading, scene.noise_std), 0, 0, 1e300, NULL},
     {"noise", "seed", "", &SEED, AT(reading, scene.noise_seed), 0, 0, SEED_MAX, NULL},
-    {"image", "angle", "degrees", &LATER_REAL, AT(reading, angle_deg), 0, -89.9, 89.9, NULL},
+    {"image", "angle", "degrees", &REAL, AT(reading, angle_deg), 0, -89.9, 89.9, NULL},
     {"image", "x", "", &GROUP, AT(reading, x), 0, 0, 0, NULL},
     {"image", "r", "", &GROUP, AT(reading, r), 0, 0, 0, NULL},
     {"image", "reference", "", &GROUP, AT(reading, reference), 0, 0, 0, NULL},
@@ -165,7 +162,7 @@ enum status group_read(struct reading *reading, config_setting_t *setting, const
             key_accepted_append(accepted, sizeof accepted, key);
             return refuse(reading, setting, group, key->name, "%s", accepted);
         }
-        if (key->type->bytes > 0 && (member || !key->type->later)) {
+        if (key->type->bytes > 0) {
             hash_add(&reading->scene.hash, key->group, strlen(key->group) + 1);
             hash_add(&reading->scene.hash, key->name, strlen(key->name) + 1);
             hash_add(&reading->scene.hash, field, key->type->bytes);

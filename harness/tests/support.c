@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "measure/imaging.h"
@@ -239,4 +240,21 @@ char *support_read(const char *name)
     assert_int_equal(fread(text, 1, (size_t)info.st_size, file), info.st_size);
     fclose(file);
     return text;
+}
+
+int support_shell(const char *lines)
+{
+    char command[3000];
+    snprintf(command, sizeof command, "cd '%s' && { %s\n} >>out 2>>err", folder, lines);
+    const int status = system(command);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+void assert_shell(const char *lines, int wanted)
+{
+    const int status = support_shell(lines);
+    if (status == wanted)
+        return;
+    char *said = support_read("err");
+    fail_msg("%s exits with %d, says: %s", lines, status, said ? said : "");
 }

@@ -53,4 +53,10 @@ bool support_exists(const char *name);
 void support_write(const char *name, const char *text);
 char *support_read(const char *name); /* the whole file, malloc'ed; NULL if it is not there */
 
+/* Lines of the shell, in the test's folder; what they say is added to the files out and err there. Returns the exit
+   status, -1 for a signal. */
+int support_shell(const char *lines);
+/* The same; the test fails on any other status than the wanted one. */
+void assert_shell(const char *lines, int wanted);
+
 #endif

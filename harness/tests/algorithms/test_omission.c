@@ -85,30 +85,6 @@ static void apertures(const struct setup *s, const struct scene *scene, const st
     }
 }
 
-static void motions(const struct setup *s, const struct scene *scene, const struct echoes *echoes,
-                    const struct image *exact)
-{
-    const struct acquisition *a = &scene->acquisition;
-    const struct problem problem = problem_make(a, scene->patch_count, scene->patches, PRECISION_DOUBLE);
-    for (int motion = MOTION_NONE; motion <= MOTION_BROADSIDE; motion++) {
-        struct scene altered;
-        struct image image;
-        scene_make(s, &altered);
-        const struct grid *g = &scene->patches[0];
-        const double travel = 2 * (g->r_first + (g->r_count - 1) * g->r_step / 2) / a->sound_speed;
-        for (int p = 0; p < a->pings; p++) {
-            for (int m = 0; m < a->receivers && motion == MOTION_BROADSIDE; m++)
-                altered.acquisition.rx[p * a->receivers + m].x += a->velocity[p].x * travel;
-            altered.acquisition.velocity[p] = (struct vector){0, 0, 0};
-        }
-        image_by(scene, &altered.acquisition, echoes, &image);
-        compare((int)(s - setups), motion == MOTION_NONE ? "no motion" : "motion as broadside",
-                motion_error(&problem, (enum motion)motion), metrics_error(&image, exact).error_gain);
-        image_free(&image);
-        scene_free(&altered);
-    }
-}
-
 static void laws_hold(void **state)
 {
     (void)state;
@@ -120,7 +96,6 @@ static void laws_hold(void **state)
         support_echoes(&scene, &echoes);
         image_by(&scene, &scene.acquisition, &echoes, &exact);
         apertures(&setups[k], &scene, &echoes, &exact);
-        motions(&setups[k], &scene, &echoes, &exact);
         image_free(&exact);
         echoes_free(&echoes);
         scene_free(&scene);

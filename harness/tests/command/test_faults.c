@@ -20,24 +20,6 @@
 
 #define QUICK "\"$SASBENCH_PROGRAM\" run study/quick -a bp_nearest -a bp_linear -o r"
 
-/* A line of the shell, in the folder; returns its exit status. */
-static int shell(const char *line)
-{
-    char command[3000];
-    snprintf(command, sizeof command, "cd '%s' && { %s; } >>out 2>>err", folder, line);
-    int status = system(command);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
-#define assert_shell(line, wanted)                                                                                     \
-    do {                                                                                                               \
-        int exit_status = shell(line);                                                                                 \
-        if (exit_status != (wanted)) {                                                                                 \
-            char *said = support_read("err");                                                                          \
-            fail_msg("%s exits with %d, says: %s", line, exit_status, said ? said : "");                               \
-        }                                                                                                              \
-    } while (0)
-
 static void assert_says(const char *name, const char *part)
 {
     char *text = support_read(name);
@@ -177,7 +159,9 @@ static void signals_to_other_threads_leave_nothing(void **state)
         pid_t waiting = fork();
         assert_true(waiting >= 0);
         if (waiting == 0)
-            _exit(shell("export OLDPWD=\"$PWD\" OMP_NUM_THREADS=2; PATH=\"$PWD/bin:$PATH\" exec " QUICK) == -1 ? 0 : 1);
+            _exit(support_shell("export OLDPWD=\"$PWD\" OMP_NUM_THREADS=2; PATH=\"$PWD/bin:$PATH\" exec " QUICK) == -1
+                      ? 0
+                      : 1);
         assert_shell("while ! [ -s started ]; do sleep .01; done", 0);
         char *text = support_read("started");
         const pid_t process = atoi(text);
@@ -366,7 +350,7 @@ static void reports_that_lack_drawings(void **state)
 static void reports_on_full_disks(void **state)
 {
     (void)state;
-    if (shell("unshare -rm mount -t tmpfs tmpfs .") != 0)
+    if (support_shell("unshare -rm mount -t tmpfs tmpfs .") != 0)
         skip(); /* where no file system can be mounted, not even in a name space of one's own */
     assert_shell(SWEEP " && rm r/*.svg r/*.png && mkdir m", 0);
     assert_shell("unshare -rm sh -c 'mount -t tmpfs tmpfs m; full=0; for size in $(seq 40 12 400); do"

@@ -14,24 +14,6 @@
 #include "data/folder.h"
 #include "data/text_file.h"
 
-/* A line of the shell, in the folder; returns its exit status. */
-static int shell(const char *line)
-{
-    char command[3000];
-    snprintf(command, sizeof command, "cd '%s' && { %s\n} >>out 2>>err", folder, line);
-    int status = system(command);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
-#define assert_shell(line, wanted)                                                                                     \
-    do {                                                                                                               \
-        int exit_status = shell(line);                                                                                 \
-        if (exit_status != (wanted)) {                                                                                 \
-            char *said = support_read("err");                                                                          \
-            fail_msg("%s exits with %d, says: %s", line, exit_status, said ? said : "");                               \
-        }                                                                                                              \
-    } while (0)
-
 /* Commands that write into the folder r, as the clean one leaves it: all names there become links, to a file, a folder
    and nothing in turn. What is read is refused as a link. */
 #define THREE "-a bp_zeropad:factor=2 -a bp_zeropad:factor=4 -a bp_zeropad:factor=8" /* a series that is drawn */
@@ -70,8 +52,8 @@ static void victims_check(const struct writer *writer, bool refused)
     const char *command = writer->again ? writer->again : writer->first;
     snprintf(line, sizeof line, "timeout 300 \"$SASBENCH_PROGRAM\" %s", command);
     assert_shell("rm -f err", 0);
-    int status = shell(line);
-    if (shell(STATE " | cmp before -") != 0)
+    int status = support_shell(line);
+    if (support_shell(STATE " | cmp before -") != 0)
         fail_msg("%s wrote through a link", command);
     char *said = support_read("err");
     if (status != (refused ? 2 : 0))
@@ -230,7 +212,7 @@ static int links_make(void **state)
     if (folder_make(state) != 0)
         return -1;
     support_write("scene.cfg", "");
-    return shell("cp \"$ROOT/scenes/study/quick.cfg\" scene.cfg");
+    return support_shell("cp \"$ROOT/scenes/study/quick.cfg\" scene.cfg");
 }
 
 int main(void)

