@@ -107,7 +107,9 @@ enum status scene_fill(struct reading *reading, config_setting_t *root)
         status = targets_fill(reading);
     }
     if (status == STATUS_OK && !*reading->echoes) { /* of recorded echoes it is measured */
-        reading->scene.acquisition.noise = noise_of_scene(&reading->scene);
+        struct scene *scene = &reading->scene;
+        scene->acquisition.noise =
+            noise_of_targets(&scene->acquisition, scene->target_count, scene->targets, scene->noise_std);
     }
     if (status == STATUS_OK) {
         status = image_fill(reading);

@@ -28,19 +28,18 @@ static double seen_of(const struct acquisition *a, const struct target *target)
     return sum / count;
 }
 
-double noise_of_scene(const struct scene *scene)
+double noise_of_targets(const struct acquisition *a, int target_count, const struct target *targets, double noise_std)
 {
-    const struct acquisition *a = &scene->acquisition;
-    double most = scene->noise_std, echoes = 0, pulse = a->compressed ? 1 : 0;
-    if (!(scene->noise_std > 0))
+    double most = noise_std, echoes = 0, pulse = a->compressed ? 1 : 0;
+    if (!(noise_std > 0))
         return 0;
-    for (int k = 0; k < scene->target_count; k++)
-        most = fmax(most, cabs(scene->targets[k].amplitude)); /* squares of the ratios fit */
-    for (int k = 0; k < scene->target_count; k++)
-        echoes += pow(cabs(scene->targets[k].amplitude) / most, 2) * seen_of(a, &scene->targets[k]);
+    for (int k = 0; k < target_count; k++)
+        most = fmax(most, cabs(targets[k].amplitude)); /* squares of the ratios fit */
+    for (int k = 0; k < target_count; k++)
+        echoes += pow(cabs(targets[k].amplitude) / most, 2) * seen_of(a, &targets[k]);
     for (int k = 0; k < a->pulse_length; k++)
         pulse += creal(a->pulse[k] * conj(a->pulse[k]));
-    const double noise = a->samples * pow(scene->noise_std / most, 2) / pulse;
+    const double noise = a->samples * pow(noise_std / most, 2) / pulse;
     return noise / (noise + echoes * a->fs / a->bandwidth);
 }
 

@@ -3,10 +3,9 @@
 #define SASBENCH_SCENE_NOISE_H
 
 #include "algorithm.h"
-#include "scene/scene.h"
 
-/* Of a scene whose acquisition and targets are made: its noise beside all of its targets' echoes. */
-double noise_of_scene(const struct scene *scene);
+/* Of a scene that is simulated: noise of this standard deviation beside all of its targets' echoes. */
+double noise_of_targets(const struct acquisition *a, int target_count, const struct target *targets, double noise_std);
 
 /* Measured, of echoes in double: the energy beyond the bandwidth, in some of the records, tapered so that their ends do
    not count, over what white noise would have there; of raw echoes, but for what the pulse has there, and of what

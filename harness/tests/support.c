@@ -38,7 +38,8 @@ void support_noisy_scene(int seed, double noise_std, struct scene *scene)
     support_random_scene(seed, scene);
     scene->noise_std = noise_std;
     scene->acquisition.noisy = noise_std > 0;
-    scene->acquisition.noise = noise_of_scene(scene);
+    scene->acquisition.noise =
+        noise_of_targets(&scene->acquisition, scene->target_count, scene->targets, scene->noise_std);
 }
 
 void support_echoes(const struct scene *scene, struct echoes *echoes)
