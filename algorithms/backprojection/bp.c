@@ -3,13 +3,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "backprojection/engine.h"
+#include "backprojection/bp_engine.h"
 #include "backprojection/budget.h"
 #include "backprojection/kernel.h"
 #include "backprojection/few_pixels.h"
 #include "backprojection/law.h"
 #include "backprojection/omission.h"
-#include "backprojection/pairs.h"
+#include "backprojection/pairs/pairs.h"
 #include "common/fft_length.h"
 #include "common/image_spectrum.h"
 

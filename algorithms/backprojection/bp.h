@@ -8,7 +8,7 @@
 #ifndef SASBENCH_BACKPROJECTION_BP_H
 #define SASBENCH_BACKPROJECTION_BP_H
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 /* The value at sample coordinate q = (tau - t0) fs upsample is  sum over k < taps of
    w[k] s[floor(q) + first + k],  w = weights(fraction of q). Taps beyond the record's ends read zero (with upsample >

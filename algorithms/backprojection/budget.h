@@ -66,7 +66,7 @@
 
 #include <math.h>
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 /* rad: what is left of `phase_limit` where positions may lie `finest_hz` steps a second apart. */
 static inline double budget_limit(double phase_limit, double fc_hz, double finest_hz)

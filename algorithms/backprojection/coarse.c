@@ -3,9 +3,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "backprojection/echo_pairs.h"
+#include "backprojection/pairs/echo_pairs.h"
 #include "common/turns.h"
-#include "condition.h"
+#include "contract/condition.h"
 
 enum {
     TARGETS = 6,

@@ -3,7 +3,7 @@
 #ifndef SASBENCH_BACKPROJECTION_COARSE_H
 #define SASBENCH_BACKPROJECTION_COARSE_H
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 /* How many times larger errors are, relative to what the pixels show, than relative to an image of the same places at
    the resolution: the root of the energies' ratio, of some of the known targets; at least 1. 1 where pixels are near

@@ -3,12 +3,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "backprojection/echo_pairs.h"
+#include "backprojection/pairs/echo_pairs.h"
 #include "backprojection/law.h"
 #include "backprojection/response.h"
 #include "common/image_spectrum.h"
 #include "common/turns.h"
-#include "condition.h"
+#include "contract/condition.h"
 
 enum {
     FRACTIONS = 256,     /* of a sample */

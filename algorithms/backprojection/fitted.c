@@ -5,7 +5,7 @@
 
 #include "common/bessel.h"
 #include "common/cholesky.h"
-#include "condition.h"
+#include "contract/condition.h"
 
 static const double RIDGE = 1e-12;
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 #include "backprojection/response.h"
-#include "common/delay.h"
+#include "contract/delay.h"
 #include "common/turns.h"
 
 enum { FRACTIONS = 256, IN_A_STEP = 8, LOW = 4, HARMONICS = LOW + 2 };

@@ -2,7 +2,7 @@
 #ifndef SASBENCH_BACKPROJECTION_LAW_SPECTRUM_H
 #define SASBENCH_BACKPROJECTION_LAW_SPECTRUM_H
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 enum { LAW_NODES = 48 };
 

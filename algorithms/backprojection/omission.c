@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "common/delay.h"
+#include "contract/delay.h"
 #include "common/turns.h"
 
 enum { PINGS_LEAST = 10 };

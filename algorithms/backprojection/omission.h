@@ -7,7 +7,7 @@
 #ifndef SASBENCH_BACKPROJECTION_OMISSION_H
 #define SASBENCH_BACKPROJECTION_OMISSION_H
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 /* Pairs with |sin theta_t| > sine: the share of the energy that they bring to middles, edges and corners of the
    patches. NAN where there is no law: fewer than 10 pings see one of these, the beam is unknown or squinted, or

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 /* All arrays are of the build's precision. */
 struct planes {

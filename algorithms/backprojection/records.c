@@ -3,8 +3,8 @@
 #include <omp.h>
 #include <stdio.h>
 
-#include "backprojection/engine.h"
-#include "backprojection/pairs.h"
+#include "backprojection/bp_engine.h"
+#include "backprojection/pairs/pairs.h"
 
 /* Rows hold, beside the samples at the delays, those that the taps reach, and one more that rounding to the nearest
    may ask for. */

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "backprojection/echo_pairs.h"
+#include "backprojection/pairs/echo_pairs.h"
 #include "common/turns.h"
 
 enum {

@@ -8,7 +8,7 @@
 #ifndef SASBENCH_BACKPROJECTION_SCATTER_H
 #define SASBENCH_BACKPROJECTION_SCATTER_H
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 enum { SCATTER_ORDERS = 22 };
 

@@ -2,7 +2,7 @@
 #ifndef SASBENCH_BACKPROJECTION_TRACES_H
 #define SASBENCH_BACKPROJECTION_TRACES_H
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 struct traces; /* the plan */
 

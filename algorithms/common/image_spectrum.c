@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "condition.h"
+#include "contract/condition.h"
 
 double image_cells(const struct problem *problem)
 {

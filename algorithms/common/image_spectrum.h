@@ -3,7 +3,7 @@
 #ifndef SASBENCH_COMMON_IMAGE_SPECTRUM_H
 #define SASBENCH_COMMON_IMAGE_SPECTRUM_H
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 /* The width of the grids where errors count, the widest of them, over that of a target's image at the carrier. */
 double image_cells(const struct problem *problem);

@@ -2,7 +2,7 @@
 #ifndef SASBENCH_COMMON_ISA_H
 #define SASBENCH_COMMON_ISA_H
 
-#include "status.h"
+#include "contract/status.h"
 
 enum isa { ISA_BASELINE, ISA_V3, ISA_V4 };
 

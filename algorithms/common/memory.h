@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-#include "status.h"
+#include "contract/status.h"
 
 /* STATUS_FAILED when `bytes` more are not to be had by this process (its limit on address space, or what the machine
    has free): "no memory for WHAT: 12.3 GB are needed, 4.5 GB are free". Small needs are not looked at. FFTW ends the

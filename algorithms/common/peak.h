@@ -2,7 +2,7 @@
 #ifndef SASBENCH_COMMON_PEAK_H
 #define SASBENCH_COMMON_PEAK_H
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 /* FLOP/s of independent multiply-adds in registers (2 FLOPs a lane), on `threads` threads, with the instruction set
    that the engines use; the best of several measurements of some 20 ms. On a machine without fused multiply-adds: of

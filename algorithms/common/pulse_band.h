@@ -2,7 +2,7 @@
 #ifndef SASBENCH_COMMON_PULSE_BAND_H
 #define SASBENCH_COMMON_PULSE_BAND_H
 
-#include "acquisition.h"
+#include "contract/acquisition.h"
 
 struct pulse_band {
     double half_hz; /* the band that matters is |f| <= half_hz; at most fs/2 */

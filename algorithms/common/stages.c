@@ -2,7 +2,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 #include "common/clock.h"
 
 double clock_monotonic(void)

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "param.h"
+#include "contract/param.h"
 
 /* THE list: an algorithm with a forecast, what is fixed, and the values that one parameter takes; `budget`: the planner
    sets it. */

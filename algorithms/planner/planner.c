@@ -10,7 +10,7 @@
 
 #include "backprojection/factorised/factorised.h"
 #include "backprojection/omission.h"
-#include "backprojection/pairs.h"
+#include "backprojection/pairs/pairs.h"
 #include "planner/candidates.h"
 #include "planner/known.h"
 #include "planner/process.h"

@@ -5,7 +5,7 @@
 
 #include <stddef.h>
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 enum verdict { VERDICT_CHOSEN, VERDICT_SLOWER, VERDICT_MEMORY, VERDICT_ERROR, VERDICT_REFUSED };
 

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "backprojection/pairs.h"
+#include "backprojection/pairs/pairs.h"
 
 static const double DOUBLE = 2 * sizeof(double), FLOAT = 2 * sizeof(float); /* of a complex number */
 /* Measured on Debian 12: a simulation of few echoes, whose image is written. */

@@ -2,7 +2,7 @@
 #ifndef SASBENCH_PLANNER_PROCESS_H
 #define SASBENCH_PLANNER_PROCESS_H
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 /* Bytes at most: the program with its libraries, the image, and the plan with the echoes in double, as they are
    simulated or read, and in the image's precision; or, where that is more, a copy of the image, as it is written. What

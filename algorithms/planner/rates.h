@@ -2,7 +2,7 @@
 #ifndef SASBENCH_PLANNER_RATES_H
 #define SASBENCH_PLANNER_RATES_H
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 /* Columns from ping to ping of the images that `pair` and `value` of the invariant engine are measured on: more make
    pairs no faster. */

@@ -5,7 +5,7 @@
 #ifndef SASBENCH_RANGE_MIGRATION_ALIASES_H
 #define SASBENCH_RANGE_MIGRATION_ALIASES_H
 
-#include "range_migration/conditions.h"
+#include "range_migration/rma_conditions.h"
 
 /* Of one receiver at the transmitter, relative L2 of the image; of targets that are not known as they lie evenly over
    each patch and as far again about it. */

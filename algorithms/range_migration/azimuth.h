@@ -3,7 +3,7 @@
 #ifndef SASBENCH_RANGE_MIGRATION_AZIMUTH_H
 #define SASBENCH_RANGE_MIGRATION_AZIMUTH_H
 
-#include "range_migration/conditions.h"
+#include "range_migration/rma_conditions.h"
 
 /* Relative L2 error (1), after one best complex gain, that the image of the problem's known targets is planned with, or
    where none are known on its rows, that of targets evenly over all patches; INFINITY where no ping sees any of them or

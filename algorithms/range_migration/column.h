@@ -3,7 +3,7 @@
 #ifndef SASBENCH_RANGE_MIGRATION_COLUMN_H
 #define SASBENCH_RANGE_MIGRATION_COLUMN_H
 
-#include "range_migration/engine.h"
+#include "range_migration/rma_engine.h"
 #include "common/clock.h"
 #include "common/phasor.h"
 #include "common/vector_bytes.h"

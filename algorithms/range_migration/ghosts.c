@@ -14,7 +14,7 @@
 #include <complex.h>
 #include <math.h>
 
-#include "range_migration/conditions.h"
+#include "range_migration/rma_conditions.h"
 
 enum {
     PATCHES = 8,   /* of an image, at most */

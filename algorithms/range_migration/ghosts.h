@@ -2,7 +2,7 @@
 #ifndef SASBENCH_RANGE_MIGRATION_GHOSTS_H
 #define SASBENCH_RANGE_MIGRATION_GHOSTS_H
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 /* The condition grating_lobes of a uniform straight track (acquisition_is_straight) and patches at r > 0, turned or
    not. Back projection also sums, at a pixel, pings from which the pixel has a wavenumber that the pings do not sample;

@@ -11,7 +11,7 @@
 #include "common/isa.h"
 #include "common/memory.h"
 #include "common/progress.h"
-#include "range_migration/engine.h"
+#include "range_migration/rma_engine.h"
 
 const char *const rma_spacing_names[] = {"uniform", "inverse", NULL};
 const char *const rma_blend_names[] = {"off", "on", NULL};

@@ -24,7 +24,7 @@
 #ifndef SASBENCH_RANGE_MIGRATION_RMA_H
 #define SASBENCH_RANGE_MIGRATION_RMA_H
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 #include "range_migration/spectrum.h"
 
 struct rma_options {

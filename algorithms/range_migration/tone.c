@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "common/fft_length.h"
-#include "range_migration/engine.h"
+#include "range_migration/rma_engine.h"
 
 enum { MOST = 1000000 }; /* receivers times wavenumbers */
 static const double GRAZING = 1.005, WIDEST = 1.5;

@@ -17,7 +17,7 @@
 #include <math.h>
 
 #include "common/turns.h"
-#include "range_migration/conditions.h"
+#include "range_migration/rma_conditions.h"
 
 enum { AZIMUTH_ANGLES = 33 }; /* at which the formula's phase is computed, cubics between */
 

@@ -11,7 +11,7 @@
 #include "common/fft_length.h"
 #include "common/isa.h"
 #include "common/progress.h"
-#include "wavenumber/engine.h"
+#include "wavenumber/wk_engine.h"
 
 const char *const wk_taps_names[] = {"4", "6", "8", "12", "16", NULL};
 const char *const wk_unfold_names[] = {"stuff", "baseband", "support", NULL};

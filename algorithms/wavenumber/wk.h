@@ -31,7 +31,7 @@
 #ifndef SASBENCH_WAVENUMBER_WK_H
 #define SASBENCH_WAVENUMBER_WK_H
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 enum wk_unfold { WK_STUFF, WK_BASEBAND, WK_SUPPORT };
 

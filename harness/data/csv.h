@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-#include "status.h"
+#include "contract/status.h"
 
 /* A whole file in memory, freed with csv_free, which accepts a zeroed struct. Texts belong to the struct. */
 struct csv {

@@ -2,7 +2,7 @@
 #ifndef SASBENCH_DATA_ECHO_DATA_H
 #define SASBENCH_DATA_ECHO_DATA_H
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 /* Bytes of one complex number. */
 size_t precision_size(enum precision precision);

@@ -5,7 +5,7 @@
 #include <limits.h>
 #include <stdbool.h>
 
-#include "status.h"
+#include "contract/status.h"
 
 /* Make a folder and those above it, like mkdir -p; one that exists is fine. Errors: STATUS_INVALID naming it. */
 enum status directory_make(const char *directory);

@@ -6,7 +6,7 @@
 
 #include "data/folder.h"
 #include "data/temporary.h"
-#include "status.h"
+#include "contract/status.h"
 
 struct text_file {
     FILE *stream; /* write here */

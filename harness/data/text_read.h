@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-#include "status.h"
+#include "contract/status.h"
 
 enum { TEXT_REASON_SIZE = 160 };
 

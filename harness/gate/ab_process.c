@@ -18,7 +18,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 static const char greeting[] = "sasbench measure 1";
 

@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <sys/types.h>
 
-#include "status.h"
+#include "contract/status.h"
 
 struct ab_process {
     const char *role, *path; /* of messages: "OLD"; the program. Borrowed */

@@ -2,7 +2,7 @@
 #ifndef SASBENCH_GATE_AB_WORKER_H
 #define SASBENCH_GATE_AB_WORKER_H
 
-#include "status.h"
+#include "contract/status.h"
 
 /* Answer requests of standard input on standard output until the input ends. Errors: STATUS_FAILED without memory. */
 enum status ab_worker_serve(void);

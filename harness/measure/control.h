@@ -2,7 +2,7 @@
 #ifndef SASBENCH_MEASURE_CONTROL_H
 #define SASBENCH_MEASURE_CONTROL_H
 
-#include "backprojection/turned.h"
+#include "backprojection/pairs/turned.h"
 #include "measure/scalar_loop.h"
 
 enum { CONTROL_RUNS = 2 }; /* of the loop, one after the other: the faster one is free of most interruptions */

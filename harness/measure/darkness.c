@@ -5,9 +5,9 @@
 #include <omp.h>
 #include <stdlib.h>
 
-#include "backprojection/pairs.h"
+#include "backprojection/pairs/pairs.h"
 #include "backprojection/traces.h"
-#include "common/delay.h"
+#include "contract/delay.h"
 #include "common/turns.h"
 #include "data/echo_data.h"
 

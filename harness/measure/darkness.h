@@ -2,7 +2,7 @@
 #ifndef SASBENCH_MEASURE_DARKNESS_H
 #define SASBENCH_MEASURE_DARKNESS_H
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 /* Root mean squares over the pixels, in units of the image: of what the energies of a pixel's echoes add up to, and of
    the image itself. */

@@ -1,11 +1,11 @@
-/* The polar-format filter (wavenumber/filter.h) on echoes as they are recorded, and how much of each target it
+/* The polar-format filter (wavenumber/polar_filter.h) on echoes as they are recorded, and how much of each target it
    keeps. */
 #ifndef SASBENCH_MEASURE_FILTERING_H
 #define SASBENCH_MEASURE_FILTERING_H
 
 #include "measure/spec.h"
 #include "scene/scene.h"
-#include "wavenumber/filter.h"
+#include "wavenumber/polar_filter.h"
 
 struct traces;
 

@@ -6,7 +6,7 @@
 #ifndef SASBENCH_MEASURE_INTERPOLATION_H
 #define SASBENCH_MEASURE_INTERPOLATION_H
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 enum { TAPS_HALF = 24 };      /* samples to either side */
 #define RASTER_TOLERANCE 1e-6 /* of a step: nearer counts as on the raster */

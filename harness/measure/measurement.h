@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 /* One row of measurements.csv. Texts are borrowed for the call; NAN and negative counts become empty fields. */
 struct measurement {

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "backprojection/pairs.h"
+#include "backprojection/pairs/pairs.h"
 #include "data/echo_data.h"
 #include "measure/darkness.h"
 #include "measure/imaging.h"

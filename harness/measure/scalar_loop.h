@@ -2,7 +2,7 @@
 #ifndef SASBENCH_MEASURE_SCALAR_LOOP_H
 #define SASBENCH_MEASURE_SCALAR_LOOP_H
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 /* The scalar reference loop: nearest neighbour, one pair at a time, delay by double square roots, phase by libm's sin
    and cos, float sums, one thread, compiled with -O2 and without vectorisation. It is timed over a quarter of a million

@@ -10,7 +10,7 @@
 #include "data/number.h"
 #include "data/suggestion.h"
 #include "data/text_append.h"
-#include "param.h"
+#include "contract/param.h"
 
 /* Every algorithm takes `precision` beside its own table; it goes to spec.precision. */
 static const char *const precision_names[] = {[PRECISION_FLOAT] = "float", [PRECISION_DOUBLE] = "double", NULL};

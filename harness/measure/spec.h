@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 struct spec {
     const struct algorithm *algorithm;

@@ -9,7 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "backprojection/pairs.h"
+#include "backprojection/pairs/pairs.h"
 #include "common/clock.h"
 #include "data/echo_data.h"
 #include "measure/imaging.h"

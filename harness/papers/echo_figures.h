@@ -2,7 +2,7 @@
 #ifndef SASBENCH_PAPERS_ECHO_FIGURES_H
 #define SASBENCH_PAPERS_ECHO_FIGURES_H
 
-#include "status.h"
+#include "contract/status.h"
 
 #define ECHO_FIGURES "pf05_f5_echoes"
 

@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-#include "status.h"
+#include "contract/status.h"
 
 /* Draw the figures that `asked` accepts into the folder, figure-ID.png, or figure-ID-SCENE-METHOD.png for images.
    Those that are there already stay. What gnuplot cannot draw is reported on standard error and counted in *undrawn.

@@ -2,7 +2,7 @@
 #ifndef SASBENCH_PAPERS_REPRODUCE_H
 #define SASBENCH_PAPERS_REPRODUCE_H
 
-#include "status.h"
+#include "contract/status.h"
 
 /* The tables of these ids (all of them when count is 0), measured where the folder does not hold them yet. Errors:
    STATUS_INVALID for an id that is none (naming those that are), a folder whose claims.csv is the list of claims, or

@@ -2,7 +2,7 @@
 #ifndef SASBENCH_PAPERS_SCENE_NUMBERS_H
 #define SASBENCH_PAPERS_SCENE_NUMBERS_H
 
-#include "acquisition.h"
+#include "contract/acquisition.h"
 
 extern const char *const scene_number_names[]; /* with their units; NULL ends them */
 /* Of the name at this place. NAN for what only a straight track has. */

@@ -1,7 +1,7 @@
 /* What a scene must fulfil whichever algorithm images it (scene.h). */
 #include <math.h>
 
-#include "common/delay.h"
+#include "contract/delay.h"
 #include "scene/conjugated.h"
 
 /* Recorded samples of a real signal were never turned into baseband; rounding leaves less of an imaginary part. */

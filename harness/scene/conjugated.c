@@ -12,7 +12,7 @@
 #include <stdlib.h>
 
 #include "backprojection/traces.h"
-#include "common/delay.h"
+#include "contract/delay.h"
 
 enum {
     UPSAMPLE = 2,

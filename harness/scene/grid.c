@@ -3,7 +3,7 @@
 #include <limits.h>
 #include <math.h>
 
-#include "common/delay.h"
+#include "contract/delay.h"
 #include "data/number.h"
 #include "scene/scene.h"
 
@@ -102,7 +102,7 @@ static double sample_at(struct search *search, double i, double j)
 }
 
 /* Does a pixel of rows i0..i1 and columns j0..j1 meet the record? A block is given up only when no delay in it can: the
-   delay is convex in the place (backprojection/pairs.c), so that none is longer than the longest at a corner, nor
+   delay is convex in the place (backprojection/pairs/pairs.c), so that none is longer than the longest at a corner, nor
    shorter than the middle's by more than the longest is longer. That holds at any speed. */
 static bool block_meets(struct search *search, int i0, int i1, int j0, int j1)
 {

@@ -2,7 +2,7 @@
 #ifndef SASBENCH_SCENE_NOISE_H
 #define SASBENCH_SCENE_NOISE_H
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 /* Of a scene that is simulated: noise of this standard deviation beside all of its targets' echoes. */
 double noise_of_targets(const struct acquisition *a, int target_count, const struct target *targets, double noise_std);

@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 #define COORDINATE_MAX_M 1e12 /* bound of every coordinate that is read, so that no square overflows */
 

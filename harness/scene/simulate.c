@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/delay.h"
+#include "contract/delay.h"
 #include "common/fft_length.h"
 #include "common/memory.h"
 #include "common/progress.h"

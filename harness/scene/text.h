@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "status.h"
+#include "contract/status.h"
 
 /* Lines of the text from `first_line` on, which are those of the file `path` from `line` on. */
 struct text_piece {

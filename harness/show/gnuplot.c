@@ -13,7 +13,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 #include "data/temporary.h"
 #include "show/plot.h"
 

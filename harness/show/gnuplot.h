@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <sys/types.h>
 
-#include "status.h"
+#include "contract/status.h"
 
 /* One that runs, from gnuplot_start until gnuplot_poll has found its end or a fault. */
 struct gnuplot {

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-#include "status.h"
+#include "contract/status.h"
 
 enum page_format { PAGE_HTML, PAGE_MARKDOWN };
 

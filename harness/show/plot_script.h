@@ -10,7 +10,7 @@
 #include "data/folder.h"
 #include "data/temporary.h"
 #include "show/gnuplot.h"
-#include "status.h"
+#include "contract/status.h"
 
 enum { PANELS_MAX = 8 }; /* more do not fit a picture */
 

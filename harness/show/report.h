@@ -2,7 +2,7 @@
 #ifndef SASBENCH_SHOW_REPORT_H
 #define SASBENCH_SHOW_REPORT_H
 
-#include "status.h"
+#include "contract/status.h"
 
 /* Write, into a folder that is taken (folder.h), DIR/report.html, self-contained, and DIR/report.md, short enough for
    a comment (rows beyond REPORT_MARKDOWN_BYTES are left out): machine, plots, tables of a sweep, claims,

@@ -1,4 +1,4 @@
-/* Delays, angles and beams in extended precision, written apart from the engines (common/delay.h) and from the
+/* Delays, angles and beams in extended precision, written apart from the engines (contract/delay.h) and from the
    simulator, so that a fault in those cannot hide here. long double holds 64 bits of mantissa or more. */
 #ifndef SASBENCH_STABILITY_EXACT_GEOMETRY_H
 #define SASBENCH_STABILITY_EXACT_GEOMETRY_H

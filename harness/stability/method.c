@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "backprojection/farrow.h"
-#include "param.h"
+#include "contract/param.h"
 
 /* An option by name; `missing` where the algorithm has none. */
 static double option_value(const struct spec *spec, const char *name, double missing)

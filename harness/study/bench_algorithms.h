@@ -2,7 +2,7 @@
 #ifndef SASBENCH_STUDY_BENCH_ALGORITHMS_H
 #define SASBENCH_STUDY_BENCH_ALGORITHMS_H
 
-#include "status.h"
+#include "contract/status.h"
 
 /* Measure SPECs [count] at the papers' sizes into DIRECTORY/bench_algorithms.csv and on standard output, each in the
    precision that it names or else in both, on one thread and on all: seconds, operations and pairs a second, the

@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include "status.h"
+#include "contract/status.h"
 
 enum { GOALS_MOST = 96 };
 

@@ -2,7 +2,7 @@
 #ifndef SASBENCH_STUDY_BENCH_GROWTH_H
 #define SASBENCH_STUDY_BENCH_GROWTH_H
 
-#include "status.h"
+#include "contract/status.h"
 
 /* Images of 100 x 100 to 2880 x 4800 pixels in the middle of BP22's full size, in float on all threads: nanoseconds a
    pair, compression included, and the plan's bytes; then the plan's bytes over the settings of each interpolator. Into

@@ -2,7 +2,7 @@
 #ifndef SASBENCH_STUDY_BENCH_ONCE_H
 #define SASBENCH_STUDY_BENCH_ONCE_H
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 #include "scene/scene.h"
 
 /* A shipped scene and its echoes in float, to be freed both. Errors: as scene_load, scene_simulate and echoes_convert;

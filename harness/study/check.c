@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "common/delay.h"
+#include "contract/delay.h"
 #include "data/text_append.h"
 #include "measure/outcome.h"
 #include "measure/session.h"

@@ -5,7 +5,7 @@
 #include <omp.h>
 #include <string.h>
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 enum { RUNS = 5, STRIP = 16 /* columns: two lines of the cache */ };
 

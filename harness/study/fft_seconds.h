@@ -2,7 +2,7 @@
 #ifndef SASBENCH_STUDY_FFT_SECONDS_H
 #define SASBENCH_STUDY_FFT_SECONDS_H
 
-#include "status.h"
+#include "contract/status.h"
 
 /* s, best of five. Which is faster depends on the machine's caches. */
 struct fft_seconds {

@@ -5,8 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "algorithm.h"
-#include "condition.h"
+#include "contract/algorithm.h"
+#include "contract/condition.h"
 #include "data/echo_data.h"
 #include "scene/matfile.h"
 #include "show/table.h"

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "backprojection/pairs.h"
+#include "backprojection/pairs/pairs.h"
 #include "data/csv.h"
 #include "data/echo_data.h"
 #include "show/table.h"

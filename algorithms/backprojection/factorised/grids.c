@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "common/delay.h"
+#include "contract/delay.h"
 
 static const double RESIDUAL_MOST = 1; /* frequencies of d along rho and along a line that is read, over B/c */
 static const double SINE_MOST = 0.9;   /* off the axis */

@@ -21,9 +21,9 @@
 
 #include <math.h>
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 #include "backprojection/factorised/taps.h"
-#include "backprojection/pairs.h"
+#include "backprojection/pairs/pairs.h"
 
 enum { STAGES_MOST = 6 }; /* levels of images */
 

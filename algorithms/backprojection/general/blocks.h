@@ -3,7 +3,7 @@
 #ifndef SASBENCH_BACKPROJECTION_GENERAL_BLOCKS_H
 #define SASBENCH_BACKPROJECTION_GENERAL_BLOCKS_H
 
-#include "backprojection/pairs.h"
+#include "backprojection/pairs/pairs.h"
 
 /* A box that holds a ping's transmitter, and its receivers from emission until the last echo of the image. */
 struct ping_box {

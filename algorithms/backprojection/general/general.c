@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "backprojection/engine.h"
+#include "backprojection/bp_engine.h"
 #include "backprojection/budget.h"
 #include "backprojection/general/lines.h"
 #include "common/memory.h"

@@ -3,9 +3,9 @@
 #ifndef SASBENCH_BACKPROJECTION_GENERAL_LINES_H
 #define SASBENCH_BACKPROJECTION_GENERAL_LINES_H
 
-#include "backprojection/engine.h"
+#include "backprojection/bp_engine.h"
 #include "backprojection/general/sum.h"
-#include "backprojection/pairs.h"
+#include "backprojection/pairs/pairs.h"
 
 /* The build of the inner sums for this machine. */
 bp_sum_function *bp_sum_choose(enum precision precision);

@@ -6,7 +6,7 @@
 #include <math.h>
 
 #include "backprojection/general/run.h"
-#include "common/delay.h"
+#include "contract/delay.h"
 
 #define BP_SUM REAL_ISA_NAME(bp_sum)
 

@@ -6,7 +6,7 @@
 #include <omp.h>
 #include <string.h>
 
-#include "backprojection/invariant/plan.h"
+#include "backprojection/invariant/invariant_plan.h"
 #include "common/progress.h"
 
 enum { ROWS_SUMMED = 4 /* image rows of one task */ };

@@ -102,7 +102,7 @@
 #include <stddef.h>
 
 #include "backprojection/invariant/pieces.h"
-#include "backprojection/pairs.h"
+#include "backprojection/pairs/pairs.h"
 #include "backprojection/reading.h"
 
 /* A block of columns is 1 to BP_BLOCK_VECTORS vectors of 16 bytes (baseline), 32 (v3) or 64 (v4); a row of sums has

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "backprojection/pairs.h"
+#include "backprojection/pairs/pairs.h"
 #include "gate/baseline.h"
 #include "data/csv.h"
 #include "measure/metrics.h"

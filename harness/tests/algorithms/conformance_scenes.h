@@ -2,7 +2,7 @@
 #ifndef SASBENCH_TEST_CONFORMANCE_SCENES_H
 #define SASBENCH_TEST_CONFORMANCE_SCENES_H
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 #include "scene/scene.h"
 
 struct setting {

@@ -2,8 +2,8 @@
 #ifndef SASBENCH_TESTS_FACTORISED_SCENES_H
 #define SASBENCH_TESTS_FACTORISED_SCENES_H
 
-#include "acquisition.h"
-#include "algorithm.h"
+#include "contract/acquisition.h"
+#include "contract/algorithm.h"
 
 enum { FACTORISED_PINGS = 96 };
 

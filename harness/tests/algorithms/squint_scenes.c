@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/delay.h"
+#include "contract/delay.h"
 #include "scene/simulate.h"
 
 const struct squint_sonar sonar_sq18 = {150e3, 25e3, 20e3, 0.2, -5.12, 1024, 988, 256, 0},

@@ -8,8 +8,8 @@
 
 #include "common/fft_length.h"
 #include "backprojection/bp.h"
-#include "common/delay.h"
-#include "backprojection/pairs.h"
+#include "contract/delay.h"
+#include "backprojection/pairs/pairs.h"
 #include "data/random.h"
 #include "tests/support.h"
 

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "backprojection/bp.h"
-#include "common/delay.h"
+#include "contract/delay.h"
 #include "data/random.h"
 #include "tests/support.h"
 

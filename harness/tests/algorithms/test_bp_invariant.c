@@ -10,8 +10,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "backprojection/invariant/plan.h"
-#include "common/delay.h"
+#include "backprojection/invariant/invariant_plan.h"
+#include "contract/delay.h"
 #include "common/isa.h"
 #include "data/random.h"
 #include "tests/support.h"

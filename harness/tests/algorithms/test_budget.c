@@ -4,7 +4,7 @@
 #include <stdio.h>
 
 #include "backprojection/general/blocks.h"
-#include "common/delay.h"
+#include "contract/delay.h"
 #include "common/isa.h"
 #include "data/random.h"
 #include "tests/support.h"

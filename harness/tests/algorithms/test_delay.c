@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "common/delay.h"
+#include "contract/delay.h"
 #include "data/random.h"
 #include "tests/support.h"
 

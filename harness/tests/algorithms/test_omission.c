@@ -6,8 +6,8 @@
 
 #include "measure/metrics.h"
 #include "backprojection/omission.h"
-#include "backprojection/pairs.h"
-#include "condition.h"
+#include "backprojection/pairs/pairs.h"
+#include "contract/condition.h"
 #include "tests/support.h"
 
 /* Speckle before an array whose pings lie half of it apart. */

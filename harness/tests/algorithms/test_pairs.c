@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "backprojection/pairs.h"
-#include "backprojection/turned.h"
-#include "common/delay.h"
+#include "backprojection/pairs/pairs.h"
+#include "backprojection/pairs/turned.h"
+#include "contract/delay.h"
 #include "data/random.h"
 #include "tests/support.h"
 

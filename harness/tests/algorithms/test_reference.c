@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "common/delay.h"
+#include "contract/delay.h"
 #include "measure/metrics.h"
 #include "scene/simulate.h"
 #include "tests/algorithms/reference_numbers.h"

@@ -8,7 +8,7 @@
 
 #include <fftw3.h>
 
-#include "common/delay.h"
+#include "contract/delay.h"
 #include "measure/metrics.h"
 #include "scene/simulate.h"
 #include "tests/algorithms/rma_numbers.h"

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "common/delay.h"
-#include "range_migration/delay.h"
+#include "contract/delay.h"
+#include "range_migration/delay_compensation.h"
 #include "scene/simulate.h"
 #include "tests/algorithms/rma_scenes.h"
 

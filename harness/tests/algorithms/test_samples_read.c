@@ -5,12 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "backprojection/pairs.h"
+#include "backprojection/pairs/pairs.h"
 #include "backprojection/traces.h"
-#include "common/delay.h"
+#include "contract/delay.h"
 #include "common/fft_length.h"
 #include "data/random.h"
-#include "range_migration/engine.h"
+#include "range_migration/rma_engine.h"
 #include "tests/support.h"
 
 enum { SAMPLES = 1500, PULSE = 90, PINGS = 13, RECEIVERS = 3, PATCHES = 3 };

@@ -2,7 +2,7 @@
    formulas in LBF21's two set-ups. */
 #include <math.h>
 
-#include "common/delay.h"
+#include "contract/delay.h"
 #include "range_migration/spectrum.h"
 #include "tests/assertions.h"
 #include "tests/algorithms/spectrum_numbers.h"

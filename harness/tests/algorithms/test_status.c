@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 #include "common/clock.h"
 #include "tests/support.h"
 

@@ -11,7 +11,7 @@
 
 #include "common/kaiser.h"
 #include "scene/simulate.h"
-#include "wavenumber/engine.h"
+#include "wavenumber/wk_engine.h"
 
 static const double SPACING_M = 0.04;
 

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "scene/simulate.h"
-#include "wavenumber/filter.h"
+#include "wavenumber/polar_filter.h"
 #include "wavenumber/wk.h"
 
 extern const struct algorithm wk_polar;

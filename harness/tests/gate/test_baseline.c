@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "backprojection/bp.h"
-#include "common/delay.h"
+#include "contract/delay.h"
 #include "gate/baseline.h"
 #include "gate/diff.h"
 #include "tests/support.h"

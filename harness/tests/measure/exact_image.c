@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "common/delay.h"
+#include "contract/delay.h"
 
 const struct exact_scene scene_a = {15e3,
                                     2.5,

@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 
 enum { FAKE_PAIRS = 262144 }; /* that a run of the scalar reference loop sums */
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/delay.h"
+#include "contract/delay.h"
 #include "measure/darkness.h"
 #include "measure/outcome.h"
 

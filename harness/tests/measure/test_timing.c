@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "common/clock.h"
-#include "common/delay.h"
+#include "contract/delay.h"
 #include "measure/outcome.h"
 #include "measure/results.h"
 #include "show/report.h"

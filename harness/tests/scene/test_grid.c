@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "common/delay.h"
+#include "contract/delay.h"
 #include "data/random.h"
 #include "tests/scene/scene_fixture.h"
 

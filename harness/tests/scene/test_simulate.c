@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "common/delay.h"
+#include "contract/delay.h"
 #include "data/echo_data.h"
 #include "data/random.h"
 #include "scene/simulate.h"

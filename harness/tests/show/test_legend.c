@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "algorithm.h"
+#include "contract/algorithm.h"
 #include "show/plot.h"
 #include "tests/support.h"
 

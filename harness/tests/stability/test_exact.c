@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/delay.h"
+#include "contract/delay.h"
 #include "data/paths.h"
 #include "data/random.h"
 #include "scene/simulate.h"

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/delay.h"
+#include "contract/delay.h"
 #include "stability/stability.h"
 #include "stability/table.h"
 #include "tests/support.h"

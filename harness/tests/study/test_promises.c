@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "measure/outcome.h"
-#include "param.h"
+#include "contract/param.h"
 #include "scene/random_scene.h"
 #include "tests/support.h"
 

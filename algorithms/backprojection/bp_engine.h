@@ -1,0 +1,84 @@
+/* What bp.c and its two engines share. */
+#ifndef SASBENCH_BACKPROJECTION_ENGINE_H
+#define SASBENCH_BACKPROJECTION_ENGINE_H
+
+#include "backprojection/bp.h"
+#include "backprojection/planes.h"
+#include "backprojection/reading.h"
+#include "common/isa.h"
+#include "backprojection/traces.h"
+#include "backprojection/pairs/turned.h"
+
+/* The weights of a kernel of many taps as polynomials (kernel.h), for the general engine's interpolated delays. */
+struct bp_kernel {
+    int branches, taps, first; /* no branches: it has none */
+    double *coefficients;      /* [branches][taps] */
+};
+
+struct bp {
+    struct problem problem;
+    struct bp_medium medium;
+    struct bp_table table;
+    void *weights; /* of table */
+    struct bp_kernel kernel;
+    struct traces *traces;
+    struct traces_shape shape;
+    const struct planes *planes; /* of the plan's precision */
+    const struct bp_engine *engine;
+    void *state; /* the engine's own */
+    struct work work;
+    struct turned_problem turned; /* what `problem` points to where grids are turned */
+    struct acquisition limited;   /* and where the settings limit the aperture */
+    bool *met;                    /* [pings] pings_met: records of others are not read; NULL: all are met */
+};
+
+/* One way of doing the sums. */
+struct bp_engine {
+    const char *name;
+    /* Can it do the problem of bp->problem? When not, the reason is the status message (STATUS_UNSUPPORTED). */
+    enum status (*applicable)(const struct bp *bp);
+    /* What a plan would make for the pairs to read by, all records together: entries of tables, or blocks of pixels.
+       Known from bp->problem, medium and table, before any plan; of a problem that is applicable. *residues: of tables,
+       columns from ping to ping whose neighbours share loads, the fewest of all patches: 1 where the nearest fine step
+       is read, which none share; 0 without tables. */
+    double (*units)(const struct bp *bp, double *residues);
+    /* m: how far along the track beyond the pairs' places delays are evaluated; NULL: nowhere. */
+    double (*beside)(const struct bp *bp);
+    /* Make bp->state and bp->traces; adds to bp->work.bytes. */
+    enum status (*plan)(struct bp *bp);
+    void (*execute)(struct bp *bp, const struct echoes *echoes, struct image *image, struct stages *stages);
+    void (*destroy)(void *state); /* destroy(NULL) does nothing */
+};
+
+extern const struct bp_engine bp_general;   /* any track: delays of runs of range rows */
+extern const struct bp_engine bp_invariant; /* uniform straight track on the pixel raster: tables of delays */
+
+/* What the second one needs of a problem. */
+struct condition invariant_condition(const struct problem *problem, enum severity severity);
+
+static inline bool bp_met(const struct bp *bp, int ping)
+{
+    return !bp->met || bp->met[ping];
+}
+/* Pings that any pixel meets. */
+int bp_met_count(const struct bp *bp);
+
+static inline size_t real_size(enum precision precision)
+{
+    return precision == PRECISION_DOUBLE ? sizeof(double) : sizeof(float);
+}
+
+/* What of the records pairs read, into bp->medium, and the form of their rows; all where there is no engine. */
+struct traces_form bp_records_form(struct bp *bp);
+/* Records for up to omp_get_max_threads() threads; fills bp->traces and bp->shape and counts their bytes; `origin` of
+   the table follows from them. */
+enum status bp_plan_traces(struct bp *bp);
+/* Name into `text` of `room` characters, behind `join`, the samples that no row needs; nothing where there are none. */
+void bp_records_skipped(const struct bp *bp, char *text, size_t room, const char *join);
+/* Compress record `index` into a row of bp->shape.length complex values. */
+void bp_fill_row(const struct bp *bp, int thread, const struct echoes *echoes, size_t index, void *row);
+/* In two steps, for a phase alone (traces.h). */
+void bp_fill_spectrum(const struct bp *bp, int thread, const struct echoes *echoes, size_t index, void *spectrum);
+void bp_fill_plane(const struct bp *bp, int thread, void *spectrum, int plane, void *values);
+
+#endif

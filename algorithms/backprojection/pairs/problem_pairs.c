@@ -1,0 +1,276 @@
+/* What all pairs of a problem are together: their number, and the pings and samples that they read (pairs.h). */
+#include "backprojection/pairs/pairs.h"
+
+#include <math.h>
+
+#include "backprojection/pairs/turned.h"
+
+/* m: the largest distance of a ping's receivers from its transmitter. */
+static double receivers_apart(const struct acquisition *a, int ping)
+{
+    const struct vector tx = a->tx[ping], *rx = a->rx + (size_t)ping * (size_t)a->receivers;
+    double most = 0;
+    for (int m = 0; m < a->receivers; m++) {
+        const double x = rx[m].x - tx.x, y = rx[m].y - tx.y, z = rx[m].z - tx.z;
+        most = fmax(most, sqrt(x * x + y * y + z * z));
+    }
+    return most;
+}
+
+/* Bounds of the delays between `line` and a ping, by the nearest and the furthest pixel: a path is twice the
+   transmitter's distance, but for what the receiver is away from the transmitter, `apart` m and the way since. */
+struct delay_bounds {
+    double least, most; /* s */
+};
+
+static struct delay_bounds line_delays(const struct acquisition *a, int ping, double apart,
+                                       const struct pixel_line *line)
+{
+    const struct vector tx = a->tx[ping], v = a->velocity[ping];
+    const double length = line->count - 1.0, x = line->x_first - tx.x, r = line->r_first - tx.y;
+    const double end_x = x + length * line->x_step, end_r = r + length * line->r_step;
+    const double near_x = x > 0 ? x : fmin(end_x, 0), near_r = r > 0 ? r : fmin(end_r, 0);
+    const double far_x = fmax(fabs(x), fabs(end_x)), far_r = fmax(fabs(r), fabs(end_r));
+    const double near = sqrt(near_x * near_x + near_r * near_r + tx.z * tx.z);
+    const double far = sqrt(far_x * far_x + far_r * far_r + tx.z * tx.z),
+                 speed = sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+    return (struct delay_bounds){(2 * near - apart) / (a->sound_speed + speed),
+                                 speed < a->sound_speed ? (2 * far + apart) / (a->sound_speed - speed) : INFINITY};
+}
+
+/* May any delay lie inside a ping's records? */
+static bool record_reached(const struct acquisition *a, int ping, struct delay_bounds delays)
+{
+    const double first = a->t0[ping], last = first + (a->samples - 1) / a->fs, slack = 1e-6 / a->fs;
+    return !(delays.least > last + slack || delays.most < first - slack);
+}
+
+/* Do all lie inside, for sure? */
+static bool record_holds(const struct acquisition *a, int ping, struct delay_bounds delays)
+{
+    const double first = a->t0[ping], last = first + (a->samples - 1) / a->fs;
+    const double slack = 1e-3 / a->fs + 1e-9 * fabs(last);
+    return delays.least > first + slack && delays.most < last - slack;
+}
+
+static int common_divisor(int a, int b)
+{
+    while (b > 0) {
+        const int rest = a % b;
+        a = b;
+        b = rest;
+    }
+    return a;
+}
+
+/* A step through `count` lines, in golden section, that comes to each of them once, and soon near any. */
+static int stride_of(int count)
+{
+    int stride = (int)(0.618 * count) + 1;
+    while (common_divisor(stride, count) > 1)
+        stride++;
+    return stride;
+}
+
+/* Each line once, the last one first: along x the aperture widens with the range, along r pings see few of them. */
+static bool ping_met(const struct problem *problem, int ping)
+{
+    const struct acquisition *a = problem->acquisition;
+    const struct vector normal = acquisition_normal(a, ping);
+    const double apart = receivers_apart(a, ping);
+    for (int k = 0; k < problem->patch_count; k++) {
+        const struct grid *grid = &problem->patches[k];
+        const bool along_x = grid->x_count > grid->r_count;
+        const int lines = grid_line_count(grid, along_x), stride = stride_of(lines);
+        for (int left = lines, n = lines - 1; left > 0; left--, n = (int)(((long long)n + stride) % lines)) {
+            const struct pixel_line line = grid_line(grid, along_x, n);
+            struct pair_span spans[2];
+            if (record_reached(a, ping, line_delays(a, ping, apart, &line))
+                && pair_spans(a, ping, normal, &line, spans) > 0)
+                return true;
+        }
+    }
+    return false;
+}
+
+/* A ping beside one that is met counts as met: engines round apertures in different ways. */
+int pings_met(const struct problem *problem, bool *met)
+{
+    const int pings = problem->acquisition->pings;
+    int count = 0;
+#pragma omp parallel for schedule(dynamic, 16)
+    for (int p = 0; p < pings; p++)
+        met[p] = ping_met(problem, p);
+    for (int p = 0, before = 0; p < pings; p++) {
+        const bool now = met[p];
+        met[p] = now || before || (p + 1 < pings && met[p + 1]);
+        before = now;
+        count += met[p];
+    }
+    return count;
+}
+
+/* Where a grid's pixels are, seen from a ping: as far as they are along its normal, and beside it. */
+struct seen {
+    double along, beside; /* m, the most */
+};
+
+static struct seen grid_seen(const struct grid *grid, struct vector tx, struct vector normal)
+{
+    struct seen seen = {0, 0};
+    for (int k = 0; k < 4; k++) {
+        const double x = grid->x_first + (k % 2 ? (grid->x_count - 1) * grid->x_step : 0) - tx.x;
+        const double r = grid->r_first + (k / 2 ? (grid->r_count - 1) * grid->r_step : 0) - tx.y;
+        const double along = x * normal.x + r * normal.y - tx.z * normal.z;
+        seen.along = fmax(seen.along, fabs(along));
+        seen.beside = fmax(seen.beside, sqrt(fmax(0, x * x + r * r + tx.z * tx.z - along * along)));
+    }
+    return seen;
+}
+
+/* m: the least distance of a grid from `at`, which may be `away` from there along each axis, pixels `beside` m off
+   among them. */
+static double grid_nearest(const struct grid *grid, struct vector at, struct vector away, double beside)
+{
+    const double last_x = grid->x_first + (grid->x_count - 1) * grid->x_step;
+    const double last_r = grid->r_first + (grid->r_count - 1) * grid->r_step;
+    const double x = fmax(0, fmax(grid->x_first - at.x, at.x - last_x) - fabs(away.x) - beside);
+    const double r = fmax(0, fmax(grid->r_first - at.y, at.y - last_r) - fabs(away.y));
+    const double z = fmax(0, fabs(at.z) - fabs(away.z));
+    return sqrt(x * x + r * r + z * z);
+}
+
+/* Bounds of the delays inside a ping's records: ways out and back to where each receiver is at any time until the
+   records end. Inside the aperture pixels are no further along the normal than beside it times the limit's tangent. */
+static struct delay_bounds ping_delays(const struct acquisition *a, int ping, const struct grid *grid, double beside)
+{
+    const struct vector tx = a->tx[ping], v = a->velocity[ping], n = acquisition_normal(a, ping);
+    const double longest = fmax(0, a->t0[ping] + (a->samples - 1) / a->fs), limit = a->aperture_limit;
+    const struct vector way = {v.x * longest, v.y * longest, v.z * longest}, still = {0, 0, 0};
+    const struct seen seen = grid_seen(grid, tx, n);
+    const double edge = limit < 1 ? seen.beside * limit / sqrt((1 - limit) * (1 + limit)) : INFINITY;
+    const double along = fmin(seen.along, edge) + beside, out = grid_nearest(grid, tx, still, beside);
+    double least = INFINITY, most = 0;
+    for (int m = 0; m < a->receivers; m++) {
+        const struct vector rx = a->rx[(size_t)ping * (size_t)a->receivers + (size_t)m];
+        const double x = rx.x - tx.x, y = rx.y - tx.y, z = rx.z - tx.z, ahead = x * n.x + y * n.y + z * n.z;
+        const double aside = sqrt(fmax(0, x * x + y * y + z * z - ahead * ahead));
+        const double moved = fabs(way.x * n.x + way.y * n.y + way.z * n.z);
+        const double drift = sqrt(fmax(0, way.x * way.x + way.y * way.y + way.z * way.z - moved * moved));
+        least = fmin(least, out + grid_nearest(grid, rx, way, beside));
+        const double far_along = along + fabs(ahead) + moved, far_beside = seen.beside + aside + drift;
+        most = fmax(most, sqrt(far_along * far_along + far_beside * far_beside));
+    }
+    most += sqrt(along * along + seen.beside * seen.beside);
+    return (struct delay_bounds){least / a->sound_speed, most / a->sound_speed};
+}
+
+struct sample_span pairs_samples(const struct problem *problem, const bool *met, double beside)
+{
+    const struct acquisition *a = problem->acquisition;
+    const double end = a->samples - 1;
+    double first = INFINITY, last = -INFINITY;
+    for (int p = 0; p < a->pings; p++)
+        for (int k = 0; k < problem->patch_count && (!met || met[p]); k++) {
+            const struct delay_bounds delays = ping_delays(a, p, &problem->patches[k], beside);
+            if (!record_reached(a, p, delays))
+                continue;
+            const double slack = 1 + 1e-9 * fabs(a->t0[p]) * a->fs; /* samples: far more than anything rounds */
+            first = fmin(first, (delays.least - a->t0[p]) * a->fs * (1 - 1e-9) - slack);
+            last = fmax(last, (delays.most - a->t0[p]) * a->fs * (1 + 1e-9) + slack);
+        }
+    if (!(first <= last))
+        return (struct sample_span){0, 0};
+    return (struct sample_span){first > 0 ? fmin(first, end) : 0, last < end ? fmax(last, 0) : end};
+}
+
+/* Pixels of one span of an aperture. */
+static struct pixel_line part_of(const struct pixel_line *line, struct pair_span span)
+{
+    const struct vector first = line_pixel(line, span.begin);
+    return (struct pixel_line){first.x, first.y, line->x_step, line->r_step, span.end - span.begin};
+}
+
+/* Pairs of a ping along a line. Most apertures lie inside the records as a whole, which spares the receivers. */
+static double line_pairs(const struct acquisition *a, int ping, double apart, const struct pixel_line *line)
+{
+    struct pair_span aperture[2], record[2];
+    const int count = pair_spans(a, ping, acquisition_normal(a, ping), line, aperture);
+    double pairs = 0;
+    for (int s = 0; s < count; s++) {
+        const struct pixel_line part = part_of(line, aperture[s]);
+        const struct delay_bounds delays = line_delays(a, ping, apart, &part);
+        if (!record_reached(a, ping, delays))
+            continue;
+        const bool held = record_holds(a, ping, delays);
+        if (held)
+            pairs += (double)a->receivers * (aperture[s].end - aperture[s].begin);
+        for (int m = 0; m < a->receivers && !held; m++) {
+            const int parts = record_spans(a, ping, m, line, aperture[s], record);
+            for (int i = 0; i < parts; i++)
+                pairs += record[i].end - record[i].begin;
+        }
+    }
+    return pairs;
+}
+
+/* The time to count pairs line by line, of a line's aperture as the unit: of rows delays change little, so that few of
+   them pass an end of the records; but there may be fewer columns. */
+static double count_time(const struct acquisition *a, const struct grid *grid, bool along_x)
+{
+    enum { TRIED = 32 };
+    static const double search = 8; /* for the ends of one record */
+    const int ping = a->pings / 2, lines = grid_line_count(grid, along_x), tried = lines < TRIED ? lines : TRIED;
+    const struct vector normal = acquisition_normal(a, ping);
+    const double apart = receivers_apart(a, ping);
+    int searched = 0;
+    for (int k = 0; k < tried; k++) {
+        const struct pixel_line line = grid_line(grid, along_x, (int)((long long)lines * k / tried));
+        struct pair_span aperture[2];
+        const int count = pair_spans(a, ping, normal, &line, aperture);
+        for (int s = 0; s < count; s++) {
+            const struct pixel_line part = part_of(&line, aperture[s]);
+            searched += !record_holds(a, ping, line_delays(a, ping, apart, &part));
+        }
+    }
+    return lines * (1 + search * a->receivers * searched / tried);
+}
+
+/* Pairs of a grid along x and r. */
+static double grid_pairs(const struct acquisition *a, const struct grid *grid)
+{
+    const bool along_x = count_time(a, grid, true) <= count_time(a, grid, false);
+    double pairs = 0;
+#pragma omp parallel for schedule(dynamic) reduction(+ : pairs)
+    for (int p = 0; p < a->pings; p++) {
+        const double apart = receivers_apart(a, p);
+        for (int n = grid_line_count(grid, along_x) - 1; n >= 0; n--) {
+            const struct pixel_line line = grid_line(grid, along_x, n);
+            pairs += line_pairs(a, p, apart, &line); /* whole numbers below 2^53: the order does not matter */
+        }
+    }
+    return pairs;
+}
+
+double pairs_count(const struct problem *problem)
+{
+    double pairs = 0;
+    for (int k = 0; k < problem->patch_count; k++) {
+        struct problem patch = *problem;
+        struct turned_problem turned;
+        patch.patch_count = 1;
+        patch.patches = &problem->patches[k];
+        const bool fits = problem_turn_back(&patch, &turned, NULL) == STATUS_OK;
+        pairs += fits ? grid_pairs(patch.acquisition, patch.patches) : NAN;
+        turned_free(&turned);
+    }
+    return pairs;
+}
+
+double problem_pixels(const struct problem *problem)
+{
+    double pixels = 0;
+    for (int k = 0; k < problem->patch_count; k++)
+        pixels += (double)problem->patches[k].x_count * problem->patches[k].r_count;
+    return pixels;
+}

@@ -1,0 +1,183 @@
+/* What an imaging algorithm is: the only header that a contributor must read.
+
+   An algorithm is one constant struct in one file, `NAME.c` defining `const struct algorithm NAME`, whose name is also
+   the name on the command line. Adding NAME to the list in algorithms/meson.build adds the source, the registry entry,
+   the conformance test and the benchmark.
+
+   Rules for the callbacks
+   - `plan` does all that depends on geometry and settings only: tables, FFTW plans, scratch memory. It is timed apart.
+   - `execute` is the timed part. It goes from the samples in memory to the image in memory, allocates nothing, writes
+     every pixel, gives the same bits for any number of threads, and may be called any number of times.
+   - Neither prints, exits or keeps state outside the plan. What goes wrong is reported with status_set.
+   - Threads are OpenMP's; a plan is executed with at most the omp_get_max_threads() it was made with.
+   - The acquisition and the patches outlive the plan; samples and pixels belong to the caller. */
+#ifndef SASBENCH_ALGORITHM_H
+#define SASBENCH_ALGORITHM_H
+
+#include <stddef.h>
+
+#include "contract/acquisition.h"
+#include "contract/condition.h"
+#include "contract/forecast.h"
+#include "contract/status.h"
+
+enum precision { PRECISION_FLOAT, PRECISION_DOUBLE };
+
+/* Pixel (i, j), range row i and azimuth column j, lies at x' = x_first + j x_step, r' = r_first + i r_step, z = 0, in
+   axes turned by angle_rad about the origin:  x = x' cos + r' sin,  r = -x' sin + r' cos  (SQ18's rotated image; 0: the
+   track's axes). */
+struct grid {
+    double x_first, x_step; /* m, x_step > 0 */
+    int x_count;            /* >= 1 */
+    double r_first, r_step; /* m, r_step > 0; r of either sign */
+    int r_count;            /* >= 1 */
+    double angle_rad;       /* within +-pi/2; what an algorithm cannot image turned, it refuses */
+};
+
+/* Where row i and column j lie, which need not be whole numbers. */
+struct vector grid_point(const struct grid *grid, double i, double j);
+/* The inverse: (x', r', 0) of a place in the track's axes. */
+struct vector grid_coordinates(const struct grid *grid, double x, double r);
+/* Does a place of the track's axes lie on a pixel, a step wide along both axes? */
+bool grid_holds(const struct grid *grid, double x, double r);
+/* The track's columns from *first to *last (m) that hold something of the pixels. */
+void grid_columns(const struct grid *grid, double *first, double *last);
+
+struct target {
+    double x, r;              /* m */
+    double complex amplitude; /* 1 */
+};
+
+/* One imaging task: every patch of the image is wanted, and nothing else. */
+struct problem {
+    const struct acquisition *acquisition;
+    int patch_count;            /* >= 1 */
+    const struct grid *patches; /* [patch_count] */
+    enum precision precision;   /* of samples, sums and pixels; geometry and phase are always double */
+    /* What is known beforehand: forecasts may go by it, and no image does. */
+    int target_count;              /* 0: echoes may come from anywhere */
+    const struct target *targets;  /* [target_count] that all echoes come from */
+    int judged_count;              /* 0: an error counts wherever it is */
+    const struct grid *judged;     /* [judged_count] parts of patches where errors count, about these targets */
+    const struct scatter *scatter; /* where errors of interpolation go (backprojection/scatter.h); NULL: unknown */
+    const struct few_pixels *few;  /* which carry them out (backprojection/few_pixels.h); NULL: unknown, or not few */
+};
+/* One of which nothing is known beforehand. */
+struct problem problem_make(const struct acquisition *acquisition, int patch_count, const struct grid *patches,
+                            enum precision precision);
+/* The grids where errors count: returns how many. */
+int problem_judged(const struct problem *problem, const struct grid **grids);
+/* The greatest magnitude of the known targets' amplitudes; 0 without any. */
+double problem_amplitude_most(const struct problem *problem);
+
+/* The recorded samples, read only. */
+struct echoes {
+    const struct acquisition *acquisition;
+    enum precision precision;
+    const void *samples; /* complex float or double [pings][receivers][samples] */
+    int exponent;        /* recorded were the samples times 2^exponent, 0 unless they would not fit the precision;
+                                       whoever calls execute multiplies the image, an algorithm need not look */
+};
+
+/* The image: sum over pings and receivers of the compressed echo at the exact delay times exp(+j 2 pi fc tau), without
+   1/N, so that a lone unit target shows the sum of its weights with phase 0. */
+struct image {
+    int patch_count;
+    const struct grid *patches; /* [patch_count] */
+    enum precision precision;
+    void **pixels; /* [patch_count] of complex float or double [r_count][x_count] */
+};
+
+/* Where the seconds of one execute went. There are 12 stages at most: the time of further names goes to the last. */
+struct stages {
+    int count;
+    double mark; /* monotonic clock at the last stages_begin or stages_end, s */
+    struct {
+        const char *name; /* static text: compress, focus, ... */
+        double seconds;
+    } stage[12];
+};
+
+void stages_begin(struct stages *stages);                 /* forget all, start the clock */
+void stages_end(struct stages *stages, const char *name); /* time since the last mark goes to `name` (summed) */
+double seconds_now(void);                                 /* monotonic clock, s */
+
+/* What the plan will do, and what it leaves out. */
+struct work {
+    double flops; /* counted from the plan: 5 N log2 N an FFT, machine-independent */
+    double pairs; /* pixel-pulse pairs summed; 0 where an algorithm has none */
+    double bytes; /* the plan's own allocations with one thread */
+    struct {
+        const char *source; /* "BP22 Eq. (11)"; NULL ends the list */
+        double flops;
+    } published[3];    /* the papers' formulas for this task, the algorithm's own paper first */
+    char engine[96];   /* which of several ways the plan chose: "general" */
+    char skipped[256]; /* what the plan left out because the scene does not need it; may be empty */
+};
+
+enum param_type { PARAM_INTEGER, PARAM_REAL, PARAM_CHOICE };
+
+/* One setting: parsing, bounds, `info`, the CSV's options column and the sweep all come from this row. Name, type and
+   place come from the field by PARAM or PARAM_NAMED. */
+struct param {
+    const char *name, *summary; /* name NULL ends the table */
+    enum param_type type;       /* the field is an int (integer, choice: index) or a double (real) */
+    size_t offset, size;        /* of the field in the options struct */
+    double initial, min, max;   /* default and closed bounds; for a choice initial is the index */
+    const char *const *choices; /* NULL-terminated names of a choice, else NULL */
+    const char *sweep;          /* the values that `sweep` runs, separated by blanks; may be NULL */
+    bool terse;                 /* left out of the options text while it has its default */
+};
+
+/* A row begins with  {PARAM(struct options, taps), .summary = ...  for a number, an int or a double, or with
+   {PARAM_NAMED(struct options, window, windows), ...  for a choice among names, an int. A field of another type does
+   not compile. */
+#define PARAM(options, field)                                                                                          \
+    PARAM_PLACE(options, field), .type = _Generic(((options *)NULL)->field, int : PARAM_INTEGER, double : PARAM_REAL)
+#define PARAM_NAMED(options, field, names)                                                                             \
+    PARAM_PLACE(options, field), .type = _Generic(((options *)NULL)->field, int : PARAM_CHOICE), .choices = names
+#define PARAM_PLACE(options, field)                                                                                    \
+    .name = #field, .offset = offsetof(options, field), .size = sizeof((options *)NULL)->field
+
+/* Promises that the conformance test checks. */
+enum trait {
+    TRAIT_EXACT = 1,         /* the image equals `reference` to 1e-8 in double */
+    TRAIT_ANY_TRACK = 2,     /* images any track in space, not only uniform straight ones */
+    TRAIT_APERTURE_LIMIT = 4 /* honours aperture_limit pixel by pixel */
+};
+
+struct algorithm {
+    const char *name, *summary, *reference; /* reference: paper and equations */
+    unsigned traits;                        /* of enum trait */
+    size_t options_size;                    /* of the options struct; 0 without params */
+    const struct param *params;             /* NULL-terminated; NULL without options */
+
+    /* Fill list[room] with what the problem must fulfil, and return the number; known before any work, and the same
+       that plan refuses by. NULL: conditions_general. */
+    int (*conditions)(const struct problem *problem, const void *options, struct condition *list, int room);
+    /* What the settings will make of a problem, without a plan; far cheaper than one, but for range migration. Errors:
+       STATUS_UNSUPPORTED with the reason, as plan, STATUS_FAILED without memory. NULL: nothing is known beforehand, and
+       no planner chooses the algorithm. */
+    enum status (*forecast)(const struct problem *problem, const void *options, struct forecast *forecast);
+    /* Where that is as costly as a plan: the counts alone, which `forecast` then leaves at 0. Errors: as forecast; what
+       only a forecast finds out is not refused. NULL: `forecast` counts. */
+    enum status (*cost)(const struct problem *problem, const void *options, struct forecast *forecast);
+    /* Make a plan in *plan. Errors: STATUS_UNSUPPORTED with the reason, STATUS_FAILED; *plan is then NULL. */
+    enum status (*plan)(const struct problem *problem, const void *options, void **plan);
+    /* Echoes of the plan's acquisition and precision into an image of the plan's patches and precision. */
+    enum status (*execute)(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
+    struct work (*work)(const void *plan); /* may take its time, to count what the timed plan need not know */
+    void (*destroy)(void *plan);           /* destroy(NULL) does nothing */
+};
+
+/* The registered algorithms in the order of algorithms/meson.build; NULL ends the list. */
+extern const struct algorithm *const algorithms[];
+
+/* The conditions of an algorithm, its own or the general ones. */
+int algorithm_conditions(const struct algorithm *algorithm, const struct problem *problem, const void *options,
+                         struct condition *list, int room);
+
+/* By name; NULL if there is none. */
+const struct algorithm *algorithm_find(const char *name);
+
+#endif

@@ -1,0 +1,99 @@
+/* What a scene must fulfil for an algorithm to image it rightly: conditions by name, each with its value and its limit,
+   known before any work. */
+#ifndef SASBENCH_CONDITION_H
+#define SASBENCH_CONDITION_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "contract/acquisition.h"
+#include "contract/status.h"
+
+struct problem;
+
+enum severity {
+    SEVERITY_REFUSE, /* the algorithm does not image the scene */
+    SEVERITY_WARN,   /* it does, and the image, back projection's as well, may show what the condition says */
+    SEVERITY_INFORM  /* tells which way of computing is open */
+};
+
+struct condition {
+    const char *name;
+    double value, limit;
+    bool at_least; /* the value must lie above the limit, not below */
+    enum severity severity;
+    const char *meaning; /* what the value is: a static text */
+    char cure[200];      /* what would change it, in figures where they are known */
+};
+
+enum { CONDITIONS_MAX = 24 }; /* of one algorithm */
+
+/* A NaN does not hold. */
+bool condition_holds(const struct condition *condition);
+/* A further part of the cure, formatted. */
+#ifdef __GNUC__
+__attribute__((format(printf, 2, 3)))
+#endif
+void condition_cure_add(struct condition *condition, const char *format, ...);
+/* A value to three digits, downwards: what may be at most `value` may be that. */
+double condition_at_most(double value);
+/* "condition NAME: MEANING is VALUE; at most LIMIT is needed (cure: CURE)". */
+void condition_message(const struct condition *condition, char *text, size_t size);
+/* Does none of `list` refuse? */
+bool conditions_accept(const struct condition *list, int count);
+/* STATUS_UNSUPPORTED with the message of the first of `list` that refuses and does not hold; `name` is the
+   algorithm's. */
+enum status conditions_check(const char *name, const struct condition *list, int count);
+
+/* Fill list[room] with the conditions that all algorithms have, in the order of their names in docs/conditions.md, and
+   return their number. */
+int conditions_general(const struct problem *problem, struct condition *list, int room);
+/* Those, and what the places of pings and receivers, sampled in azimuth, make of any image: what back projections
+   have. */
+int conditions_sampled(const struct problem *problem, struct condition *list, int room);
+
+enum { CONDITIONS_SCENE = 10 };
+/* Fill `list` with what the scene must fulfil whichever algorithm images it, and return the number: units, pixels as
+   fine as the image's resolution, pixels and patches within the records, pixels within the beam, the beam within the
+   records. All of them warn. Without patches: units and what is stated of the pings alone. */
+int conditions_scene(const struct problem *problem, struct condition list[CONDITIONS_SCENE]);
+
+/* STATUS_UNSUPPORTED where none of the problem's known targets lies in the image, within a resolution cell or pixel:
+   errors are then relative to what leaks into it, which no law tells. */
+enum status condition_targets_shown(const struct problem *problem);
+
+/* Of a straight track, `spacing` m from ping to ping: how much of the azimuth band is sampled; with several receivers,
+   ghosts. */
+struct condition condition_doppler(const struct problem *problem, double spacing);
+/* Let the cure be what the echoes do not say of their beam, where they do not. */
+void condition_beam_named(const struct acquisition *acquisition, struct condition *condition);
+struct condition condition_ghost(const struct acquisition *acquisition, double spacing);
+
+/* m/s: of the fastest ping. */
+double condition_speed(const struct acquisition *acquisition);
+/* s/m: the steepest delay along x, less that on the beam's axis, over places of the patches and pings that see them. */
+double condition_slope(const struct problem *problem);
+/* Offset of the receiver that is n/2 of the way from the least to the greatest, m along the track; n = 0, 1, 2. */
+double condition_offset(const struct acquisition *acquisition, int n);
+/* |sin theta_t| up to which the echoes count: their stated truncation, where both elements' amplitude falls to a
+   quarter, or the half-power beam of a transmitter of known length; INFINITY where nothing is known. */
+double condition_beam_sine(const struct acquisition *acquisition);
+/* The same whether the amplitude tapers or not: the stated truncation, or the half-power beam. */
+double condition_cut_sine(const struct acquisition *acquisition);
+/* Does a ping see a place within condition_beam_sine of its beam's axis? */
+bool condition_sees(const struct acquisition *acquisition, int ping, struct vector place);
+/* Is it known where all that the echoes hold comes from: from within a known beam, without noise? */
+bool condition_beam_known(const struct acquisition *acquisition);
+/* |sin theta_t| up to which anything is seen at all: condition_beam_sine, but three nulls of a beam that tapers. */
+double condition_seen_sine(const struct acquisition *acquisition);
+/* Amplitude of the echo of a unit target r m beside a straight track along x, the transmitter u m ahead of it: 1 inside
+   the beam, or both elements' sinc where the echoes taper; 0 where it is not seen. */
+double condition_amplitude(const struct acquisition *acquisition, double r, double u);
+/* The same by the receiver d m ahead of the transmitter, whose own sinc counts from its place. */
+double condition_pair_amplitude(const struct acquisition *acquisition, double r, double u, double d);
+/* sin(pi z)/(pi z) */
+double condition_sinc(double z);
+/* The larger of two values; NAN, which no limit holds, where one of them is. */
+double condition_worse(double worst, double value);
+
+#endif

@@ -1,0 +1,137 @@
+/* How pings and receivers sample the track (condition.h): which places they have along it, gaps between them, and the
+   wavenumbers that they tell apart. */
+#include <math.h>
+#include <stdio.h>
+
+#include "contract/algorithm.h"
+
+/* Phase centre of a receiver along the track (m), with a `period` > 0 within one. */
+static double centre_of(const struct acquisition *a, int receiver, double period)
+{
+    const double place = (a->rx[receiver].x - a->tx[0].x) / 2;
+    return period > 0 ? place - period * floor(place / period) : place;
+}
+
+/* The first centre from a place on; INFINITY without one. */
+static double centre_next(const struct acquisition *a, double period, double from)
+{
+    double next = INFINITY;
+    for (int m = 0; m < a->receivers; m++) {
+        const double place = centre_of(a, m, period);
+        next = place >= from && place < next ? place : next;
+    }
+    return next;
+}
+
+/* Phase centres, half the receivers' offsets, that lie `apart` m and more from each other along the track; rows and
+   arrays across it share places. With a `period` > 0 places come again after so many m, as from ping to ping. *extent
+   (m, may be NULL): from the first of those counted to the last. */
+static int centres_count(const struct acquisition *a, double period, double apart, double *extent)
+{
+    const double first = centre_next(a, period, -INFINITY);
+    double last = first;
+    int count = 1;
+    for (double next; isfinite(next = centre_next(a, period, last + apart)) && count < a->receivers; last = next)
+        count++;
+    if (extent)
+        *extent = last - first;
+    return count - (period > 0 && count > 1 && first + period - last < apart);
+}
+
+/* Those that sample the track: half of an even step counts as one place. */
+static int centres_sampling(const struct acquisition *a, double spacing)
+{
+    return centres_count(a, fabs(spacing), fabs(spacing) / a->receivers / 2, NULL);
+}
+
+/* Phase centres d/2 apart lie n d/2 from ping to ping without gaps, or k deep where the spacing is a k-th part of that;
+   an array of one place along the track has no gaps of its own. */
+struct condition condition_ghost(const struct acquisition *a, double spacing)
+{
+    double extent = (condition_offset(a, 2) - condition_offset(a, 0)) / 2;
+    const int all = centres_count(a, 0, extent / (a->receivers - 1) / 2, &extent);
+    const int count = centres_sampling(a, spacing) > 1 ? all : 1;
+    const double half = count > 1 ? extent / (count - 1) * count : fabs(spacing);
+    const double even = half / fmax(1, round(half / fabs(spacing)));
+    const double speed = a->pri > 0 && condition_speed(a) > 0 ? fabs(spacing) / a->pri : condition_speed(a);
+    struct condition ghost = {"ghost",
+                              fabs(fabs(spacing) / even - 1),
+                              1e-3,
+                              false,
+                              SEVERITY_WARN,
+                              "gaps or overlaps from ping to ping, which make ghosts: the spacing over half the array, "
+                              "or over a whole part of it, less 1",
+                              ""};
+    condition_cure_add(&ghost, "pings %.5g m apart in place of %.5g m", even, fabs(spacing));
+    if (speed > 0)
+        condition_cure_add(&ghost, ", a PRI of %.5g s at %.5g m/s", even / speed, speed);
+    return ghost;
+}
+
+/* Near enough to a uniform straight track that gaps between the pings are what `track` has: no ping is farther off than
+   a quarter of the spacing along the track, or the spacing across it, and the receivers stay where they are on it. */
+static bool is_sampled_evenly(const struct acquisition *a, struct straight_track *track)
+{
+    if (acquisition_is_straight(a, track))
+        return true;
+    acquisition_unevenness(a, track);
+    const double spacing = fabs(track->spacing);
+    for (int p = 0; p < a->pings; p++) {
+        const struct vector *rx = a->rx + (size_t)p * (size_t)a->receivers;
+        if (!(fabs(a->tx[p].x - track->x_first - p * track->spacing) <= spacing / 4
+              && fmax(fabs(a->tx[p].y - a->tx[0].y), fabs(a->tx[p].z - a->tx[0].z)) <= spacing))
+            return false;
+        for (int m = 0; m < a->receivers; m++)
+            if (!(fabs(rx[m].x - a->tx[p].x - a->rx[m].x + a->tx[0].x) <= spacing / 4))
+                return false;
+    }
+    return spacing > 0;
+}
+
+void condition_beam_named(const struct acquisition *a, struct condition *condition)
+{
+    if (a->echo_sine > 0 || a->tx_length > 0)
+        return;
+    snprintf(condition->cure, sizeof condition->cure,
+             "tx_length and rx_length (m), or echo_sine, in the echo file: it does not say how wide the beam is, and "
+             "echoes from everywhere count");
+}
+
+struct condition condition_doppler(const struct problem *problem, double spacing)
+{
+    const struct acquisition *a = problem->acquisition;
+    struct condition doppler = {
+        "doppler",
+        (a->fc + a->bandwidth / 2) * condition_slope(problem) * 2 * fabs(spacing) / centres_sampling(a, spacing),
+        1.05,
+        false,
+        SEVERITY_WARN,
+        "the widest azimuth wavenumber in the beam over what the receivers sample, n/(2 spacing), n the number of "
+        "their places along the track",
+        "pings closer together, more receivers along the track, a narrower beam or a lower speed"};
+    condition_beam_named(a, &doppler);
+    return doppler;
+}
+
+int conditions_sampled(const struct problem *problem, struct condition *list, int room)
+{
+    const struct acquisition *a = problem->acquisition;
+    struct straight_track track;
+    struct condition all[CONDITIONS_MAX];
+    int count = conditions_general(problem, all, CONDITIONS_MAX);
+    all[count++] = (struct condition){"above_dc",
+                                      a->fc - a->bandwidth / 2,
+                                      0,
+                                      true,
+                                      SEVERITY_WARN,
+                                      "the lowest frequency fc - B/2 (Hz)",
+                                      "a higher carrier or a narrower band"};
+    if (a->pings > 1 && is_sampled_evenly(a, &track)) {
+        all[count++] = condition_doppler(problem, track.spacing);
+        if (a->receivers > 1)
+            all[count++] = condition_ghost(a, track.spacing);
+    }
+    for (int k = 0; k < count && k < room; k++)
+        list[k] = all[k];
+    return count < room ? count : room;
+}

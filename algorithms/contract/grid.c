@@ -1,0 +1,59 @@
+#include <math.h>
+
+#include "contract/algorithm.h"
+
+struct vector grid_coordinates(const struct grid *grid, double x, double r)
+{
+    if (grid->angle_rad == 0)
+        return (struct vector){x, r, 0};
+    double cosine = cos(grid->angle_rad), sine = sin(grid->angle_rad);
+    return (struct vector){x * cosine - r * sine, x * sine + r * cosine, 0};
+}
+
+bool grid_holds(const struct grid *g, double x, double r)
+{
+    const struct vector at = grid_coordinates(g, x, r);
+    return fabs(at.x - g->x_first - (g->x_count - 1) * g->x_step / 2) <= g->x_count * g->x_step / 2
+           && fabs(at.y - g->r_first - (g->r_count - 1) * g->r_step / 2) <= g->r_count * g->r_step / 2;
+}
+
+void grid_columns(const struct grid *grid, double *first, double *last)
+{
+    *first = INFINITY;
+    *last = -INFINITY;
+    for (int k = 0; k < 4; k++) {
+        const double x = grid_point(grid, k / 2 * grid->r_count - 0.5, k % 2 * grid->x_count - 0.5).x;
+        *first = fmin(*first, x);
+        *last = fmax(*last, x);
+    }
+}
+
+struct problem problem_make(const struct acquisition *acquisition, int patch_count, const struct grid *patches,
+                            enum precision precision)
+{
+    return (struct problem){
+        .acquisition = acquisition, .patch_count = patch_count, .patches = patches, .precision = precision};
+}
+
+int problem_judged(const struct problem *problem, const struct grid **grids)
+{
+    *grids = problem->judged_count > 0 ? problem->judged : problem->patches;
+    return problem->judged_count > 0 ? problem->judged_count : problem->patch_count;
+}
+
+double problem_amplitude_most(const struct problem *problem)
+{
+    double most = 0;
+    for (int k = 0; k < problem->target_count; k++)
+        most = fmax(most, cabs(problem->targets[k].amplitude));
+    return most;
+}
+
+struct vector grid_point(const struct grid *grid, double i, double j)
+{
+    double x = grid->x_first + j * grid->x_step, r = grid->r_first + i * grid->r_step;
+    if (grid->angle_rad == 0)
+        return (struct vector){x, r, 0};
+    double cosine = cos(grid->angle_rad), sine = sin(grid->angle_rad);
+    return (struct vector){x * cosine + r * sine, r * cosine - x * sine, 0};
+}

@@ -1,0 +1,16 @@
+/* Options structs by the tables of their params. */
+#ifndef SASBENCH_PARAM_H
+#define SASBENCH_PARAM_H
+
+#include "contract/algorithm.h"
+
+/* One field; a choice by its index. */
+void param_store(const struct param *param, void *options, double value);
+double param_load(const struct param *param, const void *options);
+/* Index of a name among a choice's, -1 if it is none. */
+int param_choice(const struct param *param, const char *name);
+
+/* Every field of an algorithm's options [options_size] at its default. */
+void options_fill(const struct algorithm *algorithm, void *options);
+
+#endif

@@ -1,0 +1,63 @@
+/* Range migration after phase-centre approximation (LBF21 Eq. (6)): each pair stands for a monostatic sonar
+   half-way between its transmitter at emission and its receiver at reception, corrected by the delay of the target
+   broadside:
+
+       -phi = 2 pi nu (-d/2 - r v/c) + 4 pi r S/c + pi F (d + 2 v r/c)^2/(2 c r)
+
+   It takes the way of the sonar during propagation, 2 v r/c, as if every target were broadside. Error: grows with range
+   and with the beam, 0.14 rad at 300 m and 7 degrees to either side, 1 rad at twice that beam (LBF21 Figs 4, 5, 7
+   and 9). */
+#include "range_migration/rma_conditions.h"
+
+static const struct param params[] = {
+    RMA_PARAMS,
+    {.name = NULL},
+};
+
+static const struct rma_method method = {
+    .name = "rma_pca",
+    .law = "pca_law",
+    .error_limit = 0.12, /* LBF21 Table IV studies it at 0.112 */
+    .spectrum = spectrum_pca,
+    .source = "LBF21 Eq. (21)",
+    .range = {2, 2},
+    .azimuth = {1, 1},
+    .products = {1, 2},
+    .interpolations = 2,
+};
+
+static int conditions(const struct problem *problem, const void *options, struct condition *list, int room)
+{
+    (void)options;
+    return rma_conditions(problem, &method, list, room);
+}
+
+static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
+{
+    return rma_forecast(problem, &method, options, forecast);
+}
+
+static enum status cost(const struct problem *problem, const void *options, struct forecast *forecast)
+{
+    return rma_cost(problem, &method, options, forecast);
+}
+
+static enum status plan(const struct problem *problem, const void *options, void **plan)
+{
+    return rma_plan(problem, &method, options, plan);
+}
+
+const struct algorithm rma_pca = {
+    .name = "rma_pca",
+    .summary = "range migration after phase-centre approximation",
+    .reference = "LBF21 Eq. (6), section IV",
+    .options_size = sizeof(struct rma_options),
+    .params = params,
+    .conditions = conditions,
+    .forecast = forecast,
+    .cost = cost,
+    .plan = plan,
+    .execute = rma_execute,
+    .work = rma_work,
+    .destroy = rma_destroy,
+};

@@ -1,0 +1,392 @@
+/* The transforms of range migration along range and azimuth, with their memory (engine.h). Compiled once for each
+   precision. */
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/clock.h"
+#include "common/kaiser.h"
+#include "common/real.h"
+#include "common/stream.h"
+#include "range_migration/rma_engine.h"
+
+enum {
+    LANES = RMA_ALIGNMENT / sizeof(real),
+    BLOCKS = 4, /* vectors of bins that are copied together for the azimuth FFT */
+    AHEAD = 256 /* wavenumbers of a row that are on their way from memory */
+};
+
+static real *scratch_of(const struct rma *rma, enum rma_buffer buffer)
+{
+    char *scratch = (char *)rma->scratch + (size_t)omp_get_thread_num() * rma->scratch_bytes;
+    return (real *)(scratch + rma->scratch_at[buffer]);
+}
+
+static complex_real rotor(double cycles)
+{
+    double angle = 2 * M_PI * (cycles - floor(cycles + 0.5));
+    return (real)cos(angle) + (real)sin(angle) * (complex_real)I;
+}
+
+/* Transforms of this file work on the scratch's begin: from there, to as far behind it as `count` values need. */
+static complex_real *behind(complex_real *memory, size_t count)
+{
+    return memory + (count + LANES - 1) / LANES * LANES;
+}
+
+/* From one array into another, which spares FFTW copies of its own. ESTIMATE: the same algorithm, hence the same bits,
+   at every planning. */
+static void *plan_line(const struct rma *rma, int length, int sign)
+{
+    return FFTW(plan_dft_1d)(length, (complex_real *)scratch_of(rma, RMA_WAVE),
+                             (complex_real *)scratch_of(rma, RMA_TRANSFORMED), sign, FFTW_ESTIMATE);
+}
+
+/* conj(P)/sum|p|^2 and the inverse transform's 1/length; transforms in double. */
+static bool filter_fill(struct rma *rma)
+{
+    const struct acquisition *a = rma->problem.acquisition;
+    complex_real *filter = rma->filter;
+    double complex *work = rma_take(rma, (size_t)rma->record_length, sizeof *work, 0);
+    double energy = 0;
+    if (!work)
+        return false;
+    for (int k = 0; k < a->pulse_length; k++) {
+        work[k] = a->pulse[k];
+        energy += creal(work[k]) * creal(work[k]) + cimag(work[k]) * cimag(work[k]);
+    }
+    fftw_plan forward = fftw_plan_dft_1d(rma->record_length, work, work, FFTW_FORWARD, FFTW_ESTIMATE);
+    fftw_execute(forward);
+    fftw_destroy_plan(forward);
+    for (int k = 0; k < rma->record_length; k++)
+        filter[k] = (complex_real)(conj(work[k]) / (energy * rma->record_length));
+    free(work);
+    return true;
+}
+
+/* The Kaiser kernel of the Stolt interpolation. */
+static void kernel_fill(const struct rma *rma)
+{
+    real *kernel = rma->kernel;
+    int taps = rma->taps;
+    for (int i = 0; taps && i < RMA_INTERVALS + 2; i++)
+        for (int k = 0; k < taps; k++)
+            kernel[i * taps + k] = (real)kaiser_value(taps, rma->shape, (double)i / RMA_INTERVALS - (1 - taps / 2 + k));
+}
+
+/* What samples are multiplied by so that the kernel neither weights nor blurs them, 1 over its transform; held where
+   no row lies. */
+static void apodization_fill(const struct rma *rma, const struct rma_swath *swath)
+{
+    real *apodization = swath->apodization;
+    int taps = rma->taps, length = swath->stolt_length;
+    for (int j = 0; j < length; j++) {
+        double place = fmin(fabs((double)(j < length - length / 2 ? j : j - length) / length), 0.5 / RMA_OVERSAMPLING);
+        double transform = taps ? kaiser_transform(taps, rma->shape, place) : 1;
+        apodization[j] = (real)(1 / (transform * (rma->delay ? 1 : swath->length)));
+    }
+}
+
+/* The azimuth sum onto a grid's columns, wavenumbers nu = (q - Q/2) dnu and columns x = x0 + j dx: one transform where
+   1/(dnu dx) is its length, or a convolution (chirp z),  2 q j = q^2 + j^2 - (j - q)^2. */
+static bool azimuth_fill(struct rma *rma, const struct rma_swath *swath, struct rma_patch *patch)
+{
+    const int q_count = swath->wavenumbers, x_count = patch->grid.x_count, length = patch->columns;
+    int *bins = rma_take(rma, swath->columns, sizeof *bins, 1);
+    complex_real *after = rma_take(rma, (size_t)x_count, sizeof *after, 1);
+    complex_real *kernel = patch->folds ? NULL : rma_take(rma, (size_t)length, sizeof *kernel, 1);
+    complex_real *wave = rma->scratch, *turned = behind(wave, (size_t)length + 1);
+    patch->bins = bins;
+    patch->after = after;
+    patch->kernel = kernel;
+    patch->azimuth_inverse = FFTW(plan_dft_1d)(length, wave, turned, FFTW_BACKWARD, FFTW_ESTIMATE);
+    if (!bins || !after || !patch->azimuth_inverse)
+        return false;
+    const double period = swath->period * fabs(rma->spacing),
+                 turn = patch->folds ? 1.0 / length : patch->grid.x_step / period;
+    const double square = patch->folds ? 0 : 0.5 * turn;
+    patch->shift = (patch->grid.x_first - rma->x_first) / period;
+    patch->square = square;
+    for (int k = 0; k < (int)swath->columns; k++)
+        bins[k] = k < q_count ? rma_wavenumber(rma, swath, k) % length : length;
+    for (int j = 0; j < x_count; j++)
+        after[j] = rotor(square * j * j - turn * (q_count / 2) * j) / (real)(patch->folds ? period : period * length);
+    if (patch->folds)
+        return true;
+    patch->azimuth_forward = FFTW(plan_dft_1d)(length, turned, wave, FFTW_FORWARD, FFTW_ESTIMATE);
+    if (!kernel || !patch->azimuth_forward)
+        return false;
+    memset(turned, 0, (size_t)length * sizeof *turned);
+    for (int i = -(q_count - 1); i < x_count; i++)
+        turned[i < 0 ? i + length : i] = rotor(-square * i * i);
+    FFTW(execute_dft)(patch->azimuth_forward, turned, wave);
+    memcpy(kernel, wave, (size_t)length * sizeof *wave);
+    return true;
+}
+
+static bool plan_swath(struct rma *rma, struct rma_swath *swath)
+{
+    complex_real *lines = rma->scratch, *turned = behind(lines, BLOCKS * LANES * (size_t)swath->period);
+    swath->data =
+        rma_take(rma, (size_t)swath->period * (size_t)rma->receivers, 2 * (size_t)swath->row * sizeof(real), 1);
+    swath->apodization = rma_take(rma, (size_t)swath->stolt_length, sizeof(real), 1);
+    if (!swath->data || !swath->apodization || (rma->delay && !REAL_NAME(rma_map_plan)(rma, swath)))
+        return false;
+    apodization_fill(rma, swath);
+    swath->range_forward = plan_line(rma, swath->length, FFTW_FORWARD);
+    swath->range_inverse = plan_line(rma, swath->length, FFTW_BACKWARD);
+    swath->stolt_forward = plan_line(rma, swath->stolt_length, FFTW_FORWARD);
+    swath->azimuth_forward = FFTW(plan_many_dft)(1, &swath->period, LANES, lines, NULL, LANES, 1, turned, NULL, LANES,
+                                                 1, FFTW_FORWARD, FFTW_ESTIMATE);
+    bool complete = swath->range_forward && swath->range_inverse && swath->stolt_forward && swath->azimuth_forward;
+    for (int k = 0; complete && k < swath->patch_count; k++) {
+        struct rma_patch *patch = &swath->patches[k];
+        patch->focus_plan = plan_line(rma, patch->length, FFTW_BACKWARD);
+        complete = patch->focus_plan && azimuth_fill(rma, swath, patch);
+    }
+    return complete;
+}
+
+static enum status plan(struct rma *rma)
+{
+    size_t strip = 0, focused = 0, at_once = BLOCKS * LANES; /* scratch also serves the transforms of this file */
+    for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
+        strip = strip > at_once * (size_t)s->period ? strip : at_once * (size_t)s->period;
+        focused = focused > s->rows * s->columns ? focused : s->rows * s->columns;
+        for (int k = 0; k < s->patch_count; k++)
+            strip = strip > (size_t)s->patches[k].columns ? strip : (size_t)s->patches[k].columns;
+    }
+    strip = 2 * (strip + LANES) * sizeof(complex_real);
+    if (rma->scratch_bytes < strip)
+        rma->scratch_bytes = (strip / RMA_ALIGNMENT + 1) * RMA_ALIGNMENT;
+    rma->scratch = rma_take(rma, (size_t)rma->threads, rma->scratch_bytes, 1.0 / rma->threads);
+    rma->focused = rma_take(rma, focused, sizeof(complex_real), 1);
+    rma->tapers = rma_take(rma, (size_t)rma->taper, sizeof(real), 1);
+    rma->kernel = rma_take(rma, (RMA_INTERVALS + 2) * (size_t)rma->taps, sizeof(real), 1);
+    rma->filter = rma_take(rma, (size_t)rma->record_length, sizeof(complex_real), 1);
+    bool complete = rma->scratch && rma->focused && rma->tapers && rma->kernel && rma->filter;
+    if (complete) {
+        real *tapers = rma->tapers;
+        for (int k = 0; k < rma->taper; k++)
+            tapers[k] = (real)pow(sin(M_PI / 2 * (k + 0.5) / rma->taper), 2);
+        kernel_fill(rma);
+    }
+    if (complete && rma->delay) {
+        const size_t count = (size_t)rma->delay->terms.terms * (size_t)rma->receivers;
+        real *basis = rma->delay->basis = rma_take(rma, count, sizeof *basis, 1);
+        for (size_t k = 0; basis && k < count; k++)
+            basis[k] = (real)rma->delay->terms.basis[k];
+        complete = basis != NULL;
+    }
+    if (complete && rma->record_length > 0) {
+        complex_real *record = (complex_real *)scratch_of(rma, RMA_RECORD),
+                     *turned = (complex_real *)scratch_of(rma, RMA_TRANSFORMED);
+        rma->record_forward = FFTW(plan_dft_1d)(rma->record_length, record, turned, FFTW_FORWARD, FFTW_ESTIMATE);
+        rma->record_inverse = FFTW(plan_dft_1d)(rma->record_length, turned, record, FFTW_BACKWARD, FFTW_ESTIMATE);
+        complete = rma->record_forward && rma->record_inverse && filter_fill(rma);
+    }
+    for (int n = 0; complete && n < rma->swath_count; n++)
+        complete = plan_swath(rma, &rma->swaths[n]);
+    return complete ? STATUS_OK
+                    : status_set(STATUS_FAILED, "no memory for range migration (%.0f MB for a thread)",
+                                 rma->work.bytes / 1e6);
+}
+
+static void plan_destroy(void *made)
+{
+    if (made)
+        FFTW(destroy_plan)(made);
+}
+
+static void destroy(struct rma *rma)
+{
+    for (int k = 0; rma->patches && k < rma->patch_count; k++) {
+        struct rma_patch *patch = &rma->patches[k];
+        plan_destroy(patch->focus_plan);
+        plan_destroy(patch->azimuth_forward);
+        plan_destroy(patch->azimuth_inverse);
+        free(patch->bins);
+        free(patch->after);
+        free(patch->kernel);
+    }
+    for (int n = 0; n < rma->swath_count; n++) {
+        struct rma_swath *swath = &rma->swaths[n];
+        plan_destroy(swath->range_forward);
+        plan_destroy(swath->range_inverse);
+        plan_destroy(swath->stolt_forward);
+        plan_destroy(swath->azimuth_forward);
+        free(swath->map.first);
+        free(swath->map.weights);
+        free(swath->map.slopes);
+        free(swath->map.phases);
+        free(swath->map.edges);
+        free(swath->data);
+        free(swath->apodization);
+    }
+    plan_destroy(rma->record_forward);
+    plan_destroy(rma->record_inverse);
+    if (rma->delay)
+        free(rma->delay->basis);
+    free(rma->filter);
+    free(rma->tapers);
+    free(rma->kernel);
+    free(rma->focused);
+    free(rma->scratch);
+}
+
+/* a[k] *= b[k], written out: a complex product would check for NaN. */
+static inline void multiply(real *restrict a, const real *restrict b, int count)
+{
+    for (int k = 0; k < 2 * count; k += 2) {
+        real re = a[k] * b[k] - a[k + 1] * b[k + 1];
+        a[k + 1] = a[k] * b[k + 1] + a[k + 1] * b[k];
+        a[k] = re;
+    }
+}
+
+/* A swath's part of a compressed record, of which sample `from` is the first, as the spectrum's bins of the band. */
+static void cut(const struct rma *rma, const struct rma_swath *swath, const real *record, real *row)
+{
+    const real *tapers = rma->tapers;
+    const int length = swath->length, count = swath->end - swath->begin, lead = swath->begin - swath->first;
+    real *wave = scratch_of(rma, RMA_WAVE), *taken = wave + 2 * lead, *bins = scratch_of(rma, RMA_TRANSFORMED);
+    memset(wave, 0, 2 * (size_t)lead * sizeof *wave);
+    if (count > 0)
+        memcpy(taken, record + 2 * (swath->begin - rma->from), 2 * (size_t)count * sizeof *wave);
+    memset(taken + 2 * count, 0, 2 * (size_t)(length - lead - count) * sizeof *wave);
+    for (int k = 0; k < rma->taper && k < count; k++)
+        for (int part = 0; part < 2; part++) {
+            taken[2 * k + part] *= swath->begin > 0 ? tapers[k] : 1;
+            taken[2 * (count - 1 - k) + part] *= swath->end < rma->samples ? tapers[k] : 1;
+        }
+    FFTW(execute_dft)(swath->range_forward, (complex_real *)wave, (complex_real *)bins);
+    const int below = -swath->band_first;
+    memcpy(row, bins + 2 * (length - below), 2 * (size_t)below * sizeof *row);
+    memcpy(row + 2 * below, bins, 2 * (size_t)(swath->band - below) * sizeof *row);
+    memset(row + 2 * swath->band, 0, 2 * (size_t)(swath->row - swath->band) * sizeof *row);
+}
+
+/* What is held of a compressed record between zeros. */
+static real *padded(const struct rma *rma, const real *record)
+{
+    const size_t guard = 2 * (size_t)rma->delay->guard, n = 2 * (size_t)rma->held;
+    real *out = scratch_of(rma, RMA_PADDED);
+    memset(out, 0, guard * sizeof *out);
+    memcpy(out + guard, record, n * sizeof *out);
+    memset(out + guard + n, 0, guard * sizeof *out);
+    return out;
+}
+
+/* Pulse compression by a linear correlation, then each swath's cut. Records of a receiver follow one another, so that
+   the tables of its map stay in the cache. */
+static void compress(const struct rma *rma, rma_map_function *map, const void *samples, double seconds[2])
+{
+    double compressing = 0, mapping = 0;
+    const size_t all = 2 * (size_t)rma->samples, n = 2 * (size_t)rma->read, length = 2 * (size_t)rma->record_length;
+#pragma omp parallel for schedule(static) num_threads(rma->threads) reduction(+ : compressing, mapping)
+    for (int turn = 0; turn < rma->pings * rma->receivers; turn++) {
+        const int receiver = turn / rma->pings, k = turn % rma->pings * rma->receivers + receiver;
+        const real *record = (const real *)samples + all * (size_t)k + 2 * (size_t)rma->from;
+        const double begun = clock_monotonic();
+        if (length > 0) {
+            real *wave = scratch_of(rma, RMA_RECORD), *bins = scratch_of(rma, RMA_TRANSFORMED);
+            memcpy(wave, record, n * sizeof *wave);
+            memset(wave + n, 0, (length - n) * sizeof *wave);
+            FFTW(execute_dft)(rma->record_forward, (complex_real *)wave, (complex_real *)bins);
+            multiply(bins, rma->filter, rma->record_length);
+            FFTW(execute_dft)(rma->record_inverse, (complex_real *)bins, (complex_real *)wave);
+            record = wave;
+        }
+        const real *between = rma->delay ? padded(rma, record) : NULL;
+        const double compressed = clock_monotonic();
+        for (const struct rma_swath *s = rma->swaths; s < rma->swaths + rma->swath_count; s++) {
+            real *row = (real *)s->data + 2 * (size_t)s->row * (size_t)k;
+            if (rma->delay)
+                map(rma, s, receiver, between, row);
+            else
+                cut(rma, s, record, row);
+        }
+        compressing += compressed - begun;
+        mapping += clock_monotonic() - compressed;
+    }
+    seconds[0] = compressing + (rma->delay ? 0 : mapping);
+    seconds[1] = rma->delay ? mapping : 0;
+}
+
+/* Pings' samples [vector][ping][LANES], transformed, to rows of vectors. */
+static void spread_strip(const struct rma_swath *swath, const complex_real *lines, complex_real *turned, size_t vectors,
+                         size_t stride, real *data)
+{
+    const size_t period = (size_t)swath->period;
+    for (size_t v = 0; v < vectors; v++)
+        FFTW(execute_dft)
+    (swath->azimuth_forward, (complex_real *)lines + v * period * LANES, turned + v * period * LANES);
+    for (size_t p = 0; p < period; p++)
+        for (size_t v = 0; v < vectors; v++) {
+            const real *from = (const real *)(turned + (v * period + p) * LANES);
+            real *to = data + p * stride + v * 2 * LANES;
+            for (size_t l = 0; l < LANES; l++) {
+                to[l] = from[2 * l];
+                to[LANES + l] = from[2 * l + 1];
+            }
+        }
+}
+
+/* Azimuth FFT over the pings and the zeros after them, in place; the complex numbers of a vector become its real
+   parts and then its imaginary parts. */
+static void spread(const struct rma *rma, const struct rma_swath *swath)
+{
+    const int vectors = swath->row / LANES, strips = (vectors + BLOCKS - 1) / BLOCKS;
+    const size_t row = 2 * (size_t)swath->row, pings = (size_t)rma->pings, period = (size_t)swath->period;
+#pragma omp parallel for schedule(static) collapse(2) num_threads(rma->threads)
+    for (int m = 0; m < rma->receivers; m++)
+        for (int s = 0; s < strips; s++) {
+            const size_t count = (size_t)(vectors - s * BLOCKS < BLOCKS ? vectors - s * BLOCKS : BLOCKS);
+            complex_real *lines = (complex_real *)scratch_of(rma, 0);
+            real *data = (real *)swath->data + (size_t)m * row + (size_t)s * BLOCKS * 2 * LANES;
+            const size_t ping = (size_t)rma->receivers * row;
+            for (size_t p = 0; p < pings; p++)
+                for (size_t v = 0; v < count; v++)
+                    memcpy(lines + (v * period + p) * LANES, data + p * ping + v * 2 * LANES, LANES * sizeof *lines);
+            for (size_t v = 0; v < count; v++)
+                memset(lines + (v * period + pings) * LANES, 0, (period - pings) * LANES * sizeof *lines);
+            spread_strip(swath, lines, behind(lines, BLOCKS * LANES * period), count, ping, data);
+        }
+}
+
+static void inverse(const struct rma *rma, const struct rma_swath *swath, const struct rma_patch *patch, void *pixels)
+{
+    const size_t x_count = (size_t)patch->grid.x_count;
+    const int length = patch->columns, *bins = patch->bins;
+    const size_t columns = swath->columns;
+    const bool streams = stream_pays((double)x_count * patch->grid.r_count * 2 * sizeof(real));
+    typedef real one __attribute__((vector_size(2 * sizeof(real)), aligned(sizeof(real)), may_alias));
+#pragma omp parallel for schedule(static) num_threads(rma->threads)
+    for (int i = 0; i < patch->grid.r_count; i++) {
+        real *wave = scratch_of(rma, 0), *turned = (real *)behind((complex_real *)wave, (size_t)length + 1);
+        real *out = (real *)pixels + 2 * x_count * (size_t)i;
+        real root = (real)sqrt(patch->grid.r_first + i * patch->grid.r_step);
+        const real *from = (const real *)rma->focused + 2 * swath->columns * (patch->row + (size_t)i);
+        memset(wave, 0, 2 * (size_t)length * sizeof *wave);
+        for (size_t k = 0; k < columns; k += RMA_TILE) {
+            __builtin_prefetch(from + 2 * (k + AHEAD));
+            for (size_t n = k; n < k + RMA_TILE; n++)
+                *(one *)(wave + 2 * bins[n]) += *(const one *)(from + 2 * n);
+        }
+        if (!patch->folds) {
+            memcpy(turned, wave, 2 * (size_t)length * sizeof *wave);
+            FFTW(execute_dft)(patch->azimuth_forward, (complex_real *)turned, (complex_real *)wave);
+            multiply(wave, patch->kernel, length);
+        }
+        FFTW(execute_dft)(patch->azimuth_inverse, (complex_real *)wave, (complex_real *)turned);
+        multiply(turned, patch->after, patch->grid.x_count);
+        for (size_t k = 0; k < 2 * x_count; k++)
+            turned[k] *= root;
+        if (streams)
+            stream_copy(out, turned, 2 * x_count * sizeof *out);
+        else
+            memcpy(out, turned, 2 * x_count * sizeof *out);
+    }
+}
+
+const struct rma_transform REAL_NAME(rma_transform) = {plan, destroy, compress, spread, inverse};
