@@ -11,13 +11,13 @@
 
 #include "command/task.h"
 #include "common/isa.h"
-#include "data/number.h"
-#include "data/shown_text.h"
-#include "data/suggestion.h"
-#include "data/supervisor.h"
-#include "data/temporary.h"
-#include "data/text_append.h"
-#include "measure/provenance.h"
+#include "text/number.h"
+#include "text/shown_text.h"
+#include "text/suggestion.h"
+#include "run/supervisor.h"
+#include "files/temporary.h"
+#include "text/text_append.h"
+#include "results/provenance.h"
 #include "show/table.h"
 
 enum { THREADS_MOST = 1024 };

@@ -5,11 +5,11 @@
 #include <strings.h>
 
 #include "command/task.h"
-#include "data/number.h"
-#include "data/text_append.h"
-#include "measure/metrics.h"
-#include "measure/provenance.h"
-#include "scene/matfile.h"
+#include "text/number.h"
+#include "text/text_append.h"
+#include "metrics/metrics.h"
+#include "results/provenance.h"
+#include "echoes/matfile.h"
 #include "show/plot.h"
 #include "show/table.h"
 

@@ -2,7 +2,7 @@
 #ifndef SASBENCH_COMMAND_TASK_H
 #define SASBENCH_COMMAND_TASK_H
 
-#include "data/paths.h"
+#include "files/paths.h"
 #include "measure/spec.h"
 #include "scene/scene.h"
 

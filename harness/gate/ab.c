@@ -12,8 +12,8 @@
 #include "scene/scene.h"
 #include "measure/outcome.h"
 #include "show/table.h"
-#include "data/paths.h"
-#include "data/progress_line.h"
+#include "files/paths.h"
+#include "run/progress_line.h"
 #include "measure/timing.h"
 
 /* 8 rounds decide between identical programs on a quiet machine. */

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "data/random.h"
+#include "scene/random.h"
 
 enum { DRAWS = 4000 };
 

@@ -17,8 +17,8 @@
 #include "measure/timing.h"
 #include "measure/session.h"
 #include "scene/simulate.h"
-#include "data/echo_data.h"
-#include "data/paths.h"
+#include "echoes/echo_data.h"
+#include "files/paths.h"
 #include "gate/ab_worker.h"
 
 enum { JOBS_MOST = 256 };

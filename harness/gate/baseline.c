@@ -6,10 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "data/echo_data.h"
-#include "data/folder.h"
-#include "data/paths.h"
-#include "data/progress_line.h"
+#include "echoes/echo_data.h"
+#include "files/folder.h"
+#include "files/paths.h"
+#include "run/progress_line.h"
 
 static const char *const scene_list[] = {"gate/points", "gate/field", "gate/blocks", "gate/squint"};
 enum { SCENES = sizeof scene_list / sizeof *scene_list };

@@ -3,7 +3,7 @@
 #define SASBENCH_GATE_BASELINE_H
 
 #include "measure/outcome.h"
-#include "measure/results.h"
+#include "results/results.h"
 
 /* One row of quality and work, formed once and not timed, with numbers rounded to a tenth of what counts as a change.
    What fails or is unsupported becomes a row. Texts point to the session, the spec and `reason`. */

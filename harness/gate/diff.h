@@ -3,7 +3,7 @@
 #ifndef SASBENCH_GATE_DIFF_H
 #define SASBENCH_GATE_DIFF_H
 
-#include "measure/results.h"
+#include "results/results.h"
 
 enum verdict {
     VERDICT_WORSE,   /* beyond the slack, or of --ab: beyond the effect that fails */

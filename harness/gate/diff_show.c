@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "data/shown_text.h"
-#include "data/text_file.h"
+#include "text/shown_text.h"
+#include "files/text_file.h"
 #include "gate/diff_groups.h"
 
 enum {

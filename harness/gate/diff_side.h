@@ -2,7 +2,7 @@
 #ifndef SASBENCH_GATE_DIFF_SIDE_H
 #define SASBENCH_GATE_DIFF_SIDE_H
 
-#include "measure/results.h"
+#include "results/results.h"
 
 /* What tells a row from the others. Those of measurements have target 0 and no axis and definition. */
 struct row_key {

@@ -9,7 +9,7 @@
 #include "backprojection/traces.h"
 #include "contract/delay.h"
 #include "common/turns.h"
-#include "data/echo_data.h"
+#include "echoes/echo_data.h"
 
 static const double NOISE_MOST = 2; /* 1: echoes that do not know each other, but for the chance of few pixels */
 enum { VISITS = 1 << 18, RECORDS_LEAST = 256 };

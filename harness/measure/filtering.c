@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "backprojection/traces.h"
-#include "data/echo_data.h"
+#include "echoes/echo_data.h"
 #include "scene/simulate.h"
 #include "wavenumber/wk.h"
 

@@ -1,7 +1,7 @@
 /* Plan, execute, check, destroy (imaging.h). */
 #include "measure/imaging.h"
 
-#include "data/echo_data.h"
+#include "echoes/echo_data.h"
 
 enum status imaging_open(const struct spec *spec, const struct problem *problem, struct imaging *imaging)
 {

@@ -9,10 +9,10 @@
 #include <string.h>
 
 #include "backprojection/pairs/pairs.h"
-#include "data/echo_data.h"
+#include "echoes/echo_data.h"
 #include "measure/darkness.h"
 #include "measure/imaging.h"
-#include "measure/metrics.h"
+#include "metrics/metrics.h"
 
 enum { AXES = 2, DEFINITIONS = 3 };
 static const char *const axis_names[AXES] = {[AXIS_AZIMUTH] = "azimuth", [AXIS_RANGE] = "range"};

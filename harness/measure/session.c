@@ -3,7 +3,7 @@
 
 #include <stdio.h>
 
-#include "data/echo_data.h"
+#include "echoes/echo_data.h"
 #include "measure/darkness.h"
 #include "measure/imaging.h"
 #include "scene/simulate.h"

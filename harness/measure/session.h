@@ -3,7 +3,7 @@
 #define SASBENCH_MEASURE_SESSION_H
 
 #include "measure/control.h"
-#include "measure/measurement.h"
+#include "results/measurement.h"
 #include "scene/scene.h"
 #include "measure/spec.h"
 

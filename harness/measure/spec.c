@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "data/number.h"
-#include "data/suggestion.h"
-#include "data/text_append.h"
+#include "text/number.h"
+#include "text/suggestion.h"
+#include "text/text_append.h"
 #include "contract/param.h"
 
 /* Every algorithm takes `precision` beside its own table; it goes to spec.precision. */

@@ -11,7 +11,7 @@
 
 #include "backprojection/pairs/pairs.h"
 #include "common/clock.h"
-#include "data/echo_data.h"
+#include "echoes/echo_data.h"
 #include "measure/imaging.h"
 
 static int compare_double(const void *a, const void *b)

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "data/paths.h"
+#include "files/paths.h"
 #include "scene/simulate.h"
 
 const struct assumptions assumption_sets[] = {

@@ -3,12 +3,12 @@
 
 #include <stdio.h>
 
-#include "data/echo_data.h"
-#include "data/folder.h"
-#include "data/paths.h"
-#include "data/shown_text.h"
+#include "echoes/echo_data.h"
+#include "files/folder.h"
+#include "files/paths.h"
+#include "text/shown_text.h"
 #include "measure/filtering.h"
-#include "measure/provenance.h"
+#include "results/provenance.h"
 #include "papers/sources.h"
 #include "scene/simulate.h"
 #include "show/plot.h"

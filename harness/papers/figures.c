@@ -6,13 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "data/echo_data.h"
-#include "data/folder.h"
-#include "data/paths.h"
-#include "data/shown_text.h"
-#include "data/text_file.h"
-#include "measure/metrics.h"
-#include "measure/provenance.h"
+#include "echoes/echo_data.h"
+#include "files/folder.h"
+#include "files/paths.h"
+#include "text/shown_text.h"
+#include "files/text_file.h"
+#include "metrics/metrics.h"
+#include "results/provenance.h"
 #include "measure/session.h"
 #include "papers/echo_figures.h"
 #include "papers/sources.h"

@@ -6,12 +6,12 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "data/echo_data.h"
-#include "data/paths.h"
+#include "echoes/echo_data.h"
+#include "files/paths.h"
 #include "measure/imaging.h"
 #include "papers/measured.h"
 #include "papers/assumptions.h"
-#include "study/phase.h"
+#include "papers/phase.h"
 
 static enum status results_read_if(const char *directory, const char *name, struct results *results)
 {

@@ -3,9 +3,9 @@
 #ifndef SASBENCH_PAPERS_MEASURED_H
 #define SASBENCH_PAPERS_MEASURED_H
 
-#include "data/published.h"
-#include "measure/results.h"
-#include "study/phase.h"
+#include "report/published.h"
+#include "results/results.h"
+#include "papers/phase.h"
 
 #define RULES_FILE "rules_random.csv" /* of a folder (rules.h) */
 

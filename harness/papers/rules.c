@@ -7,11 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "data/echo_data.h"
-#include "data/paths.h"
-#include "data/temporary.h"
-#include "data/text_file.h"
-#include "measure/metrics.h"
+#include "echoes/echo_data.h"
+#include "files/paths.h"
+#include "files/temporary.h"
+#include "files/text_file.h"
+#include "metrics/metrics.h"
 #include "measure/session.h"
 #include "measure/timing.h"
 #include "papers/tables.h"

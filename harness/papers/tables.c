@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "data/paths.h"
+#include "files/paths.h"
 #include "papers/sources.h"
 #include "papers/tables.h"
 #include "papers/assumptions.h"

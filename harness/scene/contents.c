@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "data/random.h"
-#include "scene/noise.h"
+#include "scene/random.h"
+#include "echoes/noise.h"
 #include "scene/simulate.h"
 
 enum status scene_out_of_memory(const struct reading *reading)

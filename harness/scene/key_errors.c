@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "data/text_append.h"
+#include "text/text_append.h"
 #include "scene/key_types.h"
 #include "scene/keys.h"
 

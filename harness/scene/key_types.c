@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "data/text_append.h"
+#include "text/text_append.h"
 
 #define LEVEL_MIN 1e-300 /* of amplitudes, unless they are 0 */
 

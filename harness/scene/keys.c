@@ -4,7 +4,7 @@
 #include <limits.h>
 #include <string.h>
 
-#include "data/text_append.h"
+#include "text/text_append.h"
 #include "scene/key_types.h"
 
 #define FNV_PRIME 1099511628211u

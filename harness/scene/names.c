@@ -6,7 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "data/shown_text.h"
+#include "text/shown_text.h"
 
 bool scene_has_extension(const char *path)
 {

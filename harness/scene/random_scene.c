@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include "data/random.h"
+#include "scene/random.h"
 
 enum { PINGS_MOST = 90, SAMPLES_MOST = 1500, COLUMNS = 40, ROWS = 24, SPARE = 24, PULSE_MOST = 300 };
 

@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "data/echo_data.h"
+#include "echoes/echo_data.h"
 #include "scene/contents.h"
-#include "scene/matfile.h"
+#include "echoes/matfile.h"
 #include "scene/names.h"
 #include "scene/simulate.h"
 

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "data/suggestion.h"
+#include "text/suggestion.h"
 #include "scene/contents.h"
 #include "scene/names.h"
 

@@ -12,8 +12,8 @@
 #include "common/fft_length.h"
 #include "common/memory.h"
 #include "common/progress.h"
-#include "data/echo_data.h"
-#include "data/random.h"
+#include "echoes/echo_data.h"
+#include "scene/random.h"
 
 int pulse_length_lfm(double duration, double fs)
 {

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "data/text_read.h"
+#include "files/text_read.h"
 #include "scene/text.h"
 
 #define INCLUDE_DEPTH 10                /* also ends files that include themselves */

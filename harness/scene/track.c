@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "data/csv.h"
-#include "data/random.h"
+#include "files/csv.h"
+#include "scene/random.h"
 #include "scene/contents.h"
-#include "scene/matvar.h"
+#include "echoes/matvar.h"
 #include "scene/names.h"
 
 static const double degree = M_PI / 180;

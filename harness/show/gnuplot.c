@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 #include "contract/algorithm.h"
-#include "data/temporary.h"
+#include "files/temporary.h"
 #include "show/plot.h"
 
 extern char **environ;

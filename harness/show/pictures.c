@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "measure/metrics.h"
-#include "data/folder.h"
-#include "data/shown_text.h"
-#include "data/paths.h"
+#include "metrics/metrics.h"
+#include "files/folder.h"
+#include "text/shown_text.h"
+#include "files/paths.h"
 
 /* A label of NULL: the slices. */
 static void path_make(const char *directory, const char *scene, const char *label, char *path, size_t size)

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "data/echo_data.h"
+#include "echoes/echo_data.h"
 #include "show/plot.h"
 #include "show/plot_queue.h"
 

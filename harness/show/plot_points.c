@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "data/csv.h"
-#include "data/text_append.h"
-#include "data/text_file.h"
+#include "files/csv.h"
+#include "text/text_append.h"
+#include "files/text_file.h"
 
 struct setting setting_read(const char *options)
 {

@@ -2,7 +2,7 @@
 #ifndef SASBENCH_SHOW_PLOT_POINTS_H
 #define SASBENCH_SHOW_PLOT_POINTS_H
 
-#include "measure/results.h"
+#include "results/results.h"
 
 /* The options of a row, split: the first that is a number, and the rest. */
 struct setting {

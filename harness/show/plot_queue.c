@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "data/temporary.h"
+#include "files/temporary.h"
 
 struct queued_plot {
     struct plot plot; /* its path is ours */

@@ -11,7 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "data/text_file.h"
+#include "files/text_file.h"
 
 static enum status file_failed(const char *path)
 {

@@ -7,8 +7,8 @@
 #include <limits.h>
 #include <stdio.h>
 
-#include "data/folder.h"
-#include "data/temporary.h"
+#include "files/folder.h"
+#include "files/temporary.h"
 #include "show/gnuplot.h"
 #include "contract/status.h"
 

@@ -8,9 +8,9 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "data/number.h"
-#include "data/shown_text.h"
-#include "data/text_append.h"
+#include "text/number.h"
+#include "text/shown_text.h"
+#include "text/text_append.h"
 #include "measure/outcome.h"
 
 enum { WIDTH_WIDE = 110, WIDTH_LEAST = 80 };

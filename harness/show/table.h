@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-#include "measure/results.h"
+#include "results/results.h"
 
 /* What the columns mean and their names. The next row begins with its scene's heading. */
 void table_header(FILE *stream);

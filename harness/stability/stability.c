@@ -6,13 +6,13 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "data/folder.h"
-#include "data/paths.h"
-#include "data/progress_line.h"
-#include "data/shown_text.h"
-#include "measure/provenance.h"
+#include "files/folder.h"
+#include "files/paths.h"
+#include "run/progress_line.h"
+#include "text/shown_text.h"
+#include "results/provenance.h"
 #include "show/plot.h"
-#include "stability/table.h"
+#include "stability/stability_table.h"
 
 /* Beside every algorithm as it is by default: the plain paths, and the engine that small images do not choose. */
 static const char *const settings[] = {"bp_nearest:exact=true", "bp_nearest:engine=invariant",

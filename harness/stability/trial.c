@@ -15,7 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "data/echo_data.h"
+#include "echoes/echo_data.h"
 #include "measure/imaging.h"
 #include "scene/simulate.h"
 #include "stability/method.h"

@@ -10,9 +10,10 @@ find algorithms harness -name '*.[ch]' | sort | xargs awk '
         order = "algorithms/contract algorithms/common algorithms/backprojection/pairs algorithms/backprojection " \
                 "algorithms/backprojection/general algorithms/backprojection/invariant " \
                 "algorithms/backprojection/factorised algorithms/range_migration algorithms/range_migration/delay " \
-                "algorithms/wavenumber algorithms/planner algorithms/methods harness/data harness/scene " \
-                "harness/measure harness/show harness/study harness/stability harness/gate harness/papers " \
-                "harness/command harness/tests " \
+                "algorithms/wavenumber algorithms/planner algorithms/methods harness/text harness/files " \
+                "harness/echoes harness/scene harness/metrics harness/results harness/measure harness/show " \
+                "harness/report harness/sweep harness/advise harness/run harness/bench harness/stability harness/gate " \
+                "harness/papers harness/claims harness/command harness/tests " \
                 "harness/tests/algorithms harness/tests/scene harness/tests/measure harness/tests/show " \
                 "harness/tests/study harness/tests/stability harness/tests/gate harness/tests/papers " \
                 "harness/tests/command harness/tests/fuzz harness/tests/digits"

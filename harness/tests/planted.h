@@ -2,8 +2,8 @@
 #ifndef SASBENCH_TEST_PLANTED_H
 #define SASBENCH_TEST_PLANTED_H
 
-#include "measure/results_folder.h"
-#include "papers/claims.h"
+#include "results/results_folder.h"
+#include "claims/claims.h"
 #include "tests/support.h"
 
 /* Begin the test's folder anew, and read it back when all rows are there. */

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "measure/imaging.h"
-#include "scene/noise.h"
+#include "echoes/noise.h"
 #include "scene/random_scene.h"
 #include "scene/simulate.h"
 

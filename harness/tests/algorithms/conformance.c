@@ -8,8 +8,8 @@
 
 #include "backprojection/pairs/pairs.h"
 #include "gate/baseline.h"
-#include "data/csv.h"
-#include "measure/metrics.h"
+#include "files/csv.h"
+#include "metrics/metrics.h"
 #include "scene/simulate.h"
 #include "tests/algorithms/conformance_params.h"
 #include "tests/algorithms/conformance_scenes.h"

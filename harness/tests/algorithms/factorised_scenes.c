@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "measure/metrics.h"
+#include "metrics/metrics.h"
 #include "tests/support.h"
 
 enum { SAMPLES = 240 };

@@ -4,7 +4,7 @@
 #include <stdio.h>
 
 #include "planner/known.h"
-#include "measure/metrics.h"
+#include "metrics/metrics.h"
 #include "tests/support.h"
 
 struct forecast forecast_of(const char *text, const struct problem *problem)

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "data/echo_data.h"
+#include "echoes/echo_data.h"
 #include "tests/assertions.h"
 
 enum { SAMPLES = 16, RECEIVERS = 3, PINGS = 8, PULSE = 4 };

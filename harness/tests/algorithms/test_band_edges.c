@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "backprojection/farrow.h"
-#include "measure/metrics.h"
+#include "metrics/metrics.h"
 #include "scene/simulate.h"
 #include "tests/support.h"
 

@@ -10,7 +10,7 @@
 #include "backprojection/bp.h"
 #include "contract/delay.h"
 #include "backprojection/pairs/pairs.h"
-#include "data/random.h"
+#include "scene/random.h"
 #include "tests/support.h"
 
 static double uniform(struct random *random, double low, double high)

@@ -13,7 +13,7 @@
 #include "backprojection/invariant/invariant_plan.h"
 #include "contract/delay.h"
 #include "common/isa.h"
-#include "data/random.h"
+#include "scene/random.h"
 #include "tests/support.h"
 
 /* Grids and tracks of the invariant engine: odd sizes, one receiver, negative offsets, grids that begin off the ping

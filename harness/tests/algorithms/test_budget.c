@@ -6,7 +6,7 @@
 #include "backprojection/general/blocks.h"
 #include "contract/delay.h"
 #include "common/isa.h"
-#include "data/random.h"
+#include "scene/random.h"
 #include "tests/support.h"
 
 static double uniform(struct random *random, double low, double high)

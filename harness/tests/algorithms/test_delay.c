@@ -7,7 +7,7 @@
 #include <time.h>
 
 #include "contract/delay.h"
-#include "data/random.h"
+#include "scene/random.h"
 #include "tests/support.h"
 
 static double uniform(struct random *random, double low, double high)

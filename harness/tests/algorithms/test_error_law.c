@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "measure/metrics.h"
+#include "metrics/metrics.h"
 #include "scene/simulate.h"
 #include "measure/timing.h"
 #include "tests/support.h"

@@ -8,11 +8,11 @@
 
 #include "tests/support.h"
 
-#include "study/batch.h"
+#include "run/batch.h"
 #include "measure/scalar_loop.h"
 #include "measure/timing.h"
-#include "measure/metrics.h"
-#include "data/number.h"
+#include "metrics/metrics.h"
+#include "text/number.h"
 #include "measure/outcome.h"
 #include "scene/simulate.h"
 

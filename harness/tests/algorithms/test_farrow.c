@@ -6,7 +6,7 @@
 
 #include "backprojection/farrow.h"
 #include "backprojection/traces.h"
-#include "measure/metrics.h"
+#include "metrics/metrics.h"
 #include "tests/support.h"
 
 /* The polynomial of the branches at u. */

@@ -4,7 +4,7 @@
 #include <stdio.h>
 
 #include "backprojection/fitted.h"
-#include "measure/metrics.h"
+#include "metrics/metrics.h"
 #include "tests/support.h"
 
 enum { MOST = FITTED_TAPS_MOST };

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "measure/metrics.h"
+#include "metrics/metrics.h"
 #include "measure/session.h"
 #include "measure/timing.h"
 #include "tests/algorithms/predictions.h"

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "measure/metrics.h"
+#include "metrics/metrics.h"
 #include "backprojection/omission.h"
 #include "backprojection/pairs/pairs.h"
 #include "contract/condition.h"

@@ -8,7 +8,7 @@
 #include "backprojection/pairs/pairs.h"
 #include "backprojection/pairs/turned.h"
 #include "contract/delay.h"
-#include "data/random.h"
+#include "scene/random.h"
 #include "tests/support.h"
 
 static void make(struct acquisition *a, int pings, int receivers, int samples, double spacing, double speed)

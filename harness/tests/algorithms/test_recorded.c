@@ -6,7 +6,7 @@
 
 #include "tests/support.h"
 
-#include "scene/matfile.h"
+#include "echoes/matfile.h"
 
 #define COUNT_OF(array) (sizeof array / sizeof *array)
 

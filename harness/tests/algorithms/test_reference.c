@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "contract/delay.h"
-#include "measure/metrics.h"
+#include "metrics/metrics.h"
 #include "scene/simulate.h"
 #include "tests/algorithms/reference_numbers.h"
 #include "tests/support.h"

@@ -9,7 +9,7 @@
 #include <fftw3.h>
 
 #include "contract/delay.h"
-#include "measure/metrics.h"
+#include "metrics/metrics.h"
 #include "scene/simulate.h"
 #include "tests/algorithms/rma_numbers.h"
 #include "tests/algorithms/rma_scenes.h"

@@ -10,7 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "data/random.h"
+#include "scene/random.h"
 #include "tests/support.h"
 
 enum { PINGS = 9, RECEIVERS = 3, SAMPLES = 500, COLUMNS = 331, ROWS = 11, PIXELS = COLUMNS * ROWS };

@@ -9,7 +9,7 @@
 #include "backprojection/traces.h"
 #include "contract/delay.h"
 #include "common/fft_length.h"
-#include "data/random.h"
+#include "scene/random.h"
 #include "range_migration/rma_engine.h"
 #include "tests/support.h"
 

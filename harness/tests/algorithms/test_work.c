@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "data/echo_data.h"
+#include "echoes/echo_data.h"
 #include "tests/support.h"
 
 enum { PLANS = 1000 };

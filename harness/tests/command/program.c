@@ -10,7 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "scene/matfile.h"
+#include "echoes/matfile.h"
 
 static char program[PATH_MAX];
 char long_name[5000];

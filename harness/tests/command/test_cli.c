@@ -12,8 +12,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "data/csv.h"
-#include "scene/matfile.h"
+#include "files/csv.h"
+#include "echoes/matfile.h"
 #include "tests/command/program.h"
 
 /* Whether text goes on with part, where long lines are wrapped: runs of blanks and line breaks are alike. */

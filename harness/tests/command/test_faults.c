@@ -14,9 +14,9 @@
 
 #include "tests/support.h"
 
-#include "data/csv.h"
-#include "data/folder.h"
-#include "data/text_file.h"
+#include "files/csv.h"
+#include "files/folder.h"
+#include "files/text_file.h"
 
 #define QUICK "\"$SASBENCH_PROGRAM\" run study/quick -a bp_nearest -a bp_linear -o r"
 

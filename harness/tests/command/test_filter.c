@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "data/csv.h"
-#include "data/echo_data.h"
-#include "scene/matfile.h"
+#include "files/csv.h"
+#include "echoes/echo_data.h"
+#include "echoes/matfile.h"
 #include "tests/algorithms/squint_numbers.h"
 #include "tests/command/program.h"
 

@@ -9,8 +9,8 @@
 #include <sys/wait.h>
 #include <time.h>
 
-#include "data/csv.h"
-#include "data/random.h"
+#include "files/csv.h"
+#include "scene/random.h"
 #include "tests/command/program.h"
 
 /* SASBENCH_KILLS in the environment: more of them, for a long run by hand. */

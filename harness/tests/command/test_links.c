@@ -11,8 +11,8 @@
 
 #include "tests/support.h"
 
-#include "data/folder.h"
-#include "data/text_file.h"
+#include "files/folder.h"
+#include "files/text_file.h"
 
 /* Commands that write into the folder r, as the clean one leaves it: all names there become links, to a file, a folder
    and nothing in turn. What is read is refused as a link. */

@@ -5,7 +5,7 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 
-#include "data/paths.h"
+#include "files/paths.h"
 #include "measure/imaging.h"
 #include "planner/planner.h"
 #include "planner/process.h"

@@ -8,8 +8,8 @@
 #include <unistd.h>
 
 #include "common/progress.h"
-#include "data/paths.h"
-#include "data/progress_line.h"
+#include "files/paths.h"
+#include "run/progress_line.h"
 #include "measure/session.h"
 #include "tests/command/program.h"
 

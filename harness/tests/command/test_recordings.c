@@ -6,8 +6,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "data/csv.h"
-#include "scene/matfile.h"
+#include "files/csv.h"
+#include "echoes/matfile.h"
 #include "tests/command/program.h"
 
 #define QUICK_IMAGE "image = { around_targets = { half_x = 0.6; half_r = 0.15; x_step = 0.02; r_step = 0.025; }; };\n"

@@ -10,8 +10,8 @@
 
 #include "show/plot.h"
 #include "show/plot_points.h"
-#include "show/report.h"
-#include "data/shown_text.h"
+#include "report/report.h"
+#include "text/shown_text.h"
 #include "tests/support.h"
 
 #define PLOTS SASBENCH_ROOT "/plots"

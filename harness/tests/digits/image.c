@@ -1,7 +1,7 @@
 /* usage: image SCENE SPEC: form one image, for .ci/digits, which builds the algorithms with a numerical sanitizer. */
 #include <stdio.h>
 
-#include "data/echo_data.h"
+#include "echoes/echo_data.h"
 #include "measure/spec.h"
 #include "scene/scene.h"
 #include "scene/simulate.h"

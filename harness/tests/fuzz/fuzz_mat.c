@@ -15,7 +15,7 @@
 #include <sys/mman.h>
 #include <sys/types.h>
 
-#include "scene/matfile.h"
+#include "echoes/matfile.h"
 #include "tests/fuzz/input.h"
 
 enum { REPORT_SIZE = 1 << 16, COUNTERS_MOST = 1 << 20 };

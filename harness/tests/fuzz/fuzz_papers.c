@@ -1,8 +1,8 @@
 /* Any bytes as claims.csv (read and judged without measurements), as published.csv, and as points of `phase --at`. */
 #include <stdio.h>
 
-#include "papers/claims.h"
-#include "study/phase.h"
+#include "claims/claims.h"
+#include "papers/phase.h"
 #include "tests/fuzz/input.h"
 
 static struct measured measured; /* nothing measured; the papers' numbers */

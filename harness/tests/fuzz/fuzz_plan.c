@@ -4,8 +4,8 @@
 #include <omp.h>
 #include <stdlib.h>
 
-#include "data/echo_data.h"
-#include "data/random.h"
+#include "echoes/echo_data.h"
+#include "scene/random.h"
 #include "scene/scene.h"
 #include "tests/fuzz/input.h"
 

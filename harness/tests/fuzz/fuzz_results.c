@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "gate/diff.h"
-#include "measure/results_folder.h"
+#include "results/results_folder.h"
 #include "tests/fuzz/input.h"
 
 static FILE *nowhere;

@@ -13,7 +13,7 @@
 
 #include "gate/ab.h"
 #include "gate/ab_interval.h"
-#include "data/random.h"
+#include "scene/random.h"
 #include "tests/support.h"
 
 /* --- Statistics ----------------------------------------------------------------------------------------------- */

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "data/csv.h"
+#include "files/csv.h"
 
 char results_directory[256], measurements_path[300], targets_path[300];
 

@@ -2,7 +2,7 @@
 #ifndef SASBENCH_TEST_RESULTS_FIXTURE_H
 #define SASBENCH_TEST_RESULTS_FIXTURE_H
 
-#include "measure/results_folder.h"
+#include "results/results_folder.h"
 #include "tests/assertions.h"
 
 #define MEASUREMENT_HEADER                                                                                             \

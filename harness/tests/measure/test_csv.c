@@ -10,7 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "data/csv.h"
+#include "files/csv.h"
 #include "tests/measure/results_fixture.h"
 
 static void test_csv_read(void **state)

@@ -2,8 +2,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "data/echo_data.h"
-#include "measure/metrics.h"
+#include "echoes/echo_data.h"
+#include "metrics/metrics.h"
 #include "tests/support.h"
 
 static double complex pattern(int i, int j)

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "measure/metrics.h"
+#include "metrics/metrics.h"
 #include "tests/measure/exact_image.h"
 
 static void check_slice(const struct exact_scene *s, const struct slice_metrics *m)

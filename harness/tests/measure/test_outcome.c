@@ -3,10 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "measure/metrics.h"
+#include "metrics/metrics.h"
 #include "measure/outcome.h"
-#include "measure/results_folder.h"
-#include "show/report.h"
+#include "results/results_folder.h"
+#include "report/report.h"
 #include "tests/support.h"
 
 static struct scene scene;

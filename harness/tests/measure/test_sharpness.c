@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "measure/metrics.h"
+#include "metrics/metrics.h"
 #include "tests/support.h"
 
 /* A tenth more of the exact image is -20 dB of its peak away everywhere that the slice has it. */

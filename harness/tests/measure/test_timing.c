@@ -9,10 +9,10 @@
 #include "common/clock.h"
 #include "contract/delay.h"
 #include "measure/outcome.h"
-#include "measure/results.h"
-#include "show/report.h"
+#include "results/results.h"
+#include "report/report.h"
 #include "show/table.h"
-#include "study/batch.h"
+#include "run/batch.h"
 #include "tests/measure/fake_clock.h"
 #include "tests/support.h"
 

@@ -7,7 +7,7 @@
 
 #include "command/task.h"
 #include "measure/session.h"
-#include "papers/verdicts.h"
+#include "claims/verdicts.h"
 #include "tests/planted.h"
 
 /* --- The file -------------------------------------------------------------------------------------------------- */

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "papers/assumptions.h"
-#include "papers/sensitivity.h"
+#include "claims/sensitivity.h"
 #include "tests/planted.h"
 
 static const struct assumptions *set_named(const char *name)

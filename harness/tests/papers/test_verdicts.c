@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "data/random.h"
+#include "scene/random.h"
 #include "measure/outcome.h"
 #include "measure/session.h"
 #include "papers/rules.h"

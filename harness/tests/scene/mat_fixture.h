@@ -4,7 +4,7 @@
 
 #include <matio.h>
 
-#include "scene/matfile.h"
+#include "echoes/matfile.h"
 #include "tests/assertions.h"
 
 extern char directory[128];

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "data/random.h"
+#include "scene/random.h"
 #include "scene/conjugated.h"
 #include "scene/simulate.h"
 #include "tests/support.h"

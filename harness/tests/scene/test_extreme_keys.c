@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "data/paths.h"
+#include "files/paths.h"
 #include "scene/simulate.h"
 #include "tests/support.h"
 

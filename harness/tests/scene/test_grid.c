@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "contract/delay.h"
-#include "data/random.h"
+#include "scene/random.h"
 #include "tests/scene/scene_fixture.h"
 
 static void grid_texts(void **state)

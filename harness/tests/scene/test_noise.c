@@ -2,10 +2,10 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "data/echo_data.h"
-#include "data/random.h"
-#include "scene/matfile.h"
-#include "scene/noise.h"
+#include "echoes/echo_data.h"
+#include "scene/random.h"
+#include "echoes/matfile.h"
+#include "echoes/noise.h"
 #include "scene/simulate.h"
 #include "tests/support.h"
 

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 
 #include "contract/delay.h"
-#include "data/echo_data.h"
-#include "data/random.h"
+#include "echoes/echo_data.h"
+#include "scene/random.h"
 #include "scene/simulate.h"
 #include "tests/scene/scene_fixture.h"
 

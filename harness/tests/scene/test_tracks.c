@@ -5,7 +5,7 @@
 
 #include <matio.h>
 
-#include "measure/metrics.h"
+#include "metrics/metrics.h"
 #include "scene/simulate.h"
 #include "tests/support.h"
 

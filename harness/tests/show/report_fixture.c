@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "measure/results_folder.h"
+#include "results/results_folder.h"
 #include "tests/support.h"
 
 struct measurement row_of(const char *scene, const char *algorithm, const char *options, double run_s, double error)

@@ -2,7 +2,7 @@
 #ifndef SASBENCH_TEST_REPORT_FIXTURE_H
 #define SASBENCH_TEST_REPORT_FIXTURE_H
 
-#include "measure/measurement.h"
+#include "results/measurement.h"
 
 /* A finished row; texts are borrowed. */
 struct measurement row_of(const char *scene, const char *algorithm, const char *options, double run_s, double error);

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "data/echo_data.h"
+#include "echoes/echo_data.h"
 #include "show/plot.h"
 #include "show/plot_queue.h"
 #include "tests/support.h"

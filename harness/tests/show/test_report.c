@@ -6,8 +6,8 @@
 #include <unistd.h>
 
 #include "show/plot.h"
-#include "show/report.h"
-#include "study/sweep_tables.h"
+#include "report/report.h"
+#include "sweep/sweep_tables.h"
 #include "tests/show/report_fixture.h"
 #include "tests/support.h"
 

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "contract/delay.h"
-#include "data/paths.h"
-#include "data/random.h"
+#include "files/paths.h"
+#include "scene/random.h"
 #include "scene/simulate.h"
 #include "stability/exact_geometry.h"
 #include "stability/exact_image.h"

@@ -10,7 +10,7 @@
 
 #include "contract/delay.h"
 #include "stability/stability.h"
-#include "stability/table.h"
+#include "stability/stability_table.h"
 #include "tests/support.h"
 
 enum fault {

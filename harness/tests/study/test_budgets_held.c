@@ -4,11 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "measure/metrics.h"
+#include "metrics/metrics.h"
 #include "measure/session.h"
 #include "measure/timing.h"
 #include "planner/planner.h"
-#include "study/machine_rates.h"
+#include "advise/machine_rates.h"
 #include "tests/support.h"
 
 enum { SEEDS_MOST = 1000, BUDGETS = 4 };

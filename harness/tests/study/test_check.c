@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "study/check.h"
+#include "advise/check.h"
 #include "tests/support.h"
 
 /* study/quick, compressed, by parts that the tests vary. */

@@ -10,13 +10,13 @@
 #include <string.h>
 
 #include "measure/imaging.h"
-#include "measure/metrics.h"
+#include "metrics/metrics.h"
 #include "measure/session.h"
 #include "measure/timing.h"
 #include "planner/candidates.h"
 #include "planner/process.h"
-#include "study/machine_rates.h"
-#include "study/sweep_settings.h"
+#include "advise/machine_rates.h"
+#include "sweep/sweep_settings.h"
 #include "tests/support.h"
 
 static const double budgets[] = {1e-1, 1e-2, 1e-3, 1e-4};

@@ -7,12 +7,12 @@
 #include <unistd.h>
 
 #include "command/task.h"
-#include "data/csv.h"
-#include "measure/provenance.h"
+#include "files/csv.h"
+#include "results/provenance.h"
 #include "planner/planner.h"
 #include "planner/rates.h"
-#include "study/machine_rates.h"
-#include "study/planned.h"
+#include "advise/machine_rates.h"
+#include "advise/planned.h"
 #include "tests/support.h"
 
 /* Every seed is a scene, and always the same one. */

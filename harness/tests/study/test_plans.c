@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "command/task.h"
-#include "data/csv.h"
-#include "measure/results.h"
+#include "files/csv.h"
+#include "results/results.h"
 #include "tests/support.h"
 
 static void run_auto(const char *text)

@@ -7,8 +7,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "data/supervisor.h"
-#include "study/batch.h"
+#include "run/supervisor.h"
+#include "run/batch.h"
 #include "tests/support.h"
 
 enum crash { CRASH_NONE, CRASH_NULL, CRASH_ABORT, CRASH_FPE, CRASH_KILL, CRASH_EXIT, CRASH_PLAN };

@@ -9,11 +9,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "data/csv.h"
-#include "measure/results_folder.h"
-#include "study/sweep_settings.h"
+#include "files/csv.h"
+#include "results/results_folder.h"
+#include "sweep/sweep_settings.h"
 #include "show/plot_points.h"
-#include "study/sweep_tables.h"
+#include "sweep/sweep_tables.h"
 #include "command/task.h"
 #include "tests/support.h"
 

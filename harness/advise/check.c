@@ -1,0 +1,245 @@
+/* Conditions and sensitivities of a scene (check.h). */
+#include "advise/check.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "contract/delay.h"
+#include "text/text_append.h"
+#include "measure/outcome.h"
+#include "measure/session.h"
+#include "show/table.h"
+
+/* ---- conditions that only the scene's own targets tell ---- */
+
+/* Two of them: amplitudes, and how far apart they lie. */
+static int targets_conditions(const struct scene *scene, enum precision precision, struct condition *list)
+{
+    const struct acquisition *a = &scene->acquisition;
+    double least = INFINITY, greatest = 0, pairs = (double)a->pings * a->receivers;
+    double digits = precision == PRECISION_FLOAT ? 0x1p24 : 0x1p53;
+    for (int k = 0; k < scene->point_count; k++) {
+        double magnitude = cabs(scene->targets[k].amplitude);
+        least = magnitude > 0 ? fmin(least, magnitude) : least;
+        greatest = fmax(greatest, magnitude);
+    }
+    if (!(greatest > 0))
+        return 0;
+    int count = 0;
+    if (precision == PRECISION_FLOAT)
+        list[count++] = (struct condition){
+            "float_range",
+            fmax(greatest, 1 / greatest),
+            0x1p100,
+            false,
+            SEVERITY_INFORM,
+            "the strongest echo's amplitude, or 1 over it; beyond, a power of two scales the samples",
+            "nothing: the scaling is exact"};
+    list[count++] = (struct condition){"dynamic",
+                                       20 * log10(greatest / least),
+                                       20 * log10(digits / sqrt(pairs)),
+                                       false,
+                                       SEVERITY_WARN,
+                                       "from the strongest point target to the weakest (dB)",
+                                       "precision=double"};
+    return count;
+}
+
+static const char *verdict(const struct condition *condition)
+{
+    if (condition_holds(condition))
+        return "holds";
+    return condition->severity == SEVERITY_REFUSE ? "REFUSED" : condition->severity == SEVERITY_WARN ? "warns" : "note";
+}
+
+static void condition_print(FILE *stream, const struct condition *c)
+{
+    const bool holds = condition_holds(c);
+    char figures[120], words[500];
+    int used = snprintf(figures, sizeof figures, "  %-7s  %-16s %10.3g  %s %-8.3g", verdict(c), c->name, c->value,
+                        c->at_least ? ">" : "<=", c->limit);
+    used += snprintf(words, sizeof words, "%s%s%s", c->meaning, holds ? "" : "; cure: ", holds ? "" : c->cure);
+    const bool one_line = table_fits(stream, (size_t)used + 2);
+    fprintf(stream, "%s%s%s\n", figures, one_line ? "  " : "", one_line ? words : "");
+    if (!one_line)
+        table_text(stream, 11, words);
+}
+
+void check_warnings(FILE *stream, const struct scene *scene, bool proposed)
+{
+    struct problem problem = scene_problem(scene, PRECISION_DOUBLE);
+    struct condition list[SCENE_CONDITIONS + CONDITIONS_MAX];
+    char text[500];
+    int count = scene_conditions(scene, list);
+    count += conditions_sampled(&problem, list + count, CONDITIONS_MAX);
+    if (proposed) { /* pixels that follow from units say nothing of them */
+        problem.patch_count = 0;
+        conditions_scene(&problem, list);
+    }
+    for (int k = 0; k < count; k++)
+        if (list[k].severity == SEVERITY_WARN && !condition_holds(&list[k])) {
+            outcome_warning(&list[k], text, sizeof text);
+            table_warning(stream, text);
+        }
+    fflush(stream);
+}
+
+void check_scene(FILE *stream, const struct scene *scene)
+{
+    struct condition list[SCENE_CONDITIONS];
+    fprintf(stream, "\nThe scene, whichever algorithm images it\n");
+    for (int k = 0, count = scene_conditions(scene, list); k < count; k++)
+        condition_print(stream, &list[k]);
+}
+
+static bool condition_same(const struct condition *a, const struct condition *b)
+{
+    return strcmp(a->name, b->name) == 0 && a->value == b->value && a->limit == b->limit && a->severity == b->severity
+           && strcmp(a->meaning, b->meaning) == 0 && strcmp(a->cure, b->cure) == 0;
+}
+
+/* Was it told already? If not, it is now. */
+static bool told_before(struct check_told *told, const struct condition *condition)
+{
+    for (int k = 0; k < told->count; k++)
+        if (condition_same(&told->list[k], condition))
+            return true;
+    if (told->count < (int)(sizeof told->list / sizeof *told->list))
+        told->list[told->count++] = *condition;
+    return false;
+}
+
+/* "as above: holds subsonic, sampled; warns ghost" */
+static void repeated_print(FILE *stream, const struct condition *const *repeated, int count)
+{
+    static const char *const verdicts[] = {"holds", "note", "warns", "REFUSED"};
+    char text[600] = "";
+    for (int v = 0; v < 4; v++) {
+        bool first = true;
+        for (int k = 0; k < count; k++) {
+            if (strcmp(verdict(repeated[k]), verdicts[v]) != 0)
+                continue;
+            if (first)
+                text_append(text, sizeof text, "%s %s", *text ? ";" : "as above:", verdicts[v]);
+            text_append(text, sizeof text, "%s%s", first ? " " : ", ", repeated[k]->name);
+            first = false;
+        }
+    }
+    if (count > 0)
+        table_text(stream, 2, text);
+}
+
+enum status check_algorithm(FILE *stream, const struct scene *scene, const struct spec *spec, struct check_told *told,
+                            bool *refused)
+{
+    struct problem problem = session_problem(scene, spec->algorithm, spec->precision);
+    struct condition list[CONDITIONS_MAX + 2];
+    const struct condition *repeated[CONDITIONS_MAX + 2];
+    int repeated_count = 0;
+    void *plan = NULL;
+    int count = algorithm_conditions(spec->algorithm, &problem, spec->options, list, CONDITIONS_MAX);
+    count += targets_conditions(scene, spec->precision, list + count);
+    fprintf(stream, "\n%s%s%s\n", spec->algorithm->name, *spec->text ? ":" : "", spec->text);
+    *refused = !conditions_accept(list, count);
+    for (int k = 0; k < count; k++)
+        if (told_before(told, &list[k]))
+            repeated[repeated_count++] = &list[k];
+        else
+            condition_print(stream, &list[k]);
+    repeated_print(stream, repeated, repeated_count);
+    if (*refused)
+        return STATUS_OK;
+    enum status status = spec->algorithm->plan(&problem, spec->options, &plan);
+    spec->algorithm->destroy(plan);
+    *refused = status == STATUS_UNSUPPORTED;
+    if (*refused)
+        fprintf(stream, "  REFUSED  %s\n", status_message());
+    return *refused ? STATUS_OK : status;
+}
+
+/* ---- sensitivities ---- */
+
+enum quantity { SOUND_SPEED, CARRIER, RANGE, SPEED, POSITION };
+
+/* Phase (rad) of a pair whose quantity is off by a small relative error, the transmitter's position by metres. */
+static double phase_of(const struct scene *scene, int ping, int receiver, struct vector p,
+                       const double off[SENSITIVITIES])
+{
+    const struct acquisition *a = &scene->acquisition;
+    struct vector tx = a->tx[ping], v = a->velocity[ping];
+    struct vector rx = a->rx[(size_t)ping * (size_t)a->receivers + (size_t)receiver];
+    tx.y -= off[POSITION];
+    p.y *= 1 + off[RANGE];
+    v.x *= 1 + off[SPEED];
+    return 2 * M_PI * a->fc * (1 + off[CARRIER]) * delay_exact(tx, rx, v, p, a->sound_speed * (1 + off[SOUND_SPEED]));
+}
+
+/* The middle of the outermost pixels. */
+static struct vector middle_of(const struct scene *scene)
+{
+    double x[2] = {INFINITY, -INFINITY}, r[2] = {INFINITY, -INFINITY};
+    for (int k = 0; k < scene->patch_count; k++) {
+        const struct grid *g = &scene->patches[k];
+        for (int corner = 0; corner < 4; corner++) {
+            const struct vector p = grid_point(g, corner / 2 * (g->r_count - 1), corner % 2 * (g->x_count - 1));
+            x[0] = fmin(x[0], p.x);
+            x[1] = fmax(x[1], p.x);
+            r[0] = fmin(r[0], p.y);
+            r[1] = fmax(r[1], p.y);
+        }
+    }
+    return (struct vector){(x[0] + x[1]) / 2, (r[0] + r[1]) / 2, 0};
+}
+
+void check_sensitivities(const struct scene *scene, struct sensitivity list[SENSITIVITIES])
+{
+    static const struct {
+        const char *quantity, *change;
+        double size; /* relative; of positions m */
+    } changes[SENSITIVITIES] = {
+        [SOUND_SPEED] = {"sound speed", "a relative error of 1e-5", 1e-5},
+        [CARRIER] = {"carrier", "a relative error of 1e-5", 1e-5},
+        [RANGE] = {"range", "a relative error of 1e-5", 1e-5},
+        [SPEED] = {"speed", "a relative error of 1e-2", 1e-2},
+        [POSITION] = {"positions", "a transmitter 1 mm off", 1e-3},
+    };
+    const struct acquisition *a = &scene->acquisition;
+    const struct vector middle = middle_of(scene);
+    for (int q = 0; q < SENSITIVITIES; q++) {
+        const double none[SENSITIVITIES] = {0};
+        double off[SENSITIVITIES] = {0}, least = INFINITY, greatest = -INFINITY;
+        off[q] = changes[q].size;
+        for (int n = 0; n < 2 * a->pings; n++) {
+            int m = n % 2 ? a->receivers - 1 : 0;
+            if (!condition_sees(a, n / 2, middle))
+                continue;
+            double moved = phase_of(scene, n / 2, m, middle, off) - phase_of(scene, n / 2, m, middle, none);
+            least = fmin(least, moved);
+            greatest = fmax(greatest, moved);
+        }
+        double phase = least <= greatest ? fmax(fabs(least), fabs(greatest)) : 0;
+        double shared = least <= greatest ? (least + greatest) / 2 : 0;
+        list[q] = (struct sensitivity){.quantity = changes[q].quantity,
+                                       .change = changes[q].change,
+                                       .kappa = phase / changes[q].size,
+                                       .phase = phase,
+                                       .spread = least <= greatest ? greatest - least : 0,
+                                       .shift_m = fabs(shared) * a->sound_speed / (4 * M_PI * a->fc)};
+    }
+}
+
+void check_sensitivities_print(FILE *stream, const struct scene *scene)
+{
+    struct sensitivity list[SENSITIVITIES];
+    check_sensitivities(scene, list);
+    fputs("Sensitivities of the image's middle (a spread over the aperture > pi/4 blurs):\n", stream);
+    for (int q = 0; q < SENSITIVITIES; q++) {
+        char text[400];
+        snprintf(text, sizeof text,
+                 "%s in %s moves the phase by %.3g rad, the image by %.3g mm in range; %.3g rad over the "
+                 "aperture (kappa %.3g%s)",
+                 list[q].change, list[q].quantity, list[q].phase, 1e3 * list[q].shift_m, list[q].spread, list[q].kappa,
+                 q == POSITION ? " rad/m" : "");
+        table_text(stream, 2, text);
+    }
+}

@@ -1,0 +1,234 @@
+#include "advise/planned.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "backprojection/pairs/pairs.h"
+#include "files/csv.h"
+#include "echoes/echo_data.h"
+#include "show/table.h"
+
+const char *const plan_verdict_names[] = {[VERDICT_CHOSEN] = "chosen",
+                                          [VERDICT_SLOWER] = "slower",
+                                          [VERDICT_ERROR] = "error",
+                                          [VERDICT_MEMORY] = "memory",
+                                          [VERDICT_REFUSED] = "refused"};
+
+enum status planned_make(const struct scene *scene, const struct budget *budget, struct planned *planned)
+{
+    *planned = (struct planned){.scene = scene, .budget = *budget};
+    enum status status = STATUS_OK;
+    for (int precision = 0; precision < 2 && status == STATUS_OK; precision++) {
+        const struct problem problem = scene_problem(scene, (enum precision)precision);
+        status = planner_choose(&problem, budget, &planned->choices[precision]);
+    }
+    return status;
+}
+
+void planned_free(struct planned *planned)
+{
+    choice_free(&planned->choices[0]);
+    choice_free(&planned->choices[1]);
+}
+
+int planned_precision(const struct planned *planned)
+{
+    return planned->choices[PRECISION_FLOAT].found    ? PRECISION_FLOAT
+           : planned->choices[PRECISION_DOUBLE].found ? PRECISION_DOUBLE
+                                                      : -1;
+}
+
+/* "2.1e-04", or "-" of what is unknown or none. */
+static const char *error_text(double error, char text[16])
+{
+    if (error > 0 && error < INFINITY)
+        snprintf(text, 16, "%.1e", error);
+    else
+        snprintf(text, 16, "-");
+    return text;
+}
+
+static void candidate_print(FILE *stream, const struct candidate *candidate)
+{
+    char name[CANDIDATE_NAME], cells[CAUSES + 1][16];
+    candidate_name(candidate, name);
+    fprintf(stream, "%c %-26s", candidate->verdict == VERDICT_CHOSEN ? '>' : ' ', name);
+    if (strlen(name) > 26) /* a line of its own */
+        fprintf(stream, "\n%28s", "");
+    fprintf(stream, " %8s %7s", cell_time(candidate->seconds).text, error_text(candidate->error, cells[CAUSES]));
+    for (int k = 0; k < CAUSES; k++)
+        fprintf(stream, " %7s", error_text(candidate->forecast.error[k], cells[k]));
+    fprintf(stream, " %8s\n", cell_significant(1e-9 * candidate->flops, " GF").text);
+}
+
+bool planned_nearest(const struct choice *choice, int k)
+{
+    const struct candidate *c = &choice->list[k];
+    bool nearest = c->verdict > VERDICT_SLOWER;
+    for (int n = 0; n < choice->count && nearest; n++) {
+        const struct candidate *other = &choice->list[n];
+        if (n == k || other->algorithm != c->algorithm)
+            continue;
+        const bool refused = isinf(c->error), better = other->error < c->error;
+        nearest = other->verdict > VERDICT_SLOWER && !better && !(refused && isinf(other->error) && n < k);
+    }
+    return nearest;
+}
+
+/* A reason that several algorithms share is told once. */
+static void rejected_print(FILE *stream, const struct choice *choice)
+{
+    const char *said = "", *by = "";
+    for (int k = 0; k < choice->count; k++) {
+        const struct candidate *c = &choice->list[k];
+        if (planned_nearest(choice, k)) {
+            char text[600], name[CANDIDATE_NAME];
+            const size_t own = strlen(c->algorithm->name);
+            const char *reason = c->reason;
+            if (strncmp(reason, c->algorithm->name, own) == 0 && strncmp(reason + own, ": ", 2) == 0)
+                reason += own + 2;
+            candidate_name(c, name);
+            if (strcmp(reason, said) == 0)
+                snprintf(text, sizeof text, "%s: as %s", name, by);
+            else
+                snprintf(text, sizeof text, "%s: %s", name, reason);
+            table_text(stream, 2, text);
+            if (strcmp(reason, said) != 0) {
+                said = reason;
+                by = c->algorithm->name;
+            }
+        }
+    }
+}
+
+void planned_left_out(const struct problem *problem, const struct candidate *chosen,
+                      void (*line)(void *to, const char *text), void *to)
+{
+    const struct acquisition *a = problem->acquisition;
+    const struct forecast *f = &chosen->forecast;
+    char text[400];
+    if (f->image_cost > 0) {
+        snprintf(text, sizeof text, "the sum over pairs, for which images of subapertures are read: %.2g",
+                 f->error[CAUSE_INTERPOLATION]);
+        line(to, text);
+    } else if (f->sums_pairs) {
+        const double all = (double)a->pings * a->receivers * problem_pixels(problem);
+        const double left = 100 * (1 - chosen->pairs / all);
+        if (chosen->sine < 1)
+            snprintf(text, sizeof text,
+                     "%.3g %% of the pairs of pixels and records, which meet no sample or lie beyond "
+                     "|sin theta| = %.3g: %.2g",
+                     left, chosen->sine, f->error[CAUSE_APERTURE]);
+        else
+            snprintf(text, sizeof text, "%.3g %% of the pairs of pixels and records, which meet no sample%s: 0", left,
+                     a->aperture_limit < 1 ? " inside the aperture limit" : "");
+        if (left > 0)
+            line(to, text);
+        snprintf(text, sizeof text, "exact values between samples: %.2g", f->error[CAUSE_INTERPOLATION]);
+        line(to, text);
+        snprintf(text, sizeof text,
+                 f->tables ? "delays of all pings but one, which repeat from ping to ping: %.2g"
+                           : "delays of all pixels but those between which they are interpolated: %.2g",
+                 f->error[CAUSE_DELAYS]);
+        line(to, text);
+    } else {
+        snprintf(text, sizeof text, "the sum over pairs: %.2g by the spectrum, %.2g by blocks or terms, %.2g by Stolt",
+                 f->error[CAUSE_SPECTRUM], f->error[CAUSE_BLOCKS], f->error[CAUSE_STOLT]);
+        line(to, text);
+    }
+    if (problem->precision == PRECISION_FLOAT) {
+        snprintf(text, sizeof text, "double precision: %.2g", f->error[CAUSE_FLOAT]);
+        line(to, text);
+    }
+}
+
+static void line_print(void *stream, const char *text)
+{
+    table_text(stream, 2, text);
+}
+
+/* Does the image keep up with the platform? Said of one grid: patches are only places of an image. */
+static void passage_print(FILE *stream, const struct scene *scene, double seconds)
+{
+    const struct grid *g = &scene->patches[0];
+    const double speed = fabs(scene->acquisition.velocity[0].x);
+    double least = INFINITY, most = -INFINITY;
+    for (int k = 0; k < 4; k++) {
+        const double x = grid_point(g, k / 2 * (g->r_count - 1), k % 2 * (g->x_count - 1)).x;
+        least = fmin(least, x);
+        most = fmax(most, x);
+    }
+    if (scene->patch_count == 1 && most > least && speed > 0)
+        fprintf(stream, "The platform passes the %s of the image along its track in %s, %.3g times the imaging time.\n",
+                cell_significant(most - least, " m").text, cell_time((most - least) / speed).text,
+                (most - least) / speed / seconds);
+}
+
+void planned_print(FILE *stream, const struct planned *planned)
+{
+    const int chosen = planned_precision(planned), precision = chosen >= 0 ? chosen : PRECISION_DOUBLE;
+    const struct choice *choice = &planned->choices[precision];
+    int shown = 0;
+    fprintf(stream, "Within the error of %.2g after one gain, in %s:\n", planned->budget.error,
+            precision_name((enum precision)precision));
+    fprintf(stream, "  %-26s %8s %7s %7s %7s %7s %7s %7s %7s %7s %8s\n", "candidate", "time", "error", "interp.",
+            "delays", "spectr.", "blocks", "stolt", "apert.", "float", "work");
+    for (int k = 0; k < choice->count; k++)
+        if (choice->list[k].verdict <= VERDICT_SLOWER) {
+            candidate_print(stream, &choice->list[k]);
+            shown++;
+        }
+    if (shown == 0)
+        fprintf(stream, "  none\n");
+    fprintf(stream, "\nRejected, the nearest of each algorithm:\n");
+    rejected_print(stream, choice);
+    if (choice->found) {
+        const struct candidate *best = &choice->list[0];
+        char name[CANDIDATE_NAME];
+        const struct scene *scene = planned->scene;
+        const struct problem problem = scene_problem(scene, (enum precision)precision);
+        fprintf(stream, "\nLeft out, and the error that it adds:\n");
+        planned_left_out(&problem, best, line_print, stream);
+        candidate_name(best, name);
+        const double plan = best->algorithm->work(choice->plan).bytes;
+        fprintf(stream, "\nChosen: %s%s%s, about %s\nThe process takes %s of memory, %s of them the plan.\n", name,
+                precision == PRECISION_FLOAT ? ""
+                : *best->settings            ? ","
+                                             : ":",
+                precision == PRECISION_FLOAT ? "" : "precision=double", cell_time(best->seconds).text,
+                cell_significant(1e-6 * best->bytes, " MB").text, cell_significant(1e-6 * plan, " MB").text);
+        passage_print(stream, scene, best->seconds);
+    }
+}
+
+void planned_write(FILE *stream, const struct planned *planned)
+{
+    fprintf(stream, "scene,algorithm,options,precision,verdict,seconds,error");
+    for (int k = 0; k < CAUSES; k++)
+        fprintf(stream, ",error_%s", cause_names[k]);
+    fprintf(stream, ",flops,pairs,bytes,reason\n");
+    for (int precision = 0; precision < 2; precision++)
+        for (int n = 0; n < planned->choices[precision].count; n++) {
+            const struct candidate *c = &planned->choices[precision].list[n];
+            csv_write_text(stream, planned->scene->name);
+            fprintf(stream, ",%s,", c->algorithm->name);
+            csv_write_text(stream, c->settings);
+            fprintf(stream, ",%s,%s,", precision_name((enum precision)precision), plan_verdict_names[c->verdict]);
+            csv_write_number(stream, isinf(c->seconds) ? NAN : c->seconds);
+            fputc(',', stream);
+            csv_write_number(stream, isinf(c->error) ? NAN : c->error);
+            for (int k = 0; k < CAUSES; k++) {
+                fputc(',', stream);
+                csv_write_number(stream, isinf(c->error) ? NAN : c->forecast.error[k]);
+            }
+            const double rest[] = {c->flops, c->pairs, c->bytes};
+            for (int k = 0; k < 3; k++) {
+                fputc(',', stream);
+                csv_write_number(stream, rest[k]);
+            }
+            fputc(',', stream);
+            csv_write_text(stream, c->reason);
+            fputc('\n', stream);
+        }
+}

@@ -1,0 +1,47 @@
+/* What BP22, ZP15, LBF21, SQ18 and PF05 claim, sentence by sentence, and how our measurements judge it:
+   results/claims.csv, a row a claim, names what is compared (quantity.h) and by which judge (judges.h).
+
+   What counts as agreement is the printed number with its last digit's rounding; where a sentence gives no number
+   ("slightly", "far less") the criterion says what was taken. */
+#ifndef SASBENCH_PAPERS_CLAIMS_H
+#define SASBENCH_PAPERS_CLAIMS_H
+
+#include "claims/judges.h"
+#include "papers/tables.h"
+
+#define CLAIMS_FILE SASBENCH_ROOT "/results/claims.csv"
+
+/* Texts belong to the file that was read. */
+struct claim {
+    const char *id, *paper, *section, *claim;
+    const char *criterion; /* the judges in words, or why nothing can be decided */
+    const char *judge, *arguments;
+    int line;
+    bool by_scheme; /* it names LBF: it has a verdict as printed and one corrected (schemes.h) */
+    bool phases;    /* it asks for the phase study */
+    bool rules;     /* it asks for the rules' study */
+    bool measures;  /* else it is decided by formulas and printed numbers alone */
+    int need_count;
+    struct need *needs; /* [need_count] the measurements that it asks for; owned */
+};
+
+enum { CLAIMS_MAX = 400 }; /* that are judged together */
+struct claims {
+    struct csv csv;
+    int count;
+    struct claim *claims; /* [count] */
+};
+
+/* Every row is checked to its end before the first is judged. Errors: those of csv_read; STATUS_INVALID naming file,
+   line, column, value and what is accepted. claims_free releases what was read and accepts a zeroed struct. */
+enum status claims_read(const char *path, struct claims *claims);
+void claims_free(struct claims *claims);
+
+/* The verdict on a claim by one scheme. The evidence is one line: the numbers, the criterion, each comparison with its
+   threshold, the settings, the scenes with what these assume, and the tables whose printed numbers are used. Where a
+   measurement is missing, failed or unsupported: CLAIM_UNDECIDED with the reason in place of numbers and
+   comparisons. */
+struct judgement claim_judge(const struct claims *claims, const struct claim *claim, enum scheme scheme,
+                             struct measured *measured);
+
+#endif

@@ -1,0 +1,259 @@
+/* The judges (judges.h). Each compares so that NaN disagrees. */
+#include "claims/judges.h"
+#include "text/text_append.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* ---- comparisons: v[0] is what is judged, v[1] and v[2] are single numbers ---- */
+
+static bool above(const struct values *v)
+{
+    return values_extreme(v, false) > v[1].at[0];
+}
+
+static bool at_least(const struct values *v)
+{
+    return values_extreme(v, false) >= v[1].at[0];
+}
+
+static bool below(const struct values *v)
+{
+    return values_extreme(v, true) < v[1].at[0];
+}
+
+static bool at_most(const struct values *v)
+{
+    return values_extreme(v, true) <= v[1].at[0];
+}
+
+static bool within(const struct values *v)
+{
+    bool all = true;
+    for (int k = 0; k < v->count; k++)
+        all = all && fabs(v->at[k] - v[1].at[0]) <= v[2].at[0];
+    return all;
+}
+
+static bool rounds_to(const struct values *v)
+{
+    double half = v[2].at[0] / 2;
+    return values_extreme(v, false) >= v[1].at[0] - half && values_extreme(v, true) < v[1].at[0] + half;
+}
+
+static bool spread(const struct values *v)
+{
+    return values_extreme(v, true) - values_extreme(v, false) <= v[1].at[0];
+}
+
+static bool rising(const struct values *v)
+{
+    bool all = true;
+    for (int k = 1; k < v->count; k++)
+        all = all && v->at[k] > v->at[k - 1];
+    return all;
+}
+
+static bool falling(const struct values *v)
+{
+    bool all = true;
+    for (int k = 1; k < v->count; k++)
+        all = all && v->at[k] < v->at[k - 1];
+    return all;
+}
+
+/* ---- comparisons that noise leaves open: v[2] is the noise, relative ---- */
+
+static bool clearly_above(const struct values *v)
+{
+    return values_extreme(v, false) > v[1].at[0] * (1 + v[2].at[0]);
+}
+
+static bool clearly_below(const struct values *v)
+{
+    return values_extreme(v, true) < v[1].at[0] / (1 + v[2].at[0]);
+}
+
+static bool not_clear(const struct values *v)
+{
+    double low = v[1].at[0] / (1 + v[2].at[0]), high = v[1].at[0] * (1 + v[2].at[0]);
+    bool open = false;
+    for (int k = 0; k < v->count; k++)
+        open |= v->at[k] >= low && v->at[k] <= high;
+    return open;
+}
+
+/* ---- the table ---- */
+
+static const struct judge {
+    const char *name;
+    int count; /* of expressions; 0: a list of two numbers and more */
+    bool (*agrees)(const struct values *v);
+    const char *accepted, *words[2];      /* between the numbers of the evidence */
+    bool (*open)(const struct values *v); /* does noise hide the answer? NULL: never */
+} judges[] = {
+    {"above", 2, above, "value, limit", {" above "}, NULL},
+    {"below", 2, below, "value, limit", {" below "}, NULL},
+    {"at_least", 2, at_least, "value, limit", {" at least "}, NULL},
+    {"at_most", 2, at_most, "value, limit", {" at most "}, NULL},
+    {"clearly_above", 3, clearly_above, "value, limit, noise", {" above ", " by more than a noise of "}, not_clear},
+    {"clearly_below", 3, clearly_below, "value, limit, noise", {" below ", " by more than a noise of "}, not_clear},
+    {"within", 3, within, "value, target, tolerance", {" from ", " by at most "}, NULL},
+    {"rounds_to", 3, rounds_to, "value, printed number, its last digit", {" rounds to ", " by steps of "}, NULL},
+    {"spread", 2, spread, "values, limit", {" spread over at most "}, NULL},
+    {"rising", 0, rising, "two and more values", {" < "}, NULL},
+    {"falling", 0, falling, "two and more values", {" > "}, NULL},
+};
+enum { JUDGES = sizeof judges / sizeof *judges };
+
+static enum status judge_find(const struct formula *formula, const char *at, const char *name,
+                              const struct judge **judge)
+{
+    char known[400] = "";
+    for (int k = 0; k < JUDGES; k++) {
+        *judge = &judges[k];
+        if (strcmp(judges[k].name, name) == 0)
+            return STATUS_OK;
+        text_append(known, sizeof known, "%s, ", judges[k].name);
+    }
+    return formula_error(formula, at, "there is no such judge; %sundecided are accepted", known);
+}
+
+/* The judge's expressions and the closing parenthesis. */
+static enum status judge_values(struct formula *formula, const struct judge *judge, struct values v[3])
+{
+    if (!judge->count) {
+        const char *at = formula->at;
+        enum status status = quantity_list_read(formula, v);
+        return status != STATUS_OK || v->count > 1
+                   ? status
+                   : formula_error(formula, at, "one value; %s(%s) is needed", judge->name, judge->accepted);
+    }
+    for (int k = 0; k < judge->count; k++) {
+        const char *at = formula->at;
+        enum status status = quantity_read(formula, &v[k]);
+        if (status == STATUS_OK && k && v[k].count > 1)
+            status = formula_error(formula, at, "%d numbers; one is needed here", v[k].count);
+        if (status == STATUS_OK && !formula_take(formula, k < judge->count - 1 ? ',' : ')'))
+            status = formula_error(formula, formula->at, "%s(%s) is needed", judge->name, judge->accepted);
+        if (status != STATUS_OK)
+            return status;
+    }
+    return STATUS_OK;
+}
+
+/* What is not finite decides nothing. */
+static void finite_check(const struct formula *formula, const struct judge *judge, const struct values *v)
+{
+    for (int k = 0; k < (judge->count ? judge->count : 1); k++)
+        for (int n = 0; n < v[k].count; n++)
+            if (formula->measured && !isfinite(v[k].at[n]))
+                measured_missing(formula->measured, "%s judges a number that is not finite", judge->name);
+}
+
+/* What a part says: no if one judge says no, else open if noise hides what one of them says. */
+enum answer { ANSWER_NO, ANSWER_OPEN, ANSWER_YES };
+
+/* One call; its numbers and its answer go into `text`. */
+static enum status judge_read(struct formula *formula, enum answer *answer, char *text, size_t size)
+{
+    static const char *const words[] = {[ANSWER_NO] = "no", [ANSWER_OPEN] = "within the noise", [ANSWER_YES] = "yes"};
+    char name[40];
+    const struct judge *judge;
+    struct values v[3];
+    formula_blanks(formula);
+    const char *at = formula->at;
+    formula_word(formula, name, sizeof name);
+    enum status status = judge_find(formula, at, name, &judge);
+    if (status == STATUS_OK && !formula_take(formula, '('))
+        status = formula_error(formula, at, "%s(%s) is needed", judge->name, judge->accepted);
+    if (status == STATUS_OK)
+        status = judge_values(formula, judge, v);
+    if (status != STATUS_OK)
+        return status;
+    for (int k = 0; k < (judge->count ? judge->count : 1); k++)
+        if (v[k].timed && !judge->open)
+            return formula_error(formula, at,
+                                 "%s compares a time, which noise moves; clearly_above and clearly_below are accepted",
+                                 judge->name);
+    finite_check(formula, judge, v);
+    *answer = judge->agrees(v) ? ANSWER_YES : judge->open && judge->open(v) ? ANSWER_OPEN : ANSWER_NO;
+    if (judge->count)
+        values_append(text, size, v);
+    for (int k = 1; k < judge->count; k++) {
+        text_append(text, size, "%s", judge->words[k - 1]);
+        values_append(text, size, &v[k]);
+    }
+    for (int k = 0; k < v->count && !judge->count; k++)
+        text_append(text, size, "%s%.4g", k ? judge->words[0] : "", v->at[k]);
+    text_append(text, size, ": %s", words[*answer]);
+    return STATUS_OK;
+}
+
+/* Judges joined by `and`; *word is what stands behind them. */
+static enum status part_read(struct formula *formula, enum answer *answer, char word[40], char *text, size_t size)
+{
+    *answer = ANSWER_YES;
+    do {
+        enum answer one = ANSWER_NO;
+        text_append(text, size, "; ");
+        enum status status = judge_read(formula, &one, text, size);
+        if (status != STATUS_OK)
+            return status;
+        *answer = one < *answer ? one : *answer;
+        formula_blanks(formula);
+        const char *at = formula->at;
+        formula_word(formula, word, 40);
+        if (*at && strcmp(word, "and") != 0 && strcmp(word, "else") != 0)
+            return formula_error(formula, at, "'and', 'else' or the end is needed here");
+    } while (strcmp(word, "and") == 0);
+    return STATUS_OK;
+}
+
+bool judge_decides(const char *text)
+{
+    return strcmp(text, "undecided") != 0;
+}
+
+bool judge_identity(const char *text)
+{
+    return strncmp(text, "identity ", 9) == 0;
+}
+
+enum status judges_read(struct formula *formula, const char *column, const char *text, struct judgement *judgement)
+{
+    char word[40];
+    bool strict = true, decided = false;
+    formula_begin(formula, column, text);
+    if (!judge_decides(text)) {
+        judgement->verdict = CLAIM_UNDECIDED;
+        return STATUS_OK;
+    }
+    enum claim_verdict verdict = judge_identity(text) ? CLAIM_IDENTITY : CLAIM_HOLDS;
+    judgement->verdict = CLAIM_FAILS;
+    if (judge_identity(text))
+        formula->at += 9;
+    if (strncmp(formula->at, "else ", 5) == 0) {
+        formula->at += 5;
+        strict = false;
+    }
+    do {
+        char checks[sizeof judgement->evidence] = "";
+        enum answer answer;
+        enum status status = part_read(formula, &answer, word, checks, sizeof checks);
+        if (status != STATUS_OK)
+            return status;
+        if (judge_identity(text) && *word)
+            return formula_error(formula, text, "an identity has no else; `and` is accepted");
+        if (!decided)
+            text_append(judgement->evidence, sizeof judgement->evidence, "%s", checks);
+        if (!decided && answer == ANSWER_YES)
+            judgement->verdict = strict ? verdict : CLAIM_ASSUMED;
+        else if (!decided && answer == ANSWER_OPEN)
+            judgement->verdict = CLAIM_UNDECIDED;
+        decided = decided || answer == ANSWER_YES;
+        strict = false;
+    } while (*word);
+    return STATUS_OK;
+}

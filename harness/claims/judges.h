@@ -1,0 +1,25 @@
+/* Judges: comparisons that decide a claim, by name in claims.csv. */
+#ifndef SASBENCH_PAPERS_JUDGES_H
+#define SASBENCH_PAPERS_JUDGES_H
+
+#include "report/verdict.h"
+#include "claims/quantity.h"
+
+struct judgement {
+    enum claim_verdict verdict;
+    char evidence[4000]; /* one line, with the numbers */
+};
+
+/* Is it a cell with judges, or the word `undecided`? */
+bool judge_decides(const char *text);
+
+/* Does it say that no measurement can change the answer? */
+bool judge_identity(const char *text);
+
+/* Decide by a cell "JUDGE(...) and JUDGE(...) else JUDGE(...)": the claim holds if all judges ahead of the first `else`
+   agree (a cell that begins with `else` has none), and under its assumption if all of a part behind one do; where none
+   does but noise hides what one says, nothing is decided. "identity JUDGE(...)" is for what no measurement can change.
+   Their numbers and answers are appended to the evidence. Errors: as quantities_read. */
+enum status judges_read(struct formula *formula, const char *column, const char *text, struct judgement *judgement);
+
+#endif

@@ -1,0 +1,14 @@
+/* The functions of claims.csv that look numbers up: in the results folder, in published.csv, in scenes. */
+#ifndef SASBENCH_PAPERS_LOOKUP_H
+#define SASBENCH_PAPERS_LOOKUP_H
+
+#include "claims/quantity.h"
+
+/* Is it the name of such a function? */
+bool lookup_known(const char *name);
+/* The call of `name`, which stands at `at` and whose opening parenthesis was taken. `known` are other functions' names,
+   for the message when there is none of that name. Errors: as quantities_read. */
+enum status lookup_read(struct formula *formula, const char *at, const char *name, const char *known,
+                        struct values *values);
+
+#endif

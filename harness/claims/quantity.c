@@ -1,0 +1,350 @@
+/* The language of claims.csv (quantity.h): names, sums, products and what takes lists. What looks numbers up is in
+   lookup.c. */
+#include "claims/quantity.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "text/text_append.h"
+#include "measure/timing.h"
+#include "claims/lookup.h"
+#include "papers/tables.h"
+
+/* ---- texts ---- */
+
+double values_extreme(const struct values *values, bool largest)
+{
+    const double *at = values->at;
+    double value = at[0];
+    for (int k = 1; k < values->count; k++)
+        value = isnan(at[k]) || (largest ? at[k] > value : at[k] < value) ? at[k] : value;
+    return value;
+}
+
+void values_append(char *text, size_t size, const struct values *values)
+{
+    text_append(text, size, "%.4g", values_extreme(values, false));
+    if (values->count > 1)
+        text_append(text, size, " to %.4g", values_extreme(values, true));
+}
+
+enum status formula_error(const struct formula *formula, const char *at, const char *format, ...)
+{
+    char message[500];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+    return status_set(STATUS_INVALID, "%s: line %d: column %s, character %d: '%.40s': %s", formula->path, formula->line,
+                      formula->column, (int)(at - formula->text) + 1, at, message);
+}
+
+void formula_begin(struct formula *formula, const char *column, const char *text)
+{
+    formula->column = column;
+    formula->text = formula->at = text;
+    formula->depth = 0;
+}
+
+void formula_blanks(struct formula *formula)
+{
+    while (*formula->at == ' ')
+        formula->at++;
+}
+
+bool formula_take(struct formula *formula, char character)
+{
+    formula_blanks(formula);
+    bool there = *formula->at == character && character;
+    formula->at += there;
+    return there;
+}
+
+void formula_word(struct formula *formula, char *word, size_t size)
+{
+    formula_blanks(formula);
+    size_t length = 0;
+    if (isalpha((unsigned char)*formula->at))
+        while (isalnum((unsigned char)formula->at[length]) || formula->at[length] == '_')
+            length++;
+    snprintf(word, size, "%.*s", (int)length, formula->at);
+    formula->at += length;
+}
+
+/* ---- arithmetic ---- */
+
+static double add(double a, double b)
+{
+    return a + b;
+}
+static double subtract(double a, double b)
+{
+    return a - b;
+}
+static double multiply(double a, double b)
+{
+    return a * b;
+}
+static double divide(double a, double b)
+{
+    return a / b;
+}
+
+/* a = a OPERATOR b, element by element; one number goes with each of several. */
+static enum status combine(struct formula *formula, const char *at, struct values *a, const struct values *b,
+                           double (*operation)(double, double))
+{
+    if (a->count != b->count && a->count != 1 && b->count != 1)
+        return formula_error(formula, at,
+                             "lists of %d and %d numbers do not go together; lists of one length, or one "
+                             "number, are accepted",
+                             a->count, b->count);
+    struct values result = {.count = a->count > b->count ? a->count : b->count, .timed = a->timed || b->timed};
+    for (int k = 0; k < result.count; k++)
+        result.at[k] = operation(a->at[a->count == 1 ? 0 : k], b->at[b->count == 1 ? 0 : k]);
+    *a = result;
+    return STATUS_OK;
+}
+
+enum status quantity_list_read(struct formula *formula, struct values *values)
+{
+    values->count = 0;
+    values->timed = false;
+    do {
+        struct values more;
+        const char *at = formula->at;
+        enum status status = quantity_read(formula, &more);
+        if (status != STATUS_OK)
+            return status;
+        if (values->count + more.count > VALUES_MAX)
+            return formula_error(formula, at, "more than %d numbers; up to that are accepted", VALUES_MAX);
+        memcpy(values->at + values->count, more.at, (size_t)more.count * sizeof *more.at);
+        values->count += more.count;
+        values->timed |= more.timed;
+    } while (formula_take(formula, ','));
+    return formula_take(formula, ')') ? STATUS_OK
+                                      : formula_error(formula, formula->at, "an operator, ',' or ')' is needed here");
+}
+
+/* ---- what takes numbers ---- */
+
+static double least(const struct values *v)
+{
+    return values_extreme(v, false);
+}
+
+static double largest(const struct values *v)
+{
+    return values_extreme(v, true);
+}
+
+static double magnitude(const struct values *v)
+{
+    return fmax(fabs(least(v)), fabs(largest(v)));
+}
+
+static double middle(const struct values *v)
+{
+    struct values copy = *v;
+    return median(copy.at, copy.count);
+}
+
+static double rate(const struct values *v)
+{
+    return upsampling_rate(v->at[0], v->at[1], v->at[2]);
+}
+
+static const struct {
+    const char *name;
+    int count; /* of numbers that it takes; 0: any */
+    double (*reduce)(const struct values *values);
+    double (*each)(double value); /* instead: of every element */
+} functions[] = {
+    {"list", 0, NULL, NULL},
+    {"min", 0, least, NULL},
+    {"max", 0, largest, NULL},
+    {"magnitude", 0, magnitude, NULL},
+    {"median", 0, middle, NULL},
+    {"abs", 0, NULL, fabs},
+    {"log2", 0, NULL, log2},
+    {"sqrt", 0, NULL, sqrt},
+    {"tan", 0, NULL, tan},
+    {"atan", 0, NULL, atan},
+    {"upsampling_rate", 3, rate, NULL},
+};
+enum { FUNCTIONS = sizeof functions / sizeof *functions };
+
+static enum status function_read(struct formula *formula, const char *at, int k, struct values *values)
+{
+    struct values list;
+    enum status status = quantity_list_read(formula, &list);
+    if (status != STATUS_OK)
+        return status;
+    if (functions[k].count && list.count != functions[k].count)
+        return formula_error(formula, at, "%d numbers; %s takes %d", list.count, functions[k].name, functions[k].count);
+    *values = list;
+    for (int n = 0; functions[k].each && n < list.count; n++)
+        values->at[n] = functions[k].each(list.at[n]);
+    if (functions[k].reduce)
+        *values = (struct values){1, {functions[k].reduce(&list)}, list.timed};
+    return STATUS_OK;
+}
+
+/* ---- names and factors ---- */
+
+static int name_find(const struct formula *formula, const char *name)
+{
+    for (int k = 0; k < formula->count; k++)
+        if (strcmp(formula->named[k].name, name) == 0)
+            return k;
+    return -1;
+}
+
+/* What begins with a word. */
+static enum status word_read(struct formula *formula, struct values *values)
+{
+    const char *at = formula->at;
+    char word[40], known[600] = "";
+    formula_word(formula, word, sizeof word);
+    if (formula_take(formula, '(')) {
+        for (int k = 0; k < FUNCTIONS; k++) {
+            if (strcmp(functions[k].name, word) == 0)
+                return function_read(formula, at, k, values);
+            text_append(known, sizeof known, "%s, ", functions[k].name);
+        }
+        return lookup_read(formula, at, word, known, values);
+    }
+    int k = name_find(formula, word);
+    if (k >= 0)
+        *values = formula->named[k].values;
+    else if (strcmp(word, "pi") == 0)
+        *values = (struct values){1, {acos(-1)}, false};
+    else {
+        for (k = 0; k < formula->count; k++)
+            text_append(known, sizeof known, "%s, ", formula->named[k].name);
+        return formula_error(formula, at, "this is no name; %spi, or a function with '(' are accepted", known);
+    }
+    return STATUS_OK;
+}
+
+static enum status number_read(struct formula *formula, struct values *values)
+{
+    char text[40];
+    size_t length = strspn(formula->at, "0123456789.");
+    if (length && (formula->at[length] == 'e' || formula->at[length] == 'E')) {
+        length += 1 + (formula->at[length + 1] == '-');
+        length += strspn(formula->at + length, "0123456789");
+    }
+    snprintf(text, sizeof text, "%.*s", (int)length, formula->at);
+    values->count = 1;
+    if (!length || length >= sizeof text || !csv_number(text, values->at) || !isfinite(*values->at))
+        return formula_error(formula, formula->at, "a number, a name, a function or '(' is needed here");
+    formula->at += length;
+    return STATUS_OK;
+}
+
+static enum status factor_read(struct formula *formula, struct values *values)
+{
+    enum status status;
+    values->timed = false;
+    if (formula->depth == 20)
+        return formula_error(formula, formula->at, "nested more than %d deep; less is accepted", formula->depth);
+    formula->depth++;
+    if (formula_take(formula, '-')) {
+        status = factor_read(formula, values);
+        for (int k = 0; status == STATUS_OK && k < values->count; k++)
+            values->at[k] = -values->at[k];
+    } else if (formula_take(formula, '(')) {
+        status = quantity_read(formula, values);
+        if (status == STATUS_OK && !formula_take(formula, ')'))
+            status = formula_error(formula, formula->at, "')' is needed here");
+    } else {
+        status = isalpha((unsigned char)*formula->at) ? word_read(formula, values) : number_read(formula, values);
+    }
+    formula->depth--;
+    return status;
+}
+
+static enum status product_read(struct formula *formula, struct values *values)
+{
+    enum status status = factor_read(formula, values);
+    while (status == STATUS_OK) {
+        struct values factor;
+        const char *at = formula->at;
+        bool times = formula_take(formula, '*');
+        if (!times && !formula_take(formula, '/'))
+            break;
+        status = factor_read(formula, &factor);
+        if (status == STATUS_OK)
+            status = combine(formula, at, values, &factor, times ? multiply : divide);
+    }
+    return status;
+}
+
+enum status quantity_read(struct formula *formula, struct values *values)
+{
+    enum status status = product_read(formula, values);
+    while (status == STATUS_OK) {
+        struct values term;
+        const char *at = formula->at;
+        bool plus = formula_take(formula, '+');
+        if (!plus && !formula_take(formula, '-'))
+            break;
+        status = product_read(formula, &term);
+        if (status == STATUS_OK)
+            status = combine(formula, at, values, &term, plus ? add : subtract);
+    }
+    return status;
+}
+
+/* ---- definitions ---- */
+
+static bool name_reserved(const char *name)
+{
+    bool reserved = strcmp(name, "pi") == 0 || lookup_known(name);
+    for (int k = 0; k < FUNCTIONS; k++)
+        reserved |= strcmp(functions[k].name, name) == 0;
+    return reserved;
+}
+
+static enum status definition_read(struct formula *formula)
+{
+    char name[sizeof formula->named[0].name + 1];
+    struct values values;
+    formula_blanks(formula);
+    const char *at = formula->at;
+    formula_word(formula, name, sizeof name);
+    if (!*name || strlen(name) >= sizeof formula->named[0].name || name_reserved(name) || name_find(formula, name) >= 0)
+        return formula_error(formula, at,
+                             "a name of its own is needed here, of up to %zu letters, digits and '_', "
+                             "that is no function's",
+                             sizeof formula->named[0].name - 1);
+    if (!formula_take(formula, '='))
+        return formula_error(formula, formula->at, "'=' is needed here");
+    enum status status = quantity_read(formula, &values);
+    if (status != STATUS_OK)
+        return status;
+    if (formula->count == NAMES_MAX)
+        return formula_error(formula, at, "more than %d names; up to that are accepted", NAMES_MAX);
+    for (int k = 0; k < values.count && formula->measured; k++)
+        if (!isfinite(values.at[k]))
+            measured_missing(formula->measured, "%s is not finite", name);
+    strcpy(formula->named[formula->count].name, name);
+    formula->named[formula->count++].values = values;
+    return STATUS_OK;
+}
+
+enum status quantities_read(struct formula *formula, const char *column, const char *text)
+{
+    formula_begin(formula, column, text);
+    enum status status = STATUS_OK;
+    do
+        status = definition_read(formula);
+    while (status == STATUS_OK && formula_take(formula, ';'));
+    if (status == STATUS_OK && *formula->at)
+        status = formula_error(formula, formula->at, "an operator, ';' or the end is needed here");
+    return status;
+}

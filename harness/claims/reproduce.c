@@ -1,0 +1,229 @@
+/* Measure what the papers' tables and claims rest on, set their numbers beside ours, and judge what they say
+   (reproduce.h). */
+#include "claims/reproduce.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+#include "files/folder.h"
+#include "files/paths.h"
+#include "text/shown_text.h"
+#include "text/suggestion.h"
+#include "text/text_append.h"
+#include "measure/spec.h"
+#include "papers/figures.h"
+#include "papers/assumptions.h"
+#include "claims/reproduced.h"
+#include "papers/rules.h"
+#include "claims/sensitivity.h"
+#include "scene/scene.h"
+#include "run/batch.h"
+#include "papers/phase.h"
+#include "advise/predicted.h"
+
+enum { NEEDS_MAX = 256 };
+
+/* As ids are written: "t3" for "table3", "f8" for "fig8" or "Figure 8". */
+static void id_brief(const char *id, char *brief, size_t size)
+{
+    static const char *const words[] = {"table", "figure", "fig"};
+    *brief = '\0';
+    while (*id) {
+        size_t length = 0;
+        for (size_t k = 0; k < sizeof words / sizeof *words && length == 0; k++)
+            if (strncasecmp(id, words[k], strlen(words[k])) == 0)
+                length = strlen(words[k]) + strspn(id + strlen(words[k]), " ._");
+        text_append(brief, size, "%c", *id);
+        id += length > 0 ? length : 1;
+    }
+}
+
+/* A table by its name, all claims, or one claim by its id. */
+static enum status id_select(const char *id, struct selection *selection)
+{
+    char accepted[900] = "", brief[40], meant[SUGGESTION_TEXT];
+    bool known = false;
+    id_brief(id, brief, sizeof brief);
+    struct suggestion suggestion = suggestion_begin(brief);
+    for (int k = 0; paper_tables[k].id; k++) {
+        bool same = strcmp(paper_tables[k].id, id) == 0;
+        known |= same;
+        selection->tables[k] |= same;
+        text_append(accepted, sizeof accepted, "%s, ", paper_tables[k].id);
+        suggestion_offer(&suggestion, paper_tables[k].id);
+    }
+    suggestion_offer(&suggestion, "claims");
+    suggestion_offer(&suggestion, "sensitivity");
+    for (int k = 0; k < selection->claims->count; k++) {
+        bool same = strcmp(selection->claims->claims[k].id, id) == 0 || strcmp(id, "claims") == 0;
+        known |= same;
+        selection->asked[k] |= same;
+        suggestion_offer(&suggestion, selection->claims->claims[k].id);
+    }
+    suggestion_text(&suggestion, meant);
+    return known ? STATUS_OK
+                 : status_set(STATUS_INVALID,
+                              "reproduce: '%.100s' is not a table%s accepted: %sa claim as bp22-4.1-1, or sensitivity "
+                              "alone",
+                              id, meant, accepted);
+}
+
+static enum status select_all(const char *const *ids, int count, struct selection *selection)
+{
+    enum status status = STATUS_OK;
+    if (selection->claims->count > CLAIMS_MAX)
+        return status_set(STATUS_INVALID, "%s: %d claims; up to %d are accepted", CLAIMS_FILE, selection->claims->count,
+                          CLAIMS_MAX);
+    for (int n = 0; n < count && status == STATUS_OK; n++)
+        status = id_select(ids[n], selection);
+    for (int k = 0; paper_tables[k].id && count == 0; k++)
+        selection->tables[k] = true;
+    for (int k = 0; k < selection->claims->count && count == 0; k++)
+        selection->asked[k] = true;
+    return status;
+}
+
+/* All needs of one scene; those of `needs` that are done lose their scene. */
+static enum status scene_measure(struct batch *batch, struct need *needs, int count)
+{
+    struct scene scene;
+    struct spec specs[NEEDS_MAX];
+    int spec_count = 0;
+    const char *name = needs[0].scene;
+    enum status status = assumed_scene_load(name, &scene);
+    if (status != STATUS_OK)
+        return status;
+    for (int k = 0; k < count && status == STATUS_OK; k++)
+        if (needs[k].scene && strcmp(needs[k].scene, name) == 0) {
+            status = spec_parse(needs[k].spec, &specs[spec_count]);
+            spec_count += status == STATUS_OK;
+            needs[k].scene = NULL;
+        }
+    if (status == STATUS_OK)
+        status = batch_scene(batch, &scene, spec_count, specs);
+    for (int k = 0; k < spec_count; k++)
+        spec_free(&specs[k]);
+    scene_free(&scene);
+    return status;
+}
+
+/* What we write is named as what we read: the folder of the latter is none for the former. */
+static enum status directory_check(const char *directory)
+{
+    char path[4200];
+    struct stat ours, theirs;
+    snprintf(path, sizeof path, "%s/claims.csv", directory);
+    if (stat(path, &theirs) == 0 && stat(CLAIMS_FILE, &ours) == 0 && ours.st_dev == theirs.st_dev
+        && ours.st_ino == theirs.st_ino)
+        return status_set(STATUS_INVALID,
+                          "reproduce: -o %s: its claims.csv is the list of claims; another folder is "
+                          "accepted",
+                          directory);
+    return STATUS_OK;
+}
+
+/* All that the tables and claims asked for rest on. */
+static int needs_collect(const struct selection *selection, struct need needs[NEEDS_MAX])
+{
+    int count = 0;
+    for (int k = 0; paper_tables[k].id; k++)
+        if (selection->tables[k])
+            count = table_needs(paper_tables[k].id, needs, count, NEEDS_MAX);
+    for (int k = 0; k < selection->claims->count; k++)
+        for (int n = 0; n < selection->claims->claims[k].need_count && selection->asked[k]; n++)
+            count = need_add(needs, count, NEEDS_MAX, selection->claims->claims[k].needs[n]);
+    return count;
+}
+
+/* Is the phase study asked for: a figure of it, or a claim about it? */
+static bool phases_asked(const struct selection *selection)
+{
+    bool asked = false;
+    for (int k = 0; paper_tables[k].id; k++)
+        asked |= selection->tables[k] && table_has_phases(paper_tables[k].id);
+    for (int k = 0; k < selection->claims->count; k++)
+        asked |= selection->asked[k] && selection->claims->claims[k].phases;
+    return asked;
+}
+
+static bool rules_asked(const struct selection *selection)
+{
+    bool asked = false;
+    for (int k = 0; k < selection->claims->count; k++)
+        asked |= selection->asked[k] && selection->claims->claims[k].rules;
+    return asked;
+}
+
+/* Needs into a folder, which is made, without times. */
+static enum status needs_measure(const char *directory, struct need *needs, int count)
+{
+    struct batch batch = {0};
+    enum status status = batch_open(directory, count, false, &batch);
+    batch.effort = EFFORT_NONE;
+    for (int k = 0; k < count && status == STATUS_OK; k++)
+        if (needs[k].scene)
+            status = scene_measure(&batch, needs + k, count - k);
+    return batch_close(&batch, status);
+}
+
+static bool figure_asked(const void *of, const char *id)
+{
+    const struct selection *selection = of;
+    bool asked = false;
+    for (int k = 0; paper_tables[k].id; k++)
+        asked |= selection->tables[k] && strcmp(paper_tables[k].id, id) == 0;
+    return asked;
+}
+
+enum status papers_reproduce(const char *const *ids, int count, const char *directory)
+{
+    struct need needs[NEEDS_MAX];
+    struct claims claims = {0};
+    struct selection selection = {.claims = &claims};
+    struct batch batch = {0};
+    enum status status = directory_check(directory);
+    if (status == STATUS_OK)
+        status = claims_read(CLAIMS_FILE, &claims);
+    bool sensitivity = count == 1 && strcmp(ids[0], "sensitivity") == 0;
+    if (status == STATUS_OK && sensitivity) {
+        int lock = -1;
+        status = directory_make(directory);
+        if (status == STATUS_OK)
+            status = folder_take(directory, &lock);
+        if (status == STATUS_OK)
+            status = sensitivity_study(directory, &claims, needs_measure);
+        folder_leave(lock);
+        claims_free(&claims);
+        return status;
+    }
+    if (status == STATUS_OK)
+        status = select_all(ids, count, &selection);
+    if (status == STATUS_OK) {
+        int need_count = needs_collect(&selection, needs);
+        status = batch_open(directory, need_count, false, &batch);
+        for (int k = 0; k < need_count && status == STATUS_OK; k++)
+            if (needs[k].scene)
+                status = scene_measure(&batch, needs + k, need_count - k);
+        if (status == STATUS_OK && phases_asked(&selection))
+            status = phase_study(directory, true);
+        if (status == STATUS_OK && rules_asked(&selection))
+            status = rules_study(directory);
+        if (status == STATUS_OK)
+            status = figures_draw(directory, figure_asked, &selection, &batch.undrawn);
+        if (status == STATUS_OK)
+            status = reproduced_report(directory, &selection);
+        bool predicted = false;
+        if (status == STATUS_OK && need_count > 0)
+            status = predicted_write(directory, NULL, 0, &predicted);
+        if (predicted && status == STATUS_OK && predicted_draw(directory) != STATUS_OK) {
+            shown_note(status_message());
+            batch.undrawn++;
+        }
+        status = batch_close(&batch, status);
+    }
+    claims_free(&claims);
+    return status;
+}

@@ -1,0 +1,202 @@
+/* The commands `simulate` and `image`. */
+#include <inttypes.h>
+#include <stdio.h>
+
+#include "echoes/echo_data.h"
+#include "run/progress_line.h"
+#include "text/shown_text.h"
+#include "measure/darkness.h"
+#include "measure/imaging.h"
+#include "measure/outcome.h"
+#include "results/provenance.h"
+#include "echoes/matfile.h"
+#include "scene/simulate.h"
+#include "show/plot.h"
+#include "show/table.h"
+#include "advise/machine_rates.h"
+#include "command/task.h"
+
+enum status command_simulate(const struct task *task)
+{
+    struct scene scene;
+    struct echoes echoes;
+    enum status status = output_check("simulate", task->output);
+    if (status == STATUS_OK)
+        status = scene_load(task->names[0], SCENE_DIRECTORY, &scene);
+    if (status != STATUS_OK)
+        return status;
+    if (scene.recorded)
+        status = status_set(STATUS_INVALID, "simulate: the echoes of %s are recorded, there is nothing to simulate",
+                            scene.name);
+    if (status == STATUS_OK)
+        status = scene_simulate(&scene, &echoes);
+    if (status == STATUS_OK) {
+        status = echo_file_write(task->output, &echoes, scene.description);
+        echoes_free(&echoes);
+    }
+    scene_free(&scene);
+    return status;
+}
+
+static void warnings_print(const struct condition *list, int count)
+{
+    char text[400];
+    for (int k = 0; k < count; k++)
+        if (list[k].severity == SEVERITY_WARN && !condition_holds(&list[k])) {
+            outcome_warning(&list[k], text, sizeof text);
+            shown_note(text);
+        }
+}
+
+/* What the image shows to be wrong. */
+static void warn_of_image(const struct echoes *echoes, const struct image *image)
+{
+    const struct darkness darkness = image_darkness(echoes, image);
+    const struct condition dark = darkness_condition(&darkness);
+    progress_line_clear();
+    warnings_print(&dark, 1);
+}
+
+static enum status execute(const struct spec *spec, struct imaging *imaging, const struct echoes *from,
+                           struct image *image, double *seconds)
+{
+    struct echoes echoes;
+    struct stages stages;
+    enum status status = echoes_convert(from, spec->precision, &echoes);
+    if (status != STATUS_OK)
+        return status;
+    stages_begin(&stages);
+    const double begin = stages.mark;
+    status = imaging_execute(imaging, &echoes, &stages);
+    *seconds = seconds_now() - begin;
+    if (status == STATUS_OK)
+        status = imaging_finish(imaging, &echoes, image);
+    if (status == STATUS_OK)
+        warn_of_image(&echoes, image);
+    echoes_free(&echoes);
+    return status;
+}
+
+/* The plan comes first: what cannot be imaged need not be simulated. */
+static enum status form_image(const struct spec *spec, const struct scene *scene, struct image *image,
+                              struct image_origin *origin, double *seconds)
+{
+    struct problem problem = scene_problem(scene, spec->precision);
+    problem.judged_count = 0; /* all of it is shown */
+    struct imaging imaging;
+    struct echoes simulated = {0}, recorded = {&scene->acquisition, PRECISION_DOUBLE, scene->recorded, 0};
+    progress_line(false, "%s: plan of %s", scene->name, spec->algorithm->name);
+    enum status status = imaging_open(spec, &problem, &imaging);
+    if (status != STATUS_OK)
+        return status;
+    const struct work work = imaging.algorithm->work(imaging.plan);
+    snprintf(origin->engine, sizeof origin->engine, "%s", work.engine);
+    progress_line(false, "%s: echoes", scene->name);
+    if (!scene->recorded)
+        status = scene_simulate(scene, &simulated);
+    progress_line(false, "%s: image by %s", scene->name, spec->algorithm->name);
+    if (status == STATUS_OK)
+        status = execute(spec, &imaging, scene->recorded ? &recorded : &simulated, image, seconds);
+    echoes_free(&simulated);
+    imaging_close(&imaging);
+    return status;
+}
+
+static enum status check_usage(const struct task *task)
+{
+    if (!task->scene == !task->echoes)
+        return status_set(STATUS_INVALID, "image: exactly one of --scene SCENE and --echoes FILE.mat is needed");
+    if (task->spec_count != 1)
+        return status_set(STATUS_INVALID, "image: %d --algorithm SPEC given, exactly one is needed", task->spec_count);
+    if (task->range && !output_is_picture(task->output))
+        return status_set(STATUS_INVALID, "image: --range %s is of pictures; -o FILE.png or FILE.svg is needed",
+                          task->range);
+    return output_is_picture(task->output) ? picture_check("image", task->output) : output_check("image", task->output);
+}
+
+/* With --grid the image of a scene is that one. */
+static enum status scene_open(const struct task *task, struct scene *scene)
+{
+    struct grid grid;
+    if (task->echoes)
+        return echoes_scene("image", task, scene);
+    enum status status = task->grid ? grid_parse(task->grid, &grid) : STATUS_OK;
+    if (status == STATUS_OK)
+        status = scene_load(task->scene, SCENE_DIRECTORY, scene);
+    if (status != STATUS_OK || !task->grid)
+        return status;
+    scene->patches[0] = grid;
+    scene->patch_count = 1;
+    status = grid_meets_records(&scene->acquisition, 1, scene->patches, task->grid);
+    if (status != STATUS_OK)
+        scene_free(scene);
+    return status;
+}
+
+/* What is known of an image but for its engine. */
+static void origin_fill(const struct task *task, const struct scene *scene, struct image_origin *origin)
+{
+    const struct spec *spec = &task->specs[0];
+    struct provenance provenance;
+    provenance_fill(&provenance, 1);
+    *origin = (struct image_origin){.fc = scene->acquisition.fc, .sound_speed = scene->acquisition.sound_speed};
+    snprintf(origin->algorithm, sizeof origin->algorithm, "%s", spec->algorithm->name);
+    snprintf(origin->options, sizeof origin->options, "%s", spec->text);
+    snprintf(origin->scene, sizeof origin->scene, "%s", task->scene ? scene->name : task->echoes);
+    snprintf(origin->scene_hash, sizeof origin->scene_hash, "%016" PRIx64, scene->hash);
+    snprintf(origin->commit, sizeof origin->commit, "%s", provenance.commit);
+    snprintf(origin->date, sizeof origin->date, "%s", provenance.date);
+}
+
+static enum status image_put(const struct task *task, const struct scene *scene, const struct image *image,
+                             const struct image_origin *origin, double range_db)
+{
+    const struct spec *spec = &task->specs[0];
+    if (!output_is_picture(task->output))
+        return image_file_write(task->output, image, origin);
+    char label[320], title[1000];
+    picture_label(spec->algorithm->name, spec->text, precision_name(spec->precision), label, sizeof label);
+    snprintf(title, sizeof title, "%.300s: %s%s", scene->name, label, origin_choice(origin).text);
+    return picture_draw(task->output, true, image, title, range_db, scene);
+}
+
+/* What is known to be wrong with the scene, before the work begins. */
+static void warn(const struct spec *spec, const struct scene *scene)
+{
+    const struct problem problem = scene_problem(scene, spec->precision);
+    struct condition list[SCENE_CONDITIONS + CONDITIONS_MAX];
+    int count = scene_conditions(scene, list);
+    count += algorithm_conditions(spec->algorithm, &problem, spec->options, list + count, CONDITIONS_MAX);
+    warnings_print(list, count);
+}
+
+enum status command_image(const struct task *task)
+{
+    struct scene scene;
+    struct image image;
+    struct image_origin origin;
+    double range_db, seconds = 0;
+    machine_rates_use(NULL);
+    enum status status = check_usage(task);
+    if (status == STATUS_OK)
+        status = range_parse("image", task->range, &range_db);
+    if (status == STATUS_OK)
+        status = scene_open(task, &scene);
+    if (status != STATUS_OK)
+        return status;
+    warn(&task->specs[0], &scene);
+    origin_fill(task, &scene, &origin);
+    status = form_image(&task->specs[0], &scene, &image, &origin, &seconds);
+    progress_line_clear();
+    if (status == STATUS_OK) {
+        status = image_put(task, &scene, &image, &origin, range_db);
+        if (status == STATUS_OK) {
+            printf("%s: %s of %s%s, %s\n", task->output, origin.algorithm, scene.name, origin_choice(&origin).text,
+                   cell_time(seconds).text);
+            image_describe(&image);
+        }
+        image_free(&image);
+    }
+    scene_free(&scene);
+    return status;
+}

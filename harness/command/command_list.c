@@ -1,0 +1,111 @@
+/* The commands `list` and `info`: what the algorithm tables say of themselves. */
+#include <stdio.h>
+#include <unistd.h>
+
+#include "command/task.h"
+#include "echoes/matfile.h"
+#include "show/table.h"
+#include "command/inspect.h"
+
+static const struct {
+    enum trait trait;
+    const char *text;
+} traits[] = {
+    {TRAIT_EXACT, "exact"},
+    {TRAIT_ANY_TRACK, "any track"},
+    {TRAIT_APERTURE_LIMIT, "aperture limit"},
+};
+
+static void print_traits(const struct algorithm *algorithm)
+{
+    const char *separator = "";
+    for (size_t k = 0; k < sizeof traits / sizeof *traits; k++)
+        if (algorithm->traits & traits[k].trait) {
+            printf("%s%s", separator, traits[k].text);
+            separator = ", ";
+        }
+    if (!(algorithm->traits & TRAIT_ANY_TRACK))
+        printf("%suniform straight tracks", separator);
+    printf("\n");
+}
+
+enum status command_list(const struct task *task)
+{
+    (void)task;
+    for (int k = 0; algorithms[k]; k++) {
+        printf("%-13s %s\n%-13s %s; ", algorithms[k]->name, algorithms[k]->summary, "", algorithms[k]->reference);
+        print_traits(algorithms[k]);
+    }
+    return STATUS_OK;
+}
+
+/* "2 to 64", or a choice's names. */
+static void accepted_format(const struct param *param, char *text, size_t size)
+{
+    char min[32], max[32];
+    if (param->type == PARAM_CHOICE) {
+        size_t used = 0;
+        for (int k = 0; param->choices[k] && used < size; k++)
+            used += (size_t)snprintf(text + used, size - used, "%s%s", k ? ", " : "", param->choices[k]);
+        return;
+    }
+    param_format(param, param->min, min, sizeof min);
+    param_format(param, param->max, max, sizeof max);
+    snprintf(text, size, "%s to %s", min, max);
+}
+
+#define LAYOUT "%-11s %-10s %-24s %s\n"
+
+static enum status file_info(const char *path)
+{
+    struct image_file file;
+    bool echoes, is_image = false;
+    enum status status = echo_file_is(path, &echoes);
+    if (status == STATUS_OK && !echoes)
+        status = image_file_is(path, &is_image);
+    if (status == STATUS_OK && !is_image)
+        return inspect_echoes(path); /* of neither kind: says what echoes need */
+    if (status == STATUS_OK)
+        status = image_file_open(path, &file);
+    if (status != STATUS_OK)
+        return status;
+    const struct image_origin *o = &file.origin;
+    printf("%s: an image%s%s%s%s%s%s%s\n", path, *o->scene ? " of " : "", o->scene, *o->algorithm ? " by " : "",
+           o->algorithm, *o->options ? ":" : "", o->options, origin_choice(o).text);
+    origin_print(o);
+    image_describe(&file.image);
+    image_file_close(&file);
+    return STATUS_OK;
+}
+
+enum status command_info(const struct task *task)
+{
+    const struct algorithm *algorithm = algorithm_find(task->names[0]);
+    struct spec spec;
+    if (has_extension(task->names[0], ".mat") || (!algorithm && access(task->names[0], F_OK) == 0))
+        return file_info(task->names[0]);
+    if (!algorithm) {
+        enum status status = spec_parse(task->names[0], &spec); /* says what is accepted */
+        if (status != STATUS_OK)
+            return status;
+        spec_free(&spec);
+        return status_set(STATUS_INVALID, "info: '%.100s' has settings, must be the name of an algorithm alone",
+                          task->names[0]);
+    }
+    printf("%s: %s\nreference: %s\ntraits: ", algorithm->name, algorithm->summary, algorithm->reference);
+    print_traits(algorithm);
+    printf("\n" LAYOUT, "parameter", "default", "accepted", "sweep");
+    printf(LAYOUT, "precision", "float", "float, double", "float double");
+    table_text(stdout, 12, "of samples, sums and pixels; geometry is always double");
+    for (const struct param *p = algorithm->params; p && p->name; p++) {
+        char initial[64], accepted[160];
+        if (p->type == PARAM_REAL)
+            snprintf(initial, sizeof initial, "%.6g", p->initial);
+        else
+            param_format(p, p->initial, initial, sizeof initial);
+        accepted_format(p, accepted, sizeof accepted);
+        printf(LAYOUT, p->name, initial, accepted, p->sweep ? p->sweep : "-");
+        table_text(stdout, 12, p->summary);
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,90 @@
+/* The command `plan`: the least work for an error budget, before any imaging. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "command/task.h"
+#include "text/number.h"
+#include "files/text_file.h"
+#include "run/batch.h"
+#include "advise/check.h"
+#include "advise/machine_rates.h"
+#include "advise/planned.h"
+
+static enum status error_parse(const char *text, double *error)
+{
+    const char *end = text ? number_read(text, error) : "";
+    if (!text)
+        *error = 1e-3;
+    return end && !*end && *error > 0 && *error <= 1
+               ? STATUS_OK
+               : status_set(STATUS_INVALID, "plan: --error is '%s', must be a number above 0, at most 1", text);
+}
+
+/* "4G", "2GB", "512MiB": bytes. */
+static enum status memory_parse(const char *text, double *bytes)
+{
+    static const char prefixes[] = "kMGTK"; /* KiB, and kB */
+    const char *end = text ? number_read(text, bytes) : "", *prefix = end && *end ? strchr(prefixes, *end) : NULL;
+    if (!text)
+        *bytes = 4e9;
+    if (prefix) {
+        const bool binary = end[1] == 'i';
+        *bytes *= pow(binary ? 1024 : 1000, (double)((prefix - prefixes) % 4) + 1);
+        end += 1 + binary;
+    }
+    if (end && *end == 'B')
+        end++;
+    return end && !*end && *bytes > 0 && *bytes < INFINITY
+               ? STATUS_OK
+               : status_set(STATUS_INVALID,
+                            "plan: --memory is '%s', must be bytes above 0: 4e9, or with k, M, G, T, Ki, Mi, Gi or Ti "
+                            "and B behind, as 2GB, 512MiB",
+                            text);
+}
+
+static enum status plan_scene(const struct task *task, const struct scene *scene, const struct budget *budget)
+{
+    struct planned planned;
+    struct text_file file;
+    printf("%s\n", scene->name);
+    check_warnings(stdout, scene, false);
+    enum status status = planned_make(scene, budget, &planned);
+    if (status == STATUS_OK) {
+        planned_print(stdout, &planned);
+    }
+    if (status == STATUS_OK && task->output)
+        status = text_file_open_named(task->output, &file);
+    if (status == STATUS_OK && task->output) {
+        planned_write(file.stream, &planned);
+        status = text_file_close(&file, STATUS_OK);
+    }
+    if (status == STATUS_OK && planned_precision(&planned) < 0)
+        status =
+            status_set(STATUS_FAILED,
+                       "plan: nothing images %s within an error of %.3g and %.6g MB; the least predicted is %.3g (the "
+                       "exact image is `reference` with precision=double)",
+                       scene->name, budget->error, budget->bytes / 1e6, planned.choices[PRECISION_DOUBLE].least);
+    planned_free(&planned);
+    return status;
+}
+
+enum status command_plan(const struct task *task)
+{
+    struct scene *scene = NULL;
+    struct budget budget = {.every = true};
+    int count = 0;
+    if (!task->name_count && !task->echoes)
+        return status_set(STATUS_INVALID, "plan: a SCENE, or --echoes FILE.mat with --grid GRID, is missing");
+    enum status status = error_parse(task->error, &budget.error);
+    if (status == STATUS_OK)
+        status = memory_parse(task->memory, &budget.bytes);
+    if (status == STATUS_OK)
+        status = task_scenes("plan", task, 0, NULL, &scene, &count);
+    if (status == STATUS_OK)
+        status = machine_rates_need();
+    if (status == STATUS_OK)
+        status = plan_scene(task, &scene[0], &budget);
+    scenes_free(scene, count);
+    return status;
+}

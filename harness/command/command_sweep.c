@@ -1,0 +1,131 @@
+/* The command `sweep`: every algorithm over its settings, error against run time. */
+#include <stdio.h>
+#include <string.h>
+
+#include "run/interruption.h"
+#include "text/shown_text.h"
+#include "run/batch.h"
+#include "advise/machine_rates.h"
+#include "advise/predicted.h"
+#include "show/plot.h"
+#include "show/plot_points.h"
+#include "sweep/sweep_settings.h"
+#include "sweep/sweep_tables.h"
+#include "command/task.h"
+
+/* A point, speckle, and the two ends of the range. */
+static const char *const default_scenes[] = {"sweep/point", "sweep/speckle", "sweep/near", "sweep/far"};
+
+/* In the precision asked for, where one is and the SPEC does not say its own. */
+static enum status add(const struct task *task, const struct spec *spec, struct sweep_settings *settings)
+{
+    struct spec fixed;
+    if (!task->precision || spec_given(spec, "precision"))
+        return settings_add(settings, spec);
+    enum status status = spec_vary(spec, "precision", task->precision, &fixed);
+    if (status != STATUS_OK)
+        return status;
+    status = settings_add(settings, &fixed);
+    spec_free(&fixed);
+    return status;
+}
+
+/* The exact image's own cost comes first: what the others save, and what their PSLR and ISLR are compared with. */
+static enum status settings_load(const struct task *task, struct sweep_settings *settings)
+{
+    struct spec spec;
+    enum status status = spec_parse("reference", &spec);
+    if (status == STATUS_OK)
+        status = settings_add(settings, &spec);
+    spec_free(&spec);
+    for (int k = 0; k < task->spec_count && status == STATUS_OK; k++)
+        status = add(task, &task->specs[k], settings);
+    for (int k = 0; task->spec_count == 0 && algorithms[k] && status == STATUS_OK; k++) {
+        status = spec_parse(algorithms[k]->name, &spec);
+        if (status == STATUS_OK)
+            status = add(task, &spec, settings);
+        spec_free(&spec);
+    }
+    return status;
+}
+
+/* Is there one that chooses by the machine's rates? */
+static bool settings_choose(const struct sweep_settings *settings)
+{
+    for (int k = 0; k < settings->count; k++)
+        if (strcmp(settings->specs[k].algorithm->name, "auto") == 0)
+            return true;
+    return false;
+}
+
+static enum status precision_check(const struct task *task)
+{
+    if (!task->precision || strcmp(task->precision, "float") == 0 || strcmp(task->precision, "double") == 0)
+        return STATUS_OK;
+    return status_set(STATUS_INVALID, "sweep: --precision is '%s', must be float or double", task->precision);
+}
+
+/* A plot that cannot be drawn is reported and counted, but does not fail what was measured. Returns how many. */
+static int draw(const char *directory, const struct scene *scene)
+{
+    static const char *const formats[] = {"png", "svg"};
+    int undrawn = 0;
+    for (int k = 0; folder_plots[k]; k++)
+        for (size_t f = 0; f < sizeof formats / sizeof *formats; f++) {
+            char name[64], path[4096];
+            bool drawn;
+            snprintf(name, sizeof name, "%s.%s", folder_plots[k], formats[f]);
+            picture_path(directory, scene->name, name, path, sizeof path);
+            if (plot_folder(path, PLOT_DIRECTORY, folder_plots[k], directory, scene->name, &drawn) != STATUS_OK) {
+                shown_note(status_message());
+                undrawn++;
+            }
+        }
+    return undrawn;
+}
+
+enum status command_sweep(const struct task *task)
+{
+    const char *directory = task->output ? task->output : "results/sweep";
+    int default_count = sizeof default_scenes / sizeof *default_scenes, scene_count = 0;
+    struct scene *scenes = NULL;
+    struct sweep_settings settings = {0};
+    struct batch batch = {0};
+    enum status status = precision_check(task);
+    if (status == STATUS_OK)
+        status = settings_load(task, &settings);
+    if (status == STATUS_OK)
+        status = task_scenes("sweep", task, default_count, default_scenes, &scenes, &scene_count);
+    if (status == STATUS_OK)
+        status = batch_open(directory, scene_count * settings.count, false, &batch);
+    if (status == STATUS_OK && settings_choose(&settings))
+        status = machine_rates_need();
+    batch.in_turn = true;
+    interruption_hold();
+    for (int k = 0; k < scene_count && status == STATUS_OK && !interruption_seen(); k++) {
+        status = batch_scene(&batch, &scenes[k], settings.count, settings.specs);
+        if (status == STATUS_OK)
+            status = sweep_tables(directory, scenes, scene_count, scenes[k].name);
+        if (status == STATUS_OK)
+            status = plot_points_write(directory);
+        if (status == STATUS_OK)
+            batch.undrawn += draw(directory, &scenes[k]);
+    }
+    bool predicted = false;
+    if (status == STATUS_OK && !interruption_seen())
+        status = predicted_write(directory, scenes, scene_count, &predicted);
+    if (predicted && status == STATUS_OK && predicted_draw(directory) != STATUS_OK) {
+        shown_note(status_message());
+        batch.undrawn++;
+    }
+    fflush(stdout); /* the signal leaves no time */
+    interruption_end();
+    if (status == STATUS_OK)
+        printf("\nResults: %s/measurements.csv, targets.csv, fronts.csv, cheapest.csv, slopes.csv, rules.csv, "
+               "points.csv%s and plots.\n",
+               directory, predicted ? ", predicted.csv, predictions.csv" : "");
+    status = batch_close(&batch, status);
+    scenes_free(scenes, scene_count);
+    settings_free(&settings);
+    return status;
+}

@@ -1,0 +1,37 @@
+/* The scenes that a command line asks for. */
+#include <stdlib.h>
+
+#include "command/task.h"
+#include "run/batch.h"
+
+enum status echoes_scene(const char *command, const struct task *task, struct scene *scene)
+{
+    struct grid grid;
+    if (!task->grid)
+        return status_set(STATUS_INVALID, "%s: --echoes %s needs --grid xmin:xstep:xcount,rmin:rstep:rcount", command,
+                          task->echoes);
+    enum status status = grid_parse(task->grid, &grid);
+    return status == STATUS_OK ? scene_from_echoes(task->echoes, &grid, task->grid, scene) : status;
+}
+
+enum status task_scenes(const char *command, const struct task *task, int usual_count, const char *const *usual,
+                        struct scene **scenes, int *count)
+{
+    *scenes = NULL;
+    *count = 0;
+    if (task->grid && !task->echoes)
+        return status_set(STATUS_INVALID, "%s: --grid %s goes with --echoes FILE.mat; a scene has its own image",
+                          command, task->grid);
+    if (!task->echoes)
+        return scenes_load(command, task->name_count ? task->name_count : usual_count,
+                           task->name_count ? task->names : usual, scenes, count);
+    if (task->name_count)
+        return status_set(STATUS_INVALID, "%s: '%s' is too much with --echoes %s; one of the two is accepted", command,
+                          task->names[0], task->echoes);
+    *scenes = calloc(1, sizeof **scenes);
+    if (!*scenes)
+        return status_set(STATUS_FAILED, "%s: no memory for a scene", command);
+    enum status status = echoes_scene(command, task, *scenes);
+    *count = status == STATUS_OK;
+    return status;
+}

@@ -1,0 +1,224 @@
+/* Memory of samples and images, in either precision. */
+#include "echoes/echo_data.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/memory.h"
+
+static const struct {
+    const char *name;
+    size_t size;
+} precisions[] = {
+    [PRECISION_FLOAT] = {"float", sizeof(float complex)},
+    [PRECISION_DOUBLE] = {"double", sizeof(double complex)},
+};
+
+size_t precision_size(enum precision precision)
+{
+    return precisions[precision].size;
+}
+
+const char *precision_name(enum precision precision)
+{
+    return precisions[precision].name;
+}
+
+size_t size_product(size_t a, size_t b, size_t c, size_t d)
+{
+    size_t product;
+    if (__builtin_mul_overflow(a, b, &product) || __builtin_mul_overflow(product, c, &product)
+        || __builtin_mul_overflow(product, d, &product)) {
+        return 0;
+    }
+    return product;
+}
+
+/* Zeroed memory for `size` bytes (0: a size that overflowed) at a cache line; NULL without memory. */
+static void *allocate_zeroed(size_t size)
+{
+    const size_t line = 64;
+    if (size == 0 || size > PTRDIFF_MAX - line) {
+        return NULL;
+    }
+    size_t whole_lines = (size + line - 1) / line * line;
+    void *memory = aligned_alloc(line, whole_lines);
+    if (memory) {
+        memset(memory, 0, whole_lines);
+    }
+    return memory;
+}
+
+static void convert_numbers(const void *from, enum precision from_precision, void *to, enum precision to_precision,
+                            size_t count)
+{
+    if (from_precision == to_precision) {
+        memcpy(to, from, count * precision_size(from_precision));
+    } else if (to_precision == PRECISION_DOUBLE) {
+        const float complex *in = from;
+        double complex *out = to;
+        for (size_t i = 0; i < count; i++) {
+            out[i] = in[i];
+        }
+    } else {
+        const double complex *in = from;
+        float complex *out = to;
+        for (size_t i = 0; i < count; i++) {
+            out[i] = (float complex)in[i];
+        }
+    }
+}
+
+enum status echoes_allocate(const struct acquisition *acquisition, enum precision precision, struct echoes *echoes)
+{
+    size_t size = size_product((size_t)acquisition->pings, (size_t)acquisition->receivers, (size_t)acquisition->samples,
+                               precision_size(precision));
+    *echoes = (struct echoes){0};
+    enum status room = memory_check((double)size, "echoes");
+    if (room != STATUS_OK) {
+        return room;
+    }
+    *echoes = (struct echoes){acquisition, precision, allocate_zeroed(size), 0};
+    if (!echoes->samples) {
+        return status_set(STATUS_FAILED, "out of memory for %d samples x %d receivers x %d pings", acquisition->samples,
+                          acquisition->receivers, acquisition->pings);
+    }
+    return STATUS_OK;
+}
+
+/* The power of two that brings the largest part of the numbers below 1; 0 where it lies well within the range of
+   `precision`: room for the sums of 2^60 samples, and for parts 2^60 times smaller. */
+static int range_exponent(const double complex *numbers, size_t count, enum precision precision)
+{
+    const double reach = precision == PRECISION_FLOAT ? 0x1p40 : 0x1p400;
+    double largest = 0;
+    int exponent = 0;
+    for (size_t i = 0; i < count; i++) {
+        largest = fmax(largest, fmax(fabs(creal(numbers[i])), fabs(cimag(numbers[i]))));
+    }
+    if (largest > 0 && largest < INFINITY && !(largest >= 1 / reach && largest <= reach)) {
+        frexp(largest, &exponent);
+    }
+    return exponent;
+}
+
+static void scale_numbers(const double complex *from, int exponent, void *to, enum precision precision, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        double re = ldexp(creal(from[i]), exponent), im = ldexp(cimag(from[i]), exponent);
+        if (precision == PRECISION_FLOAT) {
+            ((float complex *)to)[i] = __builtin_complex((float)re, (float)im);
+        } else {
+            ((double complex *)to)[i] = __builtin_complex(re, im);
+        }
+    }
+}
+
+enum status echoes_convert(const struct echoes *from, enum precision precision, struct echoes *to)
+{
+    const struct acquisition *acquisition = from->acquisition;
+    enum status status = echoes_allocate(acquisition, precision, to);
+    if (status == STATUS_OK) {
+        size_t count = (size_t)acquisition->pings * (size_t)acquisition->receivers * (size_t)acquisition->samples;
+        int exponent = from->precision == PRECISION_DOUBLE ? range_exponent(from->samples, count, precision) : 0;
+        if (exponent != 0) {
+            scale_numbers(from->samples, -exponent, (void *)to->samples, precision, count);
+        } else {
+            convert_numbers(from->samples, from->precision, (void *)to->samples, precision, count);
+        }
+        to->exponent = from->exponent + exponent;
+    }
+    return status;
+}
+
+void echoes_free(struct echoes *echoes)
+{
+    free((void *)echoes->samples);
+    *echoes = (struct echoes){0};
+}
+
+enum status image_allocate(int patch_count, const struct grid *patches, enum precision precision, struct image *image)
+{
+    double bytes = 0;
+    for (int i = 0; i < patch_count; i++) {
+        bytes += (double)patches[i].r_count * patches[i].x_count * (double)precision_size(precision);
+    }
+    *image = (struct image){0};
+    enum status room = memory_check(bytes, "the image");
+    if (room != STATUS_OK) {
+        return room;
+    }
+    *image = (struct image){patch_count, patches, precision, calloc((size_t)patch_count, sizeof *image->pixels)};
+    for (int i = 0; image->pixels && i < patch_count; i++) {
+        image->pixels[i] = allocate_zeroed(
+            size_product((size_t)patches[i].r_count, (size_t)patches[i].x_count, 1, precision_size(precision)));
+        if (!image->pixels[i]) {
+            enum status status = status_set(STATUS_FAILED, "out of memory for an image of %d x %d pixels",
+                                            patches[i].r_count, patches[i].x_count);
+            image_free(image);
+            return status;
+        }
+    }
+    return image->pixels ? STATUS_OK : status_set(STATUS_FAILED, "out of memory for %d image patches", patch_count);
+}
+
+enum status image_convert(const struct image *from, enum precision precision, struct image *to)
+{
+    enum status status = image_allocate(from->patch_count, from->patches, precision, to);
+    for (int i = 0; status == STATUS_OK && i < from->patch_count; i++) {
+        size_t count = (size_t)from->patches[i].r_count * (size_t)from->patches[i].x_count;
+        convert_numbers(from->pixels[i], from->precision, to->pixels[i], precision, count);
+    }
+    return status;
+}
+
+enum status image_scale(struct image *image, int exponent)
+{
+    struct image scaled;
+    if (exponent == 0) {
+        return STATUS_OK;
+    }
+    enum status status = image_convert(image, PRECISION_DOUBLE, &scaled);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    for (int i = 0; i < scaled.patch_count; i++) {
+        size_t count = (size_t)scaled.patches[i].r_count * (size_t)scaled.patches[i].x_count;
+        scale_numbers(scaled.pixels[i], exponent, scaled.pixels[i], PRECISION_DOUBLE, count);
+    }
+    image_free(image);
+    *image = scaled;
+    return STATUS_OK;
+}
+
+void image_free(struct image *image)
+{
+    for (int i = 0; image->pixels && i < image->patch_count; i++) {
+        free(image->pixels[i]);
+    }
+    free(image->pixels);
+    *image = (struct image){0};
+}
+
+double complex image_pixel(const struct image *image, int patch, int i, int j)
+{
+    size_t index = (size_t)i * (size_t)image->patches[patch].x_count + (size_t)j;
+    if (image->precision == PRECISION_FLOAT) {
+        return ((const float complex *)image->pixels[patch])[index];
+    }
+    return ((const double complex *)image->pixels[patch])[index];
+}
+
+bool image_is_finite(const struct image *image)
+{
+    for (int k = 0; k < image->patch_count; k++)
+        for (int i = 0; i < image->patches[k].r_count; i++)
+            for (int j = 0; j < image->patches[k].x_count; j++) {
+                double complex value = image_pixel(image, k, i, j);
+                if (!isfinite(creal(value)) || !isfinite(cimag(value)))
+                    return false;
+            }
+    return true;
+}

@@ -1,0 +1,450 @@
+/* Echo files: which variables they have, in which shapes. */
+#include "echoes/matfile.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "echoes/matvar.h"
+#include "echoes/noise.h"
+
+enum echo_variable {
+    FORMAT,
+    SAMPLES,
+    COMPRESSED,
+    PULSE,
+    FS,
+    FC,
+    BANDWIDTH,
+    SOUND_SPEED,
+    T0,
+    TX,
+    RX,
+    VELOCITY,
+    PRI,
+    TX_LENGTH,
+    RX_LENGTH,
+    BEAM_LIMIT,
+    ECHO_SINE,
+    ECHO_TAPERS,
+    ECHO_SQUINT,
+    AREA,
+    ECHO_VARIABLES
+};
+
+static const char format_text[] = "sas-echoes 1";
+
+static const struct wanted echo_variables[ECHO_VARIABLES] = {
+    [FORMAT] = {"format", KIND_TEXT, false, "the text \"sas-echoes 1\""},
+    [SAMPLES] = {"samples", KIND_COMPLEX, false, "a complex array [N x M x P] (fast time x receivers x pings)"},
+    [COMPRESSED] = {"compressed", KIND_SCALAR, false, "0 (raw) or 1 (range compressed)"},
+    [PULSE] = {"pulse", KIND_COMPLEX, true, "a complex array [K x 1]"},
+    [FS] = {"fs", KIND_SCALAR, false, "a scalar in Hz"},
+    [FC] = {"fc", KIND_SCALAR, false, "a scalar in Hz"},
+    [BANDWIDTH] = {"bandwidth", KIND_SCALAR, false, "a scalar in Hz"},
+    [SOUND_SPEED] = {"sound_speed", KIND_SCALAR, false, "a scalar in m/s"},
+    [T0] = {"t0", KIND_REAL, false, "a real scalar or [1 x P] in s"},
+    [TX] = {"tx", KIND_REAL, false, "a real array [3 x P] in m"},
+    [RX] = {"rx", KIND_REAL, false, "a real array [3 x M x P] in m"},
+    [VELOCITY] = {"velocity", KIND_REAL, false, "a real array [3 x 1] or [3 x P] in m/s"},
+    [PRI] = {"pri", KIND_SCALAR, true, "a scalar in s"},
+    [TX_LENGTH] = {"tx_length", KIND_SCALAR, true, "a scalar in m"},
+    [RX_LENGTH] = {"rx_length", KIND_SCALAR, true, "a scalar in m"},
+    [BEAM_LIMIT] = {"beam_limit", KIND_SCALAR, true, "a scalar in (0, 1]"},
+    [ECHO_SINE] = {"echo_sine", KIND_SCALAR, true, "a scalar > 0, Inf where echoes come from everywhere"},
+    [ECHO_TAPERS] = {"echo_tapers", KIND_SCALAR, true, "0 or 1"},
+    [ECHO_SQUINT] = {"echo_squint", KIND_SCALAR, true, "a scalar between -pi/2 and pi/2 in rad"},
+    [AREA] = {"area", KIND_REAL, true, "a real array [1 x 4] in m (x, r, half_x, half_r), the last two > 0,"},
+};
+_Static_assert((int)ECHO_VARIABLES <= (int)WANTED_MAX, "send_variables keeps a mark for each variable");
+
+static double scalar_or(const struct variable *variable, double missing)
+{
+    return variable->values ? creal(variable->values[0]) : missing;
+}
+
+/* Shapes that are meant otherwise and can only be meant so: one receiver without its dimension, which MATLAB and SciPy
+   leave out or squeeze away, and coordinates in rows [P x 3]. */
+static enum status shapes_read(struct variable *v)
+{
+    size_t *samples = v[SAMPLES].dims, *rx = v[RX].dims;
+    const size_t second = samples[1];
+    const bool tx_of_pings =
+        (v[TX].dims[0] == 3 && v[TX].dims[1] == second) || (v[TX].dims[1] == 3 && v[TX].dims[0] == second);
+    if (samples[2] == 1 && second > 1 && tx_of_pings && variable_count(&v[RX]) == 3 * second) {
+        samples[1] = 1;
+        samples[2] = second;
+    }
+    const size_t pings = samples[2];
+    enum status status = STATUS_OK;
+    for (int k = 0; k < 3 && status == STATUS_OK; k++) {
+        struct variable *turned = &v[k == 0 ? TX : k == 1 ? VELOCITY : RX];
+        const bool in_rows = turned->dims[1] == 3 && turned->dims[0] != 3 && turned->dims[2] == 1
+                             && (turned->dims[0] == pings || turned->dims[0] == 1) && (k < 2 || samples[1] == 1);
+        status = in_rows ? variable_transpose(turned) : STATUS_OK;
+    }
+    if (samples[1] == 1 && rx[0] == 3 && rx[1] == pings && rx[2] == 1) {
+        rx[1] = 1;
+        rx[2] = pings;
+    }
+    return status;
+}
+
+static enum status check_echo_shapes(const char *path, const struct variable *v)
+{
+    const struct variable *samples = &v[SAMPLES];
+    size_t receivers = samples->dims[1], pings = samples->dims[2];
+    for (int i = 0; i < 3; i++) {
+        if (samples->dims[i] > INT_MAX) {
+            return status_set(STATUS_INVALID,
+                              "%s: variable `samples` is [%zu x %zu x %zu]; at most %d each is "
+                              "accepted",
+                              path, samples->dims[0], samples->dims[1], samples->dims[2], INT_MAX);
+        }
+    }
+    const struct variable *pulse = &v[PULSE];
+    bool is_vector = (pulse->dims[0] == 1 || pulse->dims[1] == 1) && pulse->dims[2] == 1;
+    bool pulse_fits = !pulse->values || (is_vector && variable_count(pulse) <= INT_MAX);
+    bool area_fits = !v[AREA].values || variable_has_shape(&v[AREA], 1, 4, 1) || variable_has_shape(&v[AREA], 4, 1, 1);
+    const struct {
+        enum echo_variable variable;
+        bool fits;
+    } shapes[] = {
+        {T0, variable_has_shape(&v[T0], 1, 1, 1) || variable_has_shape(&v[T0], 1, pings, 1)
+                 || variable_has_shape(&v[T0], pings, 1, 1)},
+        {TX, variable_has_shape(&v[TX], 3, pings, 1)},
+        {RX, variable_has_shape(&v[RX], 3, receivers, pings)},
+        {VELOCITY, variable_has_shape(&v[VELOCITY], 3, 1, 1) || variable_has_shape(&v[VELOCITY], 3, pings, 1)},
+        {PULSE, pulse_fits},
+        {AREA, area_fits},
+    };
+    const size_t *tx = v[TX].dims, *rx = v[RX].dims;
+    if ((rx[1] != receivers || rx[2] != pings) && tx[0] == 3 && rx[0] == 3 && rx[2] == tx[1] && tx[2] == 1) {
+        return status_set(
+            STATUS_INVALID,
+            "%s: variable `samples` is [%zu x %zu x %zu], `tx` and `rx` have %zu receivers and %zu pings; %s is needed",
+            path, samples->dims[0], receivers, pings, rx[1], tx[1], echo_variables[SAMPLES].accepted);
+    }
+    for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
+        const struct wanted *wanted = &echo_variables[shapes[i].variable];
+        const size_t *dims = v[shapes[i].variable].dims;
+        if (!shapes[i].fits) {
+            return status_set(
+                STATUS_INVALID, "%s: variable `%s` is [%zu x %zu x %zu], samples [%zu x %zu x %zu]; %s is needed", path,
+                wanted->name, dims[0], dims[1], dims[2], samples->dims[0], receivers, pings, wanted->accepted);
+        }
+    }
+    return STATUS_OK;
+}
+
+static enum status check_echo_scalars(const char *path, const struct variable *v)
+{
+    const double compressed = scalar_or(&v[COMPRESSED], 0), limit = scalar_or(&v[BEAM_LIMIT], 1);
+    const double tapers = scalar_or(&v[ECHO_TAPERS], 0);
+    const struct {
+        enum echo_variable variable;
+        bool fits;
+    } scalars[] = {
+        {COMPRESSED, compressed == 0 || compressed == 1},
+        {BEAM_LIMIT, limit > 0 && limit <= 1},
+        {ECHO_SINE, scalar_or(&v[ECHO_SINE], 1) > 0},
+        {ECHO_TAPERS, tapers == 0 || tapers == 1},
+        {ECHO_SQUINT, fabs(scalar_or(&v[ECHO_SQUINT], 0)) < M_PI / 2},
+    };
+    for (size_t i = 0; i < sizeof scalars / sizeof *scalars; i++) {
+        const struct wanted *wanted = &echo_variables[scalars[i].variable];
+        if (!scalars[i].fits) {
+            return status_set(STATUS_INVALID, "%s: variable `%s` is %g; %s is needed", path, wanted->name,
+                              creal(v[scalars[i].variable].values[0]), wanted->accepted);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Of a fitting shape. */
+static enum status check_area(const char *path, const struct variable *v)
+{
+    for (size_t i = 0; v[AREA].values && i < 4; i++) {
+        double value = creal(v[AREA].values[i]);
+        if (!isfinite(value) || !(value > 0 || i < 2)) {
+            return status_set(STATUS_INVALID, "%s: variable `area` has %g at place %zu; %s is needed", path, value,
+                              i + 1, echo_variables[AREA].accepted);
+        }
+    }
+    return STATUS_OK;
+}
+
+static enum status check_echo_values(const char *path, const struct variable *v)
+{
+    const struct variable *format = &v[FORMAT], *samples = &v[SAMPLES];
+    size_t length = variable_count(format);
+    while (length > 0 && creal(format->values[length - 1]) == 0) {
+        length--; /* texts of a fixed length are padded */
+    }
+    bool is_ours = length == strlen(format_text);
+    for (size_t i = 0; is_ours && i < strlen(format_text); i++) {
+        is_ours = creal(format->values[i]) == format_text[i];
+    }
+    if (!is_ours) {
+        char text[32] = ""; /* what stands there, as far as it is plain text */
+        for (size_t i = 0; i < length && i < sizeof text - 1; i++) {
+            double code = creal(format->values[i]);
+            text[i] = code >= ' ' && code <= '~' ? (char)code : '?';
+        }
+        return status_set(STATUS_INVALID, "%s: variable `format` is \"%s\"; %s is needed", path, text,
+                          echo_variables[FORMAT].accepted);
+    }
+    enum status status = check_echo_scalars(path, v);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    if (scalar_or(&v[COMPRESSED], 1) == 0 && !v[PULSE].values) {
+        return status_set(STATUS_INVALID, "%s: variable `pulse` is missing; raw echoes (compressed 0) need %s", path,
+                          echo_variables[PULSE].accepted);
+    }
+    size_t count = variable_count(samples);
+    for (size_t i = 0; i < count; i++) {
+        double complex z = samples->values[i];
+        if (!isfinite(creal(z)) || !isfinite(cimag(z))) {
+            size_t n = i % samples->dims[0], record = i / samples->dims[0];
+            return status_set(STATUS_INVALID,
+                              "%s: variable `samples` at (%zu, %zu, %zu) is %g%+gi; finite numbers are needed", path,
+                              n + 1, record % samples->dims[1] + 1, record / samples->dims[1] + 1, creal(z), cimag(z));
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Compression divides by the pulse's energy. A pulse so small or large that squares of it leave the precision is
+   brought to 1 by a power of two, and the samples by the same, which leaves the compressed echoes as they are. */
+static enum status normalise_pulse(const char *path, const struct variable *v)
+{
+    const struct variable *const both[] = {&v[PULSE], &v[SAMPLES]};
+    size_t pulse_count = v[PULSE].values ? variable_count(&v[PULSE]) : 0;
+    double largest = 0;
+    int exponent;
+    for (size_t k = 0; k < pulse_count; k++) {
+        largest = fmax(largest, fmax(fabs(creal(v[PULSE].values[k])), fabs(cimag(v[PULSE].values[k]))));
+    }
+    if (!(largest > 0 && largest < INFINITY) || (largest >= 0x1p-20 && largest <= 0x1p20)) {
+        return STATUS_OK;
+    }
+    frexp(largest, &exponent);
+    for (int k = 0; k < 2; k++) {
+        for (size_t i = 0; i < variable_count(both[k]); i++) {
+            double re = ldexp(creal(both[k]->values[i]), -exponent), im = ldexp(cimag(both[k]->values[i]), -exponent);
+            if (k == 1 && (!isfinite(re) || !isfinite(im))) {
+                return status_set(STATUS_INVALID,
+                                  "%s: variable `samples` has %g%+gi, variable `pulse` at most %g; their ratio "
+                                  "must fit double",
+                                  path, creal(both[k]->values[i]), cimag(both[k]->values[i]), largest);
+            }
+            both[k]->values[i] = __builtin_complex(re, im);
+        }
+    }
+    return STATUS_OK;
+}
+
+static enum status acquisition_fill(const char *path, const struct variable *v, struct acquisition *a)
+{
+    a->sound_speed = scalar_or(&v[SOUND_SPEED], 0);
+    a->fc = scalar_or(&v[FC], 0);
+    a->fs = scalar_or(&v[FS], 0);
+    a->bandwidth = scalar_or(&v[BANDWIDTH], 0);
+    a->samples = (int)v[SAMPLES].dims[0];
+    a->receivers = (int)v[SAMPLES].dims[1];
+    a->pings = (int)v[SAMPLES].dims[2];
+    a->pri = scalar_or(&v[PRI], 0);
+    a->tx_length = scalar_or(&v[TX_LENGTH], 0);
+    a->rx_length = scalar_or(&v[RX_LENGTH], 0);
+    a->aperture_limit = scalar_or(&v[BEAM_LIMIT], INFINITY);
+    a->echo_sine = scalar_or(&v[ECHO_SINE], 0);
+    a->echo_tapers = scalar_or(&v[ECHO_TAPERS], 0) == 1;
+    a->noisy = true;
+    a->echo_squint = scalar_or(&v[ECHO_SQUINT], 0);
+    if (v[AREA].values) {
+        const double complex *area = v[AREA].values;
+        a->area = (struct target_area){creal(area[0]), creal(area[1]), creal(area[2]), creal(area[3])};
+    }
+    a->compressed = scalar_or(&v[COMPRESSED], 0) == 1;
+    a->pulse_length = v[PULSE].values ? (int)variable_count(&v[PULSE]) : 0;
+    enum status status = acquisition_allocate(a);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    bool one_t0 = variable_count(&v[T0]) == 1, one_velocity = variable_count(&v[VELOCITY]) == 3;
+    for (size_t p = 0, receivers = (size_t)a->receivers; p < (size_t)a->pings; p++) {
+        a->t0[p] = creal(v[T0].values[one_t0 ? 0 : p]);
+        a->tx[p] = variable_vector(&v[TX], p);
+        a->velocity[p] = variable_vector(&v[VELOCITY], one_velocity ? 0 : p);
+        for (size_t m = 0; m < receivers; m++) {
+            a->rx[p * receivers + m] = variable_vector(&v[RX], p * receivers + m);
+        }
+    }
+    for (int k = 0; k < a->pulse_length; k++) {
+        a->pulse[k] = v[PULSE].values[k];
+    }
+    return acquisition_check(a, path);
+}
+
+enum status echo_file_read(const char *path, struct acquisition *acquisition, struct echoes *echoes)
+{
+    *acquisition = (struct acquisition){0};
+    *echoes = (struct echoes){0};
+    struct variable variables[ECHO_VARIABLES];
+    enum status status = variables_read(path, echo_variables, ECHO_VARIABLES, variables);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    status = check_echo_values(path, variables);
+    if (status == STATUS_OK) {
+        status = shapes_read(variables);
+    }
+    if (status == STATUS_OK) {
+        status = check_echo_shapes(path, variables);
+    }
+    if (status == STATUS_OK) {
+        status = check_area(path, variables);
+    }
+    if (status == STATUS_OK) {
+        status = normalise_pulse(path, variables);
+    }
+    if (status == STATUS_OK) {
+        status = acquisition_fill(path, variables, acquisition);
+    }
+    if (status == STATUS_OK) {
+        const double wavelength = acquisition->sound_speed / acquisition->fc;
+        status = positions_check(path, echo_variables[TX].name, &variables[TX], wavelength);
+        if (status == STATUS_OK) {
+            status = positions_check(path, echo_variables[RX].name, &variables[RX], wavelength);
+        }
+    }
+    if (status == STATUS_OK) {
+        *echoes = (struct echoes){acquisition, PRECISION_DOUBLE, variables[SAMPLES].values, 0};
+        status = noise_measure(echoes, &acquisition->noise);
+    }
+    if (status == STATUS_OK) {
+        variables[SAMPLES].values = NULL;
+    } else {
+        *echoes = (struct echoes){0};
+        acquisition_free(acquisition);
+    }
+    variables_free(variables, ECHO_VARIABLES);
+    return status;
+}
+
+enum status echo_file_is(const char *path, bool *is)
+{
+    /* What lacks its format but has `t0` is one, whose reader says what is missing. */
+    struct wanted either[] = {echo_variables[FORMAT], echo_variables[T0]};
+    struct variable variables[2];
+    either[0].is_optional = either[1].is_optional = true;
+    enum status status = variables_read(path, either, 2, variables);
+    *is = status == STATUS_OK && (variables[0].values || variables[1].values);
+    if (status == STATUS_OK) {
+        variables_free(variables, 2);
+    }
+    return status;
+}
+
+/* Do all pings have the first one's `size` bytes? */
+static bool is_constant(const void *values, size_t size, int pings)
+{
+    for (int p = 1; p < pings; p++) {
+        if (memcmp(values, (const char *)values + (size_t)p * size, size) != 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Echoes as they were recorded: times 2^exponent. Errors: STATUS_INVALID where double cannot hold them. */
+static enum status echoes_restore(const char *path, const struct echoes *echoes, struct echoes *restored)
+{
+    const struct acquisition *a = echoes->acquisition;
+    enum status status = echoes_allocate(a, PRECISION_DOUBLE, restored);
+    size_t count = (size_t)a->samples * (size_t)a->receivers * (size_t)a->pings;
+    for (size_t i = 0; i < count && status == STATUS_OK; i++) {
+        double complex z = echoes->precision == PRECISION_FLOAT ? ((const float complex *)echoes->samples)[i]
+                                                                : ((const double complex *)echoes->samples)[i];
+        double re = ldexp(creal(z), echoes->exponent), im = ldexp(cimag(z), echoes->exponent);
+        ((double complex *)restored->samples)[i] = __builtin_complex(re, im);
+        if (!isfinite(re) || !isfinite(im))
+            status =
+                status_set(STATUS_INVALID,
+                           "%s: sample %zu would be %g%+gi times 2^%d, beyond the range of double; the echoes must "
+                           "be smaller",
+                           path, i + 1, creal(z), cimag(z), echoes->exponent);
+    }
+    if (status != STATUS_OK)
+        echoes_free(restored);
+    return status;
+}
+
+static void write_scalars(struct writer *writer, const struct acquisition *a)
+{
+    const struct {
+        const char *name;
+        double value;
+        bool is_written;
+    } scalars[] = {
+        {"compressed", a->compressed, true},
+        {"fs", a->fs, true},
+        {"fc", a->fc, true},
+        {"bandwidth", a->bandwidth, true},
+        {"sound_speed", a->sound_speed, true},
+        {"pri", a->pri, a->pri > 0},
+        {"tx_length", a->tx_length, a->tx_length > 0},
+        {"rx_length", a->rx_length, a->rx_length > 0},
+        {"beam_limit", a->aperture_limit, a->aperture_limit <= 1},
+        {"echo_sine", a->echo_sine, a->echo_sine > 0},
+        {"echo_tapers", a->echo_tapers, a->echo_sine > 0},
+        {"echo_squint", a->echo_squint, a->echo_squint != 0},
+    };
+    for (size_t i = 0; i < sizeof scalars / sizeof *scalars; i++)
+        if (scalars[i].is_written)
+            write_reals(writer, scalars[i].name, 1, 1, 1, &scalars[i].value);
+}
+
+enum status echo_file_write(const char *path, const struct echoes *echoes, const char *description)
+{
+    const struct acquisition *a = echoes->acquisition;
+    if (echoes->exponent != 0) {
+        struct echoes restored;
+        enum status status = echoes_restore(path, echoes, &restored);
+        if (status == STATUS_OK) {
+            status = echo_file_write(path, &restored, description);
+            echoes_free(&restored);
+        }
+        return status;
+    }
+    size_t samples = (size_t)a->samples, receivers = (size_t)a->receivers, pings = (size_t)a->pings;
+    size_t samples_bytes = samples * receivers * pings * precision_size(echoes->precision);
+    size_t rx_bytes = receivers * pings * sizeof *a->rx;
+    struct writer writer;
+    if (writer_open(&writer, path, samples_bytes > rx_bytes ? samples_bytes : rx_bytes) != STATUS_OK) {
+        return writer.status;
+    }
+    write_text(&writer, "format", format_text);
+    write_complex(&writer, "samples", (size_t[]){samples, receivers, pings}, echoes->precision, echoes->samples,
+                  samples * receivers * pings, 1);
+    if (!a->compressed) {
+        size_t length = (size_t)a->pulse_length;
+        write_complex(&writer, "pulse", (size_t[]){length, 1, 1}, PRECISION_DOUBLE, a->pulse, length, 1);
+    }
+    write_scalars(&writer, a);
+    if (a->area.half_x > 0) {
+        write_reals(&writer, "area", 1, 4, 1, &a->area.x);
+    }
+    size_t t0_count = is_constant(a->t0, sizeof *a->t0, a->pings) ? 1 : pings;
+    size_t velocity_count = is_constant(a->velocity, sizeof *a->velocity, a->pings) ? 1 : pings;
+    write_reals(&writer, "t0", 1, t0_count, 1, a->t0);
+    write_reals(&writer, "tx", 3, pings, 1, &a->tx->x);
+    write_reals(&writer, "rx", 3, receivers, pings, &a->rx->x);
+    write_reals(&writer, "velocity", 3, velocity_count, 1, &a->velocity->x);
+    if (description) {
+        write_text(&writer, "description", description);
+    }
+    return writer_close(&writer);
+}

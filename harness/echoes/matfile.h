@@ -1,0 +1,49 @@
+/* Echo files and image files in MATLAB format (variables and shapes: README, "Echo files"). */
+#ifndef SASBENCH_SCENE_MATFILE_H
+#define SASBENCH_SCENE_MATFILE_H
+
+#include "echoes/echo_data.h"
+
+/* Read an echo file. *acquisition and *echoes (double, samples pointing to that acquisition) are the caller's:
+   acquisition_free, echoes_free. Of a pulse beyond 2^+-20 both pulse and samples are divided by its power of two.
+   Errors: STATUS_INVALID, naming file, variable, value and what is accepted. */
+enum status echo_file_read(const char *path, struct acquisition *acquisition, struct echoes *echoes);
+
+/* Write one: v5, or v7.3 where v5 cannot hold a variable (2 GiB). Written beside `path` and renamed when whole, so
+   that nothing is half written. Samples are stored in the echoes' own precision. `description` may be NULL.
+   Errors: STATUS_INVALID when the place cannot be written. */
+enum status echo_file_write(const char *path, const struct echoes *echoes, const char *description);
+
+/* Can a file be made here? Asked before long work whose result goes there. Errors: STATUS_INVALID. */
+enum status matfile_place(const char *path);
+
+/* What an image file says of itself: texts of plain signs, empty where it says nothing, and numbers, NAN likewise. */
+struct image_origin {
+    char algorithm[260], options[260], scene[260];
+    char engine[260]; /* what the plan chose, as the column `engine`: of `auto` the setting */
+    char scene_hash[260], commit[260], date[260];
+    double fc, sound_speed; /* Hz, m/s */
+};
+
+/* Write an image with x, r, angle (of turned axes), and what is said of it, each a variable. The second patch is
+   image_2, x_2, r_2, and so on. Same rules. */
+enum status image_file_write(const char *path, const struct image *image, const struct image_origin *origin);
+
+/* Read an image file's first patch back: *grid from x, r (uniform to 1e-6 of a step) and angle, pixels malloc'ed
+   complex double [r_count][x_count]. Errors: STATUS_INVALID. */
+enum status image_file_read(const char *path, struct grid *grid, double complex **pixels);
+
+/* All patches of an image file, and what it says of itself. Errors: as image_file_read; nothing to close then. */
+struct image_file {
+    struct image image; /* double */
+    struct grid *patches;
+    struct image_origin origin;
+};
+enum status image_file_open(const char *path, struct image_file *file);
+void image_file_close(struct image_file *file);
+
+/* Is it an echo file, by its variable `format` or `t0`? An image file, by its axis `x`? Errors: as variables_read. */
+enum status echo_file_is(const char *path, bool *is);
+enum status image_file_is(const char *path, bool *is);
+
+#endif

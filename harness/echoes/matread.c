@@ -1,0 +1,425 @@
+/* Reading MATLAB files through libmatio.
+
+   A damaged file can make libmatio and HDF5 crash, or allocate what a few bytes claim. So every file is read by a
+   child process under resource limits, which sends the variables that we want through a pipe; whatever happens to it,
+   the program itself only learns that the file is no good. */
+#define _GNU_SOURCE /* pipe2, _Fork */
+#include "echoes/matvar.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <matio.h>
+#include <signal.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#ifdef __has_feature
+#if __has_feature(address_sanitizer)
+#define ADDRESS_SANITIZER
+#endif
+#endif
+#ifdef __SANITIZE_ADDRESS__
+#define ADDRESS_SANITIZER
+#endif
+
+enum {
+    MESSAGE_SIZE = 1024,
+    BLOCK = 4096,           /* numbers sent at a time */
+    SPARE_BYTES = 256 << 20 /* what libmatio and HDF5 may use beyond the numbers themselves */
+};
+
+/* What the child sends: a packet and its values for each variable, then one with index END and the message. */
+struct packet {
+    enum { END = -1 } index; /* of the wanted variable, or END */
+    enum status status;      /* END only */
+    struct variable variable;
+};
+
+static void discard_log(int level, char *message)
+{
+    (void)level;
+    (void)message;
+}
+
+void matio_silence(void)
+{
+    Mat_LogInitFunc("sasbench", discard_log);
+}
+
+/* ---- The child ---- */
+
+#define DEFINE_LOAD(type)                                                                                              \
+    static double load_##type(const void *data, size_t index)                                                          \
+    {                                                                                                                  \
+        return (double)((const type *)data)[index];                                                                    \
+    }
+DEFINE_LOAD(int8_t)
+DEFINE_LOAD(uint8_t)
+DEFINE_LOAD(int16_t)
+DEFINE_LOAD(uint16_t)
+DEFINE_LOAD(int32_t)
+DEFINE_LOAD(uint32_t)
+DEFINE_LOAD(int64_t)
+DEFINE_LOAD(uint64_t)
+DEFINE_LOAD(float)
+DEFINE_LOAD(double)
+
+static const struct {
+    double (*load)(const void *data, size_t index);
+    size_t size;
+} number_types[] = {
+    [MAT_T_INT8] = {load_int8_t, 1},     [MAT_T_UINT8] = {load_uint8_t, 1},   [MAT_T_INT16] = {load_int16_t, 2},
+    [MAT_T_UINT16] = {load_uint16_t, 2}, [MAT_T_INT32] = {load_int32_t, 4},   [MAT_T_UINT32] = {load_uint32_t, 4},
+    [MAT_T_INT64] = {load_int64_t, 8},   [MAT_T_UINT64] = {load_uint64_t, 8}, [MAT_T_SINGLE] = {load_float, 4},
+    [MAT_T_DOUBLE] = {load_double, 8},   [MAT_T_UTF8] = {load_uint8_t, 1},    [MAT_T_UTF16] = {load_uint16_t, 2},
+    [MAT_T_UTF32] = {load_uint32_t, 4},
+};
+
+static const char *const class_names[] = {
+    [MAT_C_EMPTY] = "empty, or its attribute MATLAB_class is no text of fixed length (h5py: numpy.bytes_('double'))",
+    [MAT_C_CELL] = "a cell array",
+    [MAT_C_STRUCT] = "a struct",
+    [MAT_C_OBJECT] = "an object",
+    [MAT_C_CHAR] = "text",
+    [MAT_C_SPARSE] = "a sparse matrix",
+    [MAT_C_DOUBLE] = "numeric",
+    [MAT_C_SINGLE] = "numeric",
+    [MAT_C_INT8] = "numeric",
+    [MAT_C_UINT8] = "numeric",
+    [MAT_C_INT16] = "numeric",
+    [MAT_C_UINT16] = "numeric",
+    [MAT_C_INT32] = "numeric",
+    [MAT_C_UINT32] = "numeric",
+    [MAT_C_INT64] = "numeric",
+    [MAT_C_UINT64] = "numeric",
+    [MAT_C_FUNCTION] = "a function",
+    [MAT_C_OPAQUE] = "an object",
+};
+
+static void limit_resource(__rlimit_resource_t resource, rlim_t wish)
+{
+    struct rlimit limit;
+    if (getrlimit(resource, &limit) == 0) {
+        limit.rlim_cur = wish < limit.rlim_max ? wish : limit.rlim_max;
+        setrlimit(resource, &limit);
+    }
+}
+
+/* Allow the process `bytes` more than it has mapped now, and the time for that. */
+static void limit_memory_and_time(size_t bytes)
+{
+    limit_resource(RLIMIT_CPU, (rlim_t)(clock() / CLOCKS_PER_SEC) + 10 + bytes / 10000000);
+#ifndef ADDRESS_SANITIZER /* its shadow memory alone is terabytes of address space */
+    unsigned long pages;
+    FILE *file = fopen("/proc/self/statm", "r");
+    if (file && fscanf(file, "%lu", &pages) == 1) {
+        limit_resource(RLIMIT_AS, (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE) + bytes);
+    }
+    if (file) {
+        fclose(file);
+    }
+#endif
+}
+
+static bool write_fully(int descriptor, const void *data, size_t size)
+{
+    for (const char *next = data; size > 0;) {
+        ssize_t written = write(descriptor, next, size);
+        if (written < 0 && errno != EINTR) {
+            return false;
+        }
+        if (written > 0) {
+            next += written;
+            size -= (size_t)written;
+        }
+    }
+    return true;
+}
+
+/* The three dimensions of a variable, if it has no more and the file can hold them: zlib packs at most 1032:1. */
+static enum status check_claim(const char *path, const struct wanted *wanted, const matvar_t *matvar, size_t file_size,
+                               struct variable *variable)
+{
+    *variable = (struct variable){
+        .is_complex = matvar->isComplex != 0, .is_single = matvar->class_type == MAT_C_SINGLE, .dims = {1, 1, 1}};
+    size_t bytes = 16; /* at most, for one number */
+    for (int i = 0; i < matvar->rank; i++) {
+        if (i < 3) {
+            variable->dims[i] = matvar->dims[i];
+        } else if (matvar->dims[i] != 1) {
+            return status_set(STATUS_INVALID, "%s: variable `%s` has %d dimensions; %s is needed", path, wanted->name,
+                              matvar->rank, wanted->accepted);
+        }
+        if (__builtin_mul_overflow(bytes, matvar->dims[i], &bytes) || bytes / 16 / 1032 > file_size) {
+            return status_set(STATUS_INVALID,
+                              "%s: variable `%s` claims more numbers than the file's %zu bytes can hold", path,
+                              wanted->name, file_size);
+        }
+    }
+    /* Twice the numbers: HDF5 may hold a whole data set as one packed chunk. */
+    limit_memory_and_time(SPARE_BYTES + 2 * bytes);
+    return STATUS_OK;
+}
+
+static bool is_empty(const matvar_t *matvar)
+{
+    bool empty = false;
+    for (int i = 0; i < matvar->rank; i++) {
+        empty = empty || matvar->dims[i] == 0;
+    }
+    return empty;
+}
+
+/* Where the numbers of a variable are once it has been read: libmatio reports success for some that are not there. */
+static bool variable_parts(const matvar_t *matvar, size_t count, mat_complex_split_t *parts)
+{
+    size_t type = (size_t)matvar->data_type;
+    *parts = matvar->data && matvar->isComplex ? *(const mat_complex_split_t *)matvar->data
+                                               : (mat_complex_split_t){matvar->data, NULL};
+    return parts->Re && (parts->Im || !matvar->isComplex) && type < sizeof number_types / sizeof *number_types
+           && number_types[type].load && matvar->nbytes / number_types[type].size >= count;
+}
+
+/* A block at a time, so that the numbers are not held twice. */
+static bool send_values(mat_complex_split_t parts, enum matio_types type, size_t count, int descriptor)
+{
+    double block[2 * BLOCK];
+    for (size_t first = 0; first < count; first += BLOCK) {
+        size_t length = count - first < BLOCK ? count - first : BLOCK;
+        for (size_t i = 0; i < length; i++) {
+            block[2 * i] = number_types[type].load(parts.Re, first + i);
+            block[2 * i + 1] = parts.Im ? number_types[type].load(parts.Im, first + i) : 0;
+        }
+        if (!write_fully(descriptor, block, 2 * length * sizeof *block)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* `place` is the variable's element in a file of version 5. */
+static enum status send_variable(const char *path, const struct wanted *wanted, int index, mat_t *mat, matvar_t *matvar,
+                                 const struct mat5 *place, size_t file_size, int descriptor)
+{
+    const char *name = wanted[index].name;
+    bool is_text = matvar->class_type == MAT_C_CHAR || matvar->class_type == MAT_C_UINT16; /* its codes */
+    bool is_number = matvar->class_type >= MAT_C_DOUBLE && matvar->class_type <= MAT_C_UINT64;
+    if (wanted[index].kind == KIND_TEXT ? !is_text : !is_number) {
+        bool is_known = (size_t)matvar->class_type < sizeof class_names / sizeof *class_names;
+        return status_set(STATUS_INVALID, "%s: variable `%s` is %s; %s is needed", path, name,
+                          is_known ? class_names[matvar->class_type] : "of unknown class", wanted[index].accepted);
+    }
+    if (is_empty(matvar)) {
+        return is_text && wanted[index].is_optional
+                   ? STATUS_OK /* as if it were not there */
+                   : status_set(STATUS_INVALID, "%s: variable `%s` is empty; %s is needed", path, name,
+                                wanted[index].accepted);
+    }
+    struct packet packet;
+    memset(&packet, 0, sizeof packet);
+    packet.index = index;
+    enum status status = check_claim(path, &wanted[index], matvar, file_size, &packet.variable);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    size_t count = variable_count(&packet.variable);
+    const struct stored stored = {name, count, matvar->isComplex != 0, matvar->class_type == MAT_C_CHAR};
+    status = place->file ? mat5_check(path, &stored, place) : mat73_check(path, &stored);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    mat_complex_split_t parts;
+    if (Mat_VarReadDataAll(mat, matvar) != 0 || !variable_parts(matvar, count, &parts)) {
+        return status_set(STATUS_INVALID, "%s: variable `%s` is damaged or cut short; a whole file is needed", path,
+                          name);
+    }
+    if (!write_fully(descriptor, &packet, sizeof packet) || !send_values(parts, matvar->data_type, count, descriptor)) {
+        return status_set(STATUS_FAILED, "%s: nobody reads on", path);
+    }
+    return STATUS_OK;
+}
+
+/* libmatio ends its list without a word at what it cannot read, and what follows is as if it were not there. */
+static enum status rest_check(const char *path, const struct wanted *wanted, int count, const bool *sent,
+                              struct mat5 *place)
+{
+    bool is_whole = !place->file || !mat5_next(place);
+    for (int i = 0; i < count && !place->file; i++) {
+        is_whole = is_whole && (sent[i] || !mat73_has(path, wanted[i].name));
+    }
+    return is_whole ? STATUS_OK
+                    : status_set(STATUS_INVALID,
+                                 "%s: holds something that cannot be read before a variable that is needed: it is "
+                                 "damaged, or has an HDF5 group of its own; a whole MATLAB file is needed",
+                                 path);
+}
+
+static enum status send_variables(const char *path, const struct wanted *wanted, int count, size_t file_size,
+                                  int descriptor)
+{
+    matio_silence();
+    mat_t *mat = Mat_Open(path, MAT_ACC_RDONLY);
+    if (!mat || Mat_GetVersion(mat) == MAT_FT_MAT4) {
+        return status_set(STATUS_INVALID, "%s: is not a MATLAB file of version 5 or 7.3%s", path,
+                          file_other_format(path));
+    }
+    struct mat5 place = {0};
+    if (Mat_GetVersion(mat) == MAT_FT_MAT5 && (mat5_count(path) < 0 || !mat5_open(&place, path))) {
+        return status_set(STATUS_INVALID, "%s: is cut short or damaged; a whole MATLAB file is needed", path);
+    }
+    bool sent[WANTED_MAX] = {false};
+    char inside[64] = ""; /* the first struct, in which the variables may be */
+    enum status status = hdf5_prepare(path, wanted, count);
+    matvar_t *matvar;
+    while (status == STATUS_OK && (matvar = Mat_VarReadNextInfo(mat))) {
+        mat5_next(&place); /* in step with libmatio */
+        for (int i = 0; i < count && status == STATUS_OK; i++) {
+            if (!sent[i] && matvar->name && strcmp(matvar->name, wanted[i].name) == 0) {
+                status = send_variable(path, wanted, i, mat, matvar, &place, file_size, descriptor);
+                sent[i] = true;
+            }
+        }
+        if (matvar->class_type == MAT_C_STRUCT && matvar->name && !*inside) {
+            snprintf(inside, sizeof inside, "%.60s", matvar->name);
+        }
+        Mat_VarFree(matvar);
+    }
+    if (status == STATUS_OK) {
+        status = rest_check(path, wanted, count, sent, &place);
+    }
+    mat5_close(&place);
+    for (int i = 0; i < count && status == STATUS_OK && *inside; i++) {
+        if (!sent[i] && !wanted[i].is_optional) {
+            status = status_set(
+                STATUS_INVALID,
+                "%s: variable `%s` is missing; %s is needed. The file holds a struct `%s`: its fields must be "
+                "variables of their own (MATLAB: save('-v7', FILE, '-struct', '%s'); SciPy: savemat(FILE, %s))",
+                path, wanted[i].name, wanted[i].accepted, inside, inside, inside);
+        }
+    }
+    return status;
+}
+
+static _Noreturn void child_run(const char *path, const struct wanted *wanted, int count, size_t file_size,
+                                int descriptor)
+{
+    /* A crash ends the child quietly: not through handlers of the program, not with words of libraries on stderr. */
+    static const int crashes[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU};
+    for (size_t i = 0; i < sizeof crashes / sizeof *crashes; i++) {
+        signal(crashes[i], SIG_DFL);
+    }
+    int silence = open("/dev/null", O_WRONLY);
+    dup2(silence, STDERR_FILENO);
+    limit_resource(RLIMIT_CORE, 0);
+    limit_memory_and_time(SPARE_BYTES);
+    struct packet packet;
+    memset(&packet, 0, sizeof packet);
+    packet.index = END;
+    packet.status = send_variables(path, wanted, count, file_size, descriptor);
+    char message[MESSAGE_SIZE] = "";
+    snprintf(message, sizeof message, "%s", status_message());
+    if (write_fully(descriptor, &packet, sizeof packet)) {
+        write_fully(descriptor, message, sizeof message);
+    }
+    _exit(0); /* the parent's buffers and exit handlers are not ours */
+}
+
+/* ---- The parent ---- */
+
+static bool read_fully(int descriptor, void *data, size_t size)
+{
+    for (char *next = data; size > 0;) {
+        ssize_t got = read(descriptor, next, size);
+        if (got == 0 || (got < 0 && errno != EINTR)) {
+            return false;
+        }
+        if (got > 0) {
+            next += got;
+            size -= (size_t)got;
+        }
+    }
+    return true;
+}
+
+static enum status receive_variables(const char *path, int count, struct variable *variables, int descriptor)
+{
+    struct packet packet;
+    while (read_fully(descriptor, &packet, sizeof packet)) {
+        if (packet.index == END) {
+            char message[MESSAGE_SIZE];
+            if (!read_fully(descriptor, message, sizeof message)) {
+                break;
+            }
+            return packet.status == STATUS_OK ? STATUS_OK : status_set(packet.status, "%s", message);
+        }
+        if (packet.index < 0 || packet.index >= count) {
+            break;
+        }
+        /* Memory as echoes_allocate gives it, so that samples need no copy. */
+        struct variable *variable = &variables[packet.index];
+        *variable = packet.variable;
+        size_t size = size_product(variable_count(variable), sizeof(double complex), 1, 1);
+        variable->values = size > 0 && size <= PTRDIFF_MAX - 63 ? aligned_alloc(64, (size + 63) / 64 * 64) : NULL;
+        if (!variable->values) {
+            return status_set(STATUS_FAILED, "%s: out of memory for a variable of %zu bytes", path, size);
+        }
+        if (!read_fully(descriptor, variable->values, size)) {
+            break;
+        }
+    }
+    return status_set(STATUS_INVALID,
+                      "%s: is damaged (its reader crashed, or ran out of memory or time); a MATLAB "
+                      "file of version 5 or 7.3 is needed",
+                      path);
+}
+
+enum status variables_read(const char *path, const struct wanted *wanted, int count, struct variable *variables)
+{
+    for (int i = 0; i < count; i++) {
+        variables[i] = (struct variable){0};
+    }
+    struct stat file;
+    if (stat(path, &file) != 0 || access(path, R_OK) != 0) {
+        return status_set(STATUS_INVALID, "%s: cannot be read: %s; a readable MATLAB file is needed", path,
+                          strerror(errno));
+    }
+    if (!S_ISREG(file.st_mode)) {
+        return status_set(STATUS_INVALID, "%s: is not a regular file; a MATLAB file is needed", path);
+    }
+    int ends[2];
+    if (pipe2(ends, O_CLOEXEC) != 0) {
+        return status_set(STATUS_FAILED, "%s: no pipe to read it through: %s", path, strerror(errno));
+    }
+    /* _Fork runs no handlers: LLVM's OpenMP would set itself up anew in the child and leave a file behind. The other
+       threads are idle here and hold no locks. */
+    pid_t child = _Fork();
+    if (child < 0) {
+        enum status failed = status_set(STATUS_FAILED, "%s: no process to read it: %s", path, strerror(errno));
+        close(ends[0]);
+        close(ends[1]);
+        return failed;
+    }
+    if (child == 0) {
+        close(ends[0]);
+        child_run(path, wanted, count, (size_t)file.st_size, ends[1]);
+    }
+    close(ends[1]);
+    enum status status = receive_variables(path, count, variables, ends[0]);
+    close(ends[0]);
+    while (waitpid(child, NULL, 0) < 0 && errno == EINTR) {
+    }
+    if (status == STATUS_OK) {
+        status = variables_check(path, wanted, count, variables);
+    }
+    if (status != STATUS_OK) {
+        variables_free(variables, count);
+    }
+    return status;
+}

@@ -1,0 +1,114 @@
+/* MATLAB files variable by variable: what matfile.c reads and writes is made of these. */
+#ifndef SASBENCH_SCENE_MATVAR_H
+#define SASBENCH_SCENE_MATVAR_H
+
+#include <stdint.h>
+#include <stdio.h>
+#include <sys/types.h>
+
+#include "echoes/echo_data.h"
+#include "files/folder.h"
+#include "files/temporary.h"
+
+enum kind { KIND_TEXT, KIND_SCALAR, KIND_REAL, KIND_COMPLEX };
+
+/* A variable that a file may or must have. */
+struct wanted {
+    const char *name;
+    enum kind kind;
+    bool is_optional;
+    const char *accepted; /* for messages: "X is needed" */
+};
+
+enum { WANTED_MAX = 20 };
+
+/* A variable as read: complex doubles whatever its class, text as character codes, MATLAB's order. */
+struct variable {
+    bool is_complex, is_single; /* of MATLAB's class single */
+    size_t dims[3];             /* trailing dimensions of 1 filled in; never 0 */
+    double complex *values;     /* 64-byte aligned, free(); NULL: the file does not have it */
+};
+
+/* Read the wanted variables of a file (count <= WANTED_MAX) into variables[count], freed with variables_free. Other
+   variables are not read. Errors, with nothing to free: STATUS_INVALID naming file, variable and what is accepted,
+   for every file that is not whole or lacks one; STATUS_FAILED without memory. */
+enum status variables_read(const char *path, const struct wanted *wanted, int count, struct variable *variables);
+void variables_free(struct variable *variables, int count);
+/* What the table of wanted variables says of them: there, real, a scalar. Errors: STATUS_INVALID. */
+enum status variables_check(const char *path, const struct wanted *wanted, int count, const struct variable *variables);
+/* Of class single, positions lie on a raster that is coarser the farther they are from the origin, all in m. Errors:
+   STATUS_INVALID where it is more than a fiftieth of a wavelength. */
+enum status positions_check(const char *path, const char *name, const struct variable *positions, double wavelength);
+/* [rows x columns] to [columns x rows]. Errors: STATUS_FAILED without memory. */
+enum status variable_transpose(struct variable *variable);
+/* Number `index` of vectors that follow one another, as in [3 x M x P]. */
+struct vector variable_vector(const struct variable *variable, size_t index);
+size_t variable_count(const struct variable *variable);
+bool variable_is_vector(const struct variable *variable); /* a row or a column */
+bool variable_has_shape(const struct variable *variable, size_t rows, size_t columns, size_t pages);
+
+/* Let HDF5 read names of MATLAB's classes as h5py writes them; those of no fixed length are empty, so that the variable
+   is one of no class and is not left out with all that follow. Errors: STATUS_INVALID for complex numbers whose parts
+   are not `real` and `imag`, of which libmatio would read nothing, silently. */
+enum status hdf5_prepare(const char *path, const struct wanted *wanted, int count);
+
+/* Keep libmatio from printing: what matters is in the status message. */
+void matio_silence(void);
+
+/* Top-level elements of a version 5 file, one after the other by their stated lengths. */
+struct mat5 {
+    FILE *file;
+    bool is_little_endian;
+    uint32_t type, length;   /* of the element at hand */
+    off_t first, next, size; /* where its data and what follows it begin; where the file ends */
+};
+/* False where there is none; what was opened is closed. */
+bool mat5_open(struct mat5 *file, const char *path);
+bool mat5_next(struct mat5 *file);
+void mat5_close(struct mat5 *file);
+
+/* Variables in a version 5 file; -1 when their lengths do not end where the file does. libmatio takes a file that was
+   cut short for one with fewer variables, and does not notice a full disk either. */
+int mat5_count(const char *path);
+
+/* What libmatio takes a variable for: it reads what the dimensions ask for, whether that is there or not. */
+struct stored {
+    const char *name;
+    size_t count;
+    bool is_complex, is_text;
+};
+/* Are all its numbers in the file, in the element at hand (version 5), in a data set of this file (7.3)? Errors:
+   STATUS_INVALID, with the length found and the one needed. */
+enum status mat5_check(const char *path, const struct stored *stored, const struct mat5 *file);
+enum status mat73_check(const char *path, const struct stored *stored);
+bool mat73_has(const char *path, const char *name);
+/* What a file that is no MATLAB file of these versions probably is, and how to write one that is. */
+const char *file_other_format(const char *path);
+enum status storage_refuse(const char *path, const char *name, const char *part, size_t found, size_t needed);
+
+/* A file on its way. The first failure is kept and what follows it does nothing, so that only writer_open (after
+   whose failure the writer is not closed) and writer_close need be looked at. */
+struct writer {
+    const char *path;
+    struct place place;          /* of the file that a symbolic link stands for, or of `path` itself */
+    char beside[TEMPORARY_NAME]; /* in the place's folder: renamed when whole */
+    int descriptor;              /* of that file */
+    char temporary[64];          /* its path */
+    struct _mat_t *mat;
+    int count; /* variables written */
+    enum status status;
+};
+
+/* Both return the writer's status. Errors: STATUS_INVALID when the place cannot be written, STATUS_FAILED without
+   memory. */
+enum status writer_open(struct writer *writer, const char *path, size_t largest_variable_bytes);
+enum status writer_close(struct writer *writer);
+
+void write_text(struct writer *writer, const char *name, const char *text);
+void write_reals(struct writer *writer, const char *name, size_t rows, size_t columns, size_t pages,
+                 const double *values);
+/* Complex numbers, in memory row by row [rows][columns], as MATLAB's array `dims`, column by column. */
+void write_complex(struct writer *writer, const char *name, const size_t dims[3], enum precision precision,
+                   const void *values, size_t rows, size_t columns);
+
+#endif

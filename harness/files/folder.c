@@ -1,0 +1,335 @@
+/* Folders of results and places in them (folder.h). */
+#define _GNU_SOURCE /* group_member, O_PATH */
+#include "files/folder.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "files/temporary.h"
+
+/* With room for the longest name of a file in it. */
+enum { DIRECTORY_MAX = PATH_MAX - NAME_MAX - 2 };
+
+enum { RETRIES = 20 }; /* for the lock: a second */
+
+/* The folders that are taken now. */
+struct taken {
+    struct taken *next;
+    int descriptor;
+    char path[];
+};
+static struct taken *taken_now;
+
+/* --- Ways -------------------------------------------------------------------------------------------------------- */
+
+/* What follows a folder's name in a path; NULL when that does not lead into it. */
+static const char *rest_of(const char *path, const char *directory)
+{
+    size_t length = strlen(directory);
+    while (length > 0 && directory[length - 1] == '/')
+        length--;
+    if (strncmp(path, directory, length) != 0 || path[length] != '/')
+        return NULL;
+    const char *rest = path + length + strspn(path + length, "/");
+    return *rest ? rest : NULL;
+}
+
+/* The innermost folder taken that a path leads into, or NULL. */
+static const struct taken *taken_find(const char *path, const char **rest)
+{
+    const struct taken *found = NULL;
+    for (const struct taken *taken = taken_now; taken; taken = taken->next) {
+        const char *this_rest = rest_of(path, taken->path);
+        if (this_rest && (!found || strlen(this_rest) < strlen(*rest))) {
+            found = taken;
+            *rest = this_rest;
+        }
+    }
+    return found;
+}
+
+/* The folder of the last name on a way that begins in `folder` and follows no link: `folder` itself, or one to be
+   closed. -1: errno says why. */
+static int way_walk(int folder, const char *rest, const char **name)
+{
+    int at = folder;
+    for (const char *slash; at >= 0 && (slash = strchr(rest, '/')); rest = slash + strspn(slash, "/")) {
+        char part[NAME_MAX + 1];
+        const int length = (int)(slash - rest);
+        const bool good = length < (int)sizeof part && !(length == 2 && strncmp(rest, "..", 2) == 0);
+        snprintf(part, sizeof part, "%.*s", length, rest);
+        const int next = good ? openat(at, part, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC) : -1;
+        const int reason = good ? errno : EINVAL;
+        if (at != folder)
+            close(at);
+        errno = reason;
+        at = next;
+    }
+    *name = rest;
+    return at;
+}
+
+/* The folder that a path's last name lies in; *borrowed: not to be closed. */
+static int way_open(const char *path, const char **name, bool *borrowed)
+{
+    char directory[PATH_MAX] = ".";
+    const char *rest, *slash = strrchr(path, '/');
+    const struct taken *found = taken_find(path, &rest);
+    int folder = found ? way_walk(found->descriptor, rest, name) : -1;
+    *borrowed = found && folder == found->descriptor;
+    if (found)
+        return folder;
+    *name = slash ? slash + 1 : path;
+    if (slash
+        && snprintf(directory, sizeof directory, "%.*s", slash == path ? 1 : (int)(slash - path), path) >= PATH_MAX) {
+        errno = ENAMETOOLONG;
+        return -1;
+    }
+    folder = open(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    return folder < 0 && errno == EACCES ? open(directory, O_PATH | O_DIRECTORY | O_CLOEXEC) : folder;
+}
+
+static char *link_follow(const char *path)
+{
+    struct stat info;
+    bool link = lstat(path, &info) == 0 && S_ISLNK(info.st_mode);
+    return link ? realpath(path, NULL) : strdup(path);
+}
+
+bool place_open(const char *path, bool named, struct place *place)
+{
+    const char *name;
+    char *followed = named ? link_follow(path) : strdup(path);
+    place->folder = followed ? way_open(followed, &name, &place->borrowed) : -1;
+    if (place->folder >= 0
+        && snprintf(place->name, sizeof place->name, "%s", *name ? name : ".") >= (int)sizeof place->name) {
+        place_close(place);
+        errno = ENAMETOOLONG;
+    }
+    int reason = errno;
+    free(followed);
+    if (named && place->folder >= 0)
+        temporary_sweep(place->folder, false);
+    errno = reason;
+    return place->folder >= 0;
+}
+
+void place_close(struct place *place)
+{
+    if (place->folder >= 0 && !place->borrowed)
+        close(place->folder);
+    place->folder = -1;
+}
+
+bool place_sync(int descriptor)
+{
+    return fsync(descriptor) == 0 || (errno != EIO && errno != ENOSPC && errno != EDQUOT);
+}
+
+bool place_put(const struct place *place, const char *made)
+{
+    return renameat(place->folder, made, place->folder, place->name) == 0 && place_sync(place->folder);
+}
+
+int place_read(const char *path, int flags)
+{
+    struct place place;
+    const char *rest;
+    if (!taken_find(path, &rest))
+        return open(path, O_RDONLY | O_CLOEXEC | flags);
+    if (!place_open(path, false, &place))
+        return -1;
+    int descriptor = openat(place.folder, place.name, O_RDONLY | O_NOFOLLOW | O_CLOEXEC | flags);
+    int reason = errno;
+    place_close(&place);
+    errno = reason;
+    return descriptor;
+}
+
+bool place_is_file(const char *path)
+{
+    struct place place;
+    struct stat info;
+    if (!place_open(path, false, &place))
+        return false;
+    bool is_file = fstatat(place.folder, place.name, &info, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(info.st_mode);
+    place_close(&place);
+    return is_file;
+}
+
+void place_clear(const char *path)
+{
+    struct place place;
+    if (place_open(path, false, &place)) {
+        unlinkat(place.folder, place.name, 0);
+        place_close(&place);
+    }
+}
+
+/* --- Folders ----------------------------------------------------------------------------------------------------- */
+
+static enum status name_check(const char *directory)
+{
+    if (strlen(directory) > DIRECTORY_MAX)
+        return status_set(STATUS_INVALID, "%.100s...: a path of %zu bytes; a folder's may have %d", directory,
+                          strlen(directory), (int)DIRECTORY_MAX);
+    for (const char *at = directory; *at; at++)
+        if ((unsigned char)*at < ' ' || *at == 0x7f)
+            return status_set(STATUS_INVALID,
+                              "%s: the name holds the control character 0x%02x; name a folder without "
+                              "one",
+                              directory, (unsigned)*at);
+    return STATUS_OK;
+}
+
+/* One folder, which outlasts a power cut; false: errno says why not. */
+static bool one_make(const char *path)
+{
+    struct place place;
+    bool made = place_open(path, false, &place) && mkdirat(place.folder, place.name, 0777) == 0;
+    int reason = errno;
+    if (made)
+        place_sync(place.folder);
+    place_close(&place);
+    errno = reason;
+    return made;
+}
+
+enum status directory_make(const char *directory)
+{
+    struct stat info;
+    enum status status = name_check(directory);
+    char *path = status == STATUS_OK ? strdup(directory) : NULL;
+    if (status == STATUS_OK && !path)
+        status = status_set(STATUS_FAILED, "%s: no memory", directory);
+    if (status != STATUS_OK)
+        return status;
+    for (size_t length = strlen(path); length > 1 && path[length - 1] == '/'; length--)
+        path[length - 1] = '\0';
+    for (char *at = path; *at; at++) {
+        if (*at == '/' && at != path) {
+            *at = '\0';
+            one_make(path); /* the last one tells whether it went well */
+            *at = '/';
+        }
+    }
+    if (!one_make(path) && (errno != EEXIST || stat(path, &info) != 0 || !S_ISDIR(info.st_mode)))
+        status = status_set(STATUS_INVALID, "%s: cannot be made: %s; name a folder that can be written", directory,
+                            strerror(errno));
+    free(path);
+    return status;
+}
+
+/* Where others put their files, too, what we make can be replaced by theirs. Root is trusted; as root, e.g. in a
+   container, any folder is meant. */
+static enum status owner_check(const char *directory, int descriptor)
+{
+    struct stat info;
+    if (fstat(descriptor, &info) != 0)
+        return status_set(STATUS_INVALID, "%s: cannot be read: %s", directory, strerror(errno));
+    if ((info.st_mode & S_ISVTX) && (info.st_mode & S_IWOTH))
+        return status_set(STATUS_INVALID, "%s: all users share this folder; name one inside it, which is made",
+                          directory);
+    const bool shared = (info.st_mode & S_IWGRP) && (info.st_gid == getegid() || group_member(info.st_gid));
+    if (geteuid() == 0 || info.st_uid == geteuid() || info.st_uid == 0 || shared || temporary_ours(descriptor))
+        return STATUS_OK;
+    return status_set(
+        STATUS_INVALID,
+        "%s: belongs to another user (%ld); accepted: a folder of your own, of root's, or one that a group "
+        "of yours may write to",
+        directory, (long)info.st_uid);
+}
+
+static enum status lock_get(const char *directory, int descriptor)
+{
+    int taken = flock(descriptor, LOCK_EX | LOCK_NB);
+    for (int k = 0; k < RETRIES && taken != 0 && errno == EWOULDBLOCK; k++) { /* one that was killed is still ending */
+        nanosleep(&(struct timespec){.tv_nsec = 50000000}, NULL);
+        taken = flock(descriptor, LOCK_EX | LOCK_NB);
+    }
+    if (taken != 0 && errno == EWOULDBLOCK)
+        return status_set(STATUS_INVALID,
+                          "%s: another sasbench is at work in this folder; let it end, or name another folder",
+                          directory);
+    if (taken != 0)
+        fprintf(stderr, "sasbench: %s: this file system cannot lock a folder (%s); start no second program in it\n",
+                directory, strerror(errno));
+    return STATUS_OK;
+}
+
+static enum status taken_add(const char *directory, int descriptor)
+{
+    struct taken *taken = malloc(sizeof *taken + strlen(directory) + 1);
+    if (!taken)
+        return status_set(STATUS_FAILED, "%s: no memory", directory);
+    *taken = (struct taken){.next = taken_now, .descriptor = descriptor};
+    strcpy(taken->path, directory);
+    taken_now = taken;
+    return STATUS_OK;
+}
+
+/* Ours: results, and nothing else. */
+static enum status take(const char *directory, bool ours, int *lock)
+{
+    *lock = -1;
+    /* The folder itself is what is locked. Programs that we start do not inherit it. */
+    int descriptor = place_read(directory, O_DIRECTORY);
+    if (descriptor < 0)
+        return status_set(STATUS_INVALID, "%s: cannot be opened: %s; a folder is needed", directory, strerror(errno));
+    enum status status = ours ? owner_check(directory, descriptor) : STATUS_OK;
+    if (status == STATUS_OK)
+        status = lock_get(directory, descriptor);
+    if (status == STATUS_OK && ours)
+        status = taken_add(directory, descriptor);
+    if (status != STATUS_OK) {
+        close(descriptor);
+        return status;
+    }
+    if (ours)
+        temporary_sweep(descriptor, true);
+    *lock = descriptor;
+    return STATUS_OK;
+}
+
+enum status folder_take(const char *directory, int *lock)
+{
+    *lock = -1;
+    enum status status = name_check(directory);
+    return status == STATUS_OK ? take(directory, true, lock) : status;
+}
+
+enum status folder_take_around(const char *path, int *lock)
+{
+    struct stat info;
+    const char *slash = strrchr(path, '/');
+    *lock = -1;
+    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode)) /* written to as it is */
+        return STATUS_OK;
+    char *directory = slash ? strndup(path, slash == path ? 1 : (size_t)(slash - path)) : strdup(".");
+    if (!directory)
+        return status_set(STATUS_FAILED, "%s: no memory for the name of its folder", path);
+    enum status status = take(directory, false, lock);
+    free(directory);
+    return status;
+}
+
+void folder_leave(int lock)
+{
+    for (struct taken **at = &taken_now; *at; at = &(*at)->next)
+        if ((*at)->descriptor == lock) {
+            struct taken *left = *at;
+            *at = left->next;
+            free(left);
+            break;
+        }
+    if (lock >= 0)
+        close(lock);
+}

@@ -1,0 +1,13 @@
+/* What slices and their lobes share. Used within measure/ only. */
+#ifndef SASBENCH_MEASURE_LOBES_H
+#define SASBENCH_MEASURE_LOBES_H
+
+#include "metrics/metrics.h"
+
+/* Nothing measured, no reason yet. */
+struct slice_metrics slice_undefined(void);
+
+/* Index of the highest of power[first..last]; the first of equal ones. */
+int maximum_find(const double *power, int first, int last);
+
+#endif

@@ -1,0 +1,115 @@
+/* How sharp an image is, without knowing what it shows (metrics.h). */
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "echoes/echo_data.h"
+#include "metrics/metrics.h"
+
+enum { BUCKETS = 1 << 16 };
+
+/* What is done with each pixel's magnitude over the peak's. */
+typedef void (*pixel_function)(void *sums, double ratio);
+
+static void pixels_visit(const struct image *image, double peak, pixel_function function, void *sums)
+{
+    for (int p = 0; p < image->patch_count; p++)
+        for (int i = 0; i < image->patches[p].r_count; i++)
+            for (int j = 0; j < image->patches[p].x_count; j++)
+                function(sums, cabs(image_pixel(image, p, i, j)) / peak);
+}
+
+static void peak_visit(void *sums, double magnitude)
+{
+    double *peak = sums;
+    *peak = fmax(*peak, magnitude);
+}
+
+struct brightest metrics_brightest(const struct image *image)
+{
+    struct brightest brightest = {0};
+    for (int p = 0; p < image->patch_count; p++)
+        for (int i = 0; i < image->patches[p].r_count; i++)
+            for (int j = 0; j < image->patches[p].x_count; j++) {
+                const double magnitude = cabs(image_pixel(image, p, i, j));
+                if (magnitude > brightest.magnitude && isfinite(magnitude)) {
+                    const struct vector place = grid_point(&image->patches[p], i, j);
+                    brightest = (struct brightest){magnitude, place.x, place.y};
+                }
+            }
+    return brightest;
+}
+
+struct moments {
+    double count, power, power_squared, power_log; /* of the powers I, sums of I, I^2, I ln I */
+};
+
+static void moments_visit(void *sums, double ratio)
+{
+    struct moments *moments = sums;
+    const double power = ratio * ratio;
+    moments->count++;
+    moments->power += power;
+    moments->power_squared += power * power;
+    moments->power_log += power > 0 ? power * log(power) : 0;
+}
+
+/* The median by its bits, for floats >= 0 are in the order of theirs: first the upper half, then the lower one. */
+struct histogram {
+    uint32_t upper; /* of the bits; BUCKETS: not yet known */
+    uint64_t counts[BUCKETS];
+};
+
+static void histogram_visit(void *sums, double ratio)
+{
+    struct histogram *histogram = sums;
+    const float value = (float)ratio;
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    if (histogram->upper == BUCKETS)
+        histogram->counts[bits >> 16]++;
+    else if (bits >> 16 == histogram->upper)
+        histogram->counts[bits & (BUCKETS - 1)]++;
+}
+
+/* The bucket of the value of this rank, which is then the rank within the bucket. */
+static uint32_t bucket_find(const struct histogram *histogram, uint64_t *rank)
+{
+    uint32_t bucket = 0;
+    for (; bucket < BUCKETS - 1 && *rank >= histogram->counts[bucket]; bucket++)
+        *rank -= histogram->counts[bucket];
+    return bucket;
+}
+
+static double median_find(const struct image *image, double peak, double count)
+{
+    static struct histogram histogram;
+    uint64_t rank = (uint64_t)(count / 2);
+    float median;
+    memset(&histogram, 0, sizeof histogram);
+    histogram.upper = BUCKETS;
+    pixels_visit(image, peak, histogram_visit, &histogram);
+    const uint32_t upper = bucket_find(&histogram, &rank);
+    memset(histogram.counts, 0, sizeof histogram.counts);
+    histogram.upper = upper;
+    pixels_visit(image, peak, histogram_visit, &histogram);
+    const uint32_t bits = upper << 16 | bucket_find(&histogram, &rank);
+    memcpy(&median, &bits, sizeof median);
+    return median;
+}
+
+struct sharpness metrics_sharpness(const struct image *image)
+{
+    struct moments sums = {0};
+    double peak = 0;
+    pixels_visit(image, 1, peak_visit, &peak);
+    if (!(peak > 0 && peak < INFINITY) || !image_is_finite(image))
+        return (struct sharpness){NAN, NAN, NAN};
+    pixels_visit(image, peak, moments_visit, &sums);
+    const double mean = sums.power / sums.count, median = median_find(image, peak, sums.count);
+    return (struct sharpness){
+        .entropy = log(sums.power) - sums.power_log / sums.power,
+        .contrast = sqrt(fmax(0, sums.power_squared / sums.count - mean * mean)) / mean,
+        .peak_over_median = median > 0 ? 1 / median : NAN,
+    };
+}

@@ -1,0 +1,407 @@
+/* Headings, tables and pictures as HTML or Markdown (page.h). */
+#include "report/page.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "files/folder.h"
+#include "text/shown_text.h"
+#include "report/page_style.h"
+
+/* --- Text ------------------------------------------------------------------------------------------------------ */
+
+/* The character at *text, which is then the next one. */
+static void character_write(struct page *page, const char **text)
+{
+    static const struct {
+        char sign;
+        const char *instead;
+    } escapes[] = {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
+    size_t length = shown_length(*text);
+    const char *instead = length ? NULL : "\ufffd";
+    for (size_t k = 0; k < sizeof escapes / sizeof *escapes; k++)
+        if (escapes[k].sign == **text)
+            instead = escapes[k].instead;
+    if (instead)
+        fputs(instead, page->stream);
+    else
+        fwrite(*text, 1, length, page->stream);
+    *text += length ? length : 1;
+}
+
+static void text_write(struct page *page, const char *text)
+{
+    if (page->format == PAGE_MARKDOWN)
+        shown_markdown(page->stream, text);
+    else
+        while (*text)
+            character_write(page, &text);
+}
+
+/* <NAME ATTRIBUTE="VALUE">TEXT</NAME>; without a value no attribute. */
+static void element_write(struct page *page, const char *name, const char *attribute, const char *value,
+                          const char *text)
+{
+    fprintf(page->stream, "<%s", name);
+    if (value) {
+        fprintf(page->stream, " %s=\"", attribute);
+        text_write(page, value);
+        fputc('"', page->stream);
+    }
+    fputc('>', page->stream);
+    text_write(page, text);
+    fprintf(page->stream, "</%s>", name);
+}
+
+/* --- Structure ------------------------------------------------------------------------------------------------- */
+
+void page_begin(struct page *page, const char *title)
+{
+    if (page->format == PAGE_MARKDOWN) {
+        fputs("# ", page->stream);
+        text_write(page, title);
+        fputs("\n\n", page->stream);
+        return;
+    }
+    fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n  <meta charset=\"utf-8\"/>\n"
+          "  <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n  ",
+          page->stream);
+    element_write(page, "title", NULL, NULL, title);
+    fprintf(page->stream, "\n%s</head>\n<body>\n", page_style);
+    element_write(page, "h1", NULL, NULL, title);
+    fputc('\n', page->stream);
+}
+
+void page_end(struct page *page)
+{
+    if (page->format == PAGE_HTML)
+        fputs("</body>\n</html>\n", page->stream);
+}
+
+void page_heading(struct page *page, int level, const char *id, const char *text)
+{
+    if (page->format == PAGE_MARKDOWN) {
+        fprintf(page->stream, "\n%.*s ", level, "###");
+        text_write(page, text);
+        fputs("\n\n", page->stream);
+        return;
+    }
+    element_write(page, level == 2 ? "h2" : "h3", "id", id, text);
+    fputc('\n', page->stream);
+}
+
+void page_part_begin(struct page *page, const char *title, bool folded)
+{
+    if (folded && page->format == PAGE_HTML) {
+        fputs("<details>\n", page->stream);
+        element_write(page, "summary", NULL, NULL, title);
+        fputc('\n', page->stream);
+    } else {
+        page_heading(page, 3, NULL, title);
+    }
+}
+
+void page_part_end(struct page *page, bool folded)
+{
+    if (folded && page->format == PAGE_HTML)
+        fputs("</details>\n", page->stream);
+}
+
+void page_paragraph(struct page *page, const char *text)
+{
+    if (page->format == PAGE_HTML)
+        element_write(page, "p", NULL, NULL, text);
+    else
+        text_write(page, text);
+    fputs(page->format == PAGE_HTML ? "\n" : "\n\n", page->stream);
+}
+
+void page_contents(struct page *page, int count, const char *const *ids, const char *const *titles)
+{
+    if (page->format != PAGE_HTML)
+        return;
+    fputs("<nav>\n", page->stream);
+    for (int k = 0; k < count; k++) {
+        fprintf(page->stream, "  <a href=\"#%s\">", ids[k]);
+        text_write(page, titles[k]);
+        fputs("</a>\n", page->stream);
+    }
+    fputs("</nav>\n", page->stream);
+}
+
+/* --- Tables ---------------------------------------------------------------------------------------------------- */
+
+void page_table_begin(struct page *page, int count, const struct page_column *columns, bool stack)
+{
+    page->columns = columns;
+    page->column_count = count;
+    page->rows_left_out = 0;
+    if (page->format == PAGE_HTML)
+        fprintf(page->stream, "<div class=\"scroll\">\n<table%s>\n<thead><tr>", stack ? " class=\"stack\"" : "");
+    else
+        fputc('|', page->stream);
+    for (int k = 0; k < count; k++) {
+        if (page->format == PAGE_HTML) {
+            element_write(page, "th", "class", columns[k].number ? "number" : NULL, columns[k].title);
+        } else {
+            text_write(page, columns[k].title);
+            fputc('|', page->stream);
+        }
+    }
+    if (page->format == PAGE_HTML) {
+        fputs("</tr></thead>\n<tbody>\n", page->stream);
+        return;
+    }
+    fputs("\n|", page->stream);
+    for (int k = 0; k < count; k++)
+        fputs(columns[k].number ? "--:|" : "---|", page->stream);
+    fputc('\n', page->stream);
+}
+
+long page_room(const struct page *page)
+{
+    return page->bytes_most > 0 ? page->bytes_most - ftell(page->stream) : LONG_MAX;
+}
+
+/* Is there no room for a further row? */
+static bool row_left_out(struct page *page)
+{
+    bool full = page_room(page) < 0;
+    page->rows_left_out += full;
+    return full;
+}
+
+/* A row's name, which may be a long SPEC: its parts may stand on lines of their own. */
+static void name_write(struct page *page, const char *name)
+{
+    fputs("<th>", page->stream);
+    while (*name) {
+        char sign = *name;
+        character_write(page, &name);
+        if (sign == ':' || sign == ',')
+            fputs("<wbr/>", page->stream);
+    }
+    fputs("</th>", page->stream);
+}
+
+static void cell_write(struct page *page, const struct page_column *column, const struct page_cell *cell)
+{
+    fputs("<td data-label=\"", page->stream);
+    text_write(page, column->title);
+    fprintf(page->stream, "\" class=\"%s\">", cell->class ? cell->class : column->number ? "number" : "text");
+    text_write(page, cell->text);
+    fputs("</td>", page->stream);
+}
+
+void page_row(struct page *page, const struct page_cell *cells)
+{
+    if (row_left_out(page))
+        return;
+    if (page->format == PAGE_MARKDOWN) {
+        fputc('|', page->stream);
+        for (int k = 0; k < page->column_count; k++) {
+            text_write(page, cells[k].text);
+            fputc('|', page->stream);
+        }
+        fputc('\n', page->stream);
+        return;
+    }
+    fputs("<tr>", page->stream);
+    name_write(page, cells[0].text);
+    for (int k = 1; k < page->column_count; k++)
+        cell_write(page, &page->columns[k], &cells[k]);
+    fputs("</tr>\n", page->stream);
+}
+
+void page_row_note(struct page *page, const char *name, const char *note)
+{
+    if (row_left_out(page))
+        return;
+    if (page->format == PAGE_HTML) {
+        fputs(*name ? "<tr>" : "<tr class=\"below\">", page->stream);
+        name_write(page, name);
+        fprintf(page->stream, "<td class=\"note\" colspan=\"%d\">", page->column_count - 1);
+        text_write(page, note);
+        fputs("</td></tr>\n", page->stream);
+        return;
+    }
+    fputc('|', page->stream);
+    text_write(page, name);
+    fputc('|', page->stream);
+    text_write(page, note);
+    for (int k = 1; k < page->column_count; k++)
+        fputc('|', page->stream);
+    fputc('\n', page->stream);
+}
+
+void page_table_end(struct page *page)
+{
+    char text[64];
+    fputs(page->format == PAGE_HTML ? "</tbody>\n</table>\n</div>\n" : "\n", page->stream);
+    if (page->rows_left_out == 0)
+        return;
+    snprintf(text, sizeof text, "%d more rows are left out here.", page->rows_left_out);
+    page_paragraph(page, text);
+}
+
+/* --- Pictures -------------------------------------------------------------------------------------------------- */
+
+/* A picture lies in the folder itself: a link would show another file's content, and a pipe would wait for a writer. */
+static enum status file_read(const char *path, char **bytes, size_t *size)
+{
+    struct stat info;
+    int descriptor = place_read(path, O_NOFOLLOW | O_NONBLOCK);
+    FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "rb");
+    *bytes = NULL;
+    bool regular = file && fstat(descriptor, &info) == 0 && S_ISREG(info.st_mode);
+    if (regular && (*bytes = malloc((size_t)info.st_size + 1)))
+        *size = fread(*bytes, 1, (size_t)info.st_size, file);
+    bool good = *bytes && !ferror(file);
+    enum status status = good ? STATUS_OK
+                              : status_set(STATUS_FAILED, "%s: cannot be read: %s", path,
+                                           file && !regular ? "no regular file" : strerror(errno));
+    if (file)
+        fclose(file);
+    else if (descriptor >= 0)
+        close(descriptor);
+    if (good) {
+        (*bytes)[*size] = '\0';
+    } else {
+        free(*bytes);
+        *bytes = NULL;
+    }
+    return status;
+}
+
+/* An SVG file's root element. Its names are unique within the file only: each gets the drawing's number in front. */
+static void drawing_write(struct page *page, const char *svg)
+{
+    static const char *const marks[] = {" id=\"", " id='", "href='#", "href=\"#", "url(#"};
+    while (*svg) {
+        size_t length = 0;
+        for (size_t k = 0; k < sizeof marks / sizeof *marks && !length; k++)
+            if (strncmp(svg, marks[k], strlen(marks[k])) == 0)
+                length = strlen(marks[k]);
+        size_t character = strchr("\n\t", *svg) ? 1 : shown_length(svg);
+        if (length)
+            fprintf(page->stream, "%.*sd%d-", (int)length, svg, page->drawings);
+        else if (character)
+            fwrite(svg, 1, character, page->stream);
+        else
+            fputs("\ufffd", page->stream);
+        svg += length ? length : character ? character : 1;
+    }
+}
+
+enum status page_drawing(struct page *page, const char *path, const char *title)
+{
+    char *svg;
+    size_t size;
+    if (page->format != PAGE_HTML)
+        return STATUS_OK;
+    enum status status = file_read(path, &svg, &size);
+    if (status != STATUS_OK)
+        return status;
+    const char *root = strstr(svg, "<svg");
+    if (root) {
+        page->drawings++;
+        fputs("<div class=\"drawing\" role=\"img\" aria-label=\"", page->stream);
+        text_write(page, title);
+        fputs("\">\n", page->stream);
+        drawing_write(page, root);
+        fputs("</div>\n", page->stream);
+    } else {
+        status = status_set(STATUS_FAILED, "%s: holds no SVG picture", path);
+    }
+    free(svg);
+    return status;
+}
+
+static void base64_write(FILE *stream, const char *bytes, size_t size)
+{
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for (size_t k = 0; k < size; k += 3) {
+        unsigned group = 0;
+        for (size_t n = 0; n < 3; n++)
+            group = group << 8 | (k + n < size ? (unsigned char)bytes[k + n] : 0u);
+        for (size_t n = 0; n < 4; n++)
+            fputc(k + n <= size ? digits[group >> (18 - 6 * n) & 63] : '=', stream);
+    }
+}
+
+/* The beginning of a link to a file beside the page. */
+static void link_write(struct page *page, const char *name)
+{
+    fputs("<a href=\"", page->stream);
+    for (const char *at = name; *at; at++)
+        fprintf(page->stream, isalnum((unsigned char)*at) || strchr("-_.", *at) ? "%c" : "%%%02X", (unsigned char)*at);
+    fputs("\">", page->stream);
+}
+
+void page_files(struct page *page, const char *before, int count, const char *const *names, const char *const *texts)
+{
+    if (page->format != PAGE_HTML || count == 0)
+        return;
+    fputs("<p>", page->stream);
+    text_write(page, before);
+    for (int k = 0; k < count; k++) {
+        fputs(k ? ", " : " ", page->stream);
+        link_write(page, names[k]);
+        text_write(page, texts[k]);
+        fputs("</a>", page->stream);
+    }
+    fputs("</p>\n", page->stream);
+}
+
+/* A picture of the type, a link around it where `link` is not NULL. */
+static enum status figure_write(struct page *page, const char *path, const char *type, const char *link,
+                                const char *caption)
+{
+    char *bytes;
+    size_t size;
+    if (page->format != PAGE_HTML)
+        return STATUS_OK;
+    enum status status = file_read(path, &bytes, &size);
+    if (status != STATUS_OK)
+        return status;
+    fputs("<figure>\n", page->stream);
+    if (link)
+        link_write(page, link);
+    fputs("<img alt=\"", page->stream);
+    text_write(page, caption);
+    fprintf(page->stream, "\" src=\"data:image/%s;base64,", type);
+    base64_write(page->stream, bytes, size);
+    fprintf(page->stream, "\"/>%s\n", link ? "</a>" : "");
+    element_write(page, "figcaption", NULL, NULL, caption);
+    fputs("\n</figure>\n", page->stream);
+    free(bytes);
+    return STATUS_OK;
+}
+
+enum status page_image(struct page *page, const char *path, const char *caption)
+{
+    return figure_write(page, path, "png", NULL, caption);
+}
+
+enum status page_thumbnail(struct page *page, const char *small, const char *name, const char *caption)
+{
+    return figure_write(page, small, "jpeg", name, caption);
+}
+
+void page_gallery_begin(struct page *page)
+{
+    if (page->format == PAGE_HTML)
+        fputs("<div class=\"gallery\">\n", page->stream);
+}
+
+void page_gallery_end(struct page *page)
+{
+    if (page->format == PAGE_HTML)
+        fputs("</div>\n", page->stream);
+}

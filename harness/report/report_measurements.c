@@ -1,0 +1,191 @@
+/* Measurements on a page (report_measurements.h). */
+#include "report/report_measurements.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "text/text_append.h"
+#include "measure/outcome.h"
+#include "show/table.h"
+
+enum { COLUMNS = 12, LOBES_FIRST = 9 }; /* of width, PSLR and ISLR, in whose place scenes without targets show */
+static const struct page_column shown_columns[COLUMNS] = {
+    {"algorithm", false},      {"run time", true},    {"speed-up", true},  {"plan", true},
+    {"GFLOP", true},           {"memory (MB)", true}, {"error", true},     {"error, best gain", true},
+    {"phase rms (rad)", true}, {"width (mm)", true},  {"PSLR (dB)", true}, {"ISLR (dB)", true}};
+static const struct page_column sharpness_columns[3] = {{"entropy", true}, {"contrast", true}, {"peak/median", true}};
+
+/* --- Warnings -------------------------------------------------------------------------------------------------- */
+
+enum { WARNINGS_MOST = 16, WARNING_LENGTH = 600 }; /* further ones stand below their rows */
+
+/* Those of a scene that are of more rows than one, numbered from 1. */
+struct warnings {
+    int count, images; /* rows that are ok */
+    char text[WARNINGS_MOST][WARNING_LENGTH];
+    int rows[WARNINGS_MOST];
+};
+
+/* The number of a warning; 0 for none of them. */
+static int warning_number(const struct warnings *warnings, const char *text)
+{
+    for (int k = 0; k < warnings->count; k++)
+        if (strcmp(warnings->text[k], text) == 0)
+            return k + 1;
+    return 0;
+}
+
+static void warnings_find(const struct results *results, const char *scene, struct warnings *warnings)
+{
+    char text[WARNING_LENGTH];
+    int kept = 0;
+    *warnings = (struct warnings){0};
+    for (int k = 0; k < results->csv.row_count; k++) {
+        const struct measurement *row = &results->measurements[k];
+        if (strcmp(row->scene, scene) != 0 || strcmp(row->status, "ok") != 0)
+            continue;
+        warnings->images++;
+        for (const char *at = row->reason; warning_next(&at, text, sizeof text);) {
+            int number = warning_number(warnings, text);
+            if (number == 0 && warnings->count < WARNINGS_MOST) {
+                number = ++warnings->count;
+                strcpy(warnings->text[number - 1], text);
+            }
+            if (number > 0)
+                warnings->rows[number - 1]++;
+        }
+    }
+    for (int k = 0; k < warnings->count; k++)
+        if (warnings->rows[k] > 1 || warnings->images == 1) {
+            memmove(warnings->text[kept], warnings->text[k], WARNING_LENGTH);
+            warnings->rows[kept++] = warnings->rows[k];
+        }
+    warnings->count = kept;
+}
+
+static void warnings_show(struct page *page, const struct warnings *warnings)
+{
+    char text[WARNING_LENGTH + 100];
+    for (int k = 0; k < warnings->count; k++) {
+        snprintf(text, sizeof text, "%s", warnings->text[k]);
+        if (warnings->rows[k] < warnings->images)
+            snprintf(text, sizeof text, "Of %d of %d images, warning %d: %s", warnings->rows[k], warnings->images,
+                     k + 1, warnings->text[k] + strlen(OUTCOME_WARNING));
+        page_paragraph(page, text);
+    }
+}
+
+/* --- Rows ------------------------------------------------------------------------------------------------------ */
+
+/* Is nothing measured of any target? */
+static bool scene_is_blind(const struct results *results, const char *scene)
+{
+    bool sharpness = false;
+    for (int k = 0; k < results->csv.row_count; k++) {
+        const struct measurement *row = &results->measurements[k];
+        if (strcmp(row->scene, scene) != 0)
+            continue;
+        if (isfinite(row->pslr_db) || isfinite(row->width_m))
+            return false;
+        sharpness |= isfinite(row->entropy);
+    }
+    return sharpness;
+}
+
+static void note_add(char *note, size_t size, const char *text)
+{
+    if (*text)
+        text_append(note, size, "%s%s", *note ? "; " : "", text);
+}
+
+/* Engine, what was left out, and of the reason what the scene's warnings do not say. */
+static void note_make(const struct measurement *row, const struct warnings *warnings, char *note, size_t size)
+{
+    char text[1200];
+    const char *first = strstr(row->reason, OUTCOME_WARNING);
+    size_t length = first ? (size_t)(first - row->reason) : strlen(row->reason);
+    *note = '\0';
+    note_add(note, size, row->engine);
+    note_add(note, size, row->skipped);
+    if (first && length >= 2)
+        length -= 2; /* "; " */
+    snprintf(text, sizeof text, "%.*s", (int)length, row->reason);
+    note_add(note, size, text);
+    for (const char *at = row->reason; warning_next(&at, text, WARNING_LENGTH);) {
+        const int number = warning_number(warnings, text);
+        if (number > 0)
+            snprintf(text, sizeof text, "warning %d", number);
+        if (number == 0 || warnings->rows[number - 1] < warnings->images)
+            note_add(note, size, text);
+    }
+}
+
+static void row_show(struct page *page, const struct measurement *row, const struct warnings *warnings, bool sharpness)
+{
+    char spec[512], note[2400], texts[COLUMNS][32] = {""};
+    struct page_cell cells[COLUMNS];
+    measurement_spec(row, spec, sizeof spec);
+    if (strcmp(row->status, "ok") != 0) {
+        snprintf(note, sizeof note, "%s: %s", row->status, row->reason);
+        page_row_note(page, spec, note);
+        return;
+    }
+    const struct {
+        double value;
+        const char *format;
+    } numbers[] = {{1e-9 * row->flops, "%.3g"},
+                   {1e-6 * row->bytes, "%.3g"},
+                   {row->error, "%.2e"},
+                   {row->error_gain, "%.2e"},
+                   {row->phase_rms_rad, "%.2e"},
+                   {sharpness ? row->entropy : 1e3 * row->width_m, "%.2f"},
+                   {sharpness ? row->contrast : row->pslr_db, "%.2f"},
+                   {sharpness ? row->peak_over_median : row->islr_db, "%.2f"}};
+    snprintf(texts[1], sizeof texts[1], "%s", cell_run_time(row).text);
+    if (isfinite(row->run_q1_s) && isfinite(row->run_q3_s))
+        snprintf(texts[1], sizeof texts[1], "%.12s (-%.1f, +%.1f %%)", cell_run_time(row).text,
+                 fmin(999, 100 * (1 - row->run_q1_s / row->run_s)), fmin(999, 100 * (row->run_q3_s / row->run_s - 1)));
+    snprintf(texts[2], sizeof texts[2], "%s", cell_significant(row->control_s / row->run_s, "x").text);
+    snprintf(texts[3], sizeof texts[3], "%s", cell_time(row->plan_s).text);
+    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
+        if (isfinite(numbers[k].value))
+            snprintf(texts[4 + k], sizeof texts[4 + k], numbers[k].format, numbers[k].value);
+    for (int k = 0; k < COLUMNS; k++)
+        cells[k] = (struct page_cell){texts[k], NULL};
+    cells[0] = (struct page_cell){spec, NULL};
+    note_make(row, warnings, note, sizeof note);
+    page_row(page, cells);
+    if (*note)
+        page_row_note(page, "", note);
+}
+
+void report_measurements_show(struct page *page, const struct results *results, int scene_count,
+                              const char *const *scenes)
+{
+    page_heading(page, 2, "measurements", "Measurements");
+    page_paragraph(
+        page,
+        "Run time: median seconds from the echoes in memory to the complex image (~: noisy); speed-up: against the "
+        "scalar reference loop timed beside. In parentheses the quartiles of the runs. Errors: relative L2 "
+        "against the exact image. Width, PSLR and ISLR: medians over the targets, azimuth, main lobe "
+        "from first minimum to first minimum; without targets the image's sharpness. Below a row: the way that the "
+        "plan chose, what it left out, and what is to be said of this image.");
+    for (int s = 0; s < scene_count; s++) {
+        const bool sharpness = scene_is_blind(results, scenes[s]);
+        struct page_column columns[COLUMNS];
+        struct warnings warnings;
+        page_part_begin(page, scenes[s], scene_count > 1);
+        warnings_find(results, scenes[s], &warnings);
+        warnings_show(page, &warnings);
+        memcpy(columns, shown_columns, sizeof columns);
+        if (sharpness)
+            memcpy(columns + LOBES_FIRST, sharpness_columns, sizeof sharpness_columns);
+        page_table_begin(page, COLUMNS, columns, false);
+        for (int row = 0; row < results->csv.row_count; row++)
+            if (strcmp(results->measurements[row].scene, scenes[s]) == 0)
+                row_show(page, &results->measurements[row], &warnings, sharpness);
+        page_table_end(page);
+        page_part_end(page, scene_count > 1);
+    }
+}

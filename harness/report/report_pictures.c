@@ -1,0 +1,171 @@
+/* The pictures of a report (report_pictures.h). */
+#include "report/report_pictures.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "files/paths.h"
+#include "show/plot.h"
+#include "report/report.h"
+#include "report/thumbnails.h"
+
+/* Thumbnails: bytes in the page of all of them, shared by the scenes; their pixels, and how many more slices have. */
+static const double BYTES_MOST = 2e6, PIXELS_LEAST = 1.2e4, PIXELS_MOST = 1e5, SLICES_LARGER = 2;
+
+/* Bytes in the page of a thumbnail, in base64, as measured between 1e4 and 1e5 pixels. */
+static double thumbnail_bytes(double pixels)
+{
+    return 12.7e3 * pow(pixels / 1.05e4, 0.69);
+}
+
+bool report_room(const struct page *page, const char *path, double growth, struct pictures_count *count)
+{
+    struct stat info;
+    if (lstat(path, &info) != 0)
+        return false; /* not drawn: a sweep's images, a run without gnuplot */
+    const bool regular = S_ISREG(info.st_mode);
+    const bool fits = (double)ftell(page->stream) + growth * (double)info.st_size <= REPORT_HTML_BYTES;
+    count->irregular += !regular;
+    count->left_out += regular && !fits;
+    return regular && fits;
+}
+
+enum status report_picture_show(struct page *page, const char *path, const char *small, const char *caption,
+                                struct pictures_count *count)
+{
+    const char *name = strrchr(path, '/');
+    if (!report_room(page, small ? small : path, 4.0 / 3, count))
+        return STATUS_OK;
+    count->shown++;
+    return small ? page_thumbnail(page, small, name ? name + 1 : path, caption) : page_image(page, path, caption);
+}
+
+void report_left_out_show(struct page *page, const struct pictures_count *count)
+{
+    char caption[300];
+    if (count->irregular) {
+        snprintf(caption, sizeof caption,
+                 "%d %s left out: links, folders or pipes; only regular files of the folder itself are shown.",
+                 count->irregular, count->irregular == 1 ? "picture is" : "pictures are");
+        page_paragraph(page, caption);
+    }
+    if (count->left_out) {
+        snprintf(caption, sizeof caption,
+                 "%d pictures are left out to keep this page below %d MB; they lie beside "
+                 "it.",
+                 count->left_out, REPORT_HTML_BYTES >> 20);
+        page_paragraph(page, caption);
+    }
+}
+
+/* The pictures of one scene: slices first, then the images in the order of the rows. */
+struct picture {
+    char path[4096], caption[1200];
+    int thumbnail;
+};
+
+/* Errors: STATUS_FAILED without memory; *list is to be freed. */
+static enum status pictures_find(const char *directory, const struct results *results, const char *scene,
+                                 struct picture **list, int *count)
+{
+    char name[700], label[600];
+    *count = 1;
+    *list = calloc((size_t)results->csv.row_count + 1, sizeof **list);
+    if (!*list)
+        return status_set(STATUS_FAILED, "%s: no memory for the pictures of %d rows", directory,
+                          results->csv.row_count);
+    picture_path(directory, scene, "slices.png", (*list)->path, sizeof(*list)->path);
+    snprintf((*list)->caption, sizeof(*list)->caption, "%s: azimuth slices", scene);
+    for (int row = 0; row < results->csv.row_count; row++) {
+        const struct measurement *measured = &results->measurements[row];
+        struct picture *picture = &(*list)[*count];
+        if (strcmp(measured->scene, scene) != 0 || strcmp(measured->status, "ok") != 0)
+            continue;
+        picture_label(measured->algorithm, measured->options, measured->precision, label, sizeof label);
+        snprintf(name, sizeof name, "%s.png", label);
+        picture_path(directory, scene, name, picture->path, sizeof picture->path);
+        snprintf(picture->caption, sizeof picture->caption, "%s: %s", scene, label);
+        ++*count;
+    }
+    return STATUS_OK;
+}
+
+/* How large a scene's thumbnails are within its share of the bytes, and how many images have one. */
+static int thumbnails_choose(double share, int images, double *pixels)
+{
+    *pixels = PIXELS_MOST;
+    while (*pixels > PIXELS_LEAST
+           && thumbnail_bytes(SLICES_LARGER * *pixels) + images * thumbnail_bytes(*pixels) > share)
+        *pixels /= 1.05;
+    const int fit = (int)((share - thumbnail_bytes(SLICES_LARGER * *pixels)) / thumbnail_bytes(*pixels));
+    const int most = images < THUMBNAILS_MOST ? images : THUMBNAILS_MOST - 1;
+    return fit < 1 ? 1 : fit < most ? fit : most;
+}
+
+/* Images without room for a thumbnail, as links. */
+static void links_show(struct page *page, const struct picture *list, int count)
+{
+    const char **texts = calloc(2 * (size_t)count + 1, sizeof *texts), **names = texts + count;
+    int shown = 0;
+    struct stat info;
+    for (int k = 0; texts && k < count; k++)
+        if (lstat(list[k].path, &info) == 0 && S_ISREG(info.st_mode)) {
+            names[shown] = strrchr(list[k].path, '/') + 1;
+            texts[shown++] = list[k].caption;
+        }
+    if (texts)
+        page_files(page, "Beside this page:", shown, names, texts);
+    free(texts);
+}
+
+static enum status scene_show(struct page *page, const char *directory, struct picture *list, int list_count,
+                              double share, struct pictures_count *count)
+{
+    char beside[4200], small[PATH_MAX];
+    struct thumbnails thumbnails;
+    double pixels;
+    const int shown = 1 + thumbnails_choose(share, list_count - 1, &pixels);
+    enum status status = STATUS_OK;
+    snprintf(beside, sizeof beside, "%s/report.html", directory);
+    thumbnails_begin(&thumbnails, beside);
+    for (int k = 0; k < list_count && k < shown; k++)
+        list[k].thumbnail = thumbnails_add(&thumbnails, list[k].path, k ? pixels : SLICES_LARGER * pixels);
+    thumbnails_draw(&thumbnails, PLOT_DIRECTORY);
+    for (int k = 0; k < list_count && k < shown && status == STATUS_OK; k++) {
+        const bool drawn = thumbnails_path(&thumbnails, list[k].thumbnail, small);
+        if (k == 1)
+            page_gallery_begin(page);
+        status = report_picture_show(page, list[k].path, drawn ? small : NULL, list[k].caption, count);
+    }
+    if (list_count > 1)
+        page_gallery_end(page);
+    if (shown < list_count)
+        links_show(page, list + shown, list_count - shown);
+    thumbnails_end(&thumbnails);
+    return status;
+}
+
+enum status report_pictures_show(struct page *page, const char *directory, const struct results *results,
+                                 int scene_count, const char *const *scenes)
+{
+    enum status status = STATUS_OK;
+    struct pictures_count count = {0};
+    page_heading(page, 2, "images", "Slices and images");
+    page_paragraph(page, "Each links to its full size, which lies beside this page.");
+    for (int s = 0; s < scene_count && status == STATUS_OK; s++) {
+        struct picture *list;
+        int list_count;
+        status = pictures_find(directory, results, scenes[s], &list, &list_count);
+        page_part_begin(page, scenes[s], scene_count > 1);
+        if (status == STATUS_OK)
+            status = scene_show(page, directory, list, list_count, BYTES_MOST / scene_count, &count);
+        page_part_end(page, scene_count > 1);
+        free(list);
+    }
+    if (count.shown == 0)
+        page_paragraph(page, "None in this folder: `run` draws them, `sweep` does not.");
+    report_left_out_show(page, &count);
+    return status;
+}

@@ -1,0 +1,120 @@
+/* The columns, and the empty row (measurement.h). */
+#include "results/measurement.h"
+
+#include <math.h>
+
+#include "echoes/echo_data.h"
+
+/* The braces are an initializer's. */
+/* clang-format off */
+#define M_COLUMN(type, name, since) {#name, COLUMN_##type, offsetof(struct measurement, name), since, .unit = NULL}
+#define M_METRIC(name, since, unit, better, class, of_float, of_double, relative) \
+    {#name,  COLUMN_REAL, offsetof(struct measurement, name), since, unit, better, \
+     class, {of_float, of_double}, relative}
+#define T_COLUMN(type, name) {#name, COLUMN_##type, offsetof(struct target_row, name), 1, .unit = NULL}
+#define T_METRIC(name, unit, better, of_float, of_double, relative) \
+    {#name,         COLUMN_REAL,           offsetof(struct target_row, name), 1, unit, better, \
+     CLASS_QUALITY, {of_float, of_double}, relative}
+/* clang-format on */
+
+/* Slacks of quality are about a hundred times what compilers and instruction sets make of the same source: rounding,
+   1e-8 of an error (results/README.md). Work is exact. Two runs at different times can only tell a factor in time;
+   `compare --ab` tells per cents. */
+const struct column measurement_columns[] = {
+    M_COLUMN(TEXT, scene, 1),
+    M_COLUMN(TEXT, algorithm, 1),
+    M_COLUMN(TEXT, options, 1),
+    M_COLUMN(TEXT, precision, 1),
+    M_COLUMN(INTEGER, threads, 1),
+    M_COLUMN(TEXT, engine, 1),
+    M_COLUMN(TEXT, status, 1),
+    M_COLUMN(TEXT, reason, 1),
+    M_COLUMN(TEXT, skipped, 1),
+    M_COLUMN(REAL, plan_s, 1),
+    M_METRIC(run_s, 1, "s", BETTER_LOWER, CLASS_TIME, 0, 0, 1),
+    M_COLUMN(REAL, run_min_s, 1),
+    M_COLUMN(INTEGER, runs, 1),
+    M_COLUMN(REAL, control_s, 1),
+    M_COLUMN(TEXT, stages, 1),
+    M_METRIC(flops_published, 1, "FLOP", BETTER_NONE, CLASS_WORK, 0, 0, 0),
+    M_METRIC(flops, 1, "FLOP", BETTER_LOWER, CLASS_WORK, 0, 0, 0),
+    M_METRIC(pairs, 1, "pairs", BETTER_NONE, CLASS_WORK, 0, 0, 0),
+    M_METRIC(bytes, 1, "B", BETTER_LOWER, CLASS_WORK, 0, 0, 0),
+    M_METRIC(error, 1, "1", BETTER_LOWER, CLASS_QUALITY, 2e-6, 1e-9, 1e-3),
+    M_METRIC(error_gain, 1, "1", BETTER_LOWER, CLASS_QUALITY, 2e-6, 1e-9, 1e-3),
+    M_METRIC(phase_rms_rad, 1, "rad", BETTER_LOWER, CLASS_QUALITY, 2e-6, 1e-9, 1e-3),
+    M_METRIC(width_m, 1, "m", BETTER_LOWER, CLASS_QUALITY, 0, 0, 1e-4),
+    M_METRIC(pslr_db, 1, "dB", BETTER_LOWER, CLASS_QUALITY, 2e-3, 2e-3, 0),
+    M_METRIC(islr_db, 1, "dB", BETTER_LOWER, CLASS_QUALITY, 2e-3, 2e-3, 0),
+    M_COLUMN(REAL, run_q1_s, 2),
+    M_COLUMN(REAL, run_q3_s, 2),
+    M_METRIC(entropy, 2, "1", BETTER_LOWER, CLASS_QUALITY, 0, 0, 1e-3),
+    M_METRIC(contrast, 2, "1", BETTER_HIGHER, CLASS_QUALITY, 0, 0, 1e-3),
+    M_METRIC(peak_over_median, 2, "1", BETTER_HIGHER, CLASS_QUALITY, 0, 0, 1e-2),
+    {.name = NULL},
+};
+
+const struct column target_columns[] = {
+    T_COLUMN(TEXT, scene),
+    T_COLUMN(TEXT, algorithm),
+    T_COLUMN(TEXT, options),
+    T_COLUMN(TEXT, precision),
+    T_COLUMN(INTEGER, target),
+    T_COLUMN(TEXT, axis),
+    T_COLUMN(TEXT, definition),
+    T_METRIC(extent_m, "m", BETTER_NONE, 0, 0, 1e-6),
+    T_METRIC(position_error_m, "m", BETTER_SMALL, 1e-6, 1e-6, 0),
+    T_METRIC(phase_error_rad, "rad", BETTER_SMALL, 1e-5, 1e-7, 0),
+    T_METRIC(width_m, "m", BETTER_LOWER, 0, 0, 1e-4),
+    T_METRIC(pslr_db, "dB", BETTER_LOWER, 2e-3, 2e-3, 0),
+    T_METRIC(islr_db, "dB", BETTER_LOWER, 2e-3, 2e-3, 0),
+    {.name = NULL},
+};
+
+const struct column *metric_first(const struct column *columns)
+{
+    while (columns->name && !columns->unit)
+        columns++;
+    return columns->name ? columns : NULL;
+}
+
+void column_clear(const struct column *column, void *row)
+{
+    void *field = (char *)row + column->offset;
+    if (column->type == COLUMN_TEXT)
+        *(const char **)field = "";
+    else if (column->type == COLUMN_INTEGER)
+        *(int *)field = -1;
+    else
+        *(double *)field = NAN;
+}
+
+struct measurement measurement_empty(const char *scene, const char *algorithm, const char *options,
+                                     enum precision precision)
+{
+    struct measurement row = {0};
+    for (const struct column *column = measurement_columns; column->name; column++)
+        column_clear(column, &row);
+    row.scene = scene;
+    row.algorithm = algorithm;
+    row.options = options;
+    row.precision = precision_name(precision);
+    row.status = "ok";
+    return row;
+}
+
+bool measurement_is_cheaper(const struct measurement *row, const struct measurement *best, size_t cost,
+                            double error_most)
+{
+    const double mine = *(const double *)((const char *)row + cost);
+    const double other = best ? *(const double *)((const char *)best + cost) : INFINITY;
+    return row->error <= error_most && mine > 0
+           && (mine < other || (best && mine == other && row->run_s < best->run_s));
+}
+
+void measurement_interval(const struct measurement *row, double *low, double *high)
+{
+    const bool known = isfinite(row->run_q1_s) && isfinite(row->run_q3_s);
+    *low = known ? row->run_q1_s : row->run_s;
+    *high = known ? row->run_q3_s : row->run_s;
+}

@@ -1,0 +1,34 @@
+/* Finished files of results: read and written as a whole. */
+#ifndef SASBENCH_MEASURE_RESULTS_H
+#define SASBENCH_MEASURE_RESULTS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "files/csv.h"
+#include "results/measurement.h"
+
+/* Scene content that rows were measured on. */
+struct scene_hash {
+    char *scene;
+    uint64_t hash;
+};
+
+/* A finished file, measurements.csv, targets.csv or a baseline, in memory; freed with results_free, which accepts a
+   zeroed struct. Texts of the rows belong to the csv. */
+struct results {
+    struct csv csv;
+    bool targets;                     /* which of the two it is */
+    struct measurement *measurements; /* [csv.row_count], or NULL */
+    struct target_row *target_rows;   /* [csv.row_count], or NULL */
+};
+/* Errors: STATUS_INVALID naming file, line, column and value: not a file of ours or of another version, other columns,
+   a number that is none or not finite, a time that is not above 0, a status that is none. */
+enum status results_read(const char *path, struct results *results);
+void results_free(struct results *results);
+/* A whole measurements file without provenance, the same on every machine. `note` is one line that says what it is and
+   how it is made. Errors: STATUS_INVALID when it cannot be written; an older file is then left as it is. */
+enum status measurements_write(const char *path, const char *note, const struct scene_hash *scenes, int scene_count,
+                               const struct measurement *rows, int row_count);
+
+#endif

@@ -1,0 +1,426 @@
+/* The results folder: two CSV files that are appended to row by row and taken up again after a cut. */
+#include "results/results_folder.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "files/folder.h"
+#include "text/shown_text.h"
+#include "files/text_file.h"
+#include "results/rows.h"
+
+/* What tells one measurement from another; an algorithm of NULL stands for all of the scene. */
+struct key {
+    const char *scene, *algorithm, *options, *precision;
+};
+
+struct results_folder {
+    int lock; /* of the folder */
+    struct provenance provenance;
+    char *paths[KINDS];        /* of its files */
+    FILE *files[KINDS];        /* open for appending */
+    struct scene_hash *scenes; /* content of every scene that has rows */
+    int scene_count;
+    struct csv earlier;       /* measurements.csv as the earlier run left it; rows point into it */
+    struct measurement *rows; /* [earlier.row_count] */
+    bool *dropped;            /* [earlier.row_count] the scene's content has changed since, or it is replaced */
+};
+
+/* A row that is done outlasts a power cut. */
+static enum status rows_done(FILE *file, const char *path)
+{
+    if (!stream_flush(file) || !place_sync(fileno(file)))
+        return status_set(STATUS_FAILED, "%s: cannot be written: %s", path, strerror(errno));
+    return STATUS_OK;
+}
+
+static char *path_join(const char *directory, const char *name)
+{
+    size_t size = strlen(directory) + strlen(name) + 2;
+    char *joined = malloc(size);
+    if (joined)
+        snprintf(joined, size, "%s/%s", directory, name);
+    return joined;
+}
+
+static bool key_equal(const struct csv *a, int row_a, const struct csv *b, int row_b)
+{
+    for (int k = 0; k < KEY_COLUMNS; k++)
+        if (strcmp(csv_cell(a, row_a, k), csv_cell(b, row_b, k)) != 0)
+            return false;
+    return true;
+}
+
+static bool measurement_present(const struct csv *measurements, const struct csv *csv, int row)
+{
+    for (int k = 0; k < measurements->row_count; k++)
+        if (key_equal(measurements, k, csv, row))
+            return true;
+    return false;
+}
+
+static bool key_matches(const struct key *key, const char *scene, const char *algorithm, const char *options,
+                        const char *precision)
+{
+    return strcmp(key->scene, scene) == 0
+           && (!key->algorithm
+               || (strcmp(key->algorithm, algorithm) == 0 && strcmp(key->options, options) == 0
+                   && strcmp(key->precision, precision) == 0));
+}
+
+/* One file anew from the rows of `old`, without those of `except` (NULL: of none) and without rows of targets whose
+   measurement is missing, made beside the old file and renamed when whole; rows are then added to it. */
+static enum status file_rewrite(struct results_folder *folder, int kind, const struct csv old[KINDS],
+                                const struct key *except)
+{
+    struct text_file text;
+    enum status status = text_file_open(folder->paths[kind], &text);
+    if (status != STATUS_OK)
+        return status;
+    FILE *file = text.stream;
+    head_write(file, &row_kinds[kind], &folder->provenance, NULL, folder->scenes, folder->scene_count);
+    for (int row = 0; row < old[kind].row_count; row++) {
+        if (except
+            && key_matches(except, csv_cell(&old[kind], row, 0), csv_cell(&old[kind], row, 1),
+                           csv_cell(&old[kind], row, 2), csv_cell(&old[kind], row, 3)))
+            continue;
+        if (!measurement_present(&old[KIND_MEASUREMENTS], &old[kind], row))
+            continue;
+        for (int k = 0; k < old[kind].column_count; k++) {
+            if (k)
+                fputc(',', file);
+            csv_write_text(file, csv_cell(&old[kind], row, k));
+        }
+        fputc('\n', file);
+    }
+    return text_file_keep(&text, &folder->files[kind]);
+}
+
+/* Both files anew. The measurements come first: a cut between the two leaves targets without a measurement, which the
+   next run drops. */
+static enum status folder_rewrite(struct results_folder *folder, const struct csv old[KINDS], const struct key *except)
+{
+    for (int k = 0; k < KINDS; k++) {
+        if (folder->files[k])
+            fclose(folder->files[k]);
+        folder->files[k] = NULL;
+        enum status status = file_rewrite(folder, k, old, except);
+        if (status)
+            return status;
+    }
+    return STATUS_OK;
+}
+
+/* --- Taking up an earlier run -------------------------------------------------------------------------------- */
+
+static struct scene_hash *scene_hash_find(const struct results_folder *folder, const char *scene)
+{
+    for (int k = 0; k < folder->scene_count; k++)
+        if (strcmp(folder->scenes[k].scene, scene) == 0)
+            return &folder->scenes[k];
+    return NULL;
+}
+
+static enum status scene_hash_set(struct results_folder *folder, const char *scene, uint64_t hash)
+{
+    struct scene_hash *known = scene_hash_find(folder, scene);
+    if (known) {
+        known->hash = hash;
+        return STATUS_OK;
+    }
+    struct scene_hash *scenes = realloc(folder->scenes, ((size_t)folder->scene_count + 1) * sizeof *scenes);
+    char *name = strdup(scene);
+    if (scenes)
+        folder->scenes = scenes;
+    if (!scenes || !name) {
+        free(name);
+        return status_set(STATUS_FAILED, "no memory for the scene %s", scene);
+    }
+    scenes[folder->scene_count++] = (struct scene_hash){name, hash};
+    return STATUS_OK;
+}
+
+/* The comments "scene NAME: HEX"; what does not read as one is no hash, and the scene's rows are measured again. */
+static enum status scene_hashes_read(struct results_folder *folder, const struct csv *csv)
+{
+    enum status status = STATUS_OK;
+    for (int k = 0; k < csv->comment_count && !status; k++) {
+        char *name = strdup(csv->comments[k]), *value = name ? strrchr(name, ':') : NULL, *end = NULL;
+        if (!name)
+            return status_set(STATUS_FAILED, "%s: no memory", csv->path);
+        if (value && strncmp(name, "scene ", strlen("scene ")) == 0) {
+            *value++ = '\0';
+            uint64_t hash = strtoull(value, &end, 16);
+            if (end != value && !*end)
+                status = scene_hash_set(folder, name + strlen("scene "), hash);
+        }
+        free(name);
+    }
+    return status;
+}
+
+/* Read one file of an earlier run, if there is one. Errors: STATUS_INVALID when it is not ours. */
+static enum status file_read(const char *path, const struct row_kind *kind, struct csv *csv)
+{
+    struct stat info;
+    *csv = (struct csv){0};
+    if (lstat(path, &info) != 0 && errno == ENOENT)
+        return STATUS_OK;
+    enum status status = csv_read(path, CSV_TAIL_DROP, csv);
+    if (status)
+        return status;
+    if (version_read(csv, kind) > 0)
+        return STATUS_OK;
+    csv_free(csv);
+    return status_set(STATUS_INVALID,
+                      "%s:1: not a file of ours, whose first line is '# %s %d'; it is left as it is, "
+                      "name another folder",
+                      path, kind->format, kind->version);
+}
+
+static enum status rows_parse(struct results_folder *folder)
+{
+    const struct csv *csv = &folder->earlier;
+    if (csv->row_count == 0)
+        return STATUS_OK;
+    folder->rows = calloc((size_t)csv->row_count, sizeof *folder->rows);
+    folder->dropped = calloc((size_t)csv->row_count, sizeof *folder->dropped);
+    enum status status = STATUS_OK;
+    if (!folder->rows || !folder->dropped)
+        status = status_set(STATUS_FAILED, "%s: no memory for %d rows", csv->path, csv->row_count);
+    for (int row = 0; row < csv->row_count; row++)
+        if (!status)
+            status = row_parse(csv, row, &row_kinds[KIND_MEASUREMENTS], &folder->rows[row]);
+    return status;
+}
+
+/* "measurements.3.csv" */
+static void kept_name(int kind, int number, char *name, size_t size)
+{
+    snprintf(name, size, "%.*s.%d.csv", (int)strcspn(row_kinds[kind].file, "."), row_kinds[kind].file, number);
+}
+
+static bool file_is(const struct results_folder *folder, const char *name)
+{
+    struct stat info;
+    return fstatat(folder->lock, name, &info, AT_SYMLINK_NOFOLLOW) == 0;
+}
+
+/* Under another name; the file stays where it is until it is replaced, except where a file system knows no links. */
+static enum status file_keep(const struct results_folder *folder, int kind, const char *kept)
+{
+    const int at = folder->lock;
+    const char *file = row_kinds[kind].file;
+    if (!file_is(folder, file) || linkat(at, file, at, kept, 0) == 0 || renameat(at, file, at, kept) == 0)
+        return STATUS_OK;
+    return status_set(STATUS_INVALID, "%s: cannot be kept as %s: %s; name another folder", folder->paths[kind], kept,
+                      strerror(errno));
+}
+
+/* Keep the files under the next free number before they are begun anew, and tell why. */
+static enum status files_keep(const struct results_folder *folder, const char *why)
+{
+    char names[KINDS][64], told[KINDS * 64] = "";
+    enum status status = STATUS_OK;
+    bool taken = true;
+    for (int number = 1; taken; number++) {
+        taken = false;
+        for (int k = 0; k < KINDS; k++) {
+            kept_name(k, number, names[k], sizeof names[k]);
+            taken |= file_is(folder, names[k]);
+        }
+    }
+    for (int k = 0; k < KINDS && !status; k++) {
+        status = file_keep(folder, k, names[k]);
+        if (!status && file_is(folder, names[k]))
+            snprintf(told + strlen(told), sizeof told - strlen(told), "%s%s", *told ? " and " : "", names[k]);
+    }
+    if (!status) {
+        fprintf(stderr, "sasbench: %s: ", folder->paths[KIND_MEASUREMENTS]);
+        shown_write(stderr, why); /* it quotes the file */
+        fprintf(stderr, "; the old rows are kept in %s\n", told);
+    }
+    return status;
+}
+
+/* Why the rows of the folder cannot be gone on with; empty when they can, or when there are none. */
+static void resume_refusal(const struct results_folder *folder, const struct csv old[KINDS], char *why, size_t size)
+{
+    *why = '\0';
+    for (int k = 0; k < KINDS && !*why; k++)
+        if (!old[k].path && old[KINDS - 1 - k].row_count > 0)
+            snprintf(why, size, "%s is missing", row_kinds[k].file);
+    for (int k = 0; k < KINDS && !*why; k++)
+        if (old[k].row_count > 0 && version_read(&old[k], &row_kinds[k]) != row_kinds[k].version)
+            snprintf(why, size, "measured as version %d of %s, now %d", version_read(&old[k], &row_kinds[k]),
+                     row_kinds[k].file, row_kinds[k].version);
+        else if (old[k].row_count > 0)
+            provenance_differs(&old[k], &folder->provenance, why, size);
+}
+
+static enum status folder_begin(struct results_folder *folder, const char *directory)
+{
+    struct csv old[KINDS] = {0};
+    char why[400] = "";
+    enum status status = directory_make(directory);
+    if (!status)
+        status = folder_take(directory, &folder->lock);
+    for (int k = 0; k < KINDS && !status; k++) {
+        folder->paths[k] = path_join(directory, row_kinds[k].file);
+        status = folder->paths[k] ? file_read(folder->paths[k], &row_kinds[k], &old[k])
+                                  : status_set(STATUS_FAILED, "%s: no memory", directory);
+    }
+    if (!status)
+        resume_refusal(folder, old, why, sizeof why);
+    for (int k = 0; k < KINDS && !status; k++) {
+        char other[400] = "";
+        if (old[k].path)
+            provenance_differs(&old[k], &folder->provenance, other, sizeof other);
+        if (*why || *other)
+            csv_free(&old[k]);
+        else if (old[k].path)
+            status = header_check(&old[k], &row_kinds[k]);
+    }
+    /* All of it is read before anything is written, so that a file with a fault is left as it is. */
+    folder->earlier = old[KIND_MEASUREMENTS];
+    if (!status)
+        status = scene_hashes_read(folder, &folder->earlier);
+    if (!status)
+        status = rows_parse(folder);
+    if (!status && *why)
+        status = files_keep(folder, why);
+    if (!status)
+        status = folder_rewrite(folder, old, NULL);
+    csv_free(&old[KIND_TARGETS]);
+    return status;
+}
+
+enum status results_folder_open(const char *directory, const struct provenance *provenance,
+                                struct results_folder **folder)
+{
+    *folder = calloc(1, sizeof **folder);
+    if (!*folder)
+        return status_set(STATUS_FAILED, "%s: no memory", directory);
+    (*folder)->provenance = *provenance;
+    (*folder)->lock = -1;
+    enum status status = folder_begin(*folder, directory);
+    if (status) {
+        (void)results_folder_close(*folder);
+        *folder = NULL;
+    }
+    return status;
+}
+
+/* Both files without the rows of `key`. */
+static enum status rows_drop(struct results_folder *folder, const struct key *key)
+{
+    struct csv now[KINDS] = {0};
+    enum status status = STATUS_OK;
+    for (int row = 0; row < folder->earlier.row_count; row++) {
+        const struct measurement *found = &folder->rows[row];
+        folder->dropped[row] |= key_matches(key, found->scene, found->algorithm, found->options, found->precision);
+    }
+    for (int k = 0; k < KINDS && !status; k++) {
+        status = csv_read(folder->paths[k], CSV_TAIL_DROP, &now[k]);
+        if (!status)
+            status = header_check(&now[k], &row_kinds[k]);
+    }
+    if (!status)
+        status = folder_rewrite(folder, now, key);
+    for (int k = 0; k < KINDS; k++)
+        csv_free(&now[k]);
+    return status;
+}
+
+static int earlier_find(const struct results_folder *folder, const struct key *key)
+{
+    for (int row = 0; row < folder->earlier.row_count; row++) {
+        const struct measurement *found = &folder->rows[row];
+        if (!folder->dropped[row] && key_matches(key, found->scene, found->algorithm, found->options, found->precision))
+            return row;
+    }
+    return -1;
+}
+
+enum status results_folder_scene(struct results_folder *folder, const char *scene, uint64_t hash)
+{
+    const struct key key = {.scene = scene};
+    struct scene_hash *known = scene_hash_find(folder, scene);
+    enum status status = STATUS_OK;
+    if (known && known->hash == hash)
+        return STATUS_OK;
+    if (earlier_find(folder, &key) >= 0) {
+        char why[400];
+        snprintf(why, sizeof why, "the scene %.300s has changed", scene);
+        status = files_keep(folder, why);
+    }
+    if (!status)
+        status = scene_hash_set(folder, scene, hash);
+    return status ? status : rows_drop(folder, &key);
+}
+
+const struct measurement *results_folder_find(const struct results_folder *folder, const char *scene,
+                                              const char *algorithm, const char *options, const char *precision)
+{
+    int row = earlier_find(folder, &(struct key){scene, algorithm, options, precision});
+    return row >= 0 && strcmp(folder->rows[row].status, "failed") != 0 ? &folder->rows[row] : NULL;
+}
+
+/* A row that an earlier run left gives way to a new one. */
+static enum status earlier_replace(struct results_folder *folder, const struct key *key)
+{
+    return earlier_find(folder, key) < 0 ? STATUS_OK : rows_drop(folder, key);
+}
+
+static enum status rows_append(struct results_folder *folder, int kind, const void *rows, int count, size_t row_size)
+{
+    FILE *file = folder->files[kind];
+    if (!file)
+        return status_set(STATUS_FAILED, "%s: no row can be added, since the file could not be rewritten before",
+                          folder->paths[kind]);
+    for (int k = 0; k < count; k++)
+        row_write(file, row_kinds[kind].columns, (const char *)rows + (size_t)k * row_size);
+    return rows_done(file, folder->paths[kind]);
+}
+
+enum status results_folder_targets(struct results_folder *folder, const struct target_row *rows, int count)
+{
+    enum status status = STATUS_OK;
+    for (int k = 0; k < count && !status; k++)
+        status = earlier_replace(folder,
+                                 &(struct key){rows[k].scene, rows[k].algorithm, rows[k].options, rows[k].precision});
+    return status ? status : rows_append(folder, KIND_TARGETS, rows, count, sizeof *rows);
+}
+
+enum status results_folder_add(struct results_folder *folder, const struct measurement *row)
+{
+    enum status status =
+        earlier_replace(folder, &(struct key){row->scene, row->algorithm, row->options, row->precision});
+    return status ? status : rows_append(folder, KIND_MEASUREMENTS, row, 1, sizeof *row);
+}
+
+enum status results_folder_close(struct results_folder *folder)
+{
+    enum status status = STATUS_OK;
+    if (!folder)
+        return STATUS_OK;
+    for (int k = 0; k < KINDS; k++) {
+        if (folder->files[k] && !stream_close(folder->files[k]))
+            status = status_set(STATUS_FAILED, "%s: cannot be closed: %s", folder->paths[k], strerror(errno));
+        free(folder->paths[k]);
+    }
+    for (int k = 0; k < folder->scene_count; k++)
+        free(folder->scenes[k].scene);
+    free(folder->scenes);
+    free(folder->rows);
+    free(folder->dropped);
+    csv_free(&folder->earlier);
+    folder_leave(folder->lock);
+    free(folder);
+    return status;
+}

@@ -1,0 +1,166 @@
+/* Header and rows of results on disk (rows.h). */
+#include "results/rows.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "text/number.h"
+
+const struct row_kind row_kinds[KINDS] = {
+    {"measurements.csv", "sasbench measurements", 2, measurement_columns},
+    {"targets.csv", "sasbench targets", 1, target_columns},
+};
+
+static const struct {
+    const char *key;
+    size_t offset;
+    bool compared; /* rows of different values are not mixed */
+} notes[] = {
+    {"machine", offsetof(struct provenance, machine), true},
+    {"isa", offsetof(struct provenance, isa), true},
+    {"compiler", offsetof(struct provenance, compiler), false}, /* the program's bytes tell */
+    {"flags", offsetof(struct provenance, flags), false},
+    {"libraries", offsetof(struct provenance, libraries), true},
+    {"commit", offsetof(struct provenance, commit), true},
+    {"program", offsetof(struct provenance, program), true},
+    {"date", offsetof(struct provenance, date), false},
+};
+
+/* --- Writing ------------------------------------------------------------------------------------------------- */
+
+void row_write(FILE *file, const struct column *columns, const void *row)
+{
+    for (const struct column *column = columns; column->name; column++) {
+        const void *field = (const char *)row + column->offset;
+        if (column != columns)
+            fputc(',', file);
+        if (column->type == COLUMN_TEXT)
+            csv_write_text(file, *(const char *const *)field);
+        else if (column->type == COLUMN_REAL)
+            csv_write_number(file, *(const double *)field);
+        else if (*(const int *)field >= 0)
+            fprintf(file, "%d", *(const int *)field);
+    }
+    fputc('\n', file);
+}
+
+/* A comment is one line, whatever a name holds. */
+static void comment_write(FILE *file, const char *key, const char *name, const char *value)
+{
+    const char *parts[] = {"# ", key, name, ": ", value};
+    for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
+        for (const char *at = parts[k]; *at; at++)
+            fputc((unsigned char)*at < ' ' ? '?' : *at, file);
+    fputc('\n', file);
+}
+
+void head_write(FILE *file, const struct row_kind *kind, const struct provenance *provenance, const char *note,
+                const struct scene_hash *scenes, int scene_count)
+{
+    fprintf(file, "# %s %d\n", kind->format, kind->version);
+    for (size_t k = 0; provenance && k < sizeof notes / sizeof *notes; k++)
+        comment_write(file, notes[k].key, "", (const char *)provenance + notes[k].offset);
+    if (provenance)
+        fprintf(file, "# threads: %d\n", provenance->threads);
+    else
+        fprintf(file, "# %s\n", note);
+    for (int k = 0; k < scene_count; k++) {
+        char hash[17];
+        snprintf(hash, sizeof hash, "%016" PRIx64, scenes[k].hash);
+        comment_write(file, "scene ", scenes[k].scene, hash);
+    }
+    for (const struct column *column = kind->columns; column->name; column++)
+        fprintf(file, "%s%s", column == kind->columns ? "" : ",", column->name);
+    fputc('\n', file);
+}
+
+/* --- Reading ------------------------------------------------------------------------------------------------- */
+
+int version_read(const struct csv *csv, const struct row_kind *kind)
+{
+    const char *first = csv->comment_count > 0 ? csv->comments[0] : "";
+    const size_t length = strlen(kind->format);
+    long long version;
+    if (strncmp(first, kind->format, length) != 0 || first[length] != ' ')
+        return 0;
+    const char *end = whole_read(first + length + 1, 1, kind->version, &version);
+    return end && !*end ? (int)version : 0;
+}
+
+enum status header_check(const struct csv *csv, const struct row_kind *kind)
+{
+    const int version = version_read(csv, kind);
+    int count = 0;
+    while (kind->columns[count].name && kind->columns[count].since <= version)
+        count++;
+    if (csv->column_count == 0)
+        return status_set(STATUS_INVALID, "%s: no line names the columns; %d names from '%s' on are needed", csv->path,
+                          count, kind->columns[0].name);
+    for (int k = 0; k < count; k++) {
+        const bool missing = k >= csv->column_count;
+        char found[64] = "missing";
+        if (!missing)
+            snprintf(found, sizeof found, "'%.60s'", csv->columns[k]);
+        if (missing || strcmp(kind->columns[k].name, csv->columns[k]) != 0)
+            return status_set(STATUS_INVALID, "%s: column %d is %s; '%s' is needed (another version?)", csv->path,
+                              k + 1, found, kind->columns[k].name);
+    }
+    if (csv->column_count > count)
+        return status_set(STATUS_INVALID,
+                          "%s: column %d is '%.60s'; version %d, which the first line says, has %d columns", csv->path,
+                          count + 1, csv->columns[count], version, count);
+    return STATUS_OK;
+}
+
+static enum status cell_parse(const struct csv *csv, int row, int index, const struct column *column, void *out)
+{
+    const char *cell = csv_cell(csv, row, index);
+    void *field = (char *)out + column->offset;
+    double value = NAN;
+    bool integer = column->type == COLUMN_INTEGER;
+    if (column->type == COLUMN_TEXT) {
+        *(const char **)field = cell;
+        return STATUS_OK;
+    }
+    if (!csv_number(cell, &value) || (integer && *cell && !(value >= 0 && value <= 1e9 && value == floor(value))))
+        return status_set(STATUS_INVALID, "%s:%d: %s is '%s'; %s or nothing is needed", csv->path, csv->lines[row],
+                          column->name, cell, integer ? "a whole number" : "a number");
+    if (!*cell)
+        column_clear(column, out);
+    else if (integer)
+        *(int *)field = (int)value;
+    else
+        *(double *)field = value;
+    return STATUS_OK;
+}
+
+enum status row_parse(const struct csv *csv, int row, const struct row_kind *kind, void *out)
+{
+    enum status status = STATUS_OK;
+    for (int k = 0; kind->columns[k].name && status == STATUS_OK; k++) {
+        const struct column *column = &kind->columns[k];
+        if (k < csv->column_count)
+            status = cell_parse(csv, row, k, column, out);
+        else /* columns are appended: an older version has none */
+            column_clear(column, out);
+    }
+    return status;
+}
+
+void provenance_differs(const struct csv *csv, const struct provenance *provenance, char *text, size_t size)
+{
+    const char *threads = csv_comment(csv, "threads");
+    *text = '\0';
+    for (size_t k = 0; k < sizeof notes / sizeof *notes && !*text; k++) {
+        const char *then = csv_comment(csv, notes[k].key), *now = (const char *)provenance + notes[k].offset;
+        if (notes[k].compared && (!then || strcmp(then, now) != 0))
+            snprintf(text, size, "measured with %s '%.120s', now with '%.120s'", notes[k].key, then ? then : "unknown",
+                     now);
+    }
+    if (!*text && (!threads || strtol(threads, NULL, 10) != provenance->threads))
+        snprintf(text, size, "measured with threads '%.20s', now with '%d'", threads ? threads : "unknown",
+                 provenance->threads);
+}

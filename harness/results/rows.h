@@ -1,0 +1,40 @@
+/* Rows on disk: the header of both files, and how one row is written and read. Used within measure/ only. */
+#ifndef SASBENCH_MEASURE_ROWS_H
+#define SASBENCH_MEASURE_ROWS_H
+
+#include <stdio.h>
+
+#include "results/provenance.h"
+#include "results/results.h"
+
+/* The columns of both kinds begin with the columns that tell one measurement from another. */
+#define KEY_COLUMNS 4
+
+enum { KIND_MEASUREMENTS, KIND_TARGETS, KINDS };
+
+/* One of the two files. */
+struct row_kind {
+    const char *file, *format; /* with the version the first line: by it we know a file as ours */
+    int version;
+    const struct column *columns;
+};
+extern const struct row_kind row_kinds[KINDS];
+
+/* The lines ahead of the rows; without a provenance, `note` stands in its place. */
+void head_write(FILE *file, const struct row_kind *kind, const struct provenance *provenance, const char *note,
+                const struct scene_hash *scenes, int scene_count);
+void row_write(FILE *file, const struct column *columns, const void *row);
+
+/* The version of a file of this kind, from its first line; 0 for another kind, or a version that is not known yet. */
+int version_read(const struct csv *csv, const struct row_kind *kind);
+/* Does a file's header line name the columns of its kind and version? Errors: STATUS_INVALID naming the first that
+   differs. */
+enum status header_check(const struct csv *csv, const struct row_kind *kind);
+/* One row into its struct; what the file's version does not have is empty. Errors: STATUS_INVALID naming file, line,
+   column and value. */
+enum status row_parse(const struct csv *csv, int row, const struct row_kind *kind, void *out);
+
+/* Why rows of a file are not gone on with by a program of this provenance; empty when they are. */
+void provenance_differs(const struct csv *csv, const struct provenance *provenance, char *text, size_t size);
+
+#endif

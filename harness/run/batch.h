@@ -1,0 +1,52 @@
+/* Scenes measured with algorithms into a results folder: what run, sweep and reproduce have in common. */
+#ifndef SASBENCH_STUDY_BATCH_H
+#define SASBENCH_STUDY_BATCH_H
+
+#include "results/provenance.h"
+#include "results/results_folder.h"
+#include "measure/session.h"
+#include "scene/scene.h"
+#include "measure/timing.h"
+
+struct batch {
+    const char *directory;        /* borrowed */
+    char footer[PROVENANCE_LINE]; /* of its pictures */
+    struct results_folder *results;
+    int threads;
+    bool details;       /* of every scene: draw images and slices, print FLOPs by formula */
+    enum effort effort; /* of times; EFFORT_WHOLE from batch_open on */
+    bool in_turn;       /* time settings by rounds, so that a bad minute is not one setting's alone */
+    bool failed;        /* a measurement failed */
+    int undrawn;        /* pictures that could not be drawn */
+    /* For the progress line: */
+    int done, rows, measured; /* rows behind, rows in all, rows measured now */
+    double begin;             /* monotonic clock, s: at the start */
+    struct spent spent;       /* where the time went */
+    double drawn_s;
+};
+
+/* Open the folder (results_folder_open: finished rows of an earlier run are kept) and print the table's head.
+   rows: how many measurements will be asked for. Errors: as results_folder_open; *batch is then safe to close. */
+enum status batch_open(const char *directory, int rows, bool details, struct batch *batch);
+
+/* Measure one scene with every spec: echoes and exact image once, then a row in the CSVs and on the terminal for each
+   spec as it is done. Rows that are there already are only printed, unless a picture of the scene is missing, which an
+   earlier run was cut ahead of: then its pictures are drawn. What fails or is unsupported becomes a row, and so does a
+   scene whose echoes cannot be made; errors: STATUS_FAILED for a record that cannot be written. */
+enum status batch_scene(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs);
+
+/* The finished row, or NULL; belongs to the record, valid until batch_close. */
+const struct measurement *batch_find(const struct batch *batch, const struct scene *scene, const struct spec *spec);
+
+/* Close the folder. Returns `status`, or STATUS_FAILED when that is OK but a measurement failed or a picture could not
+   be drawn. */
+enum status batch_close(struct batch *batch, enum status status);
+
+/* Scenes by name or path, or with given_count 0 all shipped ones that are not full_size, in *scenes [*count]: all are
+   read before the first one runs, so that a fault in the last is known at once. `command` begins a message. Errors: as
+   scene_load, and STATUS_INVALID for a scene named twice; what was read must still be freed with scenes_free. */
+enum status scenes_load(const char *command, int given_count, const char *const *given, struct scene **scenes,
+                        int *count);
+void scenes_free(struct scene *scenes, int count);
+
+#endif

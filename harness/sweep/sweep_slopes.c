@@ -1,0 +1,130 @@
+/* How the error falls along a series of settings: slopes.csv of a sweep (sweep_tables.h, sweep_group.h). */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "text/shown_text.h"
+#include "sweep/sweep_group.h"
+#include "sweep/sweep_tables.h"
+
+static const double floor_tolerance = 0.05;
+
+struct line_fit line_fit(int count, const double *rate, const double *error)
+{
+    struct line_fit fit = {.points = count, .slope = NAN, .first = NAN, .last = NAN, .residual_log10 = NAN};
+    double x_mean = 0, y_mean = 0, xx = 0, xy = 0, square = 0;
+    for (int k = 0; k < count; k++) {
+        x_mean += log10(rate[k]) / count;
+        y_mean += log10(error[k]) / count;
+    }
+    for (int k = 0; k < count; k++) {
+        double x = log10(rate[k]) - x_mean;
+        xx += x * x;
+        xy += x * (log10(error[k]) - y_mean);
+    }
+    if (count < 2 || !(xx > 0))
+        return fit;
+    fit.slope = xy / xx;
+    for (int k = 0; k < count; k++) {
+        double distance = log10(error[k]) - y_mean - fit.slope * (log10(rate[k]) - x_mean);
+        square += distance * distance / count;
+    }
+    fit.first = pow(10, y_mean + fit.slope * (log10(rate[0]) - x_mean));
+    fit.last = pow(10, y_mean + fit.slope * (log10(rate[count - 1]) - x_mean));
+    fit.residual_log10 = sqrt(square);
+    return fit;
+}
+
+int floor_find(int count, const double *error)
+{
+    int first = count - 1;
+    while (first > 0 && fabs(error[first - 1] / error[count - 1] - 1) <= floor_tolerance)
+        first--;
+    return count < 2 || first == count - 1 ? count : first;
+}
+
+static bool same_series(const struct sweep_point *a, const struct sweep_point *b)
+{
+    return strcmp(a->row->scene, b->row->scene) == 0 && strcmp(a->row->algorithm, b->row->algorithm) == 0
+           && strcmp(a->row->precision, b->row->precision) == 0 && strcmp(a->setting.name, b->setting.name) == 0
+           && strcmp(a->setting.rest, b->setting.rest) == 0;
+}
+
+/* Settings that upsample nothing count by themselves. */
+static double point_rate(const struct sweep_point *point)
+{
+    double rate = setting_rate(point->row->algorithm, &point->setting);
+    return isnan(rate) ? point->setting.value : rate;
+}
+
+static int point_order(const void *a, const void *b)
+{
+    double x = ((const struct sweep_point *)a)->setting.value, y = ((const struct sweep_point *)b)->setting.value;
+    return (x > y) - (x < y);
+}
+
+/* The straight line through a part of a series. rates, errors: [count] of that part. */
+static void slope_write(const struct group *group, const struct sweep_point *points, const double *rates,
+                        const double *errors, int count, const char *part, FILE *file)
+{
+    const struct measurement *row = points->row;
+    struct line_fit fit = line_fit(count, rates, errors);
+    char name[512], range[80];
+    if (isnan(fit.slope))
+        return;
+    fields_write(file,
+                 (const char *const[]){row->scene, row->algorithm, points->setting.rest, row->precision,
+                                       points->setting.name, part, NULL},
+                 (double[]){points[0].setting.value, points[count - 1].setting.value, rates[0], rates[count - 1],
+                            fit.points, fit.slope, fit.first, fit.last, fit.residual_log10},
+                 9, true);
+    if (!group->told)
+        return;
+    snprintf(name, sizeof name, "%s%s%s%s", row->algorithm, *points->setting.rest ? ":" : "", points->setting.rest,
+             strcmp(row->precision, "double") == 0 ? " double" : "");
+    shown_make(name);
+    snprintf(range, sizeof range, "%s %g to %g", points->setting.name, points[0].setting.value,
+             points[count - 1].setting.value);
+    shown_make(range);
+    printf("  %-36s %-8s %-18s %6d  %6.3f  %7.1e  %7.1e  %8.4f\n", name, part, range, fit.points, fit.slope, fit.first,
+           fit.last, fit.residual_log10);
+}
+
+/* The series' parts: where the error falls and the floor; without a floor the finest half, for the order that the
+   method tends to. */
+static void series_write(const struct group *group, int count, FILE *file)
+{
+    const struct sweep_point *points = group->series;
+    const double *rates = group->cost, *errors = group->error;
+    int floor = floor_find(count, errors), finest = count / 2;
+    slope_write(group, points, rates, errors, floor, "falling", file);
+    if (floor == count && count - finest >= 3)
+        slope_write(group, points + finest, rates + finest, errors + finest, count - finest, "finest", file);
+    if (floor < count)
+        slope_write(group, points + floor, rates + floor, errors + floor, count - floor, "floor", file);
+}
+
+void slopes_write(struct group *group, FILE *file)
+{
+    if (group->told)
+        printf("\n%s: slopes of log error against log rate (beta + 1, or the setting itself)\n"
+               "  %-36s %-8s %-18s %6s  %6s  %7s  %7s  %8s\n",
+               group->scene, "series", "part", "setting", "points", "slope", "first", "last", "residual");
+    for (int k = 0; k < group->count; k++) {
+        const struct sweep_point *start = &group->points[k];
+        int size = 0;
+        if (start->taken || !*start->setting.name)
+            continue;
+        for (int j = k; j < group->count; j++)
+            if (same_series(start, &group->points[j])) {
+                group->series[size++] = group->points[j];
+                group->points[j].taken = true;
+            }
+        qsort(group->series, (size_t)size, sizeof *group->series, point_order);
+        for (int j = 0; j < size; j++) {
+            group->cost[j] = point_rate(&group->series[j]);
+            group->error[j] = group->series[j].row->error;
+        }
+        series_write(group, size, file);
+    }
+}

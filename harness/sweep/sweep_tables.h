@@ -1,0 +1,31 @@
+/* What the rows of a sweep say: the Pareto fronts, the cheapest setting for each decade of error, how the error falls
+   along each series of settings that differ in one parameter, and the papers' rules for the upsampling rate. */
+#ifndef SASBENCH_STUDY_SWEEP_TABLES_H
+#define SASBENCH_STUDY_SWEEP_TABLES_H
+
+#include "results/results.h"
+#include "scene/scene.h"
+
+/* A straight line through log10 error against log10 rate, by least squares. */
+struct line_fit {
+    int points;
+    double slope;          /* NAN with fewer than two points, or one rate only */
+    double first, last;    /* the line's error at the first and the last rate */
+    double residual_log10; /* rms distance of the points from the line */
+};
+struct line_fit line_fit(int count, const double *rate, const double *error);
+
+/* The first point from which on no error differs from the last one's by more than 5 %; `count` when the last two
+   differ more: there is no floor. */
+int floor_find(int count, const double *error);
+
+/* Read DIR/measurements.csv, write fronts.csv, cheapest.csv, slopes.csv and rules.csv beside it (results/README.md has
+   their columns) and print the last three of the scene `told` (NULL: of none). `scenes` are those that were measured;
+   others are looked for by name, of which only shipped ones are found. Errors: as results_read; STATUS_INVALID for a
+   folder that cannot be written; STATUS_FAILED without memory. */
+enum status sweep_tables(const char *directory, const struct scene *scenes, int scene_count, const char *told);
+
+/* Does a folder hold an algorithm in two settings on one scene? */
+bool sweep_is(const char *directory);
+
+#endif

@@ -1,0 +1,58 @@
+/* The one reader of numbers on the command line (number.h). strtod also takes blanks, hexadecimal, "inf" and "nan", and
+   a comma for the point where the locale has one. */
+#include "text/number.h"
+
+#include <errno.h>
+#include <locale.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char digits[] = "0123456789";
+
+/* The end of a plain decimal, or NULL. */
+static const char *decimal_end(const char *text)
+{
+    text += *text == '+' || *text == '-';
+    size_t whole = strspn(text, digits);
+    text += whole;
+    size_t fraction = *text == '.' ? strspn(text + 1, digits) : 0;
+    if (whole + fraction == 0)
+        return NULL;
+    text += *text == '.' ? 1 + fraction : 0;
+    if (*text != 'e' && *text != 'E')
+        return text;
+    const char *exponent = text + 1 + (text[1] == '+' || text[1] == '-');
+    size_t length = strspn(exponent, digits);
+    return length > 0 ? exponent + length : NULL;
+}
+
+const char *number_read(const char *text, double *value)
+{
+    const char *end = decimal_end(text);
+    if (end && (*end == 'x' || *end == 'X'))
+        return NULL; /* strtod would go on behind the 0 */
+    locale_t c_locale = end ? newlocale(LC_ALL_MASK, "C", (locale_t)0) : (locale_t)0;
+    if (!c_locale)
+        return NULL;
+    locale_t before = uselocale(c_locale);
+    double number = strtod(text, NULL);
+    uselocale(before);
+    freelocale(c_locale);
+    if (!isfinite(number))
+        return NULL;
+    *value = number;
+    return end;
+}
+
+const char *whole_read(const char *text, long long min, long long max, long long *value)
+{
+    const char *first = text + (*text == '+' || *text == '-');
+    size_t length = strspn(first, digits);
+    errno = 0;
+    long long number = length > 0 ? strtoll(text, NULL, 10) : 0;
+    if (length == 0 || errno == ERANGE || number < min || number > max)
+        return NULL;
+    *value = number;
+    return first + length;
+}
