@@ -14,9 +14,10 @@ find algorithms harness -name '*.[ch]' | sort | xargs awk '
                 "harness/echoes harness/scene harness/metrics harness/results harness/measure harness/show " \
                 "harness/report harness/sweep harness/advise harness/run harness/bench harness/stability harness/gate " \
                 "harness/papers harness/claims harness/command harness/tests " \
-                "harness/tests/algorithms harness/tests/scene harness/tests/measure harness/tests/show " \
-                "harness/tests/study harness/tests/stability harness/tests/gate harness/tests/papers " \
-                "harness/tests/command harness/tests/fuzz harness/tests/digits"
+                "harness/tests/algorithms harness/tests/echoes harness/tests/scene harness/tests/metrics " \
+                "harness/tests/results harness/tests/measure harness/tests/show harness/tests/report " \
+                "harness/tests/sweep harness/tests/advise harness/tests/run harness/tests/stability harness/tests/gate " \
+                "harness/tests/claims harness/tests/command harness/tests/fuzz harness/tests/digits"
         count = split(order, folder, " ")
         for (k = 1; k <= count; k++)
             rank[folder[k]] = k

@@ -8,7 +8,7 @@
 #include "show/plot.h"
 #include "report/report.h"
 #include "sweep/sweep_tables.h"
-#include "tests/show/report_fixture.h"
+#include "tests/report/report_fixture.h"
 #include "tests/support.h"
 
 static void assert_holds(const char *text, const char *part)

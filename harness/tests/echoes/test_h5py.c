@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "tests/scene/mat_fixture.h"
+#include "tests/echoes/mat_fixture.h"
 
 /* The one file, of version 7.3, whose MATLAB_class are texts of this size: 0, as long as they are; H5T_VARIABLE. */
 static void file_make(size_t size)

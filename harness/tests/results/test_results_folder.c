@@ -9,7 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "tests/measure/results_fixture.h"
+#include "tests/results/results_fixture.h"
 
 static void test_round_trip(void **state)
 {

@@ -1,5 +1,5 @@
 /* What the tests of results share (results_fixture.h). */
-#include "tests/measure/results_fixture.h"
+#include "tests/results/results_fixture.h"
 
 #include <math.h>
 #include <stdio.h>

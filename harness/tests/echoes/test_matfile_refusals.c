@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "tests/scene/mat_fixture.h"
+#include "tests/echoes/mat_fixture.h"
 
 /* Written in place of the variable of that name. */
 static const struct wrong {

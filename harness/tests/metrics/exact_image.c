@@ -1,5 +1,5 @@
 /* Exact images of one target (exact_image.h). */
-#include "tests/measure/exact_image.h"
+#include "tests/metrics/exact_image.h"
 
 #include <math.h>
 #include <stdlib.h>

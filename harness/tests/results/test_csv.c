@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "files/csv.h"
-#include "tests/measure/results_fixture.h"
+#include "tests/results/results_fixture.h"
 
 static void test_csv_read(void **state)
 {

@@ -1,5 +1,5 @@
 /* Made-up rows, and the parser of pages (report_fixture.h). */
-#include "tests/show/report_fixture.h"
+#include "tests/report/report_fixture.h"
 
 #include <ctype.h>
 #include <stdio.h>

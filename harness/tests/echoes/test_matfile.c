@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "tests/scene/mat_fixture.h"
+#include "tests/echoes/mat_fixture.h"
 
 static void assert_same_echoes(const struct echoes *written, const struct echoes *read)
 {

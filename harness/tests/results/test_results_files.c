@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "show/table.h"
-#include "tests/measure/results_fixture.h"
+#include "tests/results/results_fixture.h"
 
 static void check_refused(const char *place)
 {

@@ -10,7 +10,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
-#include "tests/scene/mat_fixture.h"
+#include "tests/echoes/mat_fixture.h"
 
 enum { TAG = 8, ROOM = 1 << 14 };
 

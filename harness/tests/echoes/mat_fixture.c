@@ -1,5 +1,5 @@
 /* What the tests of MATLAB files share (mat_fixture.h). */
-#include "tests/scene/mat_fixture.h"
+#include "tests/echoes/mat_fixture.h"
 
 #include <dirent.h>
 #include <math.h>

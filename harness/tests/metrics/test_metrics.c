@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "metrics/metrics.h"
-#include "tests/measure/exact_image.h"
+#include "tests/metrics/exact_image.h"
 
 static void check_slice(const struct exact_scene *s, const struct slice_metrics *m)
 {
