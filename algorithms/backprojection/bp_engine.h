@@ -1,6 +1,6 @@
 /* What bp.c and its two engines share. */
-#ifndef SASBENCH_BACKPROJECTION_ENGINE_H
-#define SASBENCH_BACKPROJECTION_ENGINE_H
+#ifndef SASBENCH_BACKPROJECTION_BP_ENGINE_H
+#define SASBENCH_BACKPROJECTION_BP_ENGINE_H
 
 #include "backprojection/bp.h"
 #include "backprojection/planes.h"

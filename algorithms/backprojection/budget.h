@@ -56,7 +56,7 @@
    The invariant engine, where polynomials stand for a row's delays (invariant/pieces.c), takes much less of L: its
    longer polynomials cost nothing, and its image is the exact path's but for rounding.
 
-   1e-4 L (float)  Phases, and positions in cycles of fs: 1e-8 rad and 2e-9 samples at the        invariant/plan.c,
+   1e-4 L (float)  Phases, and positions in cycles of fs: 1e-8 rad and 2e-9 samples at the        invariant_plan.c,
    2e-7 L (double) default limit in float, below what their rounding adds.                       pieces_plan
 
    harness/tests/algorithms/test_budget.c measures the phases, in all and what float adds alone, test_bp_general.c the

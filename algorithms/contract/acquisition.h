@@ -1,6 +1,6 @@
 /* What was recorded, how, and where: everything about the echoes but the samples themselves. */
-#ifndef SASBENCH_ACQUISITION_H
-#define SASBENCH_ACQUISITION_H
+#ifndef SASBENCH_CONTRACT_ACQUISITION_H
+#define SASBENCH_CONTRACT_ACQUISITION_H
 
 #include <complex.h>
 #include <stdbool.h>

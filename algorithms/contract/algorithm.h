@@ -11,8 +11,8 @@
    - Neither prints, exits or keeps state outside the plan. What goes wrong is reported with status_set.
    - Threads are OpenMP's; a plan is executed with at most the omp_get_max_threads() it was made with.
    - The acquisition and the patches outlive the plan; samples and pixels belong to the caller. */
-#ifndef SASBENCH_ALGORITHM_H
-#define SASBENCH_ALGORITHM_H
+#ifndef SASBENCH_CONTRACT_ALGORITHM_H
+#define SASBENCH_CONTRACT_ALGORITHM_H
 
 #include <stddef.h>
 

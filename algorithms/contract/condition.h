@@ -1,7 +1,7 @@
 /* What a scene must fulfil for an algorithm to image it rightly: conditions by name, each with its value and its limit,
    known before any work. */
-#ifndef SASBENCH_CONDITION_H
-#define SASBENCH_CONDITION_H
+#ifndef SASBENCH_CONTRACT_CONDITION_H
+#define SASBENCH_CONTRACT_CONDITION_H
 
 #include <stdbool.h>
 #include <stddef.h>

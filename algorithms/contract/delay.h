@@ -1,6 +1,6 @@
 /* The exact two-way delay without the stop-and-hop approximation: BP22 Eq. (1) = LBF21 Eq. (1), written in space. */
-#ifndef SASBENCH_COMMON_DELAY_H
-#define SASBENCH_COMMON_DELAY_H
+#ifndef SASBENCH_CONTRACT_DELAY_H
+#define SASBENCH_CONTRACT_DELAY_H
 
 #include <math.h>
 

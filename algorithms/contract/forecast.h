@@ -1,7 +1,7 @@
 /* What the settings of an algorithm will make of an image, said before any plan: how far off it will be and why, and
    what the sums will be made of. */
-#ifndef SASBENCH_FORECAST_H
-#define SASBENCH_FORECAST_H
+#ifndef SASBENCH_CONTRACT_FORECAST_H
+#define SASBENCH_CONTRACT_FORECAST_H
 
 #include <stdbool.h>
 

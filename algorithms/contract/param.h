@@ -1,6 +1,6 @@
 /* Options structs by the tables of their params. */
-#ifndef SASBENCH_PARAM_H
-#define SASBENCH_PARAM_H
+#ifndef SASBENCH_CONTRACT_PARAM_H
+#define SASBENCH_CONTRACT_PARAM_H
 
 #include "contract/algorithm.h"
 

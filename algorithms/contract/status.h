@@ -1,6 +1,6 @@
 /* How a function says that it failed: a status, and one message made where the fault was found. */
-#ifndef SASBENCH_STATUS_H
-#define SASBENCH_STATUS_H
+#ifndef SASBENCH_CONTRACT_STATUS_H
+#define SASBENCH_CONTRACT_STATUS_H
 
 enum status {
     STATUS_OK = 0,

@@ -21,8 +21,8 @@
    Cost: 2 (taps + 3) multiply-adds a sample, then 2 + terms complex ones a receiver, class and sample, and fold/2 more
    a term, wavenumber and sample.
    Error: spectrum_compensated for the phase, `left` for the rank, the taps' own for the delays. */
-#ifndef SASBENCH_RANGE_MIGRATION_DELAY_H
-#define SASBENCH_RANGE_MIGRATION_DELAY_H
+#ifndef SASBENCH_RANGE_MIGRATION_DELAY_COMPENSATION_H
+#define SASBENCH_RANGE_MIGRATION_DELAY_COMPENSATION_H
 
 #include <complex.h>
 

@@ -82,10 +82,10 @@ extern const char *const rma_spacing_names[],
     }
 
 struct rma_method {
-    const char *name, *law; /* law: of the condition that bounds the error of `spectrum` (conditions.h) */
+    const char *name, *law; /* law: of the condition that bounds the error of `spectrum` (rma_conditions.h) */
     double error_limit;     /* of the predicted error of an image */
     spectrum_function *spectrum;
-    int terms, taps; /* of delay compensation (delay.h); 0: conversion in blocks */
+    int terms, taps; /* of delay compensation (delay_compensation.h); 0: conversion in blocks */
     /* The paper's FLOPs for M receivers (LBF21 Eqs. (20) to (22)): numbers[0] M + numbers[1] range transforms of
        1.5 N_a N_r log2 N_r, azimuth transforms alike, products of N_a N_r; interpolations of N_a N_r (2 taps - 1). */
     const char *source;

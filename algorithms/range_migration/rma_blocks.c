@@ -1,4 +1,4 @@
-/* The range blocks of the conversion (engine.h): how many, where, and which of them a swath needs. */
+/* The range blocks of the conversion (rma_engine.h): how many, where, and which of them a swath needs. */
 #include <math.h>
 
 #include "range_migration/rma_engine.h"

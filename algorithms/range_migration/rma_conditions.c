@@ -1,5 +1,5 @@
-/* The conditions of range migration (conditions.h). Limits are measured, over several hundred scenes whose images were
-   compared with exact ones (docs/range_migration.md). */
+/* The conditions of range migration (rma_conditions.h). Limits are measured, over several hundred scenes whose images
+   were compared with exact ones (docs/range_migration.md). */
 #include "range_migration/rma_conditions.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* What a scene must fulfil for range migration to image it rightly (condition.h). */
-#ifndef SASBENCH_RANGE_MIGRATION_CONDITIONS_H
-#define SASBENCH_RANGE_MIGRATION_CONDITIONS_H
+#ifndef SASBENCH_RANGE_MIGRATION_RMA_CONDITIONS_H
+#define SASBENCH_RANGE_MIGRATION_RMA_CONDITIONS_H
 
 #include <stdbool.h>
 

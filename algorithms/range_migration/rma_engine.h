@@ -1,6 +1,6 @@
-/* A range migration's plan. layout.c lays it out (track, swaths and their transforms), blocks.c
-   the blocks of the conversion, phase.c knows the
-   corrections' phases, transform.c transforms along range and azimuth (for each precision), convert.c and focus.c
+/* A range migration's plan. rma_layout.c lays it out (track, swaths and their transforms), rma_blocks.c
+   the blocks of the conversion, rma_phase.c knows the
+   corrections' phases, rma_transform.c transforms along range and azimuth (for each precision), convert.c and focus.c
    work on one azimuth wavenumber (for each precision and instruction set), rma.c puts them in order. Pointers without
    a type hold values of the plan's precision.
 
@@ -35,7 +35,7 @@
                  an IFFT over the wavenumbers of a row, onto the grid's columns: one transform, or a convolution with a
                  chirp; times sqrt(r)
 
-   Delay compensation (delay.h) has other stages up to there, and rows of samples in place of bins:
+   Delay compensation (delay_compensation.h) has other stages up to there, and rows of samples in place of bins:
 
    compress      [pings][M][samples] -> [pings][M][row]
                  each record through the matched filter, between zeros
@@ -49,8 +49,8 @@
    Shortcuts: a single receiver at the transmitter needs no bulk and no differential. With stolt=direct, focus sums each
    bin of the band at each row, without stolt and IFFT. If then one block is needed and sum=before, there is nothing to
    reconstruct either. */
-#ifndef SASBENCH_RANGE_MIGRATION_ENGINE_H
-#define SASBENCH_RANGE_MIGRATION_ENGINE_H
+#ifndef SASBENCH_RANGE_MIGRATION_RMA_ENGINE_H
+#define SASBENCH_RANGE_MIGRATION_RMA_ENGINE_H
 
 #include <math.h>
 #include <stdbool.h>
@@ -245,7 +245,7 @@ struct rma {
     void *focused;                  /* complex [rows][columns] of the swath at work, wavenumbers in their turns */
 };
 
-/* ---- layout.c ---- */
+/* ---- rma_layout.c ---- */
 
 /* Fills everything but the tables of delay compensation and the pointers that rma_transform's plan fills. What
    rma_requirements_check asks for must hold. */
@@ -272,7 +272,7 @@ enum status rma_count(const struct problem *problem, const struct rma_method *me
 /* Zeroed memory on the plan's account, `share` of it; NULL without memory. */
 void *rma_take(struct rma *rma, size_t count, size_t size, double share);
 
-/* ---- blocks.c ---- */
+/* ---- rma_blocks.c ---- */
 
 /* As many as the options say, or as keep the error at their ends below the limit. */
 enum status rma_blocks_lay(struct rma *rma);
@@ -304,7 +304,7 @@ static inline int rma_turns(const struct rma *rma)
     return rma->delay ? (4 * RMA_TILE + rma->receivers - 1) / rma->receivers * rma->receivers : RMA_TILE;
 }
 
-/* ---- phase.c ---- */
+/* ---- rma_phase.c ---- */
 
 double rma_frequency(const struct rma *rma, const struct rma_swath *swath, int bin); /* F, Hz */
 /* Correction of receiver m at range r, in cycles: -(phi + r K)/2 pi. */
@@ -315,20 +315,20 @@ void rma_ramps(const struct rma *rma, const struct rma_line *line, double r, dou
 /* Range of a block's centre, m. */
 double rma_block_range(const struct rma *rma, int block);
 
-/* ---- delay/fold.c ---- */
+/* ---- delay_fold.c ---- */
 
 /* The fold that costs least of those that the receivers' places allow. */
 void rma_fold(struct rma *rma);
 /* FLOPs of a sample, of all wavenumbers that read the same spectra. */
 double rma_fold_flops(const struct rma *rma);
 
-/* ---- delay/plan.c ---- */
+/* ---- delay_plan.c ---- */
 
 /* The tables of swath->map. False without memory. */
 bool rma_map_plan_float(struct rma *rma, struct rma_swath *swath);
 bool rma_map_plan_double(struct rma *rma, struct rma_swath *swath);
 
-/* ---- delay/map.c ---- */
+/* ---- delay_map.c ---- */
 
 /* A swath's row, complex [runs RMA_RUN], from a compressed record with its guards. */
 typedef void rma_map_function(const struct rma *rma, const struct rma_swath *swath, int receiver, const void *padded,
@@ -337,7 +337,7 @@ rma_map_function rma_map_float_baseline, rma_map_double_baseline;
 rma_map_function rma_map_float_v3, rma_map_double_v3;
 rma_map_function rma_map_float_v4, rma_map_double_v4;
 
-/* ---- transform.c ---- */
+/* ---- rma_transform.c ---- */
 struct rma_transform {
     enum status (*plan)(struct rma *rma); /* memory, tables and FFT plans */
     void (*destroy)(struct rma *rma);     /* accepts what `plan` left unfinished */

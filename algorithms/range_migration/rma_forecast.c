@@ -1,6 +1,6 @@
-/* The forecast of range migration (rma_forecast and rma_cost in conditions.h): estimates of an image's error, where its
-   conditions refuse by bounds, and counts of what takes its time. What the terms of delay compensation leave is their
-   bound. */
+/* The forecast of range migration (rma_forecast and rma_cost in rma_conditions.h): estimates of an image's error, where
+   its conditions refuse by bounds, and counts of what takes its time. What the terms of delay compensation leave is
+   their bound. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,7 +19,7 @@ static const double STOLT_SHARE = 4;                  /* of kaiser_error: measur
 static const double BLOCK_SHARE = 0.08;
 static const double TERMS_SHARE =
     1.2; /* of what the terms leave, which targets have more of than their mean: measured */
-static const double PULSE_PERIODS = 8;      /* of B: of a record beside its rows (layout.c) */
+static const double PULSE_PERIODS = 8;      /* of B: of a record beside its rows (rma_layout.c) */
 static const double PULSE_SHARE = 1.0 / 16; /* of that, where the pulse's own spectrum reaches so far */
 static const double EDGE_BINS = 4; /* of a record's transform that are wrong at half the sampling rate: measured */
 static const double TAPERED =

@@ -1,4 +1,4 @@
-/* What a range migration's scene needs (engine.h): the track, the blocks of the conversion, and the swaths with
+/* What a range migration's scene needs (rma_engine.h): the track, the blocks of the conversion, and the swaths with
    their cuts of the record and their transforms. All in double, nothing of it depends on the echoes. */
 #include <limits.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* The transforms of range migration along range and azimuth, with their memory (engine.h). Compiled once for each
+/* The transforms of range migration along range and azimuth, with their memory (rma_engine.h). Compiled once for each
    precision. */
 #include <omp.h>
 #include <stdlib.h>

@@ -36,8 +36,8 @@ spectrum_function spectrum_pca;
    reference receiver, plus each receiver's exact broadside delay less the reference receiver's. */
 spectrum_function spectrum_wu;
 
-/* Delay compensation (delay.h): of the exact spectrum, -phi = r K - pi nu d + 2 pi F beta(nu/F, r), it takes beta where
-   the target stands broadside, at the range where its echo arrives, and the rest at the carrier:
+/* Delay compensation (delay_compensation.h): of the exact spectrum, -phi = r K - pi nu d + 2 pi F beta(nu/F, r), it
+   takes beta where the target stands broadside, at the range where its echo arrives, and the rest at the carrier:
 
        -phi = r K - pi nu d + 2 pi F abeam(d, r walk(nu)) + residual(d, r, nu). */
 spectrum_function spectrum_compensated;

@@ -1,6 +1,6 @@
 /* Complex numbers in the vectors of lanes.h, real and imaginary parts in turn. */
-#ifndef SASBENCH_COMMON_COMPLEX_LANES_H
-#define SASBENCH_COMMON_COMPLEX_LANES_H
+#ifndef SASBENCH_WAVENUMBER_COMPLEX_LANES_H
+#define SASBENCH_WAVENUMBER_COMPLEX_LANES_H
 
 #include "common/lanes.h"
 

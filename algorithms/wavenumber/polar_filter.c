@@ -1,4 +1,4 @@
-/* The polar-format filter (filter.h). Compiled once for each precision. */
+/* The polar-format filter (polar_filter.h). Compiled once for each precision. */
 #include "wavenumber/polar_filter.h"
 
 #include <omp.h>

@@ -14,8 +14,8 @@
 
    Taking off the centre's delay widens the azimuth band; echoes are upsampled along the track (1, 2, 4, ... times) as
    far as that asks for: k spans 2 k_c (beam + the centre's own sines over a sub-aperture). */
-#ifndef SASBENCH_WAVENUMBER_FILTER_H
-#define SASBENCH_WAVENUMBER_FILTER_H
+#ifndef SASBENCH_WAVENUMBER_POLAR_FILTER_H
+#define SASBENCH_WAVENUMBER_POLAR_FILTER_H
 
 #include "contract/algorithm.h"
 

@@ -1,5 +1,5 @@
 /* What the polar-format filter needs of its echoes, how it divides them, and what it takes off targets that it should
-   keep (filter.h). */
+   keep (polar_filter.h). */
 #include "wavenumber/polar_filter.h"
 
 #include <math.h>

@@ -1,8 +1,7 @@
-/* The plan of an omega-k imager (wk.h). layout.c lays it out, transform.c transforms along range and azimuth (for each
-   precision), record.c, line.c and row.c work on one record, one azimuth wavenumber and one image row (for each
-   precision and instruction set), wk.c puts them in order.
-   Pointers without a type hold values of the plan's precision; all are complex unless said otherwise, the last
-   dimension is contiguous.
+/* The plan of an omega-k imager (wk.h). wk_layout.c lays it out, wk_transform.c transforms along range and azimuth (for
+   each precision), wk_record.c, wk_line.c and wk_row.c work on one record, one azimuth wavenumber and one image row
+   (for each precision and instruction set), wk.c puts them in order. Pointers without a type hold values of the plan's
+   precision; all are complex unless said otherwise, the last dimension is contiguous.
 
    Positions of an image are taken in the plan's own axes, turned by `angle` (0 where they are the track's) about the
    track's middle ping at x = x_middle, r = 0:  x' = (x - x_middle) cos - r sin,  r' = (x - x_middle) sin + r cos.
@@ -12,8 +11,8 @@
        line      one wavenumber of `lines`: band values, read or interpolated, -> Ky bins of a patch -> its rows
                  -> [rows][line_stride], `focused`
        inverse   [rows][line_stride] -> [r_count][x_count] */
-#ifndef SASBENCH_WAVENUMBER_ENGINE_H
-#define SASBENCH_WAVENUMBER_ENGINE_H
+#ifndef SASBENCH_WAVENUMBER_WK_ENGINE_H
+#define SASBENCH_WAVENUMBER_WK_ENGINE_H
 
 #include <math.h>
 
@@ -74,12 +73,12 @@ enum wk_stage { WK_ROTATE, WK_STOLT, WK_FOCUS, WK_STAGES };
 struct wk;
 
 /* ---- the loops of each instruction set ---- */
-/* record.c: the spectrum of ping n's record, weighted, the centroid taken off, into its row of `data`. `wave`:
+/* wk_record.c: the spectrum of ping n's record, weighted, the centroid taken off, into its row of `data`. `wave`:
    [range_length], as FFTW was told. */
 typedef void wk_record_function(const struct wk *wk, int n, const void *record, void *wave);
-/* line.c: lines from `first` to first + WK_TILE - 1, all rows, into `focused`; seconds of each stage are added. */
+/* wk_line.c: lines from `first` to first + WK_TILE - 1, all rows, into `focused`; seconds of each stage are added. */
 typedef void wk_line_function(const struct wk *wk, int thread, int first, double seconds[WK_STAGES]);
-/* row.c: row i of a patch, from `focused` onto its columns. `wave`: [columns], as FFTW was told. */
+/* wk_row.c: row i of a patch, from `focused` onto its columns. `wave`: [columns], as FFTW was told. */
 typedef void wk_row_function(const struct wk *wk, const struct wk_patch *patch, int i, void *wave, void *pixels);
 wk_record_function wk_record_float_baseline, wk_record_double_baseline;
 wk_record_function wk_record_float_v3, wk_record_double_v3;
@@ -156,7 +155,7 @@ static inline double wk_ky(const struct wk *wk, double frequency, double kx0)
     return root > 0 ? (sqrt(root) - f * beta * sine) / b1 : NAN;
 }
 
-/* ---- conditions.c ---- */
+/* ---- wk_conditions.c ---- */
 /* Kx/K_R of the beam's axis. Motion while the pulse travels moves it by about v/c: left alone where that is little of
    what the pings hold, so that a beam broadside needs no unfolding. */
 double wk_centroid_slope(const struct acquisition *acquisition, const struct straight_track *track);
@@ -167,7 +166,7 @@ struct rma_view wk_view_of(const struct problem *problem, const struct straight_
 enum status wk_conditions_check(const struct problem *problem, const struct wk_method *method);
 enum status wk_requirements_check(const struct problem *problem, const struct wk_method *method);
 
-/* ---- layout.c ---- */
+/* ---- wk_layout.c ---- */
 enum status wk_layout(struct wk *wk);
 /* Pings and zeros from ping to ping, that hold all pixels and echoes in the track's own axes, before they are made a
    length of a transform. Errors: STATUS_FAILED without memory. */
@@ -182,7 +181,7 @@ double wk_stolt_cells(const struct wk *wk, const struct wk_patch *patch);
 /* Add the work behind the compression. */
 void wk_count(struct wk *wk);
 
-/* ---- transform.c ---- */
+/* ---- wk_transform.c ---- */
 struct wk_transform {
     enum status (*plan)(struct wk *wk);
     void (*destroy)(struct wk *wk);

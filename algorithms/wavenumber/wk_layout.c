@@ -1,4 +1,4 @@
-/* What an omega-k image needs of its scene (engine.h): the track, the conditions, the axes and the lengths of all
+/* What an omega-k image needs of its scene (wk_engine.h): the track, the conditions, the axes and the lengths of all
    transforms. All in double; nothing of it depends on the echoes. */
 #include <limits.h>
 #include <stdlib.h>

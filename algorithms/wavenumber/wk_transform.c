@@ -1,5 +1,5 @@
 /* The transforms of omega-k along range and azimuth, with their memory, and the resampling of an image to other axes
-   (engine.h). Compiled once for each precision. */
+   (wk_engine.h). Compiled once for each precision. */
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* What can be said of a scene before any work: the conditions of each algorithm, and how sensitive the image is to what
    is known of sound speed, carrier, range, speed and positions. */
-#ifndef SASBENCH_STUDY_CHECK_H
-#define SASBENCH_STUDY_CHECK_H
+#ifndef SASBENCH_ADVISE_CHECK_H
+#define SASBENCH_ADVISE_CHECK_H
 
 #include <stdio.h>
 

@@ -1,7 +1,7 @@
 /* The rates that planning goes by (planner/rates.h), measured on this machine once and kept in the user's cache:
    $XDG_CACHE_HOME/sasbench/rates.csv, or .cache/sasbench/rates.csv in the home folder. */
-#ifndef SASBENCH_STUDY_MACHINE_RATES_H
-#define SASBENCH_STUDY_MACHINE_RATES_H
+#ifndef SASBENCH_ADVISE_MACHINE_RATES_H
+#define SASBENCH_ADVISE_MACHINE_RATES_H
 
 #include <stddef.h>
 

@@ -1,6 +1,6 @@
 /* A plan in words: what is chosen, why, and what it leaves out (planner/planner.h). */
-#ifndef SASBENCH_STUDY_PLANNED_H
-#define SASBENCH_STUDY_PLANNED_H
+#ifndef SASBENCH_ADVISE_PLANNED_H
+#define SASBENCH_ADVISE_PLANNED_H
 
 #include <stdio.h>
 

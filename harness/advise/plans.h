@@ -1,6 +1,6 @@
 /* The plans of a results folder: for each image of `auto` what was chosen, why not others, and what is left out. */
-#ifndef SASBENCH_STUDY_PLANS_H
-#define SASBENCH_STUDY_PLANS_H
+#ifndef SASBENCH_ADVISE_PLANS_H
+#define SASBENCH_ADVISE_PLANS_H
 
 #include <stdio.h>
 

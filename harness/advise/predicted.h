@@ -1,6 +1,6 @@
 /* Errors as they are predicted before any plan, against those that were measured. */
-#ifndef SASBENCH_STUDY_PREDICTED_H
-#define SASBENCH_STUDY_PREDICTED_H
+#ifndef SASBENCH_ADVISE_PREDICTED_H
+#define SASBENCH_ADVISE_PREDICTED_H
 
 #include "scene/scene.h"
 

@@ -1,6 +1,6 @@
 /* Speed of the engines and of range migration at the papers' sizes, as ratios within one run. */
-#ifndef SASBENCH_STUDY_BENCH_H
-#define SASBENCH_STUDY_BENCH_H
+#ifndef SASBENCH_BENCH_BENCH_H
+#define SASBENCH_BENCH_BENCH_H
 
 #include <stdio.h>
 

@@ -1,6 +1,6 @@
 /* Algorithms by name in the command `bench`. */
-#ifndef SASBENCH_STUDY_BENCH_ALGORITHMS_H
-#define SASBENCH_STUDY_BENCH_ALGORITHMS_H
+#ifndef SASBENCH_BENCH_BENCH_ALGORITHMS_H
+#define SASBENCH_BENCH_BENCH_ALGORITHMS_H
 
 #include "contract/status.h"
 

@@ -1,6 +1,6 @@
 /* Back projection's part of the command `bench`. */
-#ifndef SASBENCH_STUDY_BENCH_BP_H
-#define SASBENCH_STUDY_BENCH_BP_H
+#ifndef SASBENCH_BENCH_BENCH_BP_H
+#define SASBENCH_BENCH_BENCH_BP_H
 
 #include "bench/bench_goals.h"
 

@@ -1,6 +1,6 @@
 /* What accuracy costs, in the command `bench`. */
-#ifndef SASBENCH_STUDY_BENCH_FRONT_H
-#define SASBENCH_STUDY_BENCH_FRONT_H
+#ifndef SASBENCH_BENCH_BENCH_FRONT_H
+#define SASBENCH_BENCH_BENCH_FRONT_H
 
 #include "bench/bench_goals.h"
 

@@ -1,6 +1,6 @@
 /* What the engines should reach, beside what `bench` has measured. */
-#ifndef SASBENCH_STUDY_BENCH_GOALS_H
-#define SASBENCH_STUDY_BENCH_GOALS_H
+#ifndef SASBENCH_BENCH_BENCH_GOALS_H
+#define SASBENCH_BENCH_BENCH_GOALS_H
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 /* How time and memory of back projection grow, in the command `bench`. */
-#ifndef SASBENCH_STUDY_BENCH_GROWTH_H
-#define SASBENCH_STUDY_BENCH_GROWTH_H
+#ifndef SASBENCH_BENCH_BENCH_GROWTH_H
+#define SASBENCH_BENCH_BENCH_GROWTH_H
 
 #include "contract/status.h"
 

@@ -1,6 +1,6 @@
 /* One algorithm timed once, for the rounds of `bench`; the scenes that it is timed on. */
-#ifndef SASBENCH_STUDY_BENCH_ONCE_H
-#define SASBENCH_STUDY_BENCH_ONCE_H
+#ifndef SASBENCH_BENCH_BENCH_ONCE_H
+#define SASBENCH_BENCH_BENCH_ONCE_H
 
 #include "contract/algorithm.h"
 #include "scene/scene.h"

@@ -1,6 +1,6 @@
 /* Range migration's part of the command `bench`. */
-#ifndef SASBENCH_STUDY_BENCH_RMA_H
-#define SASBENCH_STUDY_BENCH_RMA_H
+#ifndef SASBENCH_BENCH_BENCH_RMA_H
+#define SASBENCH_BENCH_BENCH_RMA_H
 
 #include "bench/bench_goals.h"
 

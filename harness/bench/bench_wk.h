@@ -1,7 +1,7 @@
 /* Omega-k in `bench`: at 3840 x 4096 broadside against FFTW's own transforms, and the ways to image a squint side by
    side. */
-#ifndef SASBENCH_STUDY_BENCH_WK_H
-#define SASBENCH_STUDY_BENCH_WK_H
+#ifndef SASBENCH_BENCH_BENCH_WK_H
+#define SASBENCH_BENCH_BENCH_WK_H
 
 #include "bench/bench_goals.h"
 

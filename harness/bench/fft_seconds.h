@@ -1,6 +1,6 @@
 /* FFTW's own time: what whole algorithms are measured in. */
-#ifndef SASBENCH_STUDY_FFT_SECONDS_H
-#define SASBENCH_STUDY_FFT_SECONDS_H
+#ifndef SASBENCH_BENCH_FFT_SECONDS_H
+#define SASBENCH_BENCH_FFT_SECONDS_H
 
 #include "contract/status.h"
 

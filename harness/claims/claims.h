@@ -3,8 +3,8 @@
 
    What counts as agreement is the printed number with its last digit's rounding; where a sentence gives no number
    ("slightly", "far less") the criterion says what was taken. */
-#ifndef SASBENCH_PAPERS_CLAIMS_H
-#define SASBENCH_PAPERS_CLAIMS_H
+#ifndef SASBENCH_CLAIMS_CLAIMS_H
+#define SASBENCH_CLAIMS_CLAIMS_H
 
 #include "claims/judges.h"
 #include "papers/tables.h"

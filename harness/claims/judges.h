@@ -1,6 +1,6 @@
 /* Judges: comparisons that decide a claim, by name in claims.csv. */
-#ifndef SASBENCH_PAPERS_JUDGES_H
-#define SASBENCH_PAPERS_JUDGES_H
+#ifndef SASBENCH_CLAIMS_JUDGES_H
+#define SASBENCH_CLAIMS_JUDGES_H
 
 #include "report/verdict.h"
 #include "claims/quantity.h"

@@ -1,6 +1,6 @@
 /* The functions of claims.csv that look numbers up: in the results folder, in published.csv, in scenes. */
-#ifndef SASBENCH_PAPERS_LOOKUP_H
-#define SASBENCH_PAPERS_LOOKUP_H
+#ifndef SASBENCH_CLAIMS_LOOKUP_H
+#define SASBENCH_CLAIMS_LOOKUP_H
 
 #include "claims/quantity.h"
 

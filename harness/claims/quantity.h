@@ -4,8 +4,8 @@
    A cell is read from left to right and worked out on the way. Without measurements it is only checked: every number
    of the folder is then 1, but lists have their lengths, and a scene, a SPEC, a metric, a time or a printed number that
    does not exist is an error all the same. */
-#ifndef SASBENCH_PAPERS_QUANTITY_H
-#define SASBENCH_PAPERS_QUANTITY_H
+#ifndef SASBENCH_CLAIMS_QUANTITY_H
+#define SASBENCH_CLAIMS_QUANTITY_H
 
 #include "papers/measured.h"
 #include "papers/schemes.h"

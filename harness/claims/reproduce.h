@@ -1,6 +1,6 @@
 /* The papers' tables and claims beside our own measurements: measured, printed, and written into a results folder. */
-#ifndef SASBENCH_PAPERS_REPRODUCE_H
-#define SASBENCH_PAPERS_REPRODUCE_H
+#ifndef SASBENCH_CLAIMS_REPRODUCE_H
+#define SASBENCH_CLAIMS_REPRODUCE_H
 
 #include "contract/status.h"
 

@@ -1,6 +1,6 @@
 /* What becomes of the papers' tables and claims once all is measured: files in the folder, and text on the terminal. */
-#ifndef SASBENCH_PAPERS_REPRODUCED_H
-#define SASBENCH_PAPERS_REPRODUCED_H
+#ifndef SASBENCH_CLAIMS_REPRODUCED_H
+#define SASBENCH_CLAIMS_REPRODUCED_H
 
 #include "claims/claims.h"
 

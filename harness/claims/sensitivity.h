@@ -1,6 +1,6 @@
 /* Which verdicts depend on what the papers do not print? */
-#ifndef SASBENCH_PAPERS_SENSITIVITY_H
-#define SASBENCH_PAPERS_SENSITIVITY_H
+#ifndef SASBENCH_CLAIMS_SENSITIVITY_H
+#define SASBENCH_CLAIMS_SENSITIVITY_H
 
 #include "claims/claims.h"
 

@@ -1,6 +1,6 @@
 /* How many claims have each verdict, and which: as printed on the terminal and as a page of the documentation. */
-#ifndef SASBENCH_PAPERS_VERDICTS_H
-#define SASBENCH_PAPERS_VERDICTS_H
+#ifndef SASBENCH_CLAIMS_VERDICTS_H
+#define SASBENCH_CLAIMS_VERDICTS_H
 
 #include "claims/claims.h"
 

@@ -1,6 +1,6 @@
 /* What an echo file holds, in words, and a grid to begin with. */
-#ifndef SASBENCH_STUDY_INSPECT_H
-#define SASBENCH_STUDY_INSPECT_H
+#ifndef SASBENCH_COMMAND_INSPECT_H
+#define SASBENCH_COMMAND_INSPECT_H
 
 #include "scene/scene.h"
 

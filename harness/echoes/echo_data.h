@@ -1,6 +1,6 @@
 /* Samples and images in memory: who allocates, converts and frees them. */
-#ifndef SASBENCH_DATA_ECHO_DATA_H
-#define SASBENCH_DATA_ECHO_DATA_H
+#ifndef SASBENCH_ECHOES_ECHO_DATA_H
+#define SASBENCH_ECHOES_ECHO_DATA_H
 
 #include "contract/algorithm.h"
 

@@ -1,6 +1,6 @@
 /* Echo files and image files in MATLAB format (variables and shapes: README, "Echo files"). */
-#ifndef SASBENCH_SCENE_MATFILE_H
-#define SASBENCH_SCENE_MATFILE_H
+#ifndef SASBENCH_ECHOES_MATFILE_H
+#define SASBENCH_ECHOES_MATFILE_H
 
 #include "echoes/echo_data.h"
 

@@ -1,6 +1,6 @@
 /* MATLAB files variable by variable: what matfile.c reads and writes is made of these. */
-#ifndef SASBENCH_SCENE_MATVAR_H
-#define SASBENCH_SCENE_MATVAR_H
+#ifndef SASBENCH_ECHOES_MATVAR_H
+#define SASBENCH_ECHOES_MATVAR_H
 
 #include <stdint.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* How much of the compressed echoes' energy is white noise: what acquisition.noise holds. */
-#ifndef SASBENCH_SCENE_NOISE_H
-#define SASBENCH_SCENE_NOISE_H
+#ifndef SASBENCH_ECHOES_NOISE_H
+#define SASBENCH_ECHOES_NOISE_H
 
 #include "contract/algorithm.h"
 

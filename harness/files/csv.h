@@ -1,7 +1,7 @@
 /* CSV files after RFC 4180 but without line ends in fields, with `# key: value` comment lines between the rows: the one
    reader and the one writer. */
-#ifndef SASBENCH_DATA_CSV_H
-#define SASBENCH_DATA_CSV_H
+#ifndef SASBENCH_FILES_CSV_H
+#define SASBENCH_FILES_CSV_H
 
 #include <stdbool.h>
 #include <stdio.h>

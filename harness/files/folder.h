@@ -1,6 +1,6 @@
 /* A folder of results, which belongs to one program at a time, and the places of files. */
-#ifndef SASBENCH_DATA_FOLDER_H
-#define SASBENCH_DATA_FOLDER_H
+#ifndef SASBENCH_FILES_FOLDER_H
+#define SASBENCH_FILES_FOLDER_H
 
 #include <limits.h>
 #include <stdbool.h>

@@ -1,6 +1,6 @@
 /* Folders of this installation. */
-#ifndef SASBENCH_DATA_PATHS_H
-#define SASBENCH_DATA_PATHS_H
+#ifndef SASBENCH_FILES_PATHS_H
+#define SASBENCH_FILES_PATHS_H
 
 #define SCENE_DIRECTORY SASBENCH_ROOT "/scenes"
 #define PLOT_DIRECTORY  SASBENCH_ROOT "/plots"

@@ -1,8 +1,8 @@
 /* What is on its way to its place: files and folders made beside it, under names of one pattern that no user gives.
    They go when a signal ends the program, and what a killed one left is swept away by the next that works in the
    folder: each is locked by who makes it, until its process ends. */
-#ifndef SASBENCH_DATA_TEMPORARY_H
-#define SASBENCH_DATA_TEMPORARY_H
+#ifndef SASBENCH_FILES_TEMPORARY_H
+#define SASBENCH_FILES_TEMPORARY_H
 
 #include <signal.h>
 #include <stdbool.h>

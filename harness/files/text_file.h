@@ -1,6 +1,6 @@
 /* A text file that is whole or not there. */
-#ifndef SASBENCH_DATA_TEXT_FILE_H
-#define SASBENCH_DATA_TEXT_FILE_H
+#ifndef SASBENCH_FILES_TEXT_FILE_H
+#define SASBENCH_FILES_TEXT_FILE_H
 
 #include <stdio.h>
 

@@ -1,6 +1,6 @@
 /* A text file in memory. */
-#ifndef SASBENCH_DATA_TEXT_READ_H
-#define SASBENCH_DATA_TEXT_READ_H
+#ifndef SASBENCH_FILES_TEXT_READ_H
+#define SASBENCH_FILES_TEXT_READ_H
 
 #include <stddef.h>
 

@@ -3,8 +3,8 @@
    Interpolation is separable, with a Kaiser-windowed sinc of 2 TAPS_HALF taps, whose error is below -80 dB for images
    that fill up to 85 % of the sampled band. In range the carrier exp(+j 4 pi fc r/c) has a period of millimetres, far
    below the range step, and is taken off first. */
-#ifndef SASBENCH_MEASURE_INTERPOLATION_H
-#define SASBENCH_MEASURE_INTERPOLATION_H
+#ifndef SASBENCH_METRICS_INTERPOLATION_H
+#define SASBENCH_METRICS_INTERPOLATION_H
 
 #include "contract/algorithm.h"
 

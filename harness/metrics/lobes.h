@@ -1,6 +1,6 @@
 /* What slices and their lobes share. Used within measure/ only. */
-#ifndef SASBENCH_MEASURE_LOBES_H
-#define SASBENCH_MEASURE_LOBES_H
+#ifndef SASBENCH_METRICS_LOBES_H
+#define SASBENCH_METRICS_LOBES_H
 
 #include "metrics/metrics.h"
 

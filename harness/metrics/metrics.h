@@ -1,6 +1,6 @@
 /* Image quality: main-lobe measures of point targets and errors against the reference image. */
-#ifndef SASBENCH_MEASURE_METRICS_H
-#define SASBENCH_MEASURE_METRICS_H
+#ifndef SASBENCH_METRICS_METRICS_H
+#define SASBENCH_METRICS_METRICS_H
 
 #include "scene/scene.h"
 

@@ -1,6 +1,6 @@
 /* The phase study: how far each formula of the two-dimensional spectrum is from the exact one. */
-#ifndef SASBENCH_STUDY_PHASE_H
-#define SASBENCH_STUDY_PHASE_H
+#ifndef SASBENCH_PAPERS_PHASE_H
+#define SASBENCH_PAPERS_PHASE_H
 
 #include <stdbool.h>
 

@@ -2,8 +2,8 @@
 
    The HTML is strict: every element is closed, every attribute quoted, no script, nothing from outside. Text is
    escaped by these functions; callers give it plain. */
-#ifndef SASBENCH_SHOW_PAGE_H
-#define SASBENCH_SHOW_PAGE_H
+#ifndef SASBENCH_REPORT_PAGE_H
+#define SASBENCH_REPORT_PAGE_H
 
 #include <stdbool.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* What BP22, ZP15, LBF21, SQ18 and PF05 print: the list of their tables and figures, and their numbers, which stand in
    results/published.csv and nowhere else. */
-#ifndef SASBENCH_DATA_PUBLISHED_H
-#define SASBENCH_DATA_PUBLISHED_H
+#ifndef SASBENCH_REPORT_PUBLISHED_H
+#define SASBENCH_REPORT_PUBLISHED_H
 
 #include "files/csv.h"
 

@@ -1,6 +1,6 @@
 /* A results folder as a page to read. */
-#ifndef SASBENCH_SHOW_REPORT_H
-#define SASBENCH_SHOW_REPORT_H
+#ifndef SASBENCH_REPORT_REPORT_H
+#define SASBENCH_REPORT_REPORT_H
 
 #include "contract/status.h"
 

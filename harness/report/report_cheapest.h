@@ -1,6 +1,6 @@
 /* The cheapest settings of a sweep over all its scenes, in one table of a report. */
-#ifndef SASBENCH_SHOW_REPORT_CHEAPEST_H
-#define SASBENCH_SHOW_REPORT_CHEAPEST_H
+#ifndef SASBENCH_REPORT_REPORT_CHEAPEST_H
+#define SASBENCH_REPORT_REPORT_CHEAPEST_H
 
 #include "files/csv.h"
 #include "report/page.h"

@@ -1,6 +1,6 @@
 /* The measurements of a results folder on a page. */
-#ifndef SASBENCH_SHOW_REPORT_MEASUREMENTS_H
-#define SASBENCH_SHOW_REPORT_MEASUREMENTS_H
+#ifndef SASBENCH_REPORT_REPORT_MEASUREMENTS_H
+#define SASBENCH_REPORT_REPORT_MEASUREMENTS_H
 
 #include "results/results.h"
 #include "report/page.h"

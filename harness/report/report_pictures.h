@@ -1,6 +1,6 @@
 /* The pictures of a report: each once, small where that can be made, as long as the page has room. */
-#ifndef SASBENCH_SHOW_REPORT_PICTURES_H
-#define SASBENCH_SHOW_REPORT_PICTURES_H
+#ifndef SASBENCH_REPORT_REPORT_PICTURES_H
+#define SASBENCH_REPORT_REPORT_PICTURES_H
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 /* The first table of a report: all scenes and algorithms at one glance. */
-#ifndef SASBENCH_SHOW_REPORT_SUMMARY_H
-#define SASBENCH_SHOW_REPORT_SUMMARY_H
+#ifndef SASBENCH_REPORT_REPORT_SUMMARY_H
+#define SASBENCH_REPORT_REPORT_SUMMARY_H
 
 #include "results/results.h"
 #include "report/page.h"

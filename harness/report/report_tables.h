@@ -1,6 +1,6 @@
 /* The tables of a results folder other than its measurements: what `sweep` and `reproduce` write beside them. */
-#ifndef SASBENCH_SHOW_REPORT_TABLES_H
-#define SASBENCH_SHOW_REPORT_TABLES_H
+#ifndef SASBENCH_REPORT_REPORT_TABLES_H
+#define SASBENCH_REPORT_REPORT_TABLES_H
 
 #include "files/csv.h"
 #include "report/page.h"

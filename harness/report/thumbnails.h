@@ -1,6 +1,6 @@
 /* Small copies of pictures, for a page that holds many. */
-#ifndef SASBENCH_SHOW_THUMBNAILS_H
-#define SASBENCH_SHOW_THUMBNAILS_H
+#ifndef SASBENCH_REPORT_THUMBNAILS_H
+#define SASBENCH_REPORT_THUMBNAILS_H
 
 #include <limits.h>
 #include <stdbool.h>

@@ -1,6 +1,6 @@
 /* What is measured: rows of numbers, and the metrics among them. */
-#ifndef SASBENCH_MEASURE_MEASUREMENT_H
-#define SASBENCH_MEASURE_MEASUREMENT_H
+#ifndef SASBENCH_RESULTS_MEASUREMENT_H
+#define SASBENCH_RESULTS_MEASUREMENT_H
 
 #include <stdbool.h>
 #include <stddef.h>

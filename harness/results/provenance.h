@@ -1,6 +1,6 @@
 /* Where measurements are from. */
-#ifndef SASBENCH_MEASURE_PROVENANCE_H
-#define SASBENCH_MEASURE_PROVENANCE_H
+#ifndef SASBENCH_RESULTS_PROVENANCE_H
+#define SASBENCH_RESULTS_PROVENANCE_H
 
 /* What makes rows comparable: written as `# key: value` lines ahead of the rows. */
 struct provenance {

@@ -1,6 +1,6 @@
 /* Finished files of results: read and written as a whole. */
-#ifndef SASBENCH_MEASURE_RESULTS_H
-#define SASBENCH_MEASURE_RESULTS_H
+#ifndef SASBENCH_RESULTS_RESULTS_H
+#define SASBENCH_RESULTS_RESULTS_H
 
 #include <stdbool.h>
 #include <stdint.h>

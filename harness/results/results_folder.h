@@ -1,6 +1,6 @@
 /* A results folder: measurements.csv and targets.csv, written row by row and taken up again after a cut. */
-#ifndef SASBENCH_MEASURE_RESULTS_FOLDER_H
-#define SASBENCH_MEASURE_RESULTS_FOLDER_H
+#ifndef SASBENCH_RESULTS_RESULTS_FOLDER_H
+#define SASBENCH_RESULTS_RESULTS_FOLDER_H
 
 #include "results/provenance.h"
 #include "results/results.h"

@@ -1,6 +1,6 @@
 /* Rows on disk: the header of both files, and how one row is written and read. Used within measure/ only. */
-#ifndef SASBENCH_MEASURE_ROWS_H
-#define SASBENCH_MEASURE_ROWS_H
+#ifndef SASBENCH_RESULTS_ROWS_H
+#define SASBENCH_RESULTS_ROWS_H
 
 #include <stdio.h>
 

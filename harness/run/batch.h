@@ -1,6 +1,6 @@
 /* Scenes measured with algorithms into a results folder: what run, sweep and reproduce have in common. */
-#ifndef SASBENCH_STUDY_BATCH_H
-#define SASBENCH_STUDY_BATCH_H
+#ifndef SASBENCH_RUN_BATCH_H
+#define SASBENCH_RUN_BATCH_H
 
 #include "results/provenance.h"
 #include "results/results_folder.h"

@@ -1,7 +1,7 @@
 /* A signal that asks to end, held until what is measured can be written down; one that comes more than a second
    after it ends at once. */
-#ifndef SASBENCH_DATA_INTERRUPTION_H
-#define SASBENCH_DATA_INTERRUPTION_H
+#ifndef SASBENCH_RUN_INTERRUPTION_H
+#define SASBENCH_RUN_INTERRUPTION_H
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 /* What is being done, on standard error. */
-#ifndef SASBENCH_DATA_PROGRESS_LINE_H
-#define SASBENCH_DATA_PROGRESS_LINE_H
+#ifndef SASBENCH_RUN_PROGRESS_LINE_H
+#define SASBENCH_RUN_PROGRESS_LINE_H
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 /* Work that may crash, in a process of its own: what one algorithm does wrong ends its own measurement, not the run. */
-#ifndef SASBENCH_DATA_SUPERVISOR_H
-#define SASBENCH_DATA_SUPERVISOR_H
+#ifndef SASBENCH_RUN_SUPERVISOR_H
+#define SASBENCH_RUN_SUPERVISOR_H
 
 /* Go on in a child process, before any thread is started. The parent waits. When a signal (also the system's for want
    of memory) or an exit ends the child amid a task, it starts another, which begins again from here and finds that task

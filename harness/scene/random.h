@@ -1,6 +1,6 @@
 /* Seeded random numbers that any implementation can repeat: splitmix64 and Box-Muller. */
-#ifndef SASBENCH_DATA_RANDOM_H
-#define SASBENCH_DATA_RANDOM_H
+#ifndef SASBENCH_SCENE_RANDOM_H
+#define SASBENCH_SCENE_RANDOM_H
 
 #include <complex.h>
 #include <stdint.h>

@@ -1,6 +1,6 @@
 /* Rows of stability.csv: on the terminal, in the file, and against those that are expected. */
-#ifndef SASBENCH_STABILITY_TABLE_H
-#define SASBENCH_STABILITY_TABLE_H
+#ifndef SASBENCH_STABILITY_STABILITY_TABLE_H
+#define SASBENCH_STABILITY_STABILITY_TABLE_H
 
 #include <stdio.h>
 

@@ -1,6 +1,6 @@
 /* The rows of one scene as the tables of a sweep take them. */
-#ifndef SASBENCH_STUDY_SWEEP_GROUP_H
-#define SASBENCH_STUDY_SWEEP_GROUP_H
+#ifndef SASBENCH_SWEEP_SWEEP_GROUP_H
+#define SASBENCH_SWEEP_SWEEP_GROUP_H
 
 #include <stdio.h>
 

@@ -1,6 +1,6 @@
 /* The settings that `sweep` measures: every algorithm over the values of its params. */
-#ifndef SASBENCH_STUDY_SWEEP_SETTINGS_H
-#define SASBENCH_STUDY_SWEEP_SETTINGS_H
+#ifndef SASBENCH_SWEEP_SWEEP_SETTINGS_H
+#define SASBENCH_SWEEP_SWEEP_SETTINGS_H
 
 #include "measure/spec.h"
 

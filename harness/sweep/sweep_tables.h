@@ -1,7 +1,7 @@
 /* What the rows of a sweep say: the Pareto fronts, the cheapest setting for each decade of error, how the error falls
    along each series of settings that differ in one parameter, and the papers' rules for the upsampling rate. */
-#ifndef SASBENCH_STUDY_SWEEP_TABLES_H
-#define SASBENCH_STUDY_SWEEP_TABLES_H
+#ifndef SASBENCH_SWEEP_SWEEP_TABLES_H
+#define SASBENCH_SWEEP_SWEEP_TABLES_H
 
 #include "results/results.h"
 #include "scene/scene.h"

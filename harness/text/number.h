@@ -1,6 +1,6 @@
 /* Numbers as they are typed: plain decimal, whatever the locale says. */
-#ifndef SASBENCH_DATA_NUMBER_H
-#define SASBENCH_DATA_NUMBER_H
+#ifndef SASBENCH_TEXT_NUMBER_H
+#define SASBENCH_TEXT_NUMBER_H
 
 /* The number that `text` begins with: sign, digits with or without a point, exponent; no blanks, no hexadecimal, no
    "inf" or "nan", and finite. Returns where it ends, NULL (*value untouched) when there is none. */

@@ -1,7 +1,7 @@
 /* Texts that came from files, made fit to be shown: a terminal obeys control characters, and the page of a CI turns
    names into links, pictures and mentions. */
-#ifndef SASBENCH_DATA_SHOWN_TEXT_H
-#define SASBENCH_DATA_SHOWN_TEXT_H
+#ifndef SASBENCH_TEXT_SHOWN_TEXT_H
+#define SASBENCH_TEXT_SHOWN_TEXT_H
 
 #include <stddef.h>
 #include <stdint.h>

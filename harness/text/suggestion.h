@@ -1,6 +1,6 @@
 /* What was probably meant by a word that is none. */
-#ifndef SASBENCH_DATA_SUGGESTION_H
-#define SASBENCH_DATA_SUGGESTION_H
+#ifndef SASBENCH_TEXT_SUGGESTION_H
+#define SASBENCH_TEXT_SUGGESTION_H
 
 enum { SUGGESTED = 3, SUGGESTION_TEXT = 240 };
 

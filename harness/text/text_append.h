@@ -1,6 +1,6 @@
 /* A text that is made part by part. */
-#ifndef SASBENCH_DATA_TEXT_APPEND_H
-#define SASBENCH_DATA_TEXT_APPEND_H
+#ifndef SASBENCH_TEXT_TEXT_APPEND_H
+#define SASBENCH_TEXT_TEXT_APPEND_H
 
 #include <stddef.h>
 

@@ -1,4 +1,4 @@
-/* What tables.c, sums.c and row.c share: a chunk of a row, tabulated by one, summed by the next. row.h has the
+/* What row_tables.c, sums.c and row.c share: a chunk of a row, tabulated by one, summed by the next. row.h has the
    picture. */
 #ifndef SASBENCH_BACKPROJECTION_INVARIANT_CHUNK_H
 #define SASBENCH_BACKPROJECTION_INVARIANT_CHUNK_H

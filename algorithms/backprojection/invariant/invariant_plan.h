@@ -1,6 +1,7 @@
-/* What the translation-invariant engine has planned (plan.c) and executes (invariant.c). row.h has the picture. */
-#ifndef SASBENCH_BACKPROJECTION_INVARIANT_PLAN_H
-#define SASBENCH_BACKPROJECTION_INVARIANT_PLAN_H
+/* What the translation-invariant engine has planned (invariant_plan.c) and executes (invariant.c). row.h has the
+   picture. */
+#ifndef SASBENCH_BACKPROJECTION_INVARIANT_INVARIANT_PLAN_H
+#define SASBENCH_BACKPROJECTION_INVARIANT_INVARIANT_PLAN_H
 
 #include "backprojection/bp_engine.h"
 #include "backprojection/invariant/row.h"

@@ -1,5 +1,6 @@
-/* The inner sums of the translation-invariant engine: one image row from tables. delays.c, tables.c, sums.c,
-   branches.c and row.c are built for each precision and instruction set; plan.c chooses one build at run time.
+/* The inner sums of the translation-invariant engine: one image row from tables. delays.c, row_tables.c, sums.c,
+   branches.c and row.c are built for each precision and instruction set; invariant_plan.c chooses one build at run
+   time.
 
    WHY DELAYS REPEAT. The ping spacing is `ratio` azimuth steps. A pixel `ratio` columns further on sees the next ping
    as this pixel sees this ping. Write column n as n = rho + ratio j. Here rho = n mod ratio is its residue, j = n div
@@ -51,7 +52,7 @@
              receiver of the slab                               row.c        BP_ROW
                groups of neighbouring residues, as many as                   the same
                `capacity` holds: a chunk
-                 tables of the chunk                            tables.c     TABLES_MAKE, DELAYS_MAKE (delays.c)
+                 tables of the chunk                            row_tables.c TABLES_MAKE, DELAYS_MAKE (delays.c)
                  block of columns                               sums.c       SUMS_ADD
                    shifts that bring pings to the same vectors               sum_columns
                    of the block: one region

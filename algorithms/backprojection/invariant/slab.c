@@ -1,4 +1,4 @@
-/* A tile of compressed pings into the slab (scatter.h): squares of as many values as a vector has lanes are
+/* A tile of compressed pings into the slab (slab.h): squares of as many values as a vector has lanes are
    transposed in registers. This file is compiled once for each precision and instruction set (BP_ISA names it). */
 #include "backprojection/invariant/slab.h"
 

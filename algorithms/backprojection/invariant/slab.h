@@ -1,6 +1,6 @@
 /* From records, one behind the other, to the invariant engine's slab, whose pings lie side by side (row.h). */
-#ifndef SASBENCH_BACKPROJECTION_INVARIANT_SCATTER_H
-#define SASBENCH_BACKPROJECTION_INVARIANT_SCATTER_H
+#ifndef SASBENCH_BACKPROJECTION_INVARIANT_SLAB_H
+#define SASBENCH_BACKPROJECTION_INVARIANT_SLAB_H
 
 #include <stddef.h>
 

@@ -1,7 +1,7 @@
 /* The pairs of a ping and a receiver that hold a target's echo, and those that a pixel sums: what error laws carry out
    for known targets. */
-#ifndef SASBENCH_BACKPROJECTION_ECHO_PAIRS_H
-#define SASBENCH_BACKPROJECTION_ECHO_PAIRS_H
+#ifndef SASBENCH_BACKPROJECTION_PAIRS_ECHO_PAIRS_H
+#define SASBENCH_BACKPROJECTION_PAIRS_ECHO_PAIRS_H
 
 #include "contract/algorithm.h"
 

@@ -1,6 +1,6 @@
 /* Which pixel-pulse pairs an image sums: those inside the record and inside the aperture limit. */
-#ifndef SASBENCH_BACKPROJECTION_PAIRS_H
-#define SASBENCH_BACKPROJECTION_PAIRS_H
+#ifndef SASBENCH_BACKPROJECTION_PAIRS_PAIRS_H
+#define SASBENCH_BACKPROJECTION_PAIRS_PAIRS_H
 
 #include <float.h>
 

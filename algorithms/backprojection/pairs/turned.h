@@ -1,7 +1,7 @@
 /* A problem whose grids are turned, seen from the grids' axes: their pixels then lie in rows and columns along x and r,
    and all delays and angles stay what they are. */
-#ifndef SASBENCH_BACKPROJECTION_TURNED_H
-#define SASBENCH_BACKPROJECTION_TURNED_H
+#ifndef SASBENCH_BACKPROJECTION_PAIRS_TURNED_H
+#define SASBENCH_BACKPROJECTION_PAIRS_TURNED_H
 
 #include "contract/algorithm.h"
 

@@ -1,4 +1,4 @@
-/* What delay compensation needs beyond the conditions of all range migrations (delay.h). */
+/* What delay compensation needs beyond the conditions of all range migrations (delay_compensation.h). */
 #include <math.h>
 
 #include "range_migration/delay_compensation.h"

@@ -1,4 +1,4 @@
-/* The sum over evenly spaced receivers by two steps, as in a fast Fourier transform (delay.h). */
+/* The sum over evenly spaced receivers by two steps, as in a fast Fourier transform (delay_compensation.h). */
 #include <math.h>
 
 #include "range_migration/rma_engine.h"

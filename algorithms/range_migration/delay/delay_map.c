@@ -1,5 +1,5 @@
-/* The map of one record onto monostatic delays (delay.h). Compiled once for each precision and instruction set (BP_ISA
-   names it). */
+/* The map of one record onto monostatic delays (delay_compensation.h). Compiled once for each precision and instruction
+   set (BP_ISA names it). */
 #include <limits.h>
 #include <string.h>
 

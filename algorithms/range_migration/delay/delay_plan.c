@@ -1,4 +1,4 @@
-/* Tables of a swath's map (delay.h), compiled once for each precision. */
+/* Tables of a swath's map (delay_compensation.h), compiled once for each precision. */
 #include <assert.h>
 #include <limits.h>
 #include <string.h>

@@ -1,5 +1,5 @@
-/* The receivers of some azimuth wavenumbers, added up to monostatic echoes (delay.h). Compiled once for each precision
-   and instruction set (BP_ISA names it). */
+/* The receivers of some azimuth wavenumbers, added up to monostatic echoes (delay_compensation.h). Compiled once for
+   each precision and instruction set (BP_ISA names it). */
 #include <string.h>
 
 #include "range_migration/column.h"

@@ -1,5 +1,5 @@
-/* Fractional delays by taps of least squares (delay.h): of all weights those whose error over the compressed pulse's
-   own energy spectrum is least. */
+/* Fractional delays by taps of least squares (delay_compensation.h): of all weights those whose error over the
+   compressed pulse's own energy spectrum is least. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,5 @@
-/* The terms over the receivers: principal vectors of the residual's phasors, and their coefficients (delay.h). */
+/* The terms over the receivers: principal vectors of the residual's phasors, and their coefficients
+   (delay_compensation.h). */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
