@@ -223,21 +223,6 @@ static enum status note_side(struct diff *diff, const char *which, const char *p
                      machine ? machine : "");
 }
 
-/* Columns that only one of two versions of a file has. */
-static enum status note_versions(struct diff *diff, const struct diff_side sides[2], const struct column *columns)
-{
-    char names[300] = "";
-    for (const struct column *metric = metric_first(columns); metric; metric = metric_first(metric + 1)) {
-        const bool old = csv_column(&sides[0].results.csv, metric->name) >= 0;
-        const bool new = csv_column(&sides[1].results.csv, metric->name) >= 0;
-        if (old != new)
-            text_append(names, sizeof names, "%s%s", *names ? ", " : "", metric->name);
-    }
-    return *names ? diff_note(diff, "versions of the files differ: only one has %s, which %s not compared", names,
-                              strchr(names, ',') ? "are" : "is")
-                  : STATUS_OK;
-}
-
 static void finding_change(struct diff *diff, struct finding *finding)
 {
     diff->counts[finding->class][finding->verdict]--;
@@ -295,11 +280,6 @@ static enum status judge_files(struct diff *diff, const char *const paths[2], st
     judging.ratios = calloc((size_t)sides[0].results.csv.row_count + 1, sizeof *judging.ratios);
     if (!judging.ratios)
         return status_set(STATUS_FAILED, "no memory for %d rows", sides[0].results.csv.row_count);
-    status = note_versions(diff, sides, judging.columns);
-    if (status != STATUS_OK) {
-        free(judging.ratios);
-        return status;
-    }
     diff->to_baseline |= !csv_comment(&sides[0].results.csv, "program");
     status = judge_sides(&judging, measurements);
     changes_find(diff, before, judging.columns);

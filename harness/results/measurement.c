@@ -7,13 +7,13 @@
 
 /* The braces are an initializer's. */
 /* clang-format off */
-#define M_COLUMN(type, name, since) {#name, COLUMN_##type, offsetof(struct measurement, name), since, .unit = NULL}
-#define M_METRIC(name, since, unit, better, class, of_float, of_double, relative) \
-    {#name,  COLUMN_REAL, offsetof(struct measurement, name), since, unit, better, \
+#define M_COLUMN(type, name) {#name, COLUMN_##type, offsetof(struct measurement, name), .unit = NULL}
+#define M_METRIC(name, unit, better, class, of_float, of_double, relative) \
+    {#name,  COLUMN_REAL, offsetof(struct measurement, name), unit, better, \
      class, {of_float, of_double}, relative}
-#define T_COLUMN(type, name) {#name, COLUMN_##type, offsetof(struct target_row, name), 1, .unit = NULL}
+#define T_COLUMN(type, name) {#name, COLUMN_##type, offsetof(struct target_row, name), .unit = NULL}
 #define T_METRIC(name, unit, better, of_float, of_double, relative) \
-    {#name,         COLUMN_REAL,           offsetof(struct target_row, name), 1, unit, better, \
+    {#name,         COLUMN_REAL,           offsetof(struct target_row, name), unit, better, \
      CLASS_QUALITY, {of_float, of_double}, relative}
 /* clang-format on */
 
@@ -21,36 +21,36 @@
    1e-8 of an error (results/README.md). Work is exact. Two runs at different times can only tell a factor in time;
    `compare --ab` tells per cents. */
 const struct column measurement_columns[] = {
-    M_COLUMN(TEXT, scene, 1),
-    M_COLUMN(TEXT, algorithm, 1),
-    M_COLUMN(TEXT, options, 1),
-    M_COLUMN(TEXT, precision, 1),
-    M_COLUMN(INTEGER, threads, 1),
-    M_COLUMN(TEXT, engine, 1),
-    M_COLUMN(TEXT, status, 1),
-    M_COLUMN(TEXT, reason, 1),
-    M_COLUMN(TEXT, skipped, 1),
-    M_COLUMN(REAL, plan_s, 1),
-    M_METRIC(run_s, 1, "s", BETTER_LOWER, CLASS_TIME, 0, 0, 1),
-    M_COLUMN(REAL, run_min_s, 1),
-    M_COLUMN(INTEGER, runs, 1),
-    M_COLUMN(REAL, control_s, 1),
-    M_COLUMN(TEXT, stages, 1),
-    M_METRIC(flops_published, 1, "FLOP", BETTER_NONE, CLASS_WORK, 0, 0, 0),
-    M_METRIC(flops, 1, "FLOP", BETTER_LOWER, CLASS_WORK, 0, 0, 0),
-    M_METRIC(pairs, 1, "pairs", BETTER_NONE, CLASS_WORK, 0, 0, 0),
-    M_METRIC(bytes, 1, "B", BETTER_LOWER, CLASS_WORK, 0, 0, 0),
-    M_METRIC(error, 1, "1", BETTER_LOWER, CLASS_QUALITY, 2e-6, 1e-9, 1e-3),
-    M_METRIC(error_gain, 1, "1", BETTER_LOWER, CLASS_QUALITY, 2e-6, 1e-9, 1e-3),
-    M_METRIC(phase_rms_rad, 1, "rad", BETTER_LOWER, CLASS_QUALITY, 2e-6, 1e-9, 1e-3),
-    M_METRIC(width_m, 1, "m", BETTER_LOWER, CLASS_QUALITY, 0, 0, 1e-4),
-    M_METRIC(pslr_db, 1, "dB", BETTER_LOWER, CLASS_QUALITY, 2e-3, 2e-3, 0),
-    M_METRIC(islr_db, 1, "dB", BETTER_LOWER, CLASS_QUALITY, 2e-3, 2e-3, 0),
-    M_COLUMN(REAL, run_q1_s, 2),
-    M_COLUMN(REAL, run_q3_s, 2),
-    M_METRIC(entropy, 2, "1", BETTER_LOWER, CLASS_QUALITY, 0, 0, 1e-3),
-    M_METRIC(contrast, 2, "1", BETTER_HIGHER, CLASS_QUALITY, 0, 0, 1e-3),
-    M_METRIC(peak_over_median, 2, "1", BETTER_HIGHER, CLASS_QUALITY, 0, 0, 1e-2),
+    M_COLUMN(TEXT, scene),
+    M_COLUMN(TEXT, algorithm),
+    M_COLUMN(TEXT, options),
+    M_COLUMN(TEXT, precision),
+    M_COLUMN(INTEGER, threads),
+    M_COLUMN(TEXT, engine),
+    M_COLUMN(TEXT, status),
+    M_COLUMN(TEXT, reason),
+    M_COLUMN(TEXT, skipped),
+    M_COLUMN(REAL, plan_s),
+    M_METRIC(run_s, "s", BETTER_LOWER, CLASS_TIME, 0, 0, 1),
+    M_COLUMN(REAL, run_min_s),
+    M_COLUMN(INTEGER, runs),
+    M_COLUMN(REAL, control_s),
+    M_COLUMN(TEXT, stages),
+    M_METRIC(flops_published, "FLOP", BETTER_NONE, CLASS_WORK, 0, 0, 0),
+    M_METRIC(flops, "FLOP", BETTER_LOWER, CLASS_WORK, 0, 0, 0),
+    M_METRIC(pairs, "pairs", BETTER_NONE, CLASS_WORK, 0, 0, 0),
+    M_METRIC(bytes, "B", BETTER_LOWER, CLASS_WORK, 0, 0, 0),
+    M_METRIC(error, "1", BETTER_LOWER, CLASS_QUALITY, 2e-6, 1e-9, 1e-3),
+    M_METRIC(error_gain, "1", BETTER_LOWER, CLASS_QUALITY, 2e-6, 1e-9, 1e-3),
+    M_METRIC(phase_rms_rad, "rad", BETTER_LOWER, CLASS_QUALITY, 2e-6, 1e-9, 1e-3),
+    M_METRIC(width_m, "m", BETTER_LOWER, CLASS_QUALITY, 0, 0, 1e-4),
+    M_METRIC(pslr_db, "dB", BETTER_LOWER, CLASS_QUALITY, 2e-3, 2e-3, 0),
+    M_METRIC(islr_db, "dB", BETTER_LOWER, CLASS_QUALITY, 2e-3, 2e-3, 0),
+    M_COLUMN(REAL, run_q1_s),
+    M_COLUMN(REAL, run_q3_s),
+    M_METRIC(entropy, "1", BETTER_LOWER, CLASS_QUALITY, 0, 0, 1e-3),
+    M_METRIC(contrast, "1", BETTER_HIGHER, CLASS_QUALITY, 0, 0, 1e-3),
+    M_METRIC(peak_over_median, "1", BETTER_HIGHER, CLASS_QUALITY, 0, 0, 1e-2),
     {.name = NULL},
 };
 

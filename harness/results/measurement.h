@@ -38,7 +38,6 @@ struct column {
     const char *name; /* NULL ends the table */
     enum { COLUMN_TEXT, COLUMN_INTEGER, COLUMN_REAL } type;
     size_t offset; /* of the field in struct measurement or target_row */
-    int since;     /* the version of the file that has it first */
     /* Of a metric, a real number that is judged: */
     const char *unit;                                                       /* NULL: no metric */
     enum { BETTER_NONE, BETTER_LOWER, BETTER_HIGHER, BETTER_SMALL } better; /* small: of magnitude */

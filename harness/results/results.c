@@ -73,12 +73,12 @@ enum status results_read(const char *path, struct results *results)
         return status;
     const char *first = results->csv.comment_count > 0 ? results->csv.comments[0] : "";
     int kind = 0;
-    while (kind < KINDS && version_read(&results->csv, &row_kinds[kind]) == 0)
+    while (kind < KINDS && !kind_is(&results->csv, &row_kinds[kind]))
         kind++;
     if (kind == KINDS) {
-        status = status_set(STATUS_INVALID, "%s:1: the first line is '%s%.60s'; '# %s 1' to %d or '# %s 1' is needed",
-                            path, *first ? "# " : "", first, row_kinds[KIND_MEASUREMENTS].format,
-                            row_kinds[KIND_MEASUREMENTS].version, row_kinds[KIND_TARGETS].format);
+        status =
+            status_set(STATUS_INVALID, "%s:1: the first line is '%s%.60s'; '# %s' or '# %s' is needed", path,
+                       *first ? "# " : "", first, row_kinds[KIND_MEASUREMENTS].format, row_kinds[KIND_TARGETS].format);
     } else {
         results->targets = kind == KIND_TARGETS;
         status = header_check(&results->csv, &row_kinds[kind]);

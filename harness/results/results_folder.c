@@ -174,13 +174,13 @@ static enum status file_read(const char *path, const struct row_kind *kind, stru
     enum status status = csv_read(path, CSV_TAIL_DROP, csv);
     if (status)
         return status;
-    if (version_read(csv, kind) > 0)
+    if (kind_is(csv, kind))
         return STATUS_OK;
     csv_free(csv);
     return status_set(STATUS_INVALID,
-                      "%s:1: not a file of ours, whose first line is '# %s %d'; it is left as it is, "
+                      "%s:1: not a file of ours, whose first line is '# %s'; it is left as it is, "
                       "name another folder",
-                      path, kind->format, kind->version);
+                      path, kind->format);
 }
 
 static enum status rows_parse(struct results_folder *folder)
@@ -256,10 +256,7 @@ static void resume_refusal(const struct results_folder *folder, const struct csv
         if (!old[k].path && old[KINDS - 1 - k].row_count > 0)
             snprintf(why, size, "%s is missing", row_kinds[k].file);
     for (int k = 0; k < KINDS && !*why; k++)
-        if (old[k].row_count > 0 && version_read(&old[k], &row_kinds[k]) != row_kinds[k].version)
-            snprintf(why, size, "measured as version %d of %s, now %d", version_read(&old[k], &row_kinds[k]),
-                     row_kinds[k].file, row_kinds[k].version);
-        else if (old[k].row_count > 0)
+        if (old[k].row_count > 0)
             provenance_differs(&old[k], &folder->provenance, why, size);
 }
 

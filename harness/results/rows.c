@@ -10,8 +10,8 @@
 #include "text/number.h"
 
 const struct row_kind row_kinds[KINDS] = {
-    {"measurements.csv", "sasbench measurements", 2, measurement_columns},
-    {"targets.csv", "sasbench targets", 1, target_columns},
+    {"measurements.csv", "sasbench measurements 1", measurement_columns},
+    {"targets.csv", "sasbench targets 1", target_columns},
 };
 
 static const struct {
@@ -60,7 +60,7 @@ static void comment_write(FILE *file, const char *key, const char *name, const c
 void head_write(FILE *file, const struct row_kind *kind, const struct provenance *provenance, const char *note,
                 const struct scene_hash *scenes, int scene_count)
 {
-    fprintf(file, "# %s %d\n", kind->format, kind->version);
+    fprintf(file, "# %s\n", kind->format);
     for (size_t k = 0; provenance && k < sizeof notes / sizeof *notes; k++)
         comment_write(file, notes[k].key, "", (const char *)provenance + notes[k].offset);
     if (provenance)
@@ -79,22 +79,15 @@ void head_write(FILE *file, const struct row_kind *kind, const struct provenance
 
 /* --- Reading ------------------------------------------------------------------------------------------------- */
 
-int version_read(const struct csv *csv, const struct row_kind *kind)
+bool kind_is(const struct csv *csv, const struct row_kind *kind)
 {
-    const char *first = csv->comment_count > 0 ? csv->comments[0] : "";
-    const size_t length = strlen(kind->format);
-    long long version;
-    if (strncmp(first, kind->format, length) != 0 || first[length] != ' ')
-        return 0;
-    const char *end = whole_read(first + length + 1, 1, kind->version, &version);
-    return end && !*end ? (int)version : 0;
+    return csv->comment_count > 0 && strcmp(csv->comments[0], kind->format) == 0;
 }
 
 enum status header_check(const struct csv *csv, const struct row_kind *kind)
 {
-    const int version = version_read(csv, kind);
     int count = 0;
-    while (kind->columns[count].name && kind->columns[count].since <= version)
+    while (kind->columns[count].name)
         count++;
     if (csv->column_count == 0)
         return status_set(STATUS_INVALID, "%s: no line names the columns; %d names from '%s' on are needed", csv->path,
@@ -105,13 +98,12 @@ enum status header_check(const struct csv *csv, const struct row_kind *kind)
         if (!missing)
             snprintf(found, sizeof found, "'%.60s'", csv->columns[k]);
         if (missing || strcmp(kind->columns[k].name, csv->columns[k]) != 0)
-            return status_set(STATUS_INVALID, "%s: column %d is %s; '%s' is needed (another version?)", csv->path,
-                              k + 1, found, kind->columns[k].name);
+            return status_set(STATUS_INVALID, "%s: column %d is %s; '%s' is needed", csv->path, k + 1, found,
+                              kind->columns[k].name);
     }
     if (csv->column_count > count)
-        return status_set(STATUS_INVALID,
-                          "%s: column %d is '%.60s'; version %d, which the first line says, has %d columns", csv->path,
-                          count + 1, csv->columns[count], version, count);
+        return status_set(STATUS_INVALID, "%s: column %d is '%.60s'; %d columns are needed", csv->path, count + 1,
+                          csv->columns[count], count);
     return STATUS_OK;
 }
 
@@ -140,13 +132,8 @@ static enum status cell_parse(const struct csv *csv, int row, int index, const s
 enum status row_parse(const struct csv *csv, int row, const struct row_kind *kind, void *out)
 {
     enum status status = STATUS_OK;
-    for (int k = 0; kind->columns[k].name && status == STATUS_OK; k++) {
-        const struct column *column = &kind->columns[k];
-        if (k < csv->column_count)
-            status = cell_parse(csv, row, k, column, out);
-        else /* columns are appended: an older version has none */
-            column_clear(column, out);
-    }
+    for (int k = 0; kind->columns[k].name && status == STATUS_OK; k++)
+        status = cell_parse(csv, row, k, &kind->columns[k], out);
     return status;
 }
 

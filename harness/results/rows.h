@@ -14,8 +14,7 @@ enum { KIND_MEASUREMENTS, KIND_TARGETS, KINDS };
 
 /* One of the two files. */
 struct row_kind {
-    const char *file, *format; /* with the version the first line: by it we know a file as ours */
-    int version;
+    const char *file, *format; /* the first line of a file of ours */
     const struct column *columns;
 };
 extern const struct row_kind row_kinds[KINDS];
@@ -25,12 +24,12 @@ void head_write(FILE *file, const struct row_kind *kind, const struct provenance
                 const struct scene_hash *scenes, int scene_count);
 void row_write(FILE *file, const struct column *columns, const void *row);
 
-/* The version of a file of this kind, from its first line; 0 for another kind, or a version that is not known yet. */
-int version_read(const struct csv *csv, const struct row_kind *kind);
-/* Does a file's header line name the columns of its kind and version? Errors: STATUS_INVALID naming the first that
+/* Is a file of this kind, by its first line? */
+bool kind_is(const struct csv *csv, const struct row_kind *kind);
+/* Does a file's header line name the columns of its kind? Errors: STATUS_INVALID naming the first that
    differs. */
 enum status header_check(const struct csv *csv, const struct row_kind *kind);
-/* One row into its struct; what the file's version does not have is empty. Errors: STATUS_INVALID naming file, line,
+/* One row into its struct. Errors: STATUS_INVALID naming file, line,
    column and value. */
 enum status row_parse(const struct csv *csv, int row, const struct row_kind *kind, void *out);
 

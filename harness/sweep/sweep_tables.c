@@ -69,8 +69,8 @@ enum { FRONTS, CHEAPEST, SLOPES, RULES, TABLES };
 static const struct {
     const char *file, *format, *header;
 } tables[TABLES] = {
-    [FRONTS] = {"fronts.csv", "sasbench fronts 2", "scene,cost,algorithm,options,precision,value,error,tie"},
-    [CHEAPEST] = {"cheapest.csv", "sasbench cheapest 2",
+    [FRONTS] = {"fronts.csv", "sasbench fronts 1", "scene,cost,algorithm,options,precision,value,error,tie"},
+    [CHEAPEST] = {"cheapest.csv", "sasbench cheapest 1",
                   "scene,cost,error_below,algorithm,options,precision,run_s,speed_up,flops,error,error_gain,pslr_db,"
                   "islr_db,family,ties,noise"},
     [SLOPES] = {"slopes.csv", "sasbench slopes 1",

@@ -17,7 +17,8 @@
 #define PLOTS SASBENCH_ROOT "/plots"
 #define ROW_HEAD                                                                                                       \
     "scene,algorithm,options,precision,threads,engine,status,reason,skipped,plan_s,run_s,run_min_s,runs,control_s,"    \
-    "stages,flops_published,flops,pairs,bytes,error,error_gain,phase_rms_rad,width_m,pslr_db,islr_db\n"
+    "stages,flops_published,flops,pairs,bytes,error,error_gain,phase_rms_rad,width_m,pslr_db,islr_db,"                 \
+    "run_q1_s,run_q3_s,entropy,contrast,peak_over_median\n"
 #define SLOPES_HEAD                                                                                                    \
     "scene,algorithm,options,precision,setting,part,first,last,rate_first,rate_last,points,slope,"                     \
     "error_first,error_last,residual_log10\n"
@@ -105,17 +106,17 @@ static void results_fill(const char *directory, const char *scene, const char *t
         fprintf(file, "# machine: %s\n# commit: %s\n# threads: %s\n# scene %s: %s\n", text, text, text, text, text);
     fputs(ROW_HEAD, file);
     fields_write(file, (const char *[]){scene, "reference", "", "float"}, 4,
-                 "1,inv,ok,,,0.1,1,0.1,3,0.5,focus=1,1,2e6,3,4,1e-06,0.1,0.1,0.04,-13,-10\n");
+                 "1,inv,ok,,,0.1,1,0.1,3,0.5,focus=1,1,2e6,3,4,1e-06,0.1,0.1,0.04,-13,-10,,,,,\n");
     for (int k = 2; k < 5; k++) {
         char options[2048];
         snprintf(options, sizeof options, "beta=%d,x=%s", k, text);
         fields_write(file, (const char *[]){scene, "bp_linear", options, "float"}, 4,
-                     "1,inv,ok,,,0.1,0.2,0.1,3,0.5,focus=1,1,2e6,3,4,0.01,0.1,0.1,0.04,-12,-9\n");
+                     "1,inv,ok,,,0.1,0.2,0.1,3,0.5,focus=1,1,2e6,3,4,0.01,0.1,0.1,0.04,-12,-9,,,,,\n");
         fields_write(file, (const char *[]){scene, text, options, text}, 4,
-                     "1,inv,ok,,,0.1,0.2,0.1,3,0.5,focus=1,1,2e6,3,4,0.01,0.1,0.1,0.04,-12,-9\n");
+                     "1,inv,ok,,,0.1,0.2,0.1,3,0.5,focus=1,1,2e6,3,4,0.01,0.1,0.1,0.04,-12,-9,,,,,\n");
     }
     fields_write(file, (const char *[]){scene, "rma_lbf", text, "double"}, 4,
-                 "1,inv,failed,because,,,,,,,,,,,,,,,,,\n");
+                 "1,inv,failed,because,,,,,,,,,,,,,,,,,,,,,,\n");
     assert_int_equal(fclose(file), 0);
 
     file = file_begin(directory, "slopes.csv");

@@ -32,24 +32,24 @@ static void test_foreign_files(void **state)
     check_refused("measurements.csv:1: not a file of ours");
     file_write(measurements_path, "w", "");
     check_refused("measurements.csv:1: not a file of ours");
-    file_write(measurements_path, "w", "# sasbench measurements 3\na\n");
+    file_write(measurements_path, "w", "# sasbench measurements 2\na\n");
     check_refused("measurements.csv:1: not a file of ours");
     file_write(measurements_path, "w", "# sasbench measurements 1\na,b\n1\n");
     check_refused("measurements.csv:3: 1 fields");
     file_write(measurements_path, "w",
-               "# sasbench measurements 2\n" PROVENANCE MEASUREMENT_HEADER
+               "# sasbench measurements 1\n" PROVENANCE MEASUREMENT_HEADER
                "s,a,,float,2,,ok,,,1,1,1,x,,,,,,,,,,,,,,,,,\n");
     file_write(targets_path, "w", "# sasbench targets 1\n" PROVENANCE TARGET_HEADER);
     check_refused("measurements.csv:9: runs is 'x'");
-    file_write(measurements_path, "w", "# sasbench measurements 2\n" PROVENANCE "scene,algorithm\n");
+    file_write(measurements_path, "w", "# sasbench measurements 1\n" PROVENANCE "scene,algorithm\n");
     check_refused("measurements.csv: column 3 is missing; 'options' is needed");
     struct results read;
-    file_write(measurements_path, "w", "# sasbench measurements 2\n" PROVENANCE);
+    file_write(measurements_path, "w", "# sasbench measurements 1\n" PROVENANCE);
     assert_int_equal(results_read(measurements_path, &read), STATUS_INVALID);
     assert_non_null(strstr(status_message(), "no line names the columns; 30 names from 'scene' on are needed"));
-    file_write(measurements_path, "w", "# sasbench measurements 1\n" PROVENANCE MEASUREMENT_HEADER);
+    file_write(measurements_path, "w", "# sasbench measurements 1\n" PROVENANCE MEASUREMENT_COLUMNS ",more\n");
     assert_int_equal(results_read(measurements_path, &read), STATUS_INVALID);
-    assert_non_null(strstr(status_message(), "column 26 is 'run_q1_s'; version 1, which the first line says, has 25"));
+    assert_non_null(strstr(status_message(), "column 31 is 'more'; 30 columns are needed"));
     remove(measurements_path);
     results_folder_close(open_ok("c1", 2));
     file_write(targets_path, "w", "notes\n");
@@ -134,7 +134,7 @@ static void test_times_are_positive(void **state)
         struct results read;
         char text[2000];
         snprintf(text, sizeof text,
-                 "# sasbench measurements 2\n" PROVENANCE MEASUREMENT_HEADER "s,a,,float,2,,ok,,,%s,,,,,,,,,,,,,,,\n",
+                 "# sasbench measurements 1\n" PROVENANCE MEASUREMENT_HEADER "s,a,,float,2,,ok,,,%s,,,,,,,,,,,,,,,\n",
                  cases[k].times);
         file_write(measurements_path, "w", text);
         assert_int_equal(results_read(measurements_path, &read), STATUS_INVALID);
@@ -214,11 +214,9 @@ static void test_columns(void **state)
     check_columns(measurement_columns, sizeof(struct measurement));
     check_columns(target_columns, sizeof(struct target_row));
     const struct measurement row = measurement_empty("s", "a", "", PRECISION_FLOAT), full = measurement_of("s", "a");
-    int count = 0, version = 1;
+    int count = 0;
     for (const struct column *column = measurement_columns; column->name; column++) {
         const char *field = (const char *)&row + column->offset;
-        assert_true(column->since >= version); /* what a version adds is appended */
-        version = column->since;
         if (column->type == COLUMN_REAL)
             assert_true(isnan(*(const double *)field));
         if (column->type == COLUMN_INTEGER)

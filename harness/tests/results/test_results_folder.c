@@ -19,7 +19,7 @@ static void test_round_trip(void **state)
     add_ok(results, "folder/a,\"b\"", "bp_sinc");
     const char *text = file_text(measurements_path);
     assert_int_equal(
-        strncmp(text, "# sasbench measurements 2\n# machine: a machine\n# isa: v3\n# compiler: gcc?12\n", 72), 0);
+        strncmp(text, "# sasbench measurements 1\n# machine: a machine\n# isa: v3\n# compiler: gcc?12\n", 72), 0);
     assert_non_null(strstr(text, "\n# commit: c1\n"));
     assert_non_null(strstr(text, "\n# threads: 2\n"));
     assert_non_null(strstr(text, "\n# scene folder/a,\"b\": 0000000000abcdef\n"));
@@ -144,30 +144,6 @@ static void test_other_run(void **state)
         assert_string_equal(opening_tells(&(struct provenance){.commit = "c3"}, &results), "");
         results_folder_close(results);
     }
-}
-
-/* Rows of an older version of the file are kept beside it. */
-static void test_older_version(void **state)
-{
-    (void)state;
-    struct provenance provenance = provenance_of("c1", 2);
-    struct results_folder *results;
-    char kept[300];
-    snprintf(kept, sizeof kept, "%s/measurements.1.csv", results_directory);
-    file_write(
-        measurements_path, "w",
-        "# sasbench measurements 1\n" PROVENANCE "scene,algorithm,options,precision,threads,engine,status,reason,"
-        "skipped,plan_s,run_s,run_min_s,runs,control_s,stages,flops_published,flops,pairs,bytes,error,error_gain,"
-        "phase_rms_rad,width_m,pslr_db,islr_db\ns,a,,float,2,,ok,,,1,1,1,5,,,,,,,,,,,,\n");
-    file_write(targets_path, "w", "# sasbench targets 1\n" PROVENANCE TARGET_HEADER);
-    assert_non_null(strstr(opening_tells(&provenance, &results), "measured as version 1 of measurements.csv, now 2"));
-    results_folder_close(results);
-    assert_int_equal(rows_of(measurements_path), 0);
-    assert_int_equal(rows_of(kept), 1);
-    struct results old;
-    assert_int_equal(results_read(kept, &old), STATUS_OK);
-    assert_true(old.measurements[0].runs == 5 && isnan(old.measurements[0].entropy));
-    results_free(&old);
 }
 
 /* What is kept a second time does not replace what was kept before. */
@@ -339,7 +315,6 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_round_trip, results_make, results_remove),
         cmocka_unit_test_setup_teardown(test_undefined_fields, results_make, results_remove),
         cmocka_unit_test_setup_teardown(test_other_run, results_make, results_remove),
-        cmocka_unit_test_setup_teardown(test_older_version, results_make, results_remove),
         cmocka_unit_test_setup_teardown(test_kept_twice, results_make, results_remove),
         cmocka_unit_test_setup_teardown(test_failed_again, results_make, results_remove),
         cmocka_unit_test_setup_teardown(test_folder_is_locked, results_make, results_remove),
