@@ -59,7 +59,7 @@ static void condition_print(FILE *stream, const struct condition *c)
     int used = snprintf(figures, sizeof figures, "  %-7s  %-16s %10.3g  %s %-8.3g", verdict(c), c->name, c->value,
                         c->at_least ? ">" : "<=", c->limit);
     used += snprintf(words, sizeof words, "%s%s%s", c->meaning, holds ? "" : "; cure: ", holds ? "" : c->cure);
-    const bool one_line = table_fits(stream, (size_t)used + 2);
+    const bool one_line = used + 2 <= table_width(stream);
     fprintf(stream, "%s%s%s\n", figures, one_line ? "  " : "", one_line ? words : "");
     if (!one_line)
         table_text(stream, 11, words);

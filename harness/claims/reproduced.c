@@ -147,7 +147,7 @@ static void table_print(const struct paper_table *table, const struct reproduced
         printf("  (%d) %s\n", c + 1, definitions[c]);
     snprintf(assumed, sizeof assumed, "assumed: %s", table->assumption);
     table_text(stdout, 2, assumed);
-    while (table_fits(stdout, 65 + 22 * ((size_t)band + 1)))
+    while (65 + 22 * (band + 1) <= table_width(stdout))
         band++;
     for (int c = 0; c < columns || c == 0; c += band)
         columns_print(table, lines, count, definitions, c, columns - c < band ? columns - c : band);

@@ -1,14 +1,15 @@
 /* The command `run`: every scene with every algorithm, measured, recorded and drawn. */
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 #include "run/batch.h"
 #include "advise/machine_rates.h"
 #include "command/task.h"
+#include "results/results.h"
 #include "measure/timing.h"
+#include "run/run_summary.h"
 #include "show/table.h"
-
-enum { ROWS_MANY = 100 }; /* more than that are timed briefly */
 
 /* All algorithms with their defaults. */
 static enum status load_specs(struct spec **specs, int *count)
@@ -35,17 +36,29 @@ static enum status check_twice(const struct task *task)
     return STATUS_OK;
 }
 
-static void time_print(const struct batch *batch)
+/* What was measured, in half a terminal. */
+static enum status summary_print(const struct batch *batch, int scene_count, const struct scene *scenes, int spec_count,
+                                 const struct spec *specs, bool tables)
 {
     const struct spent *spent = &batch->spent;
-    char text[300];
-    snprintf(text, sizeof text,
-             "Time: %.3g s, of which imaging %.3g s, planning %.3g s, echoes %.3g s, exact images %.3g s, the scalar "
-             "reference loop %.3g s, pictures %.3g s.",
-             seconds_now() - batch->begin, spent->imaging, spent->planning, spent->echoes, spent->reference,
-             spent->control, batch->drawn_s);
-    putchar('\n');
+    const double all = seconds_now() - batch->begin;
+    struct results results;
+    char path[4200], text[8600] = "";
+    snprintf(path, sizeof path, "%s/measurements.csv", batch->directory);
+    if (batch->measured > 0)
+        snprintf(text, sizeof text, "%.3g s: imaging %.0f, pictures %.0f, plans %.0f, rest %.0f", all, spent->imaging,
+                 batch->drawn_s, spent->planning, all - spent->imaging - batch->drawn_s - spent->planning);
+    enum status status = results_read(path, &results);
+    if (status == STATUS_OK)
+        run_summary_print(stdout, &results, scene_count, scenes, spec_count, specs, text);
+    results_free(&results);
+    if (status != STATUS_OK)
+        return status;
+    snprintf(path, sizeof path, "%s/overview.svg", batch->directory);
+    snprintf(text, sizeof text, "Next: %s%s./sasbench report %s%s", access(path, F_OK) == 0 ? path : "",
+             access(path, F_OK) == 0 ? "; " : "", batch->directory, tables ? "; help columns" : "");
     table_text(stdout, 0, text);
+    return STATUS_OK;
 }
 
 enum status command_run(const struct task *task)
@@ -65,14 +78,14 @@ enum status command_run(const struct task *task)
         status = batch_open(task->output ? task->output : "results/latest", scene_count * spec_count, true, &batch);
     if (batch.rows > ROWS_MANY)
         batch.effort = EFFORT_BRIEF;
+    batch.works = task->flops;
+    if (task->all)
+        table_begin(stdout, false);
     for (int k = 0; k < scene_count && status == STATUS_OK; k++)
         status = batch_scene(&batch, &scenes[k], spec_count, task->spec_count ? task->specs : all);
-    if (status == STATUS_OK && batch.measured > 0)
-        time_print(&batch);
     if (status == STATUS_OK)
-        printf("\nOf each time %.2g us are the harness's own: an algorithm that does nothing takes them.\n"
-               "Results: %s/measurements.csv, targets.csv and pictures.\n",
-               1e6 * timing_floor(), batch.directory);
+        status = summary_print(&batch, scene_count, scenes, spec_count, task->spec_count ? task->specs : all,
+                               task->all || batch.rows <= ROWS_MANY);
     status = batch_close(&batch, status);
     scenes_free(scenes, scene_count);
     for (int k = 0; k < all_count; k++)

@@ -8,6 +8,7 @@
 #include "advise/machine_rates.h"
 #include "advise/predicted.h"
 #include "show/plot.h"
+#include "show/table.h"
 #include "show/plot_points.h"
 #include "sweep/sweep_settings.h"
 #include "sweep/sweep_tables.h"
@@ -101,6 +102,8 @@ enum status command_sweep(const struct task *task)
     if (status == STATUS_OK && settings_choose(&settings))
         status = machine_rates_need();
     batch.in_turn = true;
+    if (task->all)
+        table_begin(stdout, false);
     interruption_hold();
     for (int k = 0; k < scene_count && status == STATUS_OK && !interruption_seen(); k++) {
         status = batch_scene(&batch, &scenes[k], settings.count, settings.specs);

@@ -37,15 +37,15 @@ static const struct command commands[] = {
      "one algorithm's parameters, with default, bounds and sweep; or what an echo or image file holds, with a grid to "
      "begin with",
      "", 1, 1, command_info, false},
-    {"check", "(SCENE | --echoes FILE.mat --grid GRID) [--algorithm SPEC ...]",
+    {"check", "(SCENE | --echoes FILE.mat --grid GRID) [--algorithm SPEC ...] [--all]",
      "the conditions of each algorithm on a scene, and its sensitivities, before any work; exit status 1 where an "
      "algorithm is "
      "refused",
-     "aeg", 0, 1, command_check, false},
-    {"plan", "(SCENE | --echoes FILE.mat --grid GRID) [--error E] [--memory BYTES] [-o FILE.csv]",
+     "aegL", 0, 1, command_check, false},
+    {"plan", "(SCENE | --echoes FILE.mat --grid GRID) [--error E] [--memory BYTES] [-o FILE.csv] [--all]",
      "the fastest algorithm and settings within an error budget, with predicted error, time and memory, and why others "
      "are not; exit status 1 where nothing fits",
-     "oegtEY", 0, 1, command_plan, false},
+     "oegtEYL", 0, 1, command_plan, false},
     {"scenes", "random --seed N [-o FILE.cfg]", "a scene drawn from a seed, of any band, array and range", "oS", 1, 1,
      command_scenes, false},
     {"simulate", "SCENE -o FILE.mat", "write a scene's echoes", "ot", 1, 1, command_simulate, false},
@@ -56,8 +56,10 @@ static const struct command commands[] = {
     {"filter", "(SCENE | --echoes FILE.mat) [--algorithm wk_polar:...] -o FILE.mat",
      "take off the echoes from outside a scene's target area; what each target keeps, as a table", "oeat", 0, 1,
      command_filter, false},
-    {"run", "([SCENE ...] | --echoes FILE.mat --grid GRID) [--algorithm SPEC ...] [-o DIR]",
-     "compare algorithms on scenes, or on recorded echoes", "oateg", 0, INT_MAX, command_run, true},
+    {"run", "([SCENE ...] | --echoes FILE.mat --grid GRID) [--algorithm SPEC ...] [-o DIR] [--all] [--flops]",
+     "compare algorithms on scenes, or on recorded echoes; more than 100 images without --all with a line for each "
+     "scene",
+     "oategLF", 0, INT_MAX, command_run, true},
     {"compare",
      "(OLD NEW | --ab OLD_BINARY NEW_BINARY [SCENE ...] [--algorithm SPEC ...]) [--markdown FILE] [--json FILE]",
      "what got worse between two results folders or CSV files; what got slower between two programs, run side by side",
@@ -68,8 +70,8 @@ static const struct command commands[] = {
     {"reproduce", "[ID ...] [-o DIR]", "the papers' tables and claims beside ours", "ot", 0, INT_MAX, command_reproduce,
      true},
     {"sweep",
-     "([SCENE ...] | --echoes FILE.mat --grid GRID) [--algorithm SPEC ...] [--precision float|double] [-o DIR]",
-     "parameter sweep: error against run time, each algorithm over its settings", "oategP", 0, INT_MAX, command_sweep,
+     "([SCENE ...] | --echoes FILE.mat --grid GRID) [--algorithm SPEC ...] [--precision float|double] [-o DIR] [--all]",
+     "parameter sweep: error against run time, each algorithm over its settings", "oategPL", 0, INT_MAX, command_sweep,
      true},
     {"report", "DIR", "a results folder as one page: DIR/report.html, and DIR/report.md", "", 1, 1, command_report,
      false},
@@ -92,6 +94,7 @@ static const struct option long_options[] = {
     {"error", required_argument, NULL, 'E'},  {"memory", required_argument, NULL, 'Y'},
     {"seed", required_argument, NULL, 'S'},   {"ab", no_argument, NULL, 'B'},
     {"quick", no_argument, NULL, 'Q'},        {"precision", required_argument, NULL, 'P'},
+    {"all", no_argument, NULL, 'L'},          {"flops", no_argument, NULL, 'F'},
     {"help", no_argument, NULL, 'h'},         {NULL, 0, NULL, 0},
 };
 
@@ -113,6 +116,8 @@ static const struct {
     {'A', "    --at FILE.csv     points: columns d, r, F, f, fc, v, c"},
     {'B', "    --ab              run two programs side by side and compare their times"},
     {'Q', "    --quick           one scene of each family, in two rounding modes"},
+    {'L', "    --all             every line, and not the answer alone"},
+    {'F', "    --flops           count FLOPs by the papers' formulas as well"},
     {'M', "    --markdown FILE   the findings as a comment for a CI"},
     {'J', "    --json FILE       the findings for trackers of benchmarks"},
 };
@@ -132,7 +137,8 @@ static void help(void)
         table_text(stdout, 8, commands[k].summary);
     }
     printf("  test\n        verify this build (of the ./sasbench script)\n  help COMMAND, COMMAND --help\n        one "
-           "command with its options\n  --version\n        version, commit, compiler, libraries, instruction "
+           "command with its options\n  help columns\n        what the columns of a table mean\n  --version\n        "
+           "version, commit, compiler, libraries, instruction "
            "set\n\nOptions:\n");
     for (size_t k = 0; k < sizeof option_texts / sizeof *option_texts; k++)
         printf("  %s\n", option_texts[k].text);
@@ -267,6 +273,10 @@ static enum status parse(const struct command *command, int argc, char **argv, s
             task->ab = true;
         if (letter == 'Q')
             task->quick = true;
+        if (letter == 'L')
+            task->all = true;
+        if (letter == 'F')
+            task->flops = true;
     }
     task->names = (const char *const *)argv + optind;
     task->name_count = argc - optind;
@@ -352,7 +362,8 @@ int main(int argc, char **argv)
     temporary_guard();
     const bool versioned = strcmp(name, "--version") == 0;
     enum status status = isa_check();
-    if (status == STATUS_OK && strcmp(name, "help") == 0 && argc > 2)
+    const bool columns = strcmp(name, "help") == 0 && argc > 2 && strcmp(argv[2], "columns") == 0;
+    if (status == STATUS_OK && strcmp(name, "help") == 0 && argc > 2 && !columns)
         status = command_find(argv[2], &command);
     else if (status == STATUS_OK && !helped && !versioned)
         status = command_find(name, &command);
@@ -360,6 +371,8 @@ int main(int argc, char **argv)
         status = parse(command, argc - 1, argv + 1, &task, &helped);
     if (status == STATUS_OK && versioned)
         version();
+    else if (status == STATUS_OK && columns)
+        table_columns(stdout);
     else if (status == STATUS_OK && helped && command)
         help_command(command);
     else if (status == STATUS_OK && helped)

@@ -203,25 +203,6 @@ enum status timing_measure(const struct spec *spec, const struct problem *proble
     return status;
 }
 
-static enum status nothing_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages)
-{
-    (void)plan, (void)echoes, (void)image;
-    stages_end(stages, "nothing");
-    return STATUS_OK;
-}
-
-double timing_floor(void)
-{
-    const struct algorithm nothing = {.name = "nothing", .execute = nothing_execute};
-    struct imaging imaging = {.algorithm = &nothing};
-    static struct timing_samples samples;
-    struct timing timing;
-    samples = (struct timing_samples){.runs = 0};
-    repeat(&imaging, NULL, &budgets[EFFORT_WHOLE], &samples);
-    samples_evaluate(&samples, &timing);
-    return timing.run_s;
-}
-
 static int waits = -1; /* Linux's account of the thread, when waiting is left out */
 
 /* Its second number: ns that the thread was ready to run and had no processor. */

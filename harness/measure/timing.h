@@ -44,9 +44,6 @@ enum status timing_measure(const struct spec *spec, const struct problem *proble
                            struct control *control, enum effort effort, struct timing_samples *samples,
                            struct image *image, struct timing *timing);
 
-/* Seconds that the harness itself adds to a run: the median time of an algorithm that does nothing. */
-double timing_floor(void);
-
 /* From now on seconds_now, and with it the stages of algorithms, leaves out the time in which this thread was ready to
    run and other work had the processor (what the thread sleeps still counts). Only this thread may ask for the time
    from then on. Where the system does not tell that, nothing changes. */

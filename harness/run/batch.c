@@ -24,7 +24,6 @@ struct visit {
     const struct spec *specs;
     int spec_count;
     struct pictures pictures;       /* all zero when none are drawn */
-    struct work *works;             /* [spec_count] of the algorithms measured now; flops 0 otherwise */
     struct timing_samples *samples; /* [TURNS] of the settings from turns_first on; NULL: each is timed at once */
     int turns_first;
 };
@@ -33,7 +32,6 @@ enum { TURNS = 24 }; /* settings that are timed in turn */
 static void visit_close(struct visit *visit)
 {
     pictures_free(&visit->pictures);
-    free(visit->works);
     free(visit->samples);
     session_close(&visit->session);
 }
@@ -62,9 +60,8 @@ static enum status visit_open(struct batch *batch, const struct scene *scene, in
     supervisor_leave();
     if (status != STATUS_OK)
         return status;
-    visit->works = calloc((size_t)spec_count, sizeof *visit->works);
     visit->samples = batch->in_turn ? calloc(TURNS, sizeof *visit->samples) : NULL;
-    if (!visit->works || (batch->in_turn && !visit->samples))
+    if (batch->in_turn && !visit->samples)
         status = status_set(STATUS_FAILED, "%s: no memory for %d algorithms", scene->name, spec_count);
     if (status == STATUS_OK && batch->details)
         status = pictures_begin(batch->directory, batch->footer, scene, &visit->session.reference, spec_count,
@@ -115,6 +112,7 @@ static enum status fail_scene(struct batch *batch, const struct scene *scene, in
         if (status == STATUS_OK)
             table_row(stdout, earlier ? earlier : &row);
     }
+    table_scene_end(stdout);
     fflush(stdout);
     return status;
 }
@@ -149,7 +147,6 @@ static enum status measure(struct batch *batch, struct visit *visit, int index)
     supervisor_leave();
     status = plans_keep(batch->directory, &plans);
     outcome.row.threads = batch->threads;
-    visit->works[index] = outcome.work;
     if (status == STATUS_OK && strcmp(outcome.row.status, "ok") == 0) {
         status = results_folder_targets(batch->results, outcome.targets, outcome.target_count);
         const double begin = seconds_now();
@@ -166,17 +163,22 @@ static enum status measure(struct batch *batch, struct visit *visit, int index)
     return status;
 }
 
-static void print_works(const struct visit *visit)
+static void works_print(const struct scene *scene, int spec_count, const struct spec *specs)
 {
     char text[512];
     table_works_header(stdout);
-    for (int k = 0; k < visit->spec_count; k++)
-        if (visit->works[k].flops > 0) {
-            const struct spec *spec = &visit->specs[k];
-            struct measurement row = measurement_empty("", spec->algorithm->name, spec->text, spec->precision);
-            measurement_spec(&row, text, sizeof text);
-            table_work(stdout, text, &visit->works[k]);
+    for (int k = 0; k < spec_count; k++) {
+        const struct algorithm *algorithm = specs[k].algorithm;
+        const struct problem problem = session_problem(scene, algorithm, specs[k].precision);
+        const struct measurement row = measurement_empty("", algorithm->name, specs[k].text, specs[k].precision);
+        void *plan = NULL;
+        measurement_spec(&row, text, sizeof text);
+        if (algorithm->plan(&problem, specs[k].options, &plan) == STATUS_OK) {
+            const struct work work = algorithm->work(plan);
+            table_work(stdout, text, &work);
         }
+        algorithm->destroy(plan);
+    }
 }
 
 /* ", about 4 min to go", from the rows measured so far. */
@@ -278,8 +280,8 @@ static void heading_print(const struct scene *scene)
         snprintf(size, sizeof size, "%d x %d pixels", scene->patches[0].x_count, scene->patches[0].r_count);
     else
         snprintf(size, sizeof size, "%.0f pixels in %d patches", pixels, scene->patch_count);
-    snprintf(what, sizeof what, "%s, %.2g %% of the recorded ranges, %s echoes", size,
-             100 * fmin(imaged_m / recorded_m, 1), a->compressed ? "compressed" : "raw");
+    snprintf(what, sizeof what, "%s, %.2g %% of the ranges, %s echoes", size, 100 * fmin(imaged_m / recorded_m, 1),
+             a->compressed ? "compressed" : "raw");
     table_scene(stdout, scene->name, what);
     check_warnings(stdout, scene, false);
 }
@@ -320,17 +322,18 @@ enum status batch_scene(struct batch *batch, const struct scene *scene, int spec
             table_row(stdout, row);
         fflush(stdout);
     }
+    table_scene_end(stdout);
     if (visited) {
         const double begin = seconds_now();
         if (status == STATUS_OK && batch->details)
             pictures_draw(&visit.pictures);
         batch->drawn_s += seconds_now() - begin;
-        if (status == STATUS_OK && batch->details && missing > 0)
-            print_works(&visit);
         batch->undrawn += visit.pictures.undrawn;
         session_spent(&visit.session, &batch->spent);
         visit_close(&visit);
     }
+    if (status == STATUS_OK && batch->works)
+        works_print(scene, spec_count, specs);
     return status;
 }
 
@@ -348,7 +351,7 @@ enum status batch_open(const char *directory, int rows, bool details, struct bat
     enum status status = results_folder_open(directory, &provenance, &batch->results);
     if (status == STATUS_OK) {
         supervisor_keeps(directory);
-        table_header(stdout);
+        table_begin(stdout, rows > ROWS_MANY);
     }
     if (status == STATUS_OK && batch->threads > omp_get_num_procs())
         fprintf(stderr, "sasbench: warning: %d threads share %d processor%s: times are not those of %d threads\n",

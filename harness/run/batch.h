@@ -13,7 +13,8 @@ struct batch {
     char footer[PROVENANCE_LINE]; /* of its pictures */
     struct results_folder *results;
     int threads;
-    bool details;       /* of every scene: draw images and slices, print FLOPs by formula */
+    bool details;       /* of every scene: draw images and slices */
+    bool works;         /* of every scene: print FLOPs by formula */
     enum effort effort; /* of times; EFFORT_WHOLE from batch_open on */
     bool in_turn;       /* time settings by rounds, so that a bad minute is not one setting's alone */
     bool failed;        /* a measurement failed */
@@ -25,7 +26,9 @@ struct batch {
     double drawn_s;
 };
 
-/* Open the folder (results_folder_open: finished rows of an earlier run are kept) and print the table's head.
+enum { ROWS_MANY = 100 }; /* more than that are timed briefly by `run`, and a scene takes one line of the terminal */
+
+/* Open the folder (results_folder_open: finished rows of an earlier run are kept) and begin the terminal's table.
    rows: how many measurements will be asked for. Errors: as results_folder_open; *batch is then safe to close. */
 enum status batch_open(const char *directory, int rows, bool details, struct batch *batch);
 

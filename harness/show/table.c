@@ -12,6 +12,7 @@
 #include "text/shown_text.h"
 #include "text/text_append.h"
 #include "measure/outcome.h"
+#include "measure/spec.h"
 
 enum { WIDTH_WIDE = 110, WIDTH_LEAST = 80 };
 /* Titles, units and values alike: algorithm, time, speed-up, rate, three errors, width, PSLR, ISLR; on a narrow
@@ -19,14 +20,20 @@ enum { WIDTH_WIDE = 110, WIDTH_LEAST = 80 };
 #define LAYOUT_WIDE   "  %-34s %8s %8s %9s %7s %7s %7s %6s %6s %6s\n"
 #define LAYOUT_NARROW "  %-23s %8s %8s %7s %7s %6s %6s %6s\n"
 
+enum { REFUSALS = 8 }; /* reasons of one scene that are told apart */
+
 /* There is one terminal, and so one table. */
 static struct {
     int width, spec_width;
-    char scene[256];   /* whose heading stands above the last row */
-    bool sharpness;    /* the last three columns are that: the scene has no targets */
-    char refusal[600]; /* the latest of the scene, without the algorithm's name, which is `refused` */
-    char refused[64];
-    char warned[4000]; /* the scene's warnings so far, each with a line's end */
+    bool brief;      /* one line a scene */
+    bool titled;     /* the columns have their names */
+    char scene[256]; /* of the rows since its heading */
+    bool sharpness;  /* the last three columns are that: the scene has no targets */
+    int images, refused, failed;
+    struct {
+        char reason[600], names[300];
+    } refusals[REFUSALS]; /* of the scene, the reason without the algorithm's name */
+    char warned[4000];    /* the scene's warnings so far, each with a line's end */
 } table = {.width = WIDTH_WIDE, .spec_width = 34};
 
 struct cell cell_significant(double value, const char *unit)
@@ -124,7 +131,7 @@ static void line_print(FILE *stream, const char *const texts[10])
 }
 
 /* Columns of the terminal: what COLUMNS says, what the terminal says, or those of a wide table where there is none. */
-static int width_find(FILE *stream)
+int table_width(FILE *stream)
 {
     const char *given = getenv("COLUMNS");
     struct winsize size;
@@ -138,36 +145,37 @@ static int width_find(FILE *stream)
 
 void table_text(FILE *stream, int indent, const char *text)
 {
-    wrapped_print(stream, width_find(stream), indent, text);
+    wrapped_print(stream, table_width(stream), indent, text);
 }
 
-bool table_fits(FILE *stream, size_t length)
+void table_columns(FILE *stream)
 {
-    return length <= (size_t)width_find(stream);
-}
-
-void table_header(FILE *stream)
-{
-    *table.scene = '\0';
-    table.width = width_find(stream) < WIDTH_WIDE ? WIDTH_LEAST : WIDTH_WIDE;
-    table.spec_width = table.width == WIDTH_WIDE ? 34 : 23;
     fputs("time      median seconds from the echoes in memory to the complex image; with ~\n"
           "          it is noisy: the middle half of the runs spans more than 10 % of it,\n"
           "          or other work had the processors, or the machine's speed changed\n"
           "speed-up  against the scalar reference loop timed beside, which takes out the\n"
-          "          machine's momentary speed\n",
+          "          machine's momentary speed\n"
+          "rate      10^9 pixel-pulse pairs (Gp/s) or, where none are summed, operations\n"
+          "          (GF/s) a second; as +gain only where lines have 110 columns\n"
+          "error     against the exact image, relative L2; +gain: after one best gain;\n"
+          "          phase: rms over the strong pixels\n"
+          "width     of the targets' main lobes at -3 dB, PSLR and ISLR of their azimuth\n"
+          "          slices (medians); where a scene has no targets: the image's entropy,\n"
+          "          contrast, and peak over median\n",
           stream);
-    if (table.width == WIDTH_WIDE)
-        fputs("rate      10^9 pixel-pulse pairs (Gp/s) or, where none are summed, operations\n"
-              "          (GF/s) a second\n",
-              stream);
-    fprintf(stream,
-            "error     against the exact image, relative L2;%s\n"
-            "          phase: rms over the strong pixels\n"
-            "width     of the targets' main lobes at -3 dB, PSLR and ISLR of their azimuth\n"
-            "          slices (medians); where a scene has no targets: the image's entropy,\n"
-            "          contrast, and peak over median\n\n",
-            table.width == WIDTH_WIDE ? " +gain: after one best gain;" : "");
+}
+
+void table_begin(FILE *stream, bool brief)
+{
+    *table.scene = '\0';
+    table.brief = brief;
+    table.titled = false;
+    table.width = table_width(stream) < WIDTH_WIDE ? WIDTH_LEAST : WIDTH_WIDE;
+    table.spec_width = table.width == WIDTH_WIDE ? 34 : 23;
+}
+
+static void titles_print(FILE *stream)
+{
     line_print(stream, (const char *const[]){"algorithm", "time", "speed-up", "rate", "error", "+gain", "phase",
                                              "width", "PSLR", "ISLR"});
     line_print(stream, (const char *const[]){"", "", "", "", "", "", "rad", "mm", "dB", "dB"});
@@ -180,18 +188,6 @@ void measurement_spec(const struct measurement *row, char *text, size_t size)
              *row->options && other_precision ? "," : "", other_precision ? "precision=double" : "");
 }
 
-void table_scene(FILE *stream, const char *name, const char *what)
-{
-    char scene[WIDTH_WIDE + 1];
-    snprintf(scene, sizeof scene, "%s", name);
-    shown_make(scene);
-    fprintf(stream, "\n%s%s%s\n", scene, *what ? ": " : "", what);
-    snprintf(table.scene, sizeof table.scene, "%s", name);
-    table.sharpness = false;
-    *table.refusal = '\0';
-    *table.warned = '\0';
-}
-
 static void text_print(FILE *stream, const char *before, const char *text)
 {
     char shown[1100];
@@ -200,10 +196,64 @@ static void text_print(FILE *stream, const char *before, const char *text)
     print_wrapped(stream, 4, shown);
 }
 
+/* "warning: condition ghost: ..." is named ghost. */
+static void warned_names(char *text, size_t size)
+{
+    static const char condition[] = OUTCOME_WARNING "condition ";
+    *text = '\0';
+    for (const char *line = table.warned; *line; line += strcspn(line, "\n") + 1) {
+        const char *name = line + (strncmp(line, condition, strlen(condition)) == 0 ? strlen(condition) : 0);
+        text_append(text, size, "%s%.*s", *text ? ", " : "", (int)strcspn(name, ":\n"), name);
+    }
+}
+
+void table_scene_end(FILE *stream)
+{
+    char text[1000], names[600];
+    if (table.brief && *table.scene) {
+        warned_names(names, sizeof names);
+        snprintf(text, sizeof text, "%-23.80s %3d images", table.scene, table.images);
+        if (table.refused > 0)
+            text_append(text, sizeof text, ", %d refused", table.refused);
+        if (table.failed > 0)
+            text_append(text, sizeof text, ", %d failed", table.failed);
+        if (*names)
+            text_append(text, sizeof text, ", warned: %s", names);
+        shown_make(text);
+        table_text(stream, 0, text);
+    }
+    for (int k = 0; k < REFUSALS && *table.refusals[k].reason && !table.brief; k++) {
+        snprintf(text, sizeof text, "refused: %s: %s", table.refusals[k].names, table.refusals[k].reason);
+        shown_make(text);
+        print_wrapped(stream, 2, text);
+    }
+    memset(table.refusals, 0, sizeof table.refusals);
+    *table.scene = '\0';
+}
+
+void table_scene(FILE *stream, const char *name, const char *what)
+{
+    char scene[WIDTH_WIDE + 1];
+    table_scene_end(stream);
+    snprintf(table.scene, sizeof table.scene, "%s", name);
+    table.sharpness = false;
+    table.images = table.refused = table.failed = 0;
+    *table.warned = '\0';
+    if (table.brief)
+        return;
+    if (!table.titled)
+        titles_print(stream);
+    table.titled = true;
+    snprintf(scene, sizeof scene, "%s", name);
+    shown_make(scene);
+    fprintf(stream, "\n%s%s%s\n", scene, *what ? ": " : "", what);
+}
+
 void table_warning(FILE *stream, const char *text)
 {
     text_append(table.warned, sizeof table.warned, "%s\n", text);
-    text_print(stream, "", text);
+    if (!table.brief)
+        text_print(stream, "", text);
 }
 
 static bool is_warned(const char *text)
@@ -238,6 +288,10 @@ static void warnings_print(FILE *stream, const char *reason)
 
 static void ok_print(FILE *stream, const struct measurement *row, const char *spec)
 {
+    if (table.brief) {
+        warnings_print(stream, row->reason);
+        return;
+    }
     const bool own_line = strlen(spec) > (size_t)table.spec_width;
     const bool sharpness = strstr(row->reason, OUTCOME_NO_TARGETS) && isfinite(row->entropy);
     struct cell last[3] = {cell_fixed(1e3 * row->width_m), cell_fixed(row->pslr_db), cell_fixed(row->islr_db)};
@@ -259,23 +313,36 @@ static void ok_print(FILE *stream, const struct measurement *row, const char *sp
     warnings_print(stream, row->reason);
 }
 
-/* What several algorithms refuse for one reason is said once. */
-static void refusal_print(FILE *stream, const struct measurement *row, const char *spec)
+/* What several algorithms refuse for one reason is said once, below the scene's rows, and without the cure. */
+static void refusal_keep(const struct measurement *row, const char *spec)
 {
     const size_t name = strlen(row->algorithm);
     const char *reason = row->reason;
     if (strncmp(reason, row->algorithm, name) == 0 && strncmp(reason + name, ": ", 2) == 0)
         reason += name + 2;
-    if (*table.refusal && strcmp(table.refusal, reason) == 0) {
-        char text[700];
-        snprintf(text, sizeof text, "%-*s unsupported, as %s", table.spec_width, spec, table.refused);
-        print_wrapped(stream, 2, text);
-        return;
+    int k = 0;
+    char kept[sizeof table.refusals[0].reason];
+    const char *cure = strstr(reason, " (cure: ");
+    snprintf(kept, sizeof kept, "%.*s", cure ? (int)(cure - reason) : (int)sizeof kept, reason);
+    while (k < REFUSALS - 1 && *table.refusals[k].reason && strcmp(table.refusals[k].reason, kept) != 0)
+        k++;
+    text_append(table.refusals[k].names, sizeof table.refusals[k].names, "%s%s", *table.refusals[k].names ? ", " : "",
+                spec);
+    memcpy(table.refusals[k].reason, kept, sizeof kept);
+}
+
+/* A SPEC without what it has by default. */
+static void spec_shown(const struct measurement *row, char *text, size_t size)
+{
+    struct spec usual;
+    struct measurement shown = *row;
+    if (spec_parse(row->algorithm, &usual) == STATUS_OK) {
+        if (strcmp(usual.text, row->options) == 0)
+            shown.options = "";
+        spec_free(&usual);
     }
-    snprintf(table.refusal, sizeof table.refusal, "%s", reason);
-    snprintf(table.refused, sizeof table.refused, "%s", row->algorithm);
-    print_wrapped(stream, 2, spec);
-    text_print(stream, "unsupported: ", reason);
+    measurement_spec(&shown, text, size);
+    shown_make(text);
 }
 
 void table_row(FILE *stream, const struct measurement *row)
@@ -283,14 +350,16 @@ void table_row(FILE *stream, const struct measurement *row)
     char spec[512];
     if (strcmp(table.scene, row->scene) != 0)
         table_scene(stream, row->scene, "");
-    measurement_spec(row, spec, sizeof spec);
-    shown_make(spec);
+    spec_shown(row, spec, sizeof spec);
     if (strcmp(row->status, "ok") == 0) {
+        table.images++;
         ok_print(stream, row, spec);
     } else if (strcmp(row->status, "unsupported") == 0) {
-        refusal_print(stream, row, spec);
+        table.refused++;
+        refusal_keep(row, spec);
     } else {
-        print_wrapped(stream, 2, spec);
+        table.failed++;
+        fprintf(stream, "  %s%s%s\n", table.brief ? table.scene : "", table.brief ? ": " : "", spec);
         text_print(stream, "failed: ", row->reason);
     }
 }

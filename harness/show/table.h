@@ -8,21 +8,25 @@
 
 #include "results/results.h"
 
-/* What the columns mean and their names. The next row begins with its scene's heading. */
-void table_header(FILE *stream);
-/* A scene's heading line, and what it images. */
+/* A new table; `brief`: of each scene one line, when it ends. */
+void table_begin(FILE *stream, bool brief);
+/* What the columns mean. */
+void table_columns(FILE *stream);
+/* A scene's heading line, and what it images; ends the scene before it. */
 void table_scene(FILE *stream, const char *name, const char *what);
+/* What was refused in it, each reason once. */
+void table_scene_end(FILE *stream);
 /* A warning of the scene, below its heading; it is not said again below its rows. */
 void table_warning(FILE *stream, const char *text);
-/* One measurement, with its warnings that no row of the scene had before; the sharpness in place of lobes where the
-   scene has no targets; a heading line whenever the scene is another than the row's before. Undefined values are "-".
-   */
+/* One measurement in a line, its SPEC without defaults, with its warnings that no row of the scene had before; the
+   sharpness in place of lobes where the scene has no targets; a heading line whenever the scene is another than the
+   row's before. Undefined values are "-". A refusal waits for the end of its scene. */
 void table_row(FILE *stream, const struct measurement *row);
 
 /* Text broken at blanks to the width of the terminal (110 where there is none), each line behind `indent` blanks. */
 void table_text(FILE *stream, int indent, const char *text);
-/* Whether a text of this length fits a line. */
-bool table_fits(FILE *stream, size_t length);
+/* That width, at least 80. */
+int table_width(FILE *stream);
 
 /* A number with its unit as the table shows it. */
 struct cell {

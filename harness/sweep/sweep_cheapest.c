@@ -63,7 +63,7 @@ static void row_tell(const struct measurement *row, const char *threshold, const
     printf("    %7s  %8s %8s %9s  %7.1e  ", threshold, cell_run_time(row).text,
            cell_significant(row->control_s / row->run_s, "x").text, cell_significant(1e-6 * row->flops, "").text,
            row->error);
-    if (table_fits(stdout, 52 + strlen(spec)))
+    if (52 + (int)strlen(spec) <= table_width(stdout))
         puts(spec);
     else {
         putchar('\n');

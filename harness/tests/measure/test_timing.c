@@ -256,7 +256,7 @@ static void check_table(const struct measurement *row, const char *time, const c
     FILE *stream = fmemopen(text, sizeof text, "w");
     assert_non_null(stream);
     unsetenv("COLUMNS");
-    table_header(stream);
+    table_begin(stream, false);
     table_row(stream, row);
     assert_int_equal(fclose(stream), 0);
     snprintf(line, sizeof line, "  %-34s %8s %8s %9s ", "telling", time, speed_up, rate);

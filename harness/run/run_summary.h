@@ -1,0 +1,16 @@
+/* What a run found, in half a terminal. */
+#ifndef SASBENCH_RUN_RUN_SUMMARY_H
+#define SASBENCH_RUN_RUN_SUMMARY_H
+
+#include <stdio.h>
+
+#include "results/results.h"
+#include "measure/spec.h"
+#include "scene/scene.h"
+
+/* For four errors the fastest algorithm on each scene, a line a scene; what was refused; what the choices of `auto`
+   took; where the time was `spent`, and how noisy times are. Of the rows of these scenes and SPECs. */
+void run_summary_print(FILE *stream, const struct results *results, int scene_count, const struct scene *scenes,
+                       int spec_count, const struct spec *specs, const char *spent);
+
+#endif
