@@ -45,16 +45,23 @@ static int targets_conditions(const struct scene *scene, enum precision precisio
     return count;
 }
 
+/* Within a fifth of its limit; a count that is met exactly is not. */
+static bool is_near(const struct condition *c)
+{
+    return condition_holds(c) && c->severity != SEVERITY_INFORM && c->limit > 0
+           && (c->at_least ? c->value < 1.2 * c->limit : c->value > 0.8 * c->limit && c->value < c->limit);
+}
+
 static const char *verdict(const struct condition *condition)
 {
     if (condition_holds(condition))
-        return "holds";
+        return is_near(condition) ? "near" : "holds";
     return condition->severity == SEVERITY_REFUSE ? "REFUSED" : condition->severity == SEVERITY_WARN ? "warns" : "note";
 }
 
 static void condition_print(FILE *stream, const struct condition *c)
 {
-    const bool holds = condition_holds(c);
+    const bool holds = condition_holds(c) && !is_near(c);
     char figures[120], words[500];
     int used = snprintf(figures, sizeof figures, "  %-7s  %-16s %10.3g  %s %-8.3g", verdict(c), c->name, c->value,
                         c->at_least ? ">" : "<=", c->limit);
@@ -84,14 +91,6 @@ void check_warnings(FILE *stream, const struct scene *scene, bool proposed)
     fflush(stream);
 }
 
-void check_scene(FILE *stream, const struct scene *scene)
-{
-    struct condition list[SCENE_CONDITIONS];
-    fprintf(stream, "\nThe scene, whichever algorithm images it\n");
-    for (int k = 0, count = scene_conditions(scene, list); k < count; k++)
-        condition_print(stream, &list[k]);
-}
-
 static bool condition_same(const struct condition *a, const struct condition *b)
 {
     return strcmp(a->name, b->name) == 0 && a->value == b->value && a->limit == b->limit && a->severity == b->severity
@@ -99,22 +98,39 @@ static bool condition_same(const struct condition *a, const struct condition *b)
 }
 
 /* Was it told already? If not, it is now. */
-static bool told_before(struct check_told *told, const struct condition *condition)
+static bool told_before(struct check_told *told, const struct condition *condition, const char *algorithm)
 {
-    for (int k = 0; k < told->count; k++)
-        if (condition_same(&told->list[k], condition))
-            return true;
-    if (told->count < (int)(sizeof told->list / sizeof *told->list))
-        told->list[told->count++] = *condition;
-    return false;
+    int k = 0;
+    while (k < told->count && !condition_same(&told->list[k].condition, condition))
+        k++;
+    if (k == (int)(sizeof told->list / sizeof *told->list))
+        return false;
+    const bool before = k < told->count;
+    told->count += !before;
+    told->list[k].condition = *condition;
+    told->list[k].algorithms++;
+    text_append(told->list[k].names, sizeof told->list[k].names, "%s%s", *told->list[k].names ? ", " : "", algorithm);
+    return before;
+}
+
+void check_scene(FILE *stream, const struct scene *scene, struct check_told *told)
+{
+    struct condition list[SCENE_CONDITIONS];
+    if (stream)
+        fprintf(stream, "\nThe scene, whichever algorithm images it\n");
+    for (int k = 0, count = scene_conditions(scene, list); k < count; k++) {
+        told_before(told, &list[k], "");
+        if (stream)
+            condition_print(stream, &list[k]);
+    }
 }
 
 /* "as above: holds subsonic, sampled; warns ghost" */
 static void repeated_print(FILE *stream, const struct condition *const *repeated, int count)
 {
-    static const char *const verdicts[] = {"holds", "note", "warns", "REFUSED"};
+    static const char *const verdicts[] = {"holds", "near", "note", "warns", "REFUSED"};
     char text[600] = "";
-    for (int v = 0; v < 4; v++) {
+    for (int v = 0; v < 5; v++) {
         bool first = true;
         for (int k = 0; k < count; k++) {
             if (strcmp(verdict(repeated[k]), verdicts[v]) != 0)
@@ -139,22 +155,51 @@ enum status check_algorithm(FILE *stream, const struct scene *scene, const struc
     void *plan = NULL;
     int count = algorithm_conditions(spec->algorithm, &problem, spec->options, list, CONDITIONS_MAX);
     count += targets_conditions(scene, spec->precision, list + count);
-    fprintf(stream, "\n%s%s%s\n", spec->algorithm->name, *spec->text ? ":" : "", spec->text);
+    if (stream)
+        fprintf(stream, "\n%s%s%s\n", spec->algorithm->name, *spec->text ? ":" : "", spec->text);
     *refused = !conditions_accept(list, count);
     for (int k = 0; k < count; k++)
-        if (told_before(told, &list[k]))
+        if (told_before(told, &list[k], spec->algorithm->name))
             repeated[repeated_count++] = &list[k];
-        else
+        else if (stream)
             condition_print(stream, &list[k]);
-    repeated_print(stream, repeated, repeated_count);
+    if (stream)
+        repeated_print(stream, repeated, repeated_count);
     if (*refused)
         return STATUS_OK;
     enum status status = spec->algorithm->plan(&problem, spec->options, &plan);
     spec->algorithm->destroy(plan);
     *refused = status == STATUS_UNSUPPORTED;
     if (*refused)
+        text_append(told->unplanned, sizeof told->unplanned, "%s\n", status_message());
+    if (*refused && stream)
         fprintf(stream, "  REFUSED  %s\n", status_message());
     return *refused ? STATUS_OK : status;
+}
+
+void check_answer_print(FILE *stream, const struct scene *scene, const struct check_told *told, int specs, int refused)
+{
+    static const char *const verdicts[] = {"REFUSED", "warns", "note", "near"};
+    char text[500];
+    int warnings = 0;
+    for (int k = 0; k < told->count; k++)
+        warnings += strcmp(verdict(&told->list[k].condition), "warns") == 0;
+    snprintf(text, sizeof text, "%.300s: %d of %d algorithm%s this scene; %d warning%s", scene->name, specs - refused,
+             specs, specs > 1 ? "s take" : " takes", warnings, warnings == 1 ? "" : "s");
+    table_text(stream, 0, text);
+    for (size_t v = 0; v < sizeof verdicts / sizeof *verdicts; v++)
+        for (int k = 0; k < told->count; k++) {
+            if (strcmp(verdict(&told->list[k].condition), verdicts[v]) != 0)
+                continue;
+            condition_print(stream, &told->list[k].condition);
+            if (*told->list[k].names && told->list[k].algorithms < specs)
+                table_text(stream, 11, told->list[k].names);
+        }
+    for (const char *line = told->unplanned; *line; line += strcspn(line, "\n") + 1) {
+        snprintf(text, sizeof text, "REFUSED  %.*s", (int)strcspn(line, "\n"), line);
+        table_text(stream, 2, text);
+    }
+    fputs("All conditions, and what errors of sound speed, track and carrier do: --all\n", stream);
 }
 
 /* ---- sensitivities ---- */

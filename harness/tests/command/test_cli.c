@@ -360,7 +360,7 @@ static void threads_beyond_the_processors_are_told(void **state)
 static void check_says_each_condition_once(void **state)
 {
     (void)state;
-    struct outcome outcome = program_run((const char *const[ARGUMENTS_MAX]){"check", path_in("scene.cfg")});
+    struct outcome outcome = program_run((const char *const[ARGUMENTS_MAX]){"check", path_in("scene.cfg"), "--all"});
     assert_int_equal(outcome.status, 1); /* omega-k takes one receiver */
     const char *first = strstr(outcome.out, "holds    phase_digits");
     assert_non_null(first);
@@ -371,9 +371,28 @@ static void check_says_each_condition_once(void **state)
     assert_holds(strstr(outcome.out, "\nbp_linear:beta=8\n"), "  as above: holds subsonic, sampled, phase_digits,");
     assert_holds(strstr(outcome.out, "\nwk_squint"), "; REFUSED one_receiver");
     outcome_free(&outcome);
-    char *alone = program_output((const char *const[ARGUMENTS_MAX]){"check", path_in("scene.cfg"), "-a", "bp_linear"});
+    char *alone =
+        program_output((const char *const[ARGUMENTS_MAX]){"check", path_in("scene.cfg"), "-a", "bp_linear", "--all"});
     assert_holds(alone, "holds    phase_digits");
     assert_null(strstr(alone, "as above"));
+    free(alone);
+}
+
+/* The verdict first, then what does not hold, with its cure and whom it concerns; what holds only with --all. */
+static void check_answers_first(void **state)
+{
+    (void)state;
+    struct outcome outcome = program_run((const char *const[ARGUMENTS_MAX]){"check", path_in("scene.cfg")});
+    assert_int_equal(outcome.status, 1);
+    const char *verdict =
+        strstr(outcome.out, "scene: 14 of 17 algorithms take this scene; 0 warnings\n  REFUSED  one_re");
+    assert_non_null(verdict);
+    assert_holds(outcome.out, "cure: range migration (rma_*), which takes several receivers");
+    assert_holds(outcome.out, "           wk_classic, wk_squint, wk_polar\n");
+    assert_null(strstr(outcome.out, "holds"));
+    outcome_free(&outcome);
+    char *alone = program_output((const char *const[ARGUMENTS_MAX]){"check", path_in("scene.cfg"), "-a", "bp_linear"});
+    assert_holds(alone, "scene: 1 of 1 algorithm takes this scene; 0 warnings\nAll conditions");
     free(alone);
 }
 
@@ -382,6 +401,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(help_list_and_info_tell_everything),
         cmocka_unit_test(check_says_each_condition_once),
+        cmocka_unit_test(check_answers_first),
         cmocka_unit_test(file_and_scene_give_the_same_image),
         cmocka_unit_test(run_leaves_its_results_and_keeps_them),
         cmocka_unit_test(unsupported_is_a_row_with_a_reason),
