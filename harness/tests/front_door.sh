@@ -11,7 +11,9 @@ cat >"$folder/bin/meson" <<'END'
 case $1 in
     setup) mkdir -p "$2/harness" "$2/meson-logs" && printf '#!/bin/sh\necho "the program: $*"\n' >"$2/harness/sasbench"
         chmod +x "$2/harness/sasbench" ;;
-    test) cp "${0%/bin/*}/log" "$3/meson-logs/testlog.json"; exit 1 ;;
+    test) cp "${0%/bin/*}/log" "$3/meson-logs/testlog.json"; echo "$*" >"${0%/bin/*}/asked"
+        echo "1/3 a   OK   0.01s"; echo "2/3 numbers - sasbench:c FAIL 0.02s exit status 1"; echo "c: 1 is not 2"
+        echo "3/3 d TIMEOUT 600.02s"; echo "2/3 numbers - sasbench:c FAIL 0.02s exit status 1"; exit 1 ;;
 esac
 END
 cat >"$folder/bin/ninja" <<'END'
@@ -46,14 +48,24 @@ says()
     diff "$folder/expected" "$folder/said" || { echo "front_door: ./sasbench $arguments"; failed=1; }
 }
 
+# What meson was asked for.
+asks()
+{
+    [ "$(cat "$folder/asked")" = "$1" ] || { echo "front_door: meson was asked: $(cat "$folder/asked")"; failed=1; }
+}
+
 failed=0
 building="sasbench: building in $folder/root/build (once, some minutes)"
-says list "$building" '[1/2] building harness/sasbench' 'a warning' 'the program: list'
-says test '[1/2] building harness/sasbench' 'a warning' '[1/2] building all' 'a warning' \
-    '2 passed, 3 failed, 1 skipped, 2 interrupted' 'status 1'
+said='c: 1 is not 2
+2/3 numbers - sasbench:c FAIL 0.02s exit status 1'
+says list "$building" 'the program: list'
+says test "$said" '2 passed, 3 failed, 1 skipped, 2 interrupted' 'status 1'
+asks "test -C $folder/root/build --no-rebuild --print-errorlogs --no-suite long"
 sed -i '/INTERRUPT\|-9/d' "$folder/log"
-says test '[1/2] building harness/sasbench' 'a warning' '[1/2] building all' 'a warning' \
-    '2 passed, 3 failed, 1 skipped' 'status 1'
+says 'test --all' "$said" '2 passed, 3 failed, 1 skipped' 'status 1'
+asks "test -C $folder/root/build --no-rebuild --print-errorlogs"
+says 'test a c' "$said" '2 passed, 3 failed, 1 skipped' 'status 1'
+asks "test -C $folder/root/build --no-rebuild --print-errorlogs a c"
 touch "$folder/broken"
-says list '[1/2] building harness/sasbench' 'a warning' 'sasbench: the build failed' 'status 1'
+says list 'a warning' 'sasbench: the build failed' 'status 1'
 exit "$failed"
