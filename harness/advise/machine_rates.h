@@ -19,7 +19,7 @@ void machine_rates_use(bool *found);
 /* Write rates there, and let planning go by them. Errors: STATUS_FAILED for rates that are not plausible, which nothing
    goes by; as text_file_open. */
 enum status machine_rates_keep(const struct rates *rates);
-/* Let planning go by those of the file, or measure and keep them where it has none; says so on standard output. Rates
+/* Let planning go by those of the file, or measure and keep them where it has none, with a note. Rates
    that cannot be kept are measured again next time, with a warning. Errors: as machine_rates_measure. */
 enum status machine_rates_need(void);
 

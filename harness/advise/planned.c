@@ -165,6 +165,91 @@ static void passage_print(FILE *stream, const struct scene *scene, double second
                 (most - least) / speed / seconds);
 }
 
+/* As a SPEC. */
+static void spec_format(const struct candidate *candidate, int precision, char *text, size_t size)
+{
+    char name[CANDIDATE_NAME];
+    candidate_name(candidate, name);
+    snprintf(text, size, "%s%s%s", name,
+             precision == PRECISION_FLOAT ? ""
+             : *candidate->settings       ? ","
+                                          : ":",
+             precision == PRECISION_FLOAT ? "" : "precision=double");
+}
+
+static bool is_slower(const struct candidate *candidate)
+{
+    return strcmp(plan_verdict_names[candidate->verdict], "slower") == 0;
+}
+
+/* "rma" of rma_delay. */
+static bool family_same(const struct candidate *a, const struct candidate *b)
+{
+    const size_t length = strcspn(a->algorithm->name, "_");
+    return strncmp(a->algorithm->name, b->algorithm->name, length + 1) == 0;
+}
+
+/* The fastest within the budget, or else the one nearest to it, of a family's algorithms but the chosen one. */
+static const struct candidate *runner_up(const struct choice *choice, const struct candidate *of)
+{
+    const struct candidate *best = NULL;
+    for (int k = 0; k < choice->count; k++) {
+        const struct candidate *c = &choice->list[k];
+        if (!family_same(c, of) || (choice->found && c->algorithm == choice->list[0].algorithm))
+            continue;
+        if (is_slower(c))
+            return c;
+        if (!best || c->error < best->error)
+            best = c;
+    }
+    return best;
+}
+
+static void runner_up_print(FILE *stream, const struct candidate *c, const struct candidate *chosen)
+{
+    char text[700], name[CANDIDATE_NAME];
+    const size_t own = strlen(c->algorithm->name);
+    const bool named = strncmp(c->reason, c->algorithm->name, own) == 0 && strncmp(c->reason + own, ": ", 2) == 0;
+    const char *reason = c->reason + (named ? own + 2 : 0), *cure = strstr(reason, " (cure: ");
+    candidate_name(c, name);
+    if (is_slower(c))
+        snprintf(text, sizeof text, "%s: error %.1e, %s, %.2f times as long", name, c->error,
+                 cell_time(c->seconds).text, c->seconds / chosen->seconds);
+    else
+        snprintf(text, sizeof text, "%s: %.*s", name, cure ? (int)(cure - reason) : (int)strlen(reason), reason);
+    table_text(stream, 2, text);
+}
+
+void planned_answer(FILE *stream, const struct planned *planned, const char *source)
+{
+    enum { FAMILIES_SHOWN = 5 };
+    const int chosen = planned_precision(planned), precision = chosen >= 0 ? chosen : PRECISION_DOUBLE;
+    const struct choice *choice = &planned->choices[precision];
+    const struct candidate *best = &choice->list[0], *last[FAMILIES_SHOWN];
+    char spec[CANDIDATE_NAME + 40], text[300];
+    int shown = 0;
+    if (choice->found) {
+        spec_format(best, precision, spec, sizeof spec);
+        snprintf(text, sizeof text, "%s: predicted error %.1e, %s, %s of memory", spec, best->error,
+                 cell_time(best->seconds).text, cell_significant(1e-6 * best->bytes, " MB").text);
+        table_text(stream, 0, text);
+        fprintf(stream, "  ./sasbench image %s -a %s -o image.mat\n", source, spec);
+    } else {
+        fprintf(stream, "Nothing is within an error of %.2g.\n", planned->budget.error);
+    }
+    fputs("The next of each family:\n", stream);
+    for (int k = 0; k < choice->count && shown < FAMILIES_SHOWN; k++) {
+        bool seen = false;
+        for (int n = 0; n < shown; n++)
+            seen |= family_same(&choice->list[k], last[n]);
+        const struct candidate *next = seen ? NULL : runner_up(choice, &choice->list[k]);
+        if (!next)
+            continue;
+        runner_up_print(stream, next, best);
+        last[shown++] = next;
+    }
+}
+
 void planned_print(FILE *stream, const struct planned *planned)
 {
     const int chosen = planned_precision(planned), precision = chosen >= 0 ? chosen : PRECISION_DOUBLE;
@@ -185,19 +270,16 @@ void planned_print(FILE *stream, const struct planned *planned)
     rejected_print(stream, choice);
     if (choice->found) {
         const struct candidate *best = &choice->list[0];
-        char name[CANDIDATE_NAME];
+        char spec[CANDIDATE_NAME + 40];
         const struct scene *scene = planned->scene;
         const struct problem problem = scene_problem(scene, (enum precision)precision);
         fprintf(stream, "\nLeft out, and the error that it adds:\n");
         planned_left_out(&problem, best, line_print, stream);
-        candidate_name(best, name);
+        spec_format(best, precision, spec, sizeof spec);
         const double plan = best->algorithm->work(choice->plan).bytes;
-        fprintf(stream, "\nChosen: %s%s%s, about %s\nThe process takes %s of memory, %s of them the plan.\n", name,
-                precision == PRECISION_FLOAT ? ""
-                : *best->settings            ? ","
-                                             : ":",
-                precision == PRECISION_FLOAT ? "" : "precision=double", cell_time(best->seconds).text,
-                cell_significant(1e-6 * best->bytes, " MB").text, cell_significant(1e-6 * plan, " MB").text);
+        fprintf(stream, "\nChosen: %s, about %s\nThe process takes %s of memory, %s of them the plan.\n", spec,
+                cell_time(best->seconds).text, cell_significant(1e-6 * best->bytes, " MB").text,
+                cell_significant(1e-6 * plan, " MB").text);
         passage_print(stream, scene, best->seconds);
     }
 }

@@ -27,6 +27,8 @@ bool planned_nearest(const struct choice *choice, int k);
 void planned_left_out(const struct problem *problem, const struct candidate *chosen,
                       void (*line)(void *to, const char *text), void *to);
 
+/* The choice, the command that runs it on a `source` ("--scene NAME"), and why: the next of each family. */
+void planned_answer(FILE *stream, const struct planned *planned, const char *source);
 /* The candidates of the precision that is chosen, the chosen one first, and what it leaves out. */
 void planned_print(FILE *stream, const struct planned *planned);
 /* All of both as CSV. */

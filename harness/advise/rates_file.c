@@ -123,22 +123,19 @@ enum status machine_rates_keep(const struct rates *rates)
 enum status machine_rates_need(void)
 {
     char path[4096];
-    bool found, kept = true;
+    bool found;
     struct rates rates;
     machine_rates_use(&found);
-    if (!found) {
-        enum status status = machine_rates_measure(&rates);
-        if (status != STATUS_OK)
-            return status;
-        kept = machine_rates_keep(&rates) == STATUS_OK;
-        if (!kept)
-            fprintf(stderr, "sasbench: warning: the machine's rates are not kept: %s\n", status_message());
-    }
+    if (found)
+        return STATUS_OK;
+    enum status status = machine_rates_measure(&rates);
+    if (status != STATUS_OK)
+        return status;
+    const bool kept = machine_rates_keep(&rates) == STATUS_OK;
+    if (!kept)
+        fprintf(stderr, "sasbench: warning: the machine's rates are not kept: %s\n", status_message());
     machine_rates_path(path, sizeof path);
-    printf("Rates of this machine, %s; times repeat within %.0f %%: %s\n\n", found ? "measured before" : "measured now",
-           100 * rates_get()->noise,
-           !*path ? "not kept, for HOME is not set"
-           : kept ? path
-                  : "not kept");
+    fprintf(stderr, "sasbench: the rates of this machine were measured, to %.0f %%, and are kept in: %s\n",
+            100 * rates_get()->noise, kept && *path ? path : "nothing");
     return STATUS_OK;
 }

@@ -5,6 +5,8 @@
 
 #include "command/task.h"
 #include "text/number.h"
+#include "text/shown_text.h"
+#include "show/table.h"
 #include "files/text_file.h"
 #include "run/batch.h"
 #include "advise/check.h"
@@ -43,16 +45,31 @@ static enum status memory_parse(const char *text, double *bytes)
                             text);
 }
 
+/* As options of `image`, to be taken from the terminal. */
+static void source_format(const struct task *task, char *text, size_t size)
+{
+    const char *name = task->echoes ? task->echoes : task->names[0];
+    const char *quote = strpbrk(name, " \t\n\"$&()*;<>?[\\]`{|}~") ? "'" : "";
+    snprintf(text, size, "--%s %s%s%s%s%s", task->echoes ? "echoes" : "scene", quote, name, quote,
+             task->echoes ? " --grid=" : "", task->echoes ? task->grid : "");
+    shown_make(text);
+}
+
 static enum status plan_scene(const struct task *task, const struct scene *scene, const struct budget *budget)
 {
     struct planned planned;
     struct text_file file;
-    printf("%s\n", scene->name);
-    check_warnings(stdout, scene, false);
+    char source[8400];
+    source_format(task, source, sizeof source);
+    table_begin(stdout, false);
     enum status status = planned_make(scene, budget, &planned);
-    if (status == STATUS_OK) {
+    if (status == STATUS_OK)
+        planned_answer(stdout, &planned, source);
+    check_warnings(stdout, scene, false);
+    if (status == STATUS_OK && task->all)
         planned_print(stdout, &planned);
-    }
+    else if (status == STATUS_OK)
+        puts("All candidates, and what the choice leaves out: --all");
     if (status == STATUS_OK && task->output)
         status = text_file_open_named(task->output, &file);
     if (status == STATUS_OK && task->output) {

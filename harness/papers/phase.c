@@ -174,6 +174,15 @@ static void study_print(const struct study *study, const struct csv *published)
                 printf("  %s%.4g", bound ? "< " : "", printed);
             printf("\n");
         }
+    printf("Largest of all (rad):");
+    for (int j = 1; j < FORMULAS; j++) {
+        double largest = 0;
+        for (int i = 0; i < RECEIVERS; i++)
+            for (int r = 0; r < RANGES; r++)
+                largest = fmax(largest, study->largest[i][j][r]);
+        printf("%s %s %.3g", j > 1 ? ";" : "", formulas[j].title, largest);
+    }
+    printf("\n\n");
 }
 
 /* One picture a receiver, PNG or SVG: a panel a range, a line a formula, the largest of the errors at the three

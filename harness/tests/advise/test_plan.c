@@ -204,7 +204,7 @@ static void rates_are_kept(void **state)
 static char *plan_printed(const char *scene, const char *error)
 {
     const char *names[] = {scene};
-    struct task task = {.names = names, .name_count = 1, .error = error};
+    struct task task = {.names = names, .name_count = 1, .error = error, .all = true};
     fflush(stdout);
     const int kept = dup(STDOUT_FILENO), file = open(path_of("printed"), O_CREAT | O_TRUNC | O_WRONLY, 0600);
     assert_true(kept >= 0 && file >= 0 && dup2(file, STDOUT_FILENO) >= 0);
@@ -217,7 +217,7 @@ static char *plan_printed(const char *scene, const char *error)
     return text;
 }
 
-/* What is wrong with a scene is told ahead of the choice; of one that is right, whether the image keeps up with the
+/* What is wrong with a scene is told ahead of the candidates; of one that is right, whether the image keeps up with the
    platform: it passes 4.975 m at 1.8 m/s. A reason of several algorithms is told once. */
 static void scene_is_judged(void)
 {

@@ -337,9 +337,33 @@ static void messages_fit_the_terminal(void **state)
 static void plans_fit_a_line(void **state)
 {
     (void)state;
+    struct outcome outcome =
+        program_run((const char *const[ARGUMENTS_MAX]){"plan", "study/quick", "--error", "1e-3", "--all"});
+    assert_int_equal(outcome.status, 0); /* may note that rates are measured */
+    assert_holds(outcome.out, "candidate");
+    assert_lines_fit(outcome.out);
+    outcome_free(&outcome);
+}
+
+/* The choice and the command that runs it first, then no more than the next of each family. */
+static void plans_answer_first(void **state)
+{
+    (void)state;
     char *plan = program_output((const char *const[ARGUMENTS_MAX]){"plan", "study/quick", "--error", "1e-3"});
-    assert_holds(plan, "candidate");
-    assert_lines_fit(strstr(plan, "candidate"));
+    char spec[100], command[300];
+    int lines = 0;
+    assert_int_equal(sscanf(plan, "bp_%99[^ ]", spec), 1);
+    spec[strlen(spec) - 1] = '\0';
+    assert_holds(plan, ": predicted error ");
+    snprintf(command, sizeof command, " of memory\n  ./sasbench image --scene study/quick -a bp_%s -o image.mat\n",
+             spec);
+    assert_holds(plan, command);
+    assert_holds(plan, " times as long\n  rma_");
+    assert_holds(plan, "\n  wk_");
+    for (const char *at = plan; (at = strchr(at, '\n')); at++)
+        lines++;
+    assert_in_range(lines, 7, 9);
+    assert_lines_fit(plan);
     free(plan);
 }
 
@@ -392,7 +416,8 @@ static void check_answers_first(void **state)
     assert_null(strstr(outcome.out, "holds"));
     outcome_free(&outcome);
     char *alone = program_output((const char *const[ARGUMENTS_MAX]){"check", path_in("scene.cfg"), "-a", "bp_linear"});
-    assert_holds(alone, "scene: 1 of 1 algorithm takes this scene; 0 warnings\n  near     unambiguous           0.838  <= 1 ");
+    assert_holds(alone,
+                 "scene: 1 of 1 algorithm takes this scene; 0 warnings\n  near     unambiguous           0.838  <= 1 ");
     free(alone);
 }
 
@@ -408,6 +433,7 @@ int main(void)
         cmocka_unit_test(interrupted_run_resumes),
         cmocka_unit_test(messages_fit_the_terminal),
         cmocka_unit_test(plans_fit_a_line),
+        cmocka_unit_test(plans_answer_first),
         cmocka_unit_test(threads_beyond_the_processors_are_told),
     };
     return cmocka_run_group_tests(tests, inputs_make, folder_remove);
