@@ -97,109 +97,77 @@ static bool condition_same(const struct condition *a, const struct condition *b)
            && strcmp(a->meaning, b->meaning) == 0 && strcmp(a->cure, b->cure) == 0;
 }
 
-/* Was it told already? If not, it is now. */
-static bool told_before(struct check_told *told, const struct condition *condition, const char *algorithm)
+static void condition_keep(struct check_found *found, const struct condition *condition, const char *algorithm)
 {
     int k = 0;
-    while (k < told->count && !condition_same(&told->list[k].condition, condition))
+    while (k < found->count && !condition_same(&found->list[k].condition, condition))
         k++;
-    if (k == (int)(sizeof told->list / sizeof *told->list))
-        return false;
-    const bool before = k < told->count;
-    told->count += !before;
-    told->list[k].condition = *condition;
-    told->list[k].algorithms++;
-    text_append(told->list[k].names, sizeof told->list[k].names, "%s%s", *told->list[k].names ? ", " : "", algorithm);
-    return before;
+    if (k == (int)(sizeof found->list / sizeof *found->list))
+        return;
+    found->count += k == found->count;
+    found->list[k].condition = *condition;
+    found->list[k].algorithms++;
+    text_append(found->list[k].names, sizeof found->list[k].names, "%s%s", *found->list[k].names ? ", " : "",
+                algorithm);
 }
 
-void check_scene(FILE *stream, const struct scene *scene, struct check_told *told)
+void check_scene(const struct scene *scene, struct check_found *found)
 {
     struct condition list[SCENE_CONDITIONS];
-    if (stream)
-        fprintf(stream, "\nThe scene, whichever algorithm images it\n");
-    for (int k = 0, count = scene_conditions(scene, list); k < count; k++) {
-        told_before(told, &list[k], "");
-        if (stream)
-            condition_print(stream, &list[k]);
-    }
+    *found = (struct check_found){.count = 0};
+    for (int k = 0, count = scene_conditions(scene, list); k < count; k++)
+        condition_keep(found, &list[k], "");
 }
 
-/* "as above: holds subsonic, sampled; warns ghost" */
-static void repeated_print(FILE *stream, const struct condition *const *repeated, int count)
-{
-    static const char *const verdicts[] = {"holds", "near", "note", "warns", "REFUSED"};
-    char text[600] = "";
-    for (int v = 0; v < 5; v++) {
-        bool first = true;
-        for (int k = 0; k < count; k++) {
-            if (strcmp(verdict(repeated[k]), verdicts[v]) != 0)
-                continue;
-            if (first)
-                text_append(text, sizeof text, "%s %s", *text ? ";" : "as above:", verdicts[v]);
-            text_append(text, sizeof text, "%s%s", first ? " " : ", ", repeated[k]->name);
-            first = false;
-        }
-    }
-    if (count > 0)
-        table_text(stream, 2, text);
-}
-
-enum status check_algorithm(FILE *stream, const struct scene *scene, const struct spec *spec, struct check_told *told,
+enum status check_algorithm(const struct scene *scene, const struct spec *spec, struct check_found *found,
                             bool *refused)
 {
     struct problem problem = session_problem(scene, spec->algorithm, spec->precision);
     struct condition list[CONDITIONS_MAX + 2];
-    const struct condition *repeated[CONDITIONS_MAX + 2];
-    int repeated_count = 0;
     void *plan = NULL;
     int count = algorithm_conditions(spec->algorithm, &problem, spec->options, list, CONDITIONS_MAX);
     count += targets_conditions(scene, spec->precision, list + count);
-    if (stream)
-        fprintf(stream, "\n%s%s%s\n", spec->algorithm->name, *spec->text ? ":" : "", spec->text);
-    *refused = !conditions_accept(list, count);
     for (int k = 0; k < count; k++)
-        if (told_before(told, &list[k], spec->algorithm->name))
-            repeated[repeated_count++] = &list[k];
-        else if (stream)
-            condition_print(stream, &list[k]);
-    if (stream)
-        repeated_print(stream, repeated, repeated_count);
-    if (*refused)
-        return STATUS_OK;
-    enum status status = spec->algorithm->plan(&problem, spec->options, &plan);
-    spec->algorithm->destroy(plan);
-    *refused = status == STATUS_UNSUPPORTED;
-    if (*refused)
-        text_append(told->unplanned, sizeof told->unplanned, "%s\n", status_message());
-    if (*refused && stream)
-        fprintf(stream, "  REFUSED  %s\n", status_message());
+        condition_keep(found, &list[k], spec->algorithm->name);
+    enum status status = STATUS_OK;
+    *refused = !conditions_accept(list, count);
+    if (!*refused) {
+        status = spec->algorithm->plan(&problem, spec->options, &plan);
+        spec->algorithm->destroy(plan);
+        *refused = status == STATUS_UNSUPPORTED;
+        if (*refused)
+            text_append(found->unplanned, sizeof found->unplanned, "%s\n", status_message());
+    }
+    found->specs++;
+    found->refused += *refused;
     return *refused ? STATUS_OK : status;
 }
 
-void check_answer_print(FILE *stream, const struct scene *scene, const struct check_told *told, int specs, int refused)
+void check_print(FILE *stream, const struct scene *scene, const struct check_found *found, bool all)
 {
-    static const char *const verdicts[] = {"REFUSED", "warns", "note", "near"};
+    static const char *const verdicts[] = {"REFUSED", "warns", "note", "near", "holds"};
+    const int shown = (int)(sizeof verdicts / sizeof *verdicts) - !all, specs = found->specs;
     char text[500];
     int warnings = 0;
-    for (int k = 0; k < told->count; k++)
-        warnings += strcmp(verdict(&told->list[k].condition), "warns") == 0;
-    snprintf(text, sizeof text, "%.300s: %d of %d algorithm%s this scene; %d warning%s", scene->name, specs - refused,
-             specs, specs > 1 ? "s take" : " takes", warnings, warnings == 1 ? "" : "s");
+    for (int k = 0; k < found->count; k++)
+        warnings += strcmp(verdict(&found->list[k].condition), "warns") == 0;
+    snprintf(text, sizeof text, "%.300s: %d of %d algorithm%s this scene; %d warning%s", scene->name,
+             specs - found->refused, specs, specs == 1 ? " takes" : "s take", warnings, warnings == 1 ? "" : "s");
     table_text(stream, 0, text);
-    for (size_t v = 0; v < sizeof verdicts / sizeof *verdicts; v++)
-        for (int k = 0; k < told->count; k++) {
-            if (strcmp(verdict(&told->list[k].condition), verdicts[v]) != 0)
-                continue;
-            condition_print(stream, &told->list[k].condition);
-            if (*told->list[k].names && told->list[k].algorithms < specs)
-                table_text(stream, 11, told->list[k].names);
-        }
-    for (const char *line = told->unplanned; *line; line += strcspn(line, "\n") + 1) {
+    for (const char *line = found->unplanned; *line; line += strcspn(line, "\n") + 1) {
         snprintf(text, sizeof text, "REFUSED  %.*s", (int)strcspn(line, "\n"), line);
         table_text(stream, 2, text);
     }
-    fputs("All conditions, and what errors of sound speed, track and carrier do: --all\n", stream);
+    for (int v = 0; v < shown; v++)
+        for (int k = 0; k < found->count; k++) {
+            if (strcmp(verdict(&found->list[k].condition), verdicts[v]) != 0)
+                continue;
+            condition_print(stream, &found->list[k].condition);
+            if (*found->list[k].names && found->list[k].algorithms < specs)
+                table_text(stream, 11, found->list[k].names);
+        }
+    if (!all)
+        fputs("All conditions, and what errors of sound speed, track and carrier do: --all\n", stream);
 }
 
 /* ---- sensitivities ---- */

@@ -11,27 +11,24 @@
 /* Print what is known to be wrong with a scene, and what any image of it shows, before any work. `proposed`: its pixels
    are no one's, but follow from what the scene says. */
 void check_warnings(FILE *stream, const struct scene *scene, bool proposed);
-/* Conditions that were found, all zero at first. */
-struct check_told {
+/* The conditions of a scene and of algorithms on it, each once. */
+struct check_found {
     struct {
         struct condition condition;
-        int algorithms; /* that have it, by `names`; empty for one of the scene */
+        int algorithms; /* that have it, by `names`; empty for one of the scene by itself */
         char names[300];
     } list[100];
-    int count;
-    char unplanned[2000]; /* lines: why plans are refused whose conditions hold */
+    int count, specs, refused; /* conditions; algorithms, those that refuse the scene */
+    char unplanned[2000];      /* lines: why plans are refused whose conditions hold */
 };
 
-/* Print the conditions of the scene by itself; NULL: only find them. */
-void check_scene(FILE *stream, const struct scene *scene, struct check_told *told);
-
-/* Print (NULL: only find) the conditions of one SPEC on a scene, those that hold too, and whether its plan can be made. Those that `told`
-   has with the same figures are only named; it takes the rest. *refused is set where no plan can be made. Errors:
-   STATUS_FAILED without memory. */
-enum status check_algorithm(FILE *stream, const struct scene *scene, const struct spec *spec, struct check_told *told,
+/* Begin with the conditions of the scene by itself. */
+void check_scene(const struct scene *scene, struct check_found *found);
+/* Add those of one SPEC; *refused is set where no plan can be made. Errors: STATUS_FAILED without memory. */
+enum status check_algorithm(const struct scene *scene, const struct spec *spec, struct check_found *found,
                             bool *refused);
-/* How many of the SPECs take the scene, and what does not hold or is near its limit. */
-void check_answer_print(FILE *stream, const struct scene *scene, const struct check_told *told, int specs, int refused);
+/* How many take the scene, then what does not hold or is near its limit, with the cure, or `all`. */
+void check_print(FILE *stream, const struct scene *scene, const struct check_found *found, bool all);
 
 /* What a small error of one quantity does to a pair of ping and receiver. */
 struct sensitivity {

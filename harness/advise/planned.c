@@ -76,6 +76,14 @@ bool planned_nearest(const struct choice *choice, int k)
     return nearest;
 }
 
+/* Without the algorithm's name. */
+static const char *reason_of(const struct candidate *c)
+{
+    const size_t own = strlen(c->algorithm->name);
+    const bool named = strncmp(c->reason, c->algorithm->name, own) == 0 && strncmp(c->reason + own, ": ", 2) == 0;
+    return c->reason + (named ? own + 2 : 0);
+}
+
 /* A reason that several algorithms share is told once. */
 static void rejected_print(FILE *stream, const struct choice *choice)
 {
@@ -84,10 +92,7 @@ static void rejected_print(FILE *stream, const struct choice *choice)
         const struct candidate *c = &choice->list[k];
         if (planned_nearest(choice, k)) {
             char text[600], name[CANDIDATE_NAME];
-            const size_t own = strlen(c->algorithm->name);
-            const char *reason = c->reason;
-            if (strncmp(reason, c->algorithm->name, own) == 0 && strncmp(reason + own, ": ", 2) == 0)
-                reason += own + 2;
+            const char *reason = reason_of(c);
             candidate_name(c, name);
             if (strcmp(reason, said) == 0)
                 snprintf(text, sizeof text, "%s: as %s", name, by);
@@ -208,9 +213,7 @@ static const struct candidate *runner_up(const struct choice *choice, const stru
 static void runner_up_print(FILE *stream, const struct candidate *c, const struct candidate *chosen)
 {
     char text[700], name[CANDIDATE_NAME];
-    const size_t own = strlen(c->algorithm->name);
-    const bool named = strncmp(c->reason, c->algorithm->name, own) == 0 && strncmp(c->reason + own, ": ", 2) == 0;
-    const char *reason = c->reason + (named ? own + 2 : 0), *cure = strstr(reason, " (cure: ");
+    const char *reason = reason_of(c), *cure = strstr(reason, " (cure: ");
     candidate_name(c, name);
     if (is_slower(c))
         snprintf(text, sizeof text, "%s: error %.1e, %s, %.2f times as long", name, c->error,

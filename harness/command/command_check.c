@@ -11,11 +11,9 @@
 enum status command_check(const struct task *task)
 {
     struct scene *scene;
+    static struct check_found found;
     char names[400] = "";
     int count = 0;
-    int specs = 0, refusals = 0;
-    static struct check_told told;
-    FILE *stream = task->all ? stdout : NULL;
     if (!task->name_count && !task->echoes)
         return status_set(STATUS_INVALID, "check: a SCENE, or --echoes FILE.mat with --grid GRID, is missing");
     enum status status = task_scenes("check", task, 0, NULL, &scene, &count);
@@ -23,11 +21,7 @@ enum status command_check(const struct task *task)
         scenes_free(scene, count);
         return status;
     }
-    if (task->all) {
-        printf("%s\n", scene->name);
-        check_sensitivities_print(stdout, scene);
-    }
-    check_scene(stream, scene, &told);
+    check_scene(scene, &found);
     for (int k = 0; status == STATUS_OK && (task->spec_count > 0 ? k < task->spec_count : algorithms[k] != NULL); k++) {
         struct spec own = {0};
         bool refused = false;
@@ -35,15 +29,15 @@ enum status command_check(const struct task *task)
             status = spec_parse(algorithms[k]->name, &own);
         const struct spec *spec = task->spec_count > 0 ? &task->specs[k] : &own;
         if (status == STATUS_OK)
-            status = check_algorithm(stream, scene, spec, &told, &refused);
-        specs++;
-        refusals += refused;
+            status = check_algorithm(scene, spec, &found, &refused);
         if (status == STATUS_OK && refused)
             text_append(names, sizeof names, "%s%s", *names ? ", " : "", spec->algorithm->name);
         spec_free(&own);
     }
-    if (status == STATUS_OK && !task->all)
-        check_answer_print(stdout, scene, &told, specs, refusals);
+    if (status == STATUS_OK)
+        check_print(stdout, scene, &found, task->all);
+    if (status == STATUS_OK && task->all)
+        check_sensitivities_print(stdout, scene);
     if (status == STATUS_OK && *names)
         status = status_set(STATUS_FAILED, "check: %s cannot image %s", names, scene->name);
     scenes_free(scene, count);

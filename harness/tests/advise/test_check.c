@@ -44,16 +44,17 @@ static char *checked(const struct scene *scene, const char *text, bool *refused)
     static char *printed; /* gcc 12 takes what is found in it for a pointer to a local one */
     static size_t size;
     struct spec spec;
-    struct check_told told = {.count = 0};
+    struct check_found found;
     FILE *stream = open_memstream(&printed, &size);
     assert_non_null(stream);
+    check_scene(scene, &found);
     if (text) {
+        found.count = 0; /* the SPEC's alone */
         assert_int_equal(spec_parse(text, &spec), STATUS_OK);
-        assert_int_equal(check_algorithm(stream, scene, &spec, &told, refused), STATUS_OK);
+        assert_int_equal(check_algorithm(scene, &spec, &found, refused), STATUS_OK);
         spec_free(&spec);
-    } else {
-        check_scene(stream, scene, &told);
     }
+    check_print(stream, scene, &found, true);
     fclose(stream);
     return printed;
 }
