@@ -136,7 +136,8 @@ static void help(void)
         table_text(stdout, 2, text);
         table_text(stdout, 8, commands[k].summary);
     }
-    printf("  test\n        verify this build (of the ./sasbench script)\n  help COMMAND, COMMAND --help\n        one "
+    printf("  test [--all]\n        verify this build in two minutes, or by every test (of the ./sasbench script)\n  "
+           "help COMMAND, COMMAND --help\n        one "
            "command with its options\n  help columns\n        what the columns of a table mean\n  --version\n        "
            "version, commit, compiler, libraries, instruction "
            "set\n\nOptions:\n");
@@ -326,7 +327,8 @@ static enum status command_find(const char *name, const struct command **found)
     else
         suggestion_text(&suggestion, meant);
     if (strcmp(name, "test") == 0)
-        return status_set(STATUS_INVALID, "'test' is a command of the script ./sasbench: ./sasbench test [NAME ...]");
+        return status_set(STATUS_INVALID,
+                          "'test' is a command of the script ./sasbench: ./sasbench test [--all | NAME ...]");
     return status_set(STATUS_INVALID, "'%s' is not a command%s accepted: %stest, --help, --version", name, meant,
                       names);
 }
