@@ -68,4 +68,18 @@ says 'test a c' "$said" '2 passed, 3 failed, 1 skipped' 'status 1'
 asks "test -C $folder/root/build --no-rebuild --print-errorlogs a c"
 touch "$folder/broken"
 says list 'a warning' 'sasbench: the build failed' 'status 1'
+rm "$folder/broken"
+
+# Packages that are missing: a line; what apt says only where it fails.
+mkdir "$folder/apt"
+printf '#!/bin/sh\n' >"$folder/apt/dpkg-query"
+printf '#!/bin/sh\nexec "$@"\n' >"$folder/apt/sudo"
+printf '#!/bin/sh\necho noise\n[ ! -e "%s/broken" ]\n' "$folder" >"$folder/apt/apt-get"
+chmod +x "$folder/apt"/*
+for noisy in 0 1; do
+    [ "$noisy" = 0 ] || touch "$folder/broken"
+    PATH="$folder/apt:$folder/bin:$PATH" "$folder/root/sasbench" list >"$folder/said" 2>&1 || :
+    [ "$(grep -c '^sasbench: installing gcc ' "$folder/said")" = 1 ] && [ "$(grep -c noise "$folder/said")" = "$noisy" ] ||
+        { echo "front_door: installing:"; cat "$folder/said"; failed=1; }
+done
 exit "$failed"
