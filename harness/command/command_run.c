@@ -9,6 +9,7 @@
 #include "results/results.h"
 #include "measure/timing.h"
 #include "run/run_summary.h"
+#include "show/plot.h"
 #include "show/table.h"
 
 /* All algorithms with their defaults. */
@@ -83,6 +84,10 @@ enum status command_run(const struct task *task)
         table_begin(stdout, false);
     for (int k = 0; k < scene_count && status == STATUS_OK; k++)
         status = batch_scene(&batch, &scenes[k], spec_count, task->spec_count ? task->specs : all);
+    const double begin = seconds_now();
+    if (status == STATUS_OK)
+        status = plot_results(batch.directory, NULL, &batch.undrawn);
+    batch.drawn_s += seconds_now() - begin;
     if (status == STATUS_OK)
         status = summary_print(&batch, scene_count, scenes, spec_count, task->spec_count ? task->specs : all,
                                task->all || batch.rows <= ROWS_MANY);

@@ -9,7 +9,6 @@
 #include "advise/predicted.h"
 #include "show/plot.h"
 #include "show/table.h"
-#include "show/plot_points.h"
 #include "sweep/sweep_settings.h"
 #include "sweep/sweep_tables.h"
 #include "command/task.h"
@@ -66,25 +65,6 @@ static enum status precision_check(const struct task *task)
     return status_set(STATUS_INVALID, "sweep: --precision is '%s', must be float or double", task->precision);
 }
 
-/* A plot that cannot be drawn is reported and counted, but does not fail what was measured. Returns how many. */
-static int draw(const char *directory, const struct scene *scene)
-{
-    static const char *const formats[] = {"png", "svg"};
-    int undrawn = 0;
-    for (int k = 0; folder_plots[k]; k++)
-        for (size_t f = 0; f < sizeof formats / sizeof *formats; f++) {
-            char name[64], path[4096];
-            bool drawn;
-            snprintf(name, sizeof name, "%s.%s", folder_plots[k], formats[f]);
-            picture_path(directory, scene->name, name, path, sizeof path);
-            if (plot_folder(path, PLOT_DIRECTORY, folder_plots[k], directory, scene->name, &drawn) != STATUS_OK) {
-                shown_note(status_message());
-                undrawn++;
-            }
-        }
-    return undrawn;
-}
-
 enum status command_sweep(const struct task *task)
 {
     const char *directory = task->output ? task->output : "results/sweep";
@@ -110,9 +90,7 @@ enum status command_sweep(const struct task *task)
         if (status == STATUS_OK)
             status = sweep_tables(directory, scenes, scene_count, scenes[k].name);
         if (status == STATUS_OK)
-            status = plot_points_write(directory);
-        if (status == STATUS_OK)
-            batch.undrawn += draw(directory, &scenes[k]);
+            status = plot_results(directory, scenes[k].name, &batch.undrawn);
     }
     bool predicted = false;
     if (status == STATUS_OK && !interruption_seen())
@@ -124,8 +102,8 @@ enum status command_sweep(const struct task *task)
     fflush(stdout); /* the signal leaves no time */
     interruption_end();
     if (status == STATUS_OK)
-        printf("\nResults: %s/measurements.csv, targets.csv, fronts.csv, cheapest.csv, slopes.csv, rules.csv, "
-               "points.csv%s and plots.\n",
+        printf("\nResults: %s/measurements.csv, targets.csv, fronts.csv, cheapest.csv, slopes.csv, rules.csv%s "
+               "and plots.\n",
                directory, predicted ? ", predicted.csv, predictions.csv" : "");
     status = batch_close(&batch, status);
     scenes_free(scenes, scene_count);

@@ -6,7 +6,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "text/text_append.h"
 #include "gate/diff_side.h"
 #include "measure/timing.h"
 

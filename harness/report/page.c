@@ -35,7 +35,7 @@ static void character_write(struct page *page, const char **text)
     *text += length ? length : 1;
 }
 
-static void text_write(struct page *page, const char *text)
+void page_text(struct page *page, const char *text)
 {
     if (page->format == PAGE_MARKDOWN)
         shown_markdown(page->stream, text);
@@ -51,11 +51,11 @@ static void element_write(struct page *page, const char *name, const char *attri
     fprintf(page->stream, "<%s", name);
     if (value) {
         fprintf(page->stream, " %s=\"", attribute);
-        text_write(page, value);
+        page_text(page, value);
         fputc('"', page->stream);
     }
     fputc('>', page->stream);
-    text_write(page, text);
+    page_text(page, text);
     fprintf(page->stream, "</%s>", name);
 }
 
@@ -65,7 +65,7 @@ void page_begin(struct page *page, const char *title)
 {
     if (page->format == PAGE_MARKDOWN) {
         fputs("# ", page->stream);
-        text_write(page, title);
+        page_text(page, title);
         fputs("\n\n", page->stream);
         return;
     }
@@ -81,14 +81,14 @@ void page_begin(struct page *page, const char *title)
 void page_end(struct page *page)
 {
     if (page->format == PAGE_HTML)
-        fputs("</body>\n</html>\n", page->stream);
+        fprintf(page->stream, "%s</body>\n</html>\n", page_script);
 }
 
 void page_heading(struct page *page, int level, const char *id, const char *text)
 {
     if (page->format == PAGE_MARKDOWN) {
         fprintf(page->stream, "\n%.*s ", level, "###");
-        text_write(page, text);
+        page_text(page, text);
         fputs("\n\n", page->stream);
         return;
     }
@@ -96,9 +96,9 @@ void page_heading(struct page *page, int level, const char *id, const char *text
     fputc('\n', page->stream);
 }
 
-void page_part_begin(struct page *page, const char *title, bool folded)
+void page_part_begin(struct page *page, const char *title)
 {
-    if (folded && page->format == PAGE_HTML) {
+    if (page->format == PAGE_HTML) {
         fputs("<details>\n", page->stream);
         element_write(page, "summary", NULL, NULL, title);
         fputc('\n', page->stream);
@@ -107,9 +107,9 @@ void page_part_begin(struct page *page, const char *title, bool folded)
     }
 }
 
-void page_part_end(struct page *page, bool folded)
+void page_part_end(struct page *page)
 {
-    if (folded && page->format == PAGE_HTML)
+    if (page->format == PAGE_HTML)
         fputs("</details>\n", page->stream);
 }
 
@@ -118,7 +118,7 @@ void page_paragraph(struct page *page, const char *text)
     if (page->format == PAGE_HTML)
         element_write(page, "p", NULL, NULL, text);
     else
-        text_write(page, text);
+        page_text(page, text);
     fputs(page->format == PAGE_HTML ? "\n" : "\n\n", page->stream);
 }
 
@@ -129,7 +129,7 @@ void page_contents(struct page *page, int count, const char *const *ids, const c
     fputs("<nav>\n", page->stream);
     for (int k = 0; k < count; k++) {
         fprintf(page->stream, "  <a href=\"#%s\">", ids[k]);
-        text_write(page, titles[k]);
+        page_text(page, titles[k]);
         fputs("</a>\n", page->stream);
     }
     fputs("</nav>\n", page->stream);
@@ -137,20 +137,20 @@ void page_contents(struct page *page, int count, const char *const *ids, const c
 
 /* --- Tables ---------------------------------------------------------------------------------------------------- */
 
-void page_table_begin(struct page *page, int count, const struct page_column *columns, bool stack)
+void page_table_begin(struct page *page, int count, const struct page_column *columns)
 {
     page->columns = columns;
     page->column_count = count;
     page->rows_left_out = 0;
     if (page->format == PAGE_HTML)
-        fprintf(page->stream, "<div class=\"scroll\">\n<table%s>\n<thead><tr>", stack ? " class=\"stack\"" : "");
+        fputs("<table>\n<thead><tr>", page->stream);
     else
         fputc('|', page->stream);
     for (int k = 0; k < count; k++) {
         if (page->format == PAGE_HTML) {
             element_write(page, "th", "class", columns[k].number ? "number" : NULL, columns[k].title);
         } else {
-            text_write(page, columns[k].title);
+            page_text(page, columns[k].title);
             fputc('|', page->stream);
         }
     }
@@ -193,9 +193,9 @@ static void name_write(struct page *page, const char *name)
 static void cell_write(struct page *page, const struct page_column *column, const struct page_cell *cell)
 {
     fputs("<td data-label=\"", page->stream);
-    text_write(page, column->title);
+    page_text(page, column->title);
     fprintf(page->stream, "\" class=\"%s\">", cell->class ? cell->class : column->number ? "number" : "text");
-    text_write(page, cell->text);
+    page_text(page, cell->text);
     fputs("</td>", page->stream);
 }
 
@@ -206,7 +206,7 @@ void page_row(struct page *page, const struct page_cell *cells)
     if (page->format == PAGE_MARKDOWN) {
         fputc('|', page->stream);
         for (int k = 0; k < page->column_count; k++) {
-            text_write(page, cells[k].text);
+            page_text(page, cells[k].text);
             fputc('|', page->stream);
         }
         fputc('\n', page->stream);
@@ -227,14 +227,14 @@ void page_row_note(struct page *page, const char *name, const char *note)
         fputs(*name ? "<tr>" : "<tr class=\"below\">", page->stream);
         name_write(page, name);
         fprintf(page->stream, "<td class=\"note\" colspan=\"%d\">", page->column_count - 1);
-        text_write(page, note);
+        page_text(page, note);
         fputs("</td></tr>\n", page->stream);
         return;
     }
     fputc('|', page->stream);
-    text_write(page, name);
+    page_text(page, name);
     fputc('|', page->stream);
-    text_write(page, note);
+    page_text(page, note);
     for (int k = 1; k < page->column_count; k++)
         fputc('|', page->stream);
     fputc('\n', page->stream);
@@ -243,7 +243,7 @@ void page_row_note(struct page *page, const char *name, const char *note)
 void page_table_end(struct page *page)
 {
     char text[64];
-    fputs(page->format == PAGE_HTML ? "</tbody>\n</table>\n</div>\n" : "\n", page->stream);
+    fputs(page->format == PAGE_HTML ? "</tbody>\n</table>\n" : "\n", page->stream);
     if (page->rows_left_out == 0)
         return;
     snprintf(text, sizeof text, "%d more rows are left out here.", page->rows_left_out);
@@ -312,7 +312,7 @@ enum status page_drawing(struct page *page, const char *path, const char *title)
     if (root) {
         page->drawings++;
         fputs("<div class=\"drawing\" role=\"img\" aria-label=\"", page->stream);
-        text_write(page, title);
+        page_text(page, title);
         fputs("\">\n", page->stream);
         drawing_write(page, root);
         fputs("</div>\n", page->stream);
@@ -349,11 +349,11 @@ void page_files(struct page *page, const char *before, int count, const char *co
     if (page->format != PAGE_HTML || count == 0)
         return;
     fputs("<p>", page->stream);
-    text_write(page, before);
+    page_text(page, before);
     for (int k = 0; k < count; k++) {
         fputs(k ? ", " : " ", page->stream);
         link_write(page, names[k]);
-        text_write(page, texts[k]);
+        page_text(page, texts[k]);
         fputs("</a>", page->stream);
     }
     fputs("</p>\n", page->stream);
@@ -374,7 +374,7 @@ static enum status figure_write(struct page *page, const char *path, const char 
     if (link)
         link_write(page, link);
     fputs("<img alt=\"", page->stream);
-    text_write(page, caption);
+    page_text(page, caption);
     fprintf(page->stream, "\" src=\"data:image/%s;base64,", type);
     base64_write(page->stream, bytes, size);
     fprintf(page->stream, "\"/>%s\n", link ? "</a>" : "");

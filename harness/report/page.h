@@ -1,7 +1,7 @@
 /* A page of headings, tables and pictures, written as one self-contained HTML file or as Markdown.
 
-   The HTML is strict: every element is closed, every attribute quoted, no script, nothing from outside. Text is
-   escaped by these functions; callers give it plain. */
+   The HTML is strict: every element is closed, every attribute quoted, nothing is loaded from outside, and all can be
+   read without its one script. Text is escaped by these functions; callers give it plain. */
 #ifndef SASBENCH_REPORT_PAGE_H
 #define SASBENCH_REPORT_PAGE_H
 
@@ -29,7 +29,7 @@ struct page {
 
 struct page_cell {
     const char *text;
-    const char *class; /* of the HTML cell: good, soft, bad, open, long; NULL for none */
+    const char *class; /* of the HTML cell: good, soft, bad, open; NULL for none */
 };
 
 /* Bytes that are left for rows; LONG_MAX without a limit. */
@@ -38,19 +38,20 @@ long page_room(const struct page *page);
 void page_begin(struct page *page, const char *title);
 void page_end(struct page *page);
 
+/* A text, escaped, for those who write elements of their own. */
+void page_text(struct page *page, const char *text);
 /* level 2 or 3; `id` for links within the page, may be NULL. */
 void page_heading(struct page *page, int level, const char *id, const char *text);
 void page_paragraph(struct page *page, const char *text);
-/* A part with a heading of level 3; `folded`: closed until it is asked for, in HTML. */
-void page_part_begin(struct page *page, const char *title, bool folded);
-void page_part_end(struct page *page, bool folded);
+/* A part with a title; in HTML it is closed until it is asked for. */
+void page_part_begin(struct page *page, const char *title);
+void page_part_end(struct page *page);
 /* Links to headings, in HTML only. */
 void page_contents(struct page *page, int count, const char *const *ids, const char *const *titles);
 
-/* A table scrolls sideways on a narrow screen; with `stack` its rows fall apart into blocks there, as suits long
-   texts. `columns` stays borrowed until page_table_end. A row has a cell for each column, the first being its name;
+/* On a narrow screen the rows of a table fall apart into blocks. `columns` stays borrowed until page_table_end. A row has a cell for each column, the first being its name;
    page_row_note writes one text in place of all others; without a name it belongs to the row above. */
-void page_table_begin(struct page *page, int count, const struct page_column *columns, bool stack);
+void page_table_begin(struct page *page, int count, const struct page_column *columns);
 void page_row(struct page *page, const struct page_cell *cells);
 void page_row_note(struct page *page, const char *name, const char *note);
 void page_table_end(struct page *page);

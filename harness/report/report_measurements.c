@@ -9,7 +9,11 @@
 #include "measure/outcome.h"
 #include "show/table.h"
 
-enum { COLUMNS = 12, LOBES_FIRST = 9 }; /* of width, PSLR and ISLR, in whose place scenes without targets show */
+enum {
+    COLUMNS = 12,
+    LOBES_FIRST = 9,
+    WARNING_LENGTH = 600
+}; /* of width, PSLR and ISLR, in whose place scenes without targets show */
 static const struct page_column shown_columns[COLUMNS] = {
     {"algorithm", false},      {"run time", true},    {"speed-up", true},  {"plan", true},
     {"GFLOP", true},           {"memory (MB)", true}, {"error", true},     {"error, best gain", true},
@@ -18,62 +22,63 @@ static const struct page_column sharpness_columns[3] = {{"entropy", true}, {"con
 
 /* --- Warnings -------------------------------------------------------------------------------------------------- */
 
-enum { WARNINGS_MOST = 16, WARNING_LENGTH = 600 }; /* further ones stand below their rows */
-
-/* Those of a scene that are of more rows than one, numbered from 1. */
-struct warnings {
-    int count, images; /* rows that are ok */
-    char text[WARNINGS_MOST][WARNING_LENGTH];
-    int rows[WARNINGS_MOST];
-};
-
-/* The number of a warning; 0 for none of them. */
-static int warning_number(const struct warnings *warnings, const char *text)
-{
-    for (int k = 0; k < warnings->count; k++)
-        if (strcmp(warnings->text[k], text) == 0)
-            return k + 1;
-    return 0;
-}
-
-static void warnings_find(const struct results *results, const char *scene, struct warnings *warnings)
+static bool is_warned(const struct measurement *row, const char *warning)
 {
     char text[WARNING_LENGTH];
-    int kept = 0;
-    *warnings = (struct warnings){0};
-    for (int k = 0; k < results->csv.row_count; k++) {
-        const struct measurement *row = &results->measurements[k];
-        if (strcmp(row->scene, scene) != 0 || strcmp(row->status, "ok") != 0)
-            continue;
-        warnings->images++;
-        for (const char *at = row->reason; warning_next(&at, text, sizeof text);) {
-            int number = warning_number(warnings, text);
-            if (number == 0 && warnings->count < WARNINGS_MOST) {
-                number = ++warnings->count;
-                strcpy(warnings->text[number - 1], text);
-            }
-            if (number > 0)
-                warnings->rows[number - 1]++;
-        }
-    }
-    for (int k = 0; k < warnings->count; k++)
-        if (warnings->rows[k] > 1 || warnings->images == 1) {
-            memmove(warnings->text[kept], warnings->text[k], WARNING_LENGTH);
-            warnings->rows[kept++] = warnings->rows[k];
-        }
-    warnings->count = kept;
+    for (const char *at = row->reason; warning_next(&at, text, sizeof text);)
+        if (strcmp(text, warning) == 0)
+            return true;
+    return false;
 }
 
-static void warnings_show(struct page *page, const struct warnings *warnings)
+/* Which images of the row's scene have a warning; empty where an earlier row has it and so told. */
+static void warned_find(const struct results *results, int row, const char *warning, char *who, size_t size)
 {
-    char text[WARNING_LENGTH + 100];
-    for (int k = 0; k < warnings->count; k++) {
-        snprintf(text, sizeof text, "%s", warnings->text[k]);
-        if (warnings->rows[k] < warnings->images)
-            snprintf(text, sizeof text, "Of %d of %d images, warning %d: %s", warnings->rows[k], warnings->images,
-                     k + 1, warnings->text[k] + strlen(OUTCOME_WARNING));
-        page_paragraph(page, text);
+    char spec[512];
+    int images = 0, warned = 0;
+    *who = '\0';
+    for (int k = 0; k < results->csv.row_count; k++) {
+        const struct measurement *other = &results->measurements[k];
+        if (strcmp(other->scene, results->measurements[row].scene) != 0 || strcmp(other->status, "ok") != 0)
+            continue;
+        images++;
+        if (!is_warned(other, warning))
+            continue;
+        if (k < row) {
+            *who = '\0';
+            return;
+        }
+        measurement_spec(other, spec, sizeof spec);
+        text_append(who, size, "%s%s", warned++ ? ", " : "", spec);
     }
+    if (warned == images && images > 1)
+        snprintf(who, size, "all");
+}
+
+void report_warnings_show(struct page *page, const struct results *results)
+{
+    static const struct page_column columns[] = {{"scene", false}, {"warning", false}, {"images", false}};
+    char text[WARNING_LENGTH], who[1200];
+    bool any = false;
+    for (int k = 0; k < results->csv.row_count; k++) {
+        const struct measurement *row = &results->measurements[k];
+        if (strcmp(row->status, "ok") != 0)
+            continue;
+        for (const char *at = row->reason; warning_next(&at, text, sizeof text);) {
+            warned_find(results, k, text, who, sizeof who);
+            if (!*who)
+                continue;
+            if (!any) {
+                page_heading(page, 2, "warnings", "Warnings");
+                page_table_begin(page, 3, columns);
+            }
+            any = true;
+            page_row(page,
+                     (struct page_cell[]){{row->scene, NULL}, {text + strlen(OUTCOME_WARNING), NULL}, {who, NULL}});
+        }
+    }
+    if (any)
+        page_table_end(page);
 }
 
 /* --- Rows ------------------------------------------------------------------------------------------------------ */
@@ -99,8 +104,8 @@ static void note_add(char *note, size_t size, const char *text)
         text_append(note, size, "%s%s", *note ? "; " : "", text);
 }
 
-/* Engine, what was left out, and of the reason what the scene's warnings do not say. */
-static void note_make(const struct measurement *row, const struct warnings *warnings, char *note, size_t size)
+/* Engine, what was left out, and of the reason what is no warning. */
+static void note_make(const struct measurement *row, char *note, size_t size)
 {
     char text[1200];
     const char *first = strstr(row->reason, OUTCOME_WARNING);
@@ -112,16 +117,9 @@ static void note_make(const struct measurement *row, const struct warnings *warn
         length -= 2; /* "; " */
     snprintf(text, sizeof text, "%.*s", (int)length, row->reason);
     note_add(note, size, text);
-    for (const char *at = row->reason; warning_next(&at, text, WARNING_LENGTH);) {
-        const int number = warning_number(warnings, text);
-        if (number > 0)
-            snprintf(text, sizeof text, "warning %d", number);
-        if (number == 0 || warnings->rows[number - 1] < warnings->images)
-            note_add(note, size, text);
-    }
 }
 
-static void row_show(struct page *page, const struct measurement *row, const struct warnings *warnings, bool sharpness)
+static void row_show(struct page *page, const struct measurement *row, bool sharpness)
 {
     char spec[512], note[2400], texts[COLUMNS][32] = {""};
     struct page_cell cells[COLUMNS];
@@ -154,7 +152,7 @@ static void row_show(struct page *page, const struct measurement *row, const str
     for (int k = 0; k < COLUMNS; k++)
         cells[k] = (struct page_cell){texts[k], NULL};
     cells[0] = (struct page_cell){spec, NULL};
-    note_make(row, warnings, note, sizeof note);
+    note_make(row, note, sizeof note);
     page_row(page, cells);
     if (*note)
         page_row_note(page, "", note);
@@ -169,23 +167,20 @@ void report_measurements_show(struct page *page, const struct results *results, 
         "Run time: median seconds from the echoes in memory to the complex image (~: noisy); speed-up: against the "
         "scalar reference loop timed beside. In parentheses the quartiles of the runs. Errors: relative L2 "
         "against the exact image. Width, PSLR and ISLR: medians over the targets, azimuth, main lobe "
-        "from first minimum to first minimum; without targets the image's sharpness. Below a row: the way that the "
-        "plan chose, what it left out, and what is to be said of this image.");
+        "from first minimum to first minimum; without targets the image's sharpness. Below a row: the engine that the "
+        "plan chose, and what it left out.");
     for (int s = 0; s < scene_count; s++) {
         const bool sharpness = scene_is_blind(results, scenes[s]);
         struct page_column columns[COLUMNS];
-        struct warnings warnings;
-        page_part_begin(page, scenes[s], scene_count > 1);
-        warnings_find(results, scenes[s], &warnings);
-        warnings_show(page, &warnings);
+        page_part_begin(page, scenes[s]);
         memcpy(columns, shown_columns, sizeof columns);
         if (sharpness)
             memcpy(columns + LOBES_FIRST, sharpness_columns, sizeof sharpness_columns);
-        page_table_begin(page, COLUMNS, columns, false);
+        page_table_begin(page, COLUMNS, columns);
         for (int row = 0; row < results->csv.row_count; row++)
             if (strcmp(results->measurements[row].scene, scenes[s]) == 0)
-                row_show(page, &results->measurements[row], &warnings, sharpness);
+                row_show(page, &results->measurements[row], sharpness);
         page_table_end(page);
-        page_part_end(page, scene_count > 1);
+        page_part_end(page);
     }
 }

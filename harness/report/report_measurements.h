@@ -5,7 +5,9 @@
 #include "results/results.h"
 #include "report/page.h"
 
-/* Heading, and a table for each scene: its warnings once ahead of it; below a row what is to be said of that alone. */
+/* Each warning of a scene once, with the images that have it; nothing without any. */
+void report_warnings_show(struct page *page, const struct results *results);
+/* Heading, and a table for each scene, folded; below a row how its image was made. */
 void report_measurements_show(struct page *page, const struct results *results, int scene_count,
                               const char *const *scenes);
 

@@ -158,10 +158,10 @@ enum status report_pictures_show(struct page *page, const char *directory, const
         struct picture *list;
         int list_count;
         status = pictures_find(directory, results, scenes[s], &list, &list_count);
-        page_part_begin(page, scenes[s], scene_count > 1);
+        page_part_begin(page, scenes[s]);
         if (status == STATUS_OK)
             status = scene_show(page, directory, list, list_count, BYTES_MOST / scene_count, &count);
-        page_part_end(page, scene_count > 1);
+        page_part_end(page);
         free(list);
     }
     if (count.shown == 0)

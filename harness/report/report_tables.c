@@ -9,7 +9,6 @@
 #include "text/text_append.h"
 #include "report/verdict.h"
 #include "show/plot.h"
-#include "report/report_cheapest.h"
 
 /* Empty where there is no such column. */
 static const char *cell_of(const struct csv *csv, int row, const char *column)
@@ -26,7 +25,7 @@ static void plans_summary_show(struct page *page, const struct csv *csv)
     static const struct page_column columns[COLUMNS] = {{"scene", false},  {"budget", false},
                                                         {"chosen", false}, {"time (s)", true},
                                                         {"error", true},   {"what is left out", false}};
-    page_table_begin(page, COLUMNS, columns, true);
+    page_table_begin(page, COLUMNS, columns);
     for (int row = 0; row < csv->row_count; row++) {
         struct page_cell cells[COLUMNS];
         char label[160], numbers[COLUMNS][32];
@@ -34,7 +33,7 @@ static void plans_summary_show(struct page *page, const struct csv *csv)
             continue;
         for (int k = 0; k < COLUMNS; k++) {
             double value;
-            cells[k] = (struct page_cell){cell_of(csv, row, names[k]), k < COLUMNS - 1 ? NULL : "long"};
+            cells[k] = (struct page_cell){cell_of(csv, row, names[k]), NULL};
             if (columns[k].number && csv_number(cells[k].text, &value) && isfinite(value)) {
                 snprintf(numbers[k], sizeof numbers[k], "%.2g", value);
                 cells[k].text = numbers[k];
@@ -57,12 +56,10 @@ const struct report_table report_tables[REPORT_TABLES] = {
          "counted operations, of all algorithms, and of each family. Ties: settings that are as fast within the "
          "noise.",
      .group = "scene",
-     .first = true,
-     .folded = true,
-     .summary = cheapest_summary_show,
+     .brief = true,
      .columns = {{"error_below", "error below", SHOW_TEXT},
                  {"cost", "cost", SHOW_TEXT},
-                 {"family", "of", SHOW_TEXT, .later = true},
+                 {"family", "of", SHOW_TEXT},
                  {"algorithm", "algorithm", SHOW_TEXT},
                  {"options", "options", SHOW_TEXT},
                  {"precision", "precision", SHOW_TEXT},
@@ -72,7 +69,7 @@ const struct report_table report_tables[REPORT_TABLES] = {
                  {"error", "error", SHOW_NUMBER},
                  {"pslr_db", "PSLR (dB)", SHOW_NUMBER},
                  {"islr_db", "ISLR (dB)", SHOW_NUMBER},
-                 {"ties", "ties", SHOW_TEXT, .later = true}}},
+                 {"ties", "ties", SHOW_TEXT}}},
     {.file = "slopes.csv",
      .id = "slopes",
      .title = "Slopes",
@@ -82,7 +79,7 @@ const struct report_table report_tables[REPORT_TABLES] = {
          "the error falls, the finest half of that, and the floor. The residual is the points' rms distance from the "
          "line in log10.",
      .group = "scene",
-     .folded = true,
+     .brief = true,
      .columns = {{"algorithm", "algorithm", SHOW_TEXT},
                  {"options", "options", SHOW_TEXT},
                  {"precision", "precision", SHOW_TEXT},
@@ -102,8 +99,7 @@ const struct report_table report_tables[REPORT_TABLES] = {
          "What auto chose before it formed an image, and why not others: of each algorithm the fastest setting that is "
          "within the error, or the nearest to it. Times and errors are predicted; the measured ones are below.",
      .group = "scene",
-     .stack = true,
-     .folded = true,
+     .brief = true,
      .summary = plans_summary_show,
      .columns = {{"options", "budget", SHOW_ONCE},
                  {"precision", "precision", SHOW_ONCE},
@@ -119,8 +115,7 @@ const struct report_table report_tables[REPORT_TABLES] = {
      .text =
          "Errors as predicted before any plan, over the measured ones after one gain: of all images of an algorithm. "
          "Below 1 the prediction is too low.",
-     .first = true,
-     .folded = true,
+     .brief = true,
      .columns = {{"algorithm", "algorithm", SHOW_TEXT},
                  {"images", "images", SHOW_NUMBER},
                  {"least", "least", SHOW_NUMBER},
@@ -133,7 +128,7 @@ const struct report_table report_tables[REPORT_TABLES] = {
      .title = "Upsampling rules",
      .text = "Samples for each one recorded that BP22 Eq. (20) and ZP15's lambda/8 rule ask for, and the constants "
              "of the error laws.",
-     .folded = true,
+     .brief = true,
      .columns = {{"scene", "scene", SHOW_TEXT},
                  {"fc_hz", "fc (Hz)", SHOW_NUMBER},
                  {"fs_hz", "fs (Hz)", SHOW_NUMBER},
@@ -148,8 +143,6 @@ const struct report_table report_tables[REPORT_TABLES] = {
      .text = "What the papers claim, each judged from the measurements of this folder: as printed, and, where LBF21's "
              "scheme matters, with the corrected scheme (theta at F, blocks that blend).",
      .group = "paper",
-     .stack = true,
-     .first = true,
      .columns = {{"id", "id", SHOW_TEXT},
                  {"section", "section", SHOW_TEXT},
                  {"claim", "claim", SHOW_TEXT, .detail = true},
@@ -163,8 +156,6 @@ const struct report_table report_tables[REPORT_TABLES] = {
          "The papers' numbers beside ours; difference is ours less the paper's. An assumption stands once, and holds "
          "for the rows below it.",
      .group = "table",
-     .stack = true,
-     .first = true,
      .columns = {{"item", "item", SHOW_TEXT},
                  {"quantity", "quantity", SHOW_TEXT},
                  {"definition", "definition", SHOW_TEXT},
@@ -177,7 +168,6 @@ const struct report_table report_tables[REPORT_TABLES] = {
         {.file = "stability.csv",
          .id = "stability",
          .title = "Stability",
-         .first = true,
          .text = "Extreme scenes in several rounding modes. Error: relative L2 against the right image, and its bound. "
                  "Digits lost: against the method's own sum in extended precision; 2 are accepted. Spread: the largest "
                  "difference between two rounding modes.",
@@ -207,7 +197,7 @@ enum status report_table_read(const char *directory, const struct report_table *
     if (status == STATUS_OK && table->group && csv_column(csv, table->group) < 0)
         status = status_set(STATUS_INVALID, "%s: there is no column '%s', which is needed", path, table->group);
     for (int k = 0; k < REPORT_COLUMNS && table->columns[k].title && status == STATUS_OK; k++)
-        if (csv_column(csv, table->columns[k].name) < 0 && !table->columns[k].later)
+        if (csv_column(csv, table->columns[k].name) < 0)
             status = status_set(STATUS_INVALID, "%s: there is no column '%s', which is needed", path,
                                 table->columns[k].name);
     return status;
@@ -266,7 +256,7 @@ static void rows_show(struct page *page, const struct report_table *table, const
             columns[count] = (struct page_column){table->columns[k].title, table->columns[k].show == SHOW_NUMBER};
             shown[count++] = k;
         }
-    page_table_begin(page, count, columns, table->stack);
+    page_table_begin(page, count, columns);
     for (int row = 0; row < csv->row_count; row++) {
         struct page_cell cells[REPORT_COLUMNS];
         char numbers[REPORT_COLUMNS][32];
@@ -319,9 +309,9 @@ static void groups_show(struct page *page, const struct report_table *table, con
         if (page_room(page) < 0 || group_seen(csv, column, row))
             continue;
         group_title(table, csv_cell(csv, row, column), title, sizeof title);
-        page_part_begin(page, title, table->folded);
+        page_part_begin(page, title);
         rows_show(page, table, csv, csv_cell(csv, row, column), details);
-        page_part_end(page, table->folded);
+        page_part_end(page);
     }
     if (left_out > 0) {
         char text[200];
@@ -332,7 +322,7 @@ static void groups_show(struct page *page, const struct report_table *table, con
 
 void report_table_show(struct page *page, const struct report_table *table, const struct csv *csv)
 {
-    const bool brief = table->folded && page->format == PAGE_MARKDOWN;
+    const bool brief = table->brief && page->format == PAGE_MARKDOWN;
     const long room = page_room(page);
     if (csv->row_count == 0 || (brief && !table->summary))
         return;
@@ -340,15 +330,22 @@ void report_table_show(struct page *page, const struct report_table *table, cons
     page_heading(page, 2, table->id, table->title);
     page_paragraph(page, table->text);
     verdicts_count_show(page, table, csv);
+    if (table->summary && !brief)
+        page_part_begin(page, "At a glance");
     if (table->summary)
         table->summary(page, csv);
+    if (table->summary && !brief)
+        page_part_end(page);
     if (brief)
         return;
     if (!details)
         page_paragraph(page, "The texts are in report.html.");
     int column = table->group ? csv_column(csv, table->group) : -1;
-    if (column < 0)
-        rows_show(page, table, csv, NULL, details);
-    else
+    if (column >= 0) {
         groups_show(page, table, csv, column, details);
+        return;
+    }
+    page_part_begin(page, table->file);
+    rows_show(page, table, csv, NULL, details);
+    page_part_end(page);
 }

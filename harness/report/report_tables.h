@@ -10,15 +10,12 @@ enum { REPORT_COLUMNS = 13 };
 /* A CSV file on the page. */
 struct report_table {
     const char *file, *id, *title, *text;
-    const char *group; /* column whose values become headings, or NULL */
-    bool stack;        /* long texts: rows fall apart on a narrow screen */
-    bool first;        /* of the papers: ahead of the measurements that it rests on */
-    bool folded;       /* each group is closed until it is asked for, and Markdown has only the summary */
+    const char *group;                                         /* column whose values become headings, or NULL */
+    bool brief;                                                /* Markdown has only the summary */
     void (*summary)(struct page *page, const struct csv *csv); /* of all groups, ahead of them; may be NULL */
     struct {
         const char *name, *title;
         enum { SHOW_TEXT, SHOW_NUMBER, SHOW_VERDICT, SHOW_ONCE } show; /* once: not again in the rows below */
-        bool later;                                                    /* files of an older version have none */
         bool detail;           /* not in the Markdown of a file that takes more than half of the room that is left */
     } columns[REPORT_COLUMNS]; /* title NULL ends */
 };

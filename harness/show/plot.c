@@ -118,29 +118,6 @@ enum status plot_phase(const char *path, const char *plots_directory, const stru
     return lines_draw(NULL, path, plots_directory, false, picture);
 }
 
-const char *const folder_plots[] = {"error_time", "error_flops", "lobes_time", "upsampling", NULL};
-
-enum status plot_folder(const char *path, const char *plots_directory, const char *name, const char *folder,
-                        const char *scene, bool *drawn)
-{
-    struct plot plot;
-    char script[64];
-    snprintf(script, sizeof script, "%s.gp", name);
-    *drawn = false;
-    enum status status = plot_begin(&plot, path, false);
-    if (status == STATUS_OK) {
-        plot_path_variable(plot.preamble, "folder", folder);
-        plot_variable(plot.preamble, "scene", scene);
-        status = plot_run(&plot, plots_directory, script);
-    }
-    if (status == STATUS_OK && !plot_is_empty(&plot)) {
-        *drawn = true;
-        status = plot_place(&plot);
-    }
-    plot_end(&plot);
-    return status;
-}
-
 enum status plot_csv(const char *path, const char *plots_directory, const char *script, const char *csv,
                      const char *footer)
 {

@@ -48,12 +48,11 @@ enum status plot_slices_later(struct plot_queue *queue, const char *path, const 
 /* The same for phase errors: position in cycles a metre, `power_db` holds radians. */
 enum status plot_phase(const char *path, const char *plots_directory, const struct slices_picture *picture);
 
-/* The scripts about a results folder, by name; NULL ends the list. */
-extern const char *const folder_plots[];
-/* One of them for one scene, into `path`, which ends in .png or .svg. *drawn: false where the scene has nothing to show
-   there (no targets, no upsampling rate); no file is written then. */
-enum status plot_folder(const char *path, const char *plots_directory, const char *name, const char *folder,
-                        const char *scene, bool *drawn);
+/* Of the rows in DIR/measurements.csv, as PNG and SVG: error against time, DIR/SCENE-error_time, of every scene, and all
+   of them side by side, DIR/overview; or of the one `scene` of a sweep alone, with DIR/SCENE-upsampling where its
+   settings change the upsampling rate. What has less than two points is not drawn; what cannot be drawn is reported and
+   added to *undrawn. Errors: as results_read; STATUS_FAILED without memory. */
+enum status plot_results(const char *directory, const char *scene, int *undrawn);
 
 /* A script about one CSV file, into `path`, a PNG, and as SVG beside it; footer: where the file is from. */
 enum status plot_csv(const char *path, const char *plots_directory, const char *script, const char *csv,

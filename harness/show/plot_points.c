@@ -2,12 +2,12 @@
 #include "show/plot_points.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "files/csv.h"
 #include "text/text_append.h"
-#include "files/text_file.h"
 
 struct setting setting_read(const char *options)
 {
@@ -82,133 +82,150 @@ int pareto_ties_find(int count, const double *low, const double *high, const dou
     return ties;
 }
 
-/* All [row_count]; of one scene at a time. */
-struct points {
-    double *run_s, *flops, *error; /* NAN where a row is no point of the scene */
-    int *front;
-    bool *is_point, *cheap[2]; /* of the Pareto front by run time, by FLOPs */
-};
-
-static void points_free(struct points *points)
+const struct measurement *scene_fastest(const struct results *results, const char *scene, double error_most)
 {
-    free(points->run_s);
-    free(points->flops);
-    free(points->error);
-    free(points->front);
-    free(points->is_point);
-    free(points->cheap[0]);
-    free(points->cheap[1]);
-}
-
-static enum status points_make(int count, struct points *points)
-{
-    size_t room = (size_t)count + 1;
-    *points = (struct points){calloc(room, sizeof *points->run_s),    calloc(room, sizeof *points->flops),
-                              calloc(room, sizeof *points->error),    calloc(room, sizeof *points->front),
-                              calloc(room, sizeof *points->is_point), {calloc(room, 1), calloc(room, 1)}};
-    if (points->run_s && points->flops && points->error && points->front && points->is_point && points->cheap[0]
-        && points->cheap[1])
-        return STATUS_OK;
-    points_free(points);
-    return status_set(STATUS_FAILED, "no memory for %d points", count);
-}
-
-/* Marks the rows of a scene. */
-static void scene_mark(const struct results *results, const char *scene, struct points *points)
-{
-    int count = results->csv.row_count;
-    double most_pairs = scene_most_pairs(results, scene);
-    for (int k = 0; k < count; k++) {
-        const struct measurement *row = &results->measurements[k];
-        bool ours = strcmp(row->scene, scene) == 0 && row_is_point(row, most_pairs);
-        points->is_point[k] |= ours;
-        points->run_s[k] = ours ? row->run_s : NAN;
-        points->flops[k] = ours ? row->flops : NAN;
-        points->error[k] = ours ? row->error : NAN;
-    }
-    for (int c = 0; c < 2; c++) {
-        int size = pareto_front_find(count, c ? points->flops : points->run_s, points->error, points->front);
-        for (int k = 0; k < size; k++)
-            points->cheap[c][points->front[k]] = true;
-    }
-}
-
-static void rows_write(FILE *file, const struct results *results, const struct points *points)
-{
+    const struct measurement *best = NULL;
     for (int k = 0; k < results->csv.row_count; k++) {
         const struct measurement *row = &results->measurements[k];
-        const struct setting setting = setting_read(row->options);
-        const char *const texts[] = {row->scene, row->algorithm, row->precision, setting.rest};
-        const double numbers[] = {setting.value, setting_rate(row->algorithm, &setting),
-                                  row->run_s,    row->flops,
-                                  row->error,    row->pslr_db,
-                                  row->islr_db,  row->control_s};
-        double interval[2];
-        measurement_interval(row, &interval[0], &interval[1]);
-        if (strcmp(row->status, "ok") != 0 || !(row->run_s > 0 && row->error > 0))
+        if (strcmp(row->scene, scene) == 0
+            && measurement_is_cheaper(row, best, offsetof(struct measurement, run_s), error_most))
+            best = row;
+    }
+    return best;
+}
+
+enum status scenes_find(const struct results *results, const char ***scenes, int *count)
+{
+    const int rows = results->csv.row_count;
+    *count = 0;
+    *scenes = calloc((size_t)rows + 1, sizeof **scenes);
+    if (!*scenes)
+        return status_set(STATUS_FAILED, "%s: no memory for %d rows", results->csv.path, rows);
+    for (int row = 0; row < rows; row++) {
+        bool seen = false;
+        for (int k = *count - 1; k >= 0 && !seen; k--)
+            seen = strcmp((*scenes)[k], results->measurements[row].scene) == 0;
+        if (!seen)
+            (*scenes)[(*count)++] = results->measurements[row].scene;
+    }
+    return STATUS_OK;
+}
+
+/* --- Points of a scene ----------------------------------------------------------------------------------------- */
+
+void points_free(struct points *points)
+{
+    free(points->list);
+    free(points->series);
+    free(points->front);
+    *points = (struct points){0};
+}
+
+static bool settings_vary(const struct point *a, const struct point *b)
+{
+    return strcmp(a->setting.rest, b->setting.rest) != 0 || strcmp(a->setting.name, b->setting.name) != 0;
+}
+
+/* The number of a point's series, which may be a new one. */
+static int series_find(struct points *points, const struct point *point)
+{
+    for (int k = 0; k < points->count; k++) {
+        const struct point *other = &points->list[k];
+        if (strcmp(other->row->algorithm, point->row->algorithm) == 0
+            && strcmp(other->row->precision, point->row->precision) == 0 && !settings_vary(other, point))
+            return other->series;
+    }
+    struct series *series = &points->series[points->series_count];
+    snprintf(series->title, sizeof series->title, "%.40s%s%s", point->row->algorithm, *point->setting.rest ? " " : "",
+             point->setting.rest);
+    return points->series_count++;
+}
+
+/* Of sorted points: where the series are, and which of their algorithm's they are; both precisions of one setting are
+   one. */
+static void series_number(struct points *points)
+{
+    for (int k = points->count - 1; k >= 0; k--) {
+        points->series[points->list[k].series].first = k;
+        points->series[points->list[k].series].count++;
+    }
+    for (int s = 0; s < points->series_count; s++) {
+        struct series *series = &points->series[s];
+        const struct point *mine = &points->list[series->first];
+        series->alone = series->count == 1;
+        for (int t = 0, next = 0; t < points->series_count; t++) {
+            const struct point *other = &points->list[points->series[t].first];
+            if (t == s || strcmp(other->row->algorithm, mine->row->algorithm) != 0)
+                continue;
+            series->alone = false;
+            if (t < s && !settings_vary(other, mine)) {
+                series->member = points->series[t].member;
+                break;
+            }
+            if (t < s && points->series[t].member >= next)
+                series->member = next = points->series[t].member + 1;
+        }
+    }
+}
+
+static int point_order(const void *a, const void *b)
+{
+    const struct point *x = a, *y = b;
+    const double more = x->setting.value - y->setting.value;
+    return x->series != y->series ? x->series - y->series : (more > 0) - (more < 0);
+}
+
+static int number_order(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Front and median, from room for a number and an error for each point. */
+static void points_judge(struct points *points, double *costs, double *errors)
+{
+    int known = 0;
+    for (int k = 0; k < points->count; k++)
+        if (points->list[k].row->control_s > 0)
+            costs[known++] = points->list[k].row->control_s;
+    qsort(costs, (size_t)known, sizeof *costs, number_order);
+    points->control_s = known ? costs[(known - 1) / 2] : NAN;
+    for (int k = 0; k < points->count; k++) {
+        costs[k] = points->list[k].row->run_s;
+        errors[k] = points->list[k].row->error;
+    }
+    points->front_count = pareto_front_find(points->count, costs, errors, points->front);
+    for (int k = 0; k < points->front_count; k++)
+        points->list[points->front[k]].on_front = true;
+}
+
+enum status points_find(const struct results *results, const char *scene, struct points *points)
+{
+    const size_t most = (size_t)results->csv.row_count + 1;
+    const double most_pairs = scene_most_pairs(results, scene);
+    double *room = calloc(2 * most, sizeof *room);
+    *points = (struct points){.scene = scene,
+                              .list = calloc(most, sizeof *points->list),
+                              .series = calloc(most, sizeof *points->series),
+                              .front = calloc(most, sizeof *points->front)};
+    if (!room || !points->list || !points->series || !points->front) {
+        free(room);
+        points_free(points);
+        return status_set(STATUS_FAILED, "%s: no memory for %zu points", scene, most);
+    }
+    for (int k = 0; k < results->csv.row_count; k++) {
+        const struct measurement *row = &results->measurements[k];
+        if (strcmp(row->scene, scene) != 0 || !row_is_point(row, most_pairs))
             continue;
-        for (size_t n = 0; n < sizeof texts / sizeof *texts; n++) {
-            csv_write_text(file, texts[n]);
-            fputc(',', file);
-        }
-        for (size_t n = 0; n < sizeof numbers / sizeof *numbers; n++) {
-            csv_write_number(file, numbers[n]);
-            fputc(',', file);
-        }
-        fprintf(file, "%d,%d,%d", points->is_point[k], points->cheap[0][k], points->cheap[1][k]);
-        for (int n = 0; n < 2; n++) {
-            fputc(',', file);
-            csv_write_number(file, interval[n]);
-        }
-        fputc('\n', file);
+        struct point *point = &points->list[points->count];
+        *point = (struct point){.row = row, .setting = setting_read(row->options)};
+        point->rate = setting_rate(row->algorithm, &point->setting);
+        point->series = series_find(points, point);
+        points->count++;
     }
-}
-
-static bool scene_is_new(const struct results *results, int row)
-{
-    for (int k = 0; k < row; k++)
-        if (strcmp(results->measurements[k].scene, results->measurements[row].scene) == 0)
-            return false;
-    return true;
-}
-
-static enum status file_write(const char *directory, const struct results *results, const struct points *points)
-{
-    static const char *const keys[] = {"machine", "threads", "commit"};
-    char path[4096];
-    struct text_file file;
-    snprintf(path, sizeof path, "%s/points.csv", directory);
-    enum status status = text_file_open(path, &file);
-    if (status != STATUS_OK)
-        return status;
-    fputs("# sasbench points 2\n", file.stream);
-    for (size_t k = 0; k < sizeof keys / sizeof *keys; k++) {
-        const char *value = csv_comment(&results->csv, keys[k]);
-        fprintf(file.stream, "# %s: %s\n", keys[k], value ? value : "unknown");
-    }
-    fputs("scene,algorithm,precision,rest,value,rate,run_s,flops,error,pslr_db,islr_db,control_s,is_point,front_run_s,"
-          "front_flops,run_q1_s,run_q3_s\n",
-          file.stream);
-    rows_write(file.stream, results, points);
-    return text_file_close(&file, STATUS_OK);
-}
-
-enum status plot_points_write(const char *directory)
-{
-    char path[4096];
-    struct results results;
-    struct points points;
-    snprintf(path, sizeof path, "%s/measurements.csv", directory);
-    enum status status = results_read(path, &results);
-    if (status == STATUS_OK)
-        status = points_make(results.csv.row_count, &points);
-    if (status == STATUS_OK) {
-        for (int row = 0; row < results.csv.row_count; row++)
-            if (scene_is_new(&results, row))
-                scene_mark(&results, results.measurements[row].scene, &points);
-        status = file_write(directory, &results, &points);
-        points_free(&points);
-    }
-    results_free(&results);
-    return status;
+    qsort(points->list, (size_t)points->count, sizeof *points->list, point_order);
+    series_number(points);
+    points_judge(points, room, room + most);
+    free(room);
+    return STATUS_OK;
 }

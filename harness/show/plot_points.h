@@ -29,9 +29,37 @@ int pareto_front_find(int count, const double *cost, const double *error, int *f
    than: whose interval [low, high] of the cost lies below theirs. Returns how many. */
 int pareto_ties_find(int count, const double *low, const double *high, const double *error, int size, int *front);
 
-/* Write DIR/points.csv from DIR/measurements.csv: a row for each that was measured (results/README.md has its columns),
-   which is all that plots/scene.awk knows of them. Errors: as results_read; STATUS_INVALID for a folder that cannot be
-   written; STATUS_FAILED without memory. */
-enum status plot_points_write(const char *directory);
+/* The fastest row of a scene with an error up to error_most; NULL: no row has one. */
+const struct measurement *scene_fastest(const struct results *results, const char *scene, double error_most);
+/* The scenes in the order of their first rows, in *scenes [*count], to be freed; the names are borrowed. Errors:
+   STATUS_FAILED without memory. */
+enum status scenes_find(const struct results *results, const char ***scenes, int *count);
+
+/* A point of a picture; those of one series stand together, in the order of their settings. */
+struct point {
+    const struct measurement *row; /* borrowed, like the scene's name */
+    struct setting setting;
+    double rate; /* setting_rate */
+    int series;
+    bool on_front; /* the Pareto front by run time */
+};
+/* The settings of an algorithm that differ in one number alone. */
+struct series {
+    int first, count; /* points */
+    int member;       /* which of its algorithm's, from 0 */
+    bool alone;       /* the algorithm has no other point */
+    char title[300];  /* algorithm and the other settings */
+};
+struct points {
+    const char *scene;
+    struct point *list;    /* [count] */
+    struct series *series; /* [series_count] */
+    int *front;            /* [front_count] points, the fastest first */
+    int count, series_count, front_count;
+    double control_s; /* median time of the scalar reference loop; NAN: unknown */
+};
+/* What a scene's pictures show. Errors: STATUS_FAILED without memory; points_free accepts a zeroed struct. */
+enum status points_find(const struct results *results, const char *scene, struct points *points);
+void points_free(struct points *points);
 
 #endif

@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include "show/plot.h"
-#include "show/plot_points.h"
 #include "report/report.h"
 #include "text/shown_text.h"
 #include "tests/support.h"
@@ -47,14 +46,9 @@ static const char *const payloads[] = {"`touch PWNED`",
                                        "=touch PWNED"};
 enum { PAYLOADS = sizeof payloads / sizeof *payloads };
 /* With control characters: refused where they are read. */
-static const char *const broken[] = {"x\n!touch PWNED\n#",
-                                     "x\nEND_OF_ROWS\nsystem('touch PWNED')\n#",
-                                     "3\nEND_OF_SLOPES\nsystem('touch PWNED')\n#",
-                                     "x\nEND_OF_LABELS\nsystem('touch PWNED')\n#",
-                                     "x\rsystem('touch PWNED')",
-                                     "x\tsystem('touch PWNED')",
-                                     "x\\\nsystem('touch PWNED')",
-                                     "x\x1b[31m"};
+static const char *const broken[] = {"x\n!touch PWNED\n#",         "3\nEND\nsystem('touch PWNED')\n#",
+                                     "x\rsystem('touch PWNED')",   "x\tsystem('touch PWNED')",
+                                     "x\\\nsystem('touch PWNED')", "x\x1b[31m"};
 enum { BROKEN = sizeof broken / sizeof *broken };
 
 static int work_folder(void **state)
@@ -171,36 +165,19 @@ static void texts_are_no_commands(void **state)
         if (report_write(given) != STATUS_OK)
             fail_msg("%s: %s", payloads[k], status_message());
         assert_no_canary("report", payloads[k]);
-        for (int n = 0; folder_plots[n]; n++)
-            plot_by_hand(folder_plots[n], given);
-        assert_no_canary("a script of plots/", payloads[k]);
+        int undrawn = 0;
         char picture[1024];
+        assert_int_equal(plot_results(given, NULL, &undrawn), STATUS_OK);
+        assert_int_equal(plot_results(given, payloads[k], &undrawn), STATUS_OK);
+        assert_int_equal(undrawn, 0);
+        assert_no_canary("a script of plots/", payloads[k]);
+        picture_path(given, payloads[k], "upsampling.svg", picture, sizeof picture);
+        if (access(picture, R_OK) != 0)
+            fail_msg("%s: no picture %s", payloads[k], picture);
         picture_path(given, payloads[k], "error_time.png", picture, sizeof picture);
         if (access(picture, R_OK) != 0)
             fail_msg("%s: no picture %s", payloads[k], picture);
     }
-}
-
-/* No letter of the folder's texts is in what gnuplot is given to run. */
-static void texts_are_given_as_codes(void **state)
-{
-    (void)state;
-    static char text[1 << 16];
-    results_fill(".", "\"touch\" 'me'", "touch", "touch");
-    assert_int_equal(plot_points_write("."), STATUS_OK);
-    setenv("FOLDER", ".", 1);
-    setenv("SCENE", "\"touch\" 'me'", 1);
-    setenv("PLOTS", PLOTS, 1);
-    FILE *stream = popen("LC_ALL=C awk -f \"$PLOTS\"/scene.awk", "r");
-    assert_non_null(stream);
-    text[fread(text, 1, sizeof text - 1, stream)] = '\0';
-    assert_int_equal(pclose(stream), 0);
-    unsetenv("FOLDER");
-    unsetenv("SCENE");
-    assert_non_null(strstr(text, "caption = \"\\042\\164\\157\\165\\143\\150\\042"));
-    assert_non_null(strstr(text, "bp22_rate = NaN"));
-    assert_null(strstr(text, "touch"));
-    assert_null(strchr(text, '\''));
 }
 
 static void control_characters_are_refused(void **state)
@@ -213,9 +190,8 @@ static void control_characters_are_refused(void **state)
                          place == 2 ? broken[k] : "1");
             assert_int_equal(report_write("results"), STATUS_INVALID);
             assert_non_null(strstr(status_message(), ".csv:"));
-            assert_int_equal(system("cp results/measurements.csv results/points.csv"), 0);
-            plot_by_hand("error_time", "results");
-            plot_by_hand("upsampling", "results");
+            int undrawn = 0;
+            assert_true(plot_results("results", "a", &undrawn) == STATUS_INVALID || undrawn > 0);
             assert_no_canary("a broken line", broken[k]);
             assert_int_equal(system("rm -r results"), 0);
         }
@@ -306,53 +282,15 @@ static void pages_are_utf8_whatever_the_names_are(void **state)
     }
 }
 
-/* In a locale with a decimal comma mawk would read 0.25 as 0. An awk ahead of the real one tells what it is started
-   with. */
-static void pictures_are_the_same_in_every_locale(void **state)
-{
-    (void)state;
-    results_fill(".", "a", "b", "1");
-    assert_int_equal(report_write(folder), STATUS_OK);
-    char *plain = support_read("a-error_time.svg"), *paths = strdup(getenv("PATH")), *before = getenv("LC_ALL");
-    char path[4096];
-    assert_true(plain && paths);
-    before = before ? strdup(before) : NULL;
-    assert_int_equal(setenv("LOCALES", path_of("locales"), 1), 0);
-    support_write("awk", "#!/bin/sh\necho \"$LC_ALL\" >> \"$LOCALES\"\nPATH=${PATH#*:}\nexec awk \"$@\"\n");
-    assert_int_equal(chmod("awk", 0755), 0);
-    snprintf(path, sizeof path, "%s:%s", folder, paths);
-    setenv("PATH", path, 1);
-    setenv("LC_ALL", "de_DE.UTF-8", 1);
-    assert_int_equal(report_write(folder), STATUS_OK);
-    plot_by_hand("error_time", folder);
-    setenv("PATH", paths, 1);
-    if (before)
-        setenv("LC_ALL", before, 1);
-    else
-        unsetenv("LC_ALL");
-    char *locales = support_read("locales"), *again = support_read("a-error_time.svg");
-    assert_non_null(locales);
-    assert_int_equal(strspn(locales, "C\n"), strlen(locales));
-    assert_true(strlen(locales) >= 10);
-    assert_string_equal(again, plain);
-    free(locales);
-    free(again);
-    free(plain);
-    free(paths);
-    free(before);
-}
-
 int main(void)
 {
 #define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, work_folder, work_folder_end)
     const struct CMUnitTest tests[] = {
         IN_FOLDER(texts_are_no_commands),
-        IN_FOLDER(texts_are_given_as_codes),
         IN_FOLDER(control_characters_are_refused),
         IN_FOLDER(paths_are_no_pipes),
         IN_FOLDER(only_regular_pictures_are_shown),
         IN_FOLDER(pages_are_utf8_whatever_the_names_are),
-        IN_FOLDER(pictures_are_the_same_in_every_locale),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -78,7 +78,7 @@ static bool is_picture_beside(const char *value, const char *end)
            && strspn(value, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.%") >= length;
 }
 
-/* One `NAME="VALUE"`: nothing may come from outside, no script may run, no two elements may have one name. */
+/* One `NAME="VALUE"`: nothing may come from outside, no two elements may have one name. */
 static void parse_attribute(struct parser *parser)
 {
     char name[32];
@@ -132,8 +132,9 @@ static void parse_element(struct parser *parser)
     parser->rows += strcmp(name, "tr") == 0;
     parser->drawings += strcmp(name, "svg") == 0;
     parser->images += strcmp(name, "img") == 0;
-    if (strcmp(name, "script") == 0)
-        parse_failed(parser, "a script");
+    parser->scripts += strcmp(name, "script") == 0;
+    if (parser->scripts > 1)
+        parse_failed(parser, "a second script");
     for (;;) {
         parser->at += strspn(parser->at, " \n\t\r");
         if (*parser->at == '>' || strncmp(parser->at, "/>", 2) == 0)
@@ -147,7 +148,7 @@ static void parse_element(struct parser *parser)
     parser->at++;
     assert_true(parser->depth < DEPTH_MAX);
     snprintf(parser->open[parser->depth++], sizeof parser->open[0], "%s", name);
-    if (strcmp(name, "style") == 0)
+    if (strcmp(name, "style") == 0 || strcmp(name, "script") == 0)
         parser->at += strcspn(parser->at, "<");
 }
 

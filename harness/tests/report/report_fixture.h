@@ -15,7 +15,7 @@ struct parser {
     const char *at;
     char open[DEPTH_MAX][32]; /* names of the elements that are open */
     int depth;
-    int tables, rows, drawings, images;
+    int tables, rows, drawings, images, scripts;
     char ids[IDS_MAX][48]; /* of elements */
     int id_count;
 };

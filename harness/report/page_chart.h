@@ -1,0 +1,18 @@
+/* Error against run time on a page, in HTML only: SVG of our own, whose points have names and can be reached by key. */
+#ifndef SASBENCH_REPORT_PAGE_CHART_H
+#define SASBENCH_REPORT_PAGE_CHART_H
+
+#include "report/families.h"
+#include "report/page.h"
+#include "show/plot_points.h"
+
+/* One scene's points; those of the front can be focused, and say how they are measured again. Errors: STATUS_FAILED
+   without memory. */
+enum status page_chart(struct page *page, const struct families *families, const struct points *points);
+/* All scenes as small panels with the same axes, each a link to #scene-1, #scene-2 ..., and what the points stand for.
+   Scenes without points have none. */
+void page_overview(struct page *page, const struct families *families, const struct points *scenes, int count);
+/* The command that measures a row again. */
+void measured_again(const struct measurement *row, char *text, size_t size);
+
+#endif

@@ -1,0 +1,116 @@
+/* Axes and names of a chart (chart.h). */
+#include "show/chart.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "show/plot.h"
+
+static const double point_px = 5, line_px = 14; /* half of a point; a line of text */
+
+struct chart chart_fit(const struct points *points, double width, double height)
+{
+    struct chart chart = {.cost_low = INFINITY,
+                          .cost_high = isfinite(points->control_s) ? points->control_s : 0,
+                          .error_low = INFINITY,
+                          .width = width,
+                          .height = height};
+    for (int k = 0; k < points->count; k++) {
+        double low, high;
+        measurement_interval(points->list[k].row, &low, &high);
+        chart.cost_low = fmin(chart.cost_low, low);
+        chart.cost_high = fmax(chart.cost_high, high);
+        chart.error_low = fmin(chart.error_low, points->list[k].row->error);
+        chart.error_high = fmax(chart.error_high, points->list[k].row->error);
+    }
+    chart.cost_low /= 1.3;
+    chart.cost_high *= 1.4;
+    chart.error_low /= 1.6;
+    chart.error_high *= 1.6;
+    return chart;
+}
+
+double chart_x(const struct chart *chart, double cost)
+{
+    return chart->width * log(cost / chart->cost_low) / log(chart->cost_high / chart->cost_low);
+}
+
+double chart_y(const struct chart *chart, double error)
+{
+    return chart->height * log(chart->error_high / error) / log(chart->error_high / chart->error_low);
+}
+
+/* Is the label's place inside of the chart and free of points and of the labels ahead of it? */
+static bool is_free(const struct chart *chart, const struct points *points, const struct chart_label *labels, int count,
+                    const struct chart_label *label)
+{
+    bool free = label->x >= 2 && label->x + label->width <= chart->width - 2 && label->y >= line_px / 2
+                && label->y <= chart->height - line_px / 2;
+    for (int k = 0; k < points->count && free; k++) {
+        const struct measurement *row = points->list[k].row;
+        const double x = chart_x(chart, row->run_s), y = chart_y(chart, row->error);
+        free = x + point_px <= label->x || x - point_px >= label->x + label->width
+               || fabs(y - label->y) >= point_px + line_px / 2 - 2;
+    }
+    for (int k = 0; k < count && free; k++)
+        free = labels[k].x + labels[k].width + 3 <= label->x || labels[k].x >= label->x + label->width + 3
+               || fabs(labels[k].y - label->y) >= line_px;
+    return free;
+}
+
+/* Beside its point, or on wider and wider rings around it; false where there is no room. */
+static bool label_place(const struct chart *chart, const struct points *points, const struct chart_label *labels,
+                        int count, int rings, struct chart_label *label)
+{
+    static const double sides[][2] = {{1, -1.2}, {1, 0}, {1, 1.2}, {-1, 1.2}, {-1, 0}, {-1, -1.2}, {0, -1}, {0, 1}};
+    const struct measurement *row = points->list[label->point].row;
+    const double x = chart_x(chart, row->run_s), y = chart_y(chart, row->error);
+    for (int ring = 0; ring < rings; ring++)
+        for (size_t k = 0; k < sizeof sides / sizeof *sides; k++) {
+            const double away = 2 * point_px + line_px * ring;
+            label->x = x + sides[k][0] * (point_px + 2 + line_px * ring) + (sides[k][0] - 1) * label->width / 2;
+            label->y = y + sides[k][1] * (sides[k][0] == 0 ? away + line_px / 4 : away);
+            label->apart = ring > 0;
+            if (is_free(chart, points, labels, count, label))
+                return true;
+        }
+    return false;
+}
+
+static void label_text(const struct points *points, int point, char *text, size_t size)
+{
+    const struct measurement *row = points->list[point].row;
+    const struct series *series = &points->series[points->list[point].series];
+    if (series->alone)
+        snprintf(text, size, "%s", row->algorithm);
+    else if (series->count == 1)
+        picture_label(row->algorithm, row->options, row->precision, text, size);
+    else if (isfinite(points->list[point].setting.value) && strcmp(row->precision, "double") != 0)
+        snprintf(text, size, "%.9g", points->list[point].setting.value);
+}
+
+/* The front ahead of the ends of series, these ahead of the rest. */
+static int rank_of(const struct points *points, int point)
+{
+    const struct series *series = &points->series[points->list[point].series];
+    const bool end = point == series->first || point == series->first + series->count - 1;
+    return points->list[point].on_front ? 0 : end ? 1 : 2;
+}
+
+int chart_label(const struct chart *chart, const struct points *points, double sign_px, struct chart_label *labels)
+{
+    int count = 0;
+    for (int rank = 0; rank < 3; rank++)
+        for (int k = 0; k < points->count; k++) {
+            struct chart_label *label = &labels[count];
+            *label = (struct chart_label){.point = k};
+            if (rank_of(points, k) != rank)
+                continue;
+            label_text(points, k, label->text, sizeof label->text);
+            label->width = sign_px * (double)strlen(label->text);
+            const int rings = points->series[points->list[k].series].count == 1 ? 9 : 1;
+            count += *label->text && label_place(chart, points, labels, count, rings, label);
+        }
+    return count;
+}
