@@ -61,9 +61,8 @@ static void mark_write(FILE *stream, const struct family *family, bool open, dou
             size, lines || open ? "#fff" : family->colour, family->colour, path);
 }
 
-/* Lines at powers of ten, on short axes also at 2 and 5 of them, with their texts; `times`: speed-up, else seconds or
-   errors. */
-static void axis_write(FILE *stream, const struct chart *chart, bool vertical, bool times, double text_px)
+/* Lines at powers of ten, on short axes also at 2 and 5 of them, with their texts; Relative costs are speed-up. */
+static void axis_write(FILE *stream, const struct chart *chart, bool vertical, double text_px)
 {
     const double low = vertical ? chart->error_low : chart->cost_low,
                  high = vertical ? chart->error_high : chart->cost_high, decades = log10(high / low);
@@ -86,17 +85,17 @@ static void axis_write(FILE *stream, const struct chart *chart, bool vertical, b
                         (int[]){1, 2, 5}[k], decade);
             else
                 fprintf(stream, "<text class=\"middle\" x=\"%.1f\" y=\"%.1f\">%g%s</text>", at,
-                        chart->height + 1.25 * text_px, times ? 1 / value : value, times ? "x" : "");
+                        chart->height + 1.25 * text_px, chart->relative ? 1 / value : value,
+                        chart->relative ? "x" : "");
         }
 }
 
-/* The front as steps: what is reached within a time. `times`: relative to the scalar reference loop. */
-static void front_write(FILE *stream, const struct chart *chart, const struct points *points, bool times)
+/* The front as steps: what is reached within a time. */
+static void front_write(FILE *stream, const struct chart *chart, const struct points *points)
 {
     for (int k = 0; k < points->front_count; k++) {
         const struct measurement *row = points->list[points->front[k]].row;
-        const double x = chart_x(chart, times ? row->run_s / row->control_s : row->run_s),
-                     y = chart_y(chart, row->error);
+        const double x = chart_x(chart, chart_cost(chart, row)), y = chart_y(chart, row->error);
         if (isfinite(x))
             fprintf(stream, k ? "H%.1fV%.1f" : "<path class=\"front\" d=\"M%.1f %.1f", x, y);
     }
@@ -149,7 +148,7 @@ enum status page_chart(struct page *page, const struct families *families, const
     enum { LEFT = 46, RIGHT = 8, TOP = 8, BOTTOM = 38, WIDTH = 520, HEIGHT = 350 };
     if (page->format != PAGE_HTML || points->count == 0)
         return STATUS_OK;
-    const struct chart chart = chart_fit(points, WIDTH - LEFT - RIGHT, HEIGHT - TOP - BOTTOM);
+    const struct chart chart = chart_fit(points, 1, false, WIDTH - LEFT - RIGHT, HEIGHT - TOP - BOTTOM);
     struct chart_label *labels = calloc((size_t)points->count + 1, sizeof *labels);
     if (!labels)
         return status_set(STATUS_FAILED, "%s: no memory for %d names", points->scene, points->count);
@@ -158,11 +157,11 @@ enum status page_chart(struct page *page, const struct families *families, const
     page_text(page, points->scene);
     fprintf(page->stream, ": error against run time, %d points, %d on the Pareto front\">\n", points->count,
             points->front_count);
-    axis_write(page->stream, &chart, true, false, 11);
-    axis_write(page->stream, &chart, false, false, 11);
+    axis_write(page->stream, &chart, true, 11);
+    axis_write(page->stream, &chart, false, 11);
     fprintf(page->stream, "<text class=\"middle\" x=\"%g\" y=\"%g\">run time (s)</text>\n", chart.width / 2,
             chart.height + 30);
-    front_write(page->stream, &chart, points, false);
+    front_write(page->stream, &chart, points);
     if (isfinite(points->control_s))
         fprintf(page->stream,
                 "<path class=\"loop\" d=\"M%.1f 0V%g\"><title>the scalar reference loop: %s</title></path>\n",
@@ -189,25 +188,6 @@ enum status page_chart(struct page *page, const struct families *families, const
 
 /* --- All scenes ------------------------------------------------------------------------------------------------- */
 
-/* Axes that hold all points; the cost is relative to the scalar reference loop. */
-static struct chart overview_fit(const struct points *scenes, int count)
-{
-    struct chart chart = {INFINITY, 0, INFINITY, 0.6, 150, 88};
-    for (int s = 0; s < count; s++)
-        for (int k = 0; k < scenes[s].count; k++) {
-            const struct measurement *row = scenes[s].list[k].row;
-            chart.cost_low = fmin(chart.cost_low, row->run_s / row->control_s);
-            chart.cost_high = fmax(chart.cost_high, row->run_s / row->control_s);
-            chart.error_low = fmin(chart.error_low, row->error);
-            chart.error_high = fmax(chart.error_high, row->error);
-        }
-    chart.cost_low /= 1.6;
-    chart.cost_high *= 1.6;
-    chart.error_low /= 1.6;
-    chart.error_high *= 1.6;
-    return chart;
-}
-
 static void panel_write(struct page *page, const struct families *families, const struct chart *chart,
                         const struct points *points, int number)
 {
@@ -223,12 +203,12 @@ static void panel_write(struct page *page, const struct families *families, cons
         page_text(page, told);
     }
     fputs("\">", page->stream);
-    axis_write(page->stream, chart, true, false, 8.5);
-    axis_write(page->stream, chart, false, true, 8.5);
-    front_write(page->stream, chart, points, true);
+    axis_write(page->stream, chart, true, 8.5);
+    axis_write(page->stream, chart, false, 8.5);
+    front_write(page->stream, chart, points);
     for (int k = 0; k < points->count; k++) {
         const struct measurement *row = points->list[k].row;
-        const double x = chart_x(chart, row->run_s / row->control_s);
+        const double x = chart_x(chart, chart_cost(chart, row));
         if (isfinite(x))
             mark_write(page->stream, family_of(families, row->algorithm), strcmp(row->precision, "double") == 0, x,
                        chart_y(chart, row->error), 3);
@@ -247,7 +227,7 @@ static bool algorithm_seen(const struct points *scenes, int s, int k)
 
 void page_overview(struct page *page, const struct families *families, const struct points *scenes, int count)
 {
-    const struct chart chart = overview_fit(scenes, count);
+    const struct chart chart = chart_fit(scenes, count, true, 150, 88);
     if (page->format != PAGE_HTML || !(chart.cost_low > 0 && chart.cost_high > chart.cost_low))
         return;
     fputs("<div class=\"overview\">\n", page->stream);

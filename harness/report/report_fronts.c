@@ -13,12 +13,10 @@
 
 /* --- Three sentences -------------------------------------------------------------------------------------------- */
 
-static bool row_seen(const struct results *results, int row, bool algorithm)
+static bool algorithm_seen(const struct results *results, int row)
 {
-    const struct measurement *rows = results->measurements;
     for (int k = 0; k < row; k++)
-        if (algorithm ? strcmp(rows[k].algorithm, rows[row].algorithm) == 0
-                      : strcmp(rows[k].scene, rows[row].scene) == 0)
+        if (strcmp(results->measurements[k].algorithm, results->measurements[row].algorithm) == 0)
             return true;
     return false;
 }
@@ -77,7 +75,7 @@ void report_sentences_show(struct page *page, const struct results *results, int
         images += strcmp(row->status, "ok") == 0;
         refused += strcmp(row->status, "unsupported") == 0;
         failed += strcmp(row->status, "failed") == 0;
-        algorithm_count += !row_seen(results, k, true);
+        algorithm_count += !algorithm_seen(results, k);
         noisy += is_noisy(row);
         warned += strcmp(row->status, "ok") == 0 && warning_next(&at, text, sizeof text);
     }

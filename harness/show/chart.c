@@ -9,26 +9,32 @@
 
 static const double point_px = 5, line_px = 14; /* half of a point; a line of text */
 
-struct chart chart_fit(const struct points *points, double width, double height)
+struct chart chart_fit(const struct points *scenes, int scene_count, bool relative, double width, double height)
 {
-    struct chart chart = {.cost_low = INFINITY,
-                          .cost_high = isfinite(points->control_s) ? points->control_s : 0,
-                          .error_low = INFINITY,
-                          .width = width,
-                          .height = height};
-    for (int k = 0; k < points->count; k++) {
-        double low, high;
-        measurement_interval(points->list[k].row, &low, &high);
-        chart.cost_low = fmin(chart.cost_low, low);
-        chart.cost_high = fmax(chart.cost_high, high);
-        chart.error_low = fmin(chart.error_low, points->list[k].row->error);
-        chart.error_high = fmax(chart.error_high, points->list[k].row->error);
+    struct chart chart = {INFINITY, 0, INFINITY, 0, width, height, relative};
+    for (int s = 0; s < scene_count; s++) {
+        if (!relative && isfinite(scenes[s].control_s))
+            chart.cost_high = fmax(chart.cost_high, scenes[s].control_s);
+        for (int k = 0; k < scenes[s].count; k++) {
+            const struct measurement *row = scenes[s].list[k].row;
+            double low, high;
+            measurement_interval(row, &low, &high);
+            chart.cost_low = fmin(chart.cost_low, relative ? chart_cost(&chart, row) : low);
+            chart.cost_high = fmax(chart.cost_high, relative ? chart_cost(&chart, row) : high);
+            chart.error_low = fmin(chart.error_low, row->error);
+            chart.error_high = fmax(chart.error_high, row->error);
+        }
     }
-    chart.cost_low /= 1.3;
+    chart.cost_low /= 1.4;
     chart.cost_high *= 1.4;
     chart.error_low /= 1.6;
     chart.error_high *= 1.6;
     return chart;
+}
+
+double chart_cost(const struct chart *chart, const struct measurement *row)
+{
+    return chart->relative ? row->run_s / row->control_s : row->run_s;
 }
 
 double chart_x(const struct chart *chart, double cost)

@@ -9,9 +9,12 @@
 struct chart {
     double cost_low, cost_high, error_low, error_high;
     double width, height; /* px */
+    bool relative;        /* the cost is relative to the scalar reference loop's, else seconds */
 };
-/* The axes of points, which must be some, that hold bars and the scalar reference loop's time. */
-struct chart chart_fit(const struct points *points, double width, double height);
+/* Axes that hold the points of all scenes, with their bars and the scalar reference loop where they are in seconds;
+   without points cost_low is INFINITY. */
+struct chart chart_fit(const struct points *scenes, int scene_count, bool relative, double width, double height);
+double chart_cost(const struct chart *chart, const struct measurement *row);
 double chart_x(const struct chart *chart, double cost);
 double chart_y(const struct chart *chart, double error);
 

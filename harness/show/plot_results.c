@@ -125,7 +125,7 @@ static enum status labels_write(FILE *file, const struct points *points, const s
 static enum status error_time_write(FILE *file, const void *of)
 {
     const struct points *points = of;
-    const struct chart chart = chart_fit(points, PANEL_WIDTH, PANEL_HEIGHT);
+    const struct chart chart = chart_fit(points, 1, false, PANEL_WIDTH, PANEL_HEIGHT);
     plot_variable(file, "title", points->scene);
     fprintf(file,
             "panel_width = %d; panel_height = %d\nx_low = %.9g; x_high = %.9g\ny_low = %.9g; y_high = %.9g\n"

@@ -77,7 +77,7 @@ static void names_do_not_cover_each_other(void **state)
     assert_int_equal(results_read(path_of("measurements.csv"), &results), STATUS_OK);
     assert_int_equal(points_find(&results, "a", &points), STATUS_OK);
     for (int small = 0; small < 2; small++) {
-        const struct chart chart = chart_fit(&points, small ? 460 : 865, small ? 300 : 520);
+        const struct chart chart = chart_fit(&points, 1, false, small ? 460 : 865, small ? 300 : 520);
         const int named = chart_label(&chart, &points, small ? 6.6 : 8, labels);
         assert_int_equal(named, points.count);
         for (int a = 0; a < named; a++)
