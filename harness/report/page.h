@@ -49,8 +49,9 @@ void page_part_end(struct page *page);
 /* Links to headings, in HTML only. */
 void page_contents(struct page *page, int count, const char *const *ids, const char *const *titles);
 
-/* On a narrow screen the rows of a table fall apart into blocks. `columns` stays borrowed until page_table_end. A row has a cell for each column, the first being its name;
-   page_row_note writes one text in place of all others; without a name it belongs to the row above. */
+/* On a narrow screen the rows of a table fall apart into blocks. `columns` stays borrowed until page_table_end. A row
+   has a cell for each column, the first being its name; page_row_note writes one text in place of all others; without a
+   name it belongs to the row above. */
 void page_table_begin(struct page *page, int count, const struct page_column *columns);
 void page_row(struct page *page, const struct page_cell *cells);
 void page_row_note(struct page *page, const char *name, const char *note);

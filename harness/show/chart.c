@@ -13,8 +13,10 @@ struct chart chart_fit(const struct points *scenes, int scene_count, bool relati
 {
     struct chart chart = {INFINITY, 0, INFINITY, 0, width, height, relative};
     for (int s = 0; s < scene_count; s++) {
-        if (!relative && isfinite(scenes[s].control_s))
+        if (!relative && scenes[s].count > 0 && isfinite(scenes[s].control_s)) {
+            chart.cost_low = fmin(chart.cost_low, scenes[s].control_s);
             chart.cost_high = fmax(chart.cost_high, scenes[s].control_s);
+        }
         for (int k = 0; k < scenes[s].count; k++) {
             const struct measurement *row = scenes[s].list[k].row;
             double low, high;

@@ -48,10 +48,10 @@ enum status plot_slices_later(struct plot_queue *queue, const char *path, const 
 /* The same for phase errors: position in cycles a metre, `power_db` holds radians. */
 enum status plot_phase(const char *path, const char *plots_directory, const struct slices_picture *picture);
 
-/* Of the rows in DIR/measurements.csv, as PNG and SVG: error against time, DIR/SCENE-error_time, of every scene, and all
-   of them side by side, DIR/overview; or of the one `scene` of a sweep alone, with DIR/SCENE-upsampling where its
-   settings change the upsampling rate. What has less than two points is not drawn; what cannot be drawn is reported and
-   added to *undrawn. Errors: as results_read; STATUS_FAILED without memory. */
+/* Of the rows in DIR/measurements.csv, as PNG and SVG: error against time, DIR/SCENE-error_time, of every scene, and
+   all of them side by side, DIR/overview; or of the one `scene` of a sweep alone, with DIR/SCENE-upsampling where its
+   settings change the upsampling rate. What has less than two points is not drawn; what cannot be drawn is reported
+   and added to *undrawn. Errors: as results_read; STATUS_FAILED without memory. */
 enum status plot_results(const char *directory, const char *scene, int *undrawn);
 
 /* A script about one CSV file, into `path`, a PNG, and as SVG beside it; footer: where the file is from. */

@@ -1,4 +1,4 @@
-/* Error against time of a results folder: data blocks for plots/error_time.gp, overview.gp and upsampling.gp (plot.h). */
+/* Error against time of a results folder: data blocks for plots/error_time.gp, overview.gp, upsampling.gp (plot.h). */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* What stands beside the points of a chart: every entry of a legend inside the picture, every name free of the others. */
+/* What stands beside the points of a chart: all entries of a legend in the picture, every name free of the others. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -113,7 +113,7 @@ static void test_everything_is_on_the_page(void **state)
     assert_holds(html, ">1.062</td>");
     assert_true(!strstr(html, "nan<")); /* from a stranger */
     assert_true(!strstr(markdown, "Predicted errors"));
-    /* A chart and a panel of each scene, and marks of five algorithms; a point of the front has a name, can be focused and
+    /* A chart and a panel of each scene, marks of five algorithms; a point of the front has a name, can be focused and
        says how it is measured again, without the script as well. */
     assert_int_equal(page->drawings, 3 + 3 + 5);
     assert_holds(html,
