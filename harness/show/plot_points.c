@@ -85,12 +85,14 @@ int pareto_ties_find(int count, const double *low, const double *high, const dou
 const struct measurement *scene_fastest(const struct results *results, const char *scene, double error_most)
 {
     const struct measurement *best = NULL;
-    for (int k = 0; k < results->csv.row_count; k++) {
-        const struct measurement *row = &results->measurements[k];
-        if (strcmp(row->scene, scene) == 0
-            && measurement_is_cheaper(row, best, offsetof(struct measurement, run_s), error_most))
-            best = row;
-    }
+    for (int chosen = 0; chosen < 2 && !best; chosen++)
+        for (int k = 0; k < results->csv.row_count; k++) {
+            const struct measurement *row = &results->measurements[k];
+            if (strcmp(row->scene, scene) == 0 && strcmp(row->algorithm, "reference") != 0
+                && (strcmp(row->algorithm, "auto") == 0) == chosen
+                && measurement_is_cheaper(row, best, offsetof(struct measurement, run_s), error_most))
+                best = row;
+        }
     return best;
 }
 

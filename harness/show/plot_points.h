@@ -29,7 +29,8 @@ int pareto_front_find(int count, const double *cost, const double *error, int *f
    than: whose interval [low, high] of the cost lies below theirs. Returns how many. */
 int pareto_ties_find(int count, const double *low, const double *high, const double *error, int size, int *front);
 
-/* The fastest row of a scene with an error up to error_most; NULL: no row has one. */
+/* The fastest row of a scene with an error up to error_most, `reference` left out, and `auto`, which is one of the
+   others, where another comes as far; NULL: no row does. */
 const struct measurement *scene_fastest(const struct results *results, const char *scene, double error_most);
 /* The scenes in the order of their first rows, in *scenes [*count], to be freed; the names are borrowed. Errors:
    STATUS_FAILED without memory. */
