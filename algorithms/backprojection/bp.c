@@ -8,7 +8,7 @@
 #include "backprojection/kernel.h"
 #include "backprojection/few_pixels.h"
 #include "backprojection/law.h"
-#include "backprojection/omission.h"
+#include "backprojection/pairs/omission.h"
 #include "backprojection/pairs/pairs.h"
 #include "common/fft_length.h"
 #include "common/image_spectrum.h"

@@ -53,8 +53,26 @@ extern const char *const bp_engine_names[], *const bp_exact_names[];
                                             .initial = 1, .min = 1e-6, .max = 1, .terse = true                         \
     }
 
-/* The callbacks of struct algorithm, for an interpolator. `options` begins with a struct bp_options and is only used
-   during the call. Errors: STATUS_UNSUPPORTED when the engine asked for cannot do the problem, with the reason. */
+/* `method` of struct algorithm: what options, which begin with a struct bp_options, make of a problem. */
+struct bp_method {
+    /* Fill *interpolator and made[made_size], which its weights are handed, and which begins with a struct bp_options as
+       well; made_size 0: they are handed the options. Errors: STATUS_UNSUPPORTED with the reason, STATUS_FAILED. */
+    enum status (*make)(const struct problem *problem, const void *options, struct interpolator *interpolator,
+                        void *made);
+    size_t made_size; /* at most BP_MADE_MOST */
+};
+enum { BP_MADE_MOST = 4096 };
+
+/* The callbacks of struct algorithm, whose `method` is a struct bp_method (bp_method.c). */
+enum status bp_method_plan(const struct problem *problem, const void *method, const void *options, void **plan);
+enum status bp_method_forecast(const struct problem *problem, const void *method, const void *options,
+                               struct forecast *forecast);
+/* conditions_sampled and `invariance`, which refuses where the invariant engine is asked for. */
+int bp_method_conditions(const struct problem *problem, const void *method, const void *options, struct condition *list,
+                         int room);
+
+/* The same for an interpolator. `options` begins with a struct bp_options and is only used during the call. Errors:
+   STATUS_UNSUPPORTED when the engine asked for cannot do the problem, with the reason. */
 enum status bp_plan(const struct problem *problem, const struct interpolator *interpolator, const void *options,
                     void **plan);
 enum status bp_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
@@ -64,7 +82,6 @@ void bp_destroy(void *plan);
    Errors: as bp_plan for the engine asked for, and for the conditions; STATUS_FAILED without memory. */
 enum status bp_forecast(const struct problem *problem, const struct interpolator *interpolator, const void *options,
                         struct forecast *forecast);
-/* conditions_sampled and `invariance`, which refuses where the invariant engine is asked for. */
 int bp_conditions(const struct problem *problem, const void *options, struct condition *list, int room);
 
 /* sinc(z) w(z) with w a Kaiser window of parameter beta over |z| <= taps/2 (beta = 0: no window):

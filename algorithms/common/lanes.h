@@ -3,7 +3,6 @@
 #define SASBENCH_COMMON_LANES_H
 
 #include "common/real.h"
-#include "common/vector_bytes.h"
 
 enum { LANES = VECTOR_BYTES / sizeof(real) };
 

@@ -22,4 +22,13 @@ typedef float complex complex_real;
 #define REAL_JOIN_EXPANDED(name, isa) REAL_JOIN(name, isa)
 #define REAL_ISA_NAME(name)           REAL_JOIN_EXPANDED(REAL_NAME(name), BP_ISA)
 
+/* The width of the vectors of the instruction set that a file is being compiled for. */
+#if defined __AVX512F__
+#define VECTOR_BYTES 64
+#elif defined __AVX__
+#define VECTOR_BYTES 32
+#else
+#define VECTOR_BYTES 16
+#endif
+
 #endif

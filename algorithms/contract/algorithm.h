@@ -151,19 +151,23 @@ struct algorithm {
     unsigned traits;                        /* of enum trait */
     size_t options_size;                    /* of the options struct; 0 without params */
     const struct param *params;             /* NULL-terminated; NULL without options */
+    const void *method; /* what its engine knows it by, handed to the callbacks; NULL for one that has its own */
 
     /* Fill list[room] with what the problem must fulfil, and return the number; known before any work, and the same
        that plan refuses by. NULL: conditions_general. */
-    int (*conditions)(const struct problem *problem, const void *options, struct condition *list, int room);
+    int (*conditions)(const struct problem *problem, const void *method, const void *options, struct condition *list,
+                      int room);
     /* What the settings will make of a problem, without a plan; far cheaper than one, but for range migration. Errors:
        STATUS_UNSUPPORTED with the reason, as plan, STATUS_FAILED without memory. NULL: nothing is known beforehand, and
        no planner chooses the algorithm. */
-    enum status (*forecast)(const struct problem *problem, const void *options, struct forecast *forecast);
+    enum status (*forecast)(const struct problem *problem, const void *method, const void *options,
+                            struct forecast *forecast);
     /* Where that is as costly as a plan: the counts alone, which `forecast` then leaves at 0. Errors: as forecast; what
        only a forecast finds out is not refused. NULL: `forecast` counts. */
-    enum status (*cost)(const struct problem *problem, const void *options, struct forecast *forecast);
+    enum status (*cost)(const struct problem *problem, const void *method, const void *options,
+                        struct forecast *forecast);
     /* Make a plan in *plan. Errors: STATUS_UNSUPPORTED with the reason, STATUS_FAILED; *plan is then NULL. */
-    enum status (*plan)(const struct problem *problem, const void *options, void **plan);
+    enum status (*plan)(const struct problem *problem, const void *method, const void *options, void **plan);
     /* Echoes of the plan's acquisition and precision into an image of the plan's patches and precision. */
     enum status (*execute)(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
     struct work (*work)(const void *plan); /* may take its time, to count what the timed plan need not know */
@@ -173,7 +177,22 @@ struct algorithm {
 /* The registered algorithms in the order of algorithms/meson.build; NULL ends the list. */
 extern const struct algorithm *const algorithms[];
 
-/* The conditions of an algorithm, its own or the general ones. */
+/* Its callbacks, called; costs are those of the forecast, conditions the general ones, where it has none of its own. */
+static inline enum status algorithm_plan(const struct algorithm *algorithm, const struct problem *problem,
+                                         const void *options, void **plan)
+{
+    return algorithm->plan(problem, algorithm->method, options, plan);
+}
+static inline enum status algorithm_forecast(const struct algorithm *algorithm, const struct problem *problem,
+                                             const void *options, struct forecast *forecast)
+{
+    return algorithm->forecast(problem, algorithm->method, options, forecast);
+}
+static inline enum status algorithm_cost(const struct algorithm *algorithm, const struct problem *problem,
+                                         const void *options, struct forecast *forecast)
+{
+    return (algorithm->cost ? algorithm->cost : algorithm->forecast)(problem, algorithm->method, options, forecast);
+}
 int algorithm_conditions(const struct algorithm *algorithm, const struct problem *problem, const void *options,
                          struct condition *list, int room);
 

@@ -146,7 +146,7 @@ double condition_offset(const struct acquisition *a, int n)
 int algorithm_conditions(const struct algorithm *algorithm, const struct problem *problem, const void *options,
                          struct condition *list, int room)
 {
-    return algorithm->conditions ? algorithm->conditions(problem, options, list, room)
+    return algorithm->conditions ? algorithm->conditions(problem, algorithm->method, options, list, room)
                                  : conditions_general(problem, list, room);
 }
 

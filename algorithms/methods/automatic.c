@@ -30,9 +30,10 @@ struct automatic {
     int rejected;
 };
 
-static int conditions(const struct problem *problem, const void *options, struct condition *list, int room)
+static int conditions(const struct problem *problem, const void *method, const void *options, struct condition *list,
+                      int room)
 {
-    (void)options;
+    (void)method, (void)options;
     return conditions_sampled(problem, list, room);
 }
 
@@ -67,14 +68,14 @@ void automatic_tell(void (*hear)(void *to, const struct problem *problem, const 
     listener.to = to;
 }
 
-static enum status plan(const struct problem *problem, const void *options, void **plan)
+static enum status plan(const struct problem *problem, const void *method, const void *options, void **plan)
 {
     const struct options *o = options;
     const struct budget budget = {o->error, 1e9 * o->memory};
     struct choice choice;
     struct condition list[CONDITIONS_MAX];
     *plan = NULL;
-    const int count = conditions(problem, options, list, CONDITIONS_MAX);
+    const int count = conditions(problem, method, options, list, CONDITIONS_MAX);
     enum status status = conditions_check("auto", list, count);
     if (status != STATUS_OK)
         return status;

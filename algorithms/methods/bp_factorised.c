@@ -44,9 +44,10 @@ struct planned {
     struct factorised *tree;
 };
 
-static int conditions(const struct problem *problem, const void *options, struct condition *list, int room)
+static int conditions(const struct problem *problem, const void *method, const void *options, struct condition *list,
+                      int room)
 {
-    (void)options;
+    (void)method, (void)options;
     return conditions_sampled(problem, list, room);
 }
 
@@ -109,14 +110,16 @@ static enum status settings_make(const struct problem *problem, const struct opt
     struct condition list[CONDITIONS_MAX];
     *settings = (struct tree_settings){options->error, base > 1 ? base : 1, options->factor, options->stages - 1};
     const enum status status =
-        conditions_check("bp_factorised", list, conditions(problem, options, list, CONDITIONS_MAX));
+        conditions_check("bp_factorised", list, conditions_sampled(problem, list, CONDITIONS_MAX));
     if (status == STATUS_OK && options->stages == STAGES_AUTO)
         return choose_stages(problem, settings, cost);
     return status;
 }
 
-static enum status forecast(const struct problem *problem, const void *given, struct forecast *forecast)
+static enum status forecast(const struct problem *problem, const void *method, const void *given,
+                            struct forecast *forecast)
 {
+    (void)method;
     const struct options *options = given;
     struct tree_settings settings;
     struct factorised_cost cost;
@@ -130,8 +133,9 @@ static enum status forecast(const struct problem *problem, const void *given, st
     return forecast_direct(problem, options->error, forecast);
 }
 
-static enum status plan(const struct problem *problem, const void *given, void **out)
+static enum status plan(const struct problem *problem, const void *method, const void *given, void **out)
 {
+    (void)method;
     const struct options *options = given;
     struct tree_settings settings;
     struct factorised_cost cost;

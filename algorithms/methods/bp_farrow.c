@@ -34,28 +34,18 @@ static const struct param params[] = {
     {.name = NULL},
 };
 
-static enum status interpolator_make(const struct problem *problem, const struct options *o, struct interpolator *in)
+static enum status make(const struct problem *problem, const void *options, struct interpolator *interpolator,
+                        void *made)
 {
+    const struct options *o = options;
     const int degree = o->degree == DEGREE_AUTO ? farrow_degree_choose(o->error, problem, o->factor)
                                                 : FARROW_LEAST + o->degree - DEGREE_FIRST;
-    *in = (struct interpolator){.upsample = o->factor, .taps = 1, .degree = degree};
+    (void)made;
+    *interpolator = (struct interpolator){.upsample = o->factor, .taps = 1, .degree = degree};
     return degree > 0 ? STATUS_OK : STATUS_FAILED;
 }
 
-static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
-{
-    struct interpolator interpolator;
-    const enum status status = interpolator_make(problem, options, &interpolator);
-    return status == STATUS_OK ? bp_forecast(problem, &interpolator, options, forecast) : status;
-}
-
-static enum status plan(const struct problem *problem, const void *options, void **plan)
-{
-    struct interpolator interpolator;
-    *plan = NULL;
-    const enum status status = interpolator_make(problem, options, &interpolator);
-    return status == STATUS_OK ? bp_plan(problem, &interpolator, options, plan) : status;
-}
+static const struct bp_method method = {make};
 
 const struct algorithm bp_farrow = {
     .name = "bp_farrow",
@@ -64,9 +54,10 @@ const struct algorithm bp_farrow = {
     .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT,
     .options_size = sizeof(struct options),
     .params = params,
-    .conditions = bp_conditions,
-    .forecast = forecast,
-    .plan = plan,
+    .method = &method,
+    .conditions = bp_method_conditions,
+    .forecast = bp_method_forecast,
+    .plan = bp_method_plan,
     .execute = bp_execute,
     .work = bp_work,
     .destroy = bp_destroy,

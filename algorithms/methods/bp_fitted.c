@@ -39,38 +39,27 @@ static void weights(const void *options, double fraction, double *w)
     fitted_weights(&((const struct planned *)options)->fitted, fraction, w);
 }
 
-static enum status interpolator_make(const struct acquisition *a, const struct options *o, struct planned *planned,
-                                     struct interpolator *in)
+static enum status make(const struct problem *problem, const void *options, struct interpolator *interpolator,
+                        void *made)
 {
+    const struct acquisition *a = problem->acquisition;
+    const struct options *o = options;
     const int upsample = 1 << o->factor;
+    if (o->taps % 2)
+        return status_set(STATUS_UNSUPPORTED, "bp_fitted: taps is %d, must be even", o->taps);
     const double band = law_band_fitted(a);
     if (isnan(band))
         return STATUS_FAILED;
-    *planned = (struct planned){.bp = o->bp};
+    struct planned *planned = made;
+    planned->bp = o->bp;
     fitted_make(o->taps, fmin(band / (a->fs * upsample), 1), &planned->fitted);
-    *in = (struct interpolator){.upsample = upsample, .taps = o->taps, .first = 1 - o->taps / 2, .weights = weights};
+    *interpolator =
+        (struct interpolator){.upsample = upsample, .taps = o->taps, .first = 1 - o->taps / 2, .weights = weights};
     return STATUS_OK;
 }
 
-static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
-{
-    struct planned planned;
-    struct interpolator fitted;
-    const enum status status = interpolator_make(problem->acquisition, options, &planned, &fitted);
-    return status == STATUS_OK ? bp_forecast(problem, &fitted, &planned, forecast) : status;
-}
-
-static enum status plan(const struct problem *problem, const void *options, void **plan)
-{
-    const struct options *o = options;
-    struct planned planned;
-    struct interpolator fitted;
-    *plan = NULL;
-    if (o->taps % 2)
-        return status_set(STATUS_UNSUPPORTED, "bp_fitted: taps is %d, must be even", o->taps);
-    const enum status status = interpolator_make(problem->acquisition, o, &planned, &fitted);
-    return status == STATUS_OK ? bp_plan(problem, &fitted, &planned, plan) : status;
-}
+static const struct bp_method method = {make, sizeof(struct planned)};
+_Static_assert(sizeof(struct planned) <= BP_MADE_MOST, "room for what is made");
 
 const struct algorithm bp_fitted = {
     .name = "bp_fitted",
@@ -79,9 +68,10 @@ const struct algorithm bp_fitted = {
     .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT,
     .options_size = sizeof(struct options),
     .params = params,
-    .conditions = bp_conditions,
-    .forecast = forecast,
-    .plan = plan,
+    .method = &method,
+    .conditions = bp_method_conditions,
+    .forecast = bp_method_forecast,
+    .plan = bp_method_plan,
     .execute = bp_execute,
     .work = bp_work,
     .destroy = bp_destroy,

@@ -10,17 +10,15 @@ static const struct param params[] = {
     {.name = NULL},
 };
 
-static const struct interpolator nearest = {.upsample = 1, .steps = 1, .taps = 1, .in_papers = true};
-
-static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
+static enum status make(const struct problem *problem, const void *options, struct interpolator *interpolator,
+                        void *made)
 {
-    return bp_forecast(problem, &nearest, options, forecast);
+    (void)problem, (void)options, (void)made;
+    *interpolator = (struct interpolator){.upsample = 1, .steps = 1, .taps = 1, .in_papers = true};
+    return STATUS_OK;
 }
 
-static enum status plan(const struct problem *problem, const void *options, void **plan)
-{
-    return bp_plan(problem, &nearest, options, plan);
-}
+static const struct bp_method method = {make};
 
 const struct algorithm bp_nearest = {
     .name = "bp_nearest",
@@ -29,9 +27,10 @@ const struct algorithm bp_nearest = {
     .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT,
     .options_size = sizeof(struct bp_options),
     .params = params,
-    .conditions = bp_conditions,
-    .forecast = forecast,
-    .plan = plan,
+    .method = &method,
+    .conditions = bp_method_conditions,
+    .forecast = bp_method_forecast,
+    .plan = bp_method_plan,
     .execute = bp_execute,
     .work = bp_work,
     .destroy = bp_destroy,

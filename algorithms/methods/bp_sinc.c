@@ -42,38 +42,22 @@ static void weights(const void *options, double fraction, double *w)
     sinc_weights(planned->taps, planned->beta, fraction, w);
 }
 
-static enum status planned_make(const struct acquisition *a, const struct options *o, struct planned *planned)
+static enum status make(const struct problem *problem, const void *options, struct interpolator *interpolator,
+                        void *made)
 {
+    const struct acquisition *a = problem->acquisition;
+    const struct options *o = options;
+    if (o->taps % 2)
+        return status_set(STATUS_UNSUPPORTED, "bp_sinc: taps is %d, must be even", o->taps);
     const double band = o->window == WINDOW_KAISER_BAND ? law_band_fitted(a) : a->bandwidth;
     const double betas[] = {0, 5, 0.5 * M_PI * o->taps * (1 - fmin(band / a->fs, 1))};
-    *planned = (struct planned){o->bp, o->taps, betas[o->window]};
+    *(struct planned *)made = (struct planned){o->bp, o->taps, betas[o->window]};
+    *interpolator = (struct interpolator){
+        .upsample = 1, .taps = o->taps, .first = 1 - o->taps / 2, .weights = weights, .in_papers = true};
     return isnan(band) ? STATUS_FAILED : STATUS_OK;
 }
 
-static struct interpolator interpolator_of(const struct options *o)
-{
-    return (struct interpolator){
-        .upsample = 1, .taps = o->taps, .first = 1 - o->taps / 2, .weights = weights, .in_papers = true};
-}
-
-static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
-{
-    struct planned planned;
-    const struct interpolator sinc = interpolator_of(options);
-    const enum status status = planned_make(problem->acquisition, options, &planned);
-    return status == STATUS_OK ? bp_forecast(problem, &sinc, &planned, forecast) : status;
-}
-
-static enum status plan(const struct problem *problem, const void *options, void **plan)
-{
-    struct planned planned;
-    const struct interpolator sinc = interpolator_of(options);
-    *plan = NULL;
-    if (sinc.taps % 2)
-        return status_set(STATUS_UNSUPPORTED, "bp_sinc: taps is %d, must be even", sinc.taps);
-    const enum status status = planned_make(problem->acquisition, options, &planned);
-    return status == STATUS_OK ? bp_plan(problem, &sinc, &planned, plan) : status;
-}
+static const struct bp_method method = {make, sizeof(struct planned)};
 
 const struct algorithm bp_sinc = {
     .name = "bp_sinc",
@@ -82,9 +66,10 @@ const struct algorithm bp_sinc = {
     .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT,
     .options_size = sizeof(struct options),
     .params = params,
-    .conditions = bp_conditions,
-    .forecast = forecast,
-    .plan = plan,
+    .method = &method,
+    .conditions = bp_method_conditions,
+    .forecast = bp_method_forecast,
+    .plan = bp_method_plan,
     .execute = bp_execute,
     .work = bp_work,
     .destroy = bp_destroy,

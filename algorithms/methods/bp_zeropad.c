@@ -19,22 +19,16 @@ static const struct param params[] = {
     {.name = NULL},
 };
 
-static struct interpolator interpolator_of(const struct options *options)
+static enum status make(const struct problem *problem, const void *options, struct interpolator *interpolator,
+                        void *made)
 {
-    return (struct interpolator){.upsample = options->factor, .steps = 1, .taps = 1, .in_papers = true};
+    const struct options *o = options;
+    (void)problem, (void)made;
+    *interpolator = (struct interpolator){.upsample = o->factor, .steps = 1, .taps = 1, .in_papers = true};
+    return STATUS_OK;
 }
 
-static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
-{
-    const struct interpolator interpolator = interpolator_of(options);
-    return bp_forecast(problem, &interpolator, options, forecast);
-}
-
-static enum status plan(const struct problem *problem, const void *options, void **plan)
-{
-    const struct interpolator interpolator = interpolator_of(options);
-    return bp_plan(problem, &interpolator, options, plan);
-}
+static const struct bp_method method = {make};
 
 const struct algorithm bp_zeropad = {
     .name = "bp_zeropad",
@@ -43,9 +37,10 @@ const struct algorithm bp_zeropad = {
     .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT,
     .options_size = sizeof(struct options),
     .params = params,
-    .conditions = bp_conditions,
-    .forecast = forecast,
-    .plan = plan,
+    .method = &method,
+    .conditions = bp_method_conditions,
+    .forecast = bp_method_forecast,
+    .plan = bp_method_plan,
     .execute = bp_execute,
     .work = bp_work,
     .destroy = bp_destroy,

@@ -12,21 +12,25 @@ static void weights(const void *options, double fraction, double *w)
     sinc_weights(TAPS, 21, fraction, w);
 }
 
-static enum status plan(const struct problem *problem, const void *options, void **plan)
+static enum status make(const struct problem *problem, const void *options, struct interpolator *interpolator,
+                        void *made)
 {
-    const struct interpolator exact = {
+    (void)problem, (void)options;
+    *(struct bp_options *)made = (struct bp_options){.engine = BP_ENGINE_GENERAL, .exact = 1};
+    *interpolator = (struct interpolator){
         .upsample = UPSAMPLE, .taps = TAPS, .first = 1 - TAPS / 2, .weights = weights, .in_papers = true};
-    const struct bp_options plain = {.engine = BP_ENGINE_GENERAL, .exact = 1};
-    (void)options;
-    return bp_plan(problem, &exact, &plain, plan);
+    return STATUS_OK;
 }
+
+static const struct bp_method method = {make, sizeof(struct bp_options)};
 
 const struct algorithm reference = {
     .name = "reference",
     .summary = "exact band-limited back projection, slow; what errors are measured against",
     .reference = "BP22 Eqs. (1), (5); LBF21 Eq. (1)",
     .traits = TRAIT_EXACT | TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT,
-    .plan = plan,
+    .method = &method,
+    .plan = bp_method_plan,
     .execute = bp_execute,
     .work = bp_work,
     .destroy = bp_destroy,

@@ -5,7 +5,7 @@
    Cost: a receiver, wavenumber and sample 6 + 4 terms FLOPs, whatever the depth of the swath. Error: the exact
    spectrum's own, and what the terms leave: 1e-3 from 57 m on. It grows with (array/range)^2, the square of the beam,
    and B/fc. */
-#include "range_migration/rma_conditions.h"
+#include "range_migration/rma.h"
 
 struct delay_options {
     int taps, terms, stolt; /* taps and stolt: indices into their choices */
@@ -24,47 +24,21 @@ static const struct param params[] = {
     {.name = NULL},
 };
 
-static struct rma_method method_of(const struct delay_options *options)
+static void choose(const void *options, struct rma_method *method, struct rma_options *shared)
 {
-    return (struct rma_method){.name = "rma_delay",
-                               .law = "delay_law",
-                               .error_limit = 0.1,
-                               .spectrum = spectrum_compensated,
-                               .terms = options->terms,
-                               .taps = tap_counts[options->taps]};
+    const struct delay_options *delay = options;
+    method->terms = delay->terms;
+    method->taps = tap_counts[delay->taps];
+    *shared = (struct rma_options){.blocks = 1, .stolt = delay->stolt};
 }
 
-static int conditions(const struct problem *problem, const void *options, struct condition *list, int room)
-{
-    struct rma_method method = method_of(options);
-    return rma_conditions(problem, &method, list, room);
-}
-
-static struct rma_options shared_of(const struct delay_options *options)
-{
-    return (struct rma_options){.blocks = 1, .stolt = options->stolt};
-}
-
-static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
-{
-    const struct rma_method method = method_of(options);
-    const struct rma_options shared = shared_of(options);
-    return rma_forecast(problem, &method, &shared, forecast);
-}
-
-static enum status cost(const struct problem *problem, const void *options, struct forecast *forecast)
-{
-    const struct rma_method method = method_of(options);
-    const struct rma_options shared = shared_of(options);
-    return rma_cost(problem, &method, &shared, forecast);
-}
-
-static enum status plan(const struct problem *problem, const void *options, void **plan)
-{
-    const struct rma_method method = method_of(options);
-    const struct rma_options shared = shared_of(options);
-    return rma_plan(problem, &method, &shared, plan);
-}
+static const struct rma_method method = {
+    .choose = choose,
+    .name = "rma_delay",
+    .law = "delay_law",
+    .error_limit = 0.1,
+    .spectrum = spectrum_compensated,
+};
 
 const struct algorithm rma_delay = {
     .name = "rma_delay",
@@ -72,10 +46,11 @@ const struct algorithm rma_delay = {
     .reference = "this project; the exact spectrum of LBF21 Eqs. (8) and (9)",
     .options_size = sizeof(struct delay_options),
     .params = params,
-    .conditions = conditions,
-    .forecast = forecast,
-    .cost = cost,
-    .plan = plan,
+    .method = &method,
+    .conditions = rma_method_conditions,
+    .forecast = rma_method_forecast,
+    .cost = rma_method_cost,
+    .plan = rma_method_plan,
     .execute = rma_execute,
     .work = rma_work,
     .destroy = rma_destroy,

@@ -8,7 +8,7 @@
    reports; `corrected` takes it at F. Error of the corrected phase: below 0.01 rad from 50 m on, falling with r
    (rma_numeric has none); the image's error is then that of stationary phase, 8e-3 at 40 m and 1e-3 from 135 m
    on. */
-#include "range_migration/rma_conditions.h"
+#include "range_migration/rma.h"
 
 enum variant { PRINTED, CORRECTED };
 static const char *const variants[] = {[PRINTED] = "printed", [CORRECTED] = "corrected", NULL};
@@ -25,49 +25,26 @@ static const struct param params[] = {
     {.name = NULL},
 };
 
-static struct rma_method method_of(const struct lbf_options *options)
+static void choose(const void *options, struct rma_method *method, struct rma_options *shared)
 {
     static spectrum_function *const spectra[] = {
         [PRINTED] = spectrum_lbf_printed, [CORRECTED] = spectrum_lbf_corrected};
-    return (struct rma_method){
-        .name = "rma_lbf",
-        .law = "lbf_law",
-        .error_limit = 0.1,
-        .spectrum = spectra[options->variant],
-        .source = "LBF21 Eq. (20)",
-        .range = {2, 2},
-        .azimuth = {1, 1},
-        .products = {2, 2},
-        .interpolations = 1,
-    };
-}
-
-static int conditions(const struct problem *problem, const void *options, struct condition *list, int room)
-{
-    const struct rma_method method = method_of(options);
-    return rma_conditions(problem, &method, list, room);
-}
-
-static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
-{
     const struct lbf_options *lbf = options;
-    const struct rma_method method = method_of(lbf);
-    return rma_forecast(problem, &method, &lbf->shared, forecast);
+    method->spectrum = spectra[lbf->variant];
+    *shared = lbf->shared;
 }
 
-static enum status cost(const struct problem *problem, const void *options, struct forecast *forecast)
-{
-    const struct lbf_options *lbf = options;
-    const struct rma_method method = method_of(lbf);
-    return rma_cost(problem, &method, &lbf->shared, forecast);
-}
-
-static enum status plan(const struct problem *problem, const void *options, void **plan)
-{
-    const struct lbf_options *lbf = options;
-    const struct rma_method method = method_of(lbf);
-    return rma_plan(problem, &method, &lbf->shared, plan);
-}
+static const struct rma_method method = {
+    .choose = choose,
+    .name = "rma_lbf",
+    .law = "lbf_law",
+    .error_limit = 0.1,
+    .source = "LBF21 Eq. (20)",
+    .range = {2, 2},
+    .azimuth = {1, 1},
+    .products = {2, 2},
+    .interpolations = 1,
+};
 
 const struct algorithm rma_lbf = {
     .name = "rma_lbf",
@@ -75,10 +52,11 @@ const struct algorithm rma_lbf = {
     .reference = "LBF21 Eqs. (3) to (5), section IV",
     .options_size = sizeof(struct lbf_options),
     .params = params,
-    .conditions = conditions,
-    .forecast = forecast,
-    .cost = cost,
-    .plan = plan,
+    .method = &method,
+    .conditions = rma_method_conditions,
+    .forecast = rma_method_forecast,
+    .cost = rma_method_cost,
+    .plan = rma_method_plan,
     .execute = rma_execute,
     .work = rma_work,
     .destroy = rma_destroy,

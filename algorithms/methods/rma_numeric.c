@@ -4,7 +4,7 @@
        phi = -2 pi (F tau(u) + nu u),   F tau'(u) = -nu
 
    Error: none of its own; what is left comes from the method of stationary phase and from the width of the blocks. */
-#include "range_migration/rma_conditions.h"
+#include "range_migration/rma.h"
 
 static const struct param params[] = {
     RMA_PARAMS,
@@ -23,37 +23,17 @@ static const struct rma_method method = {
     .interpolations = 1,
 };
 
-static int conditions(const struct problem *problem, const void *options, struct condition *list, int room)
-{
-    (void)options;
-    return rma_conditions(problem, &method, list, room);
-}
-
-static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
-{
-    return rma_forecast(problem, &method, options, forecast);
-}
-
-static enum status cost(const struct problem *problem, const void *options, struct forecast *forecast)
-{
-    return rma_cost(problem, &method, options, forecast);
-}
-
-static enum status plan(const struct problem *problem, const void *options, void **plan)
-{
-    return rma_plan(problem, &method, options, plan);
-}
-
 const struct algorithm rma_numeric = {
     .name = "rma_numeric",
     .summary = "range migration with the exact spectrum, found numerically",
     .reference = "LBF21 Eqs. (8) and (9), section IV",
     .options_size = sizeof(struct rma_options),
     .params = params,
-    .conditions = conditions,
-    .forecast = forecast,
-    .cost = cost,
-    .plan = plan,
+    .method = &method,
+    .conditions = rma_method_conditions,
+    .forecast = rma_method_forecast,
+    .cost = rma_method_cost,
+    .plan = rma_method_plan,
     .execute = rma_execute,
     .work = rma_work,
     .destroy = rma_destroy,

@@ -7,7 +7,7 @@
    It takes the way of the sonar during propagation, 2 v r/c, as if every target were broadside. Error: grows with range
    and with the beam, 0.14 rad at 300 m and 7 degrees to either side, 1 rad at twice that beam (LBF21 Figs 4, 5, 7
    and 9). */
-#include "range_migration/rma_conditions.h"
+#include "range_migration/rma.h"
 
 static const struct param params[] = {
     RMA_PARAMS,
@@ -26,37 +26,17 @@ static const struct rma_method method = {
     .interpolations = 2,
 };
 
-static int conditions(const struct problem *problem, const void *options, struct condition *list, int room)
-{
-    (void)options;
-    return rma_conditions(problem, &method, list, room);
-}
-
-static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
-{
-    return rma_forecast(problem, &method, options, forecast);
-}
-
-static enum status cost(const struct problem *problem, const void *options, struct forecast *forecast)
-{
-    return rma_cost(problem, &method, options, forecast);
-}
-
-static enum status plan(const struct problem *problem, const void *options, void **plan)
-{
-    return rma_plan(problem, &method, options, plan);
-}
-
 const struct algorithm rma_pca = {
     .name = "rma_pca",
     .summary = "range migration after phase-centre approximation",
     .reference = "LBF21 Eq. (6), section IV",
     .options_size = sizeof(struct rma_options),
     .params = params,
-    .conditions = conditions,
-    .forecast = forecast,
-    .cost = cost,
-    .plan = plan,
+    .method = &method,
+    .conditions = rma_method_conditions,
+    .forecast = rma_method_forecast,
+    .cost = rma_method_cost,
+    .plan = rma_method_plan,
     .execute = rma_execute,
     .work = rma_work,
     .destroy = rma_destroy,

@@ -3,7 +3,7 @@
    receiver M/2, corrected together with the PCA phase of the reference receiver (spectrum.h).
 
    Error: that of PCA, as both take targets to be broadside; less only where d^4/r^3 counts. */
-#include "range_migration/rma_conditions.h"
+#include "range_migration/rma.h"
 
 static const struct param params[] = {
     RMA_PARAMS,
@@ -22,37 +22,17 @@ static const struct rma_method method = {
     .interpolations = 1,
 };
 
-static int conditions(const struct problem *problem, const void *options, struct condition *list, int room)
-{
-    (void)options;
-    return rma_conditions(problem, &method, list, room);
-}
-
-static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
-{
-    return rma_forecast(problem, &method, options, forecast);
-}
-
-static enum status cost(const struct problem *problem, const void *options, struct forecast *forecast)
-{
-    return rma_cost(problem, &method, options, forecast);
-}
-
-static enum status plan(const struct problem *problem, const void *options, void **plan)
-{
-    return rma_plan(problem, &method, options, plan);
-}
-
 const struct algorithm rma_wu = {
     .name = "rma_wu",
     .summary = "range migration after reference range history (a working definition of Wu's method)",
     .reference = "LBF21 [22], section IV",
     .options_size = sizeof(struct rma_options),
     .params = params,
-    .conditions = conditions,
-    .forecast = forecast,
-    .cost = cost,
-    .plan = plan,
+    .method = &method,
+    .conditions = rma_method_conditions,
+    .forecast = rma_method_forecast,
+    .cost = rma_method_cost,
+    .plan = rma_method_plan,
     .execute = rma_execute,
     .work = rma_work,
     .destroy = rma_destroy,

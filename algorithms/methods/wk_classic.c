@@ -22,31 +22,17 @@ static const struct param params[] = {
 
 static const struct wk_method method = {.name = "wk_classic"};
 
-static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
-{
-    return wk_forecast(problem, &method, options, forecast);
-}
-
-static enum status cost(const struct problem *problem, const void *options, struct forecast *forecast)
-{
-    return wk_cost(problem, &method, options, forecast);
-}
-
-static enum status plan(const struct problem *problem, const void *options, void **plan)
-{
-    return wk_plan(problem, &method, options, plan);
-}
-
 const struct algorithm wk_classic = {
     .name = "wk_classic",
     .summary = "omega-k, squint unfolded along the track's own azimuth",
     .reference = "SQ18 section 1, [3], [4]",
     .options_size = sizeof(struct wk_options),
     .params = params,
+    .method = &method,
     .conditions = wk_conditions,
-    .forecast = forecast,
-    .cost = cost,
-    .plan = plan,
+    .forecast = wk_forecast,
+    .cost = wk_cost,
+    .plan = wk_plan,
     .execute = wk_execute,
     .work = wk_work,
     .destroy = wk_destroy,

@@ -17,14 +17,7 @@ static const struct param params[] = {
     {.name = NULL},
 };
 
-static enum status plan(const struct problem *problem, const void *options, void **plan)
-{
-    static const struct wk_method method = {.name = "wk_polar", .filters = true};
-    struct wk_options all = *(const struct wk_options *)options;
-    all.unfold = WK_SUPPORT;
-    all.pad = 1;
-    return wk_plan(problem, &method, &all, plan);
-}
+static const struct wk_method method = {.name = "wk_polar", .filters = true};
 
 const struct algorithm wk_polar = {
     .name = "wk_polar",
@@ -32,8 +25,9 @@ const struct algorithm wk_polar = {
     .reference = "PF05 Eqs. (5) to (16), corrected",
     .options_size = sizeof(struct wk_options),
     .params = params,
-    .conditions = wk_filter_conditions,
-    .plan = plan,
+    .method = &method,
+    .conditions = wk_conditions,
+    .plan = wk_plan,
     .execute = wk_execute,
     .work = wk_work,
     .destroy = wk_destroy,

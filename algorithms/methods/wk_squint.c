@@ -17,41 +17,17 @@ static const struct param params[] = {
 
 static const struct wk_method method = {.name = "wk_squint", .rotates = true};
 
-static struct wk_options shared_of(const void *options)
-{
-    struct wk_options all = *(const struct wk_options *)options;
-    all.unfold = WK_SUPPORT;
-    return all;
-}
-
-static enum status forecast(const struct problem *problem, const void *options, struct forecast *forecast)
-{
-    const struct wk_options shared = shared_of(options);
-    return wk_forecast(problem, &method, &shared, forecast);
-}
-
-static enum status cost(const struct problem *problem, const void *options, struct forecast *forecast)
-{
-    const struct wk_options shared = shared_of(options);
-    return wk_cost(problem, &method, &shared, forecast);
-}
-
-static enum status plan(const struct problem *problem, const void *options, void **plan)
-{
-    const struct wk_options shared = shared_of(options);
-    return wk_plan(problem, &method, &shared, plan);
-}
-
 const struct algorithm wk_squint = {
     .name = "wk_squint",
     .summary = "omega-k in axes turned by the squint",
     .reference = "SQ18 Eqs. (3) to (13), corrected",
     .options_size = sizeof(struct wk_options),
     .params = params,
-    .conditions = wk_rotated_conditions,
-    .forecast = forecast,
-    .cost = cost,
-    .plan = plan,
+    .method = &method,
+    .conditions = wk_conditions,
+    .forecast = wk_forecast,
+    .cost = wk_cost,
+    .plan = wk_plan,
     .execute = wk_execute,
     .work = wk_work,
     .destroy = wk_destroy,

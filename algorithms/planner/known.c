@@ -23,7 +23,7 @@ void known_free(struct known *known)
 enum status known_forecast(const struct known *known, const struct algorithm *algorithm, const void *options,
                            struct forecast *forecast)
 {
-    const enum status status = algorithm->forecast(&known->problem, options, forecast);
+    const enum status status = algorithm_forecast(algorithm, &known->problem, options, forecast);
     for (int cause = 0; cause < CAUSES && status == STATUS_OK; cause++)
         if (cause != CAUSE_SPECTRUM && !(cause == CAUSE_INTERPOLATION && known->problem.few)) /* of the pixels' own */
             forecast->error[cause] *= known->coarse;

@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "backprojection/factorised/factorised.h"
-#include "backprojection/omission.h"
+#include "backprojection/pairs/omission.h"
 #include "backprojection/pairs/pairs.h"
 #include "planner/candidates.h"
 #include "planner/known.h"
@@ -125,7 +125,7 @@ static enum status candidate_forecast(const struct setting *setting, struct cand
 static enum status migration_cost(const struct setting *setting, struct candidate *candidate)
 {
     const struct problem *problem = setting->problem;
-    enum status status = candidate->algorithm->cost(problem, candidate->options, &candidate->forecast);
+    enum status status = algorithm_cost(candidate->algorithm, problem, candidate->options, &candidate->forecast);
     if (status == STATUS_OK) {
         candidate->pairs = 0;
         candidate->flops = candidate->forecast.migration_flops;
@@ -349,7 +349,7 @@ static enum status plan_fastest(const struct setting *setting, struct choice *ch
     *tried = best != NULL;
     if (!best)
         return STATUS_OK;
-    enum status status = best->algorithm->plan(setting->problem, best->options, &choice->plan);
+    enum status status = algorithm_plan(best->algorithm, setting->problem, best->options, &choice->plan);
     if (status != STATUS_OK)
         return refused(best, status);
     best->bytes = process_bytes(setting->problem, best->algorithm->work(choice->plan).bytes);

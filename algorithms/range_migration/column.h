@@ -6,7 +6,6 @@
 #include "range_migration/rma_engine.h"
 #include "common/clock.h"
 #include "common/phasor.h"
-#include "common/vector_bytes.h"
 
 enum {
     LANES = RMA_ALIGNMENT / sizeof(real), /* real parts and imaginary parts of a row take turns */

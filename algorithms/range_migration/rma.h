@@ -82,6 +82,8 @@ extern const char *const rma_spacing_names[],
     }
 
 struct rma_method {
+    /* Options other than a struct rma_options: what they make of it and of the method. NULL: they are one. */
+    void (*choose)(const void *options, struct rma_method *method, struct rma_options *shared);
     const char *name, *law; /* law: of the condition that bounds the error of `spectrum` (rma_conditions.h) */
     double error_limit;     /* of the predicted error of an image */
     spectrum_function *spectrum;
@@ -106,7 +108,17 @@ double rma_reach(const struct acquisition *acquisition, const struct rma_bounds 
 /* How far the middle of a pair can be from a target at range r, m: what wavenumbers beyond hold is left out. */
 double rma_focused(const struct acquisition *acquisition, const struct rma_bounds *bounds, double r);
 
-/* The callbacks of struct algorithm, for a method. `options` is only used during the call. */
+/* The callbacks of struct algorithm, whose `method` is a struct rma_method, and whose options are a struct rma_options or
+   what it chooses by (rma_method.c). */
+int rma_method_conditions(const struct problem *problem, const void *method, const void *options,
+                          struct condition *list, int room);
+enum status rma_method_forecast(const struct problem *problem, const void *method, const void *options,
+                                struct forecast *forecast);
+enum status rma_method_cost(const struct problem *problem, const void *method, const void *options,
+                            struct forecast *forecast);
+enum status rma_method_plan(const struct problem *problem, const void *method, const void *options, void **plan);
+
+/* The same of a method as the options make it; these are only used during the call. */
 enum status rma_plan(const struct problem *problem, const struct rma_method *method, const struct rma_options *options,
                      void **plan);
 enum status rma_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);

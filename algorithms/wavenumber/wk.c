@@ -82,15 +82,18 @@ void wk_count(struct wk *wk)
              turned && unfiltered ? "; " : "", unfiltered ? "filter (no target area)" : "");
 }
 
-enum status wk_lay_out(const struct problem *problem, const struct wk_method *method, const struct wk_options *options,
-                       struct wk **made)
+enum status wk_lay_out(const struct problem *problem, const void *method, const void *options, struct wk **made)
 {
     struct wk *wk = *made = calloc(1, sizeof *wk);
     if (!wk)
-        return status_set(STATUS_FAILED, "no memory for %s", method->name);
+        return status_set(STATUS_FAILED, "no memory for %s", ((const struct wk_method *)method)->name);
     wk->problem = *problem;
-    wk->method = *method;
-    wk->options = *options;
+    wk->method = *(const struct wk_method *)method;
+    wk->options = *(const struct wk_options *)options;
+    if (wk->method.rotates || wk->method.filters)
+        wk->options.unfold = WK_SUPPORT;
+    if (wk->method.filters)
+        wk->options.pad = 1;
     const enum status status = wk_layout(wk);
     if (status != STATUS_OK) {
         wk_destroy(wk);
@@ -99,8 +102,7 @@ enum status wk_lay_out(const struct problem *problem, const struct wk_method *me
     return status;
 }
 
-enum status wk_plan(const struct problem *problem, const struct wk_method *method, const struct wk_options *options,
-                    void **plan)
+enum status wk_plan(const struct problem *problem, const void *method, const void *options, void **plan)
 {
     struct wk *wk = NULL;
     *plan = NULL;

@@ -53,25 +53,21 @@ extern const char *const wk_taps_names[], *const wk_unfold_names[];
 
 struct wk_method {
     const char *name;
-    bool rotates; /* works in axes turned by the squint */
-    bool filters; /* the polar-format filter comes first */
+    bool rotates; /* works in axes turned by the squint; unfold is then WK_SUPPORT */
+    bool filters; /* the polar-format filter comes first; unfold is then WK_SUPPORT, pad 1 */
 };
 
-/* The callbacks of struct algorithm, for a method. `options` is only used during the call. */
-enum status wk_plan(const struct problem *problem, const struct wk_method *method, const struct wk_options *options,
-                    void **plan);
-int wk_conditions(const struct problem *problem, const void *options, struct condition *list, int room);
-/* Of a method that filters, with what that takes off its own targets. */
-int wk_filter_conditions(const struct problem *problem, const void *options, struct condition *list, int room);
-/* Of a method that rotates: of a slower platform. */
-int wk_rotated_conditions(const struct problem *problem, const void *options, struct condition *list, int room);
+/* The callbacks of struct algorithm, whose `method` is a struct wk_method, and whose options a struct wk_options. */
+enum status wk_plan(const struct problem *problem, const void *method, const void *options, void **plan);
+/* Of one that rotates, for a slower platform; of one that filters, with what that takes off its own targets. */
+int wk_conditions(const struct problem *problem, const void *method, const void *options, struct condition *list,
+                  int room);
 /* Errors alone: INFINITY of a filter, and of an azimuth transform that is padded less than 1.25 times where axes are
    turned. Errors: as wk_plan. */
-enum status wk_forecast(const struct problem *problem, const struct wk_method *method, const struct wk_options *options,
+enum status wk_forecast(const struct problem *problem, const void *method, const void *options,
                         struct forecast *forecast);
 /* The counts alone. */
-enum status wk_cost(const struct problem *problem, const struct wk_method *method, const struct wk_options *options,
-                    struct forecast *forecast);
+enum status wk_cost(const struct problem *problem, const void *method, const void *options, struct forecast *forecast);
 enum status wk_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
 struct work wk_work(const void *plan);
 void wk_destroy(void *plan);

@@ -159,9 +159,9 @@ static int requirements(const struct problem *problem, struct condition all[COND
     return count;
 }
 
-int wk_conditions(const struct problem *problem, const void *options, struct condition *list, int room)
+/* What a method may refuse by. */
+static int refusals(const struct problem *problem, const struct wk_method *method, struct condition *list, int room)
 {
-    (void)options;
     struct straight_track track;
     struct condition all[CONDITIONS_MAX];
     int count = requirements(problem, all, &track);
@@ -173,34 +173,29 @@ int wk_conditions(const struct problem *problem, const void *options, struct con
         all[count] = ghosts_condition(problem, &track);
         all[count++].severity = SEVERITY_REFUSE; /* nothing else here predicts what lies within a patch */
     }
+    if (method->rotates)
+        all[0].limit = SLOWEST_ROTATED;
     for (int k = 0; k < count && k < room; k++)
         list[k] = all[k];
     return count < room ? count : room;
 }
 
-int wk_filter_conditions(const struct problem *problem, const void *options, struct condition *list, int room)
+int wk_conditions(const struct problem *problem, const void *method, const void *options, struct condition *list,
+                  int room)
 {
+    const struct wk_method *m = method;
     const struct wk_options *given = options;
     const struct acquisition *a = problem->acquisition;
-    int count = wk_conditions(problem, options, list, room);
-    if (count < room && a->area.half_x > 0 && polar_filter_check(a, "wk_polar") == STATUS_OK)
+    int count = refusals(problem, m, list, room);
+    if (m->filters && count < room && a->area.half_x > 0 && polar_filter_check(a, m->name) == STATUS_OK)
         list[count++] = polar_filter_kept(a, &(struct polar_setting){given->subapertures, given->curvature});
-    return count;
-}
-
-int wk_rotated_conditions(const struct problem *problem, const void *options, struct condition *list, int room)
-{
-    int count = wk_conditions(problem, options, list, room);
-    if (count > 0)
-        list[0].limit = SLOWEST_ROTATED;
     return count;
 }
 
 enum status wk_conditions_check(const struct problem *problem, const struct wk_method *method)
 {
     struct condition all[CONDITIONS_MAX];
-    const int count = method->rotates ? wk_rotated_conditions(problem, NULL, all, CONDITIONS_MAX)
-                                      : wk_conditions(problem, NULL, all, CONDITIONS_MAX);
+    const int count = refusals(problem, method, all, CONDITIONS_MAX);
     for (int k = 0; k < count; k++)
         if (strcmp(all[k].name, "predicted_error") == 0 && isnan(all[k].value))
             return status_set(STATUS_FAILED, "%s: no memory to predict the image's error", method->name);

@@ -174,8 +174,7 @@ enum status wk_period(const struct wk *wk, double *period);
 
 /* ---- wk.c ---- */
 /* A plan that is laid out and no more, to be freed by wk_destroy; *wk is NULL without one. The conditions hold. */
-enum status wk_lay_out(const struct problem *problem, const struct wk_method *method, const struct wk_options *options,
-                       struct wk **wk);
+enum status wk_lay_out(const struct problem *problem, const void *method, const void *options, struct wk **made);
 /* Ky bins that are interpolated for a patch, of all lines. */
 double wk_stolt_cells(const struct wk *wk, const struct wk_patch *patch);
 /* Add the work behind the compression. */

@@ -54,7 +54,7 @@ static enum status errors_fill(const struct wk *wk, struct forecast *forecast)
     return STATUS_OK;
 }
 
-enum status wk_forecast(const struct problem *problem, const struct wk_method *method, const struct wk_options *options,
+enum status wk_forecast(const struct problem *problem, const void *method, const void *options,
                         struct forecast *forecast)
 {
     struct wk *wk = NULL;
@@ -90,8 +90,7 @@ static void cost_fill(const struct wk *wk, double cost[MIGRATIONS])
     }
 }
 
-enum status wk_cost(const struct problem *problem, const struct wk_method *method, const struct wk_options *options,
-                    struct forecast *forecast)
+enum status wk_cost(const struct problem *problem, const void *method, const void *options, struct forecast *forecast)
 {
     const struct acquisition *a = problem->acquisition;
     const struct traces_form form = {.upsample = 1};

@@ -132,7 +132,7 @@ enum status check_algorithm(const struct scene *scene, const struct spec *spec, 
     enum status status = STATUS_OK;
     *refused = !conditions_accept(list, count);
     if (!*refused) {
-        status = spec->algorithm->plan(&problem, spec->options, &plan);
+        status = algorithm_plan(spec->algorithm, &problem, spec->options, &plan);
         spec->algorithm->destroy(plan);
         *refused = status == STATUS_UNSUPPORTED;
         if (*refused)

@@ -86,8 +86,7 @@ static enum status probe_spec(const struct bench *bench, const char *text, const
     if (status != STATUS_OK)
         return status;
     const struct problem problem = problem_make(acquisition, 1, grid, spec.precision);
-    status = (spec.algorithm->cost ? spec.algorithm->cost : spec.algorithm->forecast)(&problem, spec.options,
-                                                                                      &probe->forecast);
+    status = algorithm_cost(spec.algorithm, &problem, spec.options, &probe->forecast);
     if (status == STATUS_OK)
         status = imaging_open(&spec, &problem, &imaging);
     if (status == STATUS_OK) {

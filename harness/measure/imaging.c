@@ -9,7 +9,7 @@ enum status imaging_open(const struct spec *spec, const struct problem *problem,
     enum status status = image_allocate(problem->patch_count, problem->patches, problem->precision, &imaging->image);
     if (status == STATUS_OK) {
         double begin = seconds_now();
-        status = spec->algorithm->plan(problem, spec->options, &imaging->plan);
+        status = algorithm_plan(spec->algorithm, problem, spec->options, &imaging->plan);
         imaging->plan_s = seconds_now() - begin;
     }
     if (status != STATUS_OK) {

@@ -66,7 +66,7 @@ static bool rate_suffices(const struct problem *problem, int rule, int rate)
     struct forecast forecast;
     bool within = false;
     if (spec_of(rule, rate, &spec) == STATUS_OK) {
-        within = spec.algorithm->forecast(problem, spec.options, &forecast) == STATUS_OK
+        within = algorithm_forecast(spec.algorithm, problem, spec.options, &forecast) == STATUS_OK
                  && forecast_error(&forecast) <= budget;
         spec_free(&spec);
     }

@@ -173,7 +173,7 @@ static void works_print(const struct scene *scene, int spec_count, const struct 
         const struct measurement row = measurement_empty("", algorithm->name, specs[k].text, specs[k].precision);
         void *plan = NULL;
         measurement_spec(&row, text, sizeof text);
-        if (algorithm->plan(&problem, specs[k].options, &plan) == STATUS_OK) {
+        if (algorithm_plan(algorithm, &problem, specs[k].options, &plan) == STATUS_OK) {
             const struct work work = algorithm->work(plan);
             table_work(stdout, text, &work);
         }

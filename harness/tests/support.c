@@ -112,7 +112,7 @@ struct work support_work(const char *text, struct problem problem)
     void *plan;
     CHECK(spec_parse(text, &spec));
     problem.precision = spec.precision;
-    CHECK(spec.algorithm->plan(&problem, spec.options, &plan));
+    CHECK(algorithm_plan(spec.algorithm, &problem, spec.options, &plan));
     const struct work work = spec.algorithm->work(plan);
     spec.algorithm->destroy(plan);
     spec_free(&spec);

@@ -126,7 +126,7 @@ static void nothing_fits(void **state)
     support_scene("study/quick", &scene);
     const struct problem problem = scene_problem(&scene, PRECISION_FLOAT);
     assert_int_equal(spec_parse("auto:error=1e-9", &spec), STATUS_OK);
-    assert_int_equal(spec.algorithm->plan(&problem, spec.options, &plan), STATUS_UNSUPPORTED);
+    assert_int_equal(algorithm_plan(spec.algorithm, &problem, spec.options, &plan), STATUS_UNSUPPORTED);
     assert_null(plan);
     assert_non_null(strstr(status_message(), "condition budget"));
     assert_non_null(strstr(status_message(), "bp_farrow"));
@@ -320,8 +320,8 @@ static void migration_is_counted(void **state)
         struct forecast forecast;
         void *plan;
         assert_int_equal(spec_parse(specs[k], &spec), STATUS_OK);
-        assert_int_equal(spec.algorithm->cost(&problem, spec.options, &forecast), STATUS_OK);
-        assert_int_equal(spec.algorithm->plan(&problem, spec.options, &plan), STATUS_OK);
+        assert_int_equal(algorithm_cost(spec.algorithm, &problem, spec.options, &forecast), STATUS_OK);
+        assert_int_equal(algorithm_plan(spec.algorithm, &problem, spec.options, &plan), STATUS_OK);
         assert_true(forecast.migration_flops == spec.algorithm->work(plan).flops);
         assert_true((forecast.migration[MIGRATION_TERMS] > 0) == (k < 2));
         assert_true((forecast.migration[MIGRATION_BLOCKS] > 0) == (k >= 2));
@@ -379,7 +379,7 @@ static struct forecast column_forecast(const char *text, double share)
     grid->r_step = share * a->sound_speed / (2 * a->fs);
     const struct problem problem = problem_make(a, 1, grid, PRECISION_FLOAT);
     assert_int_equal(spec_parse(text, &spec), STATUS_OK);
-    assert_int_equal(spec.algorithm->forecast(&problem, spec.options, &forecast), STATUS_OK);
+    assert_int_equal(algorithm_forecast(spec.algorithm, &problem, spec.options, &forecast), STATUS_OK);
     spec_free(&spec);
     scene_free(&scene);
     assert_false(forecast.tables);

@@ -49,7 +49,7 @@ static bool make_plan(const struct setting *setting, const struct problem *probl
     int unset;
     make_spec(problem->precision, &spec);
     *plan = &unset;
-    enum status status = current->plan(problem, spec.options, plan);
+    enum status status = algorithm_plan(current, problem, spec.options, plan);
     spec_free(&spec);
     if (status == STATUS_OK)
         return true;
@@ -304,14 +304,14 @@ static void check_refused_memory(const struct scene *scene, enum precision preci
     omp_set_num_threads(1);
     void *whole = NULL;
     allocations_begin(-1);
-    if (current->plan(&problem, spec.options, &whole) == STATUS_OK)
+    if (algorithm_plan(current, &problem, spec.options, &whole) == STATUS_OK)
         current->destroy(whole);
     const int count = allocations_end().taken;
     const int step = 1 + count / TRIED;
     for (int call = precision == PRECISION_DOUBLE ? step / 2 : 0; call < count; call += step) {
         void *plan = NULL;
         allocations_begin(call);
-        enum status status = current->plan(&problem, spec.options, &plan);
+        enum status status = algorithm_plan(current, &problem, spec.options, &plan);
         if (status == STATUS_OK)
             current->destroy(plan);
         struct allocations left = allocations_end();

@@ -12,7 +12,7 @@ struct forecast forecast_of(const char *text, const struct problem *problem)
     struct forecast forecast;
     struct spec spec;
     assert_int_equal(spec_parse(text, &spec), STATUS_OK);
-    assert_int_equal(spec.algorithm->forecast(problem, spec.options, &forecast), STATUS_OK);
+    assert_int_equal(algorithm_forecast(spec.algorithm, problem, spec.options, &forecast), STATUS_OK);
     spec_free(&spec);
     return forecast;
 }

@@ -22,7 +22,7 @@ static double promise_of(const char *text, const struct problem *problem)
     if (asked)
         return strtod(asked + strlen("error="), NULL);
     assert_int_equal(spec_parse(text, &spec), STATUS_OK);
-    assert_int_equal(spec.algorithm->forecast(problem, spec.options, &forecast), STATUS_OK);
+    assert_int_equal(algorithm_forecast(spec.algorithm, problem, spec.options, &forecast), STATUS_OK);
     spec_free(&spec);
     return SPREAD * forecast_error(&forecast);
 }

@@ -133,7 +133,7 @@ static void long_records_take_several_passes(void **state)
         make_invariant_case(&invariant_cases[last], &a, &grid, &echoes);
         struct problem problem = problem_make(&a, 1, &grid, (enum precision)precision);
         assert_int_equal(spec_parse("bp_zeropad:factor=64,engine=invariant", &spec), STATUS_OK);
-        assert_int_equal(spec.algorithm->plan(&problem, spec.options, &plan), STATUS_OK);
+        assert_int_equal(algorithm_plan(spec.algorithm, &problem, spec.options, &plan), STATUS_OK);
         const struct invariant *in = ((const struct bp *)plan)->state;
         assert_true(in->passes > 1);
         spec.algorithm->destroy(plan);
@@ -267,7 +267,7 @@ static const char *engine_of(const char *text, const struct problem *problem)
     struct spec spec;
     void *plan;
     assert_int_equal(spec_parse(text, &spec), STATUS_OK);
-    if (spec.algorithm->plan(problem, spec.options, &plan) != STATUS_OK)
+    if (algorithm_plan(spec.algorithm, problem, spec.options, &plan) != STATUS_OK)
         fail_msg("%s: %s", text, status_message());
     work = spec.algorithm->work(plan);
     spec.algorithm->destroy(plan);
@@ -326,7 +326,7 @@ static void auto_falls_back(void **state)
     assert_string_equal(engine_of("bp_nearest", &problem), "general");
     assert_string_equal(engine_of("bp_sinc", &problem), "general");
     assert_int_equal(spec_parse("bp_nearest:engine=invariant", &spec), STATUS_OK);
-    assert_int_equal(spec.algorithm->plan(&problem, spec.options, &plan), STATUS_UNSUPPORTED);
+    assert_int_equal(algorithm_plan(spec.algorithm, &problem, spec.options, &plan), STATUS_UNSUPPORTED);
     spec_free(&spec);
     acquisition_free(&a);
 }

@@ -40,23 +40,23 @@ static enum status plan_of(const struct acquisition *acquisition, const struct p
     return bp_plan(&changed, &nearest, &options, plan);
 }
 
-static enum status plan_good(const struct problem *problem, const void *options, void **plan)
+static enum status plan_good(const struct problem *problem, const void *method, const void *options, void **plan)
 {
-    (void)options;
+    (void)method, (void)options;
     return plan_of(problem->acquisition, problem, plan);
 }
 
-static enum status plan_leaks(const struct problem *problem, const void *options, void **plan)
+static enum status plan_leaks(const struct problem *problem, const void *method, const void *options, void **plan)
 {
     static void *lost;
     lost = malloc(1);
-    return lost ? plan_good(problem, options, plan) : status_set(STATUS_FAILED, "no memory to be lost");
+    return lost ? plan_good(problem, method, options, plan) : status_set(STATUS_FAILED, "no memory to be lost");
 }
 
-static enum status plan_unlimited(const struct problem *problem, const void *options, void **plan)
+static enum status plan_unlimited(const struct problem *problem, const void *method, const void *options, void **plan)
 {
     static struct acquisition changed; /* outlives the plan */
-    (void)options;
+    (void)method, (void)options;
     changed = *problem->acquisition;
     changed.aperture_limit = INFINITY;
     return plan_of(&changed, problem, plan);
@@ -87,29 +87,29 @@ static enum status plan_flat(const struct problem *problem, void **plan, double 
     return plan_of(&changed, problem, plan);
 }
 
-static enum status plan_without_y(const struct problem *problem, const void *options, void **plan)
+static enum status plan_without_y(const struct problem *problem, const void *method, const void *options, void **plan)
 {
-    (void)options;
+    (void)method, (void)options;
     return plan_flat(problem, plan, 0, 1, 1);
 }
 
-static enum status plan_without_z(const struct problem *problem, const void *options, void **plan)
+static enum status plan_without_z(const struct problem *problem, const void *method, const void *options, void **plan)
 {
-    (void)options;
+    (void)method, (void)options;
     return plan_flat(problem, plan, 1, 0, 1);
 }
 
-static enum status plan_along_x(const struct problem *problem, const void *options, void **plan)
+static enum status plan_along_x(const struct problem *problem, const void *method, const void *options, void **plan)
 {
-    (void)options;
+    (void)method, (void)options;
     return plan_flat(problem, plan, 1, 1, 0);
 }
 
-static enum status plan_one_t0(const struct problem *problem, const void *options, void **plan)
+static enum status plan_one_t0(const struct problem *problem, const void *method, const void *options, void **plan)
 {
     static struct acquisition changed;
     static double t0[PLACES];
-    (void)options;
+    (void)method, (void)options;
     changed = *problem->acquisition;
     changed.t0 = t0;
     for (int p = 0; p < changed.pings; p++)
@@ -117,22 +117,25 @@ static enum status plan_one_t0(const struct problem *problem, const void *option
     return plan_of(&changed, problem, plan);
 }
 
-static enum status plan_straight_only(const struct problem *problem, const void *options, void **plan)
+static enum status plan_straight_only(const struct problem *problem, const void *method, const void *options,
+                                      void **plan)
 {
     *plan = NULL;
     if (acquisition_is_straight(problem->acquisition, NULL))
-        return plan_good(problem, options, plan);
+        return plan_good(problem, method, options, plan);
     return status_set(STATUS_UNSUPPORTED, "the track is not straight");
 }
 
-static enum status plan_without_reason(const struct problem *problem, const void *options, void **plan)
+static enum status plan_without_reason(const struct problem *problem, const void *method, const void *options,
+                                       void **plan)
 {
     *plan = NULL;
-    return problem->acquisition->pings > 1 ? plan_good(problem, options, plan) : status_set(STATUS_UNSUPPORTED, "no");
+    return problem->acquisition->pings > 1 ? plan_good(problem, method, options, plan)
+                                           : status_set(STATUS_UNSUPPORTED, "no");
 }
 
 /* Keeps what it has when memory ends. */
-static enum status plan_half_made(const struct problem *problem, const void *options, void **plan)
+static enum status plan_half_made(const struct problem *problem, const void *method, const void *options, void **plan)
 {
     static void *first, *second;
     *plan = NULL;
@@ -142,7 +145,7 @@ static enum status plan_half_made(const struct problem *problem, const void *opt
         return status_set(STATUS_FAILED, "no memory for the two");
     free(first);
     free(second);
-    return plan_good(problem, options, plan);
+    return plan_good(problem, method, options, plan);
 }
 
 /* ---- executes ---- */

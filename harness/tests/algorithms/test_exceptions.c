@@ -82,7 +82,7 @@ static int image_faults(const char *scene, const char *text, struct problem prob
     assert_int_equal(spec_parse(text, &spec), STATUS_OK);
     problem.precision = spec.precision;
     flags_clear();
-    enum status status = spec.algorithm->plan(&problem, spec.options, &plan);
+    enum status status = algorithm_plan(spec.algorithm, &problem, spec.options, &plan);
     raised[0] = flags_raised();
     if (status == STATUS_OK) {
         assert_int_equal(echoes_convert(echoes, spec.precision, &converted), STATUS_OK);

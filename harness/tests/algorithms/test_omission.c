@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "metrics/metrics.h"
-#include "backprojection/omission.h"
+#include "backprojection/pairs/omission.h"
 #include "backprojection/pairs/pairs.h"
 #include "contract/condition.h"
 #include "tests/support.h"

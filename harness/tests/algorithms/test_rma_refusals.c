@@ -34,7 +34,7 @@ static void refusals(void **state)
         scene.acquisition.tx[cases[k].pings - 1].y = cases[k].bend;
         struct problem problem = problem_make(&scene.acquisition, 1, &cases[k].grid, PRECISION_FLOAT);
         assert_int_equal(spec_parse("rma_lbf", &spec), STATUS_OK);
-        assert_int_equal(spec.algorithm->plan(&problem, spec.options, &plan), STATUS_UNSUPPORTED);
+        assert_int_equal(algorithm_plan(spec.algorithm, &problem, spec.options, &plan), STATUS_UNSUPPORTED);
         print_message("    %s\n", status_message());
         assert_non_null(strstr(status_message(), cases[k].reason));
         assert_null(plan);
@@ -51,7 +51,7 @@ static const char *refusal(const char *text, struct scene *scene, double r)
     struct spec spec;
     void *plan;
     assert_int_equal(spec_parse(text, &spec), STATUS_OK);
-    enum status status = spec.algorithm->plan(&problem, spec.options, &plan);
+    enum status status = algorithm_plan(spec.algorithm, &problem, spec.options, &plan);
     spec.algorithm->destroy(plan);
     spec_free(&spec);
     return status == STATUS_OK ? "" : status_message();

@@ -241,7 +241,7 @@ static void read_by(const char *text, struct problem problem, int *from, int *en
     void *plan;
     assert_int_equal(spec_parse(text, &spec), STATUS_OK);
     problem.precision = spec.precision;
-    if (spec.algorithm->plan(&problem, spec.options, &plan) != STATUS_OK)
+    if (algorithm_plan(spec.algorithm, &problem, spec.options, &plan) != STATUS_OK)
         fail_msg("%s: %s", text, status_message());
     *from = ((const struct rma *)plan)->from;
     *end = *from + ((const struct rma *)plan)->read;

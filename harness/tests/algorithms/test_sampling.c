@@ -236,7 +236,7 @@ static void refusals_name_the_unknown_beam(void **state)
             a.tx_length = known ? element : 0;
             const struct problem problem = problem_make(&a, 1, &grid, PRECISION_DOUBLE);
             assert_int_equal(spec_parse(specs[k], &spec), STATUS_OK);
-            const enum status status = spec.algorithm->plan(&problem, spec.options, &plan);
+            const enum status status = algorithm_plan(spec.algorithm, &problem, spec.options, &plan);
             print_message("%s: %s\n", specs[k], status == STATUS_OK ? "planned" : status_message());
             assert_int_equal(status, known ? STATUS_OK : STATUS_UNSUPPORTED);
             assert_true(known || strstr(status_message(), "cure: tx_length and rx_length"));

@@ -102,7 +102,7 @@ static void *planned(const char *text, const struct problem *problem, struct spe
 {
     void *plan;
     assert_int_equal(spec_parse(text, spec), STATUS_OK);
-    assert_int_equal(spec->algorithm->plan(problem, spec->options, &plan), STATUS_OK);
+    assert_int_equal(algorithm_plan(spec->algorithm, problem, spec->options, &plan), STATUS_OK);
     return plan;
 }
 
@@ -365,7 +365,7 @@ static void refuses(const struct acquisition *a, const struct grid *grid, const 
         struct spec spec;
         void *plan;
         assert_int_equal(spec_parse(specs[k], &spec), STATUS_OK);
-        enum status status = spec.algorithm->plan(&problem, spec.options, &plan);
+        enum status status = algorithm_plan(spec.algorithm, &problem, spec.options, &plan);
         spec_free(&spec);
         if (status != STATUS_UNSUPPORTED)
             fail_msg("%s: status %d, must be refused for \"%s\"", specs[k], status, reason);

@@ -226,13 +226,13 @@ static void conditions_have_the_loss(void **state)
     scene_pf05(&scene);
     const struct problem problem = scene_problem(&scene, PRECISION_FLOAT);
     scene.acquisition.area = (struct target_area){0, 30, 2, 0.3};
-    const int count = wk_polar.conditions(&problem, &options, list, CONDITIONS_MAX);
+    const int count = algorithm_conditions(&wk_polar, &problem, &options, list, CONDITIONS_MAX);
     assert_string_equal(list[count - 1].name, "area_kept");
     assert_int_equal(list[count - 1].severity, SEVERITY_WARN);
     assert_false(condition_holds(&list[count - 1]));
     assert_non_null(strstr(list[count - 1].cure, "subapertures=4 in place of 2"));
     scene.acquisition.area = (struct target_area){0};
-    assert_int_equal(wk_polar.conditions(&problem, &options, list, CONDITIONS_MAX), count - 1);
+    assert_int_equal(algorithm_conditions(&wk_polar, &problem, &options, list, CONDITIONS_MAX), count - 1);
     squint_scene_free(&scene);
 }
 

@@ -76,7 +76,7 @@ static struct work work_of(const char *text, const struct scene *scene, const st
     assert_int_equal(spec_parse(text, &spec), STATUS_OK);
     const struct problem problem = scene_problem(scene, spec.precision);
     plans = 0;
-    if (spec.algorithm->plan(&problem, spec.options, &plan) != STATUS_OK)
+    if (algorithm_plan(spec.algorithm, &problem, spec.options, &plan) != STATUS_OK)
         fail_msg("%s: %s", text, status_message());
     const struct work work = spec.algorithm->work(plan);
     assert_int_equal(image_allocate(problem.patch_count, problem.patches, problem.precision, &image), STATUS_OK);

@@ -19,7 +19,7 @@ static enum status image_form(const struct scene *scene, const struct spec *spec
     if (status == STATUS_OK)
         status = image_allocate(problem.patch_count, problem.patches, spec->precision, &image);
     if (status == STATUS_OK)
-        status = spec->algorithm->plan(&problem, spec->options, &plan);
+        status = algorithm_plan(spec->algorithm, &problem, spec->options, &plan);
     if (status == STATUS_OK) {
         stages_begin(&stages);
         status = spec->algorithm->execute(plan, &converted, &image, &stages);

@@ -100,7 +100,7 @@ static void image_form(const struct algorithm *algorithm, const struct problem *
     void *plan = NULL;
     struct image image;
     struct stages stages;
-    enum status status = algorithm->plan(problem, options, &plan);
+    enum status status = algorithm_plan(algorithm, problem, options, &plan);
     if (status != STATUS_OK) {
         if (plan || !*status_message())
             fuzz_fail("%s: refused without a message, or with a plan", algorithm->name);

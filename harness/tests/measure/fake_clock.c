@@ -126,9 +126,9 @@ struct told told;
 int runs_done;
 static int plan_made;
 
-static enum status told_plan(const struct problem *problem, const void *options, void **plan)
+static enum status told_plan(const struct problem *problem, const void *method, const void *options, void **plan)
 {
-    (void)problem, (void)options;
+    (void)problem, (void)method, (void)options;
     if (fake.on)
         fake_clock_pass(0.004);
     *plan = &plan_made;

@@ -13,9 +13,9 @@ static struct scene scene;
 static struct session session;
 static const double complex gain = 0.9 * (0.955336489125606 + 0.29552020666134 * I); /* of phase .3 rad */
 
-static enum status copy_plan(const struct problem *problem, const void *options, void **plan)
+static enum status copy_plan(const struct problem *problem, const void *method, const void *options, void **plan)
 {
-    (void)problem, (void)options;
+    (void)problem, (void)method, (void)options;
     *plan = &session;
     return STATUS_OK;
 }

@@ -21,9 +21,9 @@ __attribute__((no_sanitize("undefined", "address"))) static void write_nowhere(v
     *nowhere = 1;
 }
 
-static enum status planted_plan(const struct problem *problem, const void *options, void **plan)
+static enum status planted_plan(const struct problem *problem, const void *method, const void *options, void **plan)
 {
-    (void)problem, (void)options;
+    (void)problem, (void)method, (void)options;
     *plan = NULL;
     if (wanted == CRASH_PLAN)
         write_nowhere();

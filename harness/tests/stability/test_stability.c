@@ -30,10 +30,10 @@ static enum fault injected;
 
 /* ---- a plain back projection, named as the method that it is ---- */
 
-static enum status planted_plan(const struct problem *problem, const void *options, void **plan)
+static enum status planted_plan(const struct problem *problem, const void *method, const void *options, void **plan)
 {
     struct problem *copy = malloc(sizeof *copy);
-    (void)options;
+    (void)method, (void)options;
     if (copy)
         *copy = *problem;
     *plan = copy;

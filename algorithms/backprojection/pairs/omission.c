@@ -1,4 +1,4 @@
-#include "backprojection/omission.h"
+#include "backprojection/pairs/omission.h"
 
 #include <math.h>
 

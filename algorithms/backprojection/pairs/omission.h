@@ -4,8 +4,8 @@
    They are means over the pings that see a pixel, weighted by the energy that each brings into the image's azimuth
    spectrum: by stationary phase A^2 (1 - s^2)^(-3/2) a ping, s the sine of its angle off broadside and A the echo's
    amplitude. */
-#ifndef SASBENCH_BACKPROJECTION_OMISSION_H
-#define SASBENCH_BACKPROJECTION_OMISSION_H
+#ifndef SASBENCH_BACKPROJECTION_PAIRS_OMISSION_H
+#define SASBENCH_BACKPROJECTION_PAIRS_OMISSION_H
 
 #include "contract/algorithm.h"
 
