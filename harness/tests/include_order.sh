@@ -1,6 +1,7 @@
 #!/bin/sh
-# Data flows one way: every folder includes its own headers and those of folders before it only.
-# Usage: include_order.sh SOURCE_ROOT. Prints each include that breaks the order; exit status 1 if there is one.
+# Data flows one way: every folder includes its own headers and those of folders before it only. Beside the tests, a
+# folder holds at most 30 sources and headers, and no two files bear one name, but for a source and its header.
+# Usage: include_order.sh SOURCE_ROOT. Prints each fault; exit status 1 if there is one.
 set -eu
 cd "$1"
 find algorithms harness -name '*.[ch]' | sort | xargs awk '
@@ -36,6 +37,17 @@ find algorithms harness -name '*.[ch]' | sort | xargs awk '
         apart["algorithms/backprojection/general", "algorithms/wavenumber"] = 1
         apart["algorithms/backprojection/invariant", "algorithms/wavenumber"] = 1
     }
+    FNR == 1 && FILENAME !~ /^harness.tests/ {
+        held[place(FILENAME)]++
+        name = FILENAME
+        sub(".*/", "", name)
+        stem = substr(name, 1, length(name) - 2)
+        if (stem in home && home[stem] != place(FILENAME)) {
+            print FILENAME ": " home[stem] " has a file of that name"
+            faults++
+        }
+        home[stem] = place(FILENAME)
+    }
     /^#include "/ {
         split($0, part, "\"")
         own = place(FILENAME)
@@ -61,6 +73,11 @@ find algorithms harness -name '*.[ch]' | sort | xargs awk '
         }
     }
     END {
+        for (k in held)
+            if (held[k] > 30) {
+                print k ": holds " held[k] " files, at most 30"
+                faults++
+            }
         if (read < 100) {
             print "only " read + 0 " includes read: is this the source?"
             faults++
