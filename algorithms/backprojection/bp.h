@@ -55,8 +55,8 @@ extern const char *const bp_engine_names[], *const bp_exact_names[];
 
 /* `method` of struct algorithm: what options, which begin with a struct bp_options, make of a problem. */
 struct bp_method {
-    /* Fill *interpolator and made[made_size], which its weights are handed, and which begins with a struct bp_options as
-       well; made_size 0: they are handed the options. Errors: STATUS_UNSUPPORTED with the reason, STATUS_FAILED. */
+    /* Fill *interpolator and made[made_size], which its weights are handed, and which begins with a struct bp_options
+       as well; made_size 0: they are handed the options. Errors: STATUS_UNSUPPORTED with the reason, STATUS_FAILED. */
     enum status (*make)(const struct problem *problem, const void *options, struct interpolator *interpolator,
                         void *made);
     size_t made_size; /* at most BP_MADE_MOST */

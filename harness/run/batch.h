@@ -5,7 +5,7 @@
 #include "results/provenance.h"
 #include "results/results_folder.h"
 #include "measure/session.h"
-#include "scene/scene.h"
+#include "scene/scenes.h"
 #include "measure/timing.h"
 
 struct batch {
@@ -44,12 +44,5 @@ const struct measurement *batch_find(const struct batch *batch, const struct sce
 /* Close the folder. Returns `status`, or STATUS_FAILED when that is OK but a measurement failed or a picture could not
    be drawn. */
 enum status batch_close(struct batch *batch, enum status status);
-
-/* Scenes by name or path, or with given_count 0 all shipped ones that are not full_size, in *scenes [*count]: all are
-   read before the first one runs, so that a fault in the last is known at once. `command` begins a message. Errors: as
-   scene_load, and STATUS_INVALID for a scene named twice; what was read must still be freed with scenes_free. */
-enum status scenes_load(const char *command, int given_count, const char *const *given, struct scene **scenes,
-                        int *count);
-void scenes_free(struct scene *scenes, int count);
 
 #endif
