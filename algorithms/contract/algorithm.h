@@ -157,6 +157,9 @@ struct algorithm {
        that plan refuses by. NULL: conditions_general. */
     int (*conditions)(const struct problem *problem, const void *method, const void *options, struct condition *list,
                       int room);
+    /* The relative L2 error that an image by these settings is to keep; a row that does not warns. NAN, or NULL: none is
+       promised. */
+    double (*promise)(const void *options);
     /* What the settings will make of a problem, without a plan; far cheaper than one, but for range migration. Errors:
        STATUS_UNSUPPORTED with the reason, as plan, STATUS_FAILED without memory. NULL: nothing is known beforehand, and
        no planner chooses the algorithm. */

@@ -37,6 +37,11 @@ static int conditions(const struct problem *problem, const void *method, const v
     return conditions_sampled(problem, list, room);
 }
 
+static double promise(const void *options)
+{
+    return ((const struct options *)options)->error;
+}
+
 static enum status nothing_fits(const struct options *options, const struct choice *choice)
 {
     const struct candidate *best = NULL;
@@ -135,6 +140,7 @@ const struct algorithm automatic = {
     .options_size = sizeof(struct options),
     .params = params,
     .conditions = conditions,
+    .promise = promise,
     .plan = plan,
     .execute = execute,
     .work = work,

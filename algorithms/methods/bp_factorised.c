@@ -39,6 +39,11 @@ static const struct param params[] = {
     {.name = NULL},
 };
 
+static double promise(const void *options)
+{
+    return ((const struct options *)options)->error;
+}
+
 struct planned {
     void *direct; /* of back projection, or */
     struct factorised *tree;
@@ -192,6 +197,7 @@ const struct algorithm bp_factorised = {
     .options_size = sizeof(struct options),
     .params = params,
     .conditions = conditions,
+    .promise = promise,
     .forecast = forecast,
     .plan = plan,
     .execute = execute,

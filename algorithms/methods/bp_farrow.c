@@ -8,6 +8,8 @@
    at fs = 2B; 2.9e-3, 3.5e-4, 3.6e-5, 3.1e-6 at fs = 1.2 B. It falls by an order of magnitude and more with each
    degree; a higher degree is cheaper than factor = 2. Frequencies beyond the band keep a small error as well: 1.7e-2
    for degree 3 at fs/2. */
+#include <math.h>
+
 #include "backprojection/bp.h"
 #include "backprojection/farrow.h"
 
@@ -34,6 +36,12 @@ static const struct param params[] = {
     {.name = NULL},
 };
 
+static double promise(const void *options)
+{
+    const struct options *o = options;
+    return o->degree == DEGREE_AUTO ? o->error : NAN;
+}
+
 static enum status make(const struct problem *problem, const void *options, struct interpolator *interpolator,
                         void *made)
 {
@@ -56,6 +64,7 @@ const struct algorithm bp_farrow = {
     .params = params,
     .method = &method,
     .conditions = bp_method_conditions,
+    .promise = promise,
     .forecast = bp_method_forecast,
     .plan = bp_method_plan,
     .execute = bp_execute,

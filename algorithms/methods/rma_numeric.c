@@ -31,6 +31,7 @@ const struct algorithm rma_numeric = {
     .params = params,
     .method = &method,
     .conditions = rma_method_conditions,
+    .promise = rma_promise,
     .forecast = rma_method_forecast,
     .cost = rma_method_cost,
     .plan = rma_method_plan,

@@ -8,6 +8,7 @@
        support    only the wavenumbers in which the beam has cells: 1.4 times
 
    Error: that of the method of stationary phase, and of the Stolt interpolation, 2e-4 with 8 taps. */
+#include "range_migration/rma.h"
 #include "wavenumber/wk.h"
 
 static const struct param params[] = {
@@ -30,6 +31,7 @@ const struct algorithm wk_classic = {
     .params = params,
     .method = &method,
     .conditions = wk_conditions,
+    .promise = rma_promise,
     .forecast = wk_forecast,
     .cost = wk_cost,
     .plan = wk_plan,

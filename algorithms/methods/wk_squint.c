@@ -6,6 +6,7 @@
    to 18 % near the record's ends with pad = 1. The weights that prepare the range interpolation belong to t + 2 X sin
    theta/c, and the beam's half width psi moves what they meet by 2 X sin theta (1/cos psi - 1)/c: 3e-4 of the window in
    SQ18's scene. */
+#include "range_migration/rma.h"
 #include "wavenumber/wk.h"
 
 static const struct param params[] = {
@@ -25,6 +26,7 @@ const struct algorithm wk_squint = {
     .params = params,
     .method = &method,
     .conditions = wk_conditions,
+    .promise = rma_promise,
     .forecast = wk_forecast,
     .cost = wk_cost,
     .plan = wk_plan,

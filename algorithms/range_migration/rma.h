@@ -108,6 +108,9 @@ double rma_reach(const struct acquisition *acquisition, const struct rma_bounds 
 /* How far the middle of a pair can be from a target at range r, m: what wavenumbers beyond hold is left out. */
 double rma_focused(const struct acquisition *acquisition, const struct rma_bounds *bounds, double r);
 
+/* What images by azimuth transforms keep to, range migration's and omega-k's: the conditions are to see to it. */
+double rma_promise(const void *options);
+
 /* The callbacks of struct algorithm, whose `method` is a struct rma_method, and whose options are a struct rma_options
    or what it chooses by (rma_method.c). */
 int rma_method_conditions(const struct problem *problem, const void *method, const void *options,

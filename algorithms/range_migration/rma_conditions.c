@@ -10,11 +10,17 @@
 #include "range_migration/prediction.h"
 
 static const double SLOWEST = 0.1; /* 1 - |v|/c that spectra need */
-static const double ERROR_LIMIT = 0.1;
+static const double ERROR_LIMIT = 0.1, PROMISE = 0.12;
 static const double LAW_LIMIT = 0.1;    /* rad: an image is as wrong as its phases */
 static const double WIDEST_SINE = 0.95; /* of the aperture where neither sampling nor element length bounds it */
 static const double ECHO_ZONES = 4;     /* Fresnel zones beyond the echoes' own sine, over which their spectrum fades */
 static const double FRESNEL_ZONES = 6;  /* beyond the track's ends: what is cut farther out leaves no ripple */
+
+double rma_promise(const void *options)
+{
+    (void)options;
+    return PROMISE;
+}
 
 /* Offset of the receiver that is n/2 of the way from the least to the greatest. */
 static double offset_at(const struct rma_view *view, int n)

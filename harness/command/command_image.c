@@ -52,9 +52,10 @@ static void warnings_print(const struct condition *list, int count)
 static void warn_of_image(const struct echoes *echoes, const struct image *image)
 {
     const struct darkness darkness = image_darkness(echoes, image);
-    const struct condition dark = darkness_condition(&darkness);
+    struct condition list[DARKNESS_CONDITIONS];
+    darkness_conditions(&darkness, list);
     progress_line_clear();
-    warnings_print(&dark, 1);
+    warnings_print(list, DARKNESS_CONDITIONS);
 }
 
 static enum status execute(const struct spec *spec, struct imaging *imaging, const struct echoes *from,

@@ -5,18 +5,28 @@
 #include <omp.h>
 #include <stdlib.h>
 
+#include "backprojection/law_spectrum.h"
 #include "backprojection/pairs/pairs.h"
 #include "backprojection/traces.h"
-#include "contract/delay.h"
+#include "common/image_spectrum.h"
 #include "common/turns.h"
+#include "contract/delay.h"
 #include "echoes/echo_data.h"
+#include "range_migration/rma_conditions.h"
 
-static const double NOISE_MOST = 2; /* 1: echoes that do not know each other, but for the chance of few pixels */
+static const double NOISE_MOST = 2;       /* 1: echoes that do not know each other, but for the chance of few pixels */
+static const double EDGES_MOST = 4.0 / 3; /* 1 + a sixth of what only side lobes of a flat, narrow band have more */
+static const double GHOSTS_MOST = 0.1;    /* as for those that are predicted (range_migration/ghosts.c) */
 enum { VISITS = 1 << 18, RECORDS_LEAST = 256 };
 
 /* The plastic number's first two powers below 1: points frac(n a), frac(n b) are spread evenly over a square, however
    many there are, and over every band of its rows or columns. */
 static const double SPREAD_R = 0.7548776662466927, SPREAD_X = 0.5698402909980532;
+
+/* Sums of |s|^2, and of the squares of differences between neighbours; and of |s|^2 where ghosts are made. */
+struct energies {
+    double met, steps, ghosts;
+};
 
 struct survey {
     const struct echoes *echoes;
@@ -26,6 +36,7 @@ struct survey {
     int records, pairs;      /* that are read, of so many */
     int visits;              /* pixels of a record */
     double sine;             /* |sin theta_t| up to which a ping sees a pixel */
+    double sampled;          /* and up to which azimuth transforms image it */
     double complex *scratch; /* [threads][2][samples]: a record, and compressed */
 };
 
@@ -57,58 +68,96 @@ static const double complex *record_read(const struct survey *survey, int pair)
     return record + samples;
 }
 
-/* Energy of one pair at one pixel. */
-static double pair_energy(const struct survey *survey, int pair, struct vector normal, struct vector pixel,
-                          const double complex *record)
+/* Of one pair at one pixel: of the samples on either side of its delay. */
+static void pair_add(const struct survey *survey, int pair, struct vector normal, struct vector pixel,
+                     const double complex *record, struct energies *energies)
 {
     const struct acquisition *a = survey->echoes->acquisition;
     const int ping = pair / a->receivers;
     const struct vector tx = a->tx[ping], way = {pixel.x - tx.x, pixel.y - tx.y, pixel.z - tx.z};
     const double along = way.x * normal.x + way.y * normal.y + way.z * normal.z;
-    if (fabs(along) > survey->sine * sqrt(way.x * way.x + way.y * way.y + way.z * way.z))
-        return 0;
+    const double sine = fabs(along) / sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
+    const bool seen = sine <= survey->sine, ghost = !seen && sine > survey->sampled && sine <= a->aperture_limit;
+    if (!seen && !ghost)
+        return;
     const double delay = delay_exact(tx, a->rx[pair], a->velocity[ping], pixel, a->sound_speed);
     const double place = (delay - a->t0[ping]) * a->fs;
-    return place >= 0 && place <= a->samples - 1 ? square(record[lrint(place)]) : 0;
+    if (!(place >= 0 && place <= a->samples - 1))
+        return;
+    const double complex here = record[(int)floor(place)], next = record[(int)ceil(place)];
+    const double energy = (square(here) + square(next)) / 2;
+    energies->met += seen ? energy : 0;
+    energies->steps += seen ? square(next - here) : 0;
+    energies->ghosts += ghost ? energy : 0;
 }
 
-/* Energy of one record at all pixels, as far as some of them tell. */
-static double record_energy(const struct survey *survey, int index)
+static void energies_add(struct energies *to, const struct energies *from, double weight)
+{
+    to->met += weight * from->met;
+    to->steps += weight * from->steps;
+    to->ghosts += weight * from->ghosts;
+}
+
+/* Of one record at all pixels, as far as some of them tell. */
+static struct energies record_energies(const struct survey *survey, int index)
 {
     const struct acquisition *a = survey->echoes->acquisition;
     const int pair = (int)(((long long)index * 2 + 1) * survey->pairs / (2LL * survey->records));
     const struct vector normal = acquisition_normal(a, pair / a->receivers);
     const double complex *record = record_read(survey, pair);
-    double energy = 0;
+    struct energies energies = {0};
     for (int p = 0; p < survey->image->patch_count; p++) {
         const struct grid *g = &survey->image->patches[p];
         const double pixels = (double)g->r_count * g->x_count, share = survey->visits * pixels / survey->pixels;
         const bool all = survey->visits >= survey->pixels;
         const int count = all ? (int)pixels : (int)ceil(share);
-        double sum = 0;
+        struct energies sum = {0};
         for (int n = 0; n < count; n++) {
             const double at = n + (double)count * index, r = at * SPREAD_R, x = at * SPREAD_X;
             const int i = all ? n / g->x_count : (int)((r - floor(r)) * g->r_count);
             const int j = all ? n % g->x_count : (int)((x - floor(x)) * g->x_count);
-            sum += pair_energy(survey, pair, normal, grid_point(g, i, j), record);
+            pair_add(survey, pair, normal, grid_point(g, i, j), record, &sum);
         }
-        energy += sum * pixels / count;
+        energies_add(&energies, &sum, pixels / count);
     }
-    return energy;
+    return energies;
 }
 
-static double echo_energy(struct survey *survey)
+static struct energies echo_energies(struct survey *survey)
 {
-    double *energies = malloc((size_t)survey->records * sizeof *energies), sum = 0;
+    struct energies *energies = malloc((size_t)survey->records * sizeof *energies), sum = {0};
     if (!energies)
-        return NAN;
+        return (struct energies){NAN, NAN, NAN};
 #pragma omp parallel for schedule(dynamic)
     for (int n = 0; n < survey->records; n++)
-        energies[n] = record_energy(survey, n);
+        energies[n] = record_energies(survey, n);
     for (int n = 0; n < survey->records; n++)
-        sum += energies[n];
+        energies_add(&sum, &energies[n], (double)survey->pairs / survey->records);
     free(energies);
-    return sum * survey->pairs / survey->records;
+    return sum;
+}
+
+/* The energy of a pulse's differences over its own; NAN without memory. */
+static double pulse_steps(const struct problem *problem)
+{
+    struct law_spectrum spectrum;
+    double steps = 0, all = 0;
+    if (!law_spectrum(problem->acquisition, image_cells(problem), &spectrum))
+        return NAN;
+    for (int n = 0; n < spectrum.count; n++) {
+        steps += spectrum.scattered[n] * 4 * pow(sin(M_PI * spectrum.nu[n]), 2);
+        all += spectrum.scattered[n];
+    }
+    return steps / all;
+}
+
+/* Of a straight track; of others no transform images anything. */
+static double sampled_sine(const struct acquisition *a)
+{
+    struct straight_track track;
+    if (!acquisition_is_straight(a, &track))
+        return INFINITY;
+    return fmin(a->sound_speed * a->receivers / (4 * fabs(track.spacing) * a->fc), rma_widest_sine(a));
 }
 
 struct darkness image_darkness(const struct echoes *echoes, const struct image *image)
@@ -121,31 +170,52 @@ struct darkness image_darkness(const struct echoes *echoes, const struct image *
                             .image = image,
                             .pixels = problem_pixels(&problem),
                             .pairs = a->pings * a->receivers,
-                            .sine = fmin(a->aperture_limit, condition_beam_sine(a))};
+                            .sine = fmin(a->aperture_limit, condition_beam_sine(a)),
+                            .sampled = sampled_sine(a)};
     struct traces_shape shape;
     survey.records = (int)fmin(survey.pairs, fmax(RECORDS_LEAST, VISITS / survey.pixels));
     survey.visits = (int)fmin(survey.pixels, VISITS / survey.records);
     survey.scratch = malloc(2 * (size_t)a->samples * (size_t)threads * sizeof *survey.scratch);
     const bool ready = survey.scratch && traces_plan_double(a, &form, threads, &shape, &survey.traces) == STATUS_OK;
-    const double met = ready ? echo_energy(&survey) : NAN, shown = image_energy(image, echoes->exponent);
+    const struct energies sums = ready ? echo_energies(&survey) : (struct energies){NAN, NAN, NAN};
+    const double met = sums.met, shown = image_energy(image, echoes->exponent);
     traces_destroy_double(survey.traces);
     free(survey.scratch);
     return (struct darkness){ldexp(sqrt(met / survey.pixels), echoes->exponent),
-                             ldexp(sqrt(shown / survey.pixels), echoes->exponent), met == 0 ? 0 : met / shown};
+                             ldexp(sqrt(shown / survey.pixels), echoes->exponent), met == 0 ? 0 : met / shown,
+                             met == 0 ? 1 : sums.steps / met / pulse_steps(&problem),
+                             sums.ghosts == 0 ? 0 : sqrt(sums.ghosts / shown)};
 }
 
-struct condition darkness_condition(const struct darkness *darkness)
+void darkness_conditions(const struct darkness *darkness, struct condition list[DARKNESS_CONDITIONS])
 {
-    struct condition condition = {"dark_image",
-                                  darkness->ratio,
-                                  NOISE_MOST,
-                                  false,
-                                  SEVERITY_WARN,
-                                  "the energy of the echoes that reach the pixels over that of the image",
-                                  "a grid that holds what is bright"};
-    condition_cure_add(&condition,
+    list[0] = (struct condition){"dark_image",
+                                 darkness->ratio,
+                                 NOISE_MOST,
+                                 false,
+                                 SEVERITY_WARN,
+                                 "the energy of the echoes that reach the pixels over that of the image",
+                                 "a grid that holds what is bright"};
+    list[1] = (struct condition){"side_lobes",
+                                 darkness->edges,
+                                 EDGES_MOST,
+                                 false,
+                                 SEVERITY_WARN,
+                                 "the mean square frequency of the echoes that reach the pixels over the pulse's",
+                                 "a grid that holds what is bright, where these are its side lobes in range: they lie "
+                                 "at the ends of the band, where interpolators err most"};
+    list[2] =
+        (struct condition){"grating_lobes",
+                           darkness->ghosts,
+                           GHOSTS_MOST,
+                           false,
+                           SEVERITY_WARN,
+                           "ghosts of what lies elsewhere, by pings that do not see a pixel and do not sample its "
+                           "wavenumber (relative L2)",
+                           "an aperture_limit at the edge of the sampled wavenumbers; azimuth transforms show "
+                           "none of them"};
+    condition_cure_add(&list[0],
                        "; the image's rms is %.3g, that of its echoes %.3g: so much larger may errors be relative to "
                        "the image than to the echoes",
                        darkness->image, darkness->echoes);
-    return condition;
 }

@@ -201,6 +201,20 @@ static void warnings_add(const struct condition *list, int count, struct outcome
         }
 }
 
+/* What the settings promise, held against what was measured, but for rounding. */
+static void promise_hold(const struct spec *spec, struct outcome *outcome)
+{
+    const struct measurement *row = &outcome->row;
+    const double promise = spec->algorithm->promise ? spec->algorithm->promise(spec->options) : NAN;
+    struct condition broken = {"promise",       row->error,    promise,
+                               false,           SEVERITY_WARN, "the measured error, more than the settings promise,",
+                               "other settings"};
+    if (row->error > promise + (spec->precision == PRECISION_FLOAT ? 1e-6 : 1e-12)) {
+        condition_cure_add(&broken, "; after one gain it is %.3g", row->error_gain);
+        warnings_add(&broken, 1, outcome);
+    }
+}
+
 /* What fails without refusing: behind the other reasons, so that a table finds it there. Where there is no exact image,
    this one tells how dark it is. */
 static void warnings_fill(const struct session *session, const struct spec *spec, const struct problem *problem,
@@ -211,10 +225,12 @@ static void warnings_fill(const struct session *session, const struct spec *spec
     warnings_add(session->conditions, session->condition_count, outcome);
     if (*session->no_reference) {
         const struct darkness darkness = image_darkness(&session->echoes[spec->precision], &outcome->image);
-        const struct condition dark = darkness_condition(&darkness);
-        warnings_add(&dark, 1, outcome);
+        struct condition of_image[DARKNESS_CONDITIONS];
+        darkness_conditions(&darkness, of_image);
+        warnings_add(of_image, DARKNESS_CONDITIONS, outcome);
     }
     warnings_add(list, count, outcome);
+    promise_hold(spec, outcome);
 }
 
 void outcome_round(struct session *session, const struct spec *spec, struct timing_samples *samples)

@@ -39,7 +39,8 @@ static enum status form_reference(struct session *session)
     status = session_image(session, &spec, &session->reference);
     if (status == STATUS_OK) {
         const struct darkness darkness = image_darkness(&session->echoes[PRECISION_DOUBLE], &session->reference);
-        session->conditions[session->condition_count++] = darkness_condition(&darkness);
+        darkness_conditions(&darkness, session->conditions + session->condition_count);
+        session->condition_count += DARKNESS_CONDITIONS;
     } else
         snprintf(session->no_reference, sizeof session->no_reference, "%s", status_message());
     spec_free(&spec);

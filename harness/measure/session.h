@@ -3,6 +3,7 @@
 #define SASBENCH_MEASURE_SESSION_H
 
 #include "measure/control.h"
+#include "measure/darkness.h"
 #include "results/measurement.h"
 #include "scene/scene.h"
 #include "measure/spec.h"
@@ -18,8 +19,8 @@ struct session {
     struct echoes echoes[2];   /* by enum precision; extreme ones divided by one power of two, which images keep */
     struct image reference;    /* double, on the patches where images are compared; no patches without one */
     char no_reference[512];    /* why there is none: refused, or no memory; else empty */
-    struct condition
-        conditions[SCENE_CONDITIONS + 1]; /* [condition_count] of the scene by itself and its exact image */
+    /* [condition_count] of the scene by itself and its exact image */
+    struct condition conditions[SCENE_CONDITIONS + DARKNESS_CONDITIONS];
     int condition_count;
     struct control control; /* beside what is timed */
     struct spent spent;     /* so far, but for the control */

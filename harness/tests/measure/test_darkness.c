@@ -1,4 +1,4 @@
-/* How dark images are beside their echoes: the definition, what noise and targets make of it, and that rows warn where
+/* What images show against their echoes: the definitions, what noise and targets make of them, and that rows warn where
    errors outgrow the promises. */
 #include "tests/support.h"
 
@@ -10,12 +10,13 @@
 #include "measure/darkness.h"
 #include "measure/outcome.h"
 
-/* The sum as it is written, of compressed echoes in double; every pair counts. */
-static double plain_ratio(const struct echoes *echoes, const struct image *image)
+/* The sums as they are written, of compressed echoes in double of a band of half the sampling rate; every pair
+   counts. */
+static struct darkness plain(const struct echoes *echoes, const struct image *image)
 {
     const struct acquisition *a = echoes->acquisition;
     const double complex *samples = echoes->samples;
-    double met = 0, shown = 0;
+    double met = 0, steps = 0, shown = 0;
     for (int k = 0; k < image->patch_count; k++)
         for (int n = 0; n < image->patches[k].r_count * image->patches[k].x_count; n++) {
             const struct grid *g = &image->patches[k];
@@ -25,11 +26,15 @@ static double plain_ratio(const struct echoes *echoes, const struct image *image
                 const int ping = pair / a->receivers;
                 const double tau = delay_exact(a->tx[ping], a->rx[pair], a->velocity[ping], pixel, a->sound_speed);
                 const double at = (tau - a->t0[ping]) * a->fs;
-                if (at >= 0 && at <= a->samples - 1)
-                    met += pow(cabs(samples[(size_t)pair * (size_t)a->samples + (size_t)lrint(at)]), 2);
+                const double complex *record = samples + (size_t)pair * (size_t)a->samples;
+                if (at >= 0 && at <= a->samples - 1) {
+                    const double complex here = record[(size_t)floor(at)], next = record[(size_t)ceil(at)];
+                    met += (pow(cabs(here), 2) + pow(cabs(next), 2)) / 2;
+                    steps += pow(cabs(next - here), 2);
+                }
             }
         }
-    return met / shown;
+    return (struct darkness){.ratio = met / shown, .edges = steps / met / (2 * (1 - 2 / M_PI))};
 }
 
 /* Noise on 24 pings, two patches in turned axes: all pairs are read. */
@@ -45,7 +50,10 @@ static void test_definition_and_noise(void **state)
     if (support_image("bp_sinc:precision=double", problem, &echoes, &image) != STATUS_OK)
         fail_msg("%s", status_message());
     const struct darkness found = image_darkness(&echoes, &image);
-    assert_close(found.ratio, plain_ratio(&echoes, &image), 1e-9);
+    const struct darkness expected = plain(&echoes, &image);
+    assert_close(found.ratio, expected.ratio, 1e-9);
+    assert_close(found.edges, expected.edges, 1e-9);
+    assert_close(found.edges, 1, 0.05);
     assert_close(found.ratio, pow(found.echoes / found.image, 2), 1e-9);
     assert_close(found.ratio, 1, 0.3);
     /* The units are the image's: echoes divided by a power of two. */
@@ -67,7 +75,7 @@ enum { SPECS = sizeof specs / sizeof *specs };
 
 struct row {
     double error; /* after one best gain; NAN where there is no row */
-    bool warned;
+    bool warned, side_lobes, ghosts, sampled;
 };
 
 static void rows_of(const struct scene *scene, struct row rows[SPECS])
@@ -79,7 +87,11 @@ static void rows_of(const struct scene *scene, struct row rows[SPECS])
     for (int k = 0; k < SPECS; k++) {
         assert_int_equal(spec_parse(specs[k], &spec), STATUS_OK);
         outcome_measure(&session, &spec, EFFORT_NONE, NULL, &outcome);
-        rows[k] = (struct row){outcome.row.error_gain, strstr(outcome.reason, "condition dark_image") != NULL};
+        rows[k] = (struct row){outcome.row.error_gain, strstr(outcome.reason, "condition dark_image") != NULL,
+                               strstr(outcome.reason, "condition side_lobes") != NULL,
+                               strstr(outcome.reason, "do not see a pixel") != NULL,
+                               strstr(outcome.reason, "condition doppler") == NULL};
+
         outcome_free(&outcome);
         spec_free(&spec);
     }
@@ -111,7 +123,7 @@ static void test_random_scenes(void **state)
         rows_of(&scene, dark);
         scene_free(&scene);
         for (int k = 0; k < SPECS; k++) {
-            if (plain[k].warned)
+            if (plain[k].warned || plain[k].side_lobes || (plain[k].ghosts && plain[k].sampled))
                 fail_msg("seed %d, %s: warned of an ordinary image", seed, specs[k]);
             const bool over = dark[k].error > 0.1 && plain[k].error <= 0.1;
             if (over && !dark[k].warned)
@@ -148,17 +160,24 @@ static void test_scenes(void **state)
                                  "{ x = [%.1f, %.1f]; r = [20.0, 24.0]; count = 1500; seed = 4; } );";
     static const struct {
         const char *targets, *image;
-        bool dark;
+        bool dark, side_lobes;
     } cases[] = {
-        {"points = ( { x = 0.0; r = 21.4; }, { x = 1.2; r = 21.4; amplitude = 100.0; } );", small, true},
-        {"points = ( { x = 0.0; r = 21.4; }, { x = 1.2; r = 21.4; amplitude = 1.0; } );", small, false},
-        {"points = ( { x = 0.0; r = 21.4; } );", small, false},
+        {"points = ( { x = 0.0; r = 21.4; }, { x = 1.2; r = 21.4; amplitude = 100.0; } );", small, true, false},
+        {"points = ( { x = 0.0; r = 21.4; }, { x = 1.2; r = 21.4; amplitude = 1.0; } );", small, false, false},
+        /* 2 and 32 cells of 0.0375 m beyond the last row; 8, where a chirp's lobes come from the middle of its band; as
+           strong as the one inside */
+        {"points = ( { x = 0.0; r = 21.4; }, { x = 0.0; r = 22.075; amplitude = 10.0; } );", small, false, true},
+        {"points = ( { x = 0.0; r = 21.4; }, { x = 0.0; r = 22.3; amplitude = 1000.0; } );", small, false, false},
+        {"points = ( { x = 0.0; r = 21.4; }, { x = 0.0; r = 23.2; amplitude = 1e5; } );", small, false, true},
+        {"points = ( { x = 0.0; r = 21.4; }, { x = 0.0; r = 22.075; amplitude = 1.0; } );", small, false, false},
+        {"points = ( { x = 0.0; r = 21.4; } );", small, false, false},
         /* in the middle of a patch wider than the beam */
         {"points = ( { x = 0.0; r = 21.4; } );",
-         "x = { first = -6.0; step = 0.02; count = 601; }; r = { first = 20.4; step = 0.02; count = 101; };", false},
+         "x = { first = -6.0; step = 0.02; count = 601; }; r = { first = 20.4; step = 0.02; count = 101; };", false,
+         false},
         /* one pixel a resolution cell, and fewer */
         {"points = ( { x = 0.0; r = 21.4; } );",
-         "x = { first = -1.0; step = 0.1; count = 21; }; r = { first = 20.4; step = 0.1; count = 21; };", false},
+         "x = { first = -1.0; step = 0.1; count = 21; }; r = { first = 20.4; step = 0.1; count = 21; };", false, false},
     };
     static const double gaps[] = {0.4, 0.7, 1};
     char targets[400];
@@ -167,8 +186,11 @@ static void test_scenes(void **state)
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
         scene_make(cases[c].targets, cases[c].image, &scene);
         rows_of(&scene, rows);
-        for (int k = 0; k < SPECS; k++)
+        for (int k = 0; k < SPECS; k++) {
             assert_int_equal(rows[k].warned, cases[c].dark);
+            if (rows[k].side_lobes != cases[c].side_lobes)
+                fail_msg("case %zu, %s: side_lobes %d", c + 1, specs[k], rows[k].side_lobes);
+        }
         scene_free(&scene);
     }
     for (size_t n = 0; n < sizeof gaps / sizeof *gaps; n++) {
@@ -187,11 +209,42 @@ static void test_scenes(void **state)
     scene_free(&scene);
 }
 
+/* An image between fields of scatterers, of which pings that do not sample it make ghosts; and the same within an
+   aperture limit at the edge of what is sampled, c/(4 fc spacing/M). */
+static void test_ghosts(void **state)
+{
+    (void)state;
+    static const char format[] =
+        "sonar = { sound_speed = 1500.0; fc = 80e3; bandwidth = 3e3; fs = 10e3; };\npulse = { kind = \"flat\"; };\n"
+        "array = { tx_length = 0.14; rx_length = 0.07; receivers = 4; first_offset = 0.07; pitch = 0.07; };\n"
+        "track = { speed = 2.7; pri = 0.05; spacing = 0.14; pings = 19; x_first = -1.26; };\n%s"
+        "record = { first_sample = 43; samples = 200; };\n"
+        "beam = { kind = \"txrx\"; truncation = \"tx\"; limit = 1.0; };\n"
+        "targets = { fields = ( { x = [-2.3, -0.55]; r = [5.0, 6.0]; count = 200; seed = 3; }, "
+        "{ x = [0.55, 2.3]; r = [5.0, 6.0]; count = 200; seed = 4; } ); };\n"
+        "image = { x = { first = -0.46; step = 0.023; count = 41; }; r = { first = 5.0; step = 0.04; count = 25; }; "
+        "};\n";
+    for (int limited = 0; limited < 2; limited++) {
+        char text[2000];
+        struct scene scene;
+        struct row rows[SPECS];
+        snprintf(text, sizeof text, format, limited ? "aperture_limit = 0.133;\n" : "");
+        support_write("scene.cfg", text);
+        support_scene(path_of("scene.cfg"), &scene);
+        rows_of(&scene, rows);
+        scene_free(&scene);
+        for (int k = 0; k < SPECS; k++)
+            assert_int_equal(rows[k].ghosts, !limited);
+        assert_true(rows[1].error > 0.3 || limited);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_definition_and_noise),
         cmocka_unit_test_setup_teardown(test_scenes, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(test_ghosts, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(test_random_scenes, folder_make, folder_remove),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -57,6 +57,51 @@ static void check_target(const struct target_row *row, const struct slice_metric
     assert_close(row->islr_db, slice->islr_db[d], 1e-9);
 }
 
+static double promised; /* NAN: nothing */
+
+static double copy_promise(const void *options)
+{
+    (void)options;
+    return promised;
+}
+
+/* The row of such an image whose settings promise something. */
+static void check_promise(double promise, enum precision precision, const char *warning)
+{
+    const struct algorithm copy = {.name = "copy",
+                                   .promise = copy_promise,
+                                   .plan = copy_plan,
+                                   .execute = copy_execute,
+                                   .work = copy_work,
+                                   .destroy = copy_destroy};
+    const struct spec spec = {.algorithm = &copy, .precision = precision};
+    struct outcome outcome;
+    promised = promise;
+    outcome_measure(&session, &spec, EFFORT_NONE, NULL, &outcome);
+    assert_string_equal(outcome.row.status, "ok");
+    const char *said = strstr(outcome.reason, OUTCOME_WARNING "condition promise");
+    if (!said != !warning || (warning && !strstr(said, warning)))
+        fail_msg("promise %g: %s", promise, outcome.reason);
+    outcome_free(&outcome);
+}
+
+/* An error over what the settings promise is told with both figures; rounding and nothing promised are not. */
+static void promises(void **state)
+{
+    (void)state;
+    support_scene("gate/points", &scene);
+    assert_int_equal(session_open(&scene, &session), STATUS_OK);
+    const double error = cabs(gain - 1); /* 0.301 */
+    check_promise(0.25, PRECISION_DOUBLE, "is 0.301, limit 0.25 (");
+    check_promise(error - 1e-9, PRECISION_DOUBLE, "is 0.301, limit 0.30");
+    check_promise(error + 1e-9, PRECISION_DOUBLE, NULL);
+    check_promise(error - 1e-7, PRECISION_FLOAT, NULL);
+    check_promise(error - 1e-5, PRECISION_FLOAT, "is 0.301, limit 0.30");
+    check_promise(NAN, PRECISION_DOUBLE, NULL);
+    session_close(&session);
+    scene_free(&scene);
+}
+
 /* Errors of the gain; lobes and sharpness, which no gain changes, as of the exact image: medians of two targets are
    their means. */
 static void row_of_a_gain(void **state)
@@ -141,6 +186,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(row_of_a_gain),
+        cmocka_unit_test(promises),
         cmocka_unit_test_setup_teardown(columns_of_the_report, folder_make, folder_remove),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
