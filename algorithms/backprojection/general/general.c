@@ -16,7 +16,8 @@
 
 enum {
     BATCH_BYTES = 1 << 20, /* rows of one batch: they stay in the second-level cache while all lines read them */
-    BATCH_LEAST = 16       /* rows of one batch at least, so that threads share the compression */
+    BATCH_LEAST = 16,      /* rows of one batch at least, so that threads share the compression */
+    PART_LEAST = 256       /* pixels of a part of a line at least: some blocks */
 };
 
 struct general {
@@ -228,14 +229,33 @@ static void batch_trim(const struct bp *bp, size_t *first, size_t *end)
         --*end;
 }
 
-/* Add the batch's pairs, records [first, first + count), to one line of patch k. */
-static void sum_line(const struct bp_lines *lines, int k, int number, size_t first, int count)
+/* Lines along range pass through whole records: where a batch of long ones does not stay in the cache, all lines are
+   summed part by part, each of which reads as much of the records as does. */
+static int line_parts(const struct general *general, const struct grid *grid, bool along_x, size_t row_bytes)
+{
+    const double whole = general->batch * (double)row_bytes / BATCH_BYTES;
+    return along_x ? 1 : (int)fmax(1, fmin(ceil(whole), grid->r_count / PART_LEAST));
+}
+
+/* A part of `parts`, of one line of patch k. */
+struct line_part {
+    int number, part, parts;
+};
+
+/* Add the batch's pairs, records [first, first + count). */
+static void sum_part(const struct bp_lines *lines, int k, struct line_part of, size_t first, int count)
 {
     const struct general *general = lines->bp->state;
     const struct grid *grid = &lines->bp->problem.patches[k];
-    const struct pixel_line line = grid_line(grid, general->along_x[k], number);
-    size_t pixels = (size_t)grid->x_count * (size_t)grid->r_count, size = real_size(lines->bp->problem.precision);
-    char *re = (char *)general->sums[k] + (size_t)number * (size_t)line.count * size;
+    const size_t pixels = (size_t)grid->x_count * (size_t)grid->r_count, size = real_size(lines->bp->problem.precision);
+    struct pixel_line line = grid_line(grid, general->along_x[k], of.number);
+    const long long all = line.count;
+    const int begin = (int)(all * of.part / of.parts), end = (int)(all * (of.part + 1) / of.parts);
+    const struct vector from = line_pixel(&line, begin);
+    char *re = (char *)general->sums[k] + ((size_t)of.number * (size_t)line.count + (size_t)begin) * size;
+    line.x_first = from.x;
+    line.r_first = from.y;
+    line.count = end - begin;
     bp_lines_add(lines, &line, first, count, re, re + pixels * size);
 }
 
@@ -266,12 +286,14 @@ static void general_execute(struct bp *bp, const struct echoes *echoes, struct i
         stages_end(stages, "compress");
         const double share = (double)(next - begin) / (double)pairs / problem->patch_count;
         for (int k = 0; k < problem->patch_count; k++) {
-            const int numbers = grid_line_count(&problem->patches[k], general->along_x[k]);
+            const struct grid *grid = &problem->patches[k];
+            const int numbers = grid_line_count(grid, general->along_x[k]);
+            const int parts = line_parts(general, grid, general->along_x[k], general->layout.record * size);
             const double done = (double)begin / (double)pairs + share * k;
-            progress_part(done, done + share, numbers);
+            progress_part(done, done + share, numbers * parts);
 #pragma omp parallel for schedule(dynamic)
-            for (int n = 0; n < numbers; n++) {
-                sum_line(&lines, k, n, first, count);
+            for (int n = 0; n < numbers * parts; n++) {
+                sum_part(&lines, k, (struct line_part){n % numbers, n / numbers, parts}, first, count);
                 progress_step();
             }
         }

@@ -47,6 +47,8 @@ static const struct image_case {
     {"two receivers, sways, aperture limit", 9, 2, 453, 5, -4.5, 0.02, 15.1, 0.7, 0.04, 0.2, 2.5, 0.21, 450, 600, true},
     {"one receiver, records end inside the lines", 10, 1, 301, 7, -4.5, 0.03, 18.1, 0.4, 0.04, 0.1, 75, 0.3, 740, 110,
      true},
+    {"long columns of long records, in parts", 3, 4, 3, 790, -1.2, 0.31, 17.03, 0.0313, 0.04, 0, 2.5, INFINITY, 600,
+     2200},
     {"v/c = 0.05, stands oblique", 7, 3, 121, 33, -1.3, 0.03, 15.2, 0.09, -0.04, 0.3, 75, INFINITY, 500, 600},
 };
 
@@ -190,6 +192,45 @@ static void fast_near_exact(void **state)
     }
 }
 
+/* Columns that are summed in parts, for their records are long, are those of patches too short for it. */
+static void parts_make_the_whole(void **state)
+{
+    (void)state;
+    enum { PATCHES = 4 };
+    const struct image_case *c = image_cases;
+    while (!strstr(c->name, "in parts"))
+        c++;
+    struct acquisition a;
+    struct grid grid, grids[PATCHES];
+    struct echoes echoes;
+    struct image whole, split;
+    make_image_case(c, &a, &grid, &echoes);
+    for (int k = 0; k < PATCHES; k++) {
+        const int first = grid.r_count * k / PATCHES;
+        grids[k] = grid;
+        grids[k].r_first += first * grid.r_step;
+        grids[k].r_count = grid.r_count * (k + 1) / PATCHES - first;
+    }
+    const char *spec = "bp_farrow:degree=8,factor=2,precision=double,exact=true";
+    assert_int_equal(support_image(spec, problem_make(&a, 1, &grid, PRECISION_DOUBLE), &echoes, &whole), STATUS_OK);
+    assert_int_equal(support_image(spec, problem_make(&a, PATCHES, grids, PRECISION_DOUBLE), &echoes, &split),
+                     STATUS_OK);
+    double difference = 0, norm = 0;
+    for (int k = 0; k < PATCHES; k++)
+        for (int i = 0; i < grids[k].r_count; i++)
+            for (int j = 0; j < grid.x_count; j++) {
+                const double complex value = image_pixel(&split, k, i, j);
+                norm += creal(value * conj(value));
+                const double complex off = image_pixel(&whole, 0, grid.r_count * k / PATCHES + i, j) - value;
+                difference += creal(off * conj(off));
+            }
+    assert_true(norm > 0 && sqrt(difference / norm) < 1e-9);
+    image_free(&whole);
+    image_free(&split);
+    echoes_free(&echoes);
+    acquisition_free(&a);
+}
+
 /* The functions for a machine without AVX and without fused multiply-adds, and those with AVX2 on a machine that has
    more, show the same images, on either path and in the invariant engine; in float but for what the general engine's
    fast path may err by (backprojection/budget.h). */
@@ -305,9 +346,8 @@ static void steps_fit_their_bits(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(fast_near_exact),
-        cmocka_unit_test(instruction_sets_agree),
-        cmocka_unit_test(no_carrier_leaves_the_record),
+        cmocka_unit_test(fast_near_exact),        cmocka_unit_test(parts_make_the_whole),
+        cmocka_unit_test(instruction_sets_agree), cmocka_unit_test(no_carrier_leaves_the_record),
         cmocka_unit_test(steps_fit_their_bits),
     };
     return cmocka_run_group_tests_name("bp_general", tests, NULL, NULL);
