@@ -16,7 +16,7 @@
 
 static const double NOISE_MOST = 2;       /* 1: echoes that do not know each other, but for the chance of few pixels */
 static const double EDGES_MOST = 4.0 / 3; /* 1 + a sixth of what only side lobes of a flat, narrow band have more */
-static const double GHOSTS_MOST = 0.1;    /* as for those that are predicted (range_migration/ghosts.c) */
+static const double GHOSTS_MOST = 0.5;    /* beside a target they cancel: a tenth is usual in wide images */
 enum { VISITS = 1 << 18, RECORDS_LEAST = 256 };
 
 /* The plastic number's first two powers below 1: points frac(n a), frac(n b) are spread evenly over a square, however
@@ -157,7 +157,8 @@ static double sampled_sine(const struct acquisition *a)
     struct straight_track track;
     if (!acquisition_is_straight(a, &track))
         return INFINITY;
-    return fmin(a->sound_speed * a->receivers / (4 * fabs(track.spacing) * a->fc), rma_widest_sine(a));
+    const double sine = a->sound_speed * a->receivers / (4 * fabs(track.spacing) * a->fc);
+    return fmin(sine / cos(a->echo_squint), rma_widest_sine(a));
 }
 
 struct darkness image_darkness(const struct echoes *echoes, const struct image *image)
@@ -184,7 +185,7 @@ struct darkness image_darkness(const struct echoes *echoes, const struct image *
     return (struct darkness){ldexp(sqrt(met / survey.pixels), echoes->exponent),
                              ldexp(sqrt(shown / survey.pixels), echoes->exponent), met == 0 ? 0 : met / shown,
                              met == 0 ? 1 : sums.steps / met / pulse_steps(&problem),
-                             sums.ghosts == 0 ? 0 : sqrt(sums.ghosts / shown)};
+                             sums.ghosts == 0 ? 0 : sums.ghosts / shown};
 }
 
 void darkness_conditions(const struct darkness *darkness, struct condition list[DARKNESS_CONDITIONS])
@@ -205,13 +206,13 @@ void darkness_conditions(const struct darkness *darkness, struct condition list[
                                  "a grid that holds what is bright, where these are its side lobes in range: they lie "
                                  "at the ends of the band, where interpolators err most"};
     list[2] =
-        (struct condition){"grating_lobes",
+        (struct condition){"unseen_echoes",
                            darkness->ghosts,
                            GHOSTS_MOST,
                            false,
                            SEVERITY_WARN,
-                           "ghosts of what lies elsewhere, by pings that do not see a pixel and do not sample its "
-                           "wavenumber (relative L2)",
+                           "the energy of the echoes that come to the pixels from pings that neither see nor sample "
+                           "them in azimuth over that of the image",
                            "an aperture_limit at the edge of the sampled wavenumbers; azimuth transforms show "
                            "none of them"};
     condition_cure_add(&list[0],

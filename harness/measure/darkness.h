@@ -33,10 +33,10 @@ enum { DARKNESS_CONDITIONS = 3 };
    pixels read pulses as a whole. A pulse's range side lobes alone lie at the ends of its band: up to 3, of a band that
    is flat and narrow. There interpolators err most, whose laws are of the whole band.
 
-   Ghosts are the root of the energy, over the image's, of the pairs whose ping does not see the pixel, and whose
-   wavenumber there lies beyond the band that the pings of a straight track sample, or beyond the element's first null:
-   relative L2, as they add up unless they cancel. Back projection sums these pairs, azimuth transforms do not. In a
-   dark image they may come from anywhere, and be all that it shows.
+   Ghosts are the energy, over the image's, of the pairs whose ping does not see the pixel, and whose wavenumber there
+   lies beyond the band that the pings of a straight track sample, or beyond the element's first null, as they add up
+   unless they cancel. Back projection sums these pairs, azimuth transforms do not. In a dark image they may come from
+   anywhere, and be all that it shows.
 
    Samples around the delays, of at most a quarter of a million pairs, which are spread over records and pixels; the
    same bits for any number of threads. `image` is a finished one (imaging.h) of these echoes, on whichever patches.
@@ -45,7 +45,7 @@ enum { DARKNESS_CONDITIONS = 3 };
 struct darkness image_darkness(const struct echoes *echoes, const struct image *image);
 
 /* Warnings: "dark_image" where the ratio is more than twice that of noise, "side_lobes" where those of what lies
-   elsewhere have a sixth of the energy, "grating_lobes" where ghosts have a tenth of the image. */
+   elsewhere have a sixth of the energy, "unseen_echoes" where ghosts have half the energy. */
 void darkness_conditions(const struct darkness *darkness, struct condition list[DARKNESS_CONDITIONS]);
 
 #endif

@@ -89,7 +89,7 @@ static void rows_of(const struct scene *scene, struct row rows[SPECS])
         outcome_measure(&session, &spec, EFFORT_NONE, NULL, &outcome);
         rows[k] = (struct row){outcome.row.error_gain, strstr(outcome.reason, "condition dark_image") != NULL,
                                strstr(outcome.reason, "condition side_lobes") != NULL,
-                               strstr(outcome.reason, "do not see a pixel") != NULL,
+                               strstr(outcome.reason, "condition unseen_echoes") != NULL,
                                strstr(outcome.reason, "condition doppler") == NULL};
 
         outcome_free(&outcome);
