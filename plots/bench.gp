@@ -24,10 +24,13 @@ unset table
 best = $sets[2]
 label(method, precision, scene) = commas(method).(precision eq "double" ? " double" : "") \
     .(scene eq "bp22/full" ? " (whole aperture)" : "")
+# Both engines, but on small images and for the cost of accuracy.
+shown(scene, engine) = (engine eq "invariant" || engine eq "general") && !strstrt(scene, "sweep/") && !strstrt(scene, "study/") \
+    && !(strstrt(scene, "bench/") && strstrt(scene, "0x"))
 set table $rows separator tab                          # settings have commas
 plot without_commas(csv) using (label(strcol("algorithm"), strcol("precision"), strcol("scene"))):(strcol("engine")): \
     (1e-9*column("pairs_per_s")):(column("fraction_of_peak")):(column("ratio_to_control")):(" ") \
-    with table if (column("threads") == threads_max && strcol("isa") eq best)
+    with table if (column("threads") == threads_max && strcol("isa") eq best && shown(strcol("scene"), strcol("engine")))
 unset table
 height = 210 + 24*|$rows|
 load plots."/style.gp"

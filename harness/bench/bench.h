@@ -1,21 +1,21 @@
-/* Speed of the engines and of range migration at the papers' sizes, as ratios within one run. */
+/* The command `bench`: how near the engines come to the machine's limits at the papers' sizes, as ratios within one
+   run. */
 #ifndef SASBENCH_BENCH_BENCH_H
 #define SASBENCH_BENCH_BENCH_H
 
-#include <stdio.h>
+#include "contract/status.h"
 
-#include "bench/bench_goals.h"
+#define BENCH_FOLDER SASBENCH_ROOT "/scenes/bench"
 
-/* Measure everything into CSV files with pictures in the folder, which is made, and say which goals are held; or,
-   where SPECs [count] are given, these algorithms alone (bench_algorithms.h). Errors: as bench_algorithms;
-   STATUS_INVALID for a folder that cannot be written or belongs to another program, STATUS_FAILED for memory or a
-   measurement that fails. */
-enum status bench_run(const char *directory, const char *const *specs, int count);
+/* Measure the lines of a folder's lines.csv into DIRECTORY/bench.csv with a picture, hold them against the folder's
+   goals.csv into DIRECTORY/goals.csv, and say on standard output which goals hold. DIRECTORY is made. Errors: those of
+   csv_read, spec_parse, scene_load and session_open; STATUS_INVALID for a cell that is not accepted, and where a file
+   cannot be written or DIRECTORY belongs to another program; STATUS_FAILED for a measurement that fails. */
+enum status bench_goals(const char *folder, const char *directory);
 
-/* DIR/NAME.csv, which `measure_into` fills, adding to the goals, and from it DIR/NAME.png and .svg by the script
-   NAME of plots/; their names go to standard output. Errors: those of `measure_into`; STATUS_INVALID where a file
-   cannot be written, STATUS_FAILED where it cannot be drawn. */
-enum status bench_file(const char *directory, const char *name,
-                       enum status (*measure_into)(FILE *file, struct bench_goals *goals), struct bench_goals *goals);
+/* Measure SPECs [count] alone, each at the first of the papers' sizes that it takes, in the precision that it names or
+   else in both, on one thread and on all, into DIRECTORY/bench.csv. Errors: as above, and STATUS_UNSUPPORTED where an
+   algorithm takes none of the scenes. */
+enum status bench_specs(const char *directory, const char *const *specs, int count);
 
 #endif

@@ -5,5 +5,7 @@
 
 enum status command_bench(const struct task *task)
 {
-    return bench_run(task->output ? task->output : "results/bench", task->names, task->name_count);
+    const char *directory = task->output ? task->output : "results/bench";
+    return task->name_count > 0 ? bench_specs(directory, task->names, task->name_count)
+                                : bench_goals(BENCH_FOLDER, directory);
 }

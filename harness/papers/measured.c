@@ -163,14 +163,9 @@ double measured_flops(struct measured *measured, const char *scene, const char *
 double measured_stage(struct measured *measured, const char *scene, const char *spec, const char *stage)
 {
     const struct measurement *row = measurement_find(measured, scene, spec);
-    size_t length = strlen(stage);
-    for (const char *at = row ? row->stages : ""; *at; at += strcspn(at, ";"), at += *at == ';') {
-        char text[32];
-        double seconds;
-        snprintf(text, sizeof text, "%.*s", (int)strcspn(at, ";"), at);
-        if (strncmp(text, stage, length) == 0 && text[length] == '=' && csv_number(text + length + 1, &seconds))
-            return seconds;
-    }
+    const double seconds = row ? measurement_stage(row, stage) : NAN;
+    if (!isnan(seconds))
+        return seconds;
     return measured_missing(measured, "%s with %s: there is no stage %s", scene, spec, stage);
 }
 

@@ -2,6 +2,8 @@
 #include "results/measurement.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "echoes/echo_data.h"
 
@@ -110,6 +112,15 @@ bool measurement_is_cheaper(const struct measurement *row, const struct measurem
     const double other = best ? *(const double *)((const char *)best + cost) : INFINITY;
     return row->error <= error_most && mine > 0
            && (mine < other || (best && mine == other && row->run_s < best->run_s));
+}
+
+double measurement_stage(const struct measurement *row, const char *stage)
+{
+    const size_t length = strlen(stage);
+    for (const char *at = row->stages; *at; at += strcspn(at, ";"), at += *at == ';')
+        if (strncmp(at, stage, length) == 0 && at[length] == '=')
+            return strtod(at + length + 1, NULL);
+    return NAN;
 }
 
 void measurement_interval(const struct measurement *row, double *low, double *high)

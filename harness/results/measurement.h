@@ -61,6 +61,9 @@ struct measurement measurement_empty(const char *scene, const char *algorithm, c
 bool measurement_is_cheaper(const struct measurement *row, const struct measurement *best, size_t cost,
                             double error_most);
 
+/* s that one stage of it took; NAN where it has no such stage. */
+double measurement_stage(const struct measurement *row, const char *stage);
+
 /* s: the quartiles of the runs, or both the median where there are none. */
 void measurement_interval(const struct measurement *row, double *low, double *high);
 

@@ -17,7 +17,7 @@ find algorithms harness -name '*.[ch]' | sort | xargs awk '
                 "harness/papers harness/claims harness/command harness/tests " \
                 "harness/tests/algorithms harness/tests/echoes harness/tests/scene harness/tests/metrics " \
                 "harness/tests/results harness/tests/measure harness/tests/show harness/tests/report " \
-                "harness/tests/sweep harness/tests/advise harness/tests/run harness/tests/stability harness/tests/gate " \
+                "harness/tests/sweep harness/tests/advise harness/tests/run harness/tests/bench harness/tests/stability harness/tests/gate " \
                 "harness/tests/claims harness/tests/command harness/tests/fuzz harness/tests/digits"
         count = split(order, folder, " ")
         for (k = 1; k <= count; k++)

@@ -1,0 +1,154 @@
+/* Lines of the command `bench`, measured (bench_line.h). Rounds lie apart, since what else the machine does lasts for
+   seconds to minutes. */
+#define _GNU_SOURCE /* strdup, setenv */
+#include "bench/bench_line.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/isa.h"
+#include "common/peak.h"
+#include "measure/outcome.h"
+
+bool bench_line_here(const struct bench_line *line)
+{
+    bool lower = !*line->isa;
+    for (enum isa isa = ISA_BASELINE; isa < isa_choose(); isa++)
+        lower |= strcmp(line->isa, isa_name(isa)) == 0;
+    return lower;
+}
+
+/* FFTW's time for as many values as are recorded or imaged, whichever is more; the last one is kept. */
+static enum status transforms_measure(const struct acquisition *a, struct bench_line *line)
+{
+    static struct {
+        int azimuth, range, threads;
+        struct fft_seconds seconds;
+    } kept;
+    const int records = a->pings * a->receivers;
+    const int azimuth = records > line->columns ? records : line->columns;
+    const int range = a->samples > line->rows ? a->samples : line->rows;
+    line->fft = (struct fft_seconds){NAN, NAN, NAN};
+    if (line->row.pairs > 0 || line->spec.precision != PRECISION_FLOAT)
+        return STATUS_OK;
+    if (kept.azimuth != azimuth || kept.range != range || kept.threads != line->threads) {
+        const enum status status = fft_seconds(azimuth, range, line->threads, &kept.seconds);
+        if (status != STATUS_OK)
+            return status;
+        kept.azimuth = azimuth, kept.range = range, kept.threads = line->threads;
+    }
+    line->fft = kept.seconds;
+    return STATUS_OK;
+}
+
+/* The last round's row, which is of all rounds. */
+static enum status line_keep(struct session *session, struct bench_line *line)
+{
+    struct outcome outcome;
+    outcome_measure(session, &line->spec, EFFORT_WHOLE, line->samples, &outcome);
+    enum status status = STATUS_OK;
+    if (strcmp(outcome.row.status, "ok") != 0)
+        status = status_set(STATUS_FAILED, "%s with %s:%s: %s", line->scene, line->spec.algorithm->name,
+                            line->spec.text, outcome.reason);
+    line->row = outcome.row;
+    line->measured = true;
+    snprintf(line->engine, sizeof line->engine, "%s", outcome.work.engine);
+    snprintf(line->stages, sizeof line->stages, "%s", outcome.stages);
+    line->row.engine = line->engine;
+    line->row.stages = line->stages;
+    const struct problem problem = session_problem(session->scene, line->spec.algorithm, line->spec.precision);
+    line->columns = problem.patches[0].x_count;
+    line->rows = problem.patches[0].r_count;
+    outcome_free(&outcome);
+    return status;
+}
+
+static enum status line_round(struct session *session, struct bench_line *line, int round)
+{
+    const int all = omp_get_max_threads();
+    const char *before = getenv("SASBENCH_ISA");
+    char *own = before ? strdup(before) : NULL;
+    enum status status = STATUS_OK;
+    if (*line->isa)
+        setenv("SASBENCH_ISA", line->isa, 1);
+    omp_set_num_threads(line->threads);
+    line->peaks[2 * round] = peak_flops(line->spec.precision, line->threads);
+    if (round < TIMING_ROUNDS - 1)
+        outcome_round(session, &line->spec, line->samples);
+    else
+        status = line_keep(session, line);
+    line->peaks[2 * round + 1] = peak_flops(line->spec.precision, line->threads);
+    omp_set_num_threads(all);
+    if (*line->isa && own)
+        setenv("SASBENCH_ISA", own, 1);
+    else if (*line->isa)
+        unsetenv("SASBENCH_ISA");
+    free(own);
+    return status;
+}
+
+enum status bench_lines_measure(const struct scene *scene, struct bench_line *const *lines, int count)
+{
+    struct session session;
+    enum status status = session_open(scene, &session);
+    if (status != STATUS_OK)
+        return status;
+    for (int k = 0; k < count && status == STATUS_OK; k++)
+        if (!(lines[k]->samples = calloc(1, sizeof *lines[k]->samples)))
+            status = status_set(STATUS_FAILED, "%s: no memory for the times of %d lines", scene->name, count);
+    for (int round = 0; round < TIMING_ROUNDS; round++)
+        for (int k = 0; k < count && status == STATUS_OK; k++)
+            status = line_round(&session, lines[k], round);
+    for (int k = 0; k < count; k++) {
+        free(lines[k]->samples);
+        lines[k]->samples = NULL;
+        if (status == STATUS_OK)
+            status = transforms_measure(&scene->acquisition, lines[k]);
+    }
+    session_close(&session);
+    return status;
+}
+
+/* ---- values ---- */
+
+const char *const bench_values[] = {"run_s",   "sum_s",        "full_s",    "rate",  "run_rate",
+                                    "phase_s", "after_phases", "focused_s", "error", NULL};
+enum value { RUN_S, SUM_S, FULL_S, RATE, RUN_RATE, PHASE_S, AFTER_PHASES, FOCUSED_S, ERROR };
+enum { FULL_ROWS = 4800 }; /* of BP22's image */
+
+static double stages_s(const struct bench_line *line, const char *const *names)
+{
+    double sum = 0;
+    for (; *names; names++)
+        sum += fmax(0, measurement_stage(&line->row, *names)); /* fmax: without those that it does not have */
+    return sum;
+}
+
+double bench_value(const struct bench_line *line, int value)
+{
+    static const char *const phases[] = {"bulk", "differential", NULL}, *const compression[] = {"compress", NULL};
+    static const char *const later[] = {"reconstruct", "stolt", "focus", "inverse", NULL};
+    const double run_s = line->row.run_s, sum_s = measurement_stage(&line->row, "focus");
+    switch ((enum value)value) {
+    case RUN_S: return run_s;
+    case SUM_S: return sum_s;
+    case FULL_S: return run_s + ((double)FULL_ROWS / line->rows - 1) * sum_s;
+    case RATE: return line->row.pairs / sum_s;
+    case RUN_RATE: return line->row.pairs / run_s;
+    case PHASE_S: return stages_s(line, phases);
+    case AFTER_PHASES: return stages_s(line, later) / run_s;
+    case FOCUSED_S: return run_s - stages_s(line, compression);
+    case ERROR: return line->row.error;
+    }
+    return NAN;
+}
+
+double bench_peak(const struct bench_line *line)
+{
+    double sorted[2 * TIMING_ROUNDS];
+    memcpy(sorted, line->peaks, sizeof sorted);
+    return median(sorted, 2 * TIMING_ROUNDS);
+}
