@@ -39,15 +39,15 @@ extern const char *const bp_engine_names[], *const bp_exact_names[];
     {PARAM_NAMED(struct bp_options, engine, bp_engine_names),                                                          \
      .summary = "general: any track; invariant: tables, uniform straight tracks on the pixel raster",                  \
      .initial = BP_ENGINE_AUTO, .max = BP_ENGINE_INVARIANT, .terse = true},                                            \
-        {PARAM_NAMED(struct bp_options, exact, bp_exact_names),                                                        \
-         .summary = "general engine, every delay evaluated: the plain path that tests compare with", .max = 1,         \
-         .terse = true},                                                                                               \
+        {PARAM_NAMED(struct bp_options, exact, bp_exact_names), .summary = "every delay is evaluated: the plain path", \
+         .max = 1, .terse = true, .hidden = true},                                                                     \
         {PARAM(struct bp_options, phase_limit),                                                                        \
          .summary = "rad: most that the general engine's interpolated delays change a pair's phase by",                \
          .initial = 1e-4,                                                                                              \
          .min = 1e-8,                                                                                                  \
          .max = 0.1,                                                                                                   \
-         .terse = true},                                                                                               \
+         .terse = true,                                                                                                \
+         .hidden = true},                                                                                              \
     {                                                                                                                  \
         PARAM(struct bp_options, aperture), .summary = "only pairs with |sin theta_t| up to this are summed; 1: all",  \
                                             .initial = 1, .min = 1e-6, .max = 1, .terse = true                         \

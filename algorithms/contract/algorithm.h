@@ -127,6 +127,7 @@ struct param {
     const char *const *choices; /* NULL-terminated names of a choice, else NULL */
     const char *sweep;          /* the values that `sweep` runs, separated by blanks; may be NULL */
     bool terse;                 /* left out of the options text while it has its default */
+    bool hidden;                /* the plain path that tests compare with and the papers' times are of: no user's setting */
 };
 
 /* A row begins with  {PARAM(struct options, taps), .summary = ...  for a number, an int or a double, or with

@@ -20,7 +20,8 @@ static const struct param params[] = {
     {PARAM(struct delay_options, terms), .summary = "terms over the receivers for what the delays leave", .initial = 2,
      .min = 1, .max = 3, .sweep = "1 2 3"},
     {PARAM_NAMED(struct delay_options, stolt, rma_stolt_names),
-     .summary = "Kaiser taps of the Stolt interpolation, or a direct sum", .initial = 3, .max = 5, .terse = true},
+     .summary = "Kaiser taps of the Stolt interpolation, or a direct sum", .initial = 3, .max = 5, .terse = true,
+     .hidden = true},
     {.name = NULL},
 };
 

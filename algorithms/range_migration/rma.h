@@ -73,12 +73,15 @@ extern const char *const rma_spacing_names[],
          .sweep = "4 6 8 12 16",                                                                                       \
          .terse = true},                                                                                               \
         {PARAM_NAMED(struct rma_options, sum, rma_sum_names),                                                          \
-         .summary = "receivers are summed before or after the range IFFT (check)", .initial = RMA_SUM_BEFORE,          \
-         .max = RMA_SUM_AFTER, .terse = true},                                                                         \
+         .summary = "receivers are summed before or after the range IFFT",                                             \
+         .initial = RMA_SUM_BEFORE,                                                                                    \
+         .max = RMA_SUM_AFTER,                                                                                         \
+         .terse = true,                                                                                                \
+         .hidden = true},                                                                                              \
     {                                                                                                                  \
         PARAM_NAMED(struct rma_options, phases, rma_phases_names),                                                     \
-            .summary = "by recurrence over the receivers, or by libm for each cell (check)",                           \
-            .initial = RMA_RECURRENCE, .max = RMA_LIBM, .terse = true                                                  \
+            .summary = "by recurrence over the receivers, or by libm for each cell", .initial = RMA_RECURRENCE,        \
+            .max = RMA_LIBM, .terse = true, .hidden = true                                                             \
     }
 
 struct rma_method {

@@ -23,6 +23,7 @@ static const struct {
     {"arguments", offsetof(struct claim, arguments)},
 };
 enum { COLUMNS = sizeof columns / sizeof *columns };
+static const char *const number_columns[] = {"of", "name", "definition", NULL};
 
 /* ---- reading ---- */
 
@@ -31,7 +32,7 @@ static enum status row_read(const struct csv *csv, int row, struct claim *claim)
     *claim = (struct claim){.line = csv->lines[row]};
     for (int k = 0; k < COLUMNS; k++) {
         const char *cell = csv_cell(csv, row, k);
-        if (!*cell)
+        if (!*cell && strcmp(columns[k].name, "arguments") != 0)
             return status_set(STATUS_INVALID, "%s: line %d: column %s is empty; a text is needed", csv->path,
                               csv->lines[row], columns[k].name);
         memcpy((char *)claim + columns[k].offset, &cell, sizeof cell);
@@ -43,6 +44,19 @@ static enum status row_read(const struct csv *csv, int row, struct claim *claim)
                               "needed",
                               csv->path, csv->lines[row], claim->id, csv->lines[other]);
     return STATUS_OK;
+}
+
+static struct formula formula_of(const struct claims *claims, const struct claim *claim, enum scheme scheme,
+                                 const struct csv *published)
+{
+    return (struct formula){.published = published,
+                            .numbers = &claims->numbers,
+                            .rows = claims->numbers.row_count,
+                            .id = claim->id,
+                            .paper = claim->paper,
+                            .scheme = scheme,
+                            .path = claims->csv.path,
+                            .line = claim->line};
 }
 
 /* The list grows by one; without memory it stays, and the count says one less than were asked for. */
@@ -71,17 +85,15 @@ static void need_keep(void *to, const char *scene, const char *spec)
 }
 
 /* Check a claim's cells to their ends in both schemes, and collect what they ask for. */
-static enum status cells_check(const struct csv *csv, const struct csv *published, struct claim *claim)
+static enum status cells_check(const struct claims *claims, const struct csv *published, struct claim *claim)
 {
+    const struct csv *csv = &claims->csv;
     struct needs_list list = {.claim = claim};
     enum status status = STATUS_OK;
     for (enum scheme scheme = 0; scheme < SCHEMES && status == STATUS_OK; scheme++) {
-        struct formula formula = {.published = published,
-                                  .scheme = scheme,
-                                  .path = csv->path,
-                                  .line = claim->line,
-                                  .need = need_keep,
-                                  .to = &list};
+        struct formula formula = formula_of(claims, claim, scheme, published);
+        formula.need = need_keep;
+        formula.to = &list;
         struct judgement judgement = {.evidence = ""};
         status = quantities_read(&formula, "arguments", claim->arguments);
         if (status == STATUS_OK)
@@ -90,6 +102,8 @@ static enum status cells_check(const struct csv *csv, const struct csv *publishe
         claim->measures = formula.measures;
         claim->phases = formula.phases;
         claim->rules = formula.rules;
+        claim->scenes = formula.scenes;
+        claim->times = formula.times;
     }
     if (status == STATUS_OK && list.failed)
         status = status_set(STATUS_FAILED, "%s: line %d: no memory for %d measurements", csv->path, claim->line,
@@ -114,7 +128,7 @@ static enum status rows_read(struct claims *claims, const struct csv *published)
         struct claim *claim = &claims->claims[claims->count++];
         status = row_read(csv, row, claim);
         if (status == STATUS_OK)
-            status = cells_check(csv, published, claim);
+            status = cells_check(claims, published, claim);
     }
     return status;
 }
@@ -127,6 +141,11 @@ enum status claims_read(const char *path, struct claims *claims)
     for (int k = 0; k < COLUMNS && status == STATUS_OK; k++)
         if (csv_column(&claims->csv, columns[k].name) != k)
             status = status_set(STATUS_INVALID, "%s: column %d must be '%s'", path, k + 1, columns[k].name);
+    if (status == STATUS_OK)
+        status = csv_read(NUMBERS_FILE, CSV_TAIL_KEEP, &claims->numbers);
+    for (int k = 0; number_columns[k] && status == STATUS_OK; k++)
+        if (csv_column(&claims->numbers, number_columns[k]) != k)
+            status = status_set(STATUS_INVALID, "%s: column %d must be '%s'", NUMBERS_FILE, k + 1, number_columns[k]);
     if (status == STATUS_OK)
         status = published_read(&published);
     if (status == STATUS_OK)
@@ -147,6 +166,7 @@ void claims_free(struct claims *claims)
         free(claims->claims[n].needs);
     }
     free(claims->claims);
+    csv_free(&claims->numbers);
     csv_free(&claims->csv);
     *claims = (struct claims){0};
 }
@@ -262,25 +282,24 @@ struct judgement claim_judge(const struct claims *claims, const struct claim *cl
                              struct measured *measured)
 {
     struct basis basis = {.settings = ""};
-    struct formula formula = {.measured = measured,
-                              .scheme = scheme,
-                              .published = &measured->published,
-                              .path = claims->csv.path,
-                              .line = claim->line,
-                              .need = basis_add,
-                              .use = basis_use,
-                              .to = &basis};
-    struct judgement judgement = {.evidence = ""};
+    struct formula formula = formula_of(claims, claim, scheme, &measured->published);
+    formula.measured = measured;
+    formula.need = basis_add;
+    formula.use = basis_use;
+    formula.to = &basis;
+    struct judgement judgement = {.evidence = ""}, answers = {.evidence = ""};
     *measured->missing = '\0';
     enum status status = quantities_read(&formula, "arguments", claim->arguments);
-    if (status == STATUS_OK) {
-        evidence_begin(&judgement, &formula, claim);
-        status = judges_read(&formula, "judge", claim->judge, &judgement);
-    }
+    if (status == STATUS_OK)
+        status = judges_read(&formula, "judge", claim->judge, &answers);
     if (status != STATUS_OK || *measured->missing) {
         judgement.verdict = CLAIM_UNDECIDED;
         snprintf(judgement.evidence, sizeof judgement.evidence, "%s; criterion: %s",
                  status == STATUS_OK ? measured->missing : status_message(), claim->criterion);
+    } else {
+        judgement.verdict = answers.verdict;
+        evidence_begin(&judgement, &formula, claim); /* now that all names are known */
+        text_append(judgement.evidence, sizeof judgement.evidence, "%s", answers.evidence);
     }
     basis_append(judgement.evidence, sizeof judgement.evidence, &basis);
     return judgement;

@@ -9,7 +9,8 @@
 #include "claims/judges.h"
 #include "papers/tables.h"
 
-#define CLAIMS_FILE SASBENCH_ROOT "/results/claims.csv"
+#define CLAIMS_FILE  SASBENCH_ROOT "/results/claims.csv"
+#define NUMBERS_FILE SASBENCH_ROOT "/results/numbers.csv" /* that claims name */
 
 /* Texts belong to the file that was read. */
 struct claim {
@@ -20,6 +21,8 @@ struct claim {
     bool by_scheme; /* it names LBF: it has a verdict as printed and one corrected (schemes.h) */
     bool phases;    /* it asks for the phase study */
     bool rules;     /* it asks for the rules' study */
+    bool scenes;    /* it asks for a number of a scene */
+    bool times;     /* it asks for a time, or for a scene that is for times */
     bool measures;  /* else it is decided by formulas and printed numbers alone */
     int need_count;
     struct need *needs; /* [need_count] the measurements that it asks for; owned */
@@ -27,7 +30,7 @@ struct claim {
 
 enum { CLAIMS_MAX = 400 }; /* that are judged together */
 struct claims {
-    struct csv csv;
+    struct csv csv, numbers;
     int count;
     struct claim *claims; /* [count] */
 };

@@ -42,11 +42,6 @@ static bool rounds_to(const struct values *v)
     return values_extreme(v, false) >= v[1].at[0] - half && values_extreme(v, true) < v[1].at[0] + half;
 }
 
-static bool spread(const struct values *v)
-{
-    return values_extreme(v, true) - values_extreme(v, false) <= v[1].at[0];
-}
-
 static bool rising(const struct values *v)
 {
     bool all = true;
@@ -101,7 +96,6 @@ static const struct judge {
     {"clearly_below", 3, clearly_below, "value, limit, noise", {" below ", " by more than a noise of "}, not_clear},
     {"within", 3, within, "value, target, tolerance", {" from ", " by at most "}, NULL},
     {"rounds_to", 3, rounds_to, "value, printed number, its last digit", {" rounds to ", " by steps of "}, NULL},
-    {"spread", 2, spread, "values, limit", {" spread over at most "}, NULL},
     {"rising", 0, rising, "two and more values", {" < "}, NULL},
     {"falling", 0, falling, "two and more values", {" > "}, NULL},
 };

@@ -16,12 +16,25 @@
 #include "papers/scene_numbers.h"
 #include "papers/phase.h"
 
-/* A call: its texts, where each stands, and the metric that the function's name means. */
 enum { TEXTS_MAX = 5 };
+struct call;
+struct lookup {
+    const char *name, *texts;
+    const char *kinds; /* of the texts: s scene, p SPEC, w one of words, r a range from 0 on, t targets, - any */
+    int method;        /* the text that may be "A - B": the difference of two methods; 0: none */
+    enum status (*read)(struct formula *formula, struct call *call, struct values *values);
+    const char *const *words[2];
+    double most[2]; /* of ranges */
+};
+
+/* A call: its texts, where each stands, and the metric that the function's name means. */
 struct call {
     char text[TEXTS_MAX][200];
     const char *at[TEXTS_MAX];
     const struct column *metric;
+    int word;           /* place of the last text that is a word in its list */
+    double range[2][2]; /* of the texts that are ranges, in their order */
+    int first;          /* target, from 0; -1: none */
 };
 
 /* ---- checks of a call's texts ---- */
@@ -36,10 +49,13 @@ static enum status scene_check(const struct formula *formula, const struct call 
                                call->text[k]);
 }
 
-static enum status spec_check(const struct formula *formula, const struct call *call, int k)
+/* It becomes that of the scheme. */
+static enum status spec_check(struct formula *formula, struct call *call, int k)
 {
     struct spec spec;
-    char message[400];
+    char message[400], text[sizeof call->text[0]];
+    formula->by_scheme |= scheme_spec(formula->scheme, call->text[k], text, sizeof text);
+    strcpy(call->text[k], text);
     if (spec_parse(call->text[k], &spec) == STATUS_OK) {
         spec_free(&spec);
         return STATUS_OK;
@@ -49,15 +65,16 @@ static enum status spec_check(const struct formula *formula, const struct call *
 }
 
 /* Is the text one of the words, which NULL ends? */
-static enum status word_check(const struct formula *formula, const struct call *call, int k, const char *const *words)
+static enum status word_check(const struct formula *formula, struct call *call, int k, const char *const *words)
 {
-    char known[300] = "";
+    char accepted[300] = "";
     for (int n = 0; words[n]; n++) {
+        call->word = n;
         if (strcmp(words[n], call->text[k]) == 0)
             return STATUS_OK;
-        text_append(known, sizeof known, "%s%s", n ? ", " : "", words[n]);
+        text_append(accepted, sizeof accepted, "%s%s", n ? ", " : "", words[n]);
     }
-    return formula_error(formula, call->at[k], "'%s' is not accepted; %s are", call->text[k], known);
+    return formula_error(formula, call->at[k], "'%s' is not accepted; %s are", call->text[k], accepted);
 }
 
 /* "A" or "A..B", A <= B, within [low, high]. */
@@ -76,27 +93,46 @@ static enum status range_check(const struct formula *formula, const struct call 
                                text, low, high);
 }
 
-/* Scene and SPEC are a call's first texts; the latter becomes that of the scheme. */
-static enum status measurement_check(struct formula *formula, struct call *call)
+/* Counted from 1: one of them, or the first and the last. */
+static enum status targets_check(const struct formula *formula, struct call *call, int k, struct values *values)
 {
-    char spec[sizeof call->text[1]];
-    enum status status = scene_check(formula, call, 0);
-    formula->by_scheme |= scheme_spec(formula->scheme, call->text[1], spec, sizeof spec);
-    strcpy(call->text[1], spec);
-    if (status == STATUS_OK)
-        status = spec_check(formula, call, 1);
+    double range[2] = {1, 1};
+    const enum status status = range_check(formula, call, k, 1, TARGETS_MAX, range);
+    if (status != STATUS_OK)
+        return status;
+    if (range[0] != floor(range[0]) || range[1] != floor(range[1]))
+        return formula_error(formula, call->at[k], "targets are counted by whole numbers");
+    call->first = (int)range[0] - 1;
+    values->count = (int)(range[1] - range[0]) + 1;
+    for (int n = 0; n < values->count; n++)
+        values->at[n] = 1;
+    return STATUS_OK;
+}
+
+/* All of a call's texts; values become as many as it stands for, each of them 1. */
+static enum status texts_check(struct formula *formula, const struct lookup *lookup, struct call *call,
+                               struct values *values)
+{
+    int words = 0, ranges = 0;
+    enum status status = STATUS_OK;
+    *values = (struct values){.count = 1, .at = {1}};
+    call->first = -1;
+    for (int k = 0; lookup->kinds[k] && status == STATUS_OK; k++)
+        switch (lookup->kinds[k]) {
+        case 's': status = scene_check(formula, call, k); break;
+        case 'p': status = spec_check(formula, call, k); break;
+        case 'w': status = word_check(formula, call, k, lookup->words[words++]); break;
+        case 'r':
+            status = range_check(formula, call, k, 0, lookup->most[ranges], call->range[ranges]);
+            ranges++;
+            break;
+        case 't': status = targets_check(formula, call, k, values); break;
+        default: break;
+        }
     return status;
 }
 
-/* The same for a number that has to be measured. */
-static enum status measurement_need(struct formula *formula, struct call *call)
-{
-    enum status status = measurement_check(formula, call);
-    formula->measures = true;
-    if (status == STATUS_OK && formula->need)
-        formula->need(formula->to, call->text[0], call->text[1]);
-    return status;
-}
+/* ---- the functions, whose texts are checked; without measurements their numbers are 1 ---- */
 
 static void used(struct formula *formula, enum use use, const char *text)
 {
@@ -104,135 +140,92 @@ static void used(struct formula *formula, enum use use, const char *text)
         formula->use(formula->to, use, text);
 }
 
-/* ---- the functions; without measurements their numbers are 1 ---- */
-
-/* FLOPs come from the plan. */
-static enum status flops_metric(struct formula *formula, struct call *call, struct values *values)
+/* Scene and SPEC, the first texts: of a number that is measured, or is worked out without an image and then stands in
+   the evidence alone. */
+static void needed(struct formula *formula, const struct call *call, bool measured)
 {
-    bool by_formula = call->metric->offset == offsetof(struct measurement, flops_published);
-    enum status status = measurement_check(formula, call);
-    *values = (struct values){.count = 1, .at = {1}};
-    used(formula, USE_SCENE, call->text[0]);
-    used(formula, USE_SETTING, call->text[1]);
-    if (status == STATUS_OK && formula->measured)
-        values->at[0] = measured_flops(formula->measured, call->text[0], call->text[1], by_formula);
-    return status;
+    formula->measures = true;
+    if (formula->need && (measured || formula->measured))
+        formula->need(formula->to, call->text[0], call->text[1]);
+}
+
+static bool for_times(const struct call *call)
+{
+    return strncmp(call->text[0], "bp22/full", 9) == 0 || strncmp(call->text[0], "lbf21/real_size", 15) == 0;
 }
 
 static enum status image_metric(struct formula *formula, struct call *call, struct values *values)
 {
-    if (strncmp(call->metric->name, "flops", 5) == 0)
-        return flops_metric(formula, call, values);
-    enum status status = measurement_need(formula, call);
-    if (strcmp(call->metric->name, "pslr_db") == 0 || strcmp(call->metric->name, "islr_db") == 0)
+    struct measured *measured = formula->measured;
+    const char *scene = call->text[0], *spec = call->text[1], *name = call->metric->name;
+    formula->times |= for_times(call);
+    if (strncmp(name, "flops", 5) == 0) { /* from the plan */
+        used(formula, USE_SCENE, scene);
+        used(formula, USE_SETTING, spec);
+        if (measured)
+            values->at[0] = measured_flops(measured, scene, spec, strcmp(name, "flops_published") == 0);
+        return STATUS_OK;
+    }
+    needed(formula, call, true);
+    if (strcmp(name, "pslr_db") == 0 || strcmp(name, "islr_db") == 0)
         used(formula, USE_SLICE, "null"); /* an image's are medians of these */
-    *values = (struct values){.count = 1, .at = {1}, .timed = strcmp(call->metric->unit, "s") == 0};
-    if (status == STATUS_OK && formula->measured)
-        values->at[0] =
-            measured_value(formula->measured, call->text[0], call->text[1], call->metric->offset, call->metric->name);
-    return status;
-}
-
-/* A call's last two texts: one of `words`, and targets counted from 1, one of them or the first and the last. Fills the
-   count of values, each of them 1, and the first target's index. */
-static enum status targets_read(const struct formula *formula, const struct call *call, const char *const *words,
-                                struct values *values, int *first)
-{
-    double range[2] = {1, 1};
-    enum status status = word_check(formula, call, 2, words);
-    if (status == STATUS_OK)
-        status = range_check(formula, call, 3, 1, VALUES_MAX, range);
-    if (status == STATUS_OK && (range[0] != floor(range[0]) || range[1] != floor(range[1])))
-        status = formula_error(formula, call->at[3], "targets are counted by whole numbers");
-    *first = (int)range[0] - 1;
-    values->count = status == STATUS_OK ? (int)(range[1] - range[0]) + 1 : 0;
-    for (int k = 0; k < values->count; k++)
-        values->at[k] = 1;
-    return status;
+    values->timed = strcmp(call->metric->unit, "s") == 0;
+    if (measured)
+        values->at[0] = measured_value(measured, scene, spec, call->metric->offset, name);
+    return STATUS_OK;
 }
 
 static enum status target_metric(struct formula *formula, struct call *call, struct values *values)
 {
-    static const char *const definitions[] = {"null", "3db", "pixel", NULL};
-    int first;
-    enum status status = measurement_need(formula, call);
-    values->count = 0;
-    if (status == STATUS_OK)
-        status = targets_read(formula, call, definitions, values, &first);
+    formula->times |= for_times(call);
+    needed(formula, call, true);
     used(formula, USE_SLICE, call->text[2]);
     for (int k = 0; formula->measured && k < values->count; k++)
-        values->at[k] = measured_target(formula->measured, call->text[0], call->text[1], first + k, call->text[2],
+        values->at[k] = measured_target(formula->measured, call->text[0], call->text[1], call->first + k, call->text[2],
                                         call->metric->offset, call->metric->name);
-    return status;
-}
-
-/* A number that no image is needed for: named in the evidence, and nothing is measured for it. */
-static enum status unmeasured_check(struct formula *formula, struct call *call)
-{
-    enum status status = measurement_check(formula, call);
-    formula->measures = true;
-    if (status == STATUS_OK && formula->measured && formula->need)
-        formula->need(formula->to, call->text[0], call->text[1]);
-    return status;
-}
-
-static enum status planned(struct formula *formula, struct call *call, struct values *values)
-{
-    int number = 0;
-    enum status status = unmeasured_check(formula, call);
-    *values = (struct values){.count = 1, .at = {1}};
-    if (status == STATUS_OK)
-        status = word_check(formula, call, 2, planned_names);
-    if (status != STATUS_OK || !formula->measured)
-        return status;
-    while (strcmp(planned_names[number], call->text[2]) != 0)
-        number++;
-    values->at[0] = planned_value(formula->measured, call->text[0], call->text[1], (enum scene_quantity)number);
     return STATUS_OK;
 }
 
-static enum status filtered(struct formula *formula, struct call *call, struct values *values)
+/* What a plan carries, or of each target what a filter keeps or changes. */
+static enum status unimaged(struct formula *formula, struct call *call, struct values *values)
 {
-    static const char *const quantities[] = {"kept_db", "changed_db", NULL};
-    int first;
-    enum status status = unmeasured_check(formula, call);
-    values->count = 0;
-    if (status == STATUS_OK)
-        status = targets_read(formula, call, quantities, values, &first);
+    const enum scene_quantity first = call->first < 0 ? QUANTITY_SIZE_FACTOR : QUANTITY_KEPT_DB;
+    needed(formula, call, false);
     for (int k = 0; formula->measured && k < values->count; k++)
-        values->at[k] = filtered_value(formula->measured, call->text[0], call->text[1], first + k,
-                                       call->text[2][0] == 'c' ? QUANTITY_CHANGED_DB : QUANTITY_KEPT_DB);
-    return status;
+        values->at[k] = unimaged_value(formula->measured, call->text[0], call->text[1],
+                                       call->first < 0 ? -1 : call->first + k, first + (enum scene_quantity)call->word);
+    return STATUS_OK;
 }
 
 static enum status stage(struct formula *formula, struct call *call, struct values *values)
 {
-    enum status status = measurement_need(formula, call);
-    *values = (struct values){.count = 1, .at = {1}, .timed = true};
-    if (status == STATUS_OK && !*call->text[2])
-        status = formula_error(formula, call->at[2], "the name of a stage, as in measurements.csv, is needed here");
-    if (status == STATUS_OK && formula->measured)
+    formula->times |= for_times(call);
+    needed(formula, call, true);
+    values->timed = true;
+    if (!*call->text[2])
+        return formula_error(formula, call->at[2], "the name of a stage, as in measurements.csv, is needed here");
+    if (formula->measured)
         values->at[0] = measured_stage(formula->measured, call->text[0], call->text[1], call->text[2]);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status table_time(struct formula *formula, struct call *call, struct values *values)
 {
     char accepted[600];
-    *values = (struct values){.count = 1, .at = {1}, .timed = true};
-    int unknown = table_seconds_check(call->text[0], call->text[1], call->text[2], accepted, sizeof accepted);
-    if (unknown >= 0)
-        return formula_error(formula, call->at[unknown], "there is no time of '%s'; accepted: %s", call->text[unknown],
-                             accepted);
     struct source source;
-    formula->measures = true;
-    if (table_time_source(formula->scheme, call->text[0], call->text[1], call->text[2], &source)) {
+    const char *table = call->text[0], *method = call->text[1], *definition = call->text[2];
+    const int wrong = table_seconds_check(table, method, definition, accepted, sizeof accepted);
+    if (wrong >= 0)
+        return formula_error(formula, call->at[wrong], "there is no time of '%s'; accepted: %s", call->text[wrong],
+                             accepted);
+    values->timed = formula->measures = formula->times = true;
+    if (table_time_source(formula->scheme, table, method, definition, &source)) {
         formula->by_scheme |= source.by_scheme;
         if (formula->need)
             formula->need(formula->to, source.scene, source.spec);
     }
     if (formula->measured)
-        values->at[0] = table_seconds(formula->measured, formula->scheme, call->text[0], call->text[1], call->text[2]);
+        values->at[0] = table_seconds(formula->measured, formula->scheme, table, method, definition);
     return STATUS_OK;
 }
 
@@ -240,16 +233,14 @@ static enum status time_noise(struct formula *formula, struct call *call, struct
 {
     const char *base = NULL;
     char accepted[600];
-    *values = (struct values){.count = 1, .at = {0.1}};
     for (const struct paper_table *table = paper_tables; table->id; table++)
         if (strcmp(table->id, call->text[0]) == 0)
             base = table->base;
-    int unknown = table_seconds_check(call->text[0], base ? base : "", call->text[1], accepted, sizeof accepted);
-    if (unknown >= 0)
-        return formula_error(formula, call->at[unknown > 0], "there is no time of '%s'; accepted: %s",
-                             call->text[unknown > 0], accepted);
-    if (formula->measured)
-        values->at[0] = table_noise(formula->measured, call->text[0], call->text[1]);
+    const int wrong = table_seconds_check(call->text[0], base ? base : "", call->text[1], accepted, sizeof accepted);
+    if (wrong >= 0)
+        return formula_error(formula, call->at[wrong > 0], "there is no time of '%s'; accepted: %s",
+                             call->text[wrong > 0], accepted);
+    values->at[0] = formula->measured ? table_noise(formula->measured, call->text[0], call->text[1]) : 0.1;
     return STATUS_OK;
 }
 
@@ -266,101 +257,82 @@ static enum status published(struct formula *formula, struct call *call, struct 
 
 static enum status phase(struct formula *formula, struct call *call, struct values *values)
 {
-    static const char *const setups[] = {"short", "long", NULL}, *const receivers[] = {"first", "last", NULL};
     const char *formulas[16] = {NULL}, *meant;
-    double range[2] = {0, 0}, share[2] = {0, 0};
+    char setting[160];
     for (int k = 0; k < 15 && phase_formula(k); k++)
         formulas[k] = phase_formula(k);
     formula->by_scheme |= scheme_formula(formula->scheme, call->text[2], &meant);
     memmove(call->text[2], meant, strlen(meant) + 1); /* may be the same text */
     formula->measures = formula->phases = true;
-    enum status status = word_check(formula, call, 0, setups);
-    if (status == STATUS_OK)
-        status = word_check(formula, call, 1, receivers);
-    if (status == STATUS_OK)
-        status = word_check(formula, call, 2, formulas);
-    if (status == STATUS_OK)
-        status = range_check(formula, call, 3, 0, 1e6, range);
-    if (status == STATUS_OK)
-        status = range_check(formula, call, 4, 0, 1, share);
-    *values = (struct values){.count = 1, .at = {1}};
+    const enum status status = word_check(formula, call, 2, formulas);
+    if (status != STATUS_OK)
+        return status;
     const struct phase_part part = {strcmp(call->text[0], "long") == 0 ? PHASE_LONG : PHASE_SHORT,
                                     strcmp(call->text[1], "last") == 0,
                                     call->text[2],
-                                    range[0],
-                                    range[1],
-                                    share[1]};
-    char setting[160];
+                                    call->range[0][0],
+                                    call->range[0][1],
+                                    call->range[1][1]};
     snprintf(setting, sizeof setting, "%.40s at %.40s m within %.40s of the Doppler band", call->text[2], call->text[3],
              call->text[4]);
     used(formula, USE_SCENE, phase_setups[part.setup]);
     used(formula, USE_SETTING, setting);
-    if (status == STATUS_OK && formula->measured)
+    if (formula->measured)
         values->at[0] = measured_phase(formula->measured, &part);
-    return status;
+    return STATUS_OK;
 }
 
 /* A rule for the upsampling rate on scenes from seeds. */
 static enum status rule(struct formula *formula, struct call *call, struct values *values)
 {
-    double range[2] = {0, 0};
     char setting[260];
-    enum status status = word_check(formula, call, 0, rule_names);
-    *values = (struct values){.count = 1, .at = {1}};
-    if (status == STATUS_OK)
-        status = word_check(formula, call, 1, rule_quantities);
-    if (status == STATUS_OK)
-        status = range_check(formula, call, 2, 0, 1, range);
     formula->measures = formula->rules = true;
     snprintf(setting, sizeof setting, "%s on scenes from seeds", call->text[0]);
     used(formula, USE_SETTING, setting);
-    if (status == STATUS_OK && formula->measured)
-        values->at[0] = rule_value(formula->measured, call->text[0], call->text[1], range[0]);
-    return status;
+    if (formula->measured)
+        values->at[0] = rule_value(formula->measured, call->text[0], call->text[1], call->range[0][0]);
+    return STATUS_OK;
 }
 
 static enum status scene_number(struct formula *formula, struct call *call, struct values *values)
 {
     struct scene scene;
-    int k = 0;
-    *values = (struct values){.count = 1, .at = {1}};
-    enum status status = scene_check(formula, call, 0);
-    if (status == STATUS_OK)
-        status = word_check(formula, call, 1, scene_number_names);
+    formula->scenes = true;
     used(formula, USE_SCENE, call->text[0]);
-    if (status != STATUS_OK || !formula->measured)
-        return status;
-    status = assumed_scene_load(call->text[0], &scene);
+    if (!formula->measured)
+        return STATUS_OK;
+    const enum status status = assumed_scene_load(call->text[0], &scene);
     if (status != STATUS_OK)
         return status;
-    while (strcmp(scene_number_names[k], call->text[1]) != 0)
-        k++;
-    values->at[0] = scene_number_value(k, &scene.acquisition);
+    values->at[0] = scene_number_value(call->word, &scene.acquisition);
     scene_free(&scene);
     return STATUS_OK;
 }
 
 /* ---- calls ---- */
 
-struct lookup {
-    const char *name;
-    int count; /* of texts */
-    const char *texts;
-    enum status (*read)(struct formula *formula, struct call *call, struct values *values);
-};
+static const char *const setups[] = {"short", "long", NULL}, *const receivers[] = {"first", "last", NULL};
+static const char *const slices[] = {"null", "3db", "pixel", NULL};
 static const struct lookup lookups[] = {
-    {"stage", 3, "scene, SPEC, stage", stage},
-    {"time", 3, "table, method, definition", table_time},
-    {"time_noise", 2, "table, definition", time_noise},
-    {"published", 4, "table, target, method, quantity", published},
-    {"phase", 5, "set-up, receiver, formula, ranges, share of the Doppler band", phase},
-    {"scene", 2, "scene, number", scene_number},
-    {"planned", 3, "scene, SPEC, number", planned},
-    {"filtered", 4, "scene, SPEC, quantity, targets", filtered},
-    {"rule", 3, "rule, quantity, number", rule},
+    {"stage", "scene, SPEC, stage", "sp-", 1, stage, {NULL}, {0}},
+    {"time", "table, method, definition", "---", 1, table_time, {NULL}, {0}},
+    {"time_noise", "table, definition", "--", 0, time_noise, {NULL}, {0}},
+    {"published", "table, target, method, quantity", "----", 2, published, {NULL}, {0}},
+    {"phase",
+     "set-up, receiver, formula, ranges, share of the Doppler band",
+     "ww-rr",
+     0,
+     phase,
+     {setups, receivers},
+     {1e6, 1}},
+    {"scene", "scene, number", "sw", 0, scene_number, {scene_number_names}, {0}},
+    {"planned", "scene, SPEC, number", "spw", 1, unimaged, {planned_names}, {0}},
+    {"filtered", "scene, SPEC, quantity, targets", "spwt", 1, unimaged, {energy_names}, {0}},
+    {"rule", "rule, quantity, number", "wwr", 0, rule, {rule_names, rule_quantities}, {1}},
 };
-static const struct lookup image_lookup = {"", 2, "scene, SPEC", image_metric};
-static const struct lookup target_lookup = {"", 4, "scene, SPEC, definition, targets", target_metric};
+static const struct lookup image_lookup = {"", "scene, SPEC", "sp", 1, image_metric, {NULL}, {0}};
+static const struct lookup target_lookup = {"", "scene, SPEC, definition, targets", "spwt", 1, target_metric, {slices},
+                                            {0}};
 
 static const struct lookup *lookup_find(const char *name, const struct column **metric)
 {
@@ -399,6 +371,64 @@ static enum status text_read(struct formula *formula, struct call *call, int k)
     return STATUS_OK;
 }
 
+static enum status one_read(struct formula *formula, const struct lookup *lookup, struct call *call,
+                            struct values *values)
+{
+    const enum status status = texts_check(formula, lookup, call, values);
+    return status == STATUS_OK ? lookup->read(formula, call, values) : status;
+}
+
+/* The difference of a call's two methods, "A - B", or what it stands for. */
+static enum status difference_read(struct formula *formula, const struct lookup *lookup, struct call *call,
+                                   struct values *values)
+{
+    char *minus = lookup->method ? strstr(call->text[lookup->method], " - ") : NULL;
+    if (!minus)
+        return one_read(formula, lookup, call, values);
+    struct call second = *call;
+    struct values other = {.timed = false};
+    snprintf(second.text[lookup->method], sizeof second.text[0], "%s", minus + 3);
+    second.at[lookup->method] += minus + 3 - call->text[lookup->method];
+    *minus = '\0';
+    enum status status = one_read(formula, lookup, call, values);
+    if (status == STATUS_OK)
+        status = one_read(formula, lookup, &second, &other);
+    if (status == STATUS_OK && values->count != other.count)
+        return formula_error(formula, call->at[lookup->method], "lists of %d and %d numbers; lists of one length are",
+                             values->count, other.count);
+    for (int k = 0; k < values->count && status == STATUS_OK; k++)
+        values->at[k] -= other.at[k];
+    return status;
+}
+
+/* Of a call with a text "A | B", or "A | B - C", those for A and for B as one list. */
+static enum status call_read(struct formula *formula, const struct lookup *lookup, const struct call *call,
+                             struct values *values)
+{
+    int k = 0;
+    while (lookup->kinds[k] && !strstr(call->text[k], " | "))
+        k++;
+    struct call one = *call;
+    if (!lookup->kinds[k])
+        return difference_read(formula, lookup, &one, values);
+    const char *tail = strstr(call->text[k], " - ");
+    *values = (struct values){.count = 0};
+    for (const char *at = call->text[k], *next; at; at = next) {
+        struct values more = {.timed = false};
+        next = strstr(at, " | ");
+        const char *end = next ? next : tail ? tail : at + strlen(at);
+        snprintf(one.text[k], sizeof one.text[k], "%.*s%s", (int)(end - at), at, tail ? tail : "");
+        one.at[k] = call->at[k] + (at - call->text[k]);
+        next = next ? next + 3 : NULL;
+        enum status status = call_read(formula, lookup, &one, &more);
+        if (status == STATUS_OK)
+            status = values_join(formula, one.at[k], values, &more);
+        if (status != STATUS_OK)
+            return status;
+    }
+    return STATUS_OK;
+}
+
 enum status lookup_read(struct formula *formula, const char *at, const char *name, const char *known,
                         struct values *values)
 {
@@ -415,10 +445,10 @@ enum status lookup_read(struct formula *formula, const char *at, const char *nam
                              name, names);
     }
     enum status status = STATUS_OK;
-    for (int k = 0; k < lookup->count && status == STATUS_OK; k++) {
+    for (int k = 0; lookup->kinds[k] && status == STATUS_OK; k++) {
         status = text_read(formula, &call, k);
-        if (status == STATUS_OK && !formula_take(formula, k < lookup->count - 1 ? ',' : ')'))
+        if (status == STATUS_OK && !formula_take(formula, lookup->kinds[k + 1] ? ',' : ')'))
             status = formula_error(formula, formula->at, "%s(%s) is needed", name, lookup->texts);
     }
-    return status == STATUS_OK ? lookup->read(formula, &call, values) : status;
+    return status == STATUS_OK ? call_read(formula, lookup, &call, values) : status;
 }

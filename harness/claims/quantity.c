@@ -11,7 +11,6 @@
 #include "text/text_append.h"
 #include "measure/timing.h"
 #include "claims/lookup.h"
-#include "papers/tables.h"
 
 /* ---- texts ---- */
 
@@ -109,6 +108,16 @@ static enum status combine(struct formula *formula, const char *at, struct value
     return STATUS_OK;
 }
 
+enum status values_join(const struct formula *formula, const char *at, struct values *values, const struct values *more)
+{
+    if (values->count + more->count > VALUES_MAX)
+        return formula_error(formula, at, "more than %d numbers; up to that are accepted", VALUES_MAX);
+    memcpy(values->at + values->count, more->at, (size_t)more->count * sizeof *more->at);
+    values->count += more->count;
+    values->timed |= more->timed;
+    return STATUS_OK;
+}
+
 enum status quantity_list_read(struct formula *formula, struct values *values)
 {
     values->count = 0;
@@ -117,13 +126,10 @@ enum status quantity_list_read(struct formula *formula, struct values *values)
         struct values more;
         const char *at = formula->at;
         enum status status = quantity_read(formula, &more);
+        if (status == STATUS_OK)
+            status = values_join(formula, at, values, &more);
         if (status != STATUS_OK)
             return status;
-        if (values->count + more.count > VALUES_MAX)
-            return formula_error(formula, at, "more than %d numbers; up to that are accepted", VALUES_MAX);
-        memcpy(values->at + values->count, more.at, (size_t)more.count * sizeof *more.at);
-        values->count += more.count;
-        values->timed |= more.timed;
     } while (formula_take(formula, ','));
     return formula_take(formula, ')') ? STATUS_OK
                                       : formula_error(formula, formula->at, "an operator, ',' or ')' is needed here");
@@ -152,39 +158,22 @@ static double middle(const struct values *v)
     return median(copy.at, copy.count);
 }
 
-static double rate(const struct values *v)
-{
-    return upsampling_rate(v->at[0], v->at[1], v->at[2]);
-}
-
 static const struct {
     const char *name;
-    int count; /* of numbers that it takes; 0: any */
     double (*reduce)(const struct values *values);
     double (*each)(double value); /* instead: of every element */
 } functions[] = {
-    {"list", 0, NULL, NULL},
-    {"min", 0, least, NULL},
-    {"max", 0, largest, NULL},
-    {"magnitude", 0, magnitude, NULL},
-    {"median", 0, middle, NULL},
-    {"abs", 0, NULL, fabs},
-    {"log2", 0, NULL, log2},
-    {"sqrt", 0, NULL, sqrt},
-    {"tan", 0, NULL, tan},
-    {"atan", 0, NULL, atan},
-    {"upsampling_rate", 3, rate, NULL},
+    {"list", NULL, NULL},     {"min", least, NULL}, {"max", largest, NULL}, {"magnitude", magnitude, NULL},
+    {"median", middle, NULL}, {"abs", NULL, fabs},  {"sqrt", NULL, sqrt},
 };
 enum { FUNCTIONS = sizeof functions / sizeof *functions };
 
-static enum status function_read(struct formula *formula, const char *at, int k, struct values *values)
+static enum status function_read(struct formula *formula, int k, struct values *values)
 {
     struct values list;
     enum status status = quantity_list_read(formula, &list);
     if (status != STATUS_OK)
         return status;
-    if (functions[k].count && list.count != functions[k].count)
-        return formula_error(formula, at, "%d numbers; %s takes %d", list.count, functions[k].name, functions[k].count);
     *values = list;
     for (int n = 0; functions[k].each && n < list.count; n++)
         values->at[n] = functions[k].each(list.at[n]);
@@ -203,6 +192,54 @@ static int name_find(const struct formula *formula, const char *name)
     return -1;
 }
 
+static enum status name_add(struct formula *formula, const char *at, const char *name, const struct values *values)
+{
+    if (formula->count == NAMES_MAX)
+        return formula_error(formula, at, "more than %d names; up to that are accepted", NAMES_MAX);
+    for (int k = 0; k < values->count && formula->measured; k++)
+        if (!isfinite(values->at[k]))
+            measured_missing(formula->measured, "%s is not finite", name);
+    strcpy(formula->named[formula->count].name, name);
+    formula->named[formula->count++].values = *values;
+    return STATUS_OK;
+}
+
+/* The row of numbers.csv that may be named here; -1 where there is none. */
+static int number_find(const struct formula *formula, const char *name)
+{
+    for (int row = formula->rows - 1; row >= 0; row--) {
+        const char *of = csv_cell(formula->numbers, row, NUMBER_OF);
+        if (strcmp(csv_cell(formula->numbers, row, NUMBER_NAME), name) == 0
+            && (strcmp(of, formula->id) == 0 || strcmp(of, formula->paper) == 0))
+            return row;
+    }
+    return -1;
+}
+
+/* Its value, which then has its name. */
+static enum status number_of_row(struct formula *formula, int row, struct values *values)
+{
+    const char *path = formula->path, *column = formula->column, *text = formula->text, *at = formula->at;
+    const int line = formula->line, depth = formula->depth, rows = formula->rows;
+    formula->path = formula->numbers->path;
+    formula->line = formula->numbers->lines[row];
+    formula->rows = row;
+    formula_begin(formula, "definition", csv_cell(formula->numbers, row, NUMBER_DEFINITION));
+    enum status status = quantity_read(formula, values);
+    if (status == STATUS_OK && *formula->at)
+        status = formula_error(formula, formula->at, "an operator or the end is needed here");
+    if (status == STATUS_OK)
+        status = name_add(formula, formula->at, csv_cell(formula->numbers, row, NUMBER_NAME), values);
+    formula->path = path;
+    formula->line = line;
+    formula->rows = rows;
+    formula->column = column;
+    formula->text = text;
+    formula->at = at;
+    formula->depth = depth;
+    return status;
+}
+
 /* What begins with a word. */
 static enum status word_read(struct formula *formula, struct values *values)
 {
@@ -212,7 +249,7 @@ static enum status word_read(struct formula *formula, struct values *values)
     if (formula_take(formula, '(')) {
         for (int k = 0; k < FUNCTIONS; k++) {
             if (strcmp(functions[k].name, word) == 0)
-                return function_read(formula, at, k, values);
+                return function_read(formula, k, values);
             text_append(known, sizeof known, "%s, ", functions[k].name);
         }
         return lookup_read(formula, at, word, known, values);
@@ -220,6 +257,8 @@ static enum status word_read(struct formula *formula, struct values *values)
     int k = name_find(formula, word);
     if (k >= 0)
         *values = formula->named[k].values;
+    else if ((k = number_find(formula, word)) >= 0)
+        return number_of_row(formula, k, values);
     else if (strcmp(word, "pi") == 0)
         *values = (struct values){1, {acos(-1)}, false};
     else {
@@ -317,30 +356,27 @@ static enum status definition_read(struct formula *formula)
     formula_blanks(formula);
     const char *at = formula->at;
     formula_word(formula, name, sizeof name);
-    if (!*name || strlen(name) >= sizeof formula->named[0].name || name_reserved(name) || name_find(formula, name) >= 0)
+    const int row = number_find(formula, name);
+    if (row >= 0 && !formula_take(formula, '='))
+        return name_find(formula, name) >= 0 ? STATUS_OK : number_of_row(formula, row, &values);
+    if (!*name || strlen(name) >= sizeof formula->named[0].name || name_reserved(name) || name_find(formula, name) >= 0
+        || row >= 0)
         return formula_error(formula, at,
                              "a name of its own is needed here, of up to %zu letters, digits and '_', "
-                             "that is no function's",
+                             "that is no function's and not in numbers.csv",
                              sizeof formula->named[0].name - 1);
     if (!formula_take(formula, '='))
         return formula_error(formula, formula->at, "'=' is needed here");
-    enum status status = quantity_read(formula, &values);
-    if (status != STATUS_OK)
-        return status;
-    if (formula->count == NAMES_MAX)
-        return formula_error(formula, at, "more than %d names; up to that are accepted", NAMES_MAX);
-    for (int k = 0; k < values.count && formula->measured; k++)
-        if (!isfinite(values.at[k]))
-            measured_missing(formula->measured, "%s is not finite", name);
-    strcpy(formula->named[formula->count].name, name);
-    formula->named[formula->count++].values = values;
-    return STATUS_OK;
+    const enum status status = quantity_read(formula, &values);
+    return status == STATUS_OK ? name_add(formula, at, name, &values) : status;
 }
 
 enum status quantities_read(struct formula *formula, const char *column, const char *text)
 {
     formula_begin(formula, column, text);
     enum status status = STATUS_OK;
+    if (!*text)
+        return STATUS_OK;
     do
         status = definition_read(formula);
     while (status == STATUS_OK && formula_take(formula, ';'));

@@ -1,6 +1,8 @@
 /* The language in which claims.csv says what is compared: sums and products of measured and printed numbers, with
    names. results/README.md describes it for those who write claims.
 
+   A name that its cell does not define is a row of numbers.csv, of the claim or of its paper.
+
    A cell is read from left to right and worked out on the way. Without measurements it is only checked: every number
    of the folder is then 1, but lists have their lengths, and a scene, a SPEC, a metric, a time or a printed number that
    does not exist is an error all the same. */
@@ -10,8 +12,8 @@
 #include "papers/measured.h"
 #include "papers/schemes.h"
 
-/* One number, or one for each of several targets or ranges. */
-enum { VALUES_MAX = 64 };
+/* One number, or one for each of several targets or ranges: of three methods at 48 targets at most. */
+enum { VALUES_MAX = 144, TARGETS_MAX = 64 };
 struct values {
     int count;
     double at[VALUES_MAX];
@@ -23,7 +25,7 @@ struct values {
 enum use { USE_SCENE, USE_SETTING, USE_SLICE, USE_TABLE };
 
 /* Where the reading of a claim stands, and the names that it has defined. */
-enum { NAMES_MAX = 32 };
+enum { NAMES_MAX = 48 };
 struct formula {
     struct measured *measured; /* NULL: only check */
     enum scheme scheme;        /* what LBF means */
@@ -31,9 +33,14 @@ struct formula {
     bool phases;               /* the phase study was asked for */
     bool rules;                /* the rules' study was asked for */
     bool measures;             /* something measured was asked for */
+    bool scenes;               /* a number of a scene was asked for */
+    bool times;                /* a time, or a scene that is for times, was asked for */
     const struct csv *published;
-    void (*need)(void *to, const char *scene, const char *spec); /* hears of each measurement; may be NULL */
-    void (*use)(void *to, enum use use, const char *text);       /* hears of what else is looked up; may be NULL */
+    const struct csv *numbers; /* numbers.csv: [rows] of it may be named */
+    int rows;
+    const char *id, *paper;                                      /* the claim's */
+    void (*need)(void *to, const char *scene, const char *spec); /* called for each measurement; may be NULL */
+    void (*use)(void *to, enum use use, const char *text);       /* for what else is looked up; may be NULL */
     void *to;
     const char *path; /* for messages: file, line and column of the cell */
     int line;
@@ -47,7 +54,11 @@ struct formula {
     } named[NAMES_MAX];
 };
 
-/* Define the names of a cell "name = expression; name = expression". Errors: STATUS_INVALID naming file, line, column,
+/* The columns of numbers.csv: whose number it is (a claim's ID, or a paper), its name, and what it is, in which rows above
+   may be named. */
+enum number_column { NUMBER_OF, NUMBER_NAME, NUMBER_DEFINITION };
+
+/* Define the names of a cell "name = expression; name", the latter being a row of numbers.csv; it may be empty. Errors: STATUS_INVALID naming file, line, column,
    character, what stands there and what is accepted. A number that is missing or not finite is no error but a reason in
    measured->missing. */
 enum status quantities_read(struct formula *formula, const char *column, const char *text);
@@ -55,6 +66,10 @@ enum status quantities_read(struct formula *formula, const char *column, const c
 enum status quantity_read(struct formula *formula, struct values *values);
 /* All elements of the comma-separated expressions up to the closing parenthesis, which is taken, too. */
 enum status quantity_list_read(struct formula *formula, struct values *values);
+
+/* Behind those that are there. Errors: STATUS_INVALID where they become too many. */
+enum status values_join(const struct formula *formula, const char *at, struct values *values,
+                        const struct values *more);
 
 /* Begin a cell. */
 void formula_begin(struct formula *formula, const char *column, const char *text);

@@ -14,11 +14,10 @@ enum { NEEDS_MAX = 256, SETS_MAX = 12 };
    none from seeds, which the sets do not change. */
 static bool takes_part(const struct claim *claim)
 {
-    bool scenes = claim->need_count > 0 || claim->phases || strstr(claim->arguments, "scene(");
+    bool scenes = claim->need_count > 0 || claim->phases || claim->scenes;
     bool paper =
         strcmp(claim->paper, "BP22") == 0 || strcmp(claim->paper, "ZP15") == 0 || strcmp(claim->paper, "LBF21") == 0;
-    return paper && judge_decides(claim->judge) && scenes && !claim->rules && !strstr(claim->arguments, "bp22/full")
-           && !strstr(claim->arguments, "lbf21/real_size") && !strstr(claim->arguments, "time(");
+    return paper && judge_decides(claim->judge) && scenes && !claim->rules && !claim->times;
 }
 
 struct set_verdicts {

@@ -99,6 +99,8 @@ enum status command_info(const struct task *task)
     table_text(stdout, 12, "of samples, sums and pixels; geometry is always double");
     for (const struct param *p = algorithm->params; p && p->name; p++) {
         char initial[64], accepted[160];
+        if (p->hidden)
+            continue;
         if (p->type == PARAM_REAL)
             snprintf(initial, sizeof initial, "%.6g", p->initial);
         else

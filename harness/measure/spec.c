@@ -117,7 +117,8 @@ static enum status setting_read(const char *place, char *setting, struct spec *s
     int index = 0;
     const struct param *param = spec->algorithm->params;
     for (; param && param->name && strcmp(param->name, setting) != 0; param++, index++)
-        name_list_add(&accepted, param->name);
+        if (!param->hidden)
+            name_list_add(&accepted, param->name);
     bool is_precision = !param || !param->name;
     if (is_precision) {
         name_list_add(&accepted, precision_param.name);

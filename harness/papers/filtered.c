@@ -12,10 +12,11 @@
 
 const char *const planned_names[] = {
     [QUANTITY_SIZE_FACTOR] = "size_factor", [QUANTITY_UPSAMPLING] = "upsampling", NULL};
+const char *const energy_names[] = {"kept_db", "changed_db", NULL};
 
-/* ---- what is known ---- */
+/* ---- what was worked out ---- */
 
-static bool is_known(const struct measured *measured, const struct scene_number *asked, double *value)
+static bool is_kept(const struct measured *measured, const struct scene_number *asked, double *value)
 {
     for (int k = 0; k < measured->number_count; k++) {
         const struct scene_number *n = &measured->numbers[k];
@@ -84,8 +85,8 @@ static enum status filter_find(struct measured *measured, const struct scene_num
     return status;
 }
 
-static double number_value(struct measured *measured, const char *scene_name, const char *spec_text, int target,
-                           enum scene_quantity quantity)
+double unimaged_value(struct measured *measured, const char *scene_name, const char *spec_text, int target,
+                      enum scene_quantity quantity)
 {
     struct scene_number asked = {.quantity = quantity, .target = target};
     struct scene scene;
@@ -93,7 +94,7 @@ static double number_value(struct measured *measured, const char *scene_name, co
     double value = NAN;
     snprintf(asked.scene, sizeof asked.scene, "%s", assumed_scene_name(scene_name));
     snprintf(asked.spec, sizeof asked.spec, "%s", spec_text);
-    if (is_known(measured, &asked, &value))
+    if (is_kept(measured, &asked, &value))
         return value;
     enum status status = assumed_scene_load(scene_name, &scene);
     if (status == STATUS_OK) {
@@ -104,18 +105,7 @@ static double number_value(struct measured *measured, const char *scene_name, co
         }
         scene_free(&scene);
     }
-    return status == STATUS_OK && is_known(measured, &asked, &value)
+    return status == STATUS_OK && is_kept(measured, &asked, &value)
                ? value
                : measured_missing(measured, "%s with %s: %s", scene_name, spec_text, status_message());
-}
-
-double planned_value(struct measured *measured, const char *scene, const char *spec, enum scene_quantity quantity)
-{
-    return number_value(measured, scene, spec, -1, quantity);
-}
-
-double filtered_value(struct measured *measured, const char *scene, const char *spec, int target,
-                      enum scene_quantity quantity)
-{
-    return number_value(measured, scene, spec, target, quantity);
 }

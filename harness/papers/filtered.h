@@ -6,15 +6,13 @@
 
 #include "papers/measured.h"
 
-extern const char *const planned_names[]; /* by enum scene_quantity, the first two; NULL ends them */
+/* By enum scene_quantity, the first two and the others; NULL ends them. */
+extern const char *const planned_names[], *const energy_names[];
 
-/* wk_size_factor of a wk_* on a scene; times that the filter of a wk_polar upsamples the track. NAN with `missing` set
-   where the scene, the plan or the filter refuses. */
-double planned_value(struct measured *measured, const char *scene, const char *spec, enum scene_quantity quantity);
-
-/* dB: what the filter of a wk_polar keeps of a scene's point target (from 0) by itself, or changes; both over its
-   energy. NAN with `missing` set where there is no such target, where no ping sees it or the filter refuses. */
-double filtered_value(struct measured *measured, const char *scene, const char *spec, int target,
+/* Of the scene (target -1): wk_size_factor of a wk_*; times that the filter of a wk_polar upsamples the track. Of one of
+   its point targets by itself (from 0), dB over its energy: what the filter keeps, or changes. NAN with `missing` set
+   where the scene, the plan or the filter refuses, where there is no such target, or no ping sees it. */
+double unimaged_value(struct measured *measured, const char *scene, const char *spec, int target,
                       enum scene_quantity quantity);
 
 #endif

@@ -103,6 +103,27 @@ void expect_corrected(struct measured *measured, const char *id, enum claim_verd
     expect_scheme(measured, id, SCHEME_CORRECTED, verdict);
 }
 
+/* In a cell, or in the first rows of numbers.csv that it names. */
+static bool cell_has(const struct claims *claims, const struct claim *claim, const char *cell, int above,
+                     const char *text)
+{
+    const struct csv *numbers = &claims->numbers;
+    bool has = strstr(cell, text) != NULL;
+    for (int row = 0; row < above && !has; row++) {
+        const char *of = csv_cell(numbers, row, NUMBER_OF);
+        if ((strcmp(of, claim->id) == 0 || strcmp(of, claim->paper) == 0)
+            && strstr(cell, csv_cell(numbers, row, NUMBER_NAME)))
+            has = cell_has(claims, claim, csv_cell(numbers, row, NUMBER_DEFINITION), row, text);
+    }
+    return has;
+}
+
+bool claim_has(const struct claims *claims, const struct claim *claim, const char *text)
+{
+    const int all = claims->numbers.row_count;
+    return cell_has(claims, claim, claim->arguments, all, text) || cell_has(claims, claim, claim->judge, all, text);
+}
+
 enum status planted_claim(const char *judge, const char *arguments, struct claims *claims)
 {
     char text[2000];

@@ -25,6 +25,9 @@ struct judgement judgement_of(struct measured *measured, const char *id, enum sc
 void expect(struct measured *measured, const char *id, enum claim_verdict verdict);
 void expect_corrected(struct measured *measured, const char *id, enum claim_verdict verdict);
 
+/* Does a text stand in what the claim compares: its cells, or the rows of numbers.csv that they name? */
+bool claim_has(const struct claims *claims, const struct claim *claim, const char *text);
+
 /* Read a list of one claim with these two cells; the file is bad.csv in the test's folder. */
 enum status planted_claim(const char *judge, const char *arguments, struct claims *claims);
 
