@@ -45,7 +45,7 @@ set terminal pngcairo noenhanced size width,height font "DejaVu Sans,12" backgro
 if (svg) { set terminal svg noenhanced size width,height dynamic font "DejaVu Sans,Verdana,sans-serif,12" background "#ffffff" }
 set output output
 set label 1 footer at screen 0.5,screen 14.0/height center font ",10" textcolor "#606060"
-set title "Digits lost against the method's own sum in extended precision\n(grey: refused, red frame: degrades, red: fails, white: no digits are judged)"
+set title "Digits lost against the method's own sum in extended precision\n(grey: refused, red frame: degrades, red: fails, white: no digits are assessed)"
 set lmargin at screen 190.0/width
 set rmargin at screen 1 - 130.0/width
 set tmargin at screen 1 - 65.0/height

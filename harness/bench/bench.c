@@ -229,15 +229,15 @@ static double goal_over(const struct bench *bench, const struct bench_line *line
     const struct {
         const char *name;
         double divisor;
-    } known[] = {{"", 1},
+    } units[] = {{"", 1},
                  {"peak", bench_peak(line) / line->pair_flops},
                  {"fft", line->fft.best},
                  {"fft by one plan", line->fft.plan}};
     if (other)
         return other->measured ? bench_value(other, value) : NAN;
-    for (size_t k = 0; k < sizeof known / sizeof *known; k++)
-        if (strcmp(over, known[k].name) == 0)
-            return line->measured ? known[k].divisor : NAN;
+    for (size_t k = 0; k < sizeof units / sizeof *units; k++)
+        if (strcmp(over, units[k].name) == 0)
+            return line->measured ? units[k].divisor : NAN;
     return 0;
 }
 

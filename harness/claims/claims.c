@@ -1,4 +1,4 @@
-/* The claims of results/claims.csv: read, checked and judged (claims.h). */
+/* The claims of results/claims.csv: read, checked and evaluated (claims.h). */
 #include "claims/claims.h"
 
 #include <stdio.h>
@@ -19,7 +19,7 @@ static const struct {
     {"section", offsetof(struct claim, section)},
     {"claim", offsetof(struct claim, claim)},
     {"criterion", offsetof(struct claim, criterion)},
-    {"judge", offsetof(struct claim, judge)},
+    {"comparison", offsetof(struct claim, comparison)},
     {"arguments", offsetof(struct claim, arguments)},
 };
 enum { COLUMNS = sizeof columns / sizeof *columns };
@@ -94,10 +94,10 @@ static enum status cells_check(const struct claims *claims, const struct csv *pu
         struct formula formula = formula_of(claims, claim, scheme, published);
         formula.need = need_keep;
         formula.to = &list;
-        struct judgement judgement = {.evidence = ""};
+        struct evaluation evaluation = {.evidence = ""};
         status = quantities_read(&formula, "arguments", claim->arguments);
         if (status == STATUS_OK)
-            status = judges_read(&formula, "judge", claim->judge, &judgement);
+            status = comparisons_read(&formula, "comparison", claim->comparison, &evaluation);
         claim->by_scheme = formula.by_scheme;
         claim->measures = formula.measures;
         claim->phases = formula.phases;
@@ -109,11 +109,11 @@ static enum status cells_check(const struct claims *claims, const struct csv *pu
         status = status_set(STATUS_FAILED, "%s: line %d: no memory for %d measurements", csv->path, claim->line,
                             claim->need_count + 1);
     bool phases_alone = claim->phases && claim->need_count == 0; /* formulas against the exact spectrum */
-    if (status == STATUS_OK && judge_decides(claim->judge) && !phases_alone
-        && claim->measures == judge_identity(claim->judge))
-        status = status_set(STATUS_INVALID, "%s: line %d: column judge: %s", csv->path, claim->line,
+    if (status == STATUS_OK && comparison_decides(claim->comparison) && !phases_alone
+        && claim->measures == comparison_identity(claim->comparison))
+        status = status_set(STATUS_INVALID, "%s: line %d: column comparison: %s", csv->path, claim->line,
                             claim->measures ? "'identity' is for claims that ask for nothing measured"
-                                            : "nothing measured is asked for; 'identity JUDGE(...)' is needed");
+                                            : "nothing measured is asked for; 'identity COMPARISON(...)' is needed");
     return status;
 }
 
@@ -171,21 +171,21 @@ void claims_free(struct claims *claims)
     *claims = (struct claims){0};
 }
 
-/* ---- judging ---- */
+/* ---- evaluating ---- */
 
 /* "NAME = 0.452, NAME = 0.01 to 0.45 (median 0.2); criterion: ..." */
-static void evidence_begin(struct judgement *judgement, const struct formula *formula, const struct claim *claim)
+static void evidence_begin(struct evaluation *evaluation, const struct formula *formula, const struct claim *claim)
 {
-    size_t size = sizeof judgement->evidence;
+    size_t size = sizeof evaluation->evidence;
     for (int k = 0; k < formula->count; k++) {
         struct values values = formula->named[k].values;
-        text_append(judgement->evidence, size, "%s%s = ", k ? ", " : "", formula->named[k].name);
-        values_append(judgement->evidence, size, &values);
+        text_append(evaluation->evidence, size, "%s%s = ", k ? ", " : "", formula->named[k].name);
+        values_append(evaluation->evidence, size, &values);
         if (values.count > 1)
-            text_append(judgement->evidence, size, " (median %.4g)", median(values.at, values.count));
+            text_append(evaluation->evidence, size, " (median %.4g)", median(values.at, values.count));
     }
-    text_append(judgement->evidence, size, "; %s: %s", judge_decides(claim->judge) ? "criterion" : "no criterion",
-                claim->criterion);
+    text_append(evaluation->evidence, size, "; %s: %s",
+                comparison_decides(claim->comparison) ? "criterion" : "no criterion", claim->criterion);
 }
 
 /* What a verdict rests on: settings, scenes and printed tables, each named once. */
@@ -278,8 +278,8 @@ static void basis_append(char *evidence, size_t size, const struct basis *basis)
             text_append(evidence, size, "; %s: %s", parts[k].title, parts[k].list);
 }
 
-struct judgement claim_judge(const struct claims *claims, const struct claim *claim, enum scheme scheme,
-                             struct measured *measured)
+struct evaluation claim_evaluate(const struct claims *claims, const struct claim *claim, enum scheme scheme,
+                                 struct measured *measured)
 {
     struct basis basis = {.settings = ""};
     struct formula formula = formula_of(claims, claim, scheme, &measured->published);
@@ -287,20 +287,20 @@ struct judgement claim_judge(const struct claims *claims, const struct claim *cl
     formula.need = basis_add;
     formula.use = basis_use;
     formula.to = &basis;
-    struct judgement judgement = {.evidence = ""}, answers = {.evidence = ""};
+    struct evaluation evaluation = {.evidence = ""}, answers = {.evidence = ""};
     *measured->missing = '\0';
     enum status status = quantities_read(&formula, "arguments", claim->arguments);
     if (status == STATUS_OK)
-        status = judges_read(&formula, "judge", claim->judge, &answers);
+        status = comparisons_read(&formula, "comparison", claim->comparison, &answers);
     if (status != STATUS_OK || *measured->missing) {
-        judgement.verdict = CLAIM_UNDECIDED;
-        snprintf(judgement.evidence, sizeof judgement.evidence, "%s; criterion: %s",
+        evaluation.verdict = CLAIM_UNDECIDED;
+        snprintf(evaluation.evidence, sizeof evaluation.evidence, "%s; criterion: %s",
                  status == STATUS_OK ? measured->missing : status_message(), claim->criterion);
     } else {
-        judgement.verdict = answers.verdict;
-        evidence_begin(&judgement, &formula, claim); /* now that all names are known */
-        text_append(judgement.evidence, sizeof judgement.evidence, "%s", answers.evidence);
+        evaluation.verdict = answers.verdict;
+        evidence_begin(&evaluation, &formula, claim); /* now that all names are known */
+        text_append(evaluation.evidence, sizeof evaluation.evidence, "%s", answers.evidence);
     }
-    basis_append(judgement.evidence, sizeof judgement.evidence, &basis);
-    return judgement;
+    basis_append(evaluation.evidence, sizeof evaluation.evidence, &basis);
+    return evaluation;
 }

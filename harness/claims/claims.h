@@ -1,12 +1,12 @@
-/* What BP22, ZP15, LBF21, SQ18 and PF05 claim, sentence by sentence, and how our measurements judge it:
-   results/claims.csv, a row a claim, names what is compared (quantity.h) and by which judge (judges.h).
+/* What BP22, ZP15, LBF21, SQ18 and PF05 claim, sentence by sentence, and how our measurements comparison it:
+   results/claims.csv, a row a claim, names what is compared (quantity.h) and by which comparison (comparisons.h).
 
    What counts as agreement is the printed number with its last digit's rounding; where a sentence gives no number
    ("slightly", "far less") the criterion says what was taken. */
 #ifndef SASBENCH_CLAIMS_CLAIMS_H
 #define SASBENCH_CLAIMS_CLAIMS_H
 
-#include "claims/judges.h"
+#include "claims/comparisons.h"
 #include "papers/tables.h"
 
 #define CLAIMS_FILE  SASBENCH_ROOT "/results/claims.csv"
@@ -15,8 +15,8 @@
 /* Texts belong to the file that was read. */
 struct claim {
     const char *id, *paper, *section, *claim;
-    const char *criterion; /* the judges in words, or why nothing can be decided */
-    const char *judge, *arguments;
+    const char *criterion; /* the comparisons in words, or why nothing can be decided */
+    const char *comparison, *arguments;
     int line;
     bool by_scheme; /* it names LBF: it has a verdict as printed and one corrected (schemes.h) */
     bool phases;    /* it asks for the phase study */
@@ -28,14 +28,14 @@ struct claim {
     struct need *needs; /* [need_count] the measurements that it asks for; owned */
 };
 
-enum { CLAIMS_MAX = 400 }; /* that are judged together */
+enum { CLAIMS_MAX = 400 }; /* that are evaluated together */
 struct claims {
     struct csv csv, numbers;
     int count;
     struct claim *claims; /* [count] */
 };
 
-/* Every row is checked to its end before the first is judged. Errors: those of csv_read; STATUS_INVALID naming file,
+/* Every row is checked to its end before the first is evaluated. Errors: those of csv_read; STATUS_INVALID naming file,
    line, column, value and what is accepted. claims_free releases what was read and accepts a zeroed struct. */
 enum status claims_read(const char *path, struct claims *claims);
 void claims_free(struct claims *claims);
@@ -44,7 +44,7 @@ void claims_free(struct claims *claims);
    threshold, the settings, the scenes with what these assume, and the tables whose printed numbers are used. Where a
    measurement is missing, failed or unsupported: CLAIM_UNDECIDED with the reason in place of numbers and
    comparisons. */
-struct judgement claim_judge(const struct claims *claims, const struct claim *claim, enum scheme scheme,
-                             struct measured *measured);
+struct evaluation claim_evaluate(const struct claims *claims, const struct claim *claim, enum scheme scheme,
+                                 struct measured *measured);
 
 #endif

@@ -83,7 +83,7 @@ static enum status range_check(const struct formula *formula, const struct call 
 {
     const char *text = call->text[k], *dots = strstr(text, "..");
     char first[160];
-    snprintf(first, sizeof first, "%.*s", dots ? (int)(dots - text) : (int)strlen(text), text);
+    snprintf(first, sizeof first, "%.*s", (int)(dots ? (size_t)(dots - text) : strlen(text)), text);
     bool good = *first && csv_number(first, &range[0]) && csv_number(dots ? dots + 2 : first, &range[1]);
     return good && range[0] >= low && range[1] <= high && range[0] <= range[1]
                ? STATUS_OK
@@ -117,18 +117,17 @@ static enum status texts_check(struct formula *formula, const struct lookup *loo
     enum status status = STATUS_OK;
     *values = (struct values){.count = 1, .at = {1}};
     call->first = -1;
-    for (int k = 0; lookup->kinds[k] && status == STATUS_OK; k++)
+    for (int k = 0; lookup->kinds[k] && status == STATUS_OK; k++) {
         switch (lookup->kinds[k]) {
         case 's': status = scene_check(formula, call, k); break;
         case 'p': status = spec_check(formula, call, k); break;
         case 'w': status = word_check(formula, call, k, lookup->words[words++]); break;
-        case 'r':
-            status = range_check(formula, call, k, 0, lookup->most[ranges], call->range[ranges]);
-            ranges++;
-            break;
+        case 'r': status = range_check(formula, call, k, 0, lookup->most[ranges], call->range[ranges]); break;
         case 't': status = targets_check(formula, call, k, values); break;
         default: break;
         }
+        ranges += lookup->kinds[k] == 'r';
+    }
     return status;
 }
 
@@ -349,7 +348,7 @@ static const struct lookup *lookup_find(const char *name, const struct column **
     return NULL;
 }
 
-bool lookup_known(const char *name)
+bool lookup_exists(const char *name)
 {
     const struct column *metric;
     return lookup_find(name, &metric);
@@ -391,8 +390,7 @@ static enum status difference_read(struct formula *formula, const struct lookup 
     second.at[lookup->method] += minus + 3 - call->text[lookup->method];
     *minus = '\0';
     enum status status = one_read(formula, lookup, call, values);
-    if (status == STATUS_OK)
-        status = one_read(formula, lookup, &second, &other);
+    status = status == STATUS_OK ? one_read(formula, lookup, &second, &other) : status;
     if (status == STATUS_OK && values->count != other.count)
         return formula_error(formula, call->at[lookup->method], "lists of %d and %d numbers; lists of one length are",
                              values->count, other.count);
@@ -429,14 +427,14 @@ static enum status call_read(struct formula *formula, const struct lookup *looku
     return STATUS_OK;
 }
 
-enum status lookup_read(struct formula *formula, const char *at, const char *name, const char *known,
+enum status lookup_read(struct formula *formula, const char *at, const char *name, const char *accepted,
                         struct values *values)
 {
     struct call call = {.metric = NULL};
     const struct lookup *lookup = lookup_find(name, &call.metric);
+    char names[600];
+    snprintf(names, sizeof names, "%s", accepted);
     if (!lookup) {
-        char names[600];
-        snprintf(names, sizeof names, "%s", known);
         for (size_t k = 0; k < sizeof lookups / sizeof *lookups; k++)
             text_append(names, sizeof names, "%s, ", lookups[k].name);
         return formula_error(formula, at,

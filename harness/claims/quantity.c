@@ -244,15 +244,15 @@ static enum status number_of_row(struct formula *formula, int row, struct values
 static enum status word_read(struct formula *formula, struct values *values)
 {
     const char *at = formula->at;
-    char word[40], known[600] = "";
+    char word[40], accepted[600] = "";
     formula_word(formula, word, sizeof word);
     if (formula_take(formula, '(')) {
         for (int k = 0; k < FUNCTIONS; k++) {
             if (strcmp(functions[k].name, word) == 0)
                 return function_read(formula, k, values);
-            text_append(known, sizeof known, "%s, ", functions[k].name);
+            text_append(accepted, sizeof accepted, "%s, ", functions[k].name);
         }
-        return lookup_read(formula, at, word, known, values);
+        return lookup_read(formula, at, word, accepted, values);
     }
     int k = name_find(formula, word);
     if (k >= 0)
@@ -263,8 +263,8 @@ static enum status word_read(struct formula *formula, struct values *values)
         *values = (struct values){1, {acos(-1)}, false};
     else {
         for (k = 0; k < formula->count; k++)
-            text_append(known, sizeof known, "%s, ", formula->named[k].name);
-        return formula_error(formula, at, "this is no name; %spi, or a function with '(' are accepted", known);
+            text_append(accepted, sizeof accepted, "%s, ", formula->named[k].name);
+        return formula_error(formula, at, "this is no name; %spi, or a function with '(' are accepted", accepted);
     }
     return STATUS_OK;
 }
@@ -343,7 +343,7 @@ enum status quantity_read(struct formula *formula, struct values *values)
 
 static bool name_reserved(const char *name)
 {
-    bool reserved = strcmp(name, "pi") == 0 || lookup_known(name);
+    bool reserved = strcmp(name, "pi") == 0 || lookup_exists(name);
     for (int k = 0; k < FUNCTIONS; k++)
         reserved |= strcmp(functions[k].name, name) == 0;
     return reserved;

@@ -17,7 +17,7 @@ enum { VALUES_MAX = 144, TARGETS_MAX = 64 };
 struct values {
     int count;
     double at[VALUES_MAX];
-    bool timed; /* a time is among what they were worked out from: only judges that know noise may compare them */
+    bool timed; /* a time is among what they were worked out from: only comparisons that know noise may compare them */
 };
 
 /* What numbers rest on beside measurements: a scene, a setting (a formula of the phase study, a SPEC that is planned),

@@ -1,4 +1,4 @@
-/* Measure what the papers' tables and claims rest on, set their numbers beside ours, and judge what they say
+/* Measure what the papers' tables and claims rest on, set their numbers beside ours, and comparison what they say
    (reproduce.h). */
 #include "claims/reproduce.h"
 
@@ -45,12 +45,12 @@ static void id_brief(const char *id, char *brief, size_t size)
 static enum status id_select(const char *id, struct selection *selection)
 {
     char accepted[900] = "", brief[40], meant[SUGGESTION_TEXT];
-    bool known = false;
+    bool found = false;
     id_brief(id, brief, sizeof brief);
     struct suggestion suggestion = suggestion_begin(brief);
     for (int k = 0; paper_tables[k].id; k++) {
         bool same = strcmp(paper_tables[k].id, id) == 0;
-        known |= same;
+        found |= same;
         selection->tables[k] |= same;
         text_append(accepted, sizeof accepted, "%s, ", paper_tables[k].id);
         suggestion_offer(&suggestion, paper_tables[k].id);
@@ -59,12 +59,12 @@ static enum status id_select(const char *id, struct selection *selection)
     suggestion_offer(&suggestion, "sensitivity");
     for (int k = 0; k < selection->claims->count; k++) {
         bool same = strcmp(selection->claims->claims[k].id, id) == 0 || strcmp(id, "claims") == 0;
-        known |= same;
+        found |= same;
         selection->asked[k] |= same;
         suggestion_offer(&suggestion, selection->claims->claims[k].id);
     }
     suggestion_text(&suggestion, meant);
-    return known ? STATUS_OK
+    return found ? STATUS_OK
                  : status_set(STATUS_INVALID,
                               "reproduce: '%.100s' is not a table%s accepted: %sa claim as bp22-4.1-1, or sensitivity "
                               "alone",

@@ -23,7 +23,7 @@ static void head_write(FILE *file, const char *what, const struct measured *meas
     for (int k = 0; k < csv->comment_count; k++)
         if (strncmp(csv->comments[k], "sasbench ", 9) != 0 && strncmp(csv->comments[k], "scene ", 6) != 0)
             fprintf(file, "# %s\n", csv->comments[k]);
-    fprintf(file, "# load: %.2f a processor (average of 15 minutes when judged)\n", measured->load);
+    fprintf(file, "# load: %.2f a processor (average of 15 minutes when evaluated)\n", measured->load);
 }
 
 static enum status reproduced_write(const char *directory, const struct measured *measured,
@@ -76,11 +76,11 @@ static void notes_print(const struct paper_table *table, const struct reproduced
 {
     for (int k = 0; k < count; k++) {
         const struct reproduced *l = &lines[k];
-        bool said = strcmp(l->table, table->id) != 0 || !*l->note;
-        for (int n = 0; n < k && !said; n++)
-            said = lines[n].table == l->table && strcmp(lines[n].note, l->note) == 0
-                   && strcmp(lines[n].target, l->target) == 0;
-        if (!said)
+        bool printed = strcmp(l->table, table->id) != 0 || !*l->note;
+        for (int n = 0; n < k && !printed; n++)
+            printed = lines[n].table == l->table && strcmp(lines[n].note, l->note) == 0
+                      && strcmp(lines[n].target, l->target) == 0;
+        if (!printed)
             printf("  %s: %s\n", *l->target ? l->target : "paper", l->note);
     }
 }
@@ -156,22 +156,22 @@ static void table_print(const struct paper_table *table, const struct reproduced
 
 /* ---- claims ---- */
 
-static void claim_write(FILE *stream, const struct claim *claim, const struct judgement judgements[SCHEMES])
+static void claim_write(FILE *stream, const struct claim *claim, const struct evaluation evaluations[SCHEMES])
 {
-    char evidence[2 * sizeof judgements->evidence + 40];
+    char evidence[2 * sizeof evaluations->evidence + 40];
     const char *corrected = "";
-    snprintf(evidence, sizeof evidence, "%s", judgements[SCHEME_PRINTED].evidence);
+    snprintf(evidence, sizeof evidence, "%s", evaluations[SCHEME_PRINTED].evidence);
     if (claim->by_scheme) {
-        corrected = claim_verdict_names[judgements[SCHEME_CORRECTED].verdict];
-        text_append(evidence, sizeof evidence, " | corrected: %s", judgements[SCHEME_CORRECTED].evidence);
+        corrected = claim_verdict_names[evaluations[SCHEME_CORRECTED].verdict];
+        text_append(evidence, sizeof evidence, " | corrected: %s", evaluations[SCHEME_CORRECTED].evidence);
     }
     const char *const texts[] = {claim->id,
                                  claim->paper,
                                  claim->section,
                                  claim->claim,
-                                 claim_verdict_names[judgements[SCHEME_PRINTED].verdict],
+                                 claim_verdict_names[evaluations[SCHEME_PRINTED].verdict],
                                  corrected,
-                                 claim->measures && !judge_identity(claim->judge) ? "measured" : "formula",
+                                 claim->measures && !comparison_identity(claim->comparison) ? "measured" : "formula",
                                  evidence};
     for (int k = 0; k < 8; k++) {
         csv_write_text(stream, texts[k]);
@@ -179,12 +179,12 @@ static void claim_write(FILE *stream, const struct claim *claim, const struct ju
     }
 }
 
-static void claim_print(const struct claim *claim, const struct judgement judgements[SCHEMES])
+static void claim_print(const struct claim *claim, const struct evaluation evaluations[SCHEMES])
 {
     printf("\n%-17s %s\n", claim->id, claim->claim);
     for (enum scheme scheme = 0; scheme < (claim->by_scheme ? SCHEMES : 1); scheme++)
         printf("  %s%s%s: %s\n", claim->by_scheme ? scheme_names[scheme] : "", claim->by_scheme ? ": " : "",
-               claim_verdict_names[judgements[scheme].verdict], judgements[scheme].evidence);
+               claim_verdict_names[evaluations[scheme].verdict], evaluations[scheme].evidence);
 }
 
 /* Where all claims were asked for: how many have each verdict, as a page. */
@@ -196,7 +196,7 @@ static enum status verdicts_page(const char *directory, const struct verdicts *v
                *machine = csv_comment(csv, "machine");
     char path[4200], head[600];
     for (int k = 0; k < verdicts->claims->count; k++)
-        if (!verdicts->judged[k])
+        if (!verdicts->evaluated[k])
             return STATUS_OK;
     snprintf(path, sizeof path, "%s/verdicts.md", directory);
     snprintf(head, sizeof head, "%s, commit %s, %s, load %.2f a processor.", date ? date : "no date",
@@ -220,20 +220,20 @@ static enum status claims_report(const char *directory, const struct selection *
     fputs("id,paper,section,claim,verdict,corrected,basis,evidence\n", file.stream);
     for (int n = 0; n < selection->claims->count; n++) {
         const struct claim *claim = &selection->claims->claims[n];
-        struct judgement judgements[SCHEMES] = {0};
+        struct evaluation evaluations[SCHEMES] = {0};
         bool there = claim->need_count > 0;
         if (!selection->asked[n] && !there)
             continue;
         for (enum scheme scheme = 0; scheme < (claim->by_scheme ? SCHEMES : 1); scheme++) {
-            judgements[scheme] = claim_judge(selection->claims, claim, scheme, measured);
+            evaluations[scheme] = claim_evaluate(selection->claims, claim, scheme, measured);
             there = there && !*measured->missing;
         }
         if (selection->asked[n] || there)
-            claim_write(file.stream, claim, judgements);
+            claim_write(file.stream, claim, evaluations);
         if (!selection->asked[n])
             continue;
-        claim_print(claim, judgements);
-        verdicts_add(&verdicts, n, judgements);
+        claim_print(claim, evaluations);
+        verdicts_add(&verdicts, n, evaluations);
         asked++;
     }
     if (asked)
@@ -259,7 +259,7 @@ static void lines_keep(const struct selection *selection, struct reproduced *lin
     *count = kept;
 }
 
-/* A processor, over the last 15 minutes; 0 where it is not known. What was judged before with the same program keeps
+/* A processor, over the last 15 minutes; 0 where the system does not tell it. What was evaluated before with the same program keeps
    the load of that time: times that were measured on a busy machine do not get better on a quiet one. */
 static double load_average(const char *directory, const struct measured *measured)
 {

@@ -17,7 +17,7 @@ static bool takes_part(const struct claim *claim)
     bool scenes = claim->need_count > 0 || claim->phases || claim->scenes;
     bool paper =
         strcmp(claim->paper, "BP22") == 0 || strcmp(claim->paper, "ZP15") == 0 || strcmp(claim->paper, "LBF21") == 0;
-    return paper && judge_decides(claim->judge) && scenes && !claim->rules && !claim->times;
+    return paper && comparison_decides(claim->comparison) && scenes && !claim->rules && !claim->times;
 }
 
 struct set_verdicts {
@@ -51,14 +51,14 @@ static enum status phases_write(const char *directory)
     return status;
 }
 
-static enum status set_judge(const char *directory, const struct claims *claims,
-                             enum claim_verdict verdicts[CLAIMS_MAX][SCHEMES])
+static enum status set_evaluate(const char *directory, const struct claims *claims,
+                                enum claim_verdict verdicts[CLAIMS_MAX][SCHEMES])
 {
     struct measured measured;
     enum status status = measured_read(directory, &measured);
     for (int k = 0; k < claims->count && status == STATUS_OK; k++)
         for (enum scheme scheme = 0; scheme < SCHEMES && takes_part(&claims->claims[k]); scheme++)
-            verdicts[k][scheme] = claim_judge(claims, &claims->claims[k], scheme, &measured).verdict;
+            verdicts[k][scheme] = claim_evaluate(claims, &claims->claims[k], scheme, &measured).verdict;
     measured_free(&measured);
     return status;
 }
@@ -165,7 +165,7 @@ enum status sensitivity_study(const char *directory, const struct claims *claims
         if (status == STATUS_OK)
             status = phases_write(folder);
         if (status == STATUS_OK)
-            status = set_judge(folder, claims, verdicts.of[n]);
+            status = set_evaluate(folder, claims, verdicts.of[n]);
     }
     assumptions_choose(assumption_sets);
     return status == STATUS_OK ? table_write(directory, claims, &verdicts) : status;

@@ -6,13 +6,13 @@
 
 #include "files/text_file.h"
 
-void verdicts_add(struct verdicts *verdicts, int claim, const struct judgement judgements[SCHEMES])
+void verdicts_add(struct verdicts *verdicts, int claim, const struct evaluation evaluations[SCHEMES])
 {
-    verdicts->judged[claim] = true;
+    verdicts->evaluated[claim] = true;
     for (enum scheme scheme = 0; scheme < SCHEMES; scheme++)
-        verdicts->of[claim][scheme] = judgements[scheme].verdict;
+        verdicts->of[claim][scheme] = evaluations[scheme].verdict;
     verdicts->noisy[claim] =
-        judgements[0].verdict == CLAIM_UNDECIDED && strstr(judgements[0].evidence, ": within the noise");
+        evaluations[0].verdict == CLAIM_UNDECIDED && strstr(evaluations[0].evidence, ": within the noise");
 }
 
 /* Of one paper (NULL: all) by one scheme; the corrected one counts only claims that name a scheme. Returns how many
@@ -23,7 +23,7 @@ static int count(const struct verdicts *verdicts, const char *paper, enum scheme
     memset(counts, 0, CLAIM_VERDICTS * sizeof *counts);
     for (int k = 0; k < verdicts->claims->count; k++) {
         const struct claim *claim = &verdicts->claims->claims[k];
-        if (!verdicts->judged[k] || (paper && strcmp(claim->paper, paper) != 0) || (scheme && !claim->by_scheme))
+        if (!verdicts->evaluated[k] || (paper && strcmp(claim->paper, paper) != 0) || (scheme && !claim->by_scheme))
             continue;
         counts[verdicts->of[k][scheme]]++;
         total++;
@@ -37,8 +37,9 @@ static void reasons_write(FILE *stream, const struct verdicts *verdicts)
 {
     int by_formula = 0, noisy = 0;
     for (int k = 0; k < verdicts->claims->count; k++) {
-        by_formula += verdicts->judged[k] && !verdicts->claims->claims[k].measures && verdicts->of[k][0] == CLAIM_FAILS;
-        noisy += verdicts->judged[k] && verdicts->noisy[k];
+        by_formula +=
+            verdicts->evaluated[k] && !verdicts->claims->claims[k].measures && verdicts->of[k][0] == CLAIM_FAILS;
+        noisy += verdicts->evaluated[k] && verdicts->noisy[k];
     }
     fprintf(stream,
             "As printed %d of those that do not hold fail by the papers' formulas and numbers alone;\n%d of those that "
@@ -96,7 +97,7 @@ enum status verdicts_write(const char *path, const char *head, const struct verd
     reasons_write(file.stream, verdicts);
     fputs("\n| claim | says | as printed | corrected |\n|---|---|---|---|\n", file.stream);
     for (int k = 0; k < claims->count; k++)
-        if (verdicts->judged[k])
+        if (verdicts->evaluated[k])
             fprintf(file.stream, "| `%s` | %s | %s%s | %s |\n", claims->claims[k].id, claims->claims[k].claim,
                     claim_verdict_names[verdicts->of[k][0]], verdicts->noisy[k] ? " (within the noise)" : "",
                     claims->claims[k].by_scheme ? claim_verdict_names[verdicts->of[k][SCHEME_CORRECTED]] : "");

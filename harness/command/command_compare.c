@@ -26,7 +26,7 @@ enum status command_compare(const struct task *task)
         status = diff_json(&diff, task->json);
     if (status == STATUS_OK) {
         diff_print(&diff, stdout);
-        status = diff_judge(&diff);
+        status = diff_status(&diff);
     }
     diff_free(&diff);
     return status;

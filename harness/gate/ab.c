@@ -31,7 +31,7 @@ static const struct {
 enum { USUAL = sizeof usual / sizeof *usual };
 
 #define ERROR_PROBABILITY 0.05      /* of any false finding in all of one comparison */
-#define STAGE_LEAST       0.2       /* of the time: smaller stages are not judged alone */
+#define STAGE_LEAST       0.2       /* of the time: smaller stages are not compared alone */
 static const double slot_s = 0.005; /* that one question is to take, by repetition */
 enum { BLOCKS = 3, PARTS_MOST = 13, ROUNDS_MOST = 64 };
 
@@ -205,7 +205,7 @@ static enum status contest_round(struct contest *contest, int round, const struc
     return status;
 }
 
-/* --- Judgement ------------------------------------------------------------------------------------------------ */
+/* --- Verdicts ------------------------------------------------------------------------------------------------ */
 
 /* The median over the blocks. */
 static double part_seconds(const struct unit *unit, int side, int part)
@@ -262,7 +262,7 @@ static enum status contest_look(struct contest *contest, const struct ab_effort 
             if (!part_counts(unit, part))
                 continue;
             status = part_interval(unit, part, miss, &interval);
-            enum verdict verdict = status == STATUS_OK ? ab_interval_judge(&interval) : VERDICT_NOISY;
+            enum verdict verdict = status == STATUS_OK ? ab_interval_verdict(&interval) : VERDICT_NOISY;
             worse = worse || verdict == VERDICT_WORSE;
             clear =
                 clear && verdict != VERDICT_NOISY && (verdict != VERDICT_WARNING || interval.high < 1 + EFFECT_FAIL);
@@ -288,7 +288,7 @@ static enum status findings_add(struct contest *contest, const struct ab_effort 
             if (status != STATUS_OK)
                 break;
             double before = part_seconds(unit, 0, part), after = part_seconds(unit, 1, part);
-            status = diff_add(contest->diff, &(struct finding){.verdict = ab_interval_judge(&interval),
+            status = diff_add(contest->diff, &(struct finding){.verdict = ab_interval_verdict(&interval),
                                                                .class = CLASS_TIME,
                                                                .scene = unit->scene,
                                                                .spec = unit->spec,

@@ -7,7 +7,7 @@
 
 /* What is spent on it. */
 struct ab_effort {
-    int rounds_least, rounds_step, rounds_most; /* both programs are started anew each round; judged after `least` and
+    int rounds_least, rounds_step, rounds_most; /* both programs are started anew each round; compared after `least` and
                                                    then every `step` of them, while a finding is undecided */
     double budget_s;                            /* no round begins after this */
     double patience_s;                          /* a program that does not answer for so long has failed */
@@ -16,7 +16,7 @@ extern const struct ab_effort ab_usual;
 
 /* Run programs OLD and NEW (paths of two sasbench) on every scene (name or path) with every SPEC, or where none are
    given on a default set, and add the findings: seconds of one execute on one thread, in all and of each stage that
-   holds a fifth of it, judged by ab_interval_judge. A SPEC that only one of the programs can plan is gone or new. Every
+   holds a fifth of it, compared by ab_interval_verdict. A SPEC that only one of the programs can plan is gone or new. Every
    round starts both anew, on one processor, and runs A B B A and B A A B in turn.
    Scenes outlive *diff.
    Errors: STATUS_INVALID naming the program, the question and the answer when one of them cannot be run, crashes,

@@ -93,7 +93,7 @@ enum status ab_interval_find(const double *ratios, int rounds, int blocks, doubl
     return status;
 }
 
-enum verdict ab_interval_judge(const struct ab_interval *interval)
+enum verdict ab_interval_verdict(const struct ab_interval *interval)
 {
     if (interval->low > 1 + EFFECT_FAIL)
         return VERDICT_WORSE;

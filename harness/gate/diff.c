@@ -1,4 +1,4 @@
-/* Two results, row by row (diff.h): rows are matched by their keys (diff_side.h), values judged by slacks. */
+/* Two results, row by row (diff.h): rows are matched by their keys (diff_side.h), values compared by slacks. */
 #include "gate/diff.h"
 
 #include <math.h>
@@ -9,9 +9,9 @@
 #include "gate/diff_side.h"
 #include "measure/timing.h"
 
-/* --- Judging ------------------------------------------------------------------------------------------------- */
+/* --- Comparing ------------------------------------------------------------------------------------------------- */
 
-static enum verdict judge(const struct column *metric, double before, double after, double *slack)
+static enum verdict values_compare(const struct column *metric, double before, double after, double *slack)
 {
     if (isnan(before))
         return VERDICT_NEW;
@@ -43,7 +43,7 @@ static double time_ratio(const struct measurement *old, const struct measurement
 }
 
 /* What two sides are compared with. */
-struct judging {
+struct comparing {
     struct diff *diff;
     struct diff_side *old, *new;
     const struct column *columns;
@@ -89,28 +89,28 @@ static int status_rank(const char *status)
 }
 
 /* Two rows' times; undefined on one side is no matter: a baseline has none. */
-static void judge_time(struct judging *judging, const struct row_key *key, const struct row_key *found,
-                       const struct column *metric, struct finding *finding)
+static void time_compare(struct comparing *comparing, const struct row_key *key, const struct row_key *found,
+                         const struct column *metric, struct finding *finding)
 {
-    const struct measurement *old = &judging->old->results.measurements[key->row];
-    const struct measurement *new = &judging->new->results.measurements[found->row];
+    const struct measurement *old = &comparing->old->results.measurements[key->row];
+    const struct measurement *new = &comparing->new->results.measurements[found->row];
     double ratio = time_ratio(old, new), limit = 1 + metric->relative_slack;
     bool same_threads = old->threads == new->threads;
     finding->verdict = VERDICTS;
     if (isnan(ratio) || !same_threads) {
-        judging->threads_differ |= !isnan(ratio) && !same_threads;
+        comparing->threads_differ |= !isnan(ratio) && !same_threads;
         return;
     }
-    judging->ratios[judging->ratio_count++] = ratio;
+    comparing->ratios[comparing->ratio_count++] = ratio;
     finding->change = ratio - 1;
     finding->slack = metric->relative_slack * finding->before;
     finding->verdict = ratio > limit ? VERDICT_WORSE : ratio < 1 / limit ? VERDICT_BETTER : VERDICT_SAME;
 }
 
-static enum status judge_pair(struct judging *judging, const struct row_key *key, const struct row_key *found)
+static enum status pair_compare(struct comparing *comparing, const struct row_key *key, const struct row_key *found)
 {
-    struct diff *diff = judging->diff;
-    const struct results *old = &judging->old->results, *new = &judging->new->results;
+    struct diff *diff = comparing->diff;
+    const struct results *old = &comparing->old->results, *new = &comparing->new->results;
     enum precision precision = strcmp(key->precision, "double") == 0 ? PRECISION_DOUBLE : PRECISION_FLOAT;
     const char *old_row =
         old->targets ? (const char *)&old->target_rows[key->row] : (const char *)&old->measurements[key->row];
@@ -121,7 +121,7 @@ static enum status judge_pair(struct judging *judging, const struct row_key *key
         int worse = status_rank(after) - status_rank(before);
         if (worse != 0 || status_rank(after) != 0) {
             const char *reason = new->measurements[found->row].reason;
-            judging->old->closed[key->row] = judging->new->closed[found->row] = true;
+            comparing->old->closed[key->row] = comparing->new->closed[found->row] = true;
             const char *said = diff_text(diff, "%s%s%s", after, *reason ? ": " : "", reason);
             return !said ? STATUS_FAILED
                          : add_row(diff, key,
@@ -133,7 +133,7 @@ static enum status judge_pair(struct judging *judging, const struct row_key *key
     }
     struct finding row = {.before = NAN};
     enum status status = describe(diff, key, &row);
-    for (const struct column *metric = metric_first(judging->columns); metric && status == STATUS_OK;
+    for (const struct column *metric = metric_first(comparing->columns); metric && status == STATUS_OK;
          metric = metric_first(metric + 1)) {
         struct finding finding = row;
         if (csv_column(&old->csv, metric->name) < 0 || csv_column(&new->csv, metric->name) < 0)
@@ -147,11 +147,11 @@ static enum status judge_pair(struct judging *judging, const struct row_key *key
         finding.slack = metric->absolute_slack[precision];
         finding.change = NAN;
         if (metric->class == CLASS_TIME) {
-            judge_time(judging, key, found, metric, &finding);
+            time_compare(comparing, key, found, metric, &finding);
         } else if (isnan(finding.before) && isnan(finding.after)) {
             continue;
         } else {
-            finding.verdict = judge(metric, finding.before, finding.after, &finding.slack);
+            finding.verdict = values_compare(metric, finding.before, finding.after, &finding.slack);
             if (finding.before != 0 && strcmp(metric->unit, "dB") != 0)
                 finding.change = finding.after / finding.before - 1;
         }
@@ -170,9 +170,9 @@ static bool is_closed(const struct diff_side *measurements, const struct row_key
 
 /* All rows of one pair of files in the order of OLD, then the rows of NEW alone. `measurements`: the sides of the
    measurements when these are their targets, else NULL. */
-static enum status judge_sides(struct judging *judging, const struct diff_side measurements[2])
+static enum status sides_compare(struct comparing *comparing, const struct diff_side measurements[2])
 {
-    struct diff_side *old = judging->old, *new = judging->new;
+    struct diff_side *old = comparing->old, *new = comparing->new;
     enum status status = STATUS_OK;
     const char *reported = "";
     for (int row = 0; row < old->results.csv.row_count && status == STATUS_OK; row++) {
@@ -182,7 +182,7 @@ static enum status judge_sides(struct judging *judging, const struct diff_side m
         bool changed = found && before && after && strcmp(before, after) != 0;
         if (changed && !measurements && strcmp(reported, key.scene) != 0) {
             reported = key.scene;
-            status = diff_note(judging->diff,
+            status = diff_note(comparing->diff,
                                "scene %s has another content in NEW: its rows are not comparable, "
                                "so that they are gone and new",
                                key.scene);
@@ -192,11 +192,11 @@ static enum status judge_sides(struct judging *judging, const struct diff_side m
         if (found && !changed) {
             new->matched[found->row] = true;
             if (!measurements || !is_closed(&measurements[0], &key))
-                status = judge_pair(judging, &key, found);
+                status = pair_compare(comparing, &key, found);
         } else {
             old->closed[row] = true;
             if (!measurements || !is_closed(&measurements[0], &key))
-                status = add_row(judging->diff, &key, VERDICT_GONE, "row", "present", "");
+                status = add_row(comparing->diff, &key, VERDICT_GONE, "row", "present", "");
         }
     }
     for (int row = 0; row < new->results.csv.row_count &&status == STATUS_OK; row++) {
@@ -205,7 +205,7 @@ static enum status judge_sides(struct judging *judging, const struct diff_side m
             continue;
         new->closed[row] = true;
         if (!measurements || !is_closed(&measurements[1], &key))
-            status = add_row(judging->diff, &key, VERDICT_NEW, "row", "", "present");
+            status = add_row(comparing->diff, &key, VERDICT_NEW, "row", "", "present");
     }
     return status;
 }
@@ -258,12 +258,12 @@ static void changes_find(struct diff *diff, int first, const struct column *colu
             finding_change(diff, &diff->findings[k]);
 }
 
-static enum status judge_files(struct diff *diff, const char *const paths[2], struct diff_side sides[2],
-                               const struct diff_side measurements[2])
+static enum status files_compare(struct diff *diff, const char *const paths[2], struct diff_side sides[2],
+                                 const struct diff_side measurements[2])
 {
     static const char *const names[2] = {"OLD", "NEW"};
     int before = diff->finding_count;
-    struct judging judging = {diff, &sides[0], &sides[1], NULL, NULL, 0, false};
+    struct comparing comparing = {diff, &sides[0], &sides[1], NULL, NULL, 0, false};
     enum status status = STATUS_OK;
     for (int k = 0; k < 2 && status == STATUS_OK; k++)
         status = side_open(paths[k], &sides[k]);
@@ -275,24 +275,24 @@ static enum status judge_files(struct diff *diff, const char *const paths[2], st
         return status_set(STATUS_INVALID, "%s holds %s and %s holds %s; two of the same kind are needed", paths[0],
                           sides[0].results.targets ? "targets" : "measurements", paths[1],
                           sides[1].results.targets ? "targets" : "measurements");
-    judging.columns = sides[0].results.targets ? target_columns : measurement_columns;
-    judging.ratios = calloc((size_t)sides[0].results.csv.row_count + 1, sizeof *judging.ratios);
-    if (!judging.ratios)
+    comparing.columns = sides[0].results.targets ? target_columns : measurement_columns;
+    comparing.ratios = calloc((size_t)sides[0].results.csv.row_count + 1, sizeof *comparing.ratios);
+    if (!comparing.ratios)
         return status_set(STATUS_FAILED, "no memory for %d rows", sides[0].results.csv.row_count);
     diff->to_baseline |= !csv_comment(&sides[0].results.csv, "program");
-    status = judge_sides(&judging, measurements);
-    changes_find(diff, before, judging.columns);
-    if (status == STATUS_OK && judging.threads_differ)
+    status = sides_compare(&comparing, measurements);
+    changes_find(diff, before, comparing.columns);
+    if (status == STATUS_OK && comparing.threads_differ)
         status = diff_note(diff, "threads differ: times are not compared where they do");
-    if (status == STATUS_OK && judging.ratio_count > 0) {
-        int count = judging.ratio_count;
+    if (status == STATUS_OK && comparing.ratio_count > 0) {
+        int count = comparing.ratio_count;
         status = diff_note(
             diff,
             "time against the scalar reference loop: NEW takes %.3g of OLD (median of %d rows); a row alone is "
-            "judged beyond a factor of %g, finer by compare --ab",
-            median(judging.ratios, count), count, 1 + metric_first(measurement_columns)->relative_slack);
+            "compared beyond a factor of %g, finer by compare --ab",
+            median(comparing.ratios, count), count, 1 + metric_first(measurement_columns)->relative_slack);
     }
-    free(judging.ratios);
+    free(comparing.ratios);
     return status;
 }
 
@@ -344,9 +344,9 @@ enum status diff_results(const char *old, const char *new, struct diff *diff)
             status = STATUS_FAILED;
     }
     if (status == STATUS_OK)
-        status = judge_files(diff, paths, sides, NULL);
+        status = files_compare(diff, paths, sides, NULL);
     if (status == STATUS_OK && folders && exists(targets[0]))
-        status = judge_files(diff, targets, target_sides, sides);
+        status = files_compare(diff, targets, target_sides, sides);
     for (int k = 0; k < 2; k++) {
         side_close(&target_sides[k]);
         side_close(&sides[k]);

@@ -20,7 +20,7 @@ extern const char *const verdict_names[VERDICTS];
 extern const char *const class_names[]; /* by enum metric_class */
 enum { CLASSES = CLASS_TIME + 1 };
 
-/* One judgement. Texts are borrowed or belong to the struct diff. */
+/* One finding. Texts are borrowed or belong to the struct diff. */
 struct finding {
     enum verdict verdict;
     enum metric_class class;
@@ -51,7 +51,7 @@ struct diff {
 enum { CHANGED_SLACKS = 10, CHANGED_ROWS = 5 };
 #define CHANGED_WORK 0.01
 
-/* Judge two results folders or CSV files (a folder and a file: the folder's file of that kind). A row is matched by
+/* Compare two results folders or CSV files (a folder and a file: the folder's file of that kind). A row is matched by
    scene (and its content), algorithm, options and precision, and in targets.csv by target, axis and definition. Errors:
    STATUS_INVALID as results_read, for different kinds of files, and for a row given twice; STATUS_FAILED without
    memory. *diff is to be freed in any case. */
@@ -64,7 +64,7 @@ enum status diff_note(struct diff *diff, const char *format, ...) __attribute__(
 const char *diff_text(struct diff *diff, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* STATUS_FAILED, with a message that says how many, when anything got worse or is gone, or changed from a baseline. */
-enum status diff_judge(const struct diff *diff);
+enum status diff_status(const struct diff *diff);
 void diff_free(struct diff *diff);
 
 /* Readable text: remarks, the findings but the same ones by what may have caused them (diff_groups.h), counts. */

@@ -92,7 +92,7 @@ static int count_of(const struct diff *diff, enum verdict verdict)
     return count;
 }
 
-enum status diff_judge(const struct diff *diff)
+enum status diff_status(const struct diff *diff)
 {
     int worse = count_of(diff, VERDICT_WORSE), gone = count_of(diff, VERDICT_GONE);
     int changed = diff->to_baseline ? count_of(diff, VERDICT_CHANGED) : 0;

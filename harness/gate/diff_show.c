@@ -98,7 +98,7 @@ static const char *headline(const struct diff *diff)
                                  : "nothing got worse; what changed for the better is to be reviewed";
     if (verdict_occurs(diff, VERDICT_WARNING))
         return "nothing failed, with a warning";
-    return verdict_occurs(diff, VERDICT_NOISY) ? "nothing failed, not all could be judged" : "nothing got worse";
+    return verdict_occurs(diff, VERDICT_NOISY) ? "nothing failed, not all could be compared" : "nothing got worse";
 }
 
 static void line_write(FILE *stream, const char *text)

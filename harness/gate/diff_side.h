@@ -1,4 +1,4 @@
-/* One of the two results that `compare` judges: its rows, found by their keys. */
+/* One of the two results that `compare` compares: its rows, found by their keys. */
 #ifndef SASBENCH_GATE_DIFF_SIDE_H
 #define SASBENCH_GATE_DIFF_SIDE_H
 

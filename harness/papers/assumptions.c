@@ -91,25 +91,24 @@ enum status assumed_scene_load(const char *name, struct scene *scene)
 
 const char *assumed_scene_name(const char *name)
 {
-    static struct known {
+    static struct kept {
         const struct assumptions *assumptions;
         char plain[80], assumed[80];
-    } known[512];
-    enum { KNOWN = sizeof known / sizeof *known };
+    } kept[512];
+    enum { KEPT = sizeof kept / sizeof *kept };
     struct scene scene;
     int k = 0;
     if (chosen == assumption_sets)
         return name;
-    while (k < KNOWN - 1 && known[k].assumptions
-           && (known[k].assumptions != chosen || strcmp(known[k].plain, name) != 0))
+    while (k < KEPT - 1 && kept[k].assumptions && (kept[k].assumptions != chosen || strcmp(kept[k].plain, name) != 0))
         k++;
-    if (known[k].assumptions == chosen && strcmp(known[k].plain, name) == 0)
-        return known[k].assumed;
+    if (kept[k].assumptions == chosen && strcmp(kept[k].plain, name) == 0)
+        return kept[k].assumed;
     if (assumed_scene_load(name, &scene) != STATUS_OK)
         return name;
-    known[k].assumptions = chosen;
-    snprintf(known[k].plain, sizeof known[k].plain, "%s", name);
-    snprintf(known[k].assumed, sizeof known[k].assumed, "%s", scene.name);
+    kept[k].assumptions = chosen;
+    snprintf(kept[k].plain, sizeof kept[k].plain, "%s", name);
+    snprintf(kept[k].assumed, sizeof kept[k].assumed, "%s", scene.name);
     scene_free(&scene);
-    return known[k].assumed;
+    return kept[k].assumed;
 }

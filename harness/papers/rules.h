@@ -8,7 +8,7 @@
 /* Which rule, and the method that it is for: BP22 Eq. (20) the smallest beta of linear upsampling; ZP15's lambda/8 the
    smallest factor of zero padding, 2 fc/fs rounded up. NULL ends the names. */
 extern const char *const rule_names[];
-/* What is known of a rule, by a number: `met`, the share of the scenes with an error after one gain up to it; `met_2b`,
+/* Of a rule, by a number: `met`, the share of the scenes with an error after one gain up to it; `met_2b`,
    the same of those that sample at twice the bandwidth and more; `error`, the error that this share of the scenes stays
    below; `overpaid`, the same of the rule's rate over the least one that is predicted to leave an error of 0.1 (of
    scenes where there is one). NULL ends the names. */

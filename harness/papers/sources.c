@@ -290,7 +290,7 @@ int table_seconds_check(const char *id, const char *method, const char *definiti
     const char *const wanted[] = {id, method, definition};
     struct source source;
     for (int text = 0; text < 3; text++) {
-        bool known = false;
+        bool found = false;
         *accepted = '\0';
         for (int k = 0; source_at(k, &source); k++) {
             const char *const texts[] = {source.table, source.method, source.definition};
@@ -300,10 +300,10 @@ int table_seconds_check(const char *id, const char *method, const char *definiti
             if (!fits)
                 continue;
             accept(accepted, size, texts[text]);
-            known |= strcmp(texts[text], wanted[text]) == 0
+            found |= strcmp(texts[text], wanted[text]) == 0
                      || (text == 2 && strcmp(texts[text], definition_of_others(wanted[text])) == 0);
         }
-        if (!known)
+        if (!found)
             return text;
     }
     return -1;

@@ -140,7 +140,7 @@ const struct report_table report_tables[REPORT_TABLES] = {
     {.file = "claims.csv",
      .id = "claims",
      .title = "Claims",
-     .text = "What the papers claim, each judged from the measurements of this folder: as printed, and, where LBF21's "
+     .text = "What the papers claim, each decided from the measurements of this folder: as printed, and, where LBF21's "
              "scheme matters, with the corrected scheme (theta at F, blocks that blend).",
      .group = "paper",
      .columns = {{"id", "id", SHOW_TEXT},

@@ -16,7 +16,7 @@ struct exact_point {
     long double x, y, z;
 };
 
-/* One record: a ping as one receiver heard it. */
+/* One record: a ping as one receiver received it. */
 struct exact_pair {
     struct exact_point tx, rx, velocity; /* m, m at emission, m/s */
     long double t0;                      /* s: time of the first sample */

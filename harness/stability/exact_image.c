@@ -69,8 +69,8 @@ static void echoes_fill(const struct scene *scene, struct exact_pair pair, struc
         const struct target *target = &scene->targets[k];
         const struct exact_point p = {target->x, target->r, 0.0L};
         const long double delay = exact_delay(&pair, p, a->sound_speed), after = delay - pair.t0;
-        const bool heard = after > 0.0L && after < a->samples / (long double)a->fs;
-        const long double beam = heard ? exact_beam(scene, &pair, p, delay) : 0.0L;
+        const bool received = after > 0.0L && after < a->samples / (long double)a->fs;
+        const long double beam = received ? exact_beam(scene, &pair, p, delay) : 0.0L;
         echoes[k] = (struct echo){delay, creal(target->amplitude) * beam, cimag(target->amplitude) * beam};
     }
 }
@@ -133,11 +133,11 @@ enum status exact_ideal(const struct scene *scene, struct exact_sum *sums)
     for (int ping = 0; ping < a->pings; ping++)
         for (int m = 0; m < a->receivers; m++) {
             const struct exact_pair pair = exact_pair_of(a, ping, m);
-            bool heard = false;
+            bool received = false;
             echoes_fill(scene, pair, echoes);
             for (int k = 0; k < scene->target_count; k++)
-                heard = heard || echoes[k].re != 0.0L || echoes[k].im != 0.0L;
-            if (!heard)
+                received = received || echoes[k].re != 0.0L || echoes[k].im != 0.0L;
+            if (!received)
                 continue;
 #pragma omp parallel for schedule(dynamic, 4)
             for (size_t i = 0; i < pixels; i++) {

@@ -1,4 +1,4 @@
-/* Images of a few dozen pixels beyond doubt: direct sums over all pings and receivers in extended precision, which use
+/* Images of some dozen pixels beyond doubt: direct sums over all pings and receivers in extended precision, which use
    neither the engines nor the simulator.
 
    Two questions, two sums. Is the image right? Then closed-form echoes are evaluated at exact delays (exact_ideal). Is

@@ -131,7 +131,7 @@ static enum status specs_choose(const struct stability_request *request, struct 
 }
 
 /* A scene that is refused is refused for every SPEC. */
-static enum status scene_judge(struct run *run, int index)
+static enum status scene_check(struct run *run, int index)
 {
     struct stability_row *rows = run->rows + index * run->spec_count;
     struct scene scene;
@@ -141,13 +141,13 @@ static enum status scene_judge(struct run *run, int index)
     enum status status = scene_load(run->scenes[index], SCENE_DIRECTORY, &scene);
     if (status == STATUS_INVALID) {
         for (int k = 0; k < run->spec_count; k++)
-            rows[k].verdict = refusal_judge(status_message());
+            rows[k].verdict = refusal_verdict(status_message());
         return STATUS_OK;
     }
     if (status == STATUS_OK) {
         status = trial_run(&scene, run->specs, run->spec_count, run->mode_count, &trial);
         for (int k = 0; k < run->spec_count && status == STATUS_OK; k++)
-            rows[k].verdict = trial_judge(&trial, k);
+            rows[k].verdict = trial_verdict(&trial, k);
         if (status == STATUS_OK)
             trial_close(&trial);
         scene_free(&scene);
@@ -215,7 +215,7 @@ enum status stability_run(const struct stability_request *request, const char *e
         stability_table_head(run.spec_count, run.specs);
     for (int k = 0; k < run.scene_count && status == STATUS_OK; k++) {
         progress_line(false, "[%d/%d] %s", k + 1, run.scene_count, run.scenes[k]);
-        status = scene_judge(&run, k);
+        status = scene_check(&run, k);
         progress_line_clear();
         if (status == STATUS_OK)
             stability_table_line(run.spec_count, run.rows + k * run.spec_count);

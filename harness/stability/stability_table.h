@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#include "stability/judge.h"
+#include "stability/stability_verdict.h"
 
 struct stability_row {
     const char *scene; /* borrowed, like the spec */

@@ -68,29 +68,29 @@ void planted_clear(struct measured *measured)
     assert_int_equal(mkdir(folder, 0700), 0);
 }
 
-struct judgement judgement_of(struct measured *measured, const char *id, enum scheme scheme)
+struct evaluation evaluation_of(struct measured *measured, const char *id, enum scheme scheme)
 {
     struct claims claims;
-    struct judgement judgement = {.evidence = ""};
+    struct evaluation evaluation = {.evidence = ""};
     bool found = false;
     assert_int_equal(claims_read(CLAIMS_FILE, &claims), STATUS_OK);
     for (int k = 0; k < claims.count && !found; k++)
         if (strcmp(claims.claims[k].id, id) == 0) {
-            judgement = claim_judge(&claims, &claims.claims[k], scheme, measured);
+            evaluation = claim_evaluate(&claims, &claims.claims[k], scheme, measured);
             found = true;
         }
     claims_free(&claims);
     if (!found)
         fail_msg("there is no claim %s", id);
-    return judgement;
+    return evaluation;
 }
 
 static void expect_scheme(struct measured *measured, const char *id, enum scheme scheme, enum claim_verdict verdict)
 {
-    struct judgement judgement = judgement_of(measured, id, scheme);
-    if (judgement.verdict != verdict)
-        fail_msg("%s, %s: '%s' instead of '%s'; %s", id, scheme_names[scheme], claim_verdict_names[judgement.verdict],
-                 claim_verdict_names[verdict], judgement.evidence);
+    struct evaluation evaluation = evaluation_of(measured, id, scheme);
+    if (evaluation.verdict != verdict)
+        fail_msg("%s, %s: '%s' instead of '%s'; %s", id, scheme_names[scheme], claim_verdict_names[evaluation.verdict],
+                 claim_verdict_names[verdict], evaluation.evidence);
 }
 
 void expect(struct measured *measured, const char *id, enum claim_verdict verdict)
@@ -121,16 +121,17 @@ static bool cell_has(const struct claims *claims, const struct claim *claim, con
 bool claim_has(const struct claims *claims, const struct claim *claim, const char *text)
 {
     const int all = claims->numbers.row_count;
-    return cell_has(claims, claim, claim->arguments, all, text) || cell_has(claims, claim, claim->judge, all, text);
+    return cell_has(claims, claim, claim->arguments, all, text)
+           || cell_has(claims, claim, claim->comparison, all, text);
 }
 
-enum status planted_claim(const char *judge, const char *arguments, struct claims *claims)
+enum status planted_claim(const char *comparison, const char *arguments, struct claims *claims)
 {
     char text[2000];
     snprintf(text, sizeof text,
-             "id,paper,section,claim,criterion,judge,arguments\n"
+             "id,paper,section,claim,criterion,comparison,arguments\n"
              "x-1,BP22,4.1,a sentence,a criterion,\"%s\",\"%s\"\n",
-             judge, arguments);
+             comparison, arguments);
     support_write("bad.csv", text);
     return claims_read(path_of("bad.csv"), claims);
 }

@@ -1,4 +1,4 @@
-/* A results folder with planted measurements, and the claims that are judged by it. */
+/* A results folder with planted measurements, and the claims that are evaluated by it. */
 #ifndef SASBENCH_TEST_PLANTED_H
 #define SASBENCH_TEST_PLANTED_H
 
@@ -19,9 +19,9 @@ void planted_add(const char *scene, const char *spec_text, double run_s, const c
 /* Azimuth slices of targets [first, first + count) with one ISLR. */
 void planted_islr(const char *scene, const char *spec_text, int first, int count, double islr_db);
 
-/* The judgement on a claim of results/claims.csv; the test fails when its verdict, as printed or corrected, is another
+/* The evaluation on a claim of results/claims.csv; the test fails when its verdict, as printed or corrected, is another
    one. */
-struct judgement judgement_of(struct measured *measured, const char *id, enum scheme scheme);
+struct evaluation evaluation_of(struct measured *measured, const char *id, enum scheme scheme);
 void expect(struct measured *measured, const char *id, enum claim_verdict verdict);
 void expect_corrected(struct measured *measured, const char *id, enum claim_verdict verdict);
 
@@ -29,6 +29,6 @@ void expect_corrected(struct measured *measured, const char *id, enum claim_verd
 bool claim_has(const struct claims *claims, const struct claim *claim, const char *text);
 
 /* Read a list of one claim with these two cells; the file is bad.csv in the test's folder. */
-enum status planted_claim(const char *judge, const char *arguments, struct claims *claims);
+enum status planted_claim(const char *comparison, const char *arguments, struct claims *claims);
 
 #endif

@@ -33,14 +33,14 @@ static void all_claims_are_read(void **state)
     for (int k = 0; k < claims.numbers.row_count; k++)
         assert_true(strlen(csv_cell(&claims.numbers, k, NUMBER_DEFINITION)) <= 200);
     for (int k = 0; k < claims.count; k++) /* what nothing measured can decide is marked so */
-        assert_true(claims.claims[k].phases || !judge_decides(claims.claims[k].judge)
-                    || judge_identity(claims.claims[k].judge) == !claims.claims[k].measures);
+        assert_true(claims.claims[k].phases || !comparison_decides(claims.claims[k].comparison)
+                    || comparison_identity(claims.claims[k].comparison) == !claims.claims[k].measures);
     claims_free(&claims);
 }
 
 #define X "x = 1"
 static const struct {
-    const char *judge, *arguments, *says[4];
+    const char *comparison, *arguments, *says[4];
 } mistakes[] = {
     /* names and arithmetic */
     {"undecided", "1 = 2", {"line 2", "column arguments, character 1", "'1 = 2'", "a name"}},
@@ -107,8 +107,8 @@ static const struct {
     {"undecided",
      "x = scene(bp22/full, length_m)",
      {"'length_m'", "bin_m, wavelength_m, tx_length_m, recording_s, speed_m_s"}},
-    /* judges */
-    {"over(x, 1)", X, {"column judge, character 1", "no such judge", "above, below", "undecided"}},
+    /* comparisons */
+    {"over(x, 1)", X, {"column comparison, character 1", "no such comparison", "above, below", "undecided"}},
     {"above x, 1", X, {"above(value, limit) is needed"}},
     {"above(x)", X, {"above(value, limit) is needed"}},
     {"above(x, 1, 2)", X, {"character 11", "above(value, limit) is needed"}},
@@ -116,13 +116,13 @@ static const struct {
     {"within(x, 1)", X, {"within(value, target, tolerance) is needed"}},
     {"rounds_to(x, 1)", X, {"rounds_to(value, printed number, its last digit) is needed"}},
     {"rising(x)", X, {"one value", "rising(two and more values) is needed"}},
-    {"above(y, 1)", X, {"column judge, character 7", "'y, 1)'", "x, pi"}},
+    {"above(y, 1)", X, {"column comparison, character 7", "'y, 1)'", "x, pi"}},
     {"above(x, 1) or below(x, 1)", X, {"character 13", "'and', 'else' or the end"}},
-    {"above(x, 1) else", X, {"no such judge"}},
-    {"above(x, 1) and", X, {"no such judge"}},
-    {"undecided()", X, {"no such judge"}},
+    {"above(x, 1) else", X, {"no such comparison"}},
+    {"above(x, 1) and", X, {"no such comparison"}},
+    {"undecided()", X, {"no such comparison"}},
     {"clearly_above(x, 1)", X, {"clearly_above(value, limit, noise) is needed"}},
-    {"above(x, 0)", X, {"line 2", "column judge", "nothing measured is asked for", "identity"}},
+    {"above(x, 0)", X, {"line 2", "column comparison", "nothing measured is asked for", "identity"}},
     {"identity above(x, 0)", "x = error(bp22/speckle, bp_nearest)", {"'identity' is for claims"}},
     {"identity above(x, 0) else above(x, 0)", X, {"an identity has no else"}},
     {"undecided", "x = time_noise(bp22_t3, fast engines)", {"'bp22_t3'", "accepted: 'bp22_t4', 'lbf21_t5'"}},
@@ -138,13 +138,13 @@ static void bad_rows_are_refused(void **state)
     (void)state;
     for (size_t k = 0; k < sizeof mistakes / sizeof *mistakes; k++) {
         struct claims claims;
-        if (planted_claim(mistakes[k].judge, mistakes[k].arguments, &claims) != STATUS_INVALID)
-            fail_msg("accepted: %s | %s", mistakes[k].judge, mistakes[k].arguments);
+        if (planted_claim(mistakes[k].comparison, mistakes[k].arguments, &claims) != STATUS_INVALID)
+            fail_msg("accepted: %s | %s", mistakes[k].comparison, mistakes[k].arguments);
         assert_non_null(strstr(status_message(), "bad.csv: line "));
         for (int n = 0; n < 4 && mistakes[k].says[n]; n++)
             if (!strstr(status_message(), mistakes[k].says[n]))
-                fail_msg("%s | %s: '%s' is not in: %s", mistakes[k].judge, mistakes[k].arguments, mistakes[k].says[n],
-                         status_message());
+                fail_msg("%s | %s: '%s' is not in: %s", mistakes[k].comparison, mistakes[k].arguments,
+                         mistakes[k].says[n], status_message());
         assert_null(claims.claims);
     }
 }
@@ -206,12 +206,14 @@ static void bad_files_are_refused(void **state)
     static const struct {
         const char *text, *says[3];
     } cases[] = {
-        {"id,paper,section,claim,judge,arguments\n", {"bad.csv", "column 5 must be 'criterion'"}},
-        {"id,paper,section,claim,criterion,judge,arguments\nx,BP22,4.1,c,c,undecided\n", {"bad.csv:2", "6 fields"}},
-        {"id,paper,section,claim,criterion,judge,arguments\nx,BP22,,c,c,undecided,x = 1\n",
+        {"id,paper,section,claim,comparison,arguments\n", {"bad.csv", "column 5 must be 'criterion'"}},
+        {"id,paper,section,claim,criterion,comparison,arguments\nx,BP22,4.1,c,c,undecided\n",
+         {"bad.csv:2", "6 fields"}},
+        {"id,paper,section,claim,criterion,comparison,arguments\nx,BP22,,c,c,undecided,x = 1\n",
          {"line 2", "column section is empty"}},
-        {"id,paper,section,claim,criterion,judge,arguments\nx,BP22,4.1,c,c,,x = 1\n", {"column judge is empty"}},
-        {"id,paper,section,claim,criterion,judge,arguments\nx,BP22,4.1,c,c,undecided,x = 1\n"
+        {"id,paper,section,claim,criterion,comparison,arguments\nx,BP22,4.1,c,c,,x = 1\n",
+         {"column comparison is empty"}},
+        {"id,paper,section,claim,criterion,comparison,arguments\nx,BP22,4.1,c,c,undecided,x = 1\n"
          "x,BP22,4.1,c,c,undecided,x = 1\n",
          {"line 3", "column id is 'x', as in line 2", "an id of its own"}},
     };
@@ -329,7 +331,7 @@ static void failures_decide_nothing(void **state)
         assert_int_equal(results_folder_add(rows, &row), STATUS_OK);
         planted_end(&measured);
         expect(&measured, "bp22-5-1", CLAIM_UNDECIDED);
-        assert_non_null(strstr(judgement_of(&measured, "bp22-5-1", SCHEME_PRINTED).evidence, "out of paper"));
+        assert_non_null(strstr(evaluation_of(&measured, "bp22-5-1", SCHEME_PRINTED).evidence, "out of paper"));
         planted_clear(&measured);
         spec_free(&spec);
     }
@@ -345,9 +347,10 @@ static void verdicts_are_counted(void **state)
     assert_int_equal(claims_read(CLAIMS_FILE, &claims), STATUS_OK);
     verdicts.claims = &claims;
     for (int k = 0; k < claims.count; k++) {
-        struct judgement judgements[SCHEMES] = {{.verdict = k < 3 ? CLAIM_UNDECIDED : CLAIM_HOLDS}, {CLAIM_FAILS, ""}};
-        snprintf(judgements[0].evidence, sizeof judgements[0].evidence, k == 1 ? "1 above 1: within the noise" : "");
-        verdicts_add(&verdicts, k, judgements);
+        struct evaluation evaluations[SCHEMES] = {{.verdict = k < 3 ? CLAIM_UNDECIDED : CLAIM_HOLDS},
+                                                  {CLAIM_FAILS, ""}};
+        snprintf(evaluations[0].evidence, sizeof evaluations[0].evidence, k == 1 ? "1 above 1: within the noise" : "");
+        verdicts_add(&verdicts, k, evaluations);
         by_scheme += claims.claims[k].by_scheme;
     }
     assert_int_equal(verdicts_write(path_of("verdicts.md"), "today", &verdicts), STATUS_OK);

@@ -153,8 +153,8 @@ static void nothing_is_said_without_measurements(void **state)
         if (claim_has(&claims, &claims.claims[k], "flops") /* from plans of full-size scenes, which take seconds */
             || claim_has(&claims, &claims.claims[k], "planned(") || claim_has(&claims, &claims.claims[k], "filtered("))
             continue;
-        struct judgement found = claim_judge(&claims, &claims.claims[k], SCHEME_PRINTED, &measured);
-        bool formula = judge_identity(claims.claims[k].judge) && !claims.claims[k].phases;
+        struct evaluation found = claim_evaluate(&claims, &claims.claims[k], SCHEME_PRINTED, &measured);
+        bool formula = comparison_identity(claims.claims[k].comparison) && !claims.claims[k].phases;
         if ((found.verdict == CLAIM_UNDECIDED) == formula || !*found.evidence)
             fail_msg("%s: %s, %s", claims.claims[k].id, claim_verdict_names[found.verdict], found.evidence);
     }
@@ -244,7 +244,7 @@ static void every_line_can_be_measured(void **state)
     assert_int_equal(tables_evaluate(&measured, NULL, &lines, &count), STATUS_OK);
     assert_all_measured(&measured, lines, count);
     for (int k = 0; k < claims.count; k++) {
-        struct judgement found = claim_judge(&claims, &claims.claims[k], SCHEME_PRINTED, &measured);
+        struct evaluation found = claim_evaluate(&claims, &claims.claims[k], SCHEME_PRINTED, &measured);
         if (strstr(found.evidence, "was not measured") || strstr(found.evidence, "is undefined"))
             fail_msg("%s: %s", claims.claims[k].id, found.evidence);
         assert_true(strlen(found.evidence) < sizeof found.evidence - 1); /* nothing was cut off */
@@ -254,7 +254,7 @@ static void every_line_can_be_measured(void **state)
     measured_free(&measured);
 }
 
-/* Times of a part are scaled stage by stage, and judged by the paper's ratio with a margin for noise. */
+/* Times of a part are scaled stage by stage, and evaluated by the paper's ratio with a margin for noise. */
 static void times_are_scaled(void **state)
 {
     (void)state;
@@ -363,7 +363,7 @@ static void unknown_table_is_refused(void **state)
     assert_int_not_equal(access(results, F_OK), 0);
 }
 
-/* Times that were measured on a busy machine stay noisy when they are judged again on a quiet one. */
+/* Times that were measured on a busy machine stay noisy when they are evaluated again on a quiet one. */
 static void load_is_kept(void **state)
 {
     (void)state;

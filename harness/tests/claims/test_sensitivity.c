@@ -98,7 +98,7 @@ static void flips_are_marked(void **state)
 {
     (void)state;
     static const struct {
-        const char *judge, *arguments;
+        const char *comparison, *arguments;
         int asked; /* nominal; two sound speeds; three beams; half a bin */
         const char *row;
     } cases[] = {
@@ -116,7 +116,7 @@ static void flips_are_marked(void **state)
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         struct claims claims;
         char text[4000];
-        assert_int_equal(planted_claim(cases[k].judge, cases[k].arguments, &claims), STATUS_OK);
+        assert_int_equal(planted_claim(cases[k].comparison, cases[k].arguments, &claims), STATUS_OK);
         asked = 0;
         assert_int_equal(sensitivity_study(folder, &claims, plant), STATUS_OK);
         FILE *file = fopen(path_of("sensitivity.md"), "r");

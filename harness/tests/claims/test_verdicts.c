@@ -195,7 +195,7 @@ static void claim_plant(const struct claims *claims, const struct claim *claim)
     }
 }
 
-/* Sizes and energies as they are, which the first judgement works out, or drawn. */
+/* Sizes and energies as they are, which the first evaluation works out, or drawn. */
 static void scene_numbers_draw(struct measured *measured)
 {
     static double as_they_are[sizeof measured->numbers / sizeof *measured->numbers];
@@ -311,7 +311,7 @@ static void each_verdict_can_flip(void **state)
         struct measured measured;
         bool seen[CLAIM_VERDICTS] = {false}, refuted = strcmp(claim->id, only_refuted) == 0;
         int draws = 0;
-        if (!judge_decides(claim->judge) || judge_identity(claim->judge))
+        if (!comparison_decides(claim->comparison) || comparison_identity(claim->comparison))
             continue;
         generator = random_seed(1, (uint64_t)k);
         claim_plant(&claims, claim);
@@ -323,12 +323,12 @@ static void each_verdict_can_flip(void **state)
                 phases_draw(&measured);
             if (claim->rules)
                 rules_draw(&measured);
-            seen[claim_judge(&claims, claim, SCHEME_PRINTED, &measured).verdict] = true;
+            seen[claim_evaluate(&claims, claim, SCHEME_PRINTED, &measured).verdict] = true;
             both = seen[CLAIM_FAILS] && (refuted ? seen[CLAIM_UNDECIDED] : seen[CLAIM_HOLDS] || seen[CLAIM_ASSUMED]);
         }
         if (draws == DRAWS_MAX)
             fail_msg("%s never %s; %s", claim->id, seen[CLAIM_FAILS] ? "holds" : "fails",
-                     claim_judge(&claims, claim, SCHEME_PRINTED, &measured).evidence);
+                     claim_evaluate(&claims, claim, SCHEME_PRINTED, &measured).evidence);
         planted_clear(&measured);
     }
     claims_free(&claims);
@@ -362,13 +362,13 @@ static void evidence_is_whole(void **state)
         if (claim->rules)
             rules_draw(&measured);
         for (enum scheme scheme = 0; scheme < (claim->by_scheme ? SCHEMES : 1); scheme++) {
-            const struct judgement found = claim_judge(&claims, claim, scheme, &measured);
+            const struct evaluation found = claim_evaluate(&claims, claim, scheme, &measured);
             char name[40];
             assert_true(strlen(found.evidence) < sizeof found.evidence - 1);
             snprintf(name, sizeof name, "%.*s", (int)strcspn(claim->arguments, "=;") % 38, claim->arguments);
             contains(claim, found.evidence, name);
             contains(claim, found.evidence, claim->criterion);
-            if (judge_decides(claim->judge))
+            if (comparison_decides(claim->comparison))
                 contains(claim, found.evidence,
                          strstr(found.evidence, ": yes")  ? "; criterion: "
                          : strstr(found.evidence, ": no") ? "; criterion: "

@@ -1,4 +1,4 @@
-/* Any bytes as claims.csv (read and judged without measurements), as published.csv, and as points of `phase --at`. */
+/* Any bytes as claims.csv (read and evaluated without measurements), as published.csv, and as points of `phase --at`. */
 #include <stdio.h>
 
 #include "claims/claims.h"
@@ -19,7 +19,7 @@ static void claims_try(const char *path)
     struct claims claims;
     if (claims_read(path, &claims) == STATUS_OK)
         for (int k = 0; k < claims.count; k++)
-            claim_judge(&claims, &claims.claims[k], SCHEME_PRINTED, &measured);
+            claim_evaluate(&claims, &claims.claims[k], SCHEME_PRINTED, &measured);
     else if (!*status_message())
         fuzz_fail("refused without a message");
     claims_free(&claims);

@@ -26,7 +26,7 @@ static void files_compare(const char *old, const char *new)
     struct diff diff;
     if (diff_results(old, new, &diff) == STATUS_OK) {
         diff_print(&diff, nowhere);
-        diff_judge(&diff);
+        diff_status(&diff);
         if (diff_markdown(&diff, "/dev/null") != STATUS_OK || diff_json(&diff, "/dev/null") != STATUS_OK)
             fuzz_fail("not written: %s", status_message());
     }

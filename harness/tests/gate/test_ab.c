@@ -57,7 +57,7 @@ static void verdicts_of_made_up_times(void **state)
         for (int trial = 0; trial < TRIALS; trial++) {
             struct ab_interval interval =
                 draw_interval(&random, cases[n].ratio, cases[n].noise_round, cases[n].noise_block, 1e-4);
-            counts[ab_interval_judge(&interval)]++;
+            counts[ab_interval_verdict(&interval)]++;
         }
         enum verdict verdict = cases[n].verdict;
         /* A slowdown of 10 % may also be but warned of, never denied. */
@@ -100,7 +100,7 @@ static void verdicts_at_the_stated_effects(void **state)
         {{0.2, 1, 4}, VERDICT_NOISY},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
-        assert_int_equal(ab_interval_judge(&cases[k].interval), cases[k].verdict);
+        assert_int_equal(ab_interval_verdict(&cases[k].interval), cases[k].verdict);
 }
 
 /* --- Programs ------------------------------------------------------------------------------------------------- */
@@ -175,7 +175,7 @@ static void slower_stages_are_told(void **state)
             fail_msg("case %zu: %s", n, status_message());
         const enum verdict verdicts[] = {cases[n].total, cases[n].compress, cases[n].focus};
         static const char *const parts[] = {"total", "compress", "focus"};
-        assert_int_equal(diff.finding_count, 3); /* clear is too small to be judged alone */
+        assert_int_equal(diff.finding_count, 3); /* clear is too small to be compared alone */
         for (int k = 0; k < 3; k++) {
             const struct finding *f = &diff.findings[k];
             assert_string_equal(f->detail, parts[k]);
@@ -183,7 +183,7 @@ static void slower_stages_are_told(void **state)
                 fail_msg("case %zu: %s is %s", n, parts[k], verdict_names[f->verdict]);
         }
         assert_true(fabs(diff.findings[0].before - 0.010) < 1e-9);
-        assert_int_equal(diff_judge(&diff), cases[n].status);
+        assert_int_equal(diff_status(&diff), cases[n].status);
         diff_free(&diff);
     }
 }
@@ -195,11 +195,11 @@ static void what_one_program_refuses_is_gone_or_new(void **state)
     struct diff diff;
     assert_int_equal(compare_scripts(GOOD, refusing, &diff), STATUS_OK);
     assert_int_equal(diff.counts[CLASS_TIME][VERDICT_GONE], 1);
-    assert_int_equal(diff_judge(&diff), STATUS_FAILED);
+    assert_int_equal(diff_status(&diff), STATUS_FAILED);
     diff_free(&diff);
     assert_int_equal(compare_scripts(refusing, GOOD, &diff), STATUS_OK);
     assert_int_equal(diff.counts[CLASS_TIME][VERDICT_NEW], 1);
-    assert_int_equal(diff_judge(&diff), STATUS_OK);
+    assert_int_equal(diff_status(&diff), STATUS_OK);
     diff_free(&diff);
     assert_int_equal(compare_scripts(refusing, refusing, &diff), STATUS_INVALID);
     assert_non_null(strstr(status_message(), "no such thing"));

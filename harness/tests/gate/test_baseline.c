@@ -29,7 +29,7 @@ static void check_baseline(const char *isa)
     assert_int_equal(baseline_write(path_of("new.csv")), STATUS_OK);
     unsetenv("SASBENCH_ISA");
     assert_int_equal(diff_results(BASELINE_PATH, path_of("new.csv"), &diff), STATUS_OK);
-    if (diff_judge(&diff) != STATUS_OK || diff.finding_count < 500) {
+    if (diff_status(&diff) != STATUS_OK || diff.finding_count < 500) {
         diff_print(&diff, stdout);
         fail_msg("%s code differs from results/baseline.csv (./sasbench baseline writes a new one, to be reviewed)",
                  isa);
@@ -154,7 +154,7 @@ static bool gate_passes(struct session *session, const char *spec_text, bool pla
     assert_int_equal(measurements_write(path_of("old.csv"), "healthy", NULL, 0, &healthy, 1), STATUS_OK);
     assert_int_equal(measurements_write(path_of("new.csv"), "faulty", NULL, 0, &row, 1), STATUS_OK);
     assert_int_equal(diff_results(path_of("old.csv"), path_of("new.csv"), &diff), STATUS_OK);
-    bool passes = diff_judge(&diff) == STATUS_OK;
+    bool passes = diff_status(&diff) == STATUS_OK;
     *metric = "";
     for (int k = diff.finding_count - 1; k >= 0; k--)
         if (diff.findings[k].verdict == VERDICT_WORSE)

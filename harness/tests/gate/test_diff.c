@@ -1,4 +1,4 @@
-/* Two results are compared as diff.h says: what is judged how, which rows and files belong together, how it is
+/* Two results are compared as diff.h says: what is compared how, which rows and files belong together, how it is
    shown. */
 #include <math.h>
 #include <stdio.h>
@@ -105,7 +105,7 @@ static const struct {
     {",0.1,1,0.9,5,2,", ",,,,,,", NULL, VERDICT_SAME}, /* a baseline has no times */
 };
 
-static void values_are_judged_by_the_metric_table(void **state)
+static void values_are_compared_by_the_metric_table(void **state)
 {
     (void)state;
     for (size_t k = 0; k < sizeof changes / sizeof *changes; k++) {
@@ -118,7 +118,7 @@ static void values_are_judged_by_the_metric_table(void **state)
                  at + strlen(changes[k].before));
         compare_texts(old, new, &diff);
         for (int n = 0; n < diff.note_count; n++)
-            if (strstr(diff.notes[n], "a row alone is judged"))
+            if (strstr(diff.notes[n], "a row alone is compared"))
                 assert_non_null(strstr(diff.notes[n], "beyond a factor of 2,"));
         const struct finding *changed = NULL;
         for (int n = diff.finding_count - 1; n >= 0; n--)
@@ -127,7 +127,7 @@ static void values_are_judged_by_the_metric_table(void **state)
         bool fails = changes[k].metric
                      && (changes[k].verdict == VERDICT_WORSE || changes[k].verdict == VERDICT_GONE
                          || changes[k].verdict == VERDICT_CHANGED);
-        if ((changed != NULL) != (changes[k].metric != NULL) || (diff_judge(&diff) != STATUS_OK) != fails
+        if ((changed != NULL) != (changes[k].metric != NULL) || (diff_status(&diff) != STATUS_OK) != fails
             || (changed && (strcmp(changed->metric, changes[k].metric) != 0 || changed->verdict != changes[k].verdict)))
             fail_msg("%s -> %s: %s %s", changes[k].before, changes[k].after, changed ? changed->metric : "",
                      changed ? verdict_names[changed->verdict] : "nothing");
@@ -149,7 +149,7 @@ static void many_betterments_are_a_change(void **state)
         }
         compare_texts(old, new, &diff);
         assert_int_equal(diff.counts[CLASS_QUALITY][rows == 5 ? VERDICT_CHANGED : VERDICT_BETTER], rows);
-        assert_int_equal(diff_judge(&diff), rows == 5 ? STATUS_FAILED : STATUS_OK);
+        assert_int_equal(diff_status(&diff), rows == 5 ? STATUS_FAILED : STATUS_OK);
         if (rows == 5)
             assert_non_null(strstr(status_message(), "0 worse, 0 gone, 5 changed for the better: where that is meant, "
                                                      "./sasbench baseline writes a new baseline"));
@@ -163,7 +163,7 @@ static void many_betterments_are_a_change(void **state)
             memcpy(strstr(old, "# scene s: 0123"), "# program: 0123", 15);
         compare_texts(old, HEAD "s,a,,float,2,,ok,,,,,,,,,,,,,1,,,,,,,,,,\n", &diff);
         assert_int_equal(find(&diff, "status")->verdict, VERDICT_CHANGED);
-        assert_int_equal(diff_judge(&diff), measured ? STATUS_OK : STATUS_FAILED);
+        assert_int_equal(diff_status(&diff), measured ? STATUS_OK : STATUS_FAILED);
         diff_free(&diff);
     }
 }
@@ -262,7 +262,7 @@ static void folders_are_compared_with_their_targets(void **state)
     diff_free(&diff);
 }
 
-/* What an image without targets is judged by. */
+/* What an image without targets is compared by. */
 static void sharpness_is_compared(void **state)
 {
     (void)state;
@@ -327,7 +327,7 @@ static void many_rows(void **state)
     assert_int_equal(diff_results(path_of("old.csv"), path_of("new.csv"), &diff), STATUS_OK);
     assert_int_equal(diff.finding_count, ROWS * 11);
     assert_int_equal(diff.counts[CLASS_QUALITY][VERDICT_WORSE], 1);
-    assert_int_equal(diff_judge(&diff), STATUS_FAILED);
+    assert_int_equal(diff_status(&diff), STATUS_FAILED);
     diff_free(&diff);
 }
 
@@ -417,7 +417,7 @@ static void names_are_shown_without_effect(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        IN_FOLDER(values_are_judged_by_the_metric_table),
+        IN_FOLDER(values_are_compared_by_the_metric_table),
         IN_FOLDER(many_betterments_are_a_change),
         IN_FOLDER(scenes_are_told_apart_whatever_they_are_called),
         IN_FOLDER(rounding_of_float_is_no_change_but_of_double),

@@ -139,7 +139,7 @@ static struct stability_verdict verdict_with(enum fault fault, const char *name,
     injected = fault;
     support_scene(name, &scene);
     assert_int_equal(trial_run(&scene, &spec, 1, TRIAL_MODES, &trial), STATUS_OK);
-    struct stability_verdict verdict = trial_judge(&trial, 0);
+    struct stability_verdict verdict = trial_verdict(&trial, 0);
     trial_close(&trial);
     scene_free(&scene);
     print_message("fault %2d, %-20s %s: D %.1f, error %.2g, spread %.2g %s\n", fault, name,
@@ -275,7 +275,7 @@ static void conditions_are_named(void **state)
         {"rma_lbf: something else (why)", "something else "},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
-        assert_string_equal(refusal_judge(cases[k].message).why, cases[k].name);
+        assert_string_equal(refusal_verdict(cases[k].message).why, cases[k].name);
 }
 
 static void mistakes_are_refused(void **state)

@@ -1,12 +1,12 @@
-/* The judges (judges.h). Each compares so that NaN disagrees. */
-#include "claims/judges.h"
+/* The comparisons (comparisons.h). Each compares so that NaN disagrees. */
+#include "claims/comparisons.h"
 #include "text/text_append.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-/* ---- comparisons: v[0] is what is judged, v[1] and v[2] are single numbers ---- */
+/* ---- comparisons: v[0] is what is evaluated, v[1] and v[2] are single numbers ---- */
 
 static bool above(const struct values *v)
 {
@@ -81,13 +81,13 @@ static bool not_clear(const struct values *v)
 
 /* ---- the table ---- */
 
-static const struct judge {
+static const struct comparison {
     const char *name;
     int count; /* of expressions; 0: a list of two numbers and more */
     bool (*agrees)(const struct values *v);
     const char *accepted, *words[2];      /* between the numbers of the evidence */
     bool (*open)(const struct values *v); /* does noise hide the answer? NULL: never */
-} judges[] = {
+} comparisons[] = {
     {"above", 2, above, "value, limit", {" above "}, NULL},
     {"below", 2, below, "value, limit", {" below "}, NULL},
     {"at_least", 2, at_least, "value, limit", {" at least "}, NULL},
@@ -99,38 +99,38 @@ static const struct judge {
     {"rising", 0, rising, "two and more values", {" < "}, NULL},
     {"falling", 0, falling, "two and more values", {" > "}, NULL},
 };
-enum { JUDGES = sizeof judges / sizeof *judges };
+enum { COMPARISONS = sizeof comparisons / sizeof *comparisons };
 
-static enum status judge_find(const struct formula *formula, const char *at, const char *name,
-                              const struct judge **judge)
+static enum status comparison_find(const struct formula *formula, const char *at, const char *name,
+                                   const struct comparison **comparison)
 {
-    char known[400] = "";
-    for (int k = 0; k < JUDGES; k++) {
-        *judge = &judges[k];
-        if (strcmp(judges[k].name, name) == 0)
+    char accepted[400] = "";
+    for (int k = 0; k < COMPARISONS; k++) {
+        *comparison = &comparisons[k];
+        if (strcmp(comparisons[k].name, name) == 0)
             return STATUS_OK;
-        text_append(known, sizeof known, "%s, ", judges[k].name);
+        text_append(accepted, sizeof accepted, "%s, ", comparisons[k].name);
     }
-    return formula_error(formula, at, "there is no such judge; %sundecided are accepted", known);
+    return formula_error(formula, at, "there is no such comparison; %sundecided are accepted", accepted);
 }
 
-/* The judge's expressions and the closing parenthesis. */
-static enum status judge_values(struct formula *formula, const struct judge *judge, struct values v[3])
+/* The comparison's expressions and the closing parenthesis. */
+static enum status comparison_values(struct formula *formula, const struct comparison *comparison, struct values v[3])
 {
-    if (!judge->count) {
+    if (!comparison->count) {
         const char *at = formula->at;
         enum status status = quantity_list_read(formula, v);
         return status != STATUS_OK || v->count > 1
                    ? status
-                   : formula_error(formula, at, "one value; %s(%s) is needed", judge->name, judge->accepted);
+                   : formula_error(formula, at, "one value; %s(%s) is needed", comparison->name, comparison->accepted);
     }
-    for (int k = 0; k < judge->count; k++) {
+    for (int k = 0; k < comparison->count; k++) {
         const char *at = formula->at;
         enum status status = quantity_read(formula, &v[k]);
         if (status == STATUS_OK && k && v[k].count > 1)
             status = formula_error(formula, at, "%d numbers; one is needed here", v[k].count);
-        if (status == STATUS_OK && !formula_take(formula, k < judge->count - 1 ? ',' : ')'))
-            status = formula_error(formula, formula->at, "%s(%s) is needed", judge->name, judge->accepted);
+        if (status == STATUS_OK && !formula_take(formula, k < comparison->count - 1 ? ',' : ')'))
+            status = formula_error(formula, formula->at, "%s(%s) is needed", comparison->name, comparison->accepted);
         if (status != STATUS_OK)
             return status;
     }
@@ -138,61 +138,61 @@ static enum status judge_values(struct formula *formula, const struct judge *jud
 }
 
 /* What is not finite decides nothing. */
-static void finite_check(const struct formula *formula, const struct judge *judge, const struct values *v)
+static void finite_check(const struct formula *formula, const struct comparison *comparison, const struct values *v)
 {
-    for (int k = 0; k < (judge->count ? judge->count : 1); k++)
+    for (int k = 0; k < (comparison->count ? comparison->count : 1); k++)
         for (int n = 0; n < v[k].count; n++)
             if (formula->measured && !isfinite(v[k].at[n]))
-                measured_missing(formula->measured, "%s judges a number that is not finite", judge->name);
+                measured_missing(formula->measured, "%s compares a number that is not finite", comparison->name);
 }
 
-/* What a part says: no if one judge says no, else open if noise hides what one of them says. */
+/* What a part says: no if one comparison says no, else open if noise hides what one of them says. */
 enum answer { ANSWER_NO, ANSWER_OPEN, ANSWER_YES };
 
 /* One call; its numbers and its answer go into `text`. */
-static enum status judge_read(struct formula *formula, enum answer *answer, char *text, size_t size)
+static enum status comparison_read(struct formula *formula, enum answer *answer, char *text, size_t size)
 {
     static const char *const words[] = {[ANSWER_NO] = "no", [ANSWER_OPEN] = "within the noise", [ANSWER_YES] = "yes"};
     char name[40];
-    const struct judge *judge;
+    const struct comparison *comparison;
     struct values v[3];
     formula_blanks(formula);
     const char *at = formula->at;
     formula_word(formula, name, sizeof name);
-    enum status status = judge_find(formula, at, name, &judge);
+    enum status status = comparison_find(formula, at, name, &comparison);
     if (status == STATUS_OK && !formula_take(formula, '('))
-        status = formula_error(formula, at, "%s(%s) is needed", judge->name, judge->accepted);
+        status = formula_error(formula, at, "%s(%s) is needed", comparison->name, comparison->accepted);
     if (status == STATUS_OK)
-        status = judge_values(formula, judge, v);
+        status = comparison_values(formula, comparison, v);
     if (status != STATUS_OK)
         return status;
-    for (int k = 0; k < (judge->count ? judge->count : 1); k++)
-        if (v[k].timed && !judge->open)
+    for (int k = 0; k < (comparison->count ? comparison->count : 1); k++)
+        if (v[k].timed && !comparison->open)
             return formula_error(formula, at,
                                  "%s compares a time, which noise moves; clearly_above and clearly_below are accepted",
-                                 judge->name);
-    finite_check(formula, judge, v);
-    *answer = judge->agrees(v) ? ANSWER_YES : judge->open && judge->open(v) ? ANSWER_OPEN : ANSWER_NO;
-    if (judge->count)
+                                 comparison->name);
+    finite_check(formula, comparison, v);
+    *answer = comparison->agrees(v) ? ANSWER_YES : comparison->open && comparison->open(v) ? ANSWER_OPEN : ANSWER_NO;
+    if (comparison->count)
         values_append(text, size, v);
-    for (int k = 1; k < judge->count; k++) {
-        text_append(text, size, "%s", judge->words[k - 1]);
+    for (int k = 1; k < comparison->count; k++) {
+        text_append(text, size, "%s", comparison->words[k - 1]);
         values_append(text, size, &v[k]);
     }
-    for (int k = 0; k < v->count && !judge->count; k++)
-        text_append(text, size, "%s%.4g", k ? judge->words[0] : "", v->at[k]);
+    for (int k = 0; k < v->count && !comparison->count; k++)
+        text_append(text, size, "%s%.4g", k ? comparison->words[0] : "", v->at[k]);
     text_append(text, size, ": %s", words[*answer]);
     return STATUS_OK;
 }
 
-/* Judges joined by `and`; *word is what stands behind them. */
+/* Comparisons joined by `and`; *word is what stands behind them. */
 static enum status part_read(struct formula *formula, enum answer *answer, char word[40], char *text, size_t size)
 {
     *answer = ANSWER_YES;
     do {
         enum answer one = ANSWER_NO;
         text_append(text, size, "; ");
-        enum status status = judge_read(formula, &one, text, size);
+        enum status status = comparison_read(formula, &one, text, size);
         if (status != STATUS_OK)
             return status;
         *answer = one < *answer ? one : *answer;
@@ -205,47 +205,48 @@ static enum status part_read(struct formula *formula, enum answer *answer, char 
     return STATUS_OK;
 }
 
-bool judge_decides(const char *text)
+bool comparison_decides(const char *text)
 {
     return strcmp(text, "undecided") != 0;
 }
 
-bool judge_identity(const char *text)
+bool comparison_identity(const char *text)
 {
     return strncmp(text, "identity ", 9) == 0;
 }
 
-enum status judges_read(struct formula *formula, const char *column, const char *text, struct judgement *judgement)
+enum status comparisons_read(struct formula *formula, const char *column, const char *text,
+                             struct evaluation *evaluation)
 {
     char word[40];
     bool strict = true, decided = false;
     formula_begin(formula, column, text);
-    if (!judge_decides(text)) {
-        judgement->verdict = CLAIM_UNDECIDED;
+    if (!comparison_decides(text)) {
+        evaluation->verdict = CLAIM_UNDECIDED;
         return STATUS_OK;
     }
-    enum claim_verdict verdict = judge_identity(text) ? CLAIM_IDENTITY : CLAIM_HOLDS;
-    judgement->verdict = CLAIM_FAILS;
-    if (judge_identity(text))
+    enum claim_verdict verdict = comparison_identity(text) ? CLAIM_IDENTITY : CLAIM_HOLDS;
+    evaluation->verdict = CLAIM_FAILS;
+    if (comparison_identity(text))
         formula->at += 9;
     if (strncmp(formula->at, "else ", 5) == 0) {
         formula->at += 5;
         strict = false;
     }
     do {
-        char checks[sizeof judgement->evidence] = "";
+        char checks[sizeof evaluation->evidence] = "";
         enum answer answer;
         enum status status = part_read(formula, &answer, word, checks, sizeof checks);
         if (status != STATUS_OK)
             return status;
-        if (judge_identity(text) && *word)
+        if (comparison_identity(text) && *word)
             return formula_error(formula, text, "an identity has no else; `and` is accepted");
         if (!decided)
-            text_append(judgement->evidence, sizeof judgement->evidence, "%s", checks);
+            text_append(evaluation->evidence, sizeof evaluation->evidence, "%s", checks);
         if (!decided && answer == ANSWER_YES)
-            judgement->verdict = strict ? verdict : CLAIM_ASSUMED;
+            evaluation->verdict = strict ? verdict : CLAIM_ASSUMED;
         else if (!decided && answer == ANSWER_OPEN)
-            judgement->verdict = CLAIM_UNDECIDED;
+            evaluation->verdict = CLAIM_UNDECIDED;
         decided = decided || answer == ANSWER_YES;
         strict = false;
     } while (*word);

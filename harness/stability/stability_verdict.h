@@ -10,8 +10,8 @@
    kappa_phase = 2 pi (fc + fs/2) tau_max, kappa_place = 2 pi fc 2 |x|_max/c for coordinates far from the origin;
    declared is what the engine changes on purpose (method.h); eps64 = 2^-53, eps_T = 2^-24 in float. Careful code has D
    below 1, a fault stands out. */
-#ifndef SASBENCH_STABILITY_JUDGE_H
-#define SASBENCH_STABILITY_JUDGE_H
+#ifndef SASBENCH_STABILITY_STABILITY_VERDICT_H
+#define SASBENCH_STABILITY_STABILITY_VERDICT_H
 
 #include "stability/trial.h"
 
@@ -32,9 +32,9 @@ struct stability_verdict {
     int exceptions; /* raised in any mode */
 };
 
-struct stability_verdict trial_judge(const struct trial *trial, int spec);
+struct stability_verdict trial_verdict(const struct trial *trial, int spec);
 /* Of a scene that is not read at all, by its message. */
-struct stability_verdict refusal_judge(const char *message);
+struct stability_verdict refusal_verdict(const char *message);
 
 /* "works", "degrades", "refused: lbf_law", "fails: digits". */
 void verdict_text(const struct stability_verdict *verdict, char *text, size_t size);

@@ -1,4 +1,4 @@
-/* The language of results/claims.csv: its arithmetic, each judge on planted numbers, what is known of the rules. */
+/* The language of results/claims.csv: its arithmetic, each comparison on planted numbers, what is known of the rules. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -29,14 +29,14 @@ static void numbers_plant(double a, double b, const double islr_db[3], struct me
 #define LANGUAGE_A "a = error(bp22/speckle, bp_nearest); b = error(bp22/speckle, bp_linear:beta=8)"
 #define LANGUAGE_V "v = target_islr_db(bp22/many, bp_nearest, pixel, 1..3)"
 
-static struct judgement judge(const char *cell, const char *arguments, struct measured *measured)
+static struct evaluation comparison(const char *cell, const char *arguments, struct measured *measured)
 {
     struct claims claims;
     if (planted_claim(cell, arguments, &claims) != STATUS_OK)
         fail_msg("%s", status_message());
-    struct judgement judgement = claim_judge(&claims, claims.claims, SCHEME_PRINTED, measured);
+    struct evaluation evaluation = claim_evaluate(&claims, claims.claims, SCHEME_PRINTED, measured);
     claims_free(&claims);
-    return judgement;
+    return evaluation;
 }
 
 static void arithmetic_is_right(void **state)
@@ -86,20 +86,20 @@ static void arithmetic_is_right(void **state)
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         char cell[300];
         snprintf(cell, sizeof cell, "within(%s, %.15g, 1e-12)", cases[k].expression, cases[k].value);
-        struct judgement judgement = judge(cell, LANGUAGE_A "; " LANGUAGE_V, &measured);
-        if (judgement.verdict != CLAIM_HOLDS)
-            fail_msg("%s: %s", cell, judgement.evidence);
+        struct evaluation evaluation = comparison(cell, LANGUAGE_A "; " LANGUAGE_V, &measured);
+        if (evaluation.verdict != CLAIM_HOLDS)
+            fail_msg("%s: %s", cell, evaluation.evidence);
     }
     planted_clear(&measured);
 }
 
-/* Each judge both ways, at its edge, and on what is not a number. */
-static void judges_compare(void **state)
+/* Each comparison both ways, at its edge, and on what is not a number. */
+static void numbers_are_compared(void **state)
 {
     (void)state;
     const enum claim_verdict yes = CLAIM_HOLDS, no = CLAIM_FAILS;
     const struct {
-        const char *judge;
+        const char *comparison;
         double a, b;
         enum claim_verdict verdict;
     } cases[] = {
@@ -135,22 +135,22 @@ static void judges_compare(void **state)
         for (int hole = 0; hole < 2; hole++) {
             struct measured measured;
             numbers_plant(hole ? NAN : cases[k].a, cases[k].b, (double[]){1, 2, 3}, &measured);
-            struct judgement judgement = judge(cases[k].judge, LANGUAGE_A, &measured);
-            if (judgement.verdict != (hole ? CLAIM_UNDECIDED : cases[k].verdict))
-                fail_msg("%s of %g and %g: %s; %s", cases[k].judge, hole ? NAN : cases[k].a, cases[k].b,
-                         claim_verdict_names[judgement.verdict], judgement.evidence);
+            struct evaluation evaluation = comparison(cases[k].comparison, LANGUAGE_A, &measured);
+            if (evaluation.verdict != (hole ? CLAIM_UNDECIDED : cases[k].verdict))
+                fail_msg("%s of %g and %g: %s; %s", cases[k].comparison, hole ? NAN : cases[k].a, cases[k].b,
+                         claim_verdict_names[evaluation.verdict], evaluation.evidence);
             if (hole)
-                assert_non_null(strstr(judgement.evidence, "error is undefined"));
+                assert_non_null(strstr(evaluation.evidence, "error is undefined"));
             planted_clear(&measured);
         }
 }
 
 /* Of a list, every element has to agree. */
-static void judges_compare_lists(void **state)
+static void lists_are_compared(void **state)
 {
     (void)state;
     static const struct {
-        const char *judge;
+        const char *comparison;
         double v[3];
         enum claim_verdict verdict;
     } cases[] = {
@@ -193,20 +193,20 @@ static void judges_compare_lists(void **state)
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         struct measured measured;
         numbers_plant(1, 1, cases[k].v, &measured);
-        struct judgement judgement = judge(cases[k].judge, LANGUAGE_V, &measured);
-        if (judgement.verdict != cases[k].verdict)
-            fail_msg("%s, case %zu: %s; %s", cases[k].judge, k, claim_verdict_names[judgement.verdict],
-                     judgement.evidence);
+        struct evaluation evaluation = comparison(cases[k].comparison, LANGUAGE_V, &measured);
+        if (evaluation.verdict != cases[k].verdict)
+            fail_msg("%s, case %zu: %s; %s", cases[k].comparison, k, claim_verdict_names[evaluation.verdict],
+                     evaluation.evidence);
         planted_clear(&measured);
     }
 }
 
 /* `and` needs both, `else` is for the assumption, a cell that begins with it has no other way. */
-static void judges_are_joined(void **state)
+static void comparisons_are_joined(void **state)
 {
     (void)state;
     static const struct {
-        const char *judge;
+        const char *comparison;
         enum claim_verdict verdict;
     } cases[] = {
         {"above(a, 0) and above(b, 0)", CLAIM_HOLDS},
@@ -227,20 +227,21 @@ static void judges_are_joined(void **state)
     struct measured measured;
     numbers_plant(3, 2, (double[]){1, 2, 3}, &measured);
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        struct judgement judgement = judge(cases[k].judge, LANGUAGE_A, &measured);
-        if (judgement.verdict != cases[k].verdict)
-            fail_msg("%s: %s", cases[k].judge, claim_verdict_names[judgement.verdict]);
+        struct evaluation evaluation = comparison(cases[k].comparison, LANGUAGE_A, &measured);
+        if (evaluation.verdict != cases[k].verdict)
+            fail_msg("%s: %s", cases[k].comparison, claim_verdict_names[evaluation.verdict]);
     }
-    assert_int_equal(judge("identity above(3, 0)", "x = 1", &measured).verdict, CLAIM_IDENTITY);
-    assert_int_equal(judge("identity else above(3, 0)", "x = 1", &measured).verdict, CLAIM_ASSUMED);
-    assert_int_equal(judge("identity else above(3, 9)", "x = 1", &measured).verdict, CLAIM_FAILS);
+    assert_int_equal(comparison("identity above(3, 0)", "x = 1", &measured).verdict, CLAIM_IDENTITY);
+    assert_int_equal(comparison("identity else above(3, 0)", "x = 1", &measured).verdict, CLAIM_ASSUMED);
+    assert_int_equal(comparison("identity else above(3, 9)", "x = 1", &measured).verdict, CLAIM_FAILS);
     assert_string_equal(
-        judge("above(a, 9) else within(b, a, 0.5) else above(v, 0)", LANGUAGE_A "; " LANGUAGE_V, &measured).evidence,
+        comparison("above(a, 9) else within(b, a, 0.5) else above(v, 0)", LANGUAGE_A "; " LANGUAGE_V, &measured)
+            .evidence,
         "a = 3, b = 2, v = 1 to 3 (median 2); criterion: a criterion; 3 above 9: no; 2 from 3 by at "
         "most 0.5: no; 1 to 3 above 0: yes; settings: bp_nearest, bp_linear:beta=8; scenes: bp22/speckle (c "
         "1500 m/s, beam rect cut by the middle angle at 0.405), bp22/many (c 1500 m/s, beam rect cut by the "
         "middle angle at 0.405); azimuth slices: pixel");
-    assert_non_null(strstr(judge("undecided", LANGUAGE_A, &measured).evidence,
+    assert_non_null(strstr(comparison("undecided", LANGUAGE_A, &measured).evidence,
                            "a = 3, b = 2; no criterion: a criterion; settings: "));
     planted_clear(&measured);
 }
@@ -275,8 +276,8 @@ static void rules_are_counted(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        IN_FOLDER(arithmetic_is_right), IN_FOLDER(judges_compare),    IN_FOLDER(judges_compare_lists),
-        IN_FOLDER(judges_are_joined),   IN_FOLDER(rules_are_counted),
+        IN_FOLDER(arithmetic_is_right),    IN_FOLDER(numbers_are_compared), IN_FOLDER(lists_are_compared),
+        IN_FOLDER(comparisons_are_joined), IN_FOLDER(rules_are_counted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* Verdicts (judge.h). Norms are in long double, which neither overflows nor underflows on what double holds. */
-#include "stability/judge.h"
+/* Verdicts (stability_verdict.h). Norms are in long double, which neither overflows nor underflows on what double holds. */
+#include "stability/stability_verdict.h"
 
 #include <fenv.h>
 #include <math.h>
@@ -75,7 +75,7 @@ static double phase_rounding(const struct scene *scene)
     return 2 * M_PI * 0x1p-53 * ((a->fc + a->fs / 2) * delay + a->fc * 2 * place / a->sound_speed);
 }
 
-/* The conditioning over one patch, relative to the image's norm (judge.h). */
+/* The conditioning over one patch, relative to the image's norm (stability_verdict.h). */
 static long double conditioning_of(const struct exact_sum *sums, size_t first, size_t end, double phase, double epsilon)
 {
     long double sum = 0.0L, norm = norm_of((struct view){.sums = sums}, (struct view){0}, first, end);
@@ -120,7 +120,7 @@ static int double_of(const struct trial *trial, int spec)
 
 /* Against the method's own sum where there is one. Otherwise float is compared with double of the same mode, and double
    with itself in the usual mode. */
-static void digits_judge(const struct trial *trial, int spec, const struct method *method,
+static void digits_check(const struct trial *trial, int spec, const struct method *method,
                          struct stability_verdict *verdict)
 {
     const bool is_float = trial->specs[spec].precision == PRECISION_FLOAT;
@@ -152,7 +152,7 @@ static void __attribute__((format(printf, 2, 3))) fail(struct stability_verdict 
 }
 
 /* What the image must be whatever its error. */
-static void flaws_judge(struct stability_verdict *verdict)
+static void flaws_check(struct stability_verdict *verdict)
 {
     const struct {
         int flag;
@@ -193,7 +193,7 @@ static void name_find(const char *message, char *name, size_t size)
     snprintf(name, size, "%.60s", message);
 }
 
-struct stability_verdict refusal_judge(const char *message)
+struct stability_verdict refusal_verdict(const char *message)
 {
     struct stability_verdict verdict = {.kind = VERDICT_REFUSED,
                                         .error = NAN,
@@ -210,13 +210,13 @@ struct stability_verdict refusal_judge(const char *message)
 }
 
 /* The same status in all modes, or why not; true when there are images. */
-static bool statuses_judge(const struct trial *trial, int spec, struct stability_verdict *verdict)
+static bool statuses_check(const struct trial *trial, int spec, struct stability_verdict *verdict)
 {
     const struct attempt *usual = trial_attempt(trial, 0, spec);
     for (int mode = 0; mode < trial->mode_count; mode++) {
         const struct attempt *attempt = trial_attempt(trial, mode, spec);
         if (attempt->status == STATUS_FAILED || attempt->status != usual->status) {
-            *verdict = refusal_judge(attempt->message);
+            *verdict = refusal_verdict(attempt->message);
             verdict->finite = !strstr(attempt->message, "finite");
             fail(verdict, "%s, mode %s",
                  attempt->is_stopped                ? "signal"
@@ -228,7 +228,7 @@ static bool statuses_judge(const struct trial *trial, int spec, struct stability
         }
     }
     if (usual->status != STATUS_OK)
-        *verdict = refusal_judge(usual->message);
+        *verdict = refusal_verdict(usual->message);
     return usual->status == STATUS_OK;
 }
 
@@ -260,10 +260,10 @@ static struct view ideal_of(const struct trial *trial)
     return (struct view){0};
 }
 
-struct stability_verdict trial_judge(const struct trial *trial, int spec)
+struct stability_verdict trial_verdict(const struct trial *trial, int spec)
 {
     struct stability_verdict verdict;
-    if (!statuses_judge(trial, spec, &verdict))
+    if (!statuses_check(trial, spec, &verdict))
         return verdict;
     const struct attempt *usual = trial_attempt(trial, 0, spec);
     const struct problem problem = scene_problem(trial->scene, trial->specs[spec].precision);
@@ -286,10 +286,10 @@ struct stability_verdict trial_judge(const struct trial *trial, int spec)
         if (ideal.sums || ideal.pixels)
             verdict.error = worse(verdict.error, relative(trial->scene, image, ideal));
     }
-    digits_judge(trial, spec, &method, &verdict);
+    digits_check(trial, spec, &method, &verdict);
     if (method.reading.kind == EXACT_BAND && verdict.conditioning > 0)
         verdict.error_most += pow(10, DIGITS_MOST) * verdict.conditioning; /* what is exact errs by rounding alone */
-    flaws_judge(&verdict);
+    flaws_check(&verdict);
     verdict.error_most += ties_of(trial);
     if (verdict.error > fmax(0.5, verdict.error_most))
         fail(&verdict, "error");
