@@ -56,12 +56,10 @@ static enum status spec_check(struct formula *formula, struct call *call, int k)
     char message[400], text[sizeof call->text[0]];
     formula->by_scheme |= scheme_spec(formula->scheme, call->text[k], text, sizeof text);
     strcpy(call->text[k], text);
-    if (spec_parse(call->text[k], &spec) == STATUS_OK) {
-        spec_free(&spec);
-        return STATUS_OK;
-    }
-    snprintf(message, sizeof message, "%s", status_message());
-    return formula_error(formula, call->at[k], "%s", message);
+    const enum status status = spec_parse(call->text[k], &spec);
+    snprintf(message, sizeof message, "%s", status == STATUS_OK ? "" : status_message());
+    spec_free(&spec); /* zeroed where it was refused */
+    return status == STATUS_OK ? STATUS_OK : formula_error(formula, call->at[k], "%s", message);
 }
 
 /* Is the text one of the words, which NULL ends? */
@@ -261,8 +259,8 @@ static enum status phase(struct formula *formula, struct call *call, struct valu
     for (int k = 0; k < 15 && phase_formula(k); k++)
         formulas[k] = phase_formula(k);
     formula->by_scheme |= scheme_formula(formula->scheme, call->text[2], &meant);
-    memmove(call->text[2], meant, strlen(meant) + 1); /* may be the same text */
     formula->measures = formula->phases = true;
+    memmove(call->text[2], meant, strlen(meant) + 1); /* may be the same text */
     const enum status status = word_check(formula, call, 2, formulas);
     if (status != STATUS_OK)
         return status;
