@@ -32,57 +32,55 @@ struct command {
 };
 
 static const struct command commands[] = {
-    {"list", "", "the algorithms, with summary, reference and traits", "", 0, 0, command_list, false},
+    {"list", "", "list the algorithms, with summary, reference and traits", "", 0, 0, command_list, false},
     {"info", "(NAME | FILE.mat)",
-     "one algorithm's parameters, with default, bounds and sweep; or what an echo or image file holds, with a grid to "
-     "begin with",
+     "print an algorithm's parameters, with default, bounds and sweep; or the content of an echo or image file, with a "
+     "grid to begin with",
      "", 1, 1, command_info, false},
     {"check", "(SCENE | --echoes FILE.mat --grid GRID) [--algorithm SPEC ...] [--all]",
-     "the conditions of each algorithm on a scene, and its sensitivities, before any work; exit status 1 where an "
-     "algorithm is "
-     "refused",
+     "check, before any work, which algorithms can image a scene, and which conditions fail or are near their limit; "
+     "exit status 1 where an algorithm is refused",
      "aegL", 0, 1, command_check, false},
     {"plan", "(SCENE | --echoes FILE.mat --grid GRID) [--error E] [--memory BYTES] [-o FILE.csv] [--all]",
-     "the fastest algorithm and settings within an error budget, with predicted error, time and memory, and why others "
-     "are not; exit status 1 where nothing fits",
+     "choose the fastest algorithm and settings within an error, and print error, time, memory and the next of each "
+     "family; exit status 1 where nothing fits",
      "oegtEYL", 0, 1, command_plan, false},
-    {"scenes", "random --seed N [-o FILE.cfg]", "a scene drawn from a seed, of any band, array and range", "oS", 1, 1,
+    {"scenes", "random --seed N [-o FILE.cfg]", "draw a scene from a seed, of any band, array and range", "oS", 1, 1,
      command_scenes, false},
     {"simulate", "SCENE -o FILE.mat", "write a scene's echoes", "ot", 1, 1, command_simulate, false},
     {"image", "(--scene SCENE | --echoes FILE.mat --grid GRID) --algorithm SPEC -o (FILE.mat | FILE.png) [--range DB]",
      "form one image, as numbers or as a picture", "oseagtR", 0, 0, command_image, false},
-    {"show", "FILE.mat [-o FILE.png] [--range DB]", "a picture of an image file, beside it unless -o says where", "oR",
-     1, 1, command_show, false},
+    {"show", "FILE.mat [-o FILE.png] [--range DB]", "draw an image file; the picture is beside it, or at -o", "oR", 1,
+     1, command_show, false},
     {"filter", "(SCENE | --echoes FILE.mat) [--algorithm wk_polar:...] -o FILE.mat",
-     "take off the echoes from outside a scene's target area; what each target keeps, as a table", "oeat", 0, 1,
-     command_filter, false},
+     "remove the echoes from outside a target area, and print each target's kept energy", "oeat", 0, 1, command_filter,
+     false},
     {"run", "([SCENE ...] | --echoes FILE.mat --grid GRID) [--algorithm SPEC ...] [-o DIR] [--all] [--flops]",
-     "compare algorithms on scenes, or on recorded echoes; more than 100 images without --all with a line for each "
-     "scene",
-     "oategLF", 0, INT_MAX, command_run, true},
+     "compare algorithms on scenes, or on recorded echoes: the fastest for each of four errors", "oategLF", 0, INT_MAX,
+     command_run, true},
     {"compare",
      "(OLD NEW | --ab OLD_BINARY NEW_BINARY [SCENE ...] [--algorithm SPEC ...]) [--markdown FILE] [--json FILE]",
-     "what got worse between two results folders or CSV files; what got slower between two programs, run side by side",
+     "list what got worse between two results folders or CSV files, or slower between two programs, run side by side",
      "aBMJ", 2, INT_MAX, command_compare, false},
     {"measure", "", "the other end of `compare --ab`, which starts it", "", 0, 0, command_measure, false, true},
     {"baseline", "[-o FILE.csv]", "measure quality and work of the gate's scenes anew, into results/baseline.csv", "ot",
      0, 0, command_baseline, false},
-    {"reproduce", "[ID ...] [-o DIR]", "the papers' tables and claims beside ours", "ot", 0, INT_MAX, command_reproduce,
-     true},
+    {"reproduce", "[ID ...] [-o DIR]",
+     "measure the papers' tables, figures and claims again, beside the printed numbers", "ot", 0, INT_MAX,
+     command_reproduce, true},
     {"sweep",
      "([SCENE ...] | --echoes FILE.mat --grid GRID) [--algorithm SPEC ...] [--precision float|double] [-o DIR] [--all]",
-     "parameter sweep: error against run time, each algorithm over its settings", "oategPL", 0, INT_MAX, command_sweep,
-     true},
-    {"report", "DIR", "a results folder as one page: DIR/report.html, and DIR/report.md", "", 1, 1, command_report,
+     "measure error against run time, each algorithm over its settings", "oategPL", 0, INT_MAX, command_sweep, true},
+    {"report", "DIR", "make one page of a results folder: DIR/report.html, and DIR/report.md", "", 1, 1, command_report,
      false},
-    {"phase", "([SCENE] [-o DIR] | --at FILE.csv)", "phase errors of the two-dimensional spectra (LBF21 Figs 2-9)",
-     "oA", 0, 1, command_phase, false},
+    {"phase", "([SCENE] [-o DIR] | --at FILE.csv)",
+     "compute phase errors of the two-dimensional spectra (LBF21 Figs 2-9)", "oA", 0, 1, command_phase, false},
     {"stability", "[SCENE ...] [--algorithm SPEC ...] [-o DIR] [--quick]",
-     "extreme scenes in all rounding modes: verdicts and digits lost, against results/stability.csv", "oaQ", 0, INT_MAX,
-     command_stability, false},
+     "image extreme scenes in all rounding modes: verdicts and digits lost, against results/stability.csv", "oaQ", 0,
+     INT_MAX, command_stability, false},
     {"bench", "[SPEC ...] [-o DIR]",
-     "speed of the engines, or of algorithms by name, against the processor's peak and the scalar reference loop", "ot",
-     0, INT_MAX, command_bench, false},
+     "measure the speed of the engines, or of the SPECs, against the processor's peak and the scalar reference loop",
+     "ot", 0, INT_MAX, command_bench, false},
 };
 
 static const struct option long_options[] = {
@@ -102,21 +100,21 @@ static const struct {
     int letter;
     const char *text;
 } option_texts[] = {
-    {'o', "-o, --output PATH     where the result goes"},
+    {'o', "-o, --output PATH     file or folder of the result"},
     {'s', "-s, --scene SCENE     a path, or a name below scenes/ without .cfg"},
     {'e', "-e, --echoes FILE     recorded echoes in MATLAB format"},
     {'a', "-a, --algorithm SPEC  NAME or NAME:key=value,...; all take precision=double"},
     {'g', "-g, --grid GRID       xmin:xstep:xcount,rmin:rstep:rcount[,angle] (m, degrees)"},
     {'t', "-t, --threads N       OpenMP threads, 1 to 1024"},
-    {'R', "    --range DB        what a picture shows below its peak, 60 dB unless given"},
-    {'P', "    --precision WHICH float or double; both unless given, or a SPEC says"},
+    {'R', "    --range DB        range of a picture below its peak, 60 dB unless given"},
+    {'P', "    --precision WHICH float or double; both unless given, or stated by a SPEC"},
     {'E', "    --error E         of the image after one gain (L2), 1e-3 unless given"},
-    {'Y', "    --memory BYTES    that the process of the image may take, 4G unless given (2GB, 512MiB)"},
+    {'Y', "    --memory BYTES    of the image's process, at most; 4G unless given (2GB, 512MiB)"},
     {'S', "    --seed N          a whole number from 0 to 1e15"},
     {'A', "    --at FILE.csv     points: columns d, r, F, f, fc, v, c"},
     {'B', "    --ab              run two programs side by side and compare their times"},
     {'Q', "    --quick           one scene of each family, in two rounding modes"},
-    {'L', "    --all             every line, and not the answer alone"},
+    {'L', "    --all             print every line, not the answer alone"},
     {'F', "    --flops           count FLOPs by the papers' formulas as well"},
     {'M', "    --markdown FILE   the findings as a comment for a CI"},
     {'J', "    --json FILE       the findings for trackers of benchmarks"},
@@ -137,9 +135,9 @@ static void help(void)
         table_text(stdout, 8, commands[k].summary);
     }
     printf("  test [--all]\n        verify this build in two minutes, or by every test (of the ./sasbench script)\n  "
-           "help COMMAND, COMMAND --help\n        one "
-           "command with its options\n  help columns\n        what the columns of a table mean\n  --version\n        "
-           "version, commit, compiler, libraries, instruction "
+           "help COMMAND, COMMAND --help\n        show one "
+           "command with its options\n  help columns\n        explain the columns of a table\n  --version\n        "
+           "print version, commit, compiler, libraries, instruction "
            "set\n\nOptions:\n");
     for (size_t k = 0; k < sizeof option_texts / sizeof *option_texts; k++)
         printf("  %s\n", option_texts[k].text);
