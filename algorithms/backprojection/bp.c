@@ -6,7 +6,6 @@
 #include "backprojection/bp_engine.h"
 #include "backprojection/budget.h"
 #include "backprojection/kernel.h"
-#include "backprojection/few_pixels.h"
 #include "backprojection/law.h"
 #include "backprojection/pairs/omission.h"
 #include "backprojection/pairs/pairs.h"
@@ -348,10 +347,8 @@ static void forecast_records(struct bp *bp, const struct interpolator *in, struc
 static double error_between_samples(const struct problem *problem, const struct interpolator *in, const void *options)
 {
     struct law_spectrum spectrum;
-    if (problem->few)
-        return few_pixels_error(problem->few, in, options);
     return law_spectrum(problem->acquisition, image_cells(problem), &spectrum)
-               ? interpolation_error(in, options, &spectrum, problem->scatter)
+               ? interpolation_error(in, options, &spectrum)
                : NAN;
 }
 

@@ -9,85 +9,44 @@
 #include "contract/delay.h"
 #include "common/turns.h"
 
-enum { FRACTIONS = 256, IN_A_STEP = 8, LOW = 4, HARMONICS = LOW + 2 };
+enum { FRACTIONS = 32, IN_A_STEP = 4 };
 
-/* Of one frequency: the Fourier coefficients of H - 1 over the fractions. */
-struct harmonics {
-    double complex mean;                /* of order 0 */
-    double complex first[HARMONICS][2]; /* of some orders, of either sign */
-    double spread;                      /* the mean of |H - 1|^2 */
+/* Of one frequency, over the fractions: of H - 1. */
+struct moments {
+    double complex mean;
+    double squares;
 };
 
-/* The orders that scatter most: the first, and those of the steps between samples. */
-static void orders_fill(int steps, int orders[HARMONICS])
-{
-    for (int k = 0; k < HARMONICS; k++)
-        orders[k] = k < LOW || steps <= LOW ? k + 1 : (k - LOW + 1) * steps;
-}
-
-/* The energy that is scattered over fractions, but for what falls outside of the image. */
-static double scattered(const struct harmonics *h, const int orders[HARMONICS], int upsample,
-                        const struct scatter *scatter)
-{
-    const double all = fmax(h->spread - square(h->mean), 0);
-    if (!scatter)
-        return all;
-    double rest = all, inside = 0;
-    for (int k = 0; k < HARMONICS; k++) {
-        const double energy = square(h->first[k][0]) + square(h->first[k][1]);
-        inside += energy * scatter_share(scatter, orders[k] * upsample);
-        rest -= energy;
-    }
-    return inside + fmax(rest, 0) * scatter->most;
-}
-
-/* Adds a fraction of a frequency, one of `count`; waves NULL: the orders are not asked for. */
-static void harmonics_add(struct harmonics *h, double complex off, const double complex *waves, int count)
-{
-    h->mean += off / count;
-    h->spread += square(off) / count;
-    for (int k = 0; k < HARMONICS && waves; k++) {
-        h->first[k][0] += product(off, waves[k]) / count;
-        h->first[k][1] += product(off, conj(waves[k])) / count;
-    }
-}
-
-/* Of all frequencies. */
-static double harmonics_error(const struct harmonics *list, const struct law_spectrum *spectrum,
-                              const struct interpolator *in, const int orders[HARMONICS], const struct scatter *scatter)
+static double error_of(const struct moments *list, const struct law_spectrum *spectrum)
 {
     double mean = 0, variance = 0;
     for (int n = 0; n < spectrum->count; n++) {
         mean += spectrum->weight[n] * creal(list[n].mean);
         variance += spectrum->weight[n] * square(list[n].mean)
-                    + spectrum->scattered[n] * scattered(&list[n], orders, in->upsample, scatter);
+                    + spectrum->scattered[n] * fmax(list[n].squares - square(list[n].mean), 0);
     }
     variance -= mean * mean;
     return sqrt(fmax(variance, 0) / ((1 + mean) * (1 + mean) + variance)); /* <|H|^2> = |<H>|^2 + variance */
 }
 
-double interpolation_error(const struct interpolator *in, const void *options, const struct law_spectrum *spectrum,
-                           const struct scatter *scatter)
+double interpolation_error(const struct interpolator *in, const void *options, const struct law_spectrum *spectrum)
 {
-    struct harmonics list[LAW_NODES] = {{0}};
+    struct moments list[LAW_NODES] = {{0}};
     struct response response;
-    int orders[HARMONICS];
     const int steps = in->steps, rounded = steps > 0 ? IN_A_STEP * steps : 0;
     const int count = rounded > FRACTIONS ? rounded : steps > 0 ? FRACTIONS / steps * steps : FRACTIONS;
     if (!response_begin(in, options, spectrum, &response))
         return NAN;
-    orders_fill(steps, orders);
     for (int k = 0; k < count; k++) {
-        const double fraction = (k + 0.5) / count;
-        double complex read[LAW_NODES], waves[HARMONICS];
-        for (int m = 0; m < HARMONICS; m++)
-            waves[m] = cexp(-2 * I * M_PI * orders[m] * fraction);
-        response_at(&response, fraction, read);
-        for (int n = 0; n < spectrum->count; n++)
-            harmonics_add(&list[n], read[n] - 1, scatter ? waves : NULL, count);
+        double complex read[LAW_NODES];
+        response_at(&response, (k + 0.5) / count, read);
+        for (int n = 0; n < spectrum->count; n++) {
+            list[n].mean += (read[n] - 1) / count;
+            list[n].squares += square(read[n] - 1) / count;
+        }
     }
     response_end(&response);
-    return harmonics_error(list, spectrum, in, orders, scatter);
+    return error_of(list, spectrum);
 }
 
 /* A pulse sinc(B t) at d samples from a record's end is 1/(pi rho d), rho = B/fs, where the first tap reads zero, whose

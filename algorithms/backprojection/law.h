@@ -5,18 +5,16 @@
        E^2 = 1 - |<c_0>|^2 / <mean over delta of |H|^2>
 
    is the relative L2 error after one best complex gain. Part of what scatters may fall outside of an image: E is an
-   upper bound for a whole scene, and near it. Where that part is known (scatter.h), it is left out. */
+   upper bound for a whole scene, and near it. */
 #ifndef SASBENCH_BACKPROJECTION_LAW_H
 #define SASBENCH_BACKPROJECTION_LAW_H
 
 #include "backprojection/bp.h"
 #include "backprojection/law_spectrum.h"
-#include "backprojection/scatter.h"
 
-/* The error law; the interpolator's own upsampling divides the frequencies. scatter NULL: all that scatters counts. NAN
-   without memory. */
+/* The error law; the interpolator's own upsampling divides the frequencies. NAN without memory. */
 double interpolation_error(const struct interpolator *interpolator, const void *options,
-                           const struct law_spectrum *spectrum, const struct scatter *scatter);
+                           const struct law_spectrum *spectrum);
 
 /* The error by taps that read zero beyond the records' ends, relative L2 over an image of echoes that come from every
    pixel alike: 0 where no pixel lies within taps/2 samples of an end. */

@@ -8,11 +8,9 @@ double image_cells(const struct problem *problem)
 {
     const struct acquisition *a = problem->acquisition;
     const double cell = a->sound_speed / (4 * a->fc * fmin(condition_cut_sine(a), 1));
-    const struct grid *grids;
-    const int count = problem_judged(problem, &grids);
     double width = 0;
-    for (int k = 0; k < count; k++) {
-        const struct grid *g = &grids[k];
+    for (int k = 0; k < problem->patch_count; k++) {
+        const struct grid *g = &problem->patches[k];
         width = fmax(width, fabs(g->x_count * g->x_step * cos(g->angle_rad))
                                 + fabs(g->r_count * g->r_step * sin(g->angle_rad)));
     }

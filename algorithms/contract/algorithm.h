@@ -54,21 +54,9 @@ struct problem {
     int patch_count;            /* >= 1 */
     const struct grid *patches; /* [patch_count] */
     enum precision precision;   /* of samples, sums and pixels; geometry and phase are always double */
-    /* What is known beforehand: forecasts may go by it, and no image does. */
-    int target_count;              /* 0: echoes may come from anywhere */
-    const struct target *targets;  /* [target_count] that all echoes come from */
-    int judged_count;              /* 0: an error counts wherever it is */
-    const struct grid *judged;     /* [judged_count] parts of patches where errors count, about these targets */
-    const struct scatter *scatter; /* where errors of interpolation go (backprojection/scatter.h); NULL: unknown */
-    const struct few_pixels *few;  /* which carry them out (backprojection/few_pixels.h); NULL: unknown, or not few */
 };
-/* One of which nothing is known beforehand. */
 struct problem problem_make(const struct acquisition *acquisition, int patch_count, const struct grid *patches,
                             enum precision precision);
-/* The grids where errors count: returns how many. */
-int problem_judged(const struct problem *problem, const struct grid **grids);
-/* The greatest magnitude of the known targets' amplitudes; 0 without any. */
-double problem_amplitude_most(const struct problem *problem);
 
 /* The recorded samples, read only. */
 struct echoes {

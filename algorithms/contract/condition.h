@@ -58,10 +58,6 @@ enum { CONDITIONS_SCENE = 10 };
    records. All of them warn. Without patches: units and what is stated of the pings alone. */
 int conditions_scene(const struct problem *problem, struct condition list[CONDITIONS_SCENE]);
 
-/* STATUS_UNSUPPORTED where none of the problem's known targets lies in the image, within a resolution cell or pixel:
-   errors are then relative to what leaks into it, which no law tells. */
-enum status condition_targets_shown(const struct problem *problem);
-
 /* Of a straight track, `spacing` m from ping to ping: how much of the azimuth band is sampled; with several receivers,
    ghosts. */
 struct condition condition_doppler(const struct problem *problem, double spacing);

@@ -274,27 +274,3 @@ int conditions_scene(const struct problem *problem, struct condition list[CONDIT
         list[k] = all[k];
     return count;
 }
-
-static bool shows(const struct acquisition *a, const struct grid *g, const struct target *target)
-{
-    const struct vector place = grid_coordinates(g, target->x, target->r);
-    const double cell_r = fmax(g->r_step, a->sound_speed / (2 * a->bandwidth));
-    const double cell_x = fmax(g->x_step, a->sound_speed / (4 * a->fc * fmin(condition_seen_sine(a), 1)));
-    return place.x >= g->x_first - cell_x && place.x <= g->x_first + (g->x_count - 1) * g->x_step + cell_x
-           && place.y >= g->r_first - cell_r && place.y <= g->r_first + (g->r_count - 1) * g->r_step + cell_r;
-}
-
-enum status condition_targets_shown(const struct problem *problem)
-{
-    const struct grid *parts;
-    const int count = problem_judged(problem, &parts);
-    for (int n = 0; n < problem->target_count; n++)
-        for (int k = 0; k < count; k++)
-            if (shows(problem->acquisition, &parts[k], &problem->targets[n]))
-                return STATUS_OK;
-    return problem->target_count == 0
-               ? STATUS_OK
-               : status_set(STATUS_UNSUPPORTED,
-                            "condition targets_shown: none of the scene's targets lies in the image, and no law tells "
-                            "an error relative to what leaks into it (cure: a grid about a target)");
-}

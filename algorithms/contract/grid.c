@@ -35,20 +35,6 @@ struct problem problem_make(const struct acquisition *acquisition, int patch_cou
         .acquisition = acquisition, .patch_count = patch_count, .patches = patches, .precision = precision};
 }
 
-int problem_judged(const struct problem *problem, const struct grid **grids)
-{
-    *grids = problem->judged_count > 0 ? problem->judged : problem->patches;
-    return problem->judged_count > 0 ? problem->judged_count : problem->patch_count;
-}
-
-double problem_amplitude_most(const struct problem *problem)
-{
-    double most = 0;
-    for (int k = 0; k < problem->target_count; k++)
-        most = fmax(most, cabs(problem->targets[k].amplitude));
-    return most;
-}
-
 struct vector grid_point(const struct grid *grid, double i, double j)
 {
     double x = grid->x_first + j * grid->x_step, r = grid->r_first + i * grid->r_step;

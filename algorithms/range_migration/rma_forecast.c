@@ -9,7 +9,6 @@
 #include "common/image_spectrum.h"
 #include "common/kaiser.h"
 #include "common/pulse_band.h"
-#include "range_migration/azimuth.h"
 #include "range_migration/rma_engine.h"
 
 static const int stolt_taps[] = {0, 4, 6, 8, 12, 16}; /* of rma_stolt_names; 0: a direct sum */
@@ -26,15 +25,6 @@ static const double TAPERED =
     0.06; /* of that error, where ends that taper leave half the sampling rate out: measured */
 /* Rounding, relative L2: of the transforms. */
 static const double ROUNDING[] = {1e-6, 1e-13};
-
-/* The value of a condition by name; 0 where the list has none. */
-static double value_of(const char *name, const struct condition *list, int count)
-{
-    for (int k = 0; k < count; k++)
-        if (strcmp(list[k].name, name) == 0)
-            return list[k].value;
-    return 0;
-}
 
 /* What range migration keeps of the band. */
 struct band {
@@ -113,41 +103,6 @@ enum status rma_band_lost(const struct rma_view *view, double edge, double *lost
     return status;
 }
 
-enum status rma_forecast(const struct problem *problem, const struct rma_method *method,
-                         const struct rma_options *options, struct forecast *forecast)
-{
-    struct condition list[CONDITIONS_MAX];
-    const int count = rma_conditions(problem, method, list, CONDITIONS_MAX);
-    enum status status = rma_conditions_check(method, list, count);
-    if (status != STATUS_OK)
-        return status;
-    struct band band;
-    struct straight_track track;
-    acquisition_is_straight(problem->acquisition, &track);
-    const struct rma_view view = rma_view_of(problem, method, &track);
-    status = band_of(&view, 0, &band);
-    if (status != STATUS_OK)
-        return status;
-    *forecast = (struct forecast){.sums_pairs = false};
-    const double azimuth = azimuth_error(&view), bound = value_of("predicted_error", list, count);
-    const double taps = method->terms > 0 && view.converts ? delay_taps_expected(&view, method->taps, band.half) : 0;
-    if (isnan(azimuth) || isnan(taps))
-        return status_set(STATUS_FAILED, "%s: no memory to forecast the image's error", method->name);
-    forecast->error[CAUSE_SPECTRUM] = hypot(isinf(azimuth) ? bound : azimuth, sqrt(band.lost));
-    forecast->error[CAUSE_DELAYS] = taps;
-    if (!(problem->acquisition->bandwidth < problem->acquisition->fs))
-        forecast->error[CAUSE_SPECTRUM] = INFINITY; /* the bin at fs/2 stands for both ends of the band: no law */
-    /* Blocks that are asked for by number, or have hard edges, have no law. */
-    const bool lawless = options->blocks || !options->blend;
-    forecast->error[CAUSE_BLOCKS] = method->terms > 0 ? TERMS_SHARE * value_of("delay_terms", list, count)
-                                    : lawless         ? INFINITY
-                                                      : BLOCK_SHARE * options->limit;
-    if (stolt_taps[options->stolt] > 0)
-        forecast->error[CAUSE_STOLT] = STOLT_SHARE * kaiser_error(stolt_taps[options->stolt], RMA_OVERSAMPLING);
-    forecast->error[CAUSE_FLOAT] = ROUNDING[problem->precision];
-    return STATUS_OK;
-}
-
 /* ---- what it takes ---- */
 
 /* The share of a swath's wavenumbers that rma_line keeps: of every few of them. */
@@ -184,12 +139,41 @@ static void swath_cost(const struct rma *rma, const struct rma_swath *swath, dou
     }
 }
 
+/* What the settings leave of the exact conversion: blocks or terms, taps. */
+static enum status settings_errors(const struct problem *problem, const struct rma_method *method,
+                                   const struct rma_options *options, double error[CAUSES])
+{
+    struct band band;
+    struct straight_track track;
+    acquisition_is_straight(problem->acquisition, &track);
+    const struct rma_view view = rma_view_of(problem, method, &track);
+    const bool terms = method->terms > 0 && view.converts;
+    enum status status = band_of(&view, 0, &band);
+    if (status != STATUS_OK)
+        return status;
+    error[CAUSE_DELAYS] = terms ? delay_taps_expected(&view, method->taps, band.half) : 0;
+    /* Blocks that are asked for by number, or have hard edges, have no law. */
+    const bool lawless = options->blocks || !options->blend;
+    error[CAUSE_BLOCKS] = terms            ? TERMS_SHARE * delay_terms_left(&view, method->terms)
+                          : !view.converts ? 0
+                          : lawless        ? INFINITY
+                                           : BLOCK_SHARE * options->limit;
+    if (stolt_taps[options->stolt] > 0)
+        error[CAUSE_STOLT] = STOLT_SHARE * kaiser_error(stolt_taps[options->stolt], RMA_OVERSAMPLING);
+    error[CAUSE_FLOAT] = ROUNDING[problem->precision];
+    return isnan(error[CAUSE_DELAYS]) || isnan(error[CAUSE_BLOCKS])
+               ? status_set(STATUS_FAILED, "%s: no memory to forecast the image's error", method->name)
+               : STATUS_OK;
+}
+
 enum status rma_cost(const struct problem *problem, const struct rma_method *method, const struct rma_options *options,
                      struct forecast *forecast)
 {
     struct rma *rma = NULL;
     enum status status = rma_requirements_check(problem, method);
     *forecast = (struct forecast){.sums_pairs = false};
+    if (status == STATUS_OK)
+        status = settings_errors(problem, method, options, forecast->error);
     if (status == STATUS_OK)
         status = rma_count(problem, method, options, &rma);
     if (status != STATUS_OK)
@@ -202,4 +186,28 @@ enum status rma_cost(const struct problem *problem, const struct rma_method *met
         swath_cost(rma, s, forecast->migration);
     rma_destroy(rma);
     return STATUS_OK;
+}
+
+enum status rma_forecast(const struct problem *problem, const struct rma_method *method,
+                         const struct rma_options *options, struct forecast *forecast)
+{
+    struct condition list[CONDITIONS_MAX];
+    struct straight_track track;
+    struct band band;
+    const int count = rma_conditions(problem, method, list, CONDITIONS_MAX);
+    enum status status = rma_conditions_check(method, list, count);
+    if (status == STATUS_OK)
+        status = rma_cost(problem, method, options, forecast);
+    if (status != STATUS_OK)
+        return status;
+    acquisition_is_straight(problem->acquisition, &track);
+    const struct rma_view view = rma_view_of(problem, method, &track);
+    status = band_of(&view, 0, &band);
+    /* Where B = fs, the bin at fs/2 stands for both ends of the band: no law. */
+    forecast->error[CAUSE_SPECTRUM] =
+        problem->acquisition->bandwidth < problem->acquisition->fs ? sqrt(band.lost) : INFINITY;
+    for (int k = 0; k < count; k++)
+        if (strcmp(list[k].name, "predicted_error") == 0)
+            forecast->error[CAUSE_SPECTRUM] = hypot(forecast->error[CAUSE_SPECTRUM], list[k].value);
+    return status;
 }

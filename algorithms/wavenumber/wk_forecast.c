@@ -5,7 +5,7 @@
 #include "backprojection/traces.h"
 #include "common/fft_length.h"
 #include "common/kaiser.h"
-#include "range_migration/azimuth.h"
+#include "range_migration/prediction.h"
 #include "wavenumber/wk_engine.h"
 
 /* Padded less, what the record's ends leave beyond them depends on where targets are: no law. */
@@ -44,7 +44,7 @@ static enum status errors_fill(const struct wk *wk, struct forecast *forecast)
         status = rma_band_lost(&view, EDGE_BINS / wk->range_length, &lost);
     if (status != STATUS_OK)
         return status;
-    const double azimuth = azimuth_error(&view);
+    const double azimuth = prediction_error(&view);
     if (isnan(azimuth))
         return status_set(STATUS_FAILED, "%s: no memory to forecast the image's error", wk->method.name);
     const bool whole = wk->problem.acquisition->bandwidth < wk->problem.acquisition->fs; /* else fs/2 has no law */
@@ -106,6 +106,8 @@ enum status wk_cost(const struct problem *problem, const void *method, const voi
         wk->work.flops += wk->pings * traces_flops_float(a, &form, &sums);
     cost_fill(wk, forecast->migration);
     wk_count(wk);
+    forecast->error[CAUSE_STOLT] = interpolations_error(wk);
+    forecast->error[CAUSE_FLOAT] = ROUNDING[problem->precision];
     forecast->migration_flops = wk->work.flops;
     wk_destroy(wk);
     return STATUS_OK;

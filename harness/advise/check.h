@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-#include "measure/spec.h"
+#include "imaging/spec.h"
 #include "scene/scene.h"
 
 /* Print what is known to be wrong with a scene, and what any image of it shows, before any work. `proposed`: its pixels

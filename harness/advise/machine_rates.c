@@ -10,7 +10,7 @@
 #include "common/clock.h"
 #include "echoes/echo_data.h"
 #include "files/paths.h"
-#include "measure/imaging.h"
+#include "imaging/imaging.h"
 #include "measure/timing.h"
 #include "scene/scene.h"
 

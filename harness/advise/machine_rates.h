@@ -1,11 +1,11 @@
-/* The rates that planning goes by (planner/rates.h), measured on this machine once and kept in the user's cache:
+/* The rates that planning goes by (choice/rates.h), measured on this machine once and kept in the user's cache:
    $XDG_CACHE_HOME/sasbench/rates.csv, or .cache/sasbench/rates.csv in the home folder. */
 #ifndef SASBENCH_ADVISE_MACHINE_RATES_H
 #define SASBENCH_ADVISE_MACHINE_RATES_H
 
 #include <stddef.h>
 
-#include "planner/rates.h"
+#include "choice/rates.h"
 
 /* Measure them: some seconds on one thread, without the time that it waits for a processor. Errors: as planning and
    imaging. */

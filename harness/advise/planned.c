@@ -7,22 +7,52 @@
 #include "backprojection/pairs/pairs.h"
 #include "files/csv.h"
 #include "echoes/echo_data.h"
+#include "scene/simulate.h"
 #include "show/table.h"
 
-const char *const plan_verdict_names[] = {[VERDICT_CHOSEN] = "chosen",
-                                          [VERDICT_SLOWER] = "slower",
-                                          [VERDICT_ERROR] = "error",
-                                          [VERDICT_MEMORY] = "memory",
-                                          [VERDICT_REFUSED] = "refused"};
+const char *const plan_verdict_names[] = {[CANDIDATE_CHOSEN] = "chosen",
+                                          [CANDIDATE_SLOWER] = "slower",
+                                          [CANDIDATE_ERROR] = "error",
+                                          [CANDIDATE_MEMORY] = "memory",
+                                          [CANDIDATE_REFUSED] = "refused"};
+
+/* Echoes that an error can be measured with in the time of a plan: of some of the targets, evenly, where there are more.
+   Recorded ones as they are. */
+enum { TARGETS_MOST = 16, SAMPLES_MOST = 30000000 };
+
+static enum status echoes_make(const struct scene *scene, struct echoes echoes[2])
+{
+    struct target targets[TARGETS_MOST];
+    struct scene some = *scene;
+    if (scene->target_count > TARGETS_MOST) {
+        for (int k = 0; k < TARGETS_MOST; k++)
+            targets[k] = scene->targets[(long long)k * (scene->target_count - 1) / (TARGETS_MOST - 1)];
+        some.targets = targets;
+        some.target_count = TARGETS_MOST;
+    }
+    enum status status = scene_echoes(&some, &echoes[PRECISION_DOUBLE]);
+    if (status == STATUS_OK)
+        status = echoes_convert(&echoes[PRECISION_DOUBLE], PRECISION_FLOAT, &echoes[PRECISION_FLOAT]);
+    echoes[PRECISION_FLOAT].acquisition = echoes[PRECISION_DOUBLE].acquisition = &scene->acquisition;
+    return status;
+}
 
 enum status planned_make(const struct scene *scene, const struct budget *budget, struct planned *planned)
 {
-    *planned = (struct planned){.scene = scene, .budget = *budget};
+    const struct acquisition *a = &scene->acquisition;
+    struct echoes echoes[2] = {{0}};
     enum status status = STATUS_OK;
+    *planned = (struct planned){.scene = scene, .budget = *budget};
+    planned->measured = (double)a->pings * a->receivers * a->samples <= SAMPLES_MOST;
+    if (planned->measured)
+        status = echoes_make(scene, echoes);
     for (int precision = 0; precision < 2 && status == STATUS_OK; precision++) {
         const struct problem problem = scene_problem(scene, (enum precision)precision);
-        status = planner_choose(&problem, budget, &planned->choices[precision]);
+        const bool measure = planned->measured && !planned->choices[PRECISION_FLOAT].found;
+        status = choice_make(&problem, measure ? echoes : NULL, budget, &planned->choices[precision]);
     }
+    echoes_free(&echoes[PRECISION_FLOAT]);
+    echoes_free(&echoes[PRECISION_DOUBLE]);
     return status;
 }
 
@@ -53,7 +83,7 @@ static void candidate_print(FILE *stream, const struct candidate *candidate)
 {
     char name[CANDIDATE_NAME], cells[CAUSES + 1][16];
     candidate_name(candidate, name);
-    fprintf(stream, "%c %-26s", candidate->verdict == VERDICT_CHOSEN ? '>' : ' ', name);
+    fprintf(stream, "%c %-26s", candidate->verdict == CANDIDATE_CHOSEN ? '>' : ' ', name);
     if (strlen(name) > 26) /* a line of its own */
         fprintf(stream, "\n%28s", "");
     fprintf(stream, " %8s %7s", cell_time(candidate->seconds).text, error_text(candidate->error, cells[CAUSES]));
@@ -65,13 +95,13 @@ static void candidate_print(FILE *stream, const struct candidate *candidate)
 bool planned_nearest(const struct choice *choice, int k)
 {
     const struct candidate *c = &choice->list[k];
-    bool nearest = c->verdict > VERDICT_SLOWER;
+    bool nearest = c->verdict > CANDIDATE_SLOWER;
     for (int n = 0; n < choice->count && nearest; n++) {
         const struct candidate *other = &choice->list[n];
         if (n == k || other->algorithm != c->algorithm)
             continue;
         const bool refused = isinf(c->error), better = other->error < c->error;
-        nearest = other->verdict > VERDICT_SLOWER && !better && !(refused && isinf(other->error) && n < k);
+        nearest = other->verdict > CANDIDATE_SLOWER && !better && !(refused && isinf(other->error) && n < k);
     }
     return nearest;
 }
@@ -263,7 +293,7 @@ void planned_print(FILE *stream, const struct planned *planned)
     fprintf(stream, "  %-26s %8s %7s %7s %7s %7s %7s %7s %7s %7s %8s\n", "candidate", "time", "error", "interp.",
             "delays", "spectr.", "blocks", "stolt", "apert.", "float", "work");
     for (int k = 0; k < choice->count; k++)
-        if (choice->list[k].verdict <= VERDICT_SLOWER) {
+        if (choice->list[k].verdict <= CANDIDATE_SLOWER) {
             candidate_print(stream, &choice->list[k]);
             shown++;
         }
@@ -279,7 +309,7 @@ void planned_print(FILE *stream, const struct planned *planned)
         fprintf(stream, "\nLeft out, and the error that it adds:\n");
         planned_left_out(&problem, best, line_print, stream);
         spec_format(best, precision, spec, sizeof spec);
-        const double plan = best->algorithm->work(choice->plan).bytes;
+        const double plan = choice->work.bytes;
         fprintf(stream, "\nChosen: %s, about %s\nThe process takes %s of memory, %s of them the plan.\n", spec,
                 cell_time(best->seconds).text, cell_significant(1e-6 * best->bytes, " MB").text,
                 cell_significant(1e-6 * plan, " MB").text);

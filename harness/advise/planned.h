@@ -1,20 +1,22 @@
-/* A plan in words: what is chosen, why, and what it leaves out (planner/planner.h). */
+/* A plan in words: what is chosen, why, and what it leaves out (choice/choice.h). */
 #ifndef SASBENCH_ADVISE_PLANNED_H
 #define SASBENCH_ADVISE_PLANNED_H
 
 #include <stdio.h>
 
-#include "planner/planner.h"
+#include "choice/choice.h"
 #include "scene/scene.h"
 
 /* The choice in either precision. */
 struct planned {
     const struct scene *scene;
     struct budget budget;
-    struct choice choices[2]; /* by enum precision */
+    bool measured;            /* else by laws alone, for there are too many echoes */
+    struct choice choices[2]; /* by enum precision; double by laws alone where float is within the budget */
 };
 
-/* Plan a scene, freed with planned_free even on failure. Errors: as planner_choose. */
+/* Plan a scene, freed with planned_free even on failure: by images of its echoes that take at most `budget->seconds`
+   each, and by laws beyond that. Errors: as choice_make. */
 enum status planned_make(const struct scene *scene, const struct budget *budget, struct planned *planned);
 void planned_free(struct planned *planned);
 /* The precision that is chosen: float, unless only double fits the budget; -1 where nothing does. */

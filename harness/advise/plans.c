@@ -1,5 +1,4 @@
 /* What was planned, beside what was measured (plans.h). */
-#define _POSIX_C_SOURCE 200809L /* open_memstream */
 #include "advise/plans.h"
 
 #include <math.h>
@@ -29,21 +28,21 @@ static void line_join(void *to, const char *text)
     text_append(joined->text, sizeof joined->text, "%s%s", *joined->text ? "; " : "left out: ", text);
 }
 
-static void row_write(struct plans *plans, const struct candidate *candidate, const char *text)
+static void row_write(const struct plans *plans, const struct candidate *candidate, const char *text, FILE *file)
 {
     const char *const texts[] = {
         plans->scene->name,         plans->spec->text,   precision_name(plans->spec->precision),
         candidate->algorithm->name, candidate->settings, plan_verdict_names[candidate->verdict]};
     for (int k = 0; k < COLUMNS - KEYS; k++) {
-        csv_write_text(plans->stream, texts[k]);
-        fputc(',', plans->stream);
+        csv_write_text(file, texts[k]);
+        fputc(',', file);
     }
-    csv_write_number(plans->stream, isinf(candidate->seconds) ? NAN : candidate->seconds);
-    fputc(',', plans->stream);
-    csv_write_number(plans->stream, isinf(candidate->error) ? NAN : candidate->error);
-    fputc(',', plans->stream);
-    csv_write_text(plans->stream, text);
-    fputc('\n', plans->stream);
+    csv_write_number(file, isinf(candidate->seconds) ? NAN : candidate->seconds);
+    fputc(',', file);
+    csv_write_number(file, isinf(candidate->error) ? NAN : candidate->error);
+    fputc(',', file);
+    csv_write_text(file, text);
+    fputc('\n', file);
 }
 
 /* The first of its algorithm among those within the budget: the fastest. */
@@ -52,37 +51,24 @@ static bool is_fastest(const struct choice *choice, int k)
     for (int n = 0; n < k; n++)
         if (choice->list[n].algorithm == choice->list[k].algorithm)
             return false;
-    return choice->list[k].verdict == VERDICT_SLOWER;
+    return choice->list[k].verdict == CANDIDATE_SLOWER;
 }
 
 /* The chosen one, and the best of every other algorithm. */
-static void choice_hear(void *to, const struct problem *problem, const struct budget *budget,
-                        const struct choice *choice)
+static void rows_write(const struct plans *plans, FILE *file)
 {
-    struct plans *plans = to;
-    (void)budget;
-    if (!plans->stream)
-        plans->stream = open_memstream(&plans->rows, &plans->size);
-    if (!plans->stream)
-        return;
-    rewind(plans->stream);
+    const struct choice *choice = plans->choice;
+    const struct problem problem = scene_problem(plans->scene, plans->spec->precision);
     for (int k = 0; k < choice->count; k++) {
         const struct candidate *candidate = &choice->list[k];
         struct joined joined = {""};
-        if (candidate->verdict == VERDICT_CHOSEN) {
-            planned_left_out(problem, candidate, line_join, &joined);
-            row_write(plans, candidate, joined.text);
+        if (candidate->verdict == CANDIDATE_CHOSEN) {
+            planned_left_out(&problem, candidate, line_join, &joined);
+            row_write(plans, candidate, joined.text, file);
         } else if (is_fastest(choice, k) || planned_nearest(choice, k)) {
-            row_write(plans, candidate, candidate->reason);
+            row_write(plans, candidate, candidate->reason, file);
         }
     }
-}
-
-void plans_listen(const struct scene *scene, const struct spec *spec, struct plans *plans)
-{
-    *plans = (struct plans){.scene = scene, .spec = spec};
-    if (strcmp(spec->algorithm->name, "auto") == 0)
-        automatic_tell(choice_hear, plans);
 }
 
 /* Rows of other images, where the same program wrote them. */
@@ -112,16 +98,12 @@ static enum status older_read(const char *path, struct csv *csv)
     return status;
 }
 
-enum status plans_keep(const char *directory, struct plans *plans)
+enum status plans_keep(const char *directory, const struct plans *plans)
 {
     char path[4200];
     struct csv older = {0};
     struct text_file file;
     struct provenance provenance;
-    automatic_tell(NULL, NULL);
-    if (!plans->stream)
-        return STATUS_OK;
-    fclose(plans->stream);
     provenance_fill(&provenance, 1);
     snprintf(path, sizeof path, "%s/plans.csv", directory);
     enum status status = older_read(path, &older);
@@ -132,11 +114,9 @@ enum status plans_keep(const char *directory, struct plans *plans)
         for (int k = 0; k < COLUMNS; k++)
             fprintf(file.stream, "%s%c", columns[k], k < COLUMNS - 1 ? ',' : '\n');
         others_write(&older, plans, provenance.program, file.stream);
-        fputs(plans->rows, file.stream);
+        rows_write(plans, file.stream);
         status = text_file_close(&file, STATUS_OK);
     }
     csv_free(&older);
-    free(plans->rows);
-    *plans = (struct plans){.stream = NULL};
     return status;
 }

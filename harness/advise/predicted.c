@@ -10,9 +10,8 @@
 #include "files/text_file.h"
 #include "results/provenance.h"
 #include "results/results.h"
-#include "measure/spec.h"
+#include "imaging/spec.h"
 #include "measure/timing.h"
-#include "planner/known.h"
 #include "show/plot.h"
 #include "sweep/sweep_group.h"
 
@@ -39,7 +38,8 @@ static bool scene_same(const struct csv *csv, const struct scene *scene, const c
     return measured && strcmp(measured, hash) == 0;
 }
 
-static enum status row_predict(struct known *known, const struct measurement *row, struct predictions *predictions)
+static enum status row_predict(const struct scene *scene, const struct measurement *row,
+                               struct predictions *predictions)
 {
     char text[400];
     struct spec spec;
@@ -51,9 +51,9 @@ static enum status row_predict(struct known *known, const struct measurement *ro
     if (spec_parse(text, &spec) != STATUS_OK)
         return STATUS_OK; /* of another program */
     enum status status = STATUS_UNSUPPORTED;
-    known->problem.precision = spec.precision;
+    const struct problem problem = scene_problem(scene, spec.precision);
     if (spec.algorithm->forecast)
-        status = known_forecast(known, spec.algorithm, spec.options, &forecast);
+        status = algorithm_forecast(spec.algorithm, &problem, spec.options, &forecast);
     if (status == STATUS_OK && isfinite(forecast_error(&forecast))) {
         const double error = forecast_error(&forecast);
         predictions->list[predictions->count++] =
@@ -71,14 +71,10 @@ static enum status scene_predict(const struct results *results, const char *name
     if (!given && scene_load(name, SCENE_DIRECTORY, &loaded) != STATUS_OK)
         return STATUS_OK;
     const struct scene *scene = given ? given : &loaded;
-    struct known known;
-    const struct problem problem = scene_problem(scene, PRECISION_FLOAT);
-    known_find(&problem, &known);
     enum status status = STATUS_OK;
     for (int k = 0; k < results->csv.row_count && status == STATUS_OK && scene_same(&results->csv, scene, name); k++)
         if (strcmp(results->measurements[k].scene, name) == 0)
-            status = row_predict(&known, &results->measurements[k], predictions);
-    known_free(&known);
+            status = row_predict(scene, &results->measurements[k], predictions);
     scene_free(&loaded);
     return status;
 }

@@ -13,7 +13,7 @@
 #include "files/folder.h"
 #include "files/paths.h"
 #include "files/text_file.h"
-#include "measure/imaging.h"
+#include "imaging/imaging.h"
 #include "results/provenance.h"
 #include "show/plot.h"
 #include "bench/bench_line.h"
@@ -372,7 +372,7 @@ enum status bench_goals(const char *folder, const char *directory)
 /* ---- SPECs ---- */
 
 /* Tried in this order. */
-static const struct candidate {
+static const struct wanted {
     const char *scene;
     bool exact; /* exact algorithms, too, which are slow */
     bool pairs; /* only algorithms that sum pairs: others cost as much for few rows as for all */
@@ -385,7 +385,7 @@ static const struct candidate {
 enum { CANDIDATES = sizeof candidates / sizeof *candidates };
 
 /* Whether an algorithm takes the scene, without its echoes: its plan and its work say so. */
-static enum status candidate_try(const struct spec *spec, const struct candidate *candidate)
+static enum status candidate_try(const struct spec *spec, const struct wanted *candidate)
 {
     struct scene scene;
     struct imaging imaging;

@@ -8,7 +8,7 @@
 
 #include "files/paths.h"
 #include "text/text_append.h"
-#include "measure/spec.h"
+#include "imaging/spec.h"
 #include "papers/tables.h"
 #include "papers/assumptions.h"
 #include "papers/filtered.h"

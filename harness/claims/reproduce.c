@@ -13,7 +13,7 @@
 #include "text/shown_text.h"
 #include "text/suggestion.h"
 #include "text/text_append.h"
-#include "measure/spec.h"
+#include "imaging/spec.h"
 #include "papers/figures.h"
 #include "papers/assumptions.h"
 #include "claims/reproduced.h"

@@ -2,11 +2,12 @@
 #include <inttypes.h>
 #include <stdio.h>
 
+#include "choice/choice.h"
 #include "echoes/echo_data.h"
 #include "run/progress_line.h"
 #include "text/shown_text.h"
 #include "measure/darkness.h"
-#include "measure/imaging.h"
+#include "imaging/imaging.h"
 #include "measure/outcome.h"
 #include "results/provenance.h"
 #include "echoes/matfile.h"
@@ -58,8 +59,9 @@ static void warn_of_image(const struct echoes *echoes, const struct image *image
     warnings_print(list, DARKNESS_CONDITIONS);
 }
 
+/* By a plan that is made. */
 static enum status execute(const struct spec *spec, struct imaging *imaging, const struct echoes *from,
-                           struct image *image, double *seconds)
+                           struct image *image)
 {
     struct echoes echoes;
     struct stages stages;
@@ -67,37 +69,71 @@ static enum status execute(const struct spec *spec, struct imaging *imaging, con
     if (status != STATUS_OK)
         return status;
     stages_begin(&stages);
-    const double begin = stages.mark;
     status = imaging_execute(imaging, &echoes, &stages);
-    *seconds = seconds_now() - begin;
     if (status == STATUS_OK)
         status = imaging_finish(imaging, &echoes, image);
-    if (status == STATUS_OK)
-        warn_of_image(&echoes, image);
     echoes_free(&echoes);
     return status;
 }
 
-/* The plan comes first: what cannot be imaged need not be simulated. */
+/* What `auto` stands for, by the echoes; its image is often there already. */
+static enum status choose(const struct spec *asked, const struct budget *budget, const struct scene *scene,
+                          const struct echoes *from, struct image *image, struct image_origin *origin)
+{
+    const struct problem problem = scene_problem(scene, asked->precision);
+    struct echoes echoes[2] = {[PRECISION_DOUBLE] = *from};
+    struct choice choice = {.list = NULL};
+    struct spec spec = {.algorithm = NULL};
+    enum status status = echoes_convert(from, PRECISION_FLOAT, &echoes[PRECISION_FLOAT]);
+    if (status != STATUS_OK)
+        return status;
+    status = choice_make(&problem, echoes, budget, &choice);
+    if (status == STATUS_OK)
+        status = choice_spec(&choice, budget, asked->precision, &spec);
+    if (status == STATUS_OK) {
+        char name[CANDIDATE_NAME];
+        candidate_name(&choice.list[0], name);
+        snprintf(origin->engine, sizeof origin->engine, "%s", name);
+        *image = choice.image;
+        choice.image = (struct image){0};
+        if (image->patch_count == 0)
+            status = imaging_form(&spec, &problem, &echoes[asked->precision], image, NULL);
+    }
+    spec_free(&spec);
+    choice_free(&choice);
+    echoes_free(&echoes[PRECISION_FLOAT]);
+    return status;
+}
+
+/* A plan comes before the echoes: what cannot be imaged need not be simulated. A choice comes after them. */
 static enum status form_image(const struct spec *spec, const struct scene *scene, struct image *image,
                               struct image_origin *origin, double *seconds)
 {
-    struct problem problem = scene_problem(scene, spec->precision);
-    problem.judged_count = 0; /* all of it is shown */
-    struct imaging imaging;
+    const struct problem problem = scene_problem(scene, spec->precision);
+    struct imaging imaging = {.algorithm = NULL};
+    struct budget budget;
     struct echoes simulated = {0}, recorded = {&scene->acquisition, PRECISION_DOUBLE, scene->recorded, 0};
-    progress_line(false, "%s: plan of %s", scene->name, spec->algorithm->name);
-    enum status status = imaging_open(spec, &problem, &imaging);
-    if (status != STATUS_OK)
-        return status;
-    const struct work work = imaging.algorithm->work(imaging.plan);
-    snprintf(origin->engine, sizeof origin->engine, "%s", work.engine);
+    const struct echoes *from = scene->recorded ? &recorded : &simulated;
+    const bool choice = choice_asked(spec, &budget);
+    enum status status = STATUS_OK;
+    if (!choice) {
+        progress_line(false, "%s: plan of %s", scene->name, spec->algorithm->name);
+        status = imaging_open(spec, &problem, &imaging);
+        if (status != STATUS_OK)
+            return status;
+        const struct work work = imaging.algorithm->work(imaging.plan);
+        snprintf(origin->engine, sizeof origin->engine, "%s", work.engine);
+    }
     progress_line(false, "%s: echoes", scene->name);
     if (!scene->recorded)
         status = scene_simulate(scene, &simulated);
     progress_line(false, "%s: image by %s", scene->name, spec->algorithm->name);
+    const double begin = seconds_now();
     if (status == STATUS_OK)
-        status = execute(spec, &imaging, scene->recorded ? &recorded : &simulated, image, seconds);
+        status = choice ? choose(spec, &budget, scene, from, image, origin) : execute(spec, &imaging, from, image);
+    *seconds = seconds_now() - begin;
+    if (status == STATUS_OK)
+        warn_of_image(from, image);
     echoes_free(&simulated);
     imaging_close(&imaging);
     return status;

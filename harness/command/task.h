@@ -3,7 +3,7 @@
 #define SASBENCH_COMMAND_TASK_H
 
 #include "files/paths.h"
-#include "measure/spec.h"
+#include "imaging/spec.h"
 #include "scene/scene.h"
 
 /* The command line after parsing; texts are borrowed from argv. Unused fields are NULL or 0. */

@@ -3,7 +3,7 @@
 #define SASBENCH_GATE_AB_H
 
 #include "gate/diff.h"
-#include "measure/spec.h"
+#include "imaging/spec.h"
 
 /* What is spent on it. */
 struct ab_effort {

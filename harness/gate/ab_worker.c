@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "measure/imaging.h"
+#include "imaging/imaging.h"
 #include "measure/timing.h"
 #include "measure/session.h"
 #include "scene/simulate.h"
@@ -100,11 +100,18 @@ static enum status job_plan(struct worker *worker, const char *spec, const char 
     if (status == STATUS_OK)
         status = scene_find(worker, scene, &job->scene);
     enum precision precision = job->spec.precision;
-    if (status == STATUS_OK && !job->scene->echoes[precision].samples)
-        status = echoes_convert(&job->scene->echoes[PRECISION_DOUBLE], precision, &job->scene->echoes[precision]);
+    if (status == STATUS_OK && !job->scene->echoes[PRECISION_FLOAT].samples)
+        status = echoes_convert(&job->scene->echoes[PRECISION_DOUBLE], PRECISION_FLOAT,
+                                &job->scene->echoes[PRECISION_FLOAT]);
     if (status == STATUS_OK) {
-        struct problem problem = session_problem(&job->scene->scene, job->spec.algorithm, precision);
-        status = imaging_open(&job->spec, &problem, &job->imaging);
+        const struct problem problem = session_problem(&job->scene->scene, job->spec.algorithm, precision);
+        struct spec chosen;
+        status = choice_resolve(&job->spec, &problem, job->scene->echoes, &chosen);
+        if (status == STATUS_OK) {
+            spec_free(&job->spec);
+            job->spec = chosen;
+            status = imaging_open(&job->spec, &problem, &job->imaging);
+        }
     }
     if (status != STATUS_OK)
         job_free(job);

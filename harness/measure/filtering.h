@@ -3,7 +3,7 @@
 #ifndef SASBENCH_MEASURE_FILTERING_H
 #define SASBENCH_MEASURE_FILTERING_H
 
-#include "measure/spec.h"
+#include "imaging/spec.h"
 #include "scene/scene.h"
 #include "wavenumber/polar_filter.h"
 

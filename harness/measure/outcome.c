@@ -11,7 +11,7 @@
 #include "backprojection/pairs/pairs.h"
 #include "echoes/echo_data.h"
 #include "measure/darkness.h"
-#include "measure/imaging.h"
+#include "imaging/imaging.h"
 #include "metrics/metrics.h"
 
 enum { AXES = 2, DEFINITIONS = 3 };
@@ -217,8 +217,8 @@ static void promise_hold(const struct spec *spec, struct outcome *outcome)
 
 /* What fails without refusing: behind the other reasons, so that a table finds it there. Where there is no exact image,
    this one tells how dark it is. */
-static void warnings_fill(const struct session *session, const struct spec *spec, const struct problem *problem,
-                          struct outcome *outcome)
+static void warnings_fill(const struct session *session, const struct spec *asked, const struct spec *spec,
+                          const struct problem *problem, struct outcome *outcome)
 {
     struct condition list[CONDITIONS_MAX];
     int count = algorithm_conditions(spec->algorithm, problem, spec->options, list, CONDITIONS_MAX);
@@ -230,13 +230,15 @@ static void warnings_fill(const struct session *session, const struct spec *spec
         warnings_add(of_image, DARKNESS_CONDITIONS, outcome);
     }
     warnings_add(list, count, outcome);
-    promise_hold(spec, outcome);
+    promise_hold(asked, outcome);
 }
 
 void outcome_round(struct session *session, const struct spec *spec, struct timing_samples *samples)
 {
     struct timing timing;
     struct image image;
+    if (session_resolve(session, spec, &spec) != STATUS_OK)
+        return;
     const struct problem problem = session_problem(session->scene, spec->algorithm, spec->precision);
     if (timing_measure(spec, &problem, &session->echoes[spec->precision], &session->control, EFFORT_WHOLE, samples,
                        &image, &timing)
@@ -247,22 +249,42 @@ void outcome_round(struct session *session, const struct spec *spec, struct timi
     image_free(&image);
 }
 
-void outcome_measure(struct session *session, const struct spec *spec, enum effort effort,
+/* The row of a choice names what was chosen, and what by. */
+static void choice_fill(const struct chosen *chosen, struct outcome *outcome)
+{
+    const struct candidate *c = &chosen->choice.list[0];
+    char text[sizeof outcome->skipped];
+    candidate_name(c, outcome->work.engine);
+    snprintf(text, sizeof text, "%s", outcome->skipped);
+    snprintf(outcome->skipped, sizeof outcome->skipped, "%d other settings: an error of %.2g %s%s%.180s",
+             chosen->choice.count - 1, c->error, c->measured.pixels > 0 ? "was measured" : "is predicted",
+             *text ? "; " : "", text);
+}
+
+void outcome_measure(struct session *session, const struct spec *asked, enum effort effort,
                      struct timing_samples *samples, struct outcome *outcome)
 {
+    const struct spec *spec = asked;
     *outcome = (struct outcome){
         .row = measurement_empty(session->scene->name, spec->algorithm->name, spec->text, spec->precision)};
     outcome->row.reason = outcome->reason;
     outcome->row.skipped = outcome->skipped;
     outcome->row.stages = outcome->stages;
+    enum status status = session_resolve(session, spec, &spec);
+    if (status != STATUS_OK) {
+        outcome_fail(outcome, status);
+        return;
+    }
     struct problem problem = session_problem(session->scene, spec->algorithm, spec->precision);
     const struct echoes *echoes = &session->echoes[spec->precision];
-    enum status status = effort != EFFORT_NONE ? image_time(session, spec, &problem, effort, samples, outcome)
-                                               : imaging_form(spec, &problem, echoes, &outcome->image, &outcome->work);
+    status = effort != EFFORT_NONE ? image_time(session, spec, &problem, effort, samples, outcome)
+                                   : imaging_form(spec, &problem, echoes, &outcome->image, &outcome->work);
     if (status == STATUS_OK) {
         work_fill(session, &problem, outcome);
+        if (asked != spec)
+            choice_fill(session_chosen(session, asked), outcome);
         status = quality_fill(session, outcome);
-        warnings_fill(session, spec, &problem, outcome);
+        warnings_fill(session, asked, spec, &problem, outcome);
         if (*outcome->noise)
             reason_add(outcome->reason, sizeof outcome->reason, "%s", outcome->noise);
     }

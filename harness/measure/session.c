@@ -2,10 +2,11 @@
 #include "measure/session.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "echoes/echo_data.h"
 #include "measure/darkness.h"
-#include "measure/imaging.h"
+#include "imaging/imaging.h"
 #include "scene/simulate.h"
 
 /* Where images are compared: the scene's own patches, or the part of a whole swath around its targets. */
@@ -23,8 +24,61 @@ struct problem session_problem(const struct scene *scene, const struct algorithm
     return scene_problem(scene, precision);
 }
 
-enum status session_image(const struct session *session, const struct spec *spec, struct image *image)
+/* Takes the message of a failure along, for it is asked for again. */
+static void choose(const struct session *session, const struct spec *spec, const struct budget *budget,
+                   struct chosen *chosen)
 {
+    const struct problem problem = scene_problem(session->scene, spec->precision);
+    const double begin = seconds_now();
+    *chosen = (struct chosen){.asked = spec};
+    chosen->status = choice_make(&problem, session->echoes, budget, &chosen->choice);
+    if (chosen->status == STATUS_OK)
+        chosen->status = choice_spec(&chosen->choice, budget, spec->precision, &chosen->spec);
+    if (chosen->status != STATUS_OK)
+        snprintf(chosen->message, sizeof chosen->message, "%s", status_message());
+    image_free(&chosen->choice.image);
+    chosen->seconds = seconds_now() - begin;
+}
+
+const struct chosen *session_chosen(struct session *session, const struct spec *spec)
+{
+    struct budget budget;
+    if (!choice_asked(spec, &budget))
+        return NULL;
+    budget.region = (struct region){session->scene->reference_count, session->scene->reference_patches};
+    for (int k = 0; k < session->chosen_count; k++)
+        if (spec_equal(session->chosen[k].asked, spec))
+            return &session->chosen[k];
+    struct chosen *list = realloc(session->chosen, ((size_t)session->chosen_count + 1) * sizeof *session->chosen);
+    if (!list) {
+        status_set(STATUS_FAILED, "no memory for a choice");
+        return NULL;
+    }
+    session->chosen = list;
+    choose(session, spec, &budget, &list[session->chosen_count]);
+    return &list[session->chosen_count++];
+}
+
+enum status session_resolve(struct session *session, const struct spec *spec, const struct spec **resolved)
+{
+    struct budget budget;
+    *resolved = spec;
+    if (!choice_asked(spec, &budget))
+        return STATUS_OK;
+    const struct chosen *chosen = session_chosen(session, spec);
+    if (!chosen)
+        return STATUS_FAILED;
+    *resolved = &chosen->spec;
+    return chosen->status == STATUS_OK ? STATUS_OK : status_set(chosen->status, "%s", chosen->message);
+}
+
+enum status session_image(struct session *session, const struct spec *asked, struct image *image)
+{
+    const struct spec *spec;
+    const enum status status = session_resolve(session, asked, &spec);
+    *image = (struct image){0};
+    if (status != STATUS_OK)
+        return status;
     struct problem problem = session_problem(session->scene, spec->algorithm, spec->precision);
     return imaging_form(spec, &problem, &session->echoes[spec->precision], image, NULL);
 }
@@ -74,6 +128,11 @@ enum status session_open(const struct scene *scene, struct session *session)
 
 void session_close(struct session *session)
 {
+    for (int k = 0; k < session->chosen_count; k++) {
+        choice_free(&session->chosen[k].choice);
+        spec_free(&session->chosen[k].spec);
+    }
+    free(session->chosen);
     control_end(&session->control);
     image_free(&session->reference);
     echoes_free(&session->echoes[PRECISION_FLOAT]);

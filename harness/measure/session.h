@@ -2,15 +2,26 @@
 #ifndef SASBENCH_MEASURE_SESSION_H
 #define SASBENCH_MEASURE_SESSION_H
 
+#include "choice/choice.h"
 #include "measure/control.h"
 #include "measure/darkness.h"
 #include "results/measurement.h"
 #include "scene/scene.h"
-#include "measure/spec.h"
+#include "imaging/spec.h"
 
 /* Wall time, s. */
 struct spent {
     double echoes, reference, planning, imaging, control;
+};
+
+/* What a SPEC that leaves the choice to the harness became on a scene. */
+struct chosen {
+    const struct spec *asked; /* borrowed */
+    struct choice choice;     /* without the image */
+    enum status status;       /* STATUS_UNSUPPORTED where nothing fits; the rest is then not to be used */
+    char message[600];        /* why */
+    struct spec spec;
+    double seconds; /* that choosing took beyond forming the chosen image once */
 };
 
 /* Made by session_open, released by session_close. */
@@ -24,6 +35,8 @@ struct session {
     int condition_count;
     struct control control; /* beside what is timed */
     struct spent spent;     /* so far, but for the control */
+    struct chosen *chosen;  /* [chosen_count] so far, by session_chosen */
+    int chosen_count;
 };
 
 /* Make the echoes (scene_echoes) and form the exact image; where there can be none, images are measured without their
@@ -38,7 +51,13 @@ void session_spent(const struct session *session, struct spent *sum);
    compared. Points into the scene. */
 struct problem session_problem(const struct scene *scene, const struct algorithm *algorithm, enum precision precision);
 
-/* The finished image of a SPEC, formed once and freed with image_free. Errors: as imaging_form. */
-enum status session_image(const struct session *session, const struct spec *spec, struct image *image);
+/* What the SPEC leaves to choose, chosen once; NULL where it names its algorithm, or where memory is missing, with a
+   message. The SPEC must outlive the session. It moves when another is chosen. */
+const struct chosen *session_chosen(struct session *session, const struct spec *spec);
+/* The SPEC itself, or the one chosen for it. Errors: STATUS_UNSUPPORTED where nothing fits, as choice_make. */
+enum status session_resolve(struct session *session, const struct spec *spec, const struct spec **resolved);
+
+/* The finished image of a SPEC, formed once and freed with image_free. Errors: as imaging_form, session_resolve. */
+enum status session_image(struct session *session, const struct spec *spec, struct image *image);
 
 #endif

@@ -12,7 +12,7 @@
 #include "backprojection/pairs/pairs.h"
 #include "common/clock.h"
 #include "echoes/echo_data.h"
-#include "measure/imaging.h"
+#include "imaging/imaging.h"
 
 static int compare_double(const void *a, const void *b)
 {

@@ -3,7 +3,7 @@
 #define SASBENCH_MEASURE_TIMING_H
 
 #include "measure/control.h"
-#include "measure/spec.h"
+#include "imaging/spec.h"
 
 struct timing {
     double plan_s;             /* s, planning, once */

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "measure/filtering.h"
-#include "measure/imaging.h"
+#include "imaging/imaging.h"
 #include "papers/assumptions.h"
 #include "wavenumber/wk.h"
 

@@ -8,7 +8,7 @@
 
 #include "echoes/echo_data.h"
 #include "files/paths.h"
-#include "measure/imaging.h"
+#include "imaging/imaging.h"
 #include "papers/measured.h"
 #include "papers/assumptions.h"
 #include "papers/phase.h"

@@ -93,7 +93,7 @@ static double rate_enough(const struct problem *problem, int rule)
     return high;
 }
 
-static enum status rule_follow(const struct session *session, int seed, int rule, FILE *file)
+static enum status rule_follow(struct session *session, int seed, int rule, FILE *file)
 {
     const struct scene *scene = session->scene;
     const int asked = rules[rule].rate(&scene->acquisition), rate = asked < rules[rule].most ? asked : rules[rule].most;

@@ -132,7 +132,6 @@ static enum status add_crashed(struct batch *batch, const struct scene *scene, c
 static enum status measure(struct batch *batch, struct visit *visit, int index)
 {
     struct outcome outcome;
-    struct plans plans;
     char task[700];
     enum status status = STATUS_OK;
     task_format(visit->session.scene, &visit->specs[index], task, sizeof task);
@@ -140,11 +139,13 @@ static enum status measure(struct batch *batch, struct visit *visit, int index)
     if (crash)
         return add_crashed(batch, visit->session.scene, &visit->specs[index], crash);
     supervisor_enter(task);
-    plans_listen(visit->session.scene, &visit->specs[index], &plans);
     outcome_measure(&visit->session, &visit->specs[index], batch->effort,
                     visit->samples ? &visit->samples[index - visit->turns_first] : NULL, &outcome);
     supervisor_leave();
-    status = plans_keep(batch->directory, &plans);
+    const struct chosen *chosen = session_chosen(&visit->session, &visit->specs[index]);
+    if (chosen && chosen->choice.count > 0)
+        status =
+            plans_keep(batch->directory, &(struct plans){visit->session.scene, &visit->specs[index], &chosen->choice});
     outcome.row.threads = batch->threads;
     if (status == STATUS_OK && strcmp(outcome.row.status, "ok") == 0) {
         status = results_folder_targets(batch->results, outcome.targets, outcome.target_count);

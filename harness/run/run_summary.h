@@ -5,7 +5,7 @@
 #include <stdio.h>
 
 #include "results/results.h"
-#include "measure/spec.h"
+#include "imaging/spec.h"
 #include "scene/scene.h"
 
 /* For four errors the fastest algorithm on each scene, a line a scene; what was refused; what the choices of `auto`

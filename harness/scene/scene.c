@@ -118,12 +118,5 @@ void scene_free(struct scene *scene)
 
 struct problem scene_problem(const struct scene *scene, enum precision precision)
 {
-    struct problem problem = problem_make(&scene->acquisition, scene->patch_count, scene->patches, precision);
-    if (scene->recorded || scene->flown || scene->noise_std > 0 || scene->target_count > scene->point_count)
-        return problem;
-    problem.target_count = scene->point_count;
-    problem.targets = scene->targets;
-    problem.judged_count = scene->reference_count;
-    problem.judged = scene->reference_patches;
-    return problem;
+    return problem_make(&scene->acquisition, scene->patch_count, scene->patches, precision);
 }

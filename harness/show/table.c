@@ -12,7 +12,7 @@
 #include "text/shown_text.h"
 #include "text/text_append.h"
 #include "measure/outcome.h"
-#include "measure/spec.h"
+#include "imaging/spec.h"
 
 enum { WIDTH_WIDE = 110, WIDTH_LEAST = 80 };
 /* Titles, units and values alike: algorithm, time, speed-up, rate, three errors, width, PSLR, ISLR; on a narrow

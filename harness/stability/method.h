@@ -3,7 +3,7 @@
 #ifndef SASBENCH_STABILITY_METHOD_H
 #define SASBENCH_STABILITY_METHOD_H
 
-#include "measure/spec.h"
+#include "imaging/spec.h"
 #include "stability/exact_image.h"
 
 struct method {

@@ -3,7 +3,7 @@
 #ifndef SASBENCH_STABILITY_STABILITY_H
 #define SASBENCH_STABILITY_STABILITY_H
 
-#include "measure/spec.h"
+#include "imaging/spec.h"
 
 #define STABILITY_EXPECTED SASBENCH_ROOT "/results/stability.csv"
 

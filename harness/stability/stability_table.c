@@ -63,7 +63,7 @@ void stability_table_line(int spec_count, const struct stability_row *rows)
                && strcmp(rows[k].spec->text, rows[first].spec->text) == 0;
              k++)
             worst = worse_of_two(worst, &rows[k].verdict);
-        if (worst->kind == VERDICT_REFUSED)
+        if (worst->kind == CANDIDATE_REFUSED)
             snprintf(cell, sizeof cell, "%.*s", CELL_WIDTH, worst->why);
         else if (worst->kind == VERDICT_FAILS)
             snprintf(cell, sizeof cell, "FAILS");

@@ -195,7 +195,7 @@ static void name_find(const char *message, char *name, size_t size)
 
 struct stability_verdict refusal_verdict(const char *message)
 {
-    struct stability_verdict verdict = {.kind = VERDICT_REFUSED,
+    struct stability_verdict verdict = {.kind = CANDIDATE_REFUSED,
                                         .error = NAN,
                                         .error_most = NAN,
                                         .difference = NAN,

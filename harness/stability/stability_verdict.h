@@ -17,7 +17,7 @@
 
 #define DIGITS_MOST 2.0
 
-enum verdict_kind { VERDICT_WORKS, VERDICT_DEGRADES, VERDICT_REFUSED, VERDICT_FAILS };
+enum verdict_kind { VERDICT_WORKS, VERDICT_DEGRADES, CANDIDATE_REFUSED, VERDICT_FAILS };
 
 struct stability_verdict {
     enum verdict_kind kind;

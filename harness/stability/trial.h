@@ -4,7 +4,7 @@
 #ifndef SASBENCH_STABILITY_TRIAL_H
 #define SASBENCH_STABILITY_TRIAL_H
 
-#include "measure/spec.h"
+#include "imaging/spec.h"
 #include "scene/scene.h"
 #include "stability/exact_image.h"
 

@@ -2,7 +2,7 @@
 #ifndef SASBENCH_SWEEP_SWEEP_SETTINGS_H
 #define SASBENCH_SWEEP_SWEEP_SETTINGS_H
 
-#include "measure/spec.h"
+#include "imaging/spec.h"
 
 /* Freed with settings_free, which accepts a zeroed struct. */
 struct sweep_settings {

@@ -11,12 +11,12 @@ find algorithms harness -name '*.[ch]' | sort | xargs awk '
         order = "algorithms/contract algorithms/common algorithms/backprojection/pairs algorithms/backprojection " \
                 "algorithms/backprojection/general algorithms/backprojection/invariant " \
                 "algorithms/backprojection/factorised algorithms/range_migration algorithms/range_migration/delay " \
-                "algorithms/wavenumber algorithms/planner algorithms/methods harness/text harness/files " \
-                "harness/echoes harness/scene harness/metrics harness/results harness/measure harness/show " \
+                "algorithms/wavenumber algorithms/methods harness/text harness/files " \
+                "harness/echoes harness/scene harness/metrics harness/imaging harness/choice harness/results harness/measure harness/show " \
                 "harness/report harness/sweep harness/advise harness/run harness/bench harness/stability harness/gate " \
                 "harness/papers harness/claims harness/command harness/tests " \
                 "harness/tests/algorithms harness/tests/echoes harness/tests/scene harness/tests/metrics " \
-                "harness/tests/results harness/tests/measure harness/tests/show harness/tests/report " \
+                "harness/tests/imaging harness/tests/results harness/tests/measure harness/tests/show harness/tests/report " \
                 "harness/tests/sweep harness/tests/advise harness/tests/run harness/tests/bench harness/tests/stability harness/tests/gate " \
                 "harness/tests/claims harness/tests/command harness/tests/fuzz harness/tests/digits"
         count = split(order, folder, " ")

@@ -7,7 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "measure/imaging.h"
+#include "imaging/imaging.h"
 #include "echoes/noise.h"
 #include "scene/random_scene.h"
 #include "scene/simulate.h"

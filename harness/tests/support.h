@@ -7,7 +7,7 @@
 #include "echoes/echo_data.h"
 #include "scene/random.h"
 #include "scene/scene.h"
-#include "measure/spec.h"
+#include "imaging/spec.h"
 
 /* Load a shipped scene; the test fails where that fails. */
 void support_scene(const char *name, struct scene *scene);

@@ -7,7 +7,7 @@
 #include "metrics/metrics.h"
 #include "measure/session.h"
 #include "measure/timing.h"
-#include "planner/planner.h"
+#include "choice/choice.h"
 #include "advise/machine_rates.h"
 #include "tests/support.h"
 
@@ -21,7 +21,7 @@ struct tally {
 };
 
 /* Measure what `auto` chooses for one scene and budget. */
-static void choice_measure(const struct session *session, const char *name, double budget, struct tally *tally)
+static void choice_measure(struct session *session, const char *name, double budget, struct tally *tally)
 {
     char text[64];
     struct spec spec;
@@ -127,9 +127,9 @@ static void subapertures_within_budget(void **state)
     const struct problem problem = scene_problem(&scene, PRECISION_FLOAT);
     assert_int_equal(session_open(&scene, &session), STATUS_OK);
     for (size_t k = 0; k < sizeof budgets / sizeof *budgets; k++) {
-        const struct budget budget = {budgets[k], 4e9};
+        const struct budget budget = {.error = budgets[k], .bytes = 4e9, .seconds = INFINITY};
         struct choice choice;
-        assert_int_equal(planner_choose(&problem, &budget, &choice), STATUS_OK);
+        assert_int_equal(choice_make(&problem, session.echoes, &budget, &choice), STATUS_OK);
         assert_true(choice.found);
         assert_string_equal(choice.list[0].algorithm->name, "bp_factorised");
         choice_free(&choice);

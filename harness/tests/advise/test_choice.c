@@ -9,12 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "measure/imaging.h"
+#include "imaging/imaging.h"
 #include "metrics/metrics.h"
 #include "measure/session.h"
 #include "measure/timing.h"
-#include "planner/candidates.h"
-#include "planner/process.h"
+#include "choice/candidates.h"
+#include "choice/process.h"
 #include "advise/machine_rates.h"
 #include "sweep/sweep_settings.h"
 #include "tests/support.h"
@@ -148,6 +148,8 @@ static void setting_run(const struct session *session, struct setting *setting, 
 {
     const struct problem problem = session_problem(session->scene, setting->spec.algorithm, PRECISION_FLOAT);
     const struct echoes *echoes = &session->echoes[PRECISION_FLOAT];
+    if (!setting->spec.algorithm->plan)
+        return;
     struct imaging imaging;
     struct image image;
     enum status status = imaging_open(&setting->spec, &problem, &imaging);
@@ -255,19 +257,20 @@ static const struct setting *sweep_finest(const struct sweep *sweep, double byte
 
 /* Errors and memory that nothing reaches, or little: where nothing is found, no setting of the sweep is within both.
    Predicted errors are upper bounds: near the budget a setting may be within it that is predicted not to be. */
-static void refusals_compare(const struct scene *scene, const char *name, const struct sweep *sweep,
+static void refusals_compare(const struct session *session, const char *name, const struct sweep *sweep,
                              struct tally *tally)
 {
     static const double errors[] = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8}, shares[] = {0.5, 0.999, 2, 1e6};
     enum { ERRORS = sizeof errors / sizeof *errors, SHARES = sizeof shares / sizeof *shares };
-    const struct problem problem = scene_problem(scene, PRECISION_FLOAT);
+    const struct problem problem = scene_problem(session->scene, PRECISION_FLOAT);
     for (int k = 0; k < ERRORS * SHARES; k++) {
         const double error = errors[k / SHARES];
         const double plan_bytes = shares[k % SHARES] * least_bytes(sweep, error);
-        const struct budget budget = {error, process_bytes(&problem, plan_bytes)};
+        const struct budget budget = {
+            .error = error, .bytes = process_bytes(&problem, plan_bytes), .seconds = INFINITY};
         const struct setting *finest = sweep_finest(sweep, plan_bytes);
         struct choice choice;
-        assert_int_equal(planner_choose(&problem, &budget, &choice), STATUS_OK);
+        assert_int_equal(choice_make(&problem, session->echoes, &budget, &choice), STATUS_OK);
         if (choice.found)
             assert_true(choice.list[0].bytes <= budget.bytes && choice.list[0].error <= error);
         tally->refused += !choice.found;
@@ -297,8 +300,11 @@ static void scene_compare(const struct scene *scene, const char *name, bool time
     }
     for (int k = 0; k < BUDGETS; k++) {
         const struct problem problem = scene_problem(scene, PRECISION_FLOAT);
-        const struct budget budget = {budgets[k], 4e9};
-        assert_int_equal(planner_choose(&problem, &budget, &comparisons[k].choice), STATUS_OK);
+        const struct budget budget = {.error = budgets[k],
+                                      .bytes = 4e9,
+                                      .seconds = INFINITY,
+                                      .region = {scene->reference_count, scene->reference_patches}};
+        assert_int_equal(choice_make(&problem, session.echoes, &budget, &comparisons[k].choice), STATUS_OK);
         comparisons[k].chosen = comparisons[k].choice.found ? sweep_find(&sweep, &comparisons[k].choice.list[0]) : NULL;
     }
     for (int k = 0; k < sweep.count; k++)
@@ -306,7 +312,7 @@ static void scene_compare(const struct scene *scene, const char *name, bool time
     for (int k = 0; k < BUDGETS; k++) {
         for (int n = 0; n < comparisons[k].choice.count; n++) {
             const struct candidate *c = &comparisons[k].choice.list[n];
-            if (c->forecast.sums_pairs && c->verdict != VERDICT_REFUSED)
+            if (c->forecast.sums_pairs && c->verdict != CANDIDATE_REFUSED)
                 sweep_find(&sweep, c)->said = c->seconds;
         }
         contenders_mark(&sweep, budgets[k]);
@@ -329,7 +335,7 @@ static void scene_compare(const struct scene *scene, const char *name, bool time
         comparison_print(name, budgets[k], &comparisons[k], &sweep, tally);
         choice_free(&comparisons[k].choice);
     }
-    refusals_compare(scene, name, &sweep, tally);
+    refusals_compare(&session, name, &sweep, tally);
     session_close(&session);
     sweep_free(&sweep);
 }

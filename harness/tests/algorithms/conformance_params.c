@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "measure/spec.h"
+#include "imaging/spec.h"
 #include "tests/assertions.h"
 
 #define PARAM_FAIL(p, format, ...) fail_msg("%s, %s: " format, algorithm->name, (p)->name, __VA_ARGS__)

@@ -8,7 +8,7 @@
 struct forecast forecast_of(const char *text, const struct problem *problem);
 
 /* Of a SPEC on the session's scene, by what planning knows of it; *error is the measured one. */
-double predicted_over_measured(const struct session *session, const char *text, double *error);
+double predicted_over_measured(struct session *session, const char *text, double *error);
 
 /* A random scene of which `count` points are all targets; freed by the caller. */
 void points_scene(int seed, int count, struct scene *scene);

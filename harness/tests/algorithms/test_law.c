@@ -90,79 +90,6 @@ static void measured_of_points(void **state)
     laws_compare(6201, 8, 2, 0.8);
 }
 
-/* A row of pixels through a target has neither the frequencies nor the fractions of a scene: it is carried out. */
-static void measured_of_rows(void **state)
-{
-    (void)state;
-    enum { SEEDS = 12, COLUMNS = 25 };
-    static double ratios[SEEDS * INTERPOLATORS];
-    int count = 0;
-    for (int seed = 6401; seed < 6401 + SEEDS; seed++) {
-        struct scene scene;
-        struct session session;
-        points_scene(seed, 1, &scene);
-        struct grid *row = &scene.patches[0];
-        const struct target *target = &scene.targets[0];
-        *row = (struct grid){.x_first = target->x - (COLUMNS / 2 - 0.3) * row->x_step,
-                             .x_step = row->x_step,
-                             .x_count = COLUMNS,
-                             .r_first = target->r,
-                             .r_step = row->r_step,
-                             .r_count = 1};
-        assert_int_equal(session_open(&scene, &session), STATUS_OK);
-        for (int k = 0; k < INTERPOLATORS; k++) {
-            double error;
-            const double ratio = predicted_over_measured(&session, interpolators[k], &error);
-            if (!(ratio > 0.95))
-                fail_msg("seed %d, %s: an error of %g is predicted, %g measured", seed, interpolators[k], ratio * error,
-                         error);
-            if (error > 1e-4)
-                ratios[count++] = ratio;
-        }
-        session_close(&session);
-        scene_free(&scene);
-    }
-    const double middle = median(ratios, count); /* sorts them */
-    print_message("predicted over measured: %.2f to %.2f, median %.2f\n", ratios[0], ratios[count - 1], middle);
-    if (!(middle > 1.1 && middle < 1.5 && ratios[count - 1] < 2.5))
-        fail_msg(
-            "the median of predicted over measured errors is %g, must be from 1.1 to 1.5, the most %g, at most 2.5",
-            middle, ratios[count - 1]);
-}
-
-/* Pixels that miss a target's peak show little of it, beside which errors are large, whatever the beam. */
-static void measured_of_coarse_pixels(void **state)
-{
-    (void)state;
-    static const char *const specs[] = {"bp_nearest", "bp_linear:beta=8", "bp_farrow:degree=2", "bp_farrow:degree=3",
-                                        "bp_zeropad:factor=16"};
-    for (int seed = 6601; seed < 6613; seed++) {
-        struct scene scene;
-        struct session session;
-        points_scene(seed, 1, &scene);
-        struct grid *g = &scene.patches[0];
-        const struct target *target = &scene.targets[0];
-        g->x_step *= seed % 2 ? 3 : 0.5;
-        g->r_step *= seed % 2 ? 0.5 : 1.5;
-        g->x_first = target->x - (g->x_count / 2 - 0.5) * g->x_step;
-        g->r_first = target->r - (g->r_count / 2 - 0.5) * g->r_step;
-        if (seed % 3 == 0) {
-            scene.beam = (struct beam){.kind = BEAM_RECT, .truncation = TRUNCATION_NONE};
-            scene.acquisition.echo_sine = INFINITY;
-            scene.acquisition.echo_tapers = false;
-        }
-        assert_int_equal(session_open(&scene, &session), STATUS_OK);
-        for (size_t k = 0; k < sizeof specs / sizeof *specs; k++) {
-            double error;
-            const double ratio = predicted_over_measured(&session, specs[k], &error);
-            if (!(ratio > 0.88))
-                fail_msg("seed %d, %s: an error of %g is predicted, %g measured", seed, specs[k], ratio * error, error);
-        }
-        session_close(&session);
-        scene_free(&scene);
-    }
-}
-
 /* Noise has frequencies beyond the band of compressed echoes: settings that are called by their error keep it. */
 static void noise_keeps_errors(void **state)
 {
@@ -283,8 +210,6 @@ int main(void)
         cmocka_unit_test(closed_forms),
         cmocka_unit_test_setup_teardown(measured, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(measured_of_points, folder_make, folder_remove),
-        cmocka_unit_test_setup_teardown(measured_of_rows, folder_make, folder_remove),
-        cmocka_unit_test_setup_teardown(measured_of_coarse_pixels, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(noise_keeps_errors, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(flanks, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(few_pings_met, folder_make, folder_remove),

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "measure/spec.h"
+#include "imaging/spec.h"
 #include "scene/scene.h"
 #include "tests/support.h"
 

@@ -6,9 +6,9 @@
 #include <sys/wait.h>
 
 #include "files/paths.h"
-#include "measure/imaging.h"
-#include "planner/planner.h"
-#include "planner/process.h"
+#include "imaging/imaging.h"
+#include "choice/choice.h"
+#include "choice/process.h"
 #include "scene/scene.h"
 #include "tests/command/program.h"
 
@@ -88,12 +88,16 @@ static void budgets_are_of_the_process(void **state)
     struct choice choice, less;
     assert_int_equal(scene_load("study/swath", SCENE_DIRECTORY, &scene), STATUS_OK);
     const struct problem problem = scene_problem(&scene, PRECISION_FLOAT);
-    assert_int_equal(planner_choose(&problem, &(struct budget){1e-2, 1e12}, &choice), STATUS_OK);
+    assert_int_equal(choice_make(&problem, NULL, &(struct budget){.error = 1e-2, .bytes = 1e12}, &choice), STATUS_OK);
     assert_true(choice.found && choice.list[0].bytes > process_bytes(&problem, 0));
-    assert_int_equal(planner_choose(&problem, &(struct budget){1e-2, choice.list[0].bytes - 1}, &less), STATUS_OK);
+    assert_int_equal(
+        choice_make(&problem, NULL, &(struct budget){.error = 1e-2, .bytes = choice.list[0].bytes - 1}, &less),
+        STATUS_OK);
     assert_true(!less.found || less.list[0].bytes < choice.list[0].bytes);
     choice_free(&less);
-    assert_int_equal(planner_choose(&problem, &(struct budget){1e-2, process_bytes(&problem, 0)}, &less), STATUS_OK);
+    assert_int_equal(
+        choice_make(&problem, NULL, &(struct budget){.error = 1e-2, .bytes = process_bytes(&problem, 0)}, &less),
+        STATUS_OK);
     assert_true(!less.found);
     choice_free(&less);
     choice_free(&choice);

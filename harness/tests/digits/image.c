@@ -2,7 +2,7 @@
 #include <stdio.h>
 
 #include "echoes/echo_data.h"
-#include "measure/spec.h"
+#include "imaging/spec.h"
 #include "scene/scene.h"
 #include "scene/simulate.h"
 

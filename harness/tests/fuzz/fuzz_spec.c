@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "measure/spec.h"
+#include "imaging/spec.h"
 #include "scene/scene.h"
 #include "tests/fuzz/input.h"
 

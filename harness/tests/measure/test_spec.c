@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "measure/spec.h"
+#include "imaging/spec.h"
 #include "tests/assertions.h"
 
 /* Two algorithms that exist only here: one with every type of param, one without any. */

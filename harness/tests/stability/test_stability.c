@@ -242,7 +242,7 @@ static void rows_are_held_to_what_is_expected(void **state)
         {row_of(&spec, VERDICT_WORKS, "", 0.2, 0.5), 1, 0}, /* beyond the bound of the error */
         {row_of(&spec, VERDICT_WORKS, "", 0.1, 2.1), 1, 0}, /* of the digits */
         {row_of(&spec, VERDICT_DEGRADES, "", 0.1, 0.5), 1, 0},
-        {row_of(&spec, VERDICT_REFUSED, "lbf_law", NAN, NAN), 1, 0},
+        {row_of(&spec, CANDIDATE_REFUSED, "lbf_law", NAN, NAN), 1, 0},
         {row_of(&other, VERDICT_WORKS, "", 0.2, 0.5), 0, 1}, /* nothing is expected */
         {row_of(&other, VERDICT_FAILS, "digits", 0.2, 3), 1, 0},
     };
@@ -250,7 +250,7 @@ static void rows_are_held_to_what_is_expected(void **state)
         assert_int_equal(differences(&cases[k].row, &unknown), cases[k].differ);
         assert_int_equal(unknown, cases[k].unknown);
     }
-    struct stability_row refused = row_of(&spec, VERDICT_REFUSED, "lbf_law", NAN, NAN);
+    struct stability_row refused = row_of(&spec, CANDIDATE_REFUSED, "lbf_law", NAN, NAN);
     assert_int_equal(stability_expected_write(path_of("expected.csv"), 1, &refused), STATUS_OK);
     assert_int_equal(differences(&refused, &unknown), 0);
     assert_int_equal(differences(&works, &unknown), 1);

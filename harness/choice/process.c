@@ -1,4 +1,4 @@
-#include "planner/process.h"
+#include "choice/process.h"
 
 #include <math.h>
 

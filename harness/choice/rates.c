@@ -1,4 +1,4 @@
-#include "planner/rates.h"
+#include "choice/rates.h"
 
 #include <math.h>
 #include <omp.h>

@@ -1,6 +1,6 @@
 /* How fast this machine does what a plan counts. */
-#ifndef SASBENCH_PLANNER_RATES_H
-#define SASBENCH_PLANNER_RATES_H
+#ifndef SASBENCH_CHOICE_RATES_H
+#define SASBENCH_CHOICE_RATES_H
 
 #include "contract/algorithm.h"
 

@@ -1,4 +1,4 @@
-#include "planner/candidates.h"
+#include "choice/candidates.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -82,7 +82,7 @@ static bool candidate_fill(int family, const char *value, struct candidate *cand
     char fixed[48], *key, *rest = fixed;
     if (!algorithm || !algorithm->forecast || algorithm->options_size > sizeof candidate->options)
         return false;
-    *candidate = (struct candidate){.algorithm = algorithm};
+    *candidate = (struct candidate){.algorithm = algorithm, .family = family};
     options_fill(algorithm, candidate->options);
     snprintf(fixed, sizeof fixed, "%s", families[family].fixed);
     while ((key = strsep(&rest, "=")) && *key)

@@ -1,6 +1,6 @@
 /* The memory of a process that forms an image. */
-#ifndef SASBENCH_PLANNER_PROCESS_H
-#define SASBENCH_PLANNER_PROCESS_H
+#ifndef SASBENCH_CHOICE_PROCESS_H
+#define SASBENCH_CHOICE_PROCESS_H
 
 #include "contract/algorithm.h"
 

@@ -1,8 +1,8 @@
 /* One algorithm at work on one problem: plan, execute, the check of the result and destroy stand here alone. */
-#ifndef SASBENCH_MEASURE_IMAGING_H
-#define SASBENCH_MEASURE_IMAGING_H
+#ifndef SASBENCH_IMAGING_IMAGING_H
+#define SASBENCH_IMAGING_IMAGING_H
 
-#include "measure/spec.h"
+#include "imaging/spec.h"
 
 /* Made by imaging_open, released by imaging_close, which accepts a zeroed struct. */
 struct imaging {

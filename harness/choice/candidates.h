@@ -1,8 +1,8 @@
 /* The settings that a planner chooses among. */
-#ifndef SASBENCH_PLANNER_CANDIDATES_H
-#define SASBENCH_PLANNER_CANDIDATES_H
+#ifndef SASBENCH_CHOICE_CANDIDATES_H
+#define SASBENCH_CHOICE_CANDIDATES_H
 
-#include "planner/planner.h"
+#include "choice/choice.h"
 
 enum { CANDIDATES_MAX = 128 };
 

@@ -1,6 +1,6 @@
 /* SPEC on the command line: NAME or NAME:key=value,key=value. */
-#ifndef SASBENCH_MEASURE_SPEC_H
-#define SASBENCH_MEASURE_SPEC_H
+#ifndef SASBENCH_IMAGING_SPEC_H
+#define SASBENCH_IMAGING_SPEC_H
 
 #include <stdint.h>
 

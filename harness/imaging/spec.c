@@ -1,5 +1,5 @@
 /* SPEC parsing, driven by the algorithms' param tables. */
-#include "measure/spec.h"
+#include "imaging/spec.h"
 
 #include <limits.h>
 #include <math.h>

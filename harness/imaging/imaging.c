@@ -1,5 +1,5 @@
 /* Plan, execute, check, destroy (imaging.h). */
-#include "measure/imaging.h"
+#include "imaging/imaging.h"
 
 #include "echoes/echo_data.h"
 

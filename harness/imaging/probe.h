@@ -1,0 +1,56 @@
+/* An image's error, measured on few of its pixels: the exact image of some segments of rows, half of them the brightest
+   of a pilot image, half drawn from the rest in order of brightness. It is relative to what the image shows, whatever
+   the scene, and needs neither targets nor the whole exact image. */
+#ifndef SASBENCH_IMAGING_PROBE_H
+#define SASBENCH_IMAGING_PROBE_H
+
+#include "imaging/spec.h"
+
+/* At most so many pixels are compared; an image of twice as many is taken whole. */
+#define PROBE_PIXELS 1024
+
+/* Where a segment lies in the image: columns from `column` on of one row of a patch. */
+struct probe_place {
+    int patch, row, column;
+    double stands_for; /* segments of the image, 1 or more */
+};
+
+/* Made by probe_make, released by probe_free, which accepts a zeroed struct. */
+struct probe {
+    bool whole; /* an image of few pixels is taken whole: its patches are the grids */
+    int count;  /* segments */
+    int bright; /* of them: the brightest, which stand for themselves; the others follow in order of brightness */
+    struct probe_place *places; /* [count]; NULL for the whole image */
+    struct grid *grids;         /* [count], one row each but for the whole image */
+    struct image exact;         /* of `grids` */
+};
+
+/* Where errors count. */
+struct region {
+    int count; /* 0: everywhere */
+    const struct grid *grids;
+};
+
+/* Choose segments by the magnitudes of a pilot, any image of the problem's patches, and form the exact image of them by
+   a SPEC, to which `echoes` belong. Segments whose middle lies outside of the region are left out. The choice is the same for the same pilot. Errors: as imaging_form; *probe then
+   needs no free. */
+enum status probe_make(const struct spec *exact, const struct problem *problem, const struct echoes *echoes,
+                       const struct image *pilot, const struct region *region, struct probe *probe);
+/* Form the exact image of the same segments again, by another SPEC. Errors: as imaging_form; *probe stays as it was. */
+enum status probe_exact(const struct spec *exact, const struct problem *problem, const struct echoes *echoes,
+                        struct probe *probe);
+void probe_free(struct probe *probe);
+/* The problem of the segments alone, which points into the probe. */
+struct problem probe_problem(const struct probe *probe, const struct problem *problem);
+
+/* Relative L2 of the complex image, as metrics_error says it of all pixels. */
+struct probe_error {
+    double error, error_gain; /* plain, and after one best complex gain; NAN where the exact segments are all zero */
+    double low, high; /* of error_gain, at 95 % confidence; both error_gain where the probe is the whole image */
+    int pixels;       /* that were compared */
+};
+struct probe_error probe_measure(const struct probe *probe, const struct image *image);
+/* Of an image of probe_problem. */
+struct probe_error probe_measure_pixels(const struct probe *probe, const struct image *pixels);
+
+#endif
