@@ -131,7 +131,7 @@ enum status check_algorithm(const struct scene *scene, const struct spec *spec, 
         condition_keep(found, &list[k], spec->algorithm->name);
     enum status status = STATUS_OK;
     *refused = !conditions_accept(list, count);
-    if (!*refused) {
+    if (!*refused && spec->algorithm->plan) { /* a choice among the others has none */
         status = algorithm_plan(spec->algorithm, &problem, spec->options, &plan);
         spec->algorithm->destroy(plan);
         *refused = status == STATUS_UNSUPPORTED;

@@ -14,7 +14,7 @@
 #include "imaging/imaging.h"
 #include "metrics/metrics.h"
 
-enum { LENGTH = 16, COUNT = PROBE_PIXELS / LENGTH, BRIGHT = 16, DRAWN = COUNT - BRIGHT, WHOLE = 2 * PROBE_PIXELS };
+enum { LENGTH = 8, COUNT = PROBE_PIXELS / LENGTH, BRIGHT = 32, DRAWN = COUNT - BRIGHT, WHOLE = 2 * PROBE_PIXELS };
 static const double DEVIATIONS = 2; /* of Student's distribution with some thirty degrees of freedom, at 95 % */
 
 struct segment {

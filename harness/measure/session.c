@@ -30,8 +30,10 @@ static void choose(const struct session *session, const struct spec *spec, const
 {
     const struct problem problem = scene_problem(session->scene, spec->precision);
     const double begin = seconds_now();
-    *chosen = (struct chosen){.asked = spec};
-    chosen->status = choice_make(&problem, session->echoes, budget, &chosen->choice);
+    *chosen = (struct chosen){.choice = {.list = NULL}};
+    chosen->status = spec_copy(spec, &chosen->asked);
+    if (chosen->status == STATUS_OK)
+        chosen->status = choice_make(&problem, session->echoes, budget, &chosen->choice);
     if (chosen->status == STATUS_OK)
         chosen->status = choice_spec(&chosen->choice, budget, spec->precision, &chosen->spec);
     if (chosen->status != STATUS_OK)
@@ -47,7 +49,7 @@ const struct chosen *session_chosen(struct session *session, const struct spec *
         return NULL;
     budget.region = (struct region){session->scene->reference_count, session->scene->reference_patches};
     for (int k = 0; k < session->chosen_count; k++)
-        if (spec_equal(session->chosen[k].asked, spec))
+        if (spec_equal(&session->chosen[k].asked, spec))
             return &session->chosen[k];
     struct chosen *list = realloc(session->chosen, ((size_t)session->chosen_count + 1) * sizeof *session->chosen);
     if (!list) {
@@ -131,6 +133,7 @@ void session_close(struct session *session)
     for (int k = 0; k < session->chosen_count; k++) {
         choice_free(&session->chosen[k].choice);
         spec_free(&session->chosen[k].spec);
+        spec_free(&session->chosen[k].asked);
     }
     free(session->chosen);
     control_end(&session->control);

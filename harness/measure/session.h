@@ -16,7 +16,7 @@ struct spent {
 
 /* What a SPEC that leaves the choice to the harness became on a scene. */
 struct chosen {
-    const struct spec *asked; /* borrowed */
+    struct spec asked;
     struct choice choice;     /* without the image */
     enum status status;       /* STATUS_UNSUPPORTED where nothing fits; the rest is then not to be used */
     char message[600];        /* why */
@@ -52,7 +52,7 @@ void session_spent(const struct session *session, struct spent *sum);
 struct problem session_problem(const struct scene *scene, const struct algorithm *algorithm, enum precision precision);
 
 /* What the SPEC leaves to choose, chosen once; NULL where it names its algorithm, or where memory is missing, with a
-   message. The SPEC must outlive the session. It moves when another is chosen. */
+   message. It moves when another is chosen. */
 const struct chosen *session_chosen(struct session *session, const struct spec *spec);
 /* The SPEC itself, or the one chosen for it. Errors: STATUS_UNSUPPORTED where nothing fits, as choice_make. */
 enum status session_resolve(struct session *session, const struct spec *spec, const struct spec **resolved);

@@ -5,6 +5,7 @@ int main(void)
 {
     int failed = 0;
     for (int k = 0; algorithms[k]; k++)
-        failed += conformance_run(algorithms[k]);
+        if (algorithms[k]->plan) /* else a choice among the others */
+            failed += conformance_run(algorithms[k]);
     return failed;
 }

