@@ -51,11 +51,11 @@ static enum status candidate_spec(const struct candidate *c, enum precision prec
 /* ---- the exact image on the probe ---- */
 
 /* The fastest that is exact beside the budget by law; of an image that is dark beside its echoes no law tells. In the
-   general engine: few pixels pay neither for tables nor for branches of whole records. */
+   general engine, by every delay: few pixels pay neither for tables nor for what stands for delays. */
 static enum status exact_spec(struct trial *t, struct spec *spec)
 {
-    static const char *const settings[] = {"bp_sinc:window=kaiser_band,engine=general,taps=16",
-                                           "bp_sinc:window=kaiser_band,engine=general,taps=32"};
+    static const char *const settings[] = {"bp_sinc:window=kaiser_band,exact=true,taps=16",
+                                           "bp_sinc:window=kaiser_band,exact=true,taps=32"};
     for (size_t k = 0; k < sizeof settings / sizeof *settings && !t->dark; k++) {
         struct forecast forecast;
         enum status status = spec_parse(settings[k], spec);

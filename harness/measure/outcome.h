@@ -22,7 +22,7 @@ struct outcome {
     struct work work;   /* of the plan */
     int target_count;   /* rows, several for each point target */
     struct target_row *targets;
-    char reason[1200], skipped[400], stages[512], noise[300];
+    char reason[2400], skipped[400], stages[512], noise[300];
 };
 
 /* "warning: condition NAME: MEANING is VALUE, limit LIMIT (cure: CURE)". */
