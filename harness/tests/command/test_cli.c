@@ -227,7 +227,7 @@ static void run_leaves_its_results_and_keeps_them(void **state)
     int good = rows_with_status(&first, "ok");
     assert_true(good >= 5); /* reference and the back projections image everything */
     assert_int_equal(rows_with_status(&first, "failed"), 0);
-    assert_int_equal(pictures_count("results/quick"), good + 1);
+    assert_int_equal(pictures_count("results/quick"), good + 2); /* slices, and error against time */
     assert_int_equal(access(path_in("results/quick/study_quick-slices.svg"), F_OK), 0);
     for (int row = 0; row < first.row_count; row++) {
         double run_s, error;
@@ -305,8 +305,8 @@ static void interrupted_run_resumes(void **state)
     assert_int_equal(rows_with_status(&after, "ok"), 2);
     assert_string_equal(csv_cell(&after, 1, csv_column(&after, "scene")), "study/quick");
     assert_int_equal(rows_now(targets), 2 * 5); /* one target: three definitions along x, two along r */
-    /* Each scene's image, and the slices of the scene that the second call measured. */
-    assert_in_range(pictures_count("results/cut"), 3, 4);
+    /* Each scene's image, the slices of the scene that the second call measured, error against time, the overview. */
+    assert_in_range(pictures_count("results/cut"), 5, 6);
     csv_free(&before);
     csv_free(&after);
 }
