@@ -1,5 +1,5 @@
 /* Choosing among candidates (choice.h): from the fastest on, that which is within the budget by law is formed, and
-   verified on a probe (measure/probe.h). Where it fails, it tells how much brighter the echoes are than the image, which
+   measured on a probe (imaging/probe.h). Where it fails, it tells how much brighter the echoes are than the image, which
    no law knows, and the next is chosen by that. Back projection after the first is formed on the probe's pixels alone;
    range migration, whose images have no pixels of their own, whole. */
 #include "choice/choice.h"

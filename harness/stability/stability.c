@@ -106,6 +106,16 @@ static enum status spec_add(struct run *run, const struct spec *spec)
     return status;
 }
 
+/* `auto` is a choice among the others, and no method of its own. */
+static enum status spec_take(struct run *run, const struct spec *spec, bool asked)
+{
+    if (spec->algorithm->plan)
+        return spec_add(run, spec);
+    return asked ? status_set(STATUS_INVALID, "stability: %s chooses among the other algorithms; try one of these",
+                              spec->algorithm->name)
+                 : STATUS_OK;
+}
+
 static enum status specs_choose(const struct stability_request *request, struct run *run)
 {
     int all = 0;
@@ -118,13 +128,13 @@ static enum status specs_choose(const struct stability_request *request, struct 
         return status_set(STATUS_FAILED, "stability: no memory for %d algorithms", count);
     for (int k = 0; k < count && status == STATUS_OK; k++) {
         if (request->spec_count) {
-            status = spec_add(run, &request->specs[k]);
+            status = spec_take(run, &request->specs[k], true);
             continue;
         }
         struct spec spec;
         status = spec_parse(k < all ? algorithms[k]->name : settings[k - all], &spec);
         if (status == STATUS_OK)
-            status = spec_add(run, &spec);
+            status = spec_take(run, &spec, false);
         spec_free(&spec);
     }
     return status;

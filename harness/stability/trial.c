@@ -16,7 +16,6 @@
 #include <unistd.h>
 
 #include "echoes/echo_data.h"
-#include "choice/choice.h"
 #include "imaging/imaging.h"
 #include "scene/simulate.h"
 #include "stability/method.h"
@@ -60,15 +59,10 @@ static enum status image_form(const struct scene *scene, const struct echoes *ec
                               int threads, struct image *image, struct attempt *attempt)
 {
     const struct problem problem = scene_problem(scene, spec->precision);
-    struct spec chosen;
     struct work work;
     omp_set_num_threads(threads);
     feclearexcept(FE_ALL_EXCEPT);
-    enum status status = choice_resolve(spec, &problem, echoes, &chosen);
-    if (status == STATUS_OK) {
-        status = imaging_form(&chosen, &problem, &echoes[spec->precision], image, &work);
-        spec_free(&chosen);
-    }
+    enum status status = imaging_form(spec, &problem, &echoes[spec->precision], image, &work);
     if (threads == 1)
         attempt->exceptions = fetestexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW);
     if (status == STATUS_OK)
