@@ -115,7 +115,7 @@ struct param {
     const char *const *choices; /* NULL-terminated names of a choice, else NULL */
     const char *sweep;          /* the values that `sweep` runs, separated by blanks; may be NULL */
     bool terse;                 /* left out of the options text while it has its default */
-    bool hidden;                /* the plain path that tests compare with and the papers' times are of: no user's setting */
+    bool hidden; /* the plain path that tests compare with and the papers' times are of: no user's setting */
 };
 
 /* A row begins with  {PARAM(struct options, taps), .summary = ...  for a number, an int or a double, or with
@@ -146,8 +146,8 @@ struct algorithm {
        that plan refuses by. NULL: conditions_general. */
     int (*conditions)(const struct problem *problem, const void *method, const void *options, struct condition *list,
                       int room);
-    /* The relative L2 error that an image by these settings is to keep; a row that does not warns. NAN, or NULL: none is
-       promised. */
+    /* The relative L2 error that an image by these settings is to keep; a row that does not warns. NAN, or NULL:
+       none is promised. */
     double (*promise)(const void *options);
     /* What the settings will make of a problem, without a plan; far cheaper than one, but for range migration. Errors:
        STATUS_UNSUPPORTED with the reason, as plan, STATUS_FAILED without memory. NULL: nothing is known beforehand, and

@@ -16,8 +16,8 @@ const char *const plan_verdict_names[] = {[CANDIDATE_CHOSEN] = "chosen",
                                           [CANDIDATE_MEMORY] = "memory",
                                           [CANDIDATE_REFUSED] = "refused"};
 
-/* Echoes that an error can be measured with in the time of a plan: of some of the targets, evenly, where there are more.
-   Recorded ones as they are. */
+/* Echoes that an error can be measured with in the time of a plan: of some of the targets, evenly, where there are
+   more. Recorded ones as they are. */
 enum { TARGETS_MOST = 16, SAMPLES_MOST = 30000000 };
 
 static enum status echoes_make(const struct scene *scene, struct echoes echoes[2])

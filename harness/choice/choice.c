@@ -1,7 +1,7 @@
 /* Choosing among candidates (choice.h): from the fastest on, that which is within the budget by law is formed, and
-   measured on a probe (imaging/probe.h). Where it fails, it tells how much brighter the echoes are than the image, which
-   no law knows, and the next is chosen by that. Back projection after the first is formed on the probe's pixels alone;
-   range migration, whose images have no pixels of their own, whole. */
+   measured on a probe (imaging/probe.h). Where it fails, it tells how much brighter the echoes are than the image,
+   which no law knows, and the next is chosen by that. Back projection after the first is formed on the probe's
+   pixels alone; range migration, whose images have no pixels of their own, whole. */
 #include "choice/choice.h"
 
 #include <math.h>
@@ -89,8 +89,8 @@ static enum status probe_again(struct trial *t, const struct image *pilot)
 
 /* ---- one candidate ---- */
 
-/* Form its image of the problem, and *work of its plan; the image is empty where it is out by memory or refused. `image`
-   NULL: plan it only. */
+/* Form its image of the problem, and *work of its plan; the image is empty where it is out by memory or refused.
+   `image` NULL: plan it only. */
 static enum status candidate_form(struct trial *t, struct candidate *c, const struct problem *problem,
                                   struct image *image, struct work *work)
 {
@@ -290,8 +290,8 @@ static enum status faster_look(struct trial *t, struct candidate **chosen)
     return status;
 }
 
-/* The fastest so far. Images of subapertures take as long to forecast as a small image does to be formed: they are looked
-   at ahead of a back projection that takes longer, and after all else. */
+/* The fastest so far. Images of subapertures take as long to forecast as a small image does to be formed: they are
+   looked at ahead of a back projection that takes longer, and after all else. */
 static struct candidate *next_candidate(struct choice *choice)
 {
     struct candidate *best = laws_fastest(choice, false), *any = laws_fastest(choice, true);

@@ -18,8 +18,9 @@ struct setting {
 /* Of the budget, the error that what stands for the exact image may have by law. */
 #define LAWS_EXACT 0.1
 
-/* Fill the choice with all candidates, of each family up to one that is so exact. Those within the budget by law are slower (CANDIDATE_SLOWER) until one is chosen;
-   those of which no law tells the error have INFINITY. Errors: STATUS_FAILED. */
+/* Fill the choice with all candidates, of each family up to one that is so exact. Those within the budget by law are
+   slower (CANDIDATE_SLOWER) until one is chosen; those of which no law tells the error have INFINITY. Errors:
+   STATUS_FAILED. */
 enum status laws_fill(struct setting *setting, struct choice *choice);
 
 /* Look at more of each family, where the ratio asks for it. */
@@ -38,8 +39,8 @@ void laws_compare(const struct setting *setting, struct candidate *candidate);
 bool laws_without_tables(const struct setting *setting, const struct candidate *from, struct choice *choice,
                          enum status *status);
 
-/* The fastest within the budget so far, its error known or not; NULL without one. Without the costly, none that is still
-   to be completed. */
+/* The fastest within the budget so far, its error known or not; NULL without one. Without the costly, none that is
+   still to be completed. */
 struct candidate *laws_fastest(struct choice *choice, bool costly);
 
 /* One that is refused says why, and that is no error. */

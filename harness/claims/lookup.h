@@ -6,8 +6,8 @@
 
 /* Is it the name of such a function? */
 bool lookup_exists(const char *name);
-/* The call of `name`, which stands at `at` and whose opening parenthesis was taken. `accepted` are other functions' names,
-   for the message when there is none of that name. Errors: as quantities_read. */
+/* The call of `name`, which stands at `at` and whose opening parenthesis was taken. `accepted` are other functions'
+   names, for the message when there is none of that name. Errors: as quantities_read. */
 enum status lookup_read(struct formula *formula, const char *at, const char *name, const char *accepted,
                         struct values *values);
 

@@ -54,13 +54,13 @@ struct formula {
     } named[NAMES_MAX];
 };
 
-/* The columns of numbers.csv: whose number it is (a claim's ID, or a paper), its name, and what it is, in which rows above
-   may be named. */
+/* The columns of numbers.csv: whose number it is (a claim's ID, or a paper), its name, and what it is, in which rows
+   above may be named. */
 enum number_column { NUMBER_OF, NUMBER_NAME, NUMBER_DEFINITION };
 
-/* Define the names of a cell "name = expression; name", the latter being a row of numbers.csv; it may be empty. Errors: STATUS_INVALID naming file, line, column,
-   character, what stands there and what is accepted. A number that is missing or not finite is no error but a reason in
-   measured->missing. */
+/* Define the names of a cell "name = expression; name", the latter being a row of numbers.csv; it may be empty.
+   Errors: STATUS_INVALID naming file, line, column, character, what stands there and what is accepted. A number that
+   is missing or not finite is no error but a reason in measured->missing. */
 enum status quantities_read(struct formula *formula, const char *column, const char *text);
 /* The expression that stands next. Errors: as above. */
 enum status quantity_read(struct formula *formula, struct values *values);

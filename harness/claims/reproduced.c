@@ -259,8 +259,9 @@ static void lines_keep(const struct selection *selection, struct reproduced *lin
     *count = kept;
 }
 
-/* A processor, over the last 15 minutes; 0 where the system does not tell it. What was evaluated before with the same program keeps
-   the load of that time: times that were measured on a busy machine do not get better on a quiet one. */
+/* A processor, over the last 15 minutes; 0 where the system does not tell it. What was evaluated before with the
+   same program keeps the load of that time: times that were measured on a busy machine do not get better on a quiet
+   one. */
 static double load_average(const char *directory, const struct measured *measured)
 {
     double loads[3], load = 0, before = 0;

@@ -18,8 +18,8 @@ void verdicts_add(struct verdicts *verdicts, int claim, const struct evaluation 
 /* The counts of those that were evaluated, by scheme. */
 void verdicts_print(FILE *stream, const struct verdicts *verdicts);
 
-/* The counts by paper and scheme, and a row for each claim that was evaluated, in Markdown; `head`: what was measured with
-   what. Errors: of files. */
+/* The counts by paper and scheme, and a row for each claim that was evaluated, in Markdown; `head`: what was
+   measured with what. Errors: of files. */
 enum status verdicts_write(const char *path, const char *head, const struct verdicts *verdicts);
 
 #endif

@@ -1,7 +1,7 @@
-/* Stratified sampling with a ratio estimator (Cochran, Sampling Techniques, 1977, sections 5A.11, 6.4 and 8.11): energies
-   of the error and of the exact image are added up over the segments, each with the number of segments that it stands
-   for. The brightest stand for themselves alone, so that an image of lone targets is measured as well as a field. The
-   variance of the rest follows from the differences of neighbours in order of brightness. */
+/* Stratified sampling with a ratio estimator (Cochran, Sampling Techniques, 1977, sections 5A.11, 6.4 and 8.11):
+   energies of the error and of the exact image are added up over the segments, each with the number of segments that
+   it stands for. The brightest stand for themselves alone, so that an image of lone targets is measured as well as a
+   field. The variance of the rest follows from the differences of neighbours in order of brightness. */
 #include "imaging/probe.h"
 
 #include <complex.h>

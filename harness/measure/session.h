@@ -17,9 +17,9 @@ struct spent {
 /* What a SPEC that leaves the choice to the harness became on a scene. */
 struct chosen {
     struct spec asked;
-    struct choice choice;     /* without the image */
-    enum status status;       /* STATUS_UNSUPPORTED where nothing fits; the rest is then not to be used */
-    char message[600];        /* why */
+    struct choice choice; /* without the image */
+    enum status status;   /* STATUS_UNSUPPORTED where nothing fits; the rest is then not to be used */
+    char message[600];    /* why */
     struct spec spec;
     double seconds; /* that choosing took beyond forming the chosen image once */
 };

@@ -37,8 +37,8 @@ static double edge_phase_rad(const struct acquisition *a)
     return acos(-1) * a->bandwidth / (2 * a->fs);
 }
 
-/* What linear upsampling by beta leaves at the edge of the band: the nearest of its points lies up to 1/(beta + 1) of the
-   way off that a nearest sample does, and a point's own phase, atan(t tan(edge)), is not the line's, t edge. */
+/* What linear upsampling by beta leaves at the edge of the band: the nearest of its points lies up to 1/(beta + 1)
+   of the way off that a nearest sample does, and a point's own phase, atan(t tan(edge)), is not the line's, t edge. */
 static double linear_bound_rad(const struct acquisition *a, int beta)
 {
     const double edge = edge_phase_rad(a);

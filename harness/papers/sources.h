@@ -5,8 +5,8 @@
 #include "papers/measured.h"
 #include "papers/schemes.h"
 
-/* Engines and settings that stand for the papers' methods; LBF by the scheme that is evaluated (schemes.h). PCA's and Wu's
-   correction follows range by interpolation (LBF21 V-A), for which blocks that blend stand. */
+/* Engines and settings that stand for the papers' methods; LBF by the scheme that is evaluated (schemes.h). PCA's
+   and Wu's correction follows range by interpolation (LBF21 V-A), for which blocks that blend stand. */
 #define NEAREST   "bp_nearest"
 #define LINEAR_2  "bp_linear:beta=2"
 #define LINEAR_8  "bp_linear:beta=8"

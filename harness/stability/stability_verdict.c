@@ -1,4 +1,5 @@
-/* Verdicts (stability_verdict.h). Norms are in long double, which neither overflows nor underflows on what double holds. */
+/* Verdicts (stability_verdict.h). Norms are in long double, which neither overflows nor underflows on what double
+   holds. */
 #include "stability/stability_verdict.h"
 
 #include <fenv.h>

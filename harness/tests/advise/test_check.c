@@ -33,8 +33,7 @@ static struct scene scene_of(const struct parts *varied)
              "targets = { points = ( %s ); };\nimage = { %s };\n",
              PART(sonar), PART(array), PART(track), PART(record), PART(limit), PART(beam), PART(targets), PART(image));
     support_write("scene.cfg", text);
-    if (scene_load(path_of("scene.cfg"), SASBENCH_ROOT "/scenes", &scene) != STATUS_OK)
-        fail_msg("%s", status_message());
+    support_scene(path_of("scene.cfg"), &scene);
     return scene;
 }
 

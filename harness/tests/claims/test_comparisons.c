@@ -1,4 +1,5 @@
-/* The language of results/claims.csv: its arithmetic, each comparison on planted numbers, what is known of the rules. */
+/* The language of results/claims.csv: its arithmetic, each comparison on planted numbers, what is known of the
+   rules. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

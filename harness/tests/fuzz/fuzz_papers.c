@@ -1,4 +1,5 @@
-/* Any bytes as claims.csv (read and evaluated without measurements), as published.csv, and as points of `phase --at`. */
+/* Any bytes as claims.csv (read and evaluated without measurements), as published.csv, and as points of `phase
+   --at`. */
 #include <stdio.h>
 
 #include "claims/claims.h"

@@ -1,5 +1,5 @@
-/* Errors measured on few pixels, beside those of all pixels: fields, lone targets, a shadow, a loud neighbour, images of
-   several patches and turned ones. */
+/* Errors measured on few pixels, beside those of all pixels: fields, lone targets, a shadow, a loud neighbour,
+   images of several patches and turned ones. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -10,6 +10,7 @@
     "stages,flops_published,flops,pairs,bytes,error,error_gain,phase_rms_rad,width_m,pslr_db,islr_db,"                 \
     "run_q1_s,run_q3_s,entropy,contrast,peak_over_median"
 #define MEASUREMENT_HEADER MEASUREMENT_COLUMNS "\n"
+
 #define PROVENANCE "# machine: a machine\n# isa: v3\n# libraries: some\n# commit: c1\n# program: 0123\n# threads: 2\n"
 #define TARGET_HEADER                                                                                                  \
     "scene,algorithm,options,precision,target,axis,definition,extent_m,position_error_m,phase_error_rad,width_m,"      \
