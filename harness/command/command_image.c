@@ -1,5 +1,6 @@
 /* The commands `simulate` and `image`. */
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 
 #include "choice/choice.h"
@@ -8,6 +9,7 @@
 #include "text/shown_text.h"
 #include "measure/darkness.h"
 #include "imaging/imaging.h"
+#include "imaging/probe.h"
 #include "measure/outcome.h"
 #include "results/provenance.h"
 #include "echoes/matfile.h"
@@ -105,8 +107,35 @@ static enum status choose(const struct spec *asked, const struct budget *budget,
     return status;
 }
 
+/* The error of the finished image, against the exact image of some of its pixels. */
+static enum status verify(const struct problem *problem, const struct echoes *from, const struct image *image)
+{
+    const struct region everywhere = {0, NULL};
+    struct spec exact;
+    struct probe probe;
+    enum status status = spec_parse("reference:precision=double", &exact);
+    if (status != STATUS_OK)
+        return status;
+    status = probe_make(&exact, problem, from, image, &everywhere, &probe);
+    spec_free(&exact);
+    if (status != STATUS_OK)
+        return status;
+    const struct probe_error e = probe_measure(&probe, image);
+    progress_line_clear();
+    if (isnan(e.error_gain))
+        printf("No relative error: the exact image is zero on %d pixels.\n", e.pixels);
+    else if (probe.whole)
+        printf("Relative error %.2e after one gain, %.2e without, of all %d pixels.\n", e.error_gain, e.error,
+               e.pixels);
+    else
+        printf("Relative error %.2e after one gain (95 %%: %.2e to %.2e), %.2e without, measured on %d pixels.\n",
+               e.error_gain, e.low, e.high, e.error, e.pixels);
+    probe_free(&probe);
+    return STATUS_OK;
+}
+
 /* A plan comes before the echoes: what cannot be imaged need not be simulated. A choice comes after them. */
-static enum status form_image(const struct spec *spec, const struct scene *scene, struct image *image,
+static enum status form_image(const struct spec *spec, const struct scene *scene, bool verified, struct image *image,
                               struct image_origin *origin, double *seconds)
 {
     const struct problem problem = scene_problem(scene, spec->precision);
@@ -132,8 +161,12 @@ static enum status form_image(const struct spec *spec, const struct scene *scene
     if (status == STATUS_OK)
         status = choice ? choose(spec, &budget, scene, from, image, origin) : execute(spec, &imaging, from, image);
     *seconds = seconds_now() - begin;
-    if (status == STATUS_OK)
+    if (status == STATUS_OK) {
         warn_of_image(from, image);
+        status = verified ? verify(&problem, from, image) : STATUS_OK;
+        if (status != STATUS_OK)
+            image_free(image);
+    }
     echoes_free(&simulated);
     imaging_close(&imaging);
     return status;
@@ -223,7 +256,7 @@ enum status command_image(const struct task *task)
         return status;
     warn(&task->specs[0], &scene);
     origin_fill(task, &scene, &origin);
-    status = form_image(&task->specs[0], &scene, &image, &origin, &seconds);
+    status = form_image(&task->specs[0], &scene, task->verify, &image, &origin, &seconds);
     progress_line_clear();
     if (status == STATUS_OK) {
         status = image_put(task, &scene, &image, &origin, range_db);

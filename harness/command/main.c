@@ -48,8 +48,10 @@ static const struct command commands[] = {
     {"scenes", "random --seed N [-o FILE.cfg]", "draw a scene from a seed, of any band, array and range", "oS", 1, 1,
      command_scenes, false},
     {"simulate", "SCENE -o FILE.mat", "write a scene's echoes", "ot", 1, 1, command_simulate, false},
-    {"image", "(--scene SCENE | --echoes FILE.mat --grid GRID) --algorithm SPEC -o (FILE.mat | FILE.png) [--range DB]",
-     "form one image, as numbers or as a picture", "oseagtR", 0, 0, command_image, false},
+    {"image",
+     "(--scene SCENE | --echoes FILE.mat --grid GRID) --algorithm SPEC -o (FILE.mat | FILE.png) [--range DB] "
+     "[--verify]",
+     "form one image, as numbers or as a picture", "oseagtRV", 0, 0, command_image, false},
     {"show", "FILE.mat [-o FILE.png] [--range DB]", "draw an image file; the picture is beside it, or at -o", "oR", 1,
      1, command_show, false},
     {"filter", "(SCENE | --echoes FILE.mat) [--algorithm wk_polar:...] -o FILE.mat",
@@ -84,16 +86,27 @@ static const struct command commands[] = {
 };
 
 static const struct option long_options[] = {
-    {"output", required_argument, NULL, 'o'}, {"scene", required_argument, NULL, 's'},
-    {"echoes", required_argument, NULL, 'e'}, {"algorithm", required_argument, NULL, 'a'},
-    {"grid", required_argument, NULL, 'g'},   {"threads", required_argument, NULL, 't'},
-    {"at", required_argument, NULL, 'A'},     {"markdown", required_argument, NULL, 'M'},
-    {"json", required_argument, NULL, 'J'},   {"range", required_argument, NULL, 'R'},
-    {"error", required_argument, NULL, 'E'},  {"memory", required_argument, NULL, 'Y'},
-    {"seed", required_argument, NULL, 'S'},   {"ab", no_argument, NULL, 'B'},
-    {"quick", no_argument, NULL, 'Q'},        {"precision", required_argument, NULL, 'P'},
-    {"all", no_argument, NULL, 'L'},          {"flops", no_argument, NULL, 'F'},
-    {"help", no_argument, NULL, 'h'},         {NULL, 0, NULL, 0},
+    {"output", required_argument, NULL, 'o'},
+    {"scene", required_argument, NULL, 's'},
+    {"echoes", required_argument, NULL, 'e'},
+    {"algorithm", required_argument, NULL, 'a'},
+    {"grid", required_argument, NULL, 'g'},
+    {"threads", required_argument, NULL, 't'},
+    {"at", required_argument, NULL, 'A'},
+    {"markdown", required_argument, NULL, 'M'},
+    {"json", required_argument, NULL, 'J'},
+    {"range", required_argument, NULL, 'R'},
+    {"error", required_argument, NULL, 'E'},
+    {"memory", required_argument, NULL, 'Y'},
+    {"seed", required_argument, NULL, 'S'},
+    {"ab", no_argument, NULL, 'B'},
+    {"quick", no_argument, NULL, 'Q'},
+    {"precision", required_argument, NULL, 'P'},
+    {"all", no_argument, NULL, 'L'},
+    {"flops", no_argument, NULL, 'F'},
+    {"verify", no_argument, NULL, 'V'},
+    {"help", no_argument, NULL, 'h'},
+    {NULL, 0, NULL, 0},
 };
 
 static const struct {
@@ -116,6 +129,7 @@ static const struct {
     {'Q', "    --quick           one scene of each family, in two rounding modes"},
     {'L', "    --all             print every line, not the answer alone"},
     {'F', "    --flops           count FLOPs by the papers' formulas as well"},
+    {'V', "    --verify          measure the image's error on some of its pixels"},
     {'M', "    --markdown FILE   the findings as a comment for a CI"},
     {'J', "    --json FILE       the findings for trackers of benchmarks"},
 };
@@ -276,6 +290,8 @@ static enum status parse(const struct command *command, int argc, char **argv, s
             task->all = true;
         if (letter == 'F')
             task->flops = true;
+        if (letter == 'V')
+            task->verify = true;
     }
     task->names = (const char *const *)argv + optind;
     task->name_count = argc - optind;

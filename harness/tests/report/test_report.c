@@ -95,6 +95,22 @@ static void assert_links_lead_somewhere(const char *html, const struct parser *p
     }
 }
 
+/* A point of the front has a name, can be focused and says how it is measured again, without the script as well. */
+static void assert_fronts_say_how(const char *html)
+{
+    assert_holds(html,
+                 "<p>12 images by 6 algorithms on 3 scenes, with 2 threads on a machine &amp; its &lt;cores&gt;.</p>\n"
+                 "<p>Nothing measured comes within a relative error of 1e-3."
+                 "</p>\n<p>1 image was refused, 1 failed; ");
+    assert_holds(html,
+                 "<g class=\"point\" tabindex=\"0\" role=\"img\" aria-label=\"bp_linear:beta=8: error 9.0e-02, 30 ms, "
+                 "33.3x\"><title>bp_linear:beta=8: error 9.0e-02, 30 ms, 33.3x\n"
+                 "./sasbench run a.cfg --algorithm bp_linear:beta=8 -o results/again</title>");
+    assert_holds(html, "<pre>./sasbench run a.cfg --algorithm bp_nearest -o results/again\n");
+    assert_holds(html, "./sasbench run &#39;b&lt;i&gt;it&#39;\\&#39;&#39;s &quot;b&quot; &amp; c.cfg&#39; --algorithm "
+                       "bp_zeropad:factor=8 -o");
+}
+
 static void test_everything_is_on_the_page(void **state)
 {
     (void)state;
@@ -113,20 +129,8 @@ static void test_everything_is_on_the_page(void **state)
     assert_holds(html, ">1.062</td>");
     assert_true(!strstr(html, "nan<")); /* from a stranger */
     assert_true(!strstr(markdown, "Predicted errors"));
-    /* A chart and a panel of each scene, marks of five algorithms; a point of the front has a name, can be focused and
-       says how it is measured again, without the script as well. */
-    assert_int_equal(page->drawings, 3 + 3 + 5);
-    assert_holds(html,
-                 "<p>12 images by 6 algorithms on 3 scenes, with 2 threads on a machine &amp; its &lt;cores&gt;.</p>\n"
-                 "<p>Nothing measured comes within a relative error of 1e-3."
-                 "</p>\n<p>1 image was refused, 1 failed; ");
-    assert_holds(html,
-                 "<g class=\"point\" tabindex=\"0\" role=\"img\" aria-label=\"bp_linear:beta=8: error 9.0e-02, 30 ms, "
-                 "33.3x\"><title>bp_linear:beta=8: error 9.0e-02, 30 ms, 33.3x\n"
-                 "./sasbench run a.cfg --algorithm bp_linear:beta=8 -o results/again</title>");
-    assert_holds(html, "<pre>./sasbench run a.cfg --algorithm bp_nearest -o results/again\n");
-    assert_holds(html, "./sasbench run &#39;b&lt;i&gt;it&#39;\\&#39;&#39;s &quot;b&quot; &amp; c.cfg&#39; --algorithm "
-                       "bp_zeropad:factor=8 -o");
+    assert_int_equal(page->drawings, 3 + 3 + 5); /* a chart and a panel of each scene, marks of five algorithms */
+    assert_fronts_say_how(html);
     /* Slices, one image, one figure of `phase`: the picture without a row is not of these results. */
     assert_int_equal(page->images, 3);
     static const char *const parts[] = {
