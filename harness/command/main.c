@@ -51,7 +51,7 @@ static const struct command commands[] = {
     {"image",
      "(--scene SCENE | --echoes FILE.mat --grid GRID) --algorithm SPEC -o (FILE.mat | FILE.png) [--range DB] "
      "[--verify]",
-     "form one image, as numbers or as a picture", "oseagtRV", 0, 0, command_image, false},
+     "form one image, as numbers or as a picture", "oseagtRW", 0, 0, command_image, false},
     {"show", "FILE.mat [-o FILE.png] [--range DB]", "draw an image file; the picture is beside it, or at -o", "oR", 1,
      1, command_show, false},
     {"filter", "(SCENE | --echoes FILE.mat) [--algorithm wk_polar:...] -o FILE.mat",
@@ -104,7 +104,7 @@ static const struct option long_options[] = {
     {"precision", required_argument, NULL, 'P'},
     {"all", no_argument, NULL, 'L'},
     {"flops", no_argument, NULL, 'F'},
-    {"verify", no_argument, NULL, 'V'},
+    {"verify", no_argument, NULL, 'W'},
     {"help", no_argument, NULL, 'h'},
     {NULL, 0, NULL, 0},
 };
@@ -129,7 +129,7 @@ static const struct {
     {'Q', "    --quick           one scene of each family, in two rounding modes"},
     {'L', "    --all             print every line, not the answer alone"},
     {'F', "    --flops           count FLOPs by the papers' formulas as well"},
-    {'V', "    --verify          measure the image's error on some of its pixels"},
+    {'W', "    --verify          measure the image's error on some of its pixels"},
     {'M', "    --markdown FILE   the findings as a comment for a CI"},
     {'J', "    --json FILE       the findings for trackers of benchmarks"},
 };
@@ -290,7 +290,7 @@ static enum status parse(const struct command *command, int argc, char **argv, s
             task->all = true;
         if (letter == 'F')
             task->flops = true;
-        if (letter == 'V')
+        if (letter == 'W')
             task->verify = true;
     }
     task->names = (const char *const *)argv + optind;

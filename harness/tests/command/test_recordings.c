@@ -432,30 +432,10 @@ static void recorded_sets_run(void **state)
         skip();
 }
 
-/* `image --verify` measures what `run` does: of few pixels all, of recorded echoes as of a scene's. */
-static void errors_are_verified(void **state)
-{
-    (void)state;
-    static const char *const verified[ARGUMENTS_MAX] = {"image",     "--scene", "study/quick", "-a",
-                                                        "bp_linear", "-o",      "v.mat",       "--verify"};
-    static const char *const measured[ARGUMENTS_MAX] = {"run", "study/quick", "-a", "bp_linear", "-o", "verified"};
-    struct csv csv;
-    char *told = program_output(verified);
-    const char *error = strstr(told, "Relative error ");
-    assert_non_null(error);
-    assert_holds(told, ", of all 793 pixels.\n");
-    program_good(measured);
-    csv_load("verified/measurements.csv", &csv);
-    const double gained = strtod(csv_cell(&csv, 0, csv_column(&csv, "error_gain")), NULL);
-    assert_true(fabs(strtod(error + 15, NULL) / gained - 1) < 5e-3); /* three digits are printed */
-    csv_free(&csv);
-    free(told);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(errors_are_verified),        cmocka_unit_test(file_measures_as_the_scene_does),
+        cmocka_unit_test(file_measures_as_the_scene_does),
         cmocka_unit_test(echoes_alone_are_a_scene),   cmocka_unit_test(far_recordings_are_told),
         cmocka_unit_test(zeros_have_no_sign),         cmocka_unit_test(files_are_told_and_shown),
         cmocka_unit_test(mistakes_are_told),          cmocka_unit_test(noise_is_told),
