@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "backprojection/response.h"
+#include "contract/condition.h"
 #include "contract/delay.h"
 #include "common/turns.h"
 
@@ -64,41 +65,81 @@ static double end_mean(double rho, double reach, double a, double b)
     return near < reach ? (end_energy(rho, fmin(far, reach)) - end_energy(rho, near)) / (far - near) : 0;
 }
 
-/* The mean over column j of a patch, as one pair sees it. */
-static double column_ends(const struct acquisition *a, const struct grid *g, double reach, double j, int ping,
-                          int receiver)
+/* A column of a patch in parts: the sum of the pairs' amplitudes, and of what they miss, root mean square over a part.
+   The norm of a sum is at most the sum of the norms, and near it where pairs are as near to an end. */
+enum { PARTS = 8 };
+struct column {
+    double seen[PARTS], missed[PARTS];
+};
+
+/* The amplitude of a place's echo, as it is summed. */
+static double seen_amplitude(const struct acquisition *a, int ping, struct vector normal, struct vector place)
 {
-    enum { ROWS = 9 };
+    const struct vector *tx = &a->tx[ping], way = {place.x - tx->x, place.y - tx->y, place.z - tx->z};
+    const double along = fabs(way.x * normal.x + way.y * normal.y + way.z * normal.z);
+    const double sine = along / sqrt(way.x * way.x + way.y * way.y + way.z * way.z), turns = a->fc / a->sound_speed;
+    if (sine > fmin(condition_cut_sine(a), a->aperture_limit))
+        return 0;
+    return a->echo_tapers
+               ? fabs(condition_sinc(a->tx_length * sine * turns) * condition_sinc(a->rx_length * sine * turns))
+               : 1;
+}
+
+/* Adds what a pair sees of column j of a patch. */
+static void column_add(const struct acquisition *a, const struct grid *g, double reach, double j, int ping,
+                       int receiver, struct column *column)
+{
     const double last = a->samples - 1, rho = a->bandwidth / a->fs;
     const struct vector rx = a->rx[(size_t)ping * (size_t)a->receivers + (size_t)receiver];
-    double sum = 0, before = 0;
-    int inside = 0;
-    for (int i = 0; i < ROWS; i++) {
-        const struct vector place = grid_point(g, i * (g->r_count - 1.0) / (ROWS - 1), j);
+    const struct vector normal = acquisition_normal(a, ping);
+    double before = 0;
+    for (int i = 0; i <= PARTS; i++) {
+        const struct vector place = grid_point(g, i * (g->r_count - 1.0) / PARTS, j);
         const double delay = delay_exact(a->tx[ping], rx, a->velocity[ping], place, a->sound_speed);
         const double q = (delay - a->t0[ping]) * a->fs;
         if (i > 0 && fmax(q, before) > 0 && fmin(q, before) < last) {
-            sum += end_mean(rho, reach, before, q) + end_mean(rho, reach, last - before, last - q);
-            inside++;
+            const double amplitude = seen_amplitude(a, ping, normal, place);
+            column->seen[i - 1] += amplitude;
+            column->missed[i - 1] +=
+                amplitude * sqrt(end_mean(rho, reach, before, q) + end_mean(rho, reach, last - before, last - q));
         }
         before = q;
     }
-    return inside ? sum / inside : 0;
+}
+
+/* The n-th of `most` places that lie evenly over `count`, which are at least as many. */
+static int evenly(int n, int most, int count)
+{
+    return most > 1 ? (int)((double)n * (count - 1) / (most - 1)) : 0;
+}
+
+/* Energy that is missed of a patch, as a share. */
+static double patch_ends(const struct acquisition *a, const struct grid *g, double reach)
+{
+    enum { COLUMNS = 3, PINGS_MOST = 128, RECEIVERS_MOST = 4 };
+    const int pings = a->pings < PINGS_MOST ? a->pings : PINGS_MOST;
+    const int receivers = a->receivers < RECEIVERS_MOST ? a->receivers : RECEIVERS_MOST;
+    double missed = 0, seen = 0;
+    for (int n = 0; n < COLUMNS; n++) {
+        struct column column = {{0}, {0}};
+        for (int k = 0; k < pings * receivers; k++)
+            column_add(a, g, reach, n * (g->x_count - 1.0) / (COLUMNS - 1), evenly(k / receivers, pings, a->pings),
+                       evenly(k % receivers, receivers, a->receivers), &column);
+        for (int i = 0; i < PARTS; i++) {
+            missed += column.missed[i] * column.missed[i];
+            seen += column.seen[i] * column.seen[i];
+        }
+    }
+    return seen > 0 ? missed / seen : 0;
 }
 
 double law_ends(const struct problem *problem, int taps)
 {
-    enum { COLUMNS = 3, PINGS = 5, RECEIVERS = 2, TERMS = COLUMNS * PINGS * RECEIVERS };
-    const struct acquisition *a = problem->acquisition;
     double sum = 0, pixels = 0;
     for (int k = 0; k < problem->patch_count; k++) {
         const struct grid *g = &problem->patches[k];
         const double own = (double)g->r_count * g->x_count;
-        for (int n = 0; n < TERMS; n++)
-            sum += own / TERMS
-                   * column_ends(a, g, taps / 2.0, n % COLUMNS * (g->x_count - 1.0) / (COLUMNS - 1),
-                                 n / COLUMNS % PINGS * (a->pings - 1) / (PINGS - 1),
-                                 n / COLUMNS / PINGS * (a->receivers - 1));
+        sum += own * patch_ends(problem->acquisition, g, taps / 2.0);
         pixels += own;
     }
     return sqrt(fmin(sum / pixels, 1));

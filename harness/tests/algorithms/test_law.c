@@ -173,28 +173,27 @@ static void few_pings_met(void **state)
 }
 
 /* Records that end where pixels lie: taps read zeros beyond, padded records go on. */
-static void cut_records(void **state)
+static void cut_hold(const char *array, int samples, const char *const *specs)
 {
-    (void)state;
-    static const char *const specs[] = {"bp_fitted:taps=12", "bp_fitted:taps=8,factor=2",
-                                        "bp_sinc:taps=32,window=kaiser"};
+    char text[2000];
     struct scene scene;
     struct session session;
-    support_write(
-        "cut.cfg",
-        "sonar = { sound_speed = 1500.0; fc = 150e3; bandwidth = 15e3; fs = 30e3; };\n"
-        "pulse = { kind = \"flat\"; };\n"
-        "array = { tx_length = 0.02; rx_length = 0.02; receivers = 1; first_offset = 0.0; };\n"
-        "track = { speed = 0.0; pri = 0.1; spacing = 0.01; pings = 6; x_first = -0.025; };\n"
-        "record = { first_sample = 400; samples = 64; };\n"
-        "beam = { kind = \"txrx\"; };\n"
-        "targets = { points = ({ x = 0.0; r = 10.01; }, { x = 0.0; r = 10.27; }, { x = 0.0; r = 10.5; },\n"
-        "                      { x = 0.0; r = 10.78; }, { x = 0.0; r = 11.02; }, { x = 0.0; r = 11.55; }); };\n"
-        "image = { x = { first = -0.02; step = 0.01; count = 5; };\n"
-        "          r = { first = 10.0; step = 0.0175; count = 90; }; };\n");
+    snprintf(text, sizeof text,
+             "sonar = { sound_speed = 1500.0; fc = 150e3; bandwidth = 15e3; fs = 30e3; };\n"
+             "pulse = { kind = \"flat\"; };\n"
+             "array = { tx_length = 0.02; rx_length = 0.02; %s };\n"
+             "track = { speed = 0.0; pri = 0.1; spacing = 0.01; pings = 6; x_first = -0.025; };\n"
+             "record = { first_sample = 400; samples = %d; };\n"
+             "beam = { kind = \"txrx\"; };\n"
+             "targets = { points = ({ x = 0.0; r = 10.01; }, { x = 0.0; r = 10.27; }, { x = 0.0; r = 10.5; },\n"
+             "                      { x = 0.0; r = 10.78; }, { x = 0.0; r = 11.02; }, { x = 0.0; r = 11.55; }); };\n"
+             "image = { x = { first = -0.02; step = 0.01; count = 5; };\n"
+             "          r = { first = 10.0; step = 0.0175; count = 90; }; };\n",
+             array, samples);
+    support_write("cut.cfg", text);
     support_scene(path_of("cut.cfg"), &scene);
     assert_int_equal(session_open(&scene, &session), STATUS_OK);
-    for (size_t k = 0; k < sizeof specs / sizeof *specs; k++) {
+    for (size_t k = 0; specs[k]; k++) {
         double error;
         const double ratio = predicted_over_measured(&session, specs[k], &error);
         if (!(ratio > 0.9 && ratio < 6))
@@ -202,6 +201,22 @@ static void cut_records(void **state)
     }
     session_close(&session);
     scene_free(&scene);
+}
+
+static void cut_records(void **state)
+{
+    (void)state;
+    static const char *const specs[] = {"bp_fitted:taps=12", "bp_fitted:taps=8,factor=2",
+                                        "bp_sinc:taps=32,window=kaiser", NULL};
+    cut_hold("receivers = 1; first_offset = 0.0;", 64, specs);
+}
+
+/* Only a receiver within the array is as near to the records' beginning as taps reach. */
+static void cut_records_of_one_receiver(void **state)
+{
+    (void)state;
+    static const char *const specs[] = {"bp_fitted:taps=12", "bp_fitted:taps=16", NULL};
+    cut_hold("receivers = 3; first_offset = -3.0; pitch = 3.0;", 128, specs);
 }
 
 int main(void)
@@ -214,6 +229,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(flanks, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(few_pings_met, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(cut_records, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(cut_records_of_one_receiver, folder_make, folder_remove),
     };
     return cmocka_run_group_tests_name("law", tests, NULL, NULL);
 }
