@@ -436,10 +436,14 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(file_measures_as_the_scene_does),
-        cmocka_unit_test(echoes_alone_are_a_scene),   cmocka_unit_test(far_recordings_are_told),
-        cmocka_unit_test(zeros_have_no_sign),         cmocka_unit_test(files_are_told_and_shown),
-        cmocka_unit_test(mistakes_are_told),          cmocka_unit_test(noise_is_told),
-        cmocka_unit_test(content_tells_scenes_apart), cmocka_unit_test(mixtures_are_refused),
+        cmocka_unit_test(echoes_alone_are_a_scene),
+        cmocka_unit_test(far_recordings_are_told),
+        cmocka_unit_test(zeros_have_no_sign),
+        cmocka_unit_test(files_are_told_and_shown),
+        cmocka_unit_test(mistakes_are_told),
+        cmocka_unit_test(noise_is_told),
+        cmocka_unit_test(content_tells_scenes_apart),
+        cmocka_unit_test(mixtures_are_refused),
         cmocka_unit_test(recorded_sets_run),
     };
     return cmocka_run_group_tests(tests, inputs_make, folder_remove);
