@@ -155,8 +155,10 @@ static void measured_take(struct trial *t, struct candidate *c, const struct pro
 {
     const double budget = t->setting.budget->error, law = forecast_error(&c->forecast);
     c->measured = *measured;
-    if (isnan(measured->error_gain))
+    if (isnan(measured->error_gain)) {
+        c->error = law;
         return;
+    }
     c->error = hypot(measured->error_gain, t->exact);
     if (c->forecast.sums_pairs && !c->budgeted)
         t->setting.ratio = c->error / law;

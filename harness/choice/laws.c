@@ -274,6 +274,7 @@ bool laws_without_tables(const struct setting *setting, const struct candidate *
         return false;
     struct candidate *general = &choice->list[choice->count];
     *general = *from;
+    general->measured = (struct probe_error){.pixels = 0};
     if (!candidate_set(general, "engine", "general"))
         return false;
     choice->count++;

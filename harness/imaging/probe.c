@@ -38,12 +38,19 @@ static double squared(double complex z)
     return creal(z) * creal(z) + cimag(z) * cimag(z);
 }
 
-static bool counts(const struct region *region, const struct grid *grid, int row, double column)
+/* Does a segment meet the region, which may be narrower than it? */
+static bool counts(const struct region *region, const struct grid *grid, int row, int first, int end)
 {
-    const struct vector place = grid_point(grid, row, column);
-    for (int k = 0; k < region->count; k++)
-        if (grid_holds(&region->grids[k], place.x, place.y))
+    const struct vector middle = grid_point(grid, row, (first + end - 1) / 2.0);
+    for (int k = 0; k < region->count; k++) {
+        const struct grid *g = &region->grids[k];
+        const struct vector place = grid_coordinates(g, middle.x, middle.y);
+        const double width = (g->x_count - 1) * g->x_step, depth = (g->r_count - 1) * g->r_step;
+        const double beside = ((end - first) * grid->x_step + g->x_step) / 2;
+        if (fabs(place.x - g->x_first - width / 2) <= width / 2 + beside
+            && fabs(place.y - g->r_first - depth / 2) <= (depth + g->r_step) / 2)
             return true;
+    }
     return region->count == 0;
 }
 
@@ -54,7 +61,7 @@ static int row_fill(const struct image *pilot, int patch, int row, const struct 
     int count = 0;
     for (int k = 0; k < segments_of_row(grid); k++) {
         const int first = segment_first(grid, k), end = segment_first(grid, k + 1);
-        if (!counts(region, grid, row, (first + end - 1) / 2.0))
+        if (!counts(region, grid, row, first, end))
             continue;
         struct segment *segment = &list[count++];
         *segment = (struct segment){.place = {patch, row, first, 1}};
@@ -161,6 +168,10 @@ static enum status segments_fill(const struct problem *problem, const struct ima
 {
     size_t count;
     struct segment *list = segments_sorted(pilot, region, &count);
+    if (list && count == 0) { /* the image shows nothing of the region */
+        free(list);
+        list = segments_sorted(pilot, &(struct region){0, NULL}, &count);
+    }
     *probe =
         (struct probe){.places = malloc(COUNT * sizeof *probe->places), .grids = malloc(COUNT * sizeof *probe->grids)};
     const bool made = list && probe->places && probe->grids;

@@ -117,10 +117,28 @@ static void pixels_and_regions(void **state)
     for (int k = 0; k < probe.count; k++) {
         const struct vector middle = grid_point(&probe.grids[k], 0, (probe.grids[k].x_count - 1) / 2.0);
         bool inside = false;
-        for (int n = 0; n < region.count; n++)
-            inside |= grid_holds(&region.grids[n], middle.x, middle.y);
+        for (int n = 0; n < region.count; n++) {
+            struct grid wide = region.grids[n];
+            wide.x_first -= 4 * scene.patches[0].x_step; /* half a segment */
+            wide.x_count += (int)ceil(8 * scene.patches[0].x_step / wide.x_step);
+            inside |= grid_holds(&wide, middle.x, middle.y);
+        }
         assert_true(inside);
     }
+    /* One column, narrower than any segment, and a region that the image does not show. */
+    struct grid column = scene.reference_patches[0];
+    column.x_count = 1;
+    const struct region narrow = {1, &column};
+    struct probe other;
+    assert_int_equal(probe_make(&exact, &problem, &session.echoes[PRECISION_DOUBLE], &image, &narrow, &other),
+                     STATUS_OK);
+    assert_true(other.count > 0 && other.count <= column.r_count);
+    probe_free(&other);
+    column.r_first = 1e4;
+    assert_int_equal(probe_make(&exact, &problem, &session.echoes[PRECISION_DOUBLE], &image, &narrow, &other),
+                     STATUS_OK);
+    assert_true(other.count > 0);
+    probe_free(&other);
     const struct problem part = probe_problem(&probe, &problem);
     assert_int_equal(imaging_form(&spec, &part, &session.echoes[PRECISION_FLOAT], &pixels, NULL), STATUS_OK);
     const struct probe_error whole = probe_measure(&probe, &image), few = probe_measure_pixels(&probe, &pixels);
