@@ -32,8 +32,8 @@ struct region {
 };
 
 /* Choose segments by the magnitudes of a pilot, any image of the problem's patches, and form the exact image of them
-   by a SPEC, to which `echoes` belong. Segments that do not meet the region are left out, unless none does. The choice is
-   the same for the same pilot. Errors: as imaging_form; *probe then needs no free. */
+   by a SPEC, to which `echoes` belong. Segments that do not meet the region are left out, unless none does. The choice
+   is the same for the same pilot. Errors: as imaging_form; *probe then needs no free. */
 enum status probe_make(const struct spec *exact, const struct problem *problem, const struct echoes *echoes,
                        const struct image *pilot, const struct region *region, struct probe *probe);
 /* Form the exact image of the same segments again, by another SPEC. Errors: as imaging_form; *probe stays as it was. */
