@@ -1,7 +1,12 @@
 /* The command `compare`. */
+#include <math.h>
+#include <stdio.h>
+
+#include "command/task.h"
 #include "gate/ab.h"
 #include "gate/diff.h"
-#include "command/task.h"
+#include "echoes/matfile.h"
+#include "metrics/metrics.h"
 
 static enum status compare_sides(const struct task *task, struct diff *diff)
 {
@@ -16,9 +21,46 @@ static enum status compare_sides(const struct task *task, struct diff *diff)
     return diff_results(names[0], names[1], diff);
 }
 
+/* Two image files: how far the first lies from the second. */
+static enum status compare_images(const struct task *task)
+{
+    struct image_file files[2] = {{.patches = NULL}, {.patches = NULL}};
+    const char *const *names = task->names;
+    enum status status = task->output ? picture_check("compare", task->output) : STATUS_OK;
+    if (status == STATUS_OK && (task->name_count > 2 || task->spec_count > 0 || task->markdown || task->json))
+        status = status_set(STATUS_INVALID, "compare: of images two files and -o FILE.png are accepted");
+    for (int k = 0; k < 2 && status == STATUS_OK; k++)
+        status = image_file_open(names[k], &files[k]);
+    const struct image *image = &files[0].image, *reference = &files[1].image;
+    if (status == STATUS_OK)
+        status = metrics_cover(image, reference->patch_count, reference->patches);
+    if (status == STATUS_OK)
+        status = metrics_cover(reference, image->patch_count, image->patches);
+    if (status == STATUS_INVALID && reference->patch_count > 0)
+        status = status_set(STATUS_INVALID, "compare: %s does not fit %s: %s", names[0], names[1], status_message());
+    if (status == STATUS_OK) {
+        const struct error_metrics e = metrics_error(image, reference);
+        const struct shift shift = metrics_shift(image, reference);
+        if (*e.reason)
+            printf("%s\n", e.reason);
+        printf("Relative error %.3g, after one complex gain %.3g; largest difference %.3g of the peak.\n"
+               "Gain %.6g at %.4g rad; phase %.3g rad rms of strong pixels; shift %.3g m along x, %.3g m along r.\n",
+               e.error, e.error_gain, e.peak_ratio, cabs(e.gain), carg(e.gain), e.phase_rms_rad, shift.x_m, shift.r_m);
+        if (task->output)
+            status = picture_differ(task->output, image, reference, names);
+    }
+    for (int k = 0; k < 2; k++)
+        image_file_close(&files[k]);
+    return status;
+}
+
 enum status command_compare(const struct task *task)
 {
     struct diff diff;
+    if (!task->ab && has_extension(task->names[0], ".mat"))
+        return compare_images(task);
+    if (task->output)
+        return status_set(STATUS_INVALID, "compare: -o %s is for two image files", task->output);
     enum status status = compare_sides(task, &diff);
     if (status == STATUS_OK && task->markdown)
         status = diff_markdown(&diff, task->markdown);

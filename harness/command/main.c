@@ -54,6 +54,9 @@ static const struct command commands[] = {
      "form one image, as numbers or as a picture", "oseagtRW", 0, 0, command_image, false},
     {"show", "FILE.mat [-o FILE.png] [--range DB]", "draw an image file; the picture is beside it, or at -o", "oR", 1,
      1, command_show, false},
+    {"score", "(IMAGE.mat | IMAGE.npy) (SCENE | --echoes FILE.mat --grid GRID) [--name NAME] [--seconds S] [-o DIR]",
+     "measure an image that another program formed of a scene's echoes, and add its row to a results folder", "oegtNK",
+     1, 2, command_score, false},
     {"filter", "(SCENE | --echoes FILE.mat) [--algorithm wk_polar:...] -o FILE.mat",
      "remove the echoes from outside a target area, and print each target's kept energy", "oeat", 0, 1, command_filter,
      false},
@@ -61,9 +64,11 @@ static const struct command commands[] = {
      "compare algorithms on scenes, or on recorded echoes: the fastest for each of four errors", "oategLF", 0, INT_MAX,
      command_run, true},
     {"compare",
-     "(OLD NEW | --ab OLD_BINARY NEW_BINARY [SCENE ...] [--algorithm SPEC ...]) [--markdown FILE] [--json FILE]",
-     "list what got worse between two results folders or CSV files, or slower between two programs, run side by side",
-     "aBMJ", 2, INT_MAX, command_compare, false},
+     "(OLD NEW | IMAGE.mat IMAGE.mat [-o FILE.png] | --ab OLD_BINARY NEW_BINARY [SCENE ...] [--algorithm SPEC ...]) "
+     "[--markdown FILE] [--json FILE]",
+     "list what got worse between two results folders or CSV files; how two image files differ; or what is slower of "
+     "two programs, run side by side",
+     "oaBMJ", 2, INT_MAX, command_compare, false},
     {"measure", "", "the other end of `compare --ab`, which starts it", "", 0, 0, command_measure, false, true},
     {"baseline", "[-o FILE.csv]", "measure quality and work of the gate's scenes anew, into results/baseline.csv", "ot",
      0, 0, command_baseline, false},
@@ -99,6 +104,8 @@ static const struct option long_options[] = {
     {"error", required_argument, NULL, 'E'},
     {"memory", required_argument, NULL, 'Y'},
     {"seed", required_argument, NULL, 'S'},
+    {"name", required_argument, NULL, 'N'},
+    {"seconds", required_argument, NULL, 'K'},
     {"ab", no_argument, NULL, 'B'},
     {"quick", no_argument, NULL, 'Q'},
     {"precision", required_argument, NULL, 'P'},
@@ -124,6 +131,8 @@ static const struct {
     {'E', "    --error E         of the image after one gain (L2), 1e-3 unless given"},
     {'Y', "    --memory BYTES    of the image's process, at most; 4G unless given (2GB, 512MiB)"},
     {'S', "    --seed N          a whole number from 0 to 1e15"},
+    {'N', "    --name NAME       what the image's program is called; the file's name unless given"},
+    {'K', "    --seconds S       run time that is stated for it; the row says that it is not measured"},
     {'A', "    --at FILE.csv     points: columns d, r, F, f, fc, v, c"},
     {'B', "    --ab              run two programs side by side and compare their times"},
     {'Q', "    --quick           one scene of each family, in two rounding modes"},
@@ -252,10 +261,10 @@ static enum status parse(const struct command *command, int argc, char **argv, s
     const struct {
         int letter;
         const char **field;
-    } texts[] = {{'o', &task->output},   {'s', &task->scene},    {'e', &task->echoes}, {'g', &task->grid},
-                 {'A', &task->at},       {'M', &task->markdown}, {'J', &task->json},   {'t', &threads},
-                 {'R', &task->range},    {'E', &task->error},    {'Y', &task->memory}, {'S', &task->seed},
-                 {'P', &task->precision}};
+    } texts[] = {{'o', &task->output}, {'s', &task->scene},    {'e', &task->echoes},   {'g', &task->grid},
+                 {'A', &task->at},     {'M', &task->markdown}, {'J', &task->json},     {'t', &threads},
+                 {'R', &task->range},  {'E', &task->error},    {'Y', &task->memory},   {'S', &task->seed},
+                 {'N', &task->name},   {'K', &task->seconds},  {'P', &task->precision}};
     enum status status = STATUS_OK;
     opterr = 0;
     for (int letter;

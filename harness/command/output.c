@@ -69,6 +69,17 @@ enum status picture_draw(const char *path, bool named, const struct image *image
     return plot_image(path, PLOT_DIRECTORY, &picture);
 }
 
+enum status picture_differ(const char *path, const struct image *image, const struct image *reference,
+                           const char *const names[2])
+{
+    char footer[PROVENANCE_LINE], title[1000];
+    provenance_line(footer);
+    snprintf(title, sizeof title, "%.400s, and its difference to %.400s", names[0], names[1]);
+    const struct image_picture picture = {
+        .image = image, .reference = reference, .title = title, .footer = footer, .named = true};
+    return plot_image(path, PLOT_DIRECTORY, &picture);
+}
+
 struct choice_text origin_choice(const struct image_origin *origin)
 {
     struct choice_text choice = {""};

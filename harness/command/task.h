@@ -10,7 +10,8 @@
 struct task {
     const char *const *names; /* [name_count] what stands without an option: scenes, an algorithm */
     int name_count;
-    const char *output, *scene, *echoes, *grid, *at, *markdown, *json, *range, *precision, *error, *memory, *seed;
+    const char *output, *scene, *echoes, *grid, *at, *markdown, *json, *range, *precision, *error, *memory, *seed,
+        *name, *seconds;
     bool ab, quick, all, flops, verify;
     int spec_count;
     struct spec *specs; /* [spec_count] of --algorithm */
@@ -29,6 +30,9 @@ enum status range_parse(const char *command, const char *text, double *range_db)
    plot_image. */
 enum status picture_draw(const char *path, bool named, const struct image *image, const char *title, double range_db,
                          const struct scene *scene);
+/* An image and its difference to another of the same grid, named by the user's paths. Errors: as plot_image. */
+enum status picture_differ(const char *path, const struct image *image, const struct image *reference,
+                           const char *const names[2]);
 struct image_origin;
 /* " chose SETTING" of an image by `auto`, else empty. */
 struct choice_text {
@@ -53,6 +57,7 @@ enum status command_info(const struct task *task);
 enum status command_simulate(const struct task *task);
 enum status command_image(const struct task *task);
 enum status command_filter(const struct task *task);
+enum status command_score(const struct task *task);
 enum status command_show(const struct task *task);
 enum status command_run(const struct task *task);
 enum status command_compare(const struct task *task);

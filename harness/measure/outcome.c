@@ -110,6 +110,14 @@ static void stages_format(const struct stages *stages, char *text, size_t size)
                                  stages->stage[k].seconds);
 }
 
+static void sharpness_fill(struct outcome *outcome)
+{
+    const struct sharpness sharpness = metrics_sharpness(&outcome->image);
+    outcome->row.entropy = sharpness.entropy;
+    outcome->row.contrast = sharpness.contrast;
+    outcome->row.peak_over_median = sharpness.peak_over_median;
+}
+
 static void work_fill(const struct session *session, const struct problem *problem, struct outcome *outcome)
 {
     const struct work *work = &outcome->work;
@@ -122,12 +130,9 @@ static void work_fill(const struct session *session, const struct problem *probl
     row->bytes = work->bytes;
     row->engine = work->engine;
     double left_out = 1 - problem_pixels(problem) / problem_pixels(&whole);
-    if (left_out <= 0) {
-        const struct sharpness sharpness = metrics_sharpness(&outcome->image);
-        row->entropy = sharpness.entropy;
-        row->contrast = sharpness.contrast;
-        row->peak_over_median = sharpness.peak_over_median;
-    } else
+    if (left_out <= 0)
+        sharpness_fill(outcome);
+    else
         reason_add(outcome->skipped, sizeof outcome->skipped,
                    "%.3g %% of the pixels: only the patches around the targets are compared", 100 * left_out);
     if (*work->skipped)
@@ -261,15 +266,40 @@ static void choice_fill(const struct chosen *chosen, struct outcome *outcome)
              *text ? "; " : "", text);
 }
 
+static void outcome_begin(const struct session *session, const char *algorithm, const char *options,
+                          enum precision precision, struct outcome *outcome)
+{
+    *outcome = (struct outcome){.row = measurement_empty(session->scene->name, algorithm, options, precision)};
+    outcome->row.reason = outcome->reason;
+    outcome->row.skipped = outcome->skipped;
+    outcome->row.stages = outcome->stages;
+}
+
+enum status outcome_score(struct session *session, const char *name, struct image *image, double seconds,
+                          struct outcome *outcome)
+{
+    outcome_begin(session, name, "", image->precision, outcome);
+    outcome->image = *image;
+    *image = (struct image){0};
+    outcome->row.engine = "image";
+    outcome->row.run_s = seconds;
+    sharpness_fill(outcome);
+    const enum status status = quality_fill(session, outcome);
+    if (status != STATUS_OK) {
+        outcome_free(outcome);
+        return status;
+    }
+    if (!isnan(seconds))
+        reason_add(outcome->reason, sizeof outcome->reason, OUTCOME_WARNING "the run time is stated, not measured");
+    warnings_add(session->conditions, session->condition_count, outcome);
+    return STATUS_OK;
+}
+
 void outcome_measure(struct session *session, const struct spec *asked, enum effort effort,
                      struct timing_samples *samples, struct outcome *outcome)
 {
     const struct spec *spec = asked;
-    *outcome = (struct outcome){
-        .row = measurement_empty(session->scene->name, spec->algorithm->name, spec->text, spec->precision)};
-    outcome->row.reason = outcome->reason;
-    outcome->row.skipped = outcome->skipped;
-    outcome->row.stages = outcome->stages;
+    outcome_begin(session, spec->algorithm->name, spec->text, spec->precision, outcome);
     enum status status = session_resolve(session, spec, &spec);
     if (status != STATUS_OK) {
         outcome_fail(outcome, status);

@@ -35,6 +35,10 @@ void outcome_measure(struct session *session, const struct spec *spec, enum effo
                      struct timing_samples *samples, struct outcome *outcome);
 /* One of the earlier rounds: times alone. What fails says so in outcome_measure again. */
 void outcome_round(struct session *session, const struct spec *spec, struct timing_samples *samples);
+/* The row of an image that another program formed, of the engine `image`: the outcome takes the image. `seconds` is the
+   time that is stated for it, NAN for none. Errors: STATUS_FAILED without memory; nothing to free then. */
+enum status outcome_score(struct session *session, const char *name, struct image *image, double seconds,
+                          struct outcome *outcome);
 void outcome_free(struct outcome *outcome);
 
 #endif

@@ -1,9 +1,12 @@
 /* Errors of an image against the exact one (metrics.h). */
 #include <math.h>
+#include <stdio.h>
 
 #include "echoes/echo_data.h"
 #include "metrics/interpolation.h"
 #include "metrics/metrics.h"
+
+#define ANGLE_TOLERANCE 1e-9 /* rad; axes of files are numbers that others computed */
 
 /* Where a reference patch lies within the image. */
 struct offset {
@@ -24,6 +27,8 @@ static struct offset offset_find(const struct image *image, const struct grid *p
 {
     for (int k = 0; k < image->patch_count; k++) {
         const struct grid *whole = &image->patches[k];
+        if (!(fabs(whole->angle_rad - part->angle_rad) <= ANGLE_TOLERANCE))
+            continue;
         int column =
             raster_offset(part->x_first, part->x_step, part->x_count, whole->x_first, whole->x_step, whole->x_count);
         int row =
@@ -32,6 +37,29 @@ static struct offset offset_find(const struct image *image, const struct grid *p
             return (struct offset){k, row, column};
     }
     return (struct offset){-1, 0, 0};
+}
+
+enum { GRID_TEXT = 160 };
+
+/* As --grid takes it. */
+static void grid_format(const struct grid *grid, char text[GRID_TEXT])
+{
+    snprintf(text, GRID_TEXT, "%.9g:%.9g:%d,%.9g:%.9g:%d,%.6g", grid->x_first, grid->x_step, grid->x_count,
+             grid->r_first, grid->r_step, grid->r_count, grid->angle_rad * 180 / M_PI);
+}
+
+enum status metrics_cover(const struct image *image, int count, const struct grid *patches)
+{
+    for (int k = 0; k < count; k++)
+        if (offset_find(image, &patches[k]).patch < 0) {
+            char has[GRID_TEXT], needed[GRID_TEXT];
+            grid_format(&image->patches[k < image->patch_count ? k : 0], has);
+            grid_format(&patches[k], needed);
+            return status_set(STATUS_INVALID,
+                              "its grid is %s (xmin:xstep:xcount,rmin:rstep:rcount,angle in degrees), needed is %s",
+                              has, needed);
+        }
+    return STATUS_OK;
 }
 
 static double squared(double complex z)
@@ -71,7 +99,7 @@ static void pair_add_second(struct error_sums *sums, double complex value, doubl
 
 struct error_metrics metrics_error(const struct image *image, const struct image *reference)
 {
-    struct error_metrics undefined = {NAN, NAN, NAN, NAN, "no errors: the exact image is zero"};
+    struct error_metrics undefined = {NAN, NAN, NAN, NAN, NAN, "no errors: the exact image is zero"};
     void (*const passes[])(struct error_sums *, double complex, double complex) = {pair_add_first, pair_add_second};
     struct error_sums sums = {0};
     for (int pass = 0; pass < 2; pass++) {
@@ -97,6 +125,7 @@ struct error_metrics metrics_error(const struct image *image, const struct image
         .error_gain = sqrt(sums.error_gain / sums.reference),
         .phase_rms_rad = sqrt(sums.phase / sums.phase_weight),
         .peak_ratio = sqrt(sums.error_peak / sums.reference_peak),
+        .gain = sums.image > 0 ? sums.cross / sums.image : 0,
         .reason = isnan(sums.phase) ? "no phase error: strong pixels are zero" : "",
     };
 }

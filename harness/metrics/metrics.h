@@ -51,6 +51,7 @@ struct error_metrics {
     double error_gain;    /* after one best complex gain (over all pixels) */
     double phase_rms_rad; /* over pixels with abs(reference) >= 0.1 max, weighted by its square */
     double peak_ratio;    /* max |image - reference| / max |reference| */
+    double complex gain;  /* that brings the image nearest to the reference; 0 where the image is zero */
     const char *reason;   /* why something is undefined, a static text; empty when all is well */
 };
 
@@ -59,6 +60,18 @@ struct error_metrics {
    not, the reference is all zero or a pixel of the image is not finite; the phase, when a strong pixel of the image is
    zero. */
 struct error_metrics metrics_error(const struct image *image, const struct image *reference);
+
+/* Has the image all pixels of the patches, as metrics_error looks them up? Errors: STATUS_INVALID, naming where pixels
+   lie and where they are needed. */
+enum status metrics_cover(const struct image *image, int count, const struct grid *patches);
+
+/* By how much the image's first patch lies off the reference's first patch, of equal shape, along its axes: where their
+   cross-correlation peaks, a parabola through its three samples. NAN where one is zero or not finite, or where memory
+   is missing. */
+struct shift {
+    double x_m, r_m;
+};
+struct shift metrics_shift(const struct image *image, const struct image *reference);
 
 /* How sharp an image is, over all of its pixels, without knowing what it shows. I is a pixel's power. NAN where the
    image is zero or not finite, the last also where more than half of the pixels are zero. */

@@ -110,7 +110,7 @@ bool measurement_is_cheaper(const struct measurement *row, const struct measurem
 {
     const double mine = *(const double *)((const char *)row + cost);
     const double other = best ? *(const double *)((const char *)best + cost) : INFINITY;
-    return row->error <= error_most && mine > 0
+    return row->error <= error_most && mine > 0 && row->runs > 0
            && (mine < other || (best && mine == other && row->run_s < best->run_s));
 }
 

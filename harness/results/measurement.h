@@ -57,7 +57,8 @@ struct measurement measurement_empty(const char *scene, const char *algorithm, c
                                      enum precision precision);
 
 /* Whether a row has an error up to error_most and costs less (the double at the offset `cost`; of equal ones the
-   faster) than the cheapest so far, which may be NULL: what a sweep's tables and a report's summary call cheapest. */
+   faster) than the cheapest so far, which may be NULL: what a sweep's tables and a report's summary call cheapest. A row
+   whose time is stated and was not measured is none. */
 bool measurement_is_cheaper(const struct measurement *row, const struct measurement *best, size_t cost,
                             double error_most);
 

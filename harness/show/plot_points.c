@@ -39,7 +39,7 @@ double setting_rate(const char *algorithm, const struct setting *setting)
 bool row_is_point(const struct measurement *row, double most_pairs)
 {
     bool partial = row->pairs > 0 && row->pairs < 0.999 * most_pairs;
-    return strcmp(row->status, "ok") == 0 && row->run_s > 0 && row->error > 0 && !partial;
+    return strcmp(row->status, "ok") == 0 && row->run_s > 0 && row->runs > 0 && row->error > 0 && !partial;
 }
 
 double scene_most_pairs(const struct results *results, const char *scene)

@@ -22,7 +22,7 @@
 #define FORM_OF_GRID "must be xmin:xstep:xcount,rmin:rstep:rcount"
 
 static const struct refusal usages[] = {
-    {{NULL}, {"is not a command", "accepted: list, info, check, plan, scenes, simulate, image, show, filter, run"}},
+    {{NULL}, {"is not a command", "list, info, check, plan, scenes, simulate, image, show, score, filter, run"}},
     {{""}, {"'' is not a command", "accepted: list"}},
     {{"focus"}, {"'focus' is not a command", "accepted: list"}},
     {{"help", "focus"}, {"'focus' is not a command", "accepted: list"}},

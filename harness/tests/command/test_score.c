@@ -1,0 +1,147 @@
+/* Images that another program formed: `score`, and `compare` of two image files. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "echoes/matfile.h"
+#include "files/csv.h"
+#include "tests/command/program.h"
+
+static void image_make(const char *spec, const char *output)
+{
+    program_good((const char *const[ARGUMENTS_MAX]){"image", "--scene", "study/quick", "-a", spec, "-o", output});
+}
+
+/* A file's first cell of a column. */
+static double cell(const char *file, const char *column)
+{
+    struct csv csv;
+    assert_int_equal(csv_read(path_in(file), CSV_TAIL_KEEP, &csv), STATUS_OK);
+    const double value = strtod(csv_cell(&csv, 0, csv_column(&csv, column)), NULL);
+    csv_free(&csv);
+    return value;
+}
+
+/* The pixels as NumPy writes them, by rows in float, or by columns in double. */
+static void npy_write(const char *name, const struct image *image, bool columns)
+{
+    const struct grid *grid = &image->patches[0];
+    const size_t size = columns ? sizeof(double complex) : sizeof(float complex);
+    unsigned char *bytes = calloc(128 + (size_t)grid->r_count * (size_t)grid->x_count, size);
+    assert_non_null(bytes);
+    memcpy(bytes, "\x93NUMPY\1\0\x76\0", 10);
+    memset(bytes + 10, ' ', 118);
+    char text[100];
+    const int length = snprintf(text, sizeof text, "{'descr': '<c%zu', 'fortran_order': %s, 'shape': (%d, %d), }", size,
+                                columns ? "True" : "False", grid->r_count, grid->x_count);
+    memcpy(bytes + 10, text, (size_t)length);
+    unsigned char *to = bytes + 128;
+    for (int k = 0; k < grid->r_count * grid->x_count; k++, to += size) {
+        const int row = columns ? k % grid->r_count : k / grid->x_count;
+        const int column = columns ? k / grid->r_count : k % grid->x_count;
+        const double complex value = image_pixel(image, 0, row, column);
+        const float complex single = (float complex)value;
+        memcpy(to, columns ? (const void *)&value : (const void *)&single, size);
+    }
+    bytes_write(name, bytes, (size_t)(to - bytes));
+    free(bytes);
+}
+
+/* A foreign image has the metrics that `run` measures of the same pixels; its row says which time is only stated. */
+static void scores_are_those_of_run(void **state)
+{
+    (void)state;
+    static const char *const numbers[] = {"error",   "error_gain", "phase_rms_rad", "width_m",
+                                          "pslr_db", "islr_db",    "entropy",       "contrast"};
+    struct image_file file;
+    size_t size;
+    image_make("bp_linear", "own.mat");
+    assert_int_equal(image_file_open(path_in("own.mat"), &file), STATUS_OK);
+    npy_write("rows.npy", &file.image, false);
+    npy_write("columns.npy", &file.image, true);
+    image_file_close(&file);
+    program_good((const char *const[ARGUMENTS_MAX]){"run", "study/quick", "-a", "bp_linear", "-o", "ran"});
+    static const char *const files[] = {"own.mat", "rows.npy", "columns.npy"};
+    for (size_t k = 0; k < COUNT_OF(files); k++) {
+        char results[40], table[80];
+        snprintf(results, sizeof results, "scored_%zu", k);
+        program_good((const char *const[ARGUMENTS_MAX]){"score", files[k], "study/quick", "--name", "mine", "-o",
+                                                        results, "--seconds", "0.25"});
+        snprintf(table, sizeof table, "%s/measurements.csv", results);
+        for (size_t n = 0; n < COUNT_OF(numbers); n++)
+            assert_true(fabs(cell(table, numbers[n]) / cell("ran/measurements.csv", numbers[n]) - 1) < 1e-6);
+        assert_true(cell(table, "run_s") == 0.25);
+        assert_true(cell(table, "runs") == 0);
+    }
+    char *text = bytes_read("scored_0/measurements.csv", &size);
+    assert_non_null(strstr(text, "study/quick,mine,,double,"));
+    assert_non_null(strstr(text, ",image,ok,\"warning: the run time is stated, not measured"));
+    free(text);
+}
+
+static void unfit_images_are_refused(void **state)
+{
+    (void)state;
+    image_make("bp_nearest", "other.mat");
+    static const struct refusal refusals[] = {
+        {{"score", "other.mat", "study/swath"}, {"-0.6:0.02:61,19.85:0.025:13,0", "needed is -3.6:0.02:101"}},
+        {{"score", "other.mat", "study/quick", "--name", "bp_sinc"}, {"--name is 'bp_sinc'"}},
+        {{"score", "other.mat", "study/quick", "--name", "a,b"}, {"--name is 'a,b'", "letters"}},
+        {{"score", "other.mat", "study/quick", "--seconds", "0"}, {"--seconds is '0'", "above 0"}},
+        {{"score", "other.mat", "study/quick", "--grid", "0:1:2,3:4:5"}, {"--grid 0:1:2,3:4:5", ".npy"}},
+        {{"score", "other.mat"}, {"exactly one of SCENE and --echoes"}},
+        {{"score", "rows.npy", "study/quick", "--grid", "0:1:2,3:4:5"}, {"[13, 61]", "5 ranges and 2 places"}},
+        {{"score", "scene.cfg", "study/quick"}, {"scene.cfg"}},
+        {{"score", "short.npy", "study/quick"}, {"ends after 1 of 793 numbers"}},
+        {{"score", "/dev/zero.npy", "study/quick"}, {"/dev/zero.npy"}},
+        {{"compare", "other.mat", "scene.mat"}, {"scene.mat"}},
+        {{"compare", "ran", "ran", "-o", "x.png"}, {"two image files"}},
+    };
+    size_t size;
+    char *bytes = bytes_read("rows.npy", &size);
+    bytes_write("short.npy", bytes, 128 + 12);
+    free(bytes);
+    assert_all_refused(refusals, COUNT_OF(refusals));
+    struct outcome twice = program_run(
+        (const char *const[ARGUMENTS_MAX]){"score", "own.mat", "study/quick", "--name", "mine", "-o", "scored_0"});
+    assert_int_equal(twice.status, 2);
+    assert_non_null(strstr(twice.err, "scored_0 has a row of 'mine' on study/quick; another --name is needed"));
+    outcome_free(&twice);
+}
+
+/* One of two images is the other, moved by whole pixels and multiplied. */
+static void differences_are_measured(void **state)
+{
+    (void)state;
+    struct image_file file;
+    assert_int_equal(image_file_open(path_in("own.mat"), &file), STATUS_OK);
+    struct image *image = &file.image;
+    double complex *pixels = image->pixels[0];
+    const int rows = file.patches[0].r_count, columns = file.patches[0].x_count;
+    for (int i = rows - 1; i >= 0; i--)
+        for (int j = columns - 1; j >= 0; j--)
+            pixels[i * columns + j] = i >= 1 && j >= 2 ? 2 * I * pixels[(i - 1) * columns + j - 2] : 0;
+    assert_int_equal(image_file_write(path_in("moved.mat"), image, &file.origin), STATUS_OK);
+    for (int n = 0; n < rows * columns; n++)
+        pixels[n] *= -2 * I;
+    assert_int_equal(image_file_write(path_in("turned.mat"), image, &file.origin), STATUS_OK);
+    image_file_close(&file);
+    char *told = program_output((const char *const[ARGUMENTS_MAX]){"compare", "moved.mat", "own.mat"});
+    const char *shift = strstr(told, "shift ");
+    assert_non_null(shift);
+    assert_true(fabs(strtod(shift + 6, NULL) - 2 * 0.02) < 1e-3);
+    assert_true(fabs(strtod(strstr(shift, "along x, ") + 9, NULL) - 0.025) < 1e-3);
+    free(told);
+    told = program_output((const char *const[ARGUMENTS_MAX]){"compare", "moved.mat", "turned.mat", "-o", "moved.png"});
+    assert_non_null(strstr(told, "Gain 2 at -1.571 rad"));
+    assert_non_null(strstr(told, "after one complex gain 0;"));
+    free(told);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(scores_are_those_of_run),
+                                       cmocka_unit_test(unfit_images_are_refused),
+                                       cmocka_unit_test(differences_are_measured)};
+    return cmocka_run_group_tests(tests, inputs_make, folder_remove);
+}
