@@ -9,16 +9,10 @@
 #include "measure/outcome.h"
 #include "show/table.h"
 
-enum {
-    COLUMNS = 12,
-    LOBES_FIRST = 9,
-    WARNING_LENGTH = 600
-}; /* of width, PSLR and ISLR, in whose place scenes without targets show */
-static const struct page_column shown_columns[COLUMNS] = {
-    {"algorithm", false},      {"run time", true},    {"speed-up", true},  {"plan", true},
-    {"GFLOP", true},           {"memory (MB)", true}, {"error", true},     {"error, best gain", true},
-    {"phase rms (rad)", true}, {"width (mm)", true},  {"PSLR (dB)", true}, {"ISLR (dB)", true}};
-static const struct page_column sharpness_columns[3] = {{"entropy", true}, {"contrast", true}, {"peak/median", true}};
+enum { COLUMNS_MOST = 32, DERIVED = 4, WARNING_LENGTH = 600 };
+/* What stands ahead of the metrics. */
+static const struct page_column derived_columns[DERIVED] = {
+    {"algorithm", false}, {"run time", true}, {"speed-up", true}, {"plan", true}};
 
 /* --- Warnings -------------------------------------------------------------------------------------------------- */
 
@@ -83,19 +77,13 @@ void report_warnings_show(struct page *page, const struct results *results)
 
 /* --- Rows ------------------------------------------------------------------------------------------------------ */
 
-/* Is nothing measured of any target? */
+/* Does any image of it show that it has no targets? */
 static bool scene_is_blind(const struct results *results, const char *scene)
 {
-    bool sharpness = false;
-    for (int k = 0; k < results->csv.row_count; k++) {
-        const struct measurement *row = &results->measurements[k];
-        if (strcmp(row->scene, scene) != 0)
-            continue;
-        if (isfinite(row->pslr_db) || isfinite(row->width_m))
-            return false;
-        sharpness |= isfinite(row->entropy);
-    }
-    return sharpness;
+    bool blind = false;
+    for (int k = 0; k < results->csv.row_count; k++)
+        blind |= strcmp(results->measurements[k].scene, scene) == 0 && measurement_is_blind(&results->measurements[k]);
+    return blind;
 }
 
 static void note_add(char *note, size_t size, const char *text)
@@ -119,43 +107,49 @@ static void note_make(const struct measurement *row, char *note, size_t size)
     note_add(note, size, text);
 }
 
-static void row_show(struct page *page, const struct measurement *row, bool sharpness)
+static void row_show(struct page *page, const struct measurement *row, bool blind)
 {
-    char spec[512], note[2400], texts[COLUMNS][32] = {""};
-    struct page_cell cells[COLUMNS];
+    char spec[512], note[2400], time[64];
+    struct cell texts[COLUMNS_MOST] = {
+        [2] = cell_significant(row->control_s / row->run_s, "x"), [3] = cell_time(row->plan_s)};
+    struct page_cell cells[COLUMNS_MOST];
+    int count = DERIVED;
     measurement_spec(row, spec, sizeof spec);
     if (strcmp(row->status, "ok") != 0) {
         snprintf(note, sizeof note, "%s: %s", row->status, row->reason);
         page_row_note(page, spec, note);
         return;
     }
-    const struct {
-        double value;
-        const char *format;
-    } numbers[] = {{1e-9 * row->flops, "%.3g"},
-                   {1e-6 * row->bytes, "%.3g"},
-                   {row->error, "%.2e"},
-                   {row->error_gain, "%.2e"},
-                   {row->phase_rms_rad, "%.2e"},
-                   {sharpness ? row->entropy : 1e3 * row->width_m, "%.2f"},
-                   {sharpness ? row->contrast : row->pslr_db, "%.2f"},
-                   {sharpness ? row->peak_over_median : row->islr_db, "%.2f"}};
-    snprintf(texts[1], sizeof texts[1], "%s", cell_run_time(row).text);
+    snprintf(time, sizeof time, "%s", cell_run_time(row).text);
     if (isfinite(row->run_q1_s) && isfinite(row->run_q3_s))
-        snprintf(texts[1], sizeof texts[1], "%.12s (-%.1f, +%.1f %%)", cell_run_time(row).text,
+        snprintf(time, sizeof time, "%.12s (-%.1f, +%.1f %%)", cell_run_time(row).text,
                  fmin(999, 100 * (1 - row->run_q1_s / row->run_s)), fmin(999, 100 * (row->run_q3_s / row->run_s - 1)));
-    snprintf(texts[2], sizeof texts[2], "%s", cell_significant(row->control_s / row->run_s, "x").text);
-    snprintf(texts[3], sizeof texts[3], "%s", cell_time(row->plan_s).text);
-    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
-        if (isfinite(numbers[k].value))
-            snprintf(texts[4 + k], sizeof texts[4 + k], numbers[k].format, numbers[k].value);
-    for (int k = 0; k < COLUMNS; k++)
-        cells[k] = (struct page_cell){texts[k], NULL};
+    for (const struct column *column = measurement_columns; column->name; column++)
+        if (column_is_shown(column, !blind))
+            texts[count++] = cell_metric(column, row);
+    for (int k = 2; k < count; k++)
+        cells[k] = (struct page_cell){strcmp(texts[k].text, "-") == 0 ? "" : texts[k].text, NULL};
     cells[0] = (struct page_cell){spec, NULL};
+    cells[1] = (struct page_cell){time, NULL};
     note_make(row, note, sizeof note);
     page_row(page, cells);
     if (*note)
         page_row_note(page, "", note);
+}
+
+/* The columns of a table; titles of metrics with their units are kept in `titles`. */
+static int columns_make(bool blind, struct page_column columns[COLUMNS_MOST], char titles[COLUMNS_MOST][48])
+{
+    int count = DERIVED;
+    memcpy(columns, derived_columns, sizeof derived_columns);
+    for (const struct column *column = measurement_columns; column->name; column++)
+        if (column_is_shown(column, !blind)) {
+            snprintf(titles[count], sizeof titles[count], *column->shown.unit ? "%s (%s)" : "%s", column->shown.title,
+                     column->shown.unit);
+            columns[count] = (struct page_column){titles[count], true};
+            count++;
+        }
+    return count;
 }
 
 void report_measurements_show(struct page *page, const struct results *results, int scene_count,
@@ -170,16 +164,14 @@ void report_measurements_show(struct page *page, const struct results *results, 
         "from first minimum to first minimum; without targets the image's sharpness. Below a row: the engine that the "
         "plan chose, and what it left out.");
     for (int s = 0; s < scene_count; s++) {
-        const bool sharpness = scene_is_blind(results, scenes[s]);
-        struct page_column columns[COLUMNS];
+        const bool blind = scene_is_blind(results, scenes[s]);
+        struct page_column columns[COLUMNS_MOST];
+        char titles[COLUMNS_MOST][48];
         page_part_begin(page, scenes[s]);
-        memcpy(columns, shown_columns, sizeof columns);
-        if (sharpness)
-            memcpy(columns + LOBES_FIRST, sharpness_columns, sizeof sharpness_columns);
-        page_table_begin(page, COLUMNS, columns);
+        page_table_begin(page, columns_make(blind, columns, titles), columns);
         for (int row = 0; row < results->csv.row_count; row++)
             if (strcmp(results->measurements[row].scene, scenes[s]) == 0)
-                row_show(page, &results->measurements[row], sharpness);
+                row_show(page, &results->measurements[row], blind);
         page_table_end(page);
         page_part_end(page);
     }

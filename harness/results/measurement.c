@@ -9,14 +9,13 @@
 
 /* The braces are an initializer's. */
 /* clang-format off */
-#define M_COLUMN(type, name) {#name, COLUMN_##type, offsetof(struct measurement, name), .unit = NULL}
-#define M_METRIC(name, unit, better, class, of_float, of_double, relative) \
-    {#name,  COLUMN_REAL, offsetof(struct measurement, name), unit, better, \
-     class, {of_float, of_double}, relative}
-#define T_COLUMN(type, name) {#name, COLUMN_##type, offsetof(struct target_row, name), .unit = NULL}
-#define T_METRIC(name, unit, better, of_float, of_double, relative) \
-    {#name,         COLUMN_REAL,           offsetof(struct target_row, name), unit, better, \
-     CLASS_QUALITY, {of_float, of_double}, relative}
+#define COLUMN(kind, row, name) {#name, COLUMN_##kind, offsetof(struct row, name), .unit = NULL}
+#define METRIC(row, name, unit, better, class, of_float, of_double, relative, ...) \
+    {#name, COLUMN_REAL, offsetof(struct row, name), unit, better, class, {of_float, of_double}, relative, __VA_ARGS__}
+#define M_COLUMN(kind, name)                COLUMN(kind, measurement, name)
+#define M_METRIC(name, unit, better, ...)   METRIC(measurement, name, unit, better, __VA_ARGS__)
+#define T_COLUMN(kind, name)                COLUMN(kind, target_row, name)
+#define T_METRIC(name, unit, better, ...)   METRIC(target_row, name, unit, better, CLASS_QUALITY, __VA_ARGS__, {NULL})
 /* clang-format on */
 
 /* Slacks of quality are about a hundred times what compilers and instruction sets make of the same source: rounding,
@@ -33,26 +32,34 @@ const struct column measurement_columns[] = {
     M_COLUMN(TEXT, reason),
     M_COLUMN(TEXT, skipped),
     M_COLUMN(REAL, plan_s),
-    M_METRIC(run_s, "s", BETTER_LOWER, CLASS_TIME, 0, 0, 1),
+    M_METRIC(run_s, "s", BETTER_LOWER, CLASS_TIME, 0, 0, 1, {NULL}),
     M_COLUMN(REAL, run_min_s),
     M_COLUMN(INTEGER, runs),
     M_COLUMN(REAL, control_s),
     M_COLUMN(TEXT, stages),
-    M_METRIC(flops_published, "FLOP", BETTER_NONE, CLASS_WORK, 0, 0, 0),
-    M_METRIC(flops, "FLOP", BETTER_LOWER, CLASS_WORK, 0, 0, 0),
-    M_METRIC(pairs, "pairs", BETTER_NONE, CLASS_WORK, 0, 0, 0),
-    M_METRIC(bytes, "B", BETTER_LOWER, CLASS_WORK, 0, 0, 0),
-    M_METRIC(error, "1", BETTER_LOWER, CLASS_QUALITY, 2e-6, 1e-9, 1e-3),
-    M_METRIC(error_gain, "1", BETTER_LOWER, CLASS_QUALITY, 2e-6, 1e-9, 1e-3),
-    M_METRIC(phase_rms_rad, "rad", BETTER_LOWER, CLASS_QUALITY, 2e-6, 1e-9, 1e-3),
-    M_METRIC(width_m, "m", BETTER_LOWER, CLASS_QUALITY, 0, 0, 1e-4),
-    M_METRIC(pslr_db, "dB", BETTER_LOWER, CLASS_QUALITY, 2e-3, 2e-3, 0),
-    M_METRIC(islr_db, "dB", BETTER_LOWER, CLASS_QUALITY, 2e-3, 2e-3, 0),
+    M_METRIC(flops_published, "FLOP", BETTER_NONE, CLASS_WORK, 0, 0, 0, {NULL}),
+    M_METRIC(flops, "FLOP", BETTER_LOWER, CLASS_WORK, 0, 0, 0, {"work", "GFLOP", 1e-9, "%.3g"}),
+    M_METRIC(pairs, "pairs", BETTER_NONE, CLASS_WORK, 0, 0, 0, {NULL}),
+    M_METRIC(bytes, "B", BETTER_LOWER, CLASS_WORK, 0, 0, 0, {"memory", "MB", 1e-6, "%.3g"}),
+    M_METRIC(error, "1", BETTER_LOWER, CLASS_QUALITY, 2e-6, 1e-9, 1e-3, {"error", "", 1, "%.1e", .brief = "error"}),
+    M_METRIC(error_gain, "1", BETTER_LOWER, CLASS_QUALITY, 2e-6, 1e-9, 1e-3,
+             {"error, best gain", "", 1, "%.1e", .brief = "+gain", .wide = true}),
+    M_METRIC(phase_rms_rad, "rad", BETTER_LOWER, CLASS_QUALITY, 2e-6, 1e-9, 1e-3,
+             {"phase rms", "rad", 1, "%.1e", .brief = "phase"}),
+    M_METRIC(width_m, "m", BETTER_LOWER, CLASS_QUALITY, 0, 0, 1e-4,
+             {"width", "mm", 1e3, "%.2f", .brief = "width", .of = SHOWN_OF_TARGETS}),
+    M_METRIC(pslr_db, "dB", BETTER_LOWER, CLASS_QUALITY, 2e-3, 2e-3, 0,
+             {"PSLR", "dB", 1, "%.2f", .brief = "PSLR", .of = SHOWN_OF_TARGETS}),
+    M_METRIC(islr_db, "dB", BETTER_LOWER, CLASS_QUALITY, 2e-3, 2e-3, 0,
+             {"ISLR", "dB", 1, "%.2f", .brief = "ISLR", .of = SHOWN_OF_TARGETS}),
     M_COLUMN(REAL, run_q1_s),
     M_COLUMN(REAL, run_q3_s),
-    M_METRIC(entropy, "1", BETTER_LOWER, CLASS_QUALITY, 0, 0, 1e-3),
-    M_METRIC(contrast, "1", BETTER_HIGHER, CLASS_QUALITY, 0, 0, 1e-3),
-    M_METRIC(peak_over_median, "1", BETTER_HIGHER, CLASS_QUALITY, 0, 0, 1e-2),
+    M_METRIC(entropy, "1", BETTER_LOWER, CLASS_QUALITY, 0, 0, 1e-3,
+             {"entropy", "", 1, "%.2f", .brief = "entro.", .of = SHOWN_WITHOUT_TARGETS}),
+    M_METRIC(contrast, "1", BETTER_HIGHER, CLASS_QUALITY, 0, 0, 1e-3,
+             {"contrast", "", 1, NULL, .brief = "contr.", .of = SHOWN_WITHOUT_TARGETS}),
+    M_METRIC(peak_over_median, "1", BETTER_HIGHER, CLASS_QUALITY, 0, 0, 1e-2,
+             {"peak/median", "", 1, NULL, .brief = "peak", .of = SHOWN_WITHOUT_TARGETS}),
     {.name = NULL},
 };
 
@@ -78,6 +85,11 @@ const struct column *metric_first(const struct column *columns)
     while (columns->name && !columns->unit)
         columns++;
     return columns->name ? columns : NULL;
+}
+
+bool column_is_shown(const struct column *column, bool targets)
+{
+    return column->shown.title && column->shown.of != (targets ? SHOWN_WITHOUT_TARGETS : SHOWN_OF_TARGETS);
 }
 
 void column_clear(const struct column *column, void *row)

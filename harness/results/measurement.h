@@ -31,24 +31,35 @@ struct target_row {
     double extent_m, position_error_m, phase_error_rad, width_m, pslr_db, islr_db;
 };
 
-/* The one table of what the files hold: header, writer and reader of the CSV, the empty row, what the regression gate
-   judges and what a claim may ask for come from it. What the terminal and the report show is chosen there, with numbers
-   that follow from several (speed-up, rate). */
+/* The one table of metrics: header, writer and reader of the CSV, the empty row, what the regression gate compares, what a
+   claim may ask for, and what terminal and report show come from it. These two add what follows from several columns
+   (speed-up, rate). */
 struct column {
     const char *name; /* NULL ends the table */
     enum { COLUMN_TEXT, COLUMN_INTEGER, COLUMN_REAL } type;
     size_t offset; /* of the field in struct measurement or target_row */
-    /* Of a metric, a real number that is judged: */
+    /* Of a metric, a real number that is compared: */
     const char *unit;                                                       /* NULL: no metric */
     enum { BETTER_NONE, BETTER_LOWER, BETTER_HIGHER, BETTER_SMALL } better; /* small: of magnitude */
     enum metric_class { CLASS_QUALITY, CLASS_WORK, CLASS_TIME } class;
     double absolute_slack[2]; /* by enum precision; a change within either slack is none */
     double relative_slack;
+    /* Of a metric that tables show: */
+    struct {
+        const char *title, *unit; /* title NULL: none shows it */
+        double scale;             /* to that unit */
+        const char *format;       /* NULL: three digits */
+        const char *brief;        /* its title on the terminal; NULL: only the report shows it */
+        bool wide;                /* on a wide terminal only */
+        enum { SHOWN_OF_ALL, SHOWN_OF_TARGETS, SHOWN_WITHOUT_TARGETS } of; /* the last two stand in one place */
+    } shown;
 };
 extern const struct column measurement_columns[], target_columns[];
 
 /* The first metric from a column on; NULL where there is none. */
 const struct column *metric_first(const struct column *columns);
+/* Is it shown of scenes with point targets, or of those without? */
+bool column_is_shown(const struct column *column, bool targets);
 /* The field of a row becomes what is written as an empty one. */
 void column_clear(const struct column *column, void *row);
 

@@ -15,11 +15,6 @@
 #include "imaging/spec.h"
 
 enum { WIDTH_WIDE = 110, WIDTH_LEAST = 80 };
-/* Titles, units and values alike: algorithm, time, speed-up, rate, three errors, width, PSLR, ISLR; on a narrow
-   terminal without rate and gain. */
-#define LAYOUT_WIDE   "  %-34s %8s %8s %9s %7s %7s %7s %6s %6s %6s\n"
-#define LAYOUT_NARROW "  %-23s %8s %8s %7s %7s %6s %6s %6s\n"
-
 enum { REFUSALS = 8 }; /* reasons of one scene that are told apart */
 
 /* There is one terminal, and so one table. */
@@ -28,7 +23,7 @@ static struct {
     bool brief;      /* one line a scene */
     bool titled;     /* the columns have their names */
     char scene[256]; /* of the rows since its heading */
-    bool sharpness;  /* the last three columns are that: the scene has no targets */
+    bool blind;      /* the last titles were those of a scene without targets */
     int images, refused, failed;
     struct {
         char reason[600], names[300];
@@ -81,20 +76,20 @@ static struct cell cell_rate(const struct measurement *row)
                           : cell_significant(1e-9 * row->flops / row->run_s, " GF/s");
 }
 
-static struct cell cell_error(double value)
+struct cell cell_metric(const struct column *column, const struct measurement *row)
 {
+    const double value = column->shown.scale * *(const double *)((const char *)row + column->offset);
     struct cell cell = {"-"};
+    if (!column->shown.format)
+        return cell_significant(value, "");
     if (isfinite(value))
-        snprintf(cell.text, sizeof cell.text, "%.1e", value);
+        snprintf(cell.text, sizeof cell.text, column->shown.format, value);
     return cell;
 }
 
-static struct cell cell_fixed(double value)
+bool measurement_is_blind(const struct measurement *row)
 {
-    struct cell cell = {"-"};
-    if (isfinite(value))
-        snprintf(cell.text, sizeof cell.text, "%.2f", value);
-    return cell;
+    return strstr(row->reason, OUTCOME_NO_TARGETS) && isfinite(row->entropy);
 }
 
 /* Text broken at blanks, each line behind `indent` blanks; a word longer than a line is broken anywhere. */
@@ -120,14 +115,40 @@ static void print_wrapped(FILE *stream, int indent, const char *text)
     wrapped_print(stream, table.width, indent, text);
 }
 
-/* One line: texts in the order of LAYOUT_WIDE. */
-static void line_print(FILE *stream, const char *const texts[10])
+/* How wide a metric stands; 0: it does not. */
+static int metric_width(const struct column *column, bool blind)
 {
+    if (!column->shown.brief || !column_is_shown(column, !blind) || (column->shown.wide && table.width < WIDTH_WIDE))
+        return 0;
+    return column->shown.of == SHOWN_OF_ALL ? 7 : 6;
+}
+
+/* What stands ahead of the metrics: SPEC, time, speed-up and, where there is room, rate. */
+static void line_begin(FILE *stream, const char *spec, const char *time, const char *speed_up, const char *rate)
+{
+    fprintf(stream, "  %-*s %8s %8s", table.spec_width, spec, time, speed_up);
     if (table.width >= WIDTH_WIDE)
-        fprintf(stream, LAYOUT_WIDE, texts[0], texts[1], texts[2], texts[3], texts[4], texts[5], texts[6], texts[7],
-                texts[8], texts[9]);
-    else
-        fprintf(stream, LAYOUT_NARROW, texts[0], texts[1], texts[2], texts[4], texts[6], texts[7], texts[8], texts[9]);
+        fprintf(stream, " %9s", rate);
+}
+
+/* The metrics of a row; without one their units, or their titles, of a blind scene only those that differ. */
+static void line_end(FILE *stream, bool blind, const struct measurement *row, bool units)
+{
+    for (const struct column *column = measurement_columns; column->name; column++) {
+        const int width = metric_width(column, blind);
+        const char *title = blind && column->shown.of == SHOWN_OF_ALL ? "" : column->shown.brief;
+        if (width)
+            fprintf(stream, " %*s", width, row ? cell_metric(column, row).text : units ? column->shown.unit : title);
+    }
+    fputc('\n', stream);
+}
+
+static void titles_print(FILE *stream)
+{
+    line_begin(stream, "algorithm", "time", "speed-up", "rate");
+    line_end(stream, false, NULL, false);
+    line_begin(stream, "", "", "", "");
+    line_end(stream, false, NULL, true);
 }
 
 /* Columns of the terminal: what COLUMNS says, what the terminal says, or those of a wide table where there is none. */
@@ -171,14 +192,9 @@ void table_begin(FILE *stream, bool brief)
     table.brief = brief;
     table.titled = false;
     table.width = table_width(stream) < WIDTH_WIDE ? WIDTH_LEAST : WIDTH_WIDE;
-    table.spec_width = table.width == WIDTH_WIDE ? 34 : 23;
-}
-
-static void titles_print(FILE *stream)
-{
-    line_print(stream, (const char *const[]){"algorithm", "time", "speed-up", "rate", "error", "+gain", "phase",
-                                             "width", "PSLR", "ISLR"});
-    line_print(stream, (const char *const[]){"", "", "", "", "", "", "rad", "mm", "dB", "dB"});
+    table.spec_width = table.width == WIDTH_WIDE ? WIDTH_WIDE - 31 : WIDTH_LEAST - 20;
+    for (const struct column *column = measurement_columns; column->name; column++)
+        table.spec_width -= metric_width(column, false) ? 1 + metric_width(column, false) : 0;
 }
 
 void measurement_spec(const struct measurement *row, char *text, size_t size)
@@ -236,7 +252,7 @@ void table_scene(FILE *stream, const char *name, const char *what)
     char scene[WIDTH_WIDE + 1];
     table_scene_end(stream);
     snprintf(table.scene, sizeof table.scene, "%s", name);
-    table.sharpness = false;
+    table.blind = false;
     table.images = table.refused = table.failed = 0;
     *table.warned = '\0';
     if (table.brief)
@@ -293,23 +309,17 @@ static void ok_print(FILE *stream, const struct measurement *row, const char *sp
         return;
     }
     const bool own_line = strlen(spec) > (size_t)table.spec_width;
-    const bool sharpness = strstr(row->reason, OUTCOME_NO_TARGETS) && isfinite(row->entropy);
-    struct cell last[3] = {cell_fixed(1e3 * row->width_m), cell_fixed(row->pslr_db), cell_fixed(row->islr_db)};
-    if (sharpness && !table.sharpness)
-        line_print(stream, (const char *const[]){"", "", "", "", "", "", "", "entro.", "contr.", "peak"});
-    table.sharpness |= sharpness;
-    if (sharpness) {
-        last[0] = cell_fixed(row->entropy);
-        last[1] = cell_significant(row->contrast, "");
-        last[2] = cell_significant(row->peak_over_median, "");
+    const bool blind = measurement_is_blind(row);
+    if (blind && !table.blind) {
+        line_begin(stream, "", "", "", "");
+        line_end(stream, true, NULL, false);
     }
+    table.blind |= blind;
     if (own_line)
         print_wrapped(stream, 2, spec);
-    line_print(stream,
-               (const char *const[]){own_line ? "" : spec, cell_run_time(row).text,
-                                     cell_significant(row->control_s / row->run_s, "x").text, cell_rate(row).text,
-                                     cell_error(row->error).text, cell_error(row->error_gain).text,
-                                     cell_error(row->phase_rms_rad).text, last[0].text, last[1].text, last[2].text});
+    line_begin(stream, own_line ? "" : spec, cell_run_time(row).text,
+               cell_significant(row->control_s / row->run_s, "x").text, cell_rate(row).text);
+    line_end(stream, blind, row, false);
     warnings_print(stream, row->reason);
 }
 

@@ -36,6 +36,10 @@ struct cell cell_significant(double value, const char *unit); /* three digits, t
 struct cell cell_time(double seconds);                        /* "-" also for 0: below what the clock tells */
 struct cell cell_place(double place, double step);            /* six digits, or as many as tell places a step apart */
 struct cell cell_run_time(const struct measurement *row);     /* with ~ where it is noisy */
+/* A metric in the unit that tables show it in (struct column). */
+struct cell cell_metric(const struct column *column, const struct measurement *row);
+/* Has its scene no targets, so that the metrics of images without them are shown? */
+bool measurement_is_blind(const struct measurement *row);
 bool is_noisy(const struct measurement *row);
 /* The next warning in a row's reason, of which *at is what is left. Noise is none: it has its mark. False at the
    end. */
