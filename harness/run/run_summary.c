@@ -8,14 +8,14 @@
 #include "echoes/echo_data.h"
 #include "text/shown_text.h"
 #include "text/text_append.h"
+#include "show/plot_points.h"
 #include "show/table.h"
 
 enum { BOUNDS = 4, WIDTH_MOST = 132, LINE = 600, REFUSALS_MOST = 12 };
 static char bounds[BOUNDS][LINE] = {"1e-1", "1e-2", "1e-3", "1e-4"};
 
 struct run {
-    const struct measurement **rows; /* [count], by scene */
-    int count;
+    struct results rows; /* those of the run, by scene */
     const struct spec *specs;
     int spec_count;
 };
@@ -29,19 +29,6 @@ static bool is_of(const struct measurement *row, const struct scene *scene, cons
 {
     return strcmp(row->scene, scene->name) == 0 && is_named(row, spec->algorithm->name)
            && strcmp(row->options, spec->text) == 0 && strcmp(row->precision, precision_name(spec->precision)) == 0;
-}
-
-/* Of one scene; `auto` is none, for it is one of the others, unless `chosen` asks for it alone. */
-static const struct measurement *fastest_find(const struct run *run, const char *scene, double error, bool chosen)
-{
-    const struct measurement *best = NULL;
-    for (int k = 0; k < run->count; k++) {
-        const struct measurement *row = run->rows[k];
-        if (strcmp(row->scene, scene) == 0 && is_named(row, "auto") == chosen && !is_named(row, "reference")
-            && measurement_is_cheaper(row, best, offsetof(struct measurement, run_s), error))
-            best = row;
-    }
-    return best;
 }
 
 /* "2.9ms" */
@@ -74,9 +61,11 @@ static void cell_format(const struct run *run, const struct measurement *row, ch
 static void none_format(const struct run *run, const char *scene, char *text, size_t size)
 {
     double least = INFINITY;
-    for (int k = 0; k < run->count; k++)
-        if (strcmp(run->rows[k]->scene, scene) == 0 && !is_named(run->rows[k], "reference"))
-            least = fmin(least, run->rows[k]->error);
+    for (int k = 0; k < run->rows.csv.row_count; k++) {
+        const struct measurement *row = &run->rows.measurements[k];
+        if (strcmp(row->scene, scene) == 0 && !is_named(row, "reference"))
+            least = fmin(least, row->error);
+    }
     if (isfinite(least))
         snprintf(text, size, "none: least %.1e", least);
     else
@@ -113,9 +102,7 @@ static void scene_print(FILE *stream, const struct run *run, const char *scene, 
     char cells[BOUNDS][LINE];
     const struct measurement *last = NULL;
     for (int k = 0; k < BOUNDS; k++) {
-        const struct measurement *best = fastest_find(run, scene, strtod(bounds[k], NULL), false);
-        if (!best)
-            best = fastest_find(run, scene, strtod(bounds[k], NULL), true);
+        const struct measurement *best = scene_fastest(&run->rows, scene, strtod(bounds[k], NULL));
         if (k > 0 && best == last)
             snprintf(cells[k], sizeof cells[k], "=");
         else if (best)
@@ -153,8 +140,8 @@ static void refused_print(FILE *stream, const struct run *run)
     } list[REFUSALS_MOST];
     char text[1500] = "", name[2][80];
     int count = 0;
-    for (int k = 0; k < run->count; k++) {
-        const struct measurement *row = run->rows[k];
+    for (int k = 0; k < run->rows.csv.row_count; k++) {
+        const struct measurement *row = &run->rows.measurements[k];
         int n = 0;
         if (strcmp(row->status, "unsupported") != 0)
             continue;
@@ -196,12 +183,12 @@ static void auto_print(FILE *stream, const struct run *run)
     const struct measurement *worst = NULL;
     double most = 0;
     int count = 0, fast = 0;
-    for (int k = 0; k < run->count; k++) {
-        const struct measurement *row = run->rows[k], *best = NULL;
+    for (int k = 0; k < run->rows.csv.row_count; k++) {
+        const struct measurement *row = &run->rows.measurements[k], *best = NULL;
         const char *error = strstr(row->options, "error=");
         if (is_named(row, "auto") && error && row->run_s > 0)
-            best = fastest_find(run, row->scene, strtod(error + strlen("error="), NULL), false);
-        if (!best)
+            best = scene_fastest(&run->rows, row->scene, strtod(error + strlen("error="), NULL));
+        if (!best || is_named(best, "auto"))
             continue;
         const double ratio = row->run_s / best->run_s;
         count++;
@@ -224,9 +211,9 @@ static void times_print(FILE *stream, const struct run *run, const char *spent)
 {
     char text[400];
     int noisy = 0, timed = 0;
-    for (int k = 0; k < run->count; k++) {
-        timed += run->rows[k]->run_s > 0;
-        noisy += is_noisy(run->rows[k]);
+    for (int k = 0; k < run->rows.csv.row_count; k++) {
+        timed += run->rows.measurements[k].run_s > 0;
+        noisy += is_noisy(&run->rows.measurements[k]);
     }
     snprintf(text, sizeof text, "%s", spent);
     if (noisy > 0)
@@ -237,17 +224,18 @@ static void times_print(FILE *stream, const struct run *run, const char *spent)
 void run_summary_print(FILE *stream, const struct results *results, int scene_count, const struct scene *scenes,
                        int spec_count, const struct spec *specs, const char *spent)
 {
-    struct run run = {calloc((size_t)results->csv.row_count + 1, sizeof *run.rows), 0, specs, spec_count};
+    struct run run = {.specs = specs, .spec_count = spec_count};
     int width = table_width(stream), longest = 0;
     width = width < WIDTH_MOST ? width : WIDTH_MOST;
-    if (!run.rows)
+    run.rows.measurements = calloc((size_t)results->csv.row_count + 1, sizeof *run.rows.measurements);
+    if (!run.rows.measurements)
         return;
     for (int s = 0; s < scene_count; s++) {
         longest = (int)strlen(scenes[s].name) > longest ? (int)strlen(scenes[s].name) : longest;
         for (int row = 0; row < results->csv.row_count; row++)
             for (int k = 0; k < spec_count; k++)
                 if (is_of(&results->measurements[row], &scenes[s], &specs[k]))
-                    run.rows[run.count++] = &results->measurements[row];
+                    run.rows.measurements[run.rows.csv.row_count++] = results->measurements[row];
     }
     const int first = (longest < width / 5 ? longest : width / 5) + 1;
     fputs("\nFastest within a relative error: time, times the scalar loop (=: as to the left)\n", stream);
@@ -257,5 +245,5 @@ void run_summary_print(FILE *stream, const struct results *results, int scene_co
     refused_print(stream, &run);
     auto_print(stream, &run);
     times_print(stream, &run, spent);
-    free(run.rows);
+    free(run.rows.measurements);
 }
