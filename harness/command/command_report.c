@@ -17,7 +17,7 @@ enum status command_report(const struct task *task)
     if (status == STATUS_OK)
         status = report_write(directory);
     if (status == STATUS_OK)
-        printf("%s/report.html and report.md\n", directory);
+        printf("%s/report.html\n", directory);
     folder_leave(lock);
     return status;
 }

@@ -1,10 +1,9 @@
-/* Headings, tables and pictures as HTML or Markdown (page.h). */
+/* Headings, tables and pictures as HTML (page.h). */
 #include "report/page.h"
 
 #include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -37,11 +36,8 @@ static void character_write(struct page *page, const char **text)
 
 void page_text(struct page *page, const char *text)
 {
-    if (page->format == PAGE_MARKDOWN)
-        shown_markdown(page->stream, text);
-    else
-        while (*text)
-            character_write(page, &text);
+    while (*text)
+        character_write(page, &text);
 }
 
 /* <NAME ATTRIBUTE="VALUE">TEXT</NAME>; without a value no attribute. */
@@ -63,12 +59,6 @@ static void element_write(struct page *page, const char *name, const char *attri
 
 void page_begin(struct page *page, const char *title)
 {
-    if (page->format == PAGE_MARKDOWN) {
-        fputs("# ", page->stream);
-        page_text(page, title);
-        fputs("\n\n", page->stream);
-        return;
-    }
     fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n  <meta charset=\"utf-8\"/>\n"
           "  <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n  ",
           page->stream);
@@ -80,52 +70,35 @@ void page_begin(struct page *page, const char *title)
 
 void page_end(struct page *page)
 {
-    if (page->format == PAGE_HTML)
-        fprintf(page->stream, "%s</body>\n</html>\n", page_script);
+    fprintf(page->stream, "%s</body>\n</html>\n", page_script);
 }
 
 void page_heading(struct page *page, int level, const char *id, const char *text)
 {
-    if (page->format == PAGE_MARKDOWN) {
-        fprintf(page->stream, "\n%.*s ", level, "###");
-        page_text(page, text);
-        fputs("\n\n", page->stream);
-        return;
-    }
     element_write(page, level == 2 ? "h2" : "h3", "id", id, text);
     fputc('\n', page->stream);
 }
 
 void page_part_begin(struct page *page, const char *title)
 {
-    if (page->format == PAGE_HTML) {
-        fputs("<details>\n", page->stream);
-        element_write(page, "summary", NULL, NULL, title);
-        fputc('\n', page->stream);
-    } else {
-        page_heading(page, 3, NULL, title);
-    }
+    fputs("<details>\n", page->stream);
+    element_write(page, "summary", NULL, NULL, title);
+    fputc('\n', page->stream);
 }
 
 void page_part_end(struct page *page)
 {
-    if (page->format == PAGE_HTML)
-        fputs("</details>\n", page->stream);
+    fputs("</details>\n", page->stream);
 }
 
 void page_paragraph(struct page *page, const char *text)
 {
-    if (page->format == PAGE_HTML)
-        element_write(page, "p", NULL, NULL, text);
-    else
-        page_text(page, text);
-    fputs(page->format == PAGE_HTML ? "\n" : "\n\n", page->stream);
+    element_write(page, "p", NULL, NULL, text);
+    fputc('\n', page->stream);
 }
 
 void page_contents(struct page *page, int count, const char *const *ids, const char *const *titles)
 {
-    if (page->format != PAGE_HTML)
-        return;
     fputs("<nav>\n", page->stream);
     for (int k = 0; k < count; k++) {
         fprintf(page->stream, "  <a href=\"#%s\">", ids[k]);
@@ -141,40 +114,10 @@ void page_table_begin(struct page *page, int count, const struct page_column *co
 {
     page->columns = columns;
     page->column_count = count;
-    page->rows_left_out = 0;
-    if (page->format == PAGE_HTML)
-        fputs("<table>\n<thead><tr>", page->stream);
-    else
-        fputc('|', page->stream);
-    for (int k = 0; k < count; k++) {
-        if (page->format == PAGE_HTML) {
-            element_write(page, "th", "class", columns[k].number ? "number" : NULL, columns[k].title);
-        } else {
-            page_text(page, columns[k].title);
-            fputc('|', page->stream);
-        }
-    }
-    if (page->format == PAGE_HTML) {
-        fputs("</tr></thead>\n<tbody>\n", page->stream);
-        return;
-    }
-    fputs("\n|", page->stream);
+    fputs("<table>\n<thead><tr>", page->stream);
     for (int k = 0; k < count; k++)
-        fputs(columns[k].number ? "--:|" : "---|", page->stream);
-    fputc('\n', page->stream);
-}
-
-long page_room(const struct page *page)
-{
-    return page->bytes_most > 0 ? page->bytes_most - ftell(page->stream) : LONG_MAX;
-}
-
-/* Is there no room for a further row? */
-static bool row_left_out(struct page *page)
-{
-    bool full = page_room(page) < 0;
-    page->rows_left_out += full;
-    return full;
+        element_write(page, "th", "class", columns[k].number ? "number" : NULL, columns[k].title);
+    fputs("</tr></thead>\n<tbody>\n", page->stream);
 }
 
 /* A row's name, which may be a long SPEC: its parts may stand on lines of their own. */
@@ -201,17 +144,6 @@ static void cell_write(struct page *page, const struct page_column *column, cons
 
 void page_row(struct page *page, const struct page_cell *cells)
 {
-    if (row_left_out(page))
-        return;
-    if (page->format == PAGE_MARKDOWN) {
-        fputc('|', page->stream);
-        for (int k = 0; k < page->column_count; k++) {
-            page_text(page, cells[k].text);
-            fputc('|', page->stream);
-        }
-        fputc('\n', page->stream);
-        return;
-    }
     fputs("<tr>", page->stream);
     name_write(page, cells[0].text);
     for (int k = 1; k < page->column_count; k++)
@@ -221,33 +153,16 @@ void page_row(struct page *page, const struct page_cell *cells)
 
 void page_row_note(struct page *page, const char *name, const char *note)
 {
-    if (row_left_out(page))
-        return;
-    if (page->format == PAGE_HTML) {
-        fputs(*name ? "<tr>" : "<tr class=\"below\">", page->stream);
-        name_write(page, name);
-        fprintf(page->stream, "<td class=\"note\" colspan=\"%d\">", page->column_count - 1);
-        page_text(page, note);
-        fputs("</td></tr>\n", page->stream);
-        return;
-    }
-    fputc('|', page->stream);
-    page_text(page, name);
-    fputc('|', page->stream);
+    fputs(*name ? "<tr>" : "<tr class=\"below\">", page->stream);
+    name_write(page, name);
+    fprintf(page->stream, "<td class=\"note\" colspan=\"%d\">", page->column_count - 1);
     page_text(page, note);
-    for (int k = 1; k < page->column_count; k++)
-        fputc('|', page->stream);
-    fputc('\n', page->stream);
+    fputs("</td></tr>\n", page->stream);
 }
 
 void page_table_end(struct page *page)
 {
-    char text[64];
-    fputs(page->format == PAGE_HTML ? "</tbody>\n</table>\n" : "\n", page->stream);
-    if (page->rows_left_out == 0)
-        return;
-    snprintf(text, sizeof text, "%d more rows are left out here.", page->rows_left_out);
-    page_paragraph(page, text);
+    fputs("</tbody>\n</table>\n", page->stream);
 }
 
 /* --- Pictures -------------------------------------------------------------------------------------------------- */
@@ -303,8 +218,6 @@ enum status page_drawing(struct page *page, const char *path, const char *title)
 {
     char *svg;
     size_t size;
-    if (page->format != PAGE_HTML)
-        return STATUS_OK;
     enum status status = file_read(path, &svg, &size);
     if (status != STATUS_OK)
         return status;
@@ -346,7 +259,7 @@ static void link_write(struct page *page, const char *name)
 
 void page_files(struct page *page, const char *before, int count, const char *const *names, const char *const *texts)
 {
-    if (page->format != PAGE_HTML || count == 0)
+    if (count == 0)
         return;
     fputs("<p>", page->stream);
     page_text(page, before);
@@ -365,8 +278,6 @@ static enum status figure_write(struct page *page, const char *path, const char 
 {
     char *bytes;
     size_t size;
-    if (page->format != PAGE_HTML)
-        return STATUS_OK;
     enum status status = file_read(path, &bytes, &size);
     if (status != STATUS_OK)
         return status;
@@ -392,16 +303,4 @@ enum status page_image(struct page *page, const char *path, const char *caption)
 enum status page_thumbnail(struct page *page, const char *small, const char *name, const char *caption)
 {
     return figure_write(page, small, "jpeg", name, caption);
-}
-
-void page_gallery_begin(struct page *page)
-{
-    if (page->format == PAGE_HTML)
-        fputs("<div class=\"gallery\">\n", page->stream);
-}
-
-void page_gallery_end(struct page *page)
-{
-    if (page->format == PAGE_HTML)
-        fputs("</div>\n", page->stream);
 }

@@ -1,4 +1,4 @@
-/* A page of headings, tables and pictures, written as one self-contained HTML file or as Markdown.
+/* A page of headings, tables and pictures, written as one self-contained HTML file.
 
    The HTML is strict: every element is closed, every attribute quoted, nothing is loaded from outside, and all can be
    read without its one script. Text is escaped by these functions; callers give it plain. */
@@ -10,8 +10,6 @@
 
 #include "contract/status.h"
 
-enum page_format { PAGE_HTML, PAGE_MARKDOWN };
-
 struct page_column {
     const char *title;
     bool number; /* set to the right */
@@ -19,11 +17,9 @@ struct page_column {
 
 struct page {
     FILE *stream;
-    enum page_format format;
-    long bytes_most; /* rows of tables beyond are counted and left out; 0: no limit */
     /* For these functions alone. */
     const struct page_column *columns; /* [column_count] of the table that is open */
-    int column_count, rows_left_out;
+    int column_count;
     int drawings; /* SVG pictures so far: what the names of their elements begin with */
 };
 
@@ -31,9 +27,6 @@ struct page_cell {
     const char *text;
     const char *class; /* of the HTML cell: good, soft, bad, open; NULL for none */
 };
-
-/* Bytes that are left for rows; LONG_MAX without a limit. */
-long page_room(const struct page *page);
 
 void page_begin(struct page *page, const char *title);
 void page_end(struct page *page);
@@ -43,10 +36,10 @@ void page_text(struct page *page, const char *text);
 /* level 2 or 3; `id` for links within the page, may be NULL. */
 void page_heading(struct page *page, int level, const char *id, const char *text);
 void page_paragraph(struct page *page, const char *text);
-/* A part with a title; in HTML it is closed until it is asked for. */
+/* A part with a title, closed until it is asked for. */
 void page_part_begin(struct page *page, const char *title);
 void page_part_end(struct page *page);
-/* Links to headings, in HTML only. */
+/* Links to headings. */
 void page_contents(struct page *page, int count, const char *const *ids, const char *const *titles);
 
 /* On a narrow screen the rows of a table fall apart into blocks. `columns` stays borrowed until page_table_end. A row
@@ -57,15 +50,12 @@ void page_row(struct page *page, const struct page_cell *cells);
 void page_row_note(struct page *page, const char *name, const char *note);
 void page_table_end(struct page *page);
 
-/* Pictures, in HTML only: Markdown cannot hold them. A drawing of gnuplot (SVG) stands inline, its names made unique;
-   a PNG is encoded in the page. Errors: STATUS_FAILED when the file cannot be read. */
+/* Pictures. A drawing of gnuplot (SVG) stands inline, its names made unique; a PNG is encoded in the page. Errors: STATUS_FAILED when the file cannot be read. */
 enum status page_drawing(struct page *page, const char *path, const char *title);
 enum status page_image(struct page *page, const char *path, const char *caption);
 /* The JPEG file `small` in place of a PNG, with a link to the file `name` beside the page. */
 enum status page_thumbnail(struct page *page, const char *small, const char *name, const char *caption);
-/* A word, then links to files beside the page, in HTML only. */
+/* A word, then links to files beside the page. */
 void page_files(struct page *page, const char *before, int count, const char *const *names, const char *const *texts);
-void page_gallery_begin(struct page *page);
-void page_gallery_end(struct page *page);
 
 #endif

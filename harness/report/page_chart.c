@@ -146,7 +146,7 @@ static void point_write(struct page *page, const struct families *families, cons
 enum status page_chart(struct page *page, const struct families *families, const struct points *points)
 {
     enum { LEFT = 46, RIGHT = 8, TOP = 8, BOTTOM = 38, WIDTH = 520, HEIGHT = 350 };
-    if (page->format != PAGE_HTML || points->count == 0)
+    if (points->count == 0)
         return STATUS_OK;
     const struct chart chart = chart_fit(points, 1, false, WIDTH - LEFT - RIGHT, HEIGHT - TOP - BOTTOM);
     struct chart_label *labels = calloc((size_t)points->count + 1, sizeof *labels);
@@ -228,7 +228,7 @@ static bool algorithm_seen(const struct points *scenes, int s, int k)
 void page_overview(struct page *page, const struct families *families, const struct points *scenes, int count)
 {
     const struct chart chart = chart_fit(scenes, count, true, 150, 88);
-    if (page->format != PAGE_HTML || !(chart.cost_low > 0 && chart.cost_high > chart.cost_low))
+    if (!(chart.cost_low > 0 && chart.cost_high > chart.cost_low))
         return;
     fputs("<div class=\"overview\">\n", page->stream);
     for (int s = 0; s < count; s++)

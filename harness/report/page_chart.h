@@ -1,4 +1,4 @@
-/* Error against run time on a page, in HTML only: SVG of our own, whose points have names and can be reached by key. */
+/* Error against run time on a page: SVG of our own, whose points have names and can be reached by key. */
 #ifndef SASBENCH_REPORT_PAGE_CHART_H
 #define SASBENCH_REPORT_PAGE_CHART_H
 

@@ -1,4 +1,4 @@
-/* The command `report`: a results folder as one HTML page, and as Markdown (report.h). */
+/* The command `report`: a results folder as one HTML page (report.h). */
 #include "report/report.h"
 
 #include <dirent.h>
@@ -174,11 +174,8 @@ static void contents_show(struct page *page, const struct folder *folder)
     page_contents(page, count, ids, titles);
 }
 
-enum { MARKDOWN_ROWS = 20 }; /* more measurements are not for a comment */
-
 static enum status folder_show(struct page *page, const struct folder *folder)
 {
-    const bool html = page->format == PAGE_HTML;
     enum status status = STATUS_OK;
     char title[4200];
     snprintf(title, sizeof title, "sasbench: %s", folder->directory);
@@ -187,20 +184,18 @@ static enum status folder_show(struct page *page, const struct folder *folder)
         report_sentences_show(page, &folder->results, folder->scene_count, folder->scenes);
     contents_show(page, folder);
     if (any_points(folder)) {
-        report_overview_show(page, folder->directory, folder->points, folder->scene_count);
+        report_overview_show(page, folder->points, folder->scene_count);
         status = report_fronts_show(page, folder->points, folder->scene_count);
         report_cheapest_show(page, &folder->results, folder->points, folder->scene_count);
     }
     report_warnings_show(page, &folder->results);
     for (int k = 0; k < REPORT_TABLES; k++)
         report_table_show(page, &report_tables[k], &folder->csvs[k]);
-    if (is_measured(folder) && (html || folder->results.csv.row_count <= MARKDOWN_ROWS))
+    if (is_measured(folder))
         report_measurements_show(page, &folder->results, folder->scene_count, folder->scenes);
-    else if (is_measured(folder))
-        page_paragraph(page, "All measurements are in measurements.csv and report.html.");
-    if (status == STATUS_OK && html)
+    if (status == STATUS_OK)
         status = figures_show(page, folder);
-    if (status == STATUS_OK && html)
+    if (status == STATUS_OK)
         status = report_pictures_show(page, folder->directory, &folder->results, folder->scene_count, folder->scenes);
     machine_show(page, folder);
     page_end(page);
@@ -209,22 +204,16 @@ static enum status folder_show(struct page *page, const struct folder *folder)
 
 enum status report_write(const char *directory)
 {
-    static const struct {
-        const char *file;
-        enum page_format format;
-        long bytes;
-    } pages[] = {{"report.html", PAGE_HTML, 0}, {"report.md", PAGE_MARKDOWN, REPORT_MARKDOWN_BYTES}};
     struct folder folder = {0};
+    char path[4096];
+    struct text_file file;
+    snprintf(path, sizeof path, "%s/report.html", directory);
     enum status status = folder_read(directory, &folder);
-    for (size_t k = 0; k < sizeof pages / sizeof *pages && status == STATUS_OK; k++) {
-        char path[4096];
-        struct text_file file;
-        snprintf(path, sizeof path, "%s/%s", directory, pages[k].file);
+    if (status == STATUS_OK)
         status = text_file_open(path, &file);
-        if (status == STATUS_OK) {
-            struct page page = {.stream = file.stream, .format = pages[k].format, .bytes_most = pages[k].bytes};
-            status = text_file_close(&file, folder_show(&page, &folder));
-        }
+    if (status == STATUS_OK) {
+        struct page page = {.stream = file.stream};
+        status = text_file_close(&file, folder_show(&page, &folder));
     }
     folder_free(&folder);
     return status;

@@ -5,7 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "files/folder.h"
 #include "files/paths.h"
 #include "text/text_append.h"
 #include "report/page_chart.h"
@@ -95,19 +94,15 @@ void report_sentences_show(struct page *page, const struct results *results, int
 
 /* --- Pictures --------------------------------------------------------------------------------------------------- */
 
-void report_overview_show(struct page *page, const char *directory, const struct points *points, int scene_count)
+void report_overview_show(struct page *page, const struct points *points, int scene_count)
 {
-    char path[4096];
     struct families families;
     families_read(PLOT_DIRECTORY, &families);
-    snprintf(path, sizeof path, "%s/overview.png", directory);
     page_heading(page, 2, "overview", "All scenes");
     page_paragraph(page,
                    "Error against speed-up over the scalar reference loop, the same axes everywhere: faster is to "
                    "the left, more exact below; grey: the Pareto front, what no other setting beats in both.");
     page_overview(page, &families, points, scene_count);
-    if (page->format == PAGE_MARKDOWN && place_is_file(path))
-        fputs("![Error against speed-up of all scenes, side by side](overview.png)\n\n", page->stream);
 }
 
 /* The front, the fastest first. */
@@ -143,7 +138,6 @@ static void commands_show(struct page *page, const struct points *points)
 
 enum status report_fronts_show(struct page *page, const struct points *points, int scene_count)
 {
-    const bool html = page->format == PAGE_HTML;
     struct families families;
     enum status status = STATUS_OK;
     families_read(PLOT_DIRECTORY, &families);
@@ -154,13 +148,12 @@ enum status report_fronts_show(struct page *page, const struct points *points, i
             continue;
         snprintf(id, sizeof id, "scene-%d", s + 1);
         page_heading(page, 3, id, points[s].scene);
-        fputs(html ? "<div class=\"pair\"><div>\n" : "", page->stream);
+        fputs("<div class=\"pair\"><div>\n", page->stream);
         status = page_chart(page, &families, &points[s]);
-        fputs(html ? "</div><div>\n" : "", page->stream);
+        fputs("</div><div>\n", page->stream);
         front_table(page, &points[s]);
-        if (html)
-            commands_show(page, &points[s]);
-        fputs(html ? "</div></div>\n" : "", page->stream);
+        commands_show(page, &points[s]);
+        fputs("</div></div>\n", page->stream);
     }
     return status;
 }

@@ -136,11 +136,11 @@ static enum status scene_show(struct page *page, const char *directory, struct p
     for (int k = 0; k < list_count && k < shown && status == STATUS_OK; k++) {
         const bool drawn = thumbnails_path(&thumbnails, list[k].thumbnail, small);
         if (k == 1)
-            page_gallery_begin(page);
+            fputs("<div class=\"gallery\">\n", page->stream);
         status = report_picture_show(page, list[k].path, drawn ? small : NULL, list[k].caption, count);
     }
     if (list_count > 1)
-        page_gallery_end(page);
+        fputs("</div>\n", page->stream);
     if (shown < list_count)
         links_show(page, list + shown, list_count - shown);
     thumbnails_end(&thumbnails);

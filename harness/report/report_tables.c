@@ -56,7 +56,6 @@ const struct report_table report_tables[REPORT_TABLES] = {
          "counted operations, of all algorithms, and of each family. Ties: settings that are as fast within the "
          "noise.",
      .group = "scene",
-     .brief = true,
      .columns = {{"error_below", "error below", SHOW_TEXT},
                  {"cost", "cost", SHOW_TEXT},
                  {"family", "of", SHOW_TEXT},
@@ -79,7 +78,6 @@ const struct report_table report_tables[REPORT_TABLES] = {
          "the error falls, the finest half of that, and the floor. The residual is the points' rms distance from the "
          "line in log10.",
      .group = "scene",
-     .brief = true,
      .columns = {{"algorithm", "algorithm", SHOW_TEXT},
                  {"options", "options", SHOW_TEXT},
                  {"precision", "precision", SHOW_TEXT},
@@ -99,7 +97,6 @@ const struct report_table report_tables[REPORT_TABLES] = {
          "What auto chose before it formed an image, and why not others: of each algorithm the fastest setting that is "
          "within the error, or the nearest to it. Times and errors are predicted; the measured ones are below.",
      .group = "scene",
-     .brief = true,
      .summary = plans_summary_show,
      .columns = {{"options", "budget", SHOW_ONCE},
                  {"precision", "precision", SHOW_ONCE},
@@ -115,7 +112,6 @@ const struct report_table report_tables[REPORT_TABLES] = {
      .text =
          "Errors as predicted before any plan, over the measured ones after one gain: of all images of an algorithm. "
          "Below 1 the prediction is too low.",
-     .brief = true,
      .columns = {{"algorithm", "algorithm", SHOW_TEXT},
                  {"images", "images", SHOW_NUMBER},
                  {"least", "least", SHOW_NUMBER},
@@ -128,7 +124,6 @@ const struct report_table report_tables[REPORT_TABLES] = {
      .title = "Upsampling rules",
      .text = "Samples for each one recorded that BP22 Eq. (20) and ZP15's lambda/8 rule ask for, and the constants "
              "of the error laws.",
-     .brief = true,
      .columns = {{"scene", "scene", SHOW_TEXT},
                  {"fc_hz", "fc (Hz)", SHOW_NUMBER},
                  {"fs_hz", "fs (Hz)", SHOW_NUMBER},
@@ -145,10 +140,10 @@ const struct report_table report_tables[REPORT_TABLES] = {
      .group = "paper",
      .columns = {{"id", "id", SHOW_TEXT},
                  {"section", "section", SHOW_TEXT},
-                 {"claim", "claim", SHOW_TEXT, .detail = true},
+                 {"claim", "claim", SHOW_TEXT},
                  {"verdict", "as printed", SHOW_VERDICT},
                  {"corrected", "corrected", SHOW_VERDICT},
-                 {"evidence", "evidence", SHOW_TEXT, .detail = true}}},
+                 {"evidence", "evidence", SHOW_TEXT}}},
     {.file = "reproduced.csv",
      .id = "reproduced",
      .title = "Papers' tables",
@@ -163,7 +158,7 @@ const struct report_table report_tables[REPORT_TABLES] = {
                  {"paper", "paper", SHOW_NUMBER},
                  {"ours", "ours", SHOW_NUMBER},
                  {"difference", "difference", SHOW_NUMBER},
-                 {"assumption", "assumption", SHOW_ONCE, .detail = true}}},
+                 {"assumption", "assumption", SHOW_ONCE}}},
     [REPORT_STABILITY] =
         {.file = "stability.csv",
          .id = "stability",
@@ -183,7 +178,7 @@ const struct report_table report_tables[REPORT_TABLES] = {
                      {"spread", "spread", SHOW_NUMBER},
                      {"same_bits", "same bits", SHOW_TEXT},
                      {"finite", "finite", SHOW_TEXT},
-                     {"reason", "reason", SHOW_TEXT, .detail = true}}},
+                     {"reason", "reason", SHOW_TEXT}}},
 };
 
 enum status report_table_read(const char *directory, const struct report_table *table, struct csv *csv)
@@ -235,27 +230,13 @@ static void verdicts_count_show(struct page *page, const struct report_table *ta
     }
 }
 
-/* Bytes of what the table shows, without the signs between. */
-static long size_find(const struct report_table *table, const struct csv *csv)
-{
-    long size = 0;
-    for (int k = 0; k < REPORT_COLUMNS && table->columns[k].title; k++)
-        for (int row = 0; row < csv->row_count; row++)
-            size += (long)strlen(cell_of(csv, row, table->columns[k].name));
-    return size;
-}
-
-static void rows_show(struct page *page, const struct report_table *table, const struct csv *csv, const char *group,
-                      bool details)
+static void rows_show(struct page *page, const struct report_table *table, const struct csv *csv, const char *group)
 {
     struct page_column columns[REPORT_COLUMNS];
     const char *above[REPORT_COLUMNS] = {NULL};
-    int count = 0, shown[REPORT_COLUMNS];
-    for (int k = 0; k < REPORT_COLUMNS && table->columns[k].title; k++)
-        if (details || !table->columns[k].detail) {
-            columns[count] = (struct page_column){table->columns[k].title, table->columns[k].show == SHOW_NUMBER};
-            shown[count++] = k;
-        }
+    int count = 0;
+    for (; count < REPORT_COLUMNS && table->columns[count].title; count++)
+        columns[count] = (struct page_column){table->columns[count].title, table->columns[count].show == SHOW_NUMBER};
     page_table_begin(page, count, columns);
     for (int row = 0; row < csv->row_count; row++) {
         struct page_cell cells[REPORT_COLUMNS];
@@ -263,8 +244,8 @@ static void rows_show(struct page *page, const struct report_table *table, const
         if (group && strcmp(csv_cell(csv, row, csv_column(csv, table->group)), group) != 0)
             continue;
         for (int k = 0; k < count; k++) {
-            const char *text = cell_of(csv, row, table->columns[shown[k]].name);
-            const int show = (int)table->columns[shown[k]].show;
+            const char *text = cell_of(csv, row, table->columns[k].name);
+            const int show = (int)table->columns[k].show;
             double value;
             cells[k] = (struct page_cell){text, NULL};
             if (show == SHOW_VERDICT)
@@ -287,7 +268,7 @@ static void group_title(const struct report_table *table, const char *group, cha
 {
     snprintf(title, size, "%s", group);
     for (int k = 0; paper_tables[k].id; k++)
-        if (strcmp(table->group, "table") == 0 && strcmp(paper_tables[k].id, group) == 0)
+        if (table->group && strcmp(table->group, "table") == 0 && strcmp(paper_tables[k].id, group) == 0)
             snprintf(title, size, "%s", paper_tables[k].title);
 }
 
@@ -299,53 +280,26 @@ static bool group_seen(const struct csv *csv, int column, int row)
     return false;
 }
 
-static void groups_show(struct page *page, const struct report_table *table, const struct csv *csv, int column,
-                        bool details)
-{
-    int left_out = 0;
-    for (int row = 0; row < csv->row_count; row++) {
-        char title[400];
-        left_out += page_room(page) < 0;
-        if (page_room(page) < 0 || group_seen(csv, column, row))
-            continue;
-        group_title(table, csv_cell(csv, row, column), title, sizeof title);
-        page_part_begin(page, title);
-        rows_show(page, table, csv, csv_cell(csv, row, column), details);
-        page_part_end(page);
-    }
-    if (left_out > 0) {
-        char text[200];
-        snprintf(text, sizeof text, "%s and report.html have what is left out here.", table->file);
-        page_paragraph(page, text);
-    }
-}
-
 void report_table_show(struct page *page, const struct report_table *table, const struct csv *csv)
 {
-    const bool brief = table->brief && page->format == PAGE_MARKDOWN;
-    const long room = page_room(page);
-    if (csv->row_count == 0 || (brief && !table->summary))
+    if (csv->row_count == 0)
         return;
-    const bool details = size_find(table, csv) <= room / 2;
     page_heading(page, 2, table->id, table->title);
     page_paragraph(page, table->text);
     verdicts_count_show(page, table, csv);
-    if (table->summary && !brief)
+    if (table->summary) {
         page_part_begin(page, "At a glance");
-    if (table->summary)
         table->summary(page, csv);
-    if (table->summary && !brief)
         page_part_end(page);
-    if (brief)
-        return;
-    if (!details)
-        page_paragraph(page, "The texts are in report.html.");
-    int column = table->group ? csv_column(csv, table->group) : -1;
-    if (column >= 0) {
-        groups_show(page, table, csv, column, details);
-        return;
     }
-    page_part_begin(page, table->file);
-    rows_show(page, table, csv, NULL, details);
-    page_part_end(page);
+    const int column = table->group ? csv_column(csv, table->group) : -1;
+    for (int row = 0; row < (column < 0 ? 1 : csv->row_count); row++) {
+        char title[400];
+        if (column >= 0 && group_seen(csv, column, row))
+            continue;
+        group_title(table, column < 0 ? table->file : csv_cell(csv, row, column), title, sizeof title);
+        page_part_begin(page, title);
+        rows_show(page, table, csv, column < 0 ? NULL : csv_cell(csv, row, column));
+        page_part_end(page);
+    }
 }

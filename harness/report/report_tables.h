@@ -11,13 +11,11 @@ enum { REPORT_COLUMNS = 13 };
 struct report_table {
     const char *file, *id, *title, *text;
     const char *group;                                         /* column whose values become headings, or NULL */
-    bool brief;                                                /* Markdown has only the summary */
     void (*summary)(struct page *page, const struct csv *csv); /* of all groups, ahead of them; may be NULL */
     struct {
         const char *name, *title;
         enum { SHOW_TEXT, SHOW_NUMBER, SHOW_VERDICT, SHOW_ONCE } show; /* once: not again in the rows below */
-        bool detail;           /* not in the Markdown of a file that takes more than half of the room that is left */
-    } columns[REPORT_COLUMNS]; /* title NULL ends */
+    } columns[REPORT_COLUMNS];                                         /* title NULL ends */
 };
 enum { REPORT_TABLES = 8, REPORT_STABILITY = 7 };
 extern const struct report_table report_tables[REPORT_TABLES];

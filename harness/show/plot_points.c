@@ -9,7 +9,7 @@
 #include "files/csv.h"
 #include "text/text_append.h"
 
-struct setting setting_read(const char *options)
+static struct setting setting_read(const char *options)
 {
     struct setting setting = {.value = NAN};
     char copy[256], *rest = copy;
@@ -27,7 +27,8 @@ struct setting setting_read(const char *options)
     return setting;
 }
 
-double setting_rate(const char *algorithm, const struct setting *setting)
+/* Beta points are inserted between two, zero padding multiplies them, the nearest sample alone is rate 1. */
+static double setting_rate(const char *algorithm, const struct setting *setting)
 {
     if (strcmp(setting->name, "beta") == 0)
         return setting->value + 1;
@@ -36,13 +37,14 @@ double setting_rate(const char *algorithm, const struct setting *setting)
     return strcmp(algorithm, "bp_nearest") == 0 ? 1 : NAN;
 }
 
-bool row_is_point(const struct measurement *row, double most_pairs)
+/* Measured, with time and error, and no image of only a part of the scene (exact ones); most_pairs: of any of its rows. */
+static bool row_is_point(const struct measurement *row, double most_pairs)
 {
     bool partial = row->pairs > 0 && row->pairs < 0.999 * most_pairs;
     return strcmp(row->status, "ok") == 0 && row->run_s > 0 && row->runs > 0 && row->error > 0 && !partial;
 }
 
-double scene_most_pairs(const struct results *results, const char *scene)
+static double scene_most_pairs(const struct results *results, const char *scene)
 {
     double most = 0;
     for (int k = 0; k < results->csv.row_count; k++)

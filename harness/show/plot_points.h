@@ -9,16 +9,6 @@ struct setting {
     char name[32], rest[256]; /* empty name: no option is a number */
     double value;             /* NAN without a name */
 };
-struct setting setting_read(const char *options);
-
-/* Samples for each one recorded: beta points are inserted between two, zero padding multiplies them, the nearest sample
-   alone is rate 1. NAN where nothing is upsampled. */
-double setting_rate(const char *algorithm, const struct setting *setting);
-
-/* Whether a row is a point: measured, with time and error, and its image is not only a part of the scene's (exact
-   ones). most_pairs: of any row of the scene. */
-bool row_is_point(const struct measurement *row, double most_pairs);
-double scene_most_pairs(const struct results *results, const char *scene);
 
 /* The Pareto front: the points of which no other has both less or equal cost and less or equal error. Of equal points
    the first stays. Their indices go to front [count], cost ascending; returns how many. Values that are not > 0 are no
@@ -40,7 +30,7 @@ enum status scenes_find(const struct results *results, const char ***scenes, int
 struct point {
     const struct measurement *row; /* borrowed, like the scene's name */
     struct setting setting;
-    double rate; /* setting_rate */
+    double rate; /* samples for each one recorded; NAN where nothing is upsampled */
     int series;
     bool on_front; /* the Pareto front by run time */
 };

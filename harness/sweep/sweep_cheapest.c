@@ -21,17 +21,17 @@ static const struct {
 
 static bool is_candidate(const struct group *group, int k, double below, const char *begins)
 {
-    return group->error[k] <= below && strncmp(group->rows[k]->algorithm, begins, strlen(begins)) == 0;
+    return group->error[k] <= below && strncmp(group->points.list[k].row->algorithm, begins, strlen(begins)) == 0;
 }
 
 /* The cheapest row with an error up to `below`, of equal ones the fastest; -1 if no row comes that far. */
 static int cheapest_find(const struct group *group, int c, double below, const char *begins)
 {
     int best = -1;
-    for (int k = 0; k < group->count; k++)
+    for (int k = 0; k < group->points.count; k++)
         if (is_candidate(group, k, below, begins)
-            && measurement_is_cheaper(group->rows[k], best < 0 ? NULL : group->rows[best], sweep_costs[c].offset,
-                                      below))
+            && measurement_is_cheaper(group->points.list[k].row, best < 0 ? NULL : group->points.list[best].row,
+                                      sweep_costs[c].offset, below))
             best = k;
     return best;
 }
@@ -41,12 +41,12 @@ static int ties_find(const struct group *group, int best, double below, const ch
 {
     int count = 0;
     *text = '\0';
-    for (int k = 0; k < group->count && group->high[best] > group->low[best]; k++) {
+    for (int k = 0; k < group->points.count && group->high[best] > group->low[best]; k++) {
         char spec[512];
         const size_t used = strlen(text);
         if (k == best || !is_candidate(group, k, below, begins) || group->low[k] > group->high[best])
             continue;
-        measurement_spec(group->rows[k], spec, sizeof spec);
+        measurement_spec(group->points.list[k].row, spec, sizeof spec);
         if (count++ < TIES_TOLD)
             snprintf(text + used, size - used, "%s%s", used ? "; " : "", spec);
     }
@@ -80,9 +80,11 @@ static void row_tell(const struct measurement *row, const char *threshold, const
 static bool is_told(const struct group *group, size_t family, int c)
 {
     bool others = false;
-    for (int k = 0; k < group->count; k++)
-        others |= strcmp(group->rows[k]->algorithm, "reference") != 0
-                  && strncmp(group->rows[k]->algorithm, families[family].begins, strlen(families[family].begins)) != 0;
+    for (int k = 0; k < group->points.count; k++)
+        others |=
+            strcmp(group->points.list[k].row->algorithm, "reference") != 0
+            && strncmp(group->points.list[k].row->algorithm, families[family].begins, strlen(families[family].begins))
+                   != 0;
     return group->told && (family == 0 || (others && c == SWEEP_RUN_TIME));
 }
 
@@ -96,7 +98,7 @@ static void family_write(struct group *group, size_t family, int c, FILE *file)
         printf("  %s %s\n      below      time speed-up     MFLOP    error  setting\n", families[family].title,
                sweep_costs[c].title);
     for (int decade = 0; best >= 0; decade--, best = cheapest_find(group, c, pow(10, decade), begins)) {
-        const struct measurement *row = group->rows[best];
+        const struct measurement *row = group->points.list[best].row;
         char threshold[16], ties[1800];
         snprintf(threshold, sizeof threshold, "1e%d", decade);
         ties_find(group, best, pow(10, decade), begins, ties, sizeof ties);
@@ -116,7 +118,7 @@ static void family_write(struct group *group, size_t family, int c, FILE *file)
 void cheapest_write(struct group *group, FILE *file)
 {
     if (group->told)
-        printf("\n%s: the cheapest setting for each decade of error\n", group->scene);
+        printf("\n%s: the cheapest setting for each decade of error\n", group->points.scene);
     for (size_t family = 0; family < sizeof families / sizeof *families; family++)
         for (int c = 0; c < SWEEP_COSTS; c++) {
             group_values(group, &sweep_costs[c]);

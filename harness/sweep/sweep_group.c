@@ -14,8 +14,8 @@ const struct sweep_cost sweep_costs[SWEEP_COSTS] = {
 
 void group_values(struct group *group, const struct sweep_cost *cost)
 {
-    for (int k = 0; k < group->count; k++) {
-        const struct measurement *row = group->rows[k];
+    for (int k = 0; k < group->points.count; k++) {
+        const struct measurement *row = group->points.list[k].row;
         group->cost[k] = *(const double *)((const char *)row + cost->offset);
         group->error[k] = row->error;
         group->low[k] = group->high[k] = group->cost[k];
@@ -24,46 +24,27 @@ void group_values(struct group *group, const struct sweep_cost *cost)
     }
 }
 
-static struct sweep_point point_read(const struct measurement *row)
-{
-    return (struct sweep_point){.row = row, .setting = setting_read(row->options)};
-}
-
 void group_free(struct group *group)
 {
-    free(group->rows);
+    points_free(&group->points);
     free(group->error);
-    free(group->cost);
-    free(group->low);
-    free(group->high);
     free(group->front);
-    free(group->points);
-    free(group->series);
 }
 
 enum status group_fill(const struct results *results, const char *scene, struct group *group)
 {
-    size_t most = (size_t)results->csv.row_count + 1;
-    *group = (struct group){.scene = scene,
-                            .rows = calloc(most, sizeof *group->rows),
-                            .error = calloc(most, sizeof *group->error),
-                            .cost = calloc(most, sizeof *group->cost),
-                            .low = calloc(most, sizeof *group->low),
-                            .high = calloc(most, sizeof *group->high),
-                            .front = calloc(most, sizeof *group->front),
-                            .points = calloc(most, sizeof *group->points),
-                            .series = calloc(most, sizeof *group->series)};
-    if (!group->rows || !group->error || !group->cost || !group->low || !group->high || !group->front || !group->points
-        || !group->series)
+    *group = (struct group){.told = false};
+    const enum status status = points_find(results, scene, &group->points);
+    if (status != STATUS_OK)
+        return status;
+    const size_t most = (size_t)group->points.count + 1;
+    group->error = calloc(4 * most, sizeof *group->error);
+    group->front = calloc(most, sizeof *group->front);
+    if (!group->error || !group->front)
         return status_set(STATUS_FAILED, "%s: no memory for %zu rows", scene, most);
-    double most_pairs = scene_most_pairs(results, scene);
-    for (int k = 0; k < results->csv.row_count; k++) {
-        const struct measurement *row = &results->measurements[k];
-        if (strcmp(row->scene, scene) == 0 && row_is_point(row, most_pairs)) {
-            group->rows[group->count] = row;
-            group->points[group->count++] = point_read(row);
-        }
-    }
+    group->cost = group->error + most;
+    group->low = group->cost + most;
+    group->high = group->low + most;
     return STATUS_OK;
 }
 

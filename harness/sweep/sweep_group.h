@@ -1,4 +1,4 @@
-/* The rows of one scene as the tables of a sweep take them. */
+/* The points of one scene as the tables of a sweep take them. */
 #ifndef SASBENCH_SWEEP_SWEEP_GROUP_H
 #define SASBENCH_SWEEP_SWEEP_GROUP_H
 
@@ -8,24 +8,13 @@
 #include "scene/scene.h"
 #include "show/plot_points.h"
 
-/* A measured setting as a point of its series. */
-struct sweep_point {
-    const struct measurement *row;
-    struct setting setting; /* what varies along the series, and what does not */
-    bool taken;             /* belongs to a series that is done */
-};
-
-/* The rows of one scene that have both time and error, but for exact ones that image only a part of it. */
+/* The points of one scene (plot_points.h), and room for values of each of them. */
 struct group {
-    const char *scene;
-    const struct measurement **rows; /* [count] borrowed */
-    struct sweep_point *points;      /* [count] */
-    double *error, *cost;            /* [count] room for a front's or a series' values */
-    double *low, *high;              /* [count] room for the interval of the cost */
-    int *front;                      /* [count] room for a front */
-    struct sweep_point *series;      /* [count] room for a series */
-    int count;
-    bool told; /* on the terminal as well */
+    struct points points;
+    double *error, *cost; /* [count] of a front, or of a series */
+    double *low, *high;   /* [count] the interval of the cost */
+    int *front;           /* [count] */
+    bool told;            /* on the terminal as well */
 };
 
 /* Has a row ahead of this one the same scene? */

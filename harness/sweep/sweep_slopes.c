@@ -43,28 +43,8 @@ int floor_find(int count, const double *error)
     return count < 2 || first == count - 1 ? count : first;
 }
 
-static bool same_series(const struct sweep_point *a, const struct sweep_point *b)
-{
-    return strcmp(a->row->scene, b->row->scene) == 0 && strcmp(a->row->algorithm, b->row->algorithm) == 0
-           && strcmp(a->row->precision, b->row->precision) == 0 && strcmp(a->setting.name, b->setting.name) == 0
-           && strcmp(a->setting.rest, b->setting.rest) == 0;
-}
-
-/* Settings that upsample nothing count by themselves. */
-static double point_rate(const struct sweep_point *point)
-{
-    double rate = setting_rate(point->row->algorithm, &point->setting);
-    return isnan(rate) ? point->setting.value : rate;
-}
-
-static int point_order(const void *a, const void *b)
-{
-    double x = ((const struct sweep_point *)a)->setting.value, y = ((const struct sweep_point *)b)->setting.value;
-    return (x > y) - (x < y);
-}
-
 /* The straight line through a part of a series. rates, errors: [count] of that part. */
-static void slope_write(const struct group *group, const struct sweep_point *points, const double *rates,
+static void slope_write(const struct group *group, const struct point *points, const double *rates,
                         const double *errors, int count, const char *part, FILE *file)
 {
     const struct measurement *row = points->row;
@@ -90,41 +70,29 @@ static void slope_write(const struct group *group, const struct sweep_point *poi
            fit.last, fit.residual_log10);
 }
 
-/* The series' parts: where the error falls and the floor; without a floor the finest half, for the order that the
-   method tends to. */
-static void series_write(const struct group *group, int count, FILE *file)
-{
-    const struct sweep_point *points = group->series;
-    const double *rates = group->cost, *errors = group->error;
-    int floor = floor_find(count, errors), finest = count / 2;
-    slope_write(group, points, rates, errors, floor, "falling", file);
-    if (floor == count && count - finest >= 3)
-        slope_write(group, points + finest, rates + finest, errors + finest, count - finest, "finest", file);
-    if (floor < count)
-        slope_write(group, points + floor, rates + floor, errors + floor, count - floor, "floor", file);
-}
-
+/* The parts of each series: where the error falls and the floor; without a floor the finest half, for the order that
+   the method tends to. Settings that upsample nothing count by themselves. */
 void slopes_write(struct group *group, FILE *file)
 {
     if (group->told)
         printf("\n%s: slopes of log error against log rate (beta + 1, or the setting itself)\n"
                "  %-36s %-8s %-18s %6s  %6s  %7s  %7s  %8s\n",
-               group->scene, "series", "part", "setting", "points", "slope", "first", "last", "residual");
-    for (int k = 0; k < group->count; k++) {
-        const struct sweep_point *start = &group->points[k];
-        int size = 0;
-        if (start->taken || !*start->setting.name)
+               group->points.scene, "series", "part", "setting", "points", "slope", "first", "last", "residual");
+    for (int s = 0; s < group->points.series_count; s++) {
+        const struct point *points = &group->points.list[group->points.series[s].first];
+        const int count = group->points.series[s].count;
+        double *rates = group->cost, *errors = group->error;
+        if (!*points->setting.name)
             continue;
-        for (int j = k; j < group->count; j++)
-            if (same_series(start, &group->points[j])) {
-                group->series[size++] = group->points[j];
-                group->points[j].taken = true;
-            }
-        qsort(group->series, (size_t)size, sizeof *group->series, point_order);
-        for (int j = 0; j < size; j++) {
-            group->cost[j] = point_rate(&group->series[j]);
-            group->error[j] = group->series[j].row->error;
+        for (int k = 0; k < count; k++) {
+            rates[k] = isnan(points[k].rate) ? points[k].setting.value : points[k].rate;
+            errors[k] = points[k].row->error;
         }
-        series_write(group, size, file);
+        const int floor = floor_find(count, errors), finest = count / 2;
+        slope_write(group, points, rates, errors, floor, "falling", file);
+        if (floor == count && count - finest >= 3)
+            slope_write(group, points + finest, rates + finest, errors + finest, count - finest, "finest", file);
+        if (floor < count)
+            slope_write(group, points + floor, rates + floor, errors + floor, count - floor, "floor", file);
     }
 }

@@ -22,10 +22,11 @@ static void fronts_write(struct group *group, FILE *file)
 {
     for (int c = 0; c < SWEEP_COSTS; c++) {
         group_values(group, &sweep_costs[c]);
-        const int size = pareto_front_find(group->count, group->cost, group->error, group->front);
-        const int ties = pareto_ties_find(group->count, group->low, group->high, group->error, size, group->front);
+        const int size = pareto_front_find(group->points.count, group->cost, group->error, group->front);
+        const int ties =
+            pareto_ties_find(group->points.count, group->low, group->high, group->error, size, group->front);
         for (int k = 0; k < size + ties; k++) {
-            const struct measurement *row = group->rows[group->front[k]];
+            const struct measurement *row = group->points.list[group->front[k]].row;
             fields_write(file,
                          (const char *const[]){row->scene, sweep_costs[c].name, row->algorithm, row->options,
                                                row->precision, NULL},
@@ -42,10 +43,10 @@ static void rules_write(struct group *group, const struct scene *given, const st
 {
     struct scene scene = {0};
     char key[300], hash[17];
-    if (!given && scene_load(group->scene, SCENE_DIRECTORY, &scene) != STATUS_OK)
+    if (!given && scene_load(group->points.scene, SCENE_DIRECTORY, &scene) != STATUS_OK)
         return;
     given = given ? given : &scene;
-    snprintf(key, sizeof key, "scene %s", group->scene);
+    snprintf(key, sizeof key, "scene %s", group->points.scene);
     snprintf(hash, sizeof hash, "%016" PRIx64, given->hash);
     const char *measured = csv_comment(csv, key);
     if (measured && strcmp(measured, hash) == 0) {
@@ -53,13 +54,13 @@ static void rules_write(struct group *group, const struct scene *given, const st
         double lambda = a->sound_speed / a->fc, bin = a->sound_speed / (2 * a->fs);
         double resolution = a->tx_length > 0 ? a->tx_length / 2 : NAN, fraction = a->bandwidth / a->fs;
         double bp22 = 2 * bin * 10 * lambda / (resolution * resolution), zp15 = 2 * a->fc / a->fs;
-        fields_write(file, (const char *const[]){group->scene, NULL},
+        fields_write(file, (const char *const[]){group->points.scene, NULL},
                      (double[]){a->fc, a->fs, a->bandwidth, bp22, zp15, M_PI * fraction / 2,
                                 M_PI * M_PI / (12 * sqrt(5)) * fraction * fraction},
                      7, true);
         if (group->told)
             printf("\n%s: upsampling rates asked for by BP22 Eq. (20) > %.3g, by ZP15's lambda/8 > %.3g\n",
-                   group->scene, bp22, zp15);
+                   group->points.scene, bp22, zp15);
     }
     scene_free(&scene);
 }
@@ -87,7 +88,7 @@ static enum status scene_tables(const struct results *results, const char *scene
     struct group group;
     enum status status = group_fill(results, scene, &group);
     group.told = told;
-    if (status == STATUS_OK && group.count > 0) {
+    if (status == STATUS_OK && group.points.count > 0) {
         fronts_write(&group, files[FRONTS].stream);
         cheapest_write(&group, files[CHEAPEST].stream);
         rules_write(&group, given, &results->csv, files[RULES].stream);

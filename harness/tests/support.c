@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -258,4 +259,20 @@ void assert_shell(const char *lines, int wanted)
         return;
     char *said = support_read("err");
     fail_msg("%s exits with %d, says: %s", lines, status, said ? said : "");
+}
+
+char *support_read_cells(const char *path)
+{
+    char *text = support_read(path), *to = text;
+    for (const char *at = text; at && *at;) {
+        const size_t length = *at == '<' ? strcspn(at, ">") + 1 : 1;
+        if (strncmp(at, "<tr", 3) == 0 || strncmp(at, "</td", 4) == 0 || strncmp(at, "</th>", 5) == 0)
+            *to++ = '|';
+        else if (*at != '<')
+            *to++ = *at;
+        at += length;
+    }
+    if (to)
+        *to = '\0';
+    return text;
 }

@@ -52,6 +52,8 @@ const char *path_of(const char *name);
 bool support_exists(const char *name);
 void support_write(const char *name, const char *text);
 char *support_read(const char *name); /* the whole file, malloc'ed; NULL if it is not there */
+/* The text of a page of ours, tables as lines of |cell|cell|, or NULL; to be freed. */
+char *support_read_cells(const char *path);
 
 /* Lines of the shell, in the test's folder; what they say is added to the files out and err there. Returns the exit
    status, -1 for a signal. */

@@ -175,9 +175,9 @@ static void columns_of_the_report(void **state)
     assert_int_equal(results_folder_add(results, &row), STATUS_OK);
     results_folder_close(results);
     assert_int_equal(report_write(folder), STATUS_OK);
-    char *page = support_read("report.md");
+    char *page = support_read_cells("report.html");
     assert_non_null(page);
-    assert_non_null(strstr(page, "|bp_nearest|250 ms (-20.0, +10.0 %)|12x|10 ms|0.75|12.5|1.25e-01|6.25e-02|5.00e-01|"
+    assert_non_null(strstr(page, "|bp_nearest|250 ms (-20.0, +10.0 %)|12x|10 ms|0.75|12.5|1.2e-01|6.2e-02|5.0e-01|"
                                  "40.00|-13.25|-10.50|"));
     free(page);
 }
