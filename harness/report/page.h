@@ -50,7 +50,7 @@ void page_row(struct page *page, const struct page_cell *cells);
 void page_row_note(struct page *page, const char *name, const char *note);
 void page_table_end(struct page *page);
 
-/* Pictures. A drawing of gnuplot (SVG) stands inline, its names made unique; a PNG is encoded in the page. Errors: STATUS_FAILED when the file cannot be read. */
+/* A drawing of gnuplot (SVG) stands inline, its names made unique; a PNG is encoded in the page. Errors: STATUS_FAILED when the file cannot be read. */
 enum status page_drawing(struct page *page, const char *path, const char *title);
 enum status page_image(struct page *page, const char *path, const char *caption);
 /* The JPEG file `small` in place of a PNG, with a link to the file `name` beside the page. */

@@ -31,9 +31,9 @@ struct target_row {
     double extent_m, position_error_m, phase_error_rad, width_m, pslr_db, islr_db;
 };
 
-/* The one table of metrics: header, writer and reader of the CSV, the empty row, what the regression gate compares, what a
-   claim may ask for, and what terminal and report show come from it. These two add what follows from several columns
-   (speed-up, rate). */
+/* The one table of metrics: header, writer and reader of the CSV, the empty row, what the regression gate compares, what
+   a claim may ask for, and what terminal and report show come from it. These two add what follows from several
+   columns (speed-up, rate). */
 struct column {
     const char *name; /* NULL ends the table */
     enum { COLUMN_TEXT, COLUMN_INTEGER, COLUMN_REAL } type;

@@ -37,7 +37,8 @@ static double setting_rate(const char *algorithm, const struct setting *setting)
     return strcmp(algorithm, "bp_nearest") == 0 ? 1 : NAN;
 }
 
-/* Measured, with time and error, and no image of only a part of the scene (exact ones); most_pairs: of any of its rows. */
+/* Measured, with time and error, and no image of only a part of the scene (exact ones); most_pairs: of any of its
+   rows. */
 static bool row_is_point(const struct measurement *row, double most_pairs)
 {
     bool partial = row->pairs > 0 && row->pairs < 0.999 * most_pairs;
