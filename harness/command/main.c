@@ -15,7 +15,6 @@
 #include "text/shown_text.h"
 #include "text/suggestion.h"
 #include "run/supervisor.h"
-#include "files/temporary.h"
 #include "text/text_append.h"
 #include "results/provenance.h"
 #include "show/table.h"
@@ -383,7 +382,6 @@ int main(int argc, char **argv)
     bool helped = strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0;
     streams_open();
     signal(SIGXFSZ, SIG_IGN); /* a file beyond the limit is an error where it is written */
-    temporary_guard();
     const bool versioned = strcmp(name, "--version") == 0;
     enum status status = isa_check();
     const bool columns = strcmp(name, "help") == 0 && argc > 2 && strcmp(argv[2], "columns") == 0;

@@ -8,7 +8,6 @@
 
 #include "echoes/echo_data.h"
 #include "files/folder.h"
-#include "files/temporary.h"
 
 enum kind { KIND_TEXT, KIND_SCALAR, KIND_REAL, KIND_COMPLEX };
 
@@ -90,10 +89,9 @@ enum status storage_refuse(const char *path, const char *name, const char *part,
    whose failure the writer is not closed) and writer_close need be looked at. */
 struct writer {
     const char *path;
-    struct place place;          /* of the file that a symbolic link stands for, or of `path` itself */
-    char beside[TEMPORARY_NAME]; /* in the place's folder: renamed when whole */
-    int descriptor;              /* of that file */
-    char temporary[64];          /* its path */
+    struct place place; /* of the file that a symbolic link stands for, or of `path` itself */
+    struct made made;
+    char temporary[64]; /* the path of what is made */
     struct _mat_t *mat;
     int count; /* variables written */
     enum status status;

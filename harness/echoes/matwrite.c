@@ -48,11 +48,7 @@ enum status matfile_place(const char *path)
 
 static void writer_end(struct writer *writer)
 {
-    if (writer->status == STATUS_OK)
-        temporary_moved(writer->place.folder, writer->beside);
-    else
-        temporary_remove(writer->place.folder, writer->beside, -1);
-    close(writer->descriptor);
+    place_drop(&writer->place, &writer->made);
     place_close(&writer->place);
 }
 
@@ -63,14 +59,13 @@ enum status writer_open(struct writer *writer, const char *path, size_t largest_
     writer->status = place_find(path, &writer->place);
     if (writer->status != STATUS_OK)
         return writer->status;
-    writer->descriptor = temporary_file(writer->place.folder, writer->beside);
-    if (writer->descriptor < 0) {
+    if (!place_make(&writer->place, &writer->made)) {
         write_failed(writer);
         place_close(&writer->place);
         return writer->status;
     }
-    /* libmatio opens by name what is there already, here through the folder that is held open. */
-    snprintf(writer->temporary, sizeof writer->temporary, "/proc/self/fd/%d/%s", writer->place.folder, writer->beside);
+    /* libmatio opens by name what is there already. */
+    snprintf(writer->temporary, sizeof writer->temporary, "/proc/self/fd/%d", writer->made.descriptor);
     matio_silence();
     H5dont_atexit(); /* its exit handler crashes after a full disk */
     bool fits_v5 = largest_variable_bytes < ((size_t)1 << 31) - 4096;
@@ -152,7 +147,8 @@ enum status writer_close(struct writer *writer)
         errno = ENOSPC;
         write_failed(writer);
     }
-    if (writer->status == STATUS_OK && !(place_sync(writer->descriptor) && place_put(&writer->place, writer->beside)))
+    if (writer->status == STATUS_OK
+        && !(place_sync(writer->made.descriptor) && place_put(&writer->place, &writer->made)))
         write_failed(writer);
     writer_end(writer);
     return writer->status;

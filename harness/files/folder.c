@@ -1,19 +1,20 @@
 /* Folders of results and places in them (folder.h). */
-#define _GNU_SOURCE /* group_member, O_PATH */
+#define _GNU_SOURCE /* group_member, O_PATH, O_TMPFILE */
 #include "files/folder.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <inttypes.h>
 #include <limits.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
-
-#include "files/temporary.h"
 
 /* With room for the longest name of a file in it. */
 enum { DIRECTORY_MAX = PATH_MAX - NAME_MAX - 2 };
@@ -116,8 +117,6 @@ bool place_open(const char *path, bool named, struct place *place)
     }
     int reason = errno;
     free(followed);
-    if (named && place->folder >= 0)
-        temporary_sweep(place->folder, false);
     errno = reason;
     return place->folder >= 0;
 }
@@ -134,9 +133,76 @@ bool place_sync(int descriptor)
     return fsync(descriptor) == 0 || (errno != EIO && errno != ENOSPC && errno != EDQUOT);
 }
 
-bool place_put(const struct place *place, const char *made)
+/* A name that nobody foresees and that is not there yet; `try_name` makes it, or -1. */
+static int name_make(int folder, struct made *made, int (*try_name)(int folder, const struct made *made))
 {
-    return renameat(place->folder, made, place->folder, place->name) == 0 && place_sync(place->folder);
+    int result = -1;
+    errno = EEXIST;
+    for (int attempt = 0; attempt < 100 && result < 0 && errno == EEXIST; attempt++) {
+        uint64_t random;
+        if (getrandom(&random, sizeof random, 0) != sizeof random)
+            return -1;
+        snprintf(made->name, sizeof made->name, ".sasbench-%012" PRIx64, random >> 16);
+        result = try_name(folder, made);
+    }
+    return result;
+}
+
+static int name_link(int folder, const struct made *made)
+{
+    char path[32];
+    snprintf(path, sizeof path, "/proc/self/fd/%d", made->descriptor);
+    return linkat(AT_FDCWD, path, folder, made->name, AT_SYMLINK_FOLLOW);
+}
+
+static int name_open(int folder, const struct made *made)
+{
+    return openat(folder, made->name, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+}
+
+bool place_make(const struct place *place, struct made *made)
+{
+    *made = (struct made){.descriptor = openat(place->folder, ".", O_TMPFILE | O_RDWR | O_CLOEXEC, 0666)};
+    if (made->descriptor < 0 && (errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL))
+        made->descriptor = name_make(place->folder, made, name_open);
+    return made->descriptor >= 0;
+}
+
+/* No signal comes between the two names. */
+bool place_put(const struct place *place, struct made *made)
+{
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, &before);
+    const bool named = *made->name || name_make(place->folder, made, name_link) == 0;
+    const bool put = named && renameat(place->folder, made->name, place->folder, place->name) == 0;
+    if (put)
+        *made->name = '\0';
+    place_drop(place, made);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return put && place_sync(place->folder);
+}
+
+void place_drop(const struct place *place, struct made *made)
+{
+    const int reason = errno;
+    if (*made->name)
+        unlinkat(place->folder, made->name, 0);
+    if (made->descriptor >= 0)
+        close(made->descriptor);
+    *made = (struct made){.descriptor = -1};
+    errno = reason;
+}
+
+/* Whether what we make in a folder belongs to whom the folder belongs to. */
+static bool folder_ours(int folder, const struct stat *info)
+{
+    const struct place place = {.folder = folder};
+    struct stat made_info;
+    struct made made;
+    bool ours = place_make(&place, &made) && fstat(made.descriptor, &made_info) == 0;
+    place_drop(&place, &made);
+    return ours && info->st_uid == made_info.st_uid;
 }
 
 int place_read(const char *path, int flags)
@@ -239,7 +305,7 @@ static enum status owner_check(const char *directory, int descriptor)
         return status_set(STATUS_INVALID, "%s: all users share this folder; name one inside it, which is made",
                           directory);
     const bool shared = (info.st_mode & S_IWGRP) && (info.st_gid == getegid() || group_member(info.st_gid));
-    if (geteuid() == 0 || info.st_uid == geteuid() || info.st_uid == 0 || shared || temporary_ours(descriptor))
+    if (geteuid() == 0 || info.st_uid == geteuid() || info.st_uid == 0 || shared || folder_ours(descriptor, &info))
         return STATUS_OK;
     return status_set(
         STATUS_INVALID,
@@ -293,8 +359,6 @@ static enum status take(const char *directory, bool ours, int *lock)
         close(descriptor);
         return status;
     }
-    if (ours)
-        temporary_sweep(descriptor, true);
     *lock = descriptor;
     return STATUS_OK;
 }

@@ -1,4 +1,4 @@
-/* Text files made beside their place and renamed when they are whole (text_file.h). */
+/* Text files that get their name when they are whole (text_file.h). */
 #include "files/text_file.h"
 
 #include <errno.h>
@@ -11,11 +11,9 @@
 
 static void text_file_free(struct text_file *file)
 {
-    if (file->held >= 0)
-        close(file->held);
+    place_drop(&file->place, &file->made);
     place_close(&file->place);
     free(file->path);
-    *file = (struct text_file){.place.folder = -1, .held = -1};
 }
 
 /* The standard stream that `info` is, by whatever name it was given (/dev/stdout, a file that it is led into), or -1:
@@ -29,15 +27,12 @@ static int standard_stream(const struct stat *info)
     return -1;
 }
 
-static FILE *beside_open(struct text_file *file)
+static FILE *made_open(struct text_file *file)
 {
-    file->held = temporary_file(file->place.folder, file->beside);
-    int copy = file->held < 0 ? -1 : fcntl(file->held, F_DUPFD_CLOEXEC, 0);
+    int copy = place_make(&file->place, &file->made) ? fcntl(file->made.descriptor, F_DUPFD_CLOEXEC, 0) : -1;
     FILE *stream = copy < 0 ? NULL : fdopen(copy, "w");
     if (!stream && copy >= 0)
         close(copy);
-    if (!stream && file->held >= 0)
-        temporary_remove(file->place.folder, file->beside, -1);
     return stream;
 }
 
@@ -62,13 +57,13 @@ static enum status file_open(const char *path, bool named, struct text_file *fil
     struct stat info;
     bool exists = named && stat(path, &info) == 0;
     int standard = exists ? standard_stream(&info) : -1;
-    *file = (struct text_file){.path = strdup(path), .place.folder = -1, .held = -1};
+    *file = (struct text_file){.path = strdup(path), .place.folder = -1, .made.descriptor = -1};
     if (file->path && standard >= 0)
         file->stream = standard_open(standard);
     else if (file->path && exists && !S_ISREG(info.st_mode))
         file->stream = fopen(path, "w");
     else if (file->path && place_open(path, named, &file->place) && !folder_in_the_way(&file->place))
-        file->stream = beside_open(file);
+        file->stream = made_open(file);
     if (file->stream)
         return STATUS_OK;
     /* A full disk may be free again for the same call. */
@@ -124,19 +119,16 @@ bool stream_close(FILE *stream)
 /* Whether all of it is on the disk, as far as it is a file that is. */
 static enum status file_sync(struct text_file *file, enum status status)
 {
-    if (status != STATUS_OK || (stream_flush(file->stream) && (!*file->beside || place_sync(fileno(file->stream)))))
+    if (status != STATUS_OK
+        || (stream_flush(file->stream) && (file->made.descriptor < 0 || place_sync(fileno(file->stream)))))
         return status;
     return status_set(STATUS_FAILED, "%s: cannot be written: %s", file->path, strerror(errno));
 }
 
 static enum status file_put(struct text_file *file, enum status status)
 {
-    if (status == STATUS_OK && *file->beside && !place_put(&file->place, file->beside))
+    if (status == STATUS_OK && file->made.descriptor >= 0 && !place_put(&file->place, &file->made))
         status = status_set(STATUS_FAILED, "%s: cannot be replaced: %s", file->path, strerror(errno));
-    if (*file->beside && status == STATUS_OK)
-        temporary_moved(file->place.folder, file->beside);
-    else if (*file->beside)
-        temporary_remove(file->place.folder, file->beside, -1);
     text_file_free(file);
     return status;
 }

@@ -5,19 +5,16 @@
 #include <stdio.h>
 
 #include "files/folder.h"
-#include "files/temporary.h"
 #include "contract/status.h"
 
 struct text_file {
     FILE *stream; /* write here */
     char *path;
     struct place place;
-    char beside[TEMPORARY_NAME]; /* in the place's folder; empty: what is at `path` is no regular file, or a standard
-                                    stream, and is written to as it is */
-    int held;                    /* the descriptor of that file, which is locked until it has its place */
+    struct made made; /* none where what is at `path` is no regular file, or a standard stream: written to as it is */
 };
 
-/* Begin a file beside `path`, where it replaces what has that name: a link is not followed. Errors: STATUS_INVALID
+/* Begin a file for `path`, where it replaces what has that name: a link is not followed. Errors: STATUS_INVALID
    naming it when it cannot be written, STATUS_FAILED where a full disk is why; nothing is then left to close. */
 enum status text_file_open(const char *path, struct text_file *file);
 /* The same for a path that the user named: a link stays, and what it stands for is replaced; what is no regular file

@@ -9,7 +9,6 @@
 
 #include "echoes/echo_data.h"
 #include "files/paths.h"
-#include "files/temporary.h"
 #include "files/text_file.h"
 #include "metrics/metrics.h"
 #include "measure/session.h"
@@ -152,7 +151,7 @@ static enum status seed_follow(int seed, const char *path, FILE *file, int *coun
 
 enum status rules_study(const char *directory)
 {
-    char path[4200], folder[TEMPORARY_NAME], scene[4300];
+    char path[4200], scene[4200];
     struct text_file file;
     int count = 0;
     snprintf(path, sizeof path, "%s/%s", directory, RULES_FILE);
@@ -160,14 +159,10 @@ enum status rules_study(const char *directory)
     if (status != STATUS_OK)
         return status;
     fprintf(file.stream, "# sasbench rules on random scenes 1\n%s\n", header);
-    const int inside = temporary_folder(file.place.folder, folder);
-    if (inside < 0)
-        return text_file_close(&file, status_set(STATUS_INVALID, "%s: no folder can be made beside it", path));
-    snprintf(scene, sizeof scene, "%s/%s/random.cfg", directory, folder);
-    temporary_inside(inside, "random.cfg");
+    snprintf(scene, sizeof scene, "%s/random.cfg", directory);
     for (int seed = SEED_FIRST; count < SCENES && seed < SEED_FIRST + SEEDS_MOST && status == STATUS_OK; seed++)
         status = seed_follow(seed, scene, file.stream, &count);
-    temporary_remove(file.place.folder, folder, inside);
+    place_clear(scene);
     return text_file_close(&file, status);
 }
 

@@ -167,11 +167,12 @@ void page_table_end(struct page *page)
 
 /* --- Pictures -------------------------------------------------------------------------------------------------- */
 
-/* A picture lies in the folder itself: a link would show another file's content, and a pipe would wait for a writer. */
-static enum status file_read(const char *path, char **bytes, size_t *size)
+/* The file of a descriptor, which is closed; -1: the one at `path`. A picture lies in the folder itself: a link would
+   show another file's content, and a pipe would wait for a writer. */
+static enum status file_read(int descriptor, const char *path, char **bytes, size_t *size)
 {
     struct stat info;
-    int descriptor = place_read(path, O_NOFOLLOW | O_NONBLOCK);
+    descriptor = descriptor >= 0 ? descriptor : place_read(path, O_NOFOLLOW | O_NONBLOCK);
     FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "rb");
     *bytes = NULL;
     bool regular = file && fstat(descriptor, &info) == 0 && S_ISREG(info.st_mode);
@@ -218,7 +219,7 @@ enum status page_drawing(struct page *page, const char *path, const char *title)
 {
     char *svg;
     size_t size;
-    enum status status = file_read(path, &svg, &size);
+    enum status status = file_read(-1, path, &svg, &size);
     if (status != STATUS_OK)
         return status;
     const char *root = strstr(svg, "<svg");
@@ -273,12 +274,12 @@ void page_files(struct page *page, const char *before, int count, const char *co
 }
 
 /* A picture of the type, a link around it where `link` is not NULL. */
-static enum status figure_write(struct page *page, const char *path, const char *type, const char *link,
+static enum status figure_write(struct page *page, int descriptor, const char *path, const char *type, const char *link,
                                 const char *caption)
 {
     char *bytes;
     size_t size;
-    enum status status = file_read(path, &bytes, &size);
+    enum status status = file_read(descriptor, path, &bytes, &size);
     if (status != STATUS_OK)
         return status;
     fputs("<figure>\n", page->stream);
@@ -297,10 +298,12 @@ static enum status figure_write(struct page *page, const char *path, const char 
 
 enum status page_image(struct page *page, const char *path, const char *caption)
 {
-    return figure_write(page, path, "png", NULL, caption);
+    return figure_write(page, -1, path, "png", NULL, caption);
 }
 
-enum status page_thumbnail(struct page *page, const char *small, const char *name, const char *caption)
+enum status page_thumbnail(struct page *page, int small, const char *name, const char *caption)
 {
-    return figure_write(page, small, "jpeg", name, caption);
+    const int descriptor = fcntl(small, F_DUPFD_CLOEXEC, 0);
+    lseek(descriptor, 0, SEEK_SET);
+    return figure_write(page, descriptor, name, "jpeg", name, caption);
 }

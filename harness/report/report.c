@@ -127,7 +127,7 @@ static enum status figures_show(struct page *page, const struct folder *folder)
         if (report_room(page, beside, 1, &(struct pictures_count){0}))
             status = page_drawing(page, beside, name);
         else
-            status = report_picture_show(page, path, NULL, name, &count);
+            status = report_picture_show(page, path, -1, name, &count);
     }
     report_left_out_show(page, &count);
     return status;

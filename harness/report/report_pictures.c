@@ -20,26 +20,30 @@ static double thumbnail_bytes(double pixels)
     return 12.7e3 * pow(pixels / 1.05e4, 0.69);
 }
 
-bool report_room(const struct page *page, const char *path, double growth, struct pictures_count *count)
+static bool room_for(const struct page *page, const struct stat *info, double growth, struct pictures_count *count)
 {
-    struct stat info;
-    if (lstat(path, &info) != 0)
-        return false; /* not drawn: a sweep's images, a run without gnuplot */
-    const bool regular = S_ISREG(info.st_mode);
-    const bool fits = (double)ftell(page->stream) + growth * (double)info.st_size <= REPORT_HTML_BYTES;
+    const bool regular = S_ISREG(info->st_mode);
+    const bool fits = (double)ftell(page->stream) + growth * (double)info->st_size <= REPORT_HTML_BYTES;
     count->irregular += !regular;
     count->left_out += regular && !fits;
     return regular && fits;
 }
 
-enum status report_picture_show(struct page *page, const char *path, const char *small, const char *caption,
+bool report_room(const struct page *page, const char *path, double growth, struct pictures_count *count)
+{
+    struct stat info; /* missing: not drawn, a sweep's images, a run without gnuplot */
+    return lstat(path, &info) == 0 && room_for(page, &info, growth, count);
+}
+
+enum status report_picture_show(struct page *page, const char *path, int small, const char *caption,
                                 struct pictures_count *count)
 {
     const char *name = strrchr(path, '/');
-    if (!report_room(page, small ? small : path, 4.0 / 3, count))
+    struct stat info;
+    if ((small < 0 ? lstat(path, &info) : fstat(small, &info)) != 0 || !room_for(page, &info, 4.0 / 3, count))
         return STATUS_OK;
     count->shown++;
-    return small ? page_thumbnail(page, small, name ? name + 1 : path, caption) : page_image(page, path, caption);
+    return small >= 0 ? page_thumbnail(page, small, name ? name + 1 : path, caption) : page_image(page, path, caption);
 }
 
 void report_left_out_show(struct page *page, const struct pictures_count *count)
@@ -120,24 +124,22 @@ static void links_show(struct page *page, const struct picture *list, int count)
     free(texts);
 }
 
-static enum status scene_show(struct page *page, const char *directory, struct picture *list, int list_count,
-                              double share, struct pictures_count *count)
+static enum status scene_show(struct page *page, struct picture *list, int list_count, double share,
+                              struct pictures_count *count)
 {
-    char beside[4200], small[PATH_MAX];
     struct thumbnails thumbnails;
     double pixels;
     const int shown = 1 + thumbnails_choose(share, list_count - 1, &pixels);
     enum status status = STATUS_OK;
-    snprintf(beside, sizeof beside, "%s/report.html", directory);
-    thumbnails_begin(&thumbnails, beside);
+    thumbnails_begin(&thumbnails);
     for (int k = 0; k < list_count && k < shown; k++)
         list[k].thumbnail = thumbnails_add(&thumbnails, list[k].path, k ? pixels : SLICES_LARGER * pixels);
     thumbnails_draw(&thumbnails, PLOT_DIRECTORY);
     for (int k = 0; k < list_count && k < shown && status == STATUS_OK; k++) {
-        const bool drawn = thumbnails_path(&thumbnails, list[k].thumbnail, small);
+        const int small = thumbnails_file(&thumbnails, list[k].thumbnail);
         if (k == 1)
             fputs("<div class=\"gallery\">\n", page->stream);
-        status = report_picture_show(page, list[k].path, drawn ? small : NULL, list[k].caption, count);
+        status = report_picture_show(page, list[k].path, small, list[k].caption, count);
     }
     if (list_count > 1)
         fputs("</div>\n", page->stream);
@@ -160,7 +162,7 @@ enum status report_pictures_show(struct page *page, const char *directory, const
         status = pictures_find(directory, results, scenes[s], &list, &list_count);
         page_part_begin(page, scenes[s]);
         if (status == STATUS_OK)
-            status = scene_show(page, directory, list, list_count, BYTES_MOST / scene_count, &count);
+            status = scene_show(page, list, list_count, BYTES_MOST / scene_count, &count);
         page_part_end(page);
         free(list);
     }

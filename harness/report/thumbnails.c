@@ -7,17 +7,17 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "files/folder.h"
+
 enum { SIDE_MOST = 6000 }; /* pixels: of a picture that is read */
 
-void thumbnails_begin(struct thumbnails *thumbnails, const char *beside)
+void thumbnails_begin(struct thumbnails *thumbnails)
 {
     static const char *const arrays[] = {"sources",       "outputs",     "source_width",
                                          "source_height", "small_width", "small_height"};
     *thumbnails = (struct thumbnails){.count = 0};
-    if (plot_begin(&thumbnails->plot, beside, false) != STATUS_OK) {
-        thumbnails_end(thumbnails);
+    if (plot_begin(&thumbnails->plot, "thumbnails", false) != STATUS_OK)
         return;
-    }
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         plot_array(thumbnails->plot.preamble, arrays[k], THUMBNAILS_MOST);
 }
@@ -25,22 +25,19 @@ void thumbnails_begin(struct thumbnails *thumbnails, const char *beside)
 void thumbnails_end(struct thumbnails *thumbnails)
 {
     plot_end(&thumbnails->plot);
+    for (int k = 0; k < thumbnails->count; k++)
+        close(thumbnails->sources[k]);
     *thumbnails = (struct thumbnails){.count = 0};
 }
 
-/* Width and height of a regular PNG file, from its first bytes; false for anything else. */
-static bool size_read(const char *path, int size[2])
+/* Width and height of a PNG file, from its first bytes; false for anything else. */
+static bool size_read(int file, int size[2])
 {
     static const char head[] = "\x89PNG\r\n\x1a\n";
     unsigned char bytes[24];
     struct stat info;
-    const int file = place_read(path, O_NOFOLLOW | O_NONBLOCK);
-    if (file < 0)
-        return false;
-    const bool read_whole =
-        fstat(file, &info) == 0 && S_ISREG(info.st_mode) && read(file, bytes, sizeof bytes) == (ssize_t)sizeof bytes;
-    close(file);
-    if (!read_whole || memcmp(bytes, head, sizeof head - 1) != 0)
+    if (fstat(file, &info) != 0 || !S_ISREG(info.st_mode) || pread(file, bytes, sizeof bytes, 0) != sizeof bytes
+        || memcmp(bytes, head, sizeof head - 1) != 0)
         return false;
     for (int k = 0; k < 2; k++) {
         const unsigned char *at = bytes + 16 + 4 * k;
@@ -51,21 +48,23 @@ static bool size_read(const char *path, int size[2])
 
 int thumbnails_add(struct thumbnails *thumbnails, const char *path, double pixels)
 {
-    FILE *preamble = thumbnails->plot.preamble;
+    FILE *preamble = thumbnails->plot.preamble, *output;
     int size[2], number = thumbnails->count;
-    char output[32], source[NAME_MAX + 4];
-    const char *slash = strrchr(path, '/');
-    if (!preamble || number == THUMBNAILS_MOST || !size_read(path, size)
-        || snprintf(source, sizeof source, "../%s", slash ? slash + 1 : path) >= (int)sizeof source)
+    char source[PLOT_NAME];
+    const int file = preamble && number < THUMBNAILS_MOST ? place_read(path, O_NOFOLLOW | O_NONBLOCK) : -1;
+    if (file < 0 || !size_read(file, size)
+        || plot_file_open(&thumbnails->plot, "outputs", number, &output) != STATUS_OK) {
+        if (file >= 0)
+            close(file);
         return -1;
+    }
     const double scale = fmin(1, sqrt(pixels / size[0] / size[1]));
     const int width = (int)fmax(1, size[0] * scale), height = (int)fmax(1, size[1] * scale);
-    snprintf(output, sizeof output, "%d.jpg", number);
-    temporary_inside(thumbnails->plot.directory, output);
+    plot_file_name(file, source);
     plot_array_write(preamble, "sources", number, source);
-    plot_array_write(preamble, "outputs", number, output);
     fprintf(preamble, "source_width[%d] = %d; source_height[%d] = %d\n", number + 1, size[0], number + 1, size[1]);
     fprintf(preamble, "small_width[%d] = %d; small_height[%d] = %d\n", number + 1, width, number + 1, height);
+    thumbnails->sources[number] = file;
     return thumbnails->count++;
 }
 
@@ -77,15 +76,9 @@ void thumbnails_draw(struct thumbnails *thumbnails, const char *plots_directory)
     (void)plot_run(&thumbnails->plot, plots_directory, "thumbnails.gp"); /* those before a faulty one are there */
 }
 
-bool thumbnails_path(const struct thumbnails *thumbnails, int number, char path[PATH_MAX])
+int thumbnails_file(const struct thumbnails *thumbnails, int number)
 {
-    const struct plot *plot = &thumbnails->plot;
-    const char *slash = strrchr(plot->path, '/');
-    char name[32];
     struct stat info;
-    snprintf(name, sizeof name, "%d.jpg", number);
-    if (number < 0 || plot->directory < 0 || fstatat(plot->directory, name, &info, 0) != 0 || info.st_size == 0)
-        return false;
-    const int used = slash ? (int)(slash + 1 - plot->path) : 0;
-    return snprintf(path, PATH_MAX, "%.*s%s/%s", used, plot->path, plot->made, name) < PATH_MAX;
+    const int file = number < 0 ? -1 : fileno(thumbnails->plot.files[1 + number]);
+    return fstat(file, &info) == 0 && info.st_size > 0 ? file : -1;
 }

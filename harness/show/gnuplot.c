@@ -1,23 +1,20 @@
 /* gnuplot as a process (gnuplot.h). */
-#define _GNU_SOURCE /* posix_spawn_file_actions_addfchdir_np */
+#define _GNU_SOURCE /* _Fork */
 #include "show/gnuplot.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "contract/algorithm.h"
-#include "files/temporary.h"
 #include "show/plot.h"
-
-extern char **environ;
 
 double plot_seconds_most = 60;
 static bool hung;
@@ -55,85 +52,46 @@ void gnuplot_complaint(int log, char *text, size_t size)
     fclose(file);
 }
 
-/* gnuplot in a process group of its own, so that what it starts can be ended with it; `mask` is its signal mask. */
-static int spawn(int directory, const char *script, int picture, int log, const sigset_t *mask, pid_t *child)
+/* In the child, which ends with this program, by whatever ends it. A group of its own, so that what it starts can be
+   ended with it. --default-settings: the user's own gnuplot start-up files stay out. */
+static _Noreturn void child_run(pid_t parent, const char *script, int picture, int log)
 {
-    /* --default-settings: the user's own gnuplot start-up files stay out. */
-    char *arguments[] = {"gnuplot", "--default-settings", (char *)script, NULL};
-    posix_spawn_file_actions_t actions;
-    posix_spawnattr_t attributes;
-    sigset_t usual;
-    int error = posix_spawn_file_actions_init(&actions);
-    if (error)
-        return error;
-    error = posix_spawnattr_init(&attributes);
-    if (!error) {
-        sigemptyset(&usual);
-        sigaddset(&usual, SIGXFSZ); /* which main ignores */
-        error = posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-        if (!error)
-            error = posix_spawn_file_actions_adddup2(&actions, picture, STDOUT_FILENO);
-        if (!error)
-            error = posix_spawn_file_actions_adddup2(&actions, log, STDERR_FILENO);
-        if (!error)
-            error = posix_spawn_file_actions_addfchdir_np(&actions, directory);
-        if (!error)
-            error = posix_spawnattr_setsigdefault(&attributes, &usual);
-        if (!error)
-            error = posix_spawnattr_setsigmask(&attributes, mask);
-        if (!error)
-            error = posix_spawnattr_setflags(&attributes,
-                                             POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
-        if (!error)
-            error = posix_spawnp(child, "gnuplot", &actions, &attributes, arguments, environ);
-        posix_spawnattr_destroy(&attributes);
-    }
-    posix_spawn_file_actions_destroy(&actions);
-    return error;
+    const int nothing = open("/dev/null", O_RDONLY);
+    setpgid(0, 0);
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    signal(SIGXFSZ, SIG_DFL); /* which main ignores */
+    if (getppid() == parent && dup2(nothing, STDIN_FILENO) >= 0 && dup2(picture, STDOUT_FILENO) >= 0
+        && dup2(log, STDERR_FILENO) >= 0)
+        execlp("gnuplot", "gnuplot", "--default-settings", script, (char *)NULL);
+    dprintf(STDERR_FILENO, "cannot run gnuplot (Debian: gnuplot-nox): %s\n", strerror(errno));
+    _exit(126);
 }
 
-enum status gnuplot_start(int directory, const char *script, int picture, int log, struct gnuplot *gnuplot)
+enum status gnuplot_start(const char *script, int picture, int log, struct gnuplot *gnuplot)
 {
-    *gnuplot = (struct gnuplot){.begin = seconds_now()};
-    sigset_t before;
-    temporary_hold(&before);
-    int error = spawn(directory, script, picture, log, &before, &gnuplot->process);
-    if (!error)
-        temporary_process_add(gnuplot->process);
-    temporary_release(&before);
-    if (error)
-        return status_set(STATUS_FAILED, "plot: cannot run gnuplot (Debian: gnuplot-nox): %s", strerror(error));
-    return STATUS_OK;
-}
-
-/* The process is gone, or given up. */
-static void forget(struct gnuplot *gnuplot)
-{
-    temporary_process_drop(gnuplot->process);
-    gnuplot->process = 0;
+    const pid_t parent = getpid();
+    *gnuplot = (struct gnuplot){.begin = seconds_now(), .process = _Fork()};
+    if (gnuplot->process == 0)
+        child_run(parent, script, picture, log);
+    return gnuplot->process > 0 ? STATUS_OK
+                                : status_set(STATUS_FAILED, "plot: no process to run gnuplot in: %s", strerror(errno));
 }
 
 enum status gnuplot_poll(struct gnuplot *gnuplot, bool *ended)
 {
     pid_t found = waitpid(gnuplot->process, &gnuplot->exit_status, WNOHANG);
     *ended = found == gnuplot->process;
-    if (found < 0 && errno != EINTR) {
-        const int reason = errno;
-        forget(gnuplot);
-        return status_set(STATUS_FAILED, "plot: cannot wait for gnuplot: %s", strerror(reason));
-    }
+    if (found < 0 && errno != EINTR)
+        return status_set(STATUS_FAILED, "plot: cannot wait for gnuplot: %s", strerror(errno));
     if (found <= 0 && seconds_now() - gnuplot->begin > plot_seconds_most) {
         kill(-gnuplot->process, SIGKILL);
         waitpid(gnuplot->process, &gnuplot->exit_status, 0);
-        forget(gnuplot);
         hung = true;
         return status_set(STATUS_FAILED,
                           "plot: gnuplot did not end within %g s and was stopped; no more pictures "
                           "are drawn",
                           plot_seconds_most);
     }
-    if (*ended)
-        forget(gnuplot);
     return STATUS_OK;
 }
 

@@ -10,14 +10,14 @@
 
 /* One that runs, from gnuplot_start until gnuplot_poll has found its end or a fault. */
 struct gnuplot {
-    pid_t process;   /* 0: none */
+    pid_t process;
     double begin;    /* seconds_now() */
     int exit_status; /* once it has ended, as waitpid gives it */
 };
 
-/* Let gnuplot run the file `script` of the folder `directory`, in which it works. These three are descriptors: what it
-   writes to /dev/stdout goes to `picture`, what it prints to `log`. Errors: STATUS_FAILED where gnuplot is missing. */
-enum status gnuplot_start(int directory, const char *script, int picture, int log, struct gnuplot *gnuplot);
+/* Let gnuplot run the file `script`. `picture` and `log` are descriptors: what it writes to /dev/stdout goes to the one,
+   what it prints to the other. It ends with this program. Errors: STATUS_FAILED. */
+enum status gnuplot_start(const char *script, int picture, int log, struct gnuplot *gnuplot);
 /* Whether it has ended, without waiting for it. Errors: STATUS_FAILED where it takes longer than plot_seconds_most
    (plot.h) and is ended. */
 enum status gnuplot_poll(struct gnuplot *gnuplot, bool *ended);

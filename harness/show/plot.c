@@ -36,18 +36,11 @@ static void extent_write(FILE *preamble, const struct slice_line *lines, int cou
             places / (12 * count), differences, differences ? 10 * ceil(top / 10) : 0);
 }
 
-/* A file for each line, out to the first place beyond the extent: gnuplot would read one of all from its beginning for
-   each. */
-static enum status line_write(const struct plot *plot, const struct slice_line *line, int index, double extent)
+/* A data block for each line, out to the first place beyond the extent. */
+static void line_write(FILE *file, const struct slice_line *line, int index, double extent)
 {
-    char name[32];
-    FILE *file;
-    snprintf(name, sizeof name, "line%d", index);
-    plot_array_write(plot->preamble, "data", index, name);
-    enum status status = plot_file_open(plot, name, &file);
-    if (status != STATUS_OK)
-        return status;
-    fprintf(file, "0 NaN NaN\n"); /* gnuplot refuses a file without a row */
+    fprintf(file, "data[%d] = '$line%d'\n$line%d << END\n", index + 1, index, index);
+    fprintf(file, "0 NaN NaN\n"); /* gnuplot refuses a block without a row */
     for (int k = 0; k < line->count; k++) {
         const bool near = fabs(line->position_m[k]) <= extent;
         if (near || (k > 0 && fabs(line->position_m[k - 1]) <= extent)
@@ -55,11 +48,11 @@ static enum status line_write(const struct plot *plot, const struct slice_line *
             fprintf(file, "%.9g %.6g %.6g\n", line->position_m[k], fmax(line->power_db[k], floor_db),
                     line->difference_db ? fmax(line->difference_db[k], floor_db) : NAN);
     }
-    return plot_file_close(plot, file);
+    fprintf(file, "END\n");
 }
 
 /* `slices`: they are cut to what they show. */
-static enum status lines_write(const struct plot *plot, const struct slices_picture *picture, bool slices)
+static void lines_write(const struct plot *plot, const struct slices_picture *picture, bool slices)
 {
     const int shown = picture->panel_count < PANELS_MAX ? picture->panel_count : PANELS_MAX;
     const int count = shown * picture->line_count;
@@ -86,10 +79,8 @@ static enum status lines_write(const struct plot *plot, const struct slices_pict
     if (slices)
         extent_write(plot->preamble, lines, count, extent);
     plot_array(plot->preamble, "data", count);
-    enum status status = STATUS_OK;
-    for (int b = 0; b < count && status == STATUS_OK; b++)
-        status = line_write(plot, &lines[b], b, extent);
-    return status;
+    for (int b = 0; b < count; b++)
+        line_write(plot->preamble, &lines[b], b, extent);
 }
 
 static enum status lines_draw(struct plot_queue *queue, const char *path, const char *plots_directory, bool slices,
@@ -98,7 +89,7 @@ static enum status lines_draw(struct plot_queue *queue, const char *path, const 
     struct plot plot;
     enum status status = plot_begin(&plot, path, false);
     if (status == STATUS_OK)
-        status = lines_write(&plot, picture, slices);
+        lines_write(&plot, picture, slices);
     return plot_finish(&plot, status, queue, plots_directory, slices ? "slices.gp" : "phase.gp");
 }
 

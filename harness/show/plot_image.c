@@ -153,20 +153,17 @@ static void curves_write(FILE *file, const struct layer *layer, int patch)
 }
 
 /* One patch as a file; `array` of the script gets its path. */
-static enum status panel_write(const struct plot *plot, const char *array, const struct layer *layer, int patch)
+static enum status panel_write(struct plot *plot, const char *array, const struct layer *layer, int patch)
 {
-    char name[32];
     FILE *file;
-    snprintf(name, sizeof name, "%s%d", array, patch);
-    enum status status = plot_file_open(plot, name, &file);
+    enum status status = plot_file_open(plot, array, patch, &file);
     if (status != STATUS_OK)
         return status;
     if (shape_of(&layer->image->patches[patch]) == SHAPE_IMAGE)
         matrix_write(file, layer, patch);
     else
         curves_write(file, layer, patch);
-    plot_array_write(plot->preamble, array, patch, name);
-    return plot_file_close(plot, file);
+    return plot_file_flush(plot, file);
 }
 
 static double share(double place, double first, double step, int count)
@@ -174,28 +171,23 @@ static double share(double place, double first, double step, int count)
     return (place - (first - 0.5 * step)) / (count * step);
 }
 
-/* Targets within a patch as "x r name". */
-static enum status targets_write(const struct plot *plot, const struct image_picture *picture, int patch, int *written)
+/* Targets within a patch as "x r name"; returns how many. */
+static int targets_write(FILE *file, const struct image_picture *picture, int patch)
 {
     const struct grid *grid = &picture->image->patches[patch];
-    char name[32];
-    FILE *file;
-    snprintf(name, sizeof name, "targets%d", patch);
-    *written = 0;
-    enum status status = plot_file_open(plot, name, &file);
-    if (status != STATUS_OK)
-        return status;
-    for (int t = 0; t < picture->target_count && *written < NAMES_MAX; t++) {
+    int written = 0;
+    fprintf(file, "targets[%d] = '$targets%d'\n$targets%d << END\n", patch + 1, patch, patch);
+    for (int t = 0; t < picture->target_count && written < NAMES_MAX; t++) {
         const struct vector at = grid_coordinates(grid, picture->targets[t].x, picture->targets[t].r);
         const double x = share(at.x, grid->x_first, grid->x_step, grid->x_count);
         const double r = share(at.y, grid->r_first, grid->r_step, grid->r_count);
         if (x >= 0 && x <= 1 && r >= 0 && r <= 1) {
             fprintf(file, "%.15g %.15g T%d\n", at.x, at.y, t + 1);
-            ++*written;
+            written++;
         }
     }
-    plot_array_write(plot->preamble, "targets", patch, name);
-    return plot_file_close(plot, file);
+    fprintf(file, "END\n");
+    return written;
 }
 
 /* The numbers of a patch: its edges in m, what is taken off its places, how many curves, how many targets. */
@@ -243,7 +235,7 @@ static void title_write(const struct plot *plot, const struct image_picture *pic
     plot_variable(plot->preamble, "footer", picture->footer ? picture->footer : "");
 }
 
-static enum status image_write(const struct plot *plot, const struct image_picture *picture)
+static enum status image_write(struct plot *plot, const struct image_picture *picture)
 {
     static const char *const arrays[] = {"panels", "differences",  "targets", "shapes",   "x_low",
                                          "x_high", "r_low",        "r_high",  "x_origin", "r_origin",
@@ -264,13 +256,10 @@ static enum status image_write(const struct plot *plot, const struct image_pictu
             differs ? 10 * ceil(log10(largest / difference.zero_db)) : 0);
     enum status status = STATUS_OK;
     for (int p = 0; p < shown && status == STATUS_OK; p++) {
-        int targets = 0;
         status = panel_write(plot, "panels", &image, p);
         if (status == STATUS_OK && differs)
             status = panel_write(plot, "differences", &difference, p);
-        if (status == STATUS_OK)
-            status = targets_write(plot, picture, p, &targets);
-        numbers_write(plot->preamble, &picture->image->patches[p], p, targets);
+        numbers_write(plot->preamble, &picture->image->patches[p], p, targets_write(plot->preamble, picture, p));
     }
     return status;
 }

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "files/temporary.h"
+enum { PROCESSES_MOST = 16 };
 
 struct queued_plot {
     struct plot plot; /* its path is ours */

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "files/folder.h"
 #include "files/paths.h"
 #include "text/shown_text.h"
 #include "text/text_append.h"

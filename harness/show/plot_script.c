@@ -3,7 +3,6 @@
 #include "show/plot_script.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -18,22 +17,40 @@ static enum status file_failed(const char *path)
     return status_set(STATUS_FAILED, "plot: '%.300s' cannot be drawn: %s", path, strerror(errno));
 }
 
-enum status plot_file_open(const struct plot *plot, const char *name, FILE **file)
+void plot_file_name(int descriptor, char name[PLOT_NAME])
 {
-    temporary_inside(plot->directory, name);
-    int descriptor = openat(plot->directory, name, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
+    snprintf(name, PLOT_NAME, "/proc/%d/fd/%d", (int)getpid(), descriptor);
+}
+
+static enum status file_open(struct plot *plot, FILE **file)
+{
+    errno = EMFILE;
+    const int descriptor = plot->file_count < PLOT_FILES_MOST ? memfd_create("data", MFD_CLOEXEC) : -1;
     *file = descriptor < 0 ? NULL : fdopen(descriptor, "w");
-    if (*file)
+    if (*file) {
+        plot->files[plot->file_count++] = *file;
         return STATUS_OK;
+    }
     enum status status = file_failed(plot->path);
     if (descriptor >= 0)
         close(descriptor);
     return status;
 }
 
-enum status plot_file_close(const struct plot *plot, FILE *file)
+enum status plot_file_open(struct plot *plot, const char *array, int index, FILE **file)
 {
-    return stream_close(file) ? STATUS_OK : file_failed(plot->path);
+    char name[PLOT_NAME];
+    enum status status = file_open(plot, file);
+    if (status != STATUS_OK)
+        return status;
+    plot_file_name(fileno(*file), name);
+    plot_array_write(plot->preamble, array, index, name);
+    return STATUS_OK;
+}
+
+enum status plot_file_flush(const struct plot *plot, FILE *file)
+{
+    return stream_flush(file) ? STATUS_OK : file_failed(plot->path);
 }
 
 /* A gnuplot string: nothing but the single quote is special between single quotes. Two of them are one in its manual,
@@ -88,22 +105,15 @@ static enum status hung_status(const char *path)
 
 enum status plot_begin(struct plot *plot, const char *path, bool named)
 {
-    *plot = (struct plot){.path = path, .named = named, .beside.folder = -1, .directory = -1, .picture = -1, .log = -1};
-    if (gnuplot_hung())
-        return hung_status(path);
-    if (place_open(path, named, &plot->beside))
-        plot->directory = temporary_folder(plot->beside.folder, plot->made);
-    return plot->directory < 0 ? file_failed(path) : plot_file_open(plot, "run.gp", &plot->preamble);
+    *plot = (struct plot){.path = path, .named = named, .picture = -1, .log = -1};
+    return gnuplot_hung() ? hung_status(path) : file_open(plot, &plot->preamble);
 }
 
 /* Removes what is left; accepts a plot whose beginning failed. */
 void plot_end(struct plot *plot)
 {
-    if (plot->preamble)
-        fclose(plot->preamble);
-    if (plot->directory >= 0)
-        temporary_remove(plot->beside.folder, plot->made, plot->directory);
-    place_close(&plot->beside);
+    for (int k = 0; k < plot->file_count; k++)
+        fclose(plot->files[k]);
     if (plot->picture >= 0)
         close(plot->picture);
     if (plot->log >= 0)
@@ -118,20 +128,20 @@ enum status plot_prepare(struct plot *plot, const char *plots_directory, const c
     plot_variable(plot->preamble, "output", "/dev/stdout");
     plot_path_variable(plot->preamble, "plots", plots_directory);
     fprintf(plot->preamble, "load plots.'/%s'\n", script);
-    FILE *preamble = plot->preamble;
-    plot->preamble = NULL;
-    return plot_file_close(plot, preamble);
+    return plot_file_flush(plot, plot->preamble);
 }
 
 enum status plot_start(struct plot *plot)
 {
+    char script[PLOT_NAME];
     if (gnuplot_hung())
         return hung_status(plot->path);
     plot->picture = memfd_create("picture", MFD_CLOEXEC);
     plot->log = memfd_create("log", MFD_CLOEXEC);
     if (plot->picture < 0 || plot->log < 0)
         return file_failed(plot->path);
-    return gnuplot_start(plot->directory, "run.gp", plot->picture, plot->log, &plot->gnuplot);
+    plot_file_name(fileno(plot->preamble), script);
+    return gnuplot_start(script, plot->picture, plot->log, &plot->gnuplot);
 }
 
 enum status plot_poll(struct plot *plot, bool *ended)

@@ -1,28 +1,24 @@
-/* A picture in the making: data files and a short preamble of variables go to a temporary folder beside the picture,
-   in which gnuplot works: one of the scripts in plots/ draws them. The picture goes to memory, and to its place when it
-   is whole. Used within show/ only. */
+/* A picture in the making: data files and a short preamble of variables, all in memory, where gnuplot reads them: one
+   of the scripts in plots/ draws them. The picture goes to memory, too, and to its place when it is whole. Used within
+   show/ only. */
 #ifndef SASBENCH_SHOW_PLOT_SCRIPT_H
 #define SASBENCH_SHOW_PLOT_SCRIPT_H
 
-#include <limits.h>
 #include <stdio.h>
 
-#include "files/folder.h"
-#include "files/temporary.h"
 #include "show/gnuplot.h"
 #include "contract/status.h"
 
-enum { PANELS_MAX = 8 }; /* more do not fit a picture */
+enum { PANELS_MAX = 8, PLOT_FILES_MOST = 66 }; /* more panels do not fit a picture */
 
 /* One picture in the making. */
 struct plot {
-    struct place beside;                  /* whose folder holds the temporary one */
-    char made[TEMPORARY_NAME];            /* its name there */
-    int directory;                        /* its descriptor, -1: there is none */
+    FILE *files[PLOT_FILES_MOST]; /* [file_count] in memory: the preamble, then what data it has */
+    int file_count;
     int picture, log;                     /* files in memory: the picture until it is whole, what gnuplot prints; -1 */
     const char *path;                     /* the picture */
     bool named;                           /* by the user: links are followed */
-    FILE *preamble;                       /* sets the script's variables */
+    FILE *preamble;                       /* files[0], sets the script's variables */
     const char *plots_directory, *script; /* that it is drawn with, once it is prepared */
     struct gnuplot gnuplot;
 };
@@ -31,9 +27,12 @@ struct plot {
    beginning failed. */
 enum status plot_begin(struct plot *plot, const char *path, bool named);
 void plot_end(struct plot *plot);
-/* A new file in the temporary folder, by whose name the script finds it. Errors: STATUS_FAILED. */
-enum status plot_file_open(const struct plot *plot, const char *name, FILE **file);
-enum status plot_file_close(const struct plot *plot, FILE *file);
+/* A new file, by whose name, array[index], the script finds it; flushed before it is read. Errors: STATUS_FAILED. */
+enum status plot_file_open(struct plot *plot, const char *array, int index, FILE **file);
+enum status plot_file_flush(const struct plot *plot, FILE *file);
+/* The name by which gnuplot finds an open file. */
+enum { PLOT_NAME = 48 };
+void plot_file_name(int descriptor, char name[PLOT_NAME]);
 
 /* Variables of the script: a text; a path, whatever folder gnuplot works in; an array of texts, index from 0. */
 void plot_variable(FILE *file, const char *name, const char *text);

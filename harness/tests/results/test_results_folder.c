@@ -230,25 +230,6 @@ static void test_folder_is_locked(void **state)
     close(told[1]);
 }
 
-/* What a killed run left on its way to its place goes with the next; other files stay. */
-static void test_swept(void **state)
-{
-    (void)state;
-    static const char *const names[] = {".sasbench-A1b2C3", ".sasbench-folder", ".sasbench-folder/run.gp", "mine.tmp"};
-    char paths[4][300];
-    for (int k = 0; k < 4; k++) {
-        snprintf(paths[k], sizeof paths[k], "%s/%s", results_directory, names[k]);
-        if (k == 1)
-            assert_int_equal(mkdir(paths[k], 0700), 0);
-        else
-            file_write(paths[k], "w", "half");
-    }
-    results_folder_close(open_ok("c1", 2));
-    for (int k = 0; k < 4; k++)
-        assert_int_equal(access(paths[k], F_OK), k == 3 ? 0 : -1);
-    assert_int_equal(remove(paths[3]), 0);
-}
-
 static void test_changed_scene(void **state)
 {
     (void)state;
@@ -318,7 +299,6 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_kept_twice, results_make, results_remove),
         cmocka_unit_test_setup_teardown(test_failed_again, results_make, results_remove),
         cmocka_unit_test_setup_teardown(test_folder_is_locked, results_make, results_remove),
-        cmocka_unit_test_setup_teardown(test_swept, results_make, results_remove),
         cmocka_unit_test_setup_teardown(test_changed_scene, results_make, results_remove),
         cmocka_unit_test_setup_teardown(test_cut_row, results_make, results_remove),
     };

@@ -284,7 +284,7 @@ static void failures_are_told(void **state)
 
     assert_int_equal(
         plot_image(path_of("no/such/folder.png"), real_plots, &(struct image_picture){.image = &image, .title = "a"}),
-        STATUS_FAILED);
+        STATUS_INVALID);
     assert_non_null(strstr(status_message(), "no/such/folder.png"));
 
     /* A failing script leaves the old picture alone. */
