@@ -15,8 +15,8 @@ struct gnuplot {
     int exit_status; /* once it has ended, as waitpid gives it */
 };
 
-/* Let gnuplot run the file `script`. `picture` and `log` are descriptors: what it writes to /dev/stdout goes to the one,
-   what it prints to the other. It ends with this program. Errors: STATUS_FAILED. */
+/* Let gnuplot run the file `script`. `picture` and `log` are descriptors: what it writes to /dev/stdout goes to the
+   one, what it prints to the other. It ends with this program. Errors: STATUS_FAILED. */
 enum status gnuplot_start(const char *script, int picture, int log, struct gnuplot *gnuplot);
 /* Whether it has ended, without waiting for it. Errors: STATUS_FAILED where it takes longer than plot_seconds_most
    (plot.h) and is ended. */
