@@ -42,7 +42,7 @@ extern const char *const bp_engine_names[], *const bp_exact_names[];
         {PARAM_NAMED(struct bp_options, exact, bp_exact_names), .summary = "every delay is evaluated: the plain path", \
          .max = 1, .terse = true, .hidden = true},                                                                     \
         {PARAM(struct bp_options, phase_limit),                                                                        \
-         .summary = "rad: most that the general engine's interpolated delays change a pair's phase by",                \
+         .summary = "largest phase error (rad) of a pair from the general engine's interpolated delays",               \
          .initial = 1e-4,                                                                                              \
          .min = 1e-8,                                                                                                  \
          .max = 0.1,                                                                                                   \

@@ -59,8 +59,8 @@ struct condition condition_ghost(const struct acquisition *a, double spacing)
                               1e-3,
                               false,
                               SEVERITY_WARN,
-                              "gaps or overlaps from ping to ping, which make ghosts: the spacing over half the array, "
-                              "or over a whole part of it, less 1",
+                              "gaps or overlaps between pings, which make ghosts: ping spacing over half the array, or "
+                              "over a whole part of it, less 1",
                               ""};
     condition_cure_add(&ghost, "pings %.5g m apart in place of %.5g m", even, fabs(spacing));
     if (speed > 0)
@@ -93,8 +93,7 @@ void condition_beam_named(const struct acquisition *a, struct condition *conditi
     if (a->echo_sine > 0 || a->tx_length > 0)
         return;
     snprintf(condition->cure, sizeof condition->cure,
-             "tx_length and rx_length (m), or echo_sine, in the echo file: it does not say how wide the beam is, and "
-             "echoes from everywhere count");
+             "tx_length and rx_length (m), or echo_sine, in the echo file: without them the beam is unlimited");
 }
 
 struct condition condition_doppler(const struct problem *problem, double spacing)
@@ -106,8 +105,7 @@ struct condition condition_doppler(const struct problem *problem, double spacing
         1.05,
         false,
         SEVERITY_WARN,
-        "the widest azimuth wavenumber in the beam over what the receivers sample, n/(2 spacing), n the number of "
-        "their places along the track",
+        "the largest azimuth wavenumber of the beam over that which receivers at n places sample, n/(2 spacing)",
         "pings closer together, more receivers along the track, a narrower beam or a lower speed"};
     condition_beam_named(a, &doppler);
     return doppler;

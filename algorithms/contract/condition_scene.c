@@ -237,7 +237,7 @@ int conditions_scene(const struct problem *problem, struct condition list[CONDIT
                       "wavelengths from the sonar to the end of its records, on which sound is absorbed",
                       "t0 in s, not ms; fs in Hz, not kHz"},
         [PING_SPACING] = {"ping_spacing", motion.off, SPACING_MOST, false, SEVERITY_WARN,
-                          "how far speed times pri lies off the way from ping to ping, over it", ""},
+                          "the difference between speed times pri and the ping spacing, over the spacing", ""},
         [PIXEL_X] = {"pixel_x", survey.x.worst, 1, false, SEVERITY_WARN,
                      "the pixels' step along x over the resolution there",
                      "a smaller step, or targets may fall between the pixels"},
@@ -245,22 +245,20 @@ int conditions_scene(const struct problem *problem, struct condition list[CONDIT
                      "the pixels' step along r over the resolution there",
                      "a smaller step, or targets may fall between the pixels"},
         [PIXELS_MET] = {"pixels_met", 100 * survey.unmet / survey.places, 0, false, SEVERITY_WARN,
-                        "how many of the pixels no record meets, so that they are zero (%)",
-                        "a grid within the records"},
+                        "pixels that no record meets, which are zero (%)", "a grid within the records"},
         [PATCHES_MET] = {"patches_met", survey.patches_unmet, 0, false, SEVERITY_WARN,
                          "the number of patches that no record meets", "patches within the records"},
         [PIXELS_SEEN] = {"pixels_seen", 100 * survey.unseen / survey.places, CUT_PIXELS_MOST, false, SEVERITY_WARN,
-                         "how many of the pixels lie outside the beam of every ping, so that they show side lobes at "
-                         "most (%)",
+                         "pixels outside the beam of every ping, which show side lobes at most (%)",
                          "a grid beside the track"},
         [BEAM_IN_RECORD] = {"beam_in_record", 100 * survey.cut / survey.places, CUT_PIXELS_MOST, false, SEVERITY_WARN,
-                            "how many of the pixels lose echoes from inside the beam at the ends of the records (%)",
+                            "pixels that lose echoes of the beam at the ends of the records (%)",
                             "longer records, or a grid farther from their ends"},
     };
-    condition_cure_add(&all[PING_SPACING],
-                       "speed times pri is %.5g m, the pings lie %.5g m apart: one of speed, pri and spacing is to be "
-                       "another; or speed 0, stop-and-hop",
-                       motion.told, motion.found);
+    condition_cure_add(
+        &all[PING_SPACING],
+        "speed times pri is %.5g m, the pings lie %.5g m apart: correct speed, pri or spacing; speed 0 is stop-and-hop",
+        motion.told, motion.found);
     for (int k = PIXEL_X; k <= PIXEL_R; k++)
         if (!condition_holds(&all[k]))
             condition_cure_add(&all[k], ": at most %.3g m",

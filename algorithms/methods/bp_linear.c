@@ -22,8 +22,8 @@ static const struct param params[] = {
     {PARAM(struct options, beta), .summary = "points inserted between two samples", .initial = 8, .min = 0, .max = 1024,
      .sweep = "0 1 2 4 8 16 32"},
     {PARAM_NAMED(struct options, preemphasis, switches),
-     .summary = "on: the compression filter makes up for what linear interpolation takes off high frequencies",
-     .max = 1, .terse = true},
+     .summary = "on: the compression filter makes up for what linear interpolation loses at high frequencies", .max = 1,
+     .terse = true},
     BP_PARAMS,
     {.name = NULL},
 };

@@ -12,7 +12,7 @@ static const struct param params[] = {
     {PARAM(struct wk_options, subapertures), .summary = "of the filter; 0: as few as need no upsampling", .initial = 4,
      .min = 0, .max = 4096, .sweep = "1 2 4 8 0"},
     {PARAM_NAMED(struct wk_options, curvature, curvature_names),
-     .summary = "the wavefronts' curvature is taken off ahead of the mask", .initial = 0, .max = 1, .sweep = "off on"},
+     .summary = "remove the wavefronts' curvature ahead of the mask", .initial = 0, .max = 1, .sweep = "off on"},
     WK_TAPS_PARAM,
     {.name = NULL},
 };

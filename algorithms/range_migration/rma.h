@@ -43,7 +43,7 @@ extern const char *const rma_spacing_names[],
 /* The parameters that all methods have. */
 #define RMA_PARAMS                                                                                                     \
     {PARAM(struct rma_options, blocks),                                                                                \
-     .summary = "range blocks of the conversion; 0: as Eq. (13) asks for",                                             \
+     .summary = "range blocks of the conversion; 0: as many as Eq. (13) requires",                                     \
      .initial = 0,                                                                                                     \
      .min = 0,                                                                                                         \
      .max = 4096,                                                                                                      \

@@ -152,7 +152,7 @@ static struct condition spa_amplitude(const struct rma_view *view)
                               0.05,
                               false,
                               SEVERITY_REFUSE,
-                              "the amplitude that a monostatic weight gets wrong, (1 + (d/2r)^2)^.75 - 1",
+                              "the amplitude error of a monostatic weight, (1 + (d/2r)^2)^.75 - 1",
                               "rows farther away, or receivers nearer to the transmitter"};
 }
 
@@ -248,7 +248,7 @@ bool azimuth_requirements(const struct problem *problem, struct condition *list,
                                           SEVERITY_REFUSE,
                                           "the scene's aperture_limit (a sine; an azimuth transform cannot choose "
                                           "pings pixel by pixel)",
-                                          "back projection, or a limit that the echoes' beam lies within"};
+                                          "back projection, or a limit beyond the echoes' beam"};
     list[(*count)++] = (struct condition){
         "in_front", nearest, 0, true, SEVERITY_REFUSE, "the range r of the nearest pixel (m)", "pixels at r > 0"};
     for (; first < list + *count; first++)

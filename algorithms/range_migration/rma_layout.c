@@ -206,8 +206,8 @@ static enum status swath_azimuth(const struct rma *rma, struct rma_swath *swath)
         double last = g->x_first + (g->x_count - 1) * g->x_step;
         if (g->x_first < x_low - angle || last > x_high + angle)
             return status_set(STATUS_UNSUPPORTED,
-                              "%s: condition in_wavenumbers: how far columns from %g to %g m leave what the "
-                              "wavenumbers of the track cover, %g to %g m, is %.3g m; at most 0 is needed (cure: "
+                              "%s: condition in_wavenumbers: how far columns from %g to %g m lie outside the %g to %g "
+                              "m that the track's wavenumbers cover is %.3g m; at most 0 is needed (cure: "
                               "columns nearer to the track, rows farther away, or a shorter transmitter)",
                               rma->method.name, g->x_first, last, x_low - angle, x_high + angle,
                               fmax(x_low - angle - g->x_first, last - x_high - angle));

@@ -8,11 +8,10 @@ enum status polar_filter_check(const struct acquisition *a, const char *place)
 {
     const struct target_area *area = &a->area;
     if (!(area->half_x > 0 && area->half_r > 0))
-        return status_set(
-            STATUS_UNSUPPORTED,
-            "%s: condition target_area: the echoes name no target area (cure: a scene with area, or a file "
-            "with area)",
-            place);
+        return status_set(STATUS_UNSUPPORTED,
+                          "%s: condition target_area: no target area is given (cure: a scene with area, or a file "
+                          "with area)",
+                          place);
     if (a->receivers > 1 || fabs(a->rx[0].x - a->tx[0].x) > a->sound_speed / a->fc / 1000)
         return status_set(STATUS_UNSUPPORTED,
                           "%s: condition one_receiver: %d receivers, the first %g m ahead of the transmitter; the "
@@ -173,11 +172,10 @@ static double loss_db(const struct acquisition *a, const struct polar_setting *s
 struct condition polar_filter_kept(const struct acquisition *a, const struct polar_setting *setting)
 {
     const int count = polar_filter_subapertures(a, setting->subapertures), most = polar_filter_most(a);
-    struct condition kept = {
-        "area_kept",    loss_db(a, setting, count),
-        LOSS_MOST,      false,
-        SEVERITY_WARN,  "what the filter takes off targets inside its own area, out to 0.8 of it (dB)",
-        "a larger area"};
+    struct condition kept = {"area_kept",    loss_db(a, setting, count),
+                             LOSS_MOST,      false,
+                             SEVERITY_WARN,  "the filter's loss on targets inside its own area, out to 0.8 of it (dB)",
+                             "a larger area"};
     int better = count;
     while (better <= most && !condition_holds(&kept) && loss_db(a, setting, better) > LOSS_MOST)
         better *= 2;

@@ -102,17 +102,16 @@ static void beam_conditions(const struct problem *problem, const struct straight
                                          0,
                                          false,
                                          SEVERITY_REFUSE,
-                                         "the number of patches that no ping sees",
+                                         "patches that lie in no ping's beam",
                                          "patches where the beam looks, in axes turned as it is"};
-    all[(*count)++] =
-        (struct condition){"doppler",
-                           worst.doppler,
-                           1.05,
-                           false,
-                           SEVERITY_REFUSE,
-                           "the widest azimuth wavenumber in the beam, off its centroid, over what the pings sample, "
-                           "1/(2 spacing)",
-                           "pings closer together, or a narrower beam"};
+    all[(*count)++] = (struct condition){
+        "doppler",
+        worst.doppler,
+        1.05,
+        false,
+        SEVERITY_REFUSE,
+        "the largest azimuth wavenumber of the beam, off its centroid, over that which pings sample, 1/(2 spacing)",
+        "pings closer together, or a narrower beam"};
     condition_beam_named(problem->acquisition, &all[*count - 1]);
     all[(*count)++] = (struct condition){"stationary",
                                          worst.stationary,
@@ -146,14 +145,14 @@ static int requirements(const struct problem *problem, struct condition all[COND
                                       false,
                                       SEVERITY_REFUSE,
                                       "the number of receivers",
-                                      "range migration (rma_*), which takes several receivers"};
+                                      "back projection or range migration (rma_*)"};
     all[count++] = (struct condition){"monostatic",
                                       aside * a->fc / a->sound_speed,
                                       1e-3,
                                       false,
                                       SEVERITY_REFUSE,
                                       "how far the receiver is from the transmitter along the track (wavelengths)",
-                                      "range migration (rma_*), which takes that into account"};
+                                      "back projection or range migration (rma_*)"};
     if (azimuth_requirements(problem, all, &count, track) && conditions_accept(all, count))
         beam_conditions(problem, track, all, &count);
     return count;

@@ -55,17 +55,17 @@ static bool is_near(const struct condition *c)
 static const char *verdict(const struct condition *condition)
 {
     if (condition_holds(condition))
-        return is_near(condition) ? "near" : "holds";
+        return is_near(condition) ? "near" : "met";
     return condition->severity == SEVERITY_REFUSE ? "REFUSED" : condition->severity == SEVERITY_WARN ? "warns" : "note";
 }
 
 static void condition_print(FILE *stream, const struct condition *c)
 {
-    const bool holds = condition_holds(c) && !is_near(c);
+    const bool met = condition_holds(c) && !is_near(c);
     char figures[120], words[500];
-    int used = snprintf(figures, sizeof figures, "  %-7s  %-16s %10.3g  %s %-8.3g", verdict(c), c->name, c->value,
-                        c->at_least ? ">" : "<=", c->limit);
-    used += snprintf(words, sizeof words, "%s%s%s", c->meaning, holds ? "" : "; cure: ", holds ? "" : c->cure);
+    int used = snprintf(figures, sizeof figures, "  %-7s  %-16s %10.3g (%s %.3g)", verdict(c), c->name, c->value,
+                        c->at_least ? "above" : "at most", c->limit);
+    used += snprintf(words, sizeof words, "%s%s%s", c->meaning, met ? "" : "; cure: ", met ? "" : c->cure);
     const bool one_line = used + 2 <= table_width(stream);
     fprintf(stream, "%s%s%s\n", figures, one_line ? "  " : "", one_line ? words : "");
     if (!one_line)
@@ -145,7 +145,7 @@ enum status check_algorithm(const struct scene *scene, const struct spec *spec, 
 
 void check_print(FILE *stream, const struct scene *scene, const struct check_found *found, bool all)
 {
-    static const char *const verdicts[] = {"REFUSED", "warns", "note", "near", "holds"};
+    static const char *const verdicts[] = {"REFUSED", "warns", "note", "near", "met"};
     const int shown = (int)(sizeof verdicts / sizeof *verdicts) - !all, specs = found->specs;
     char text[500];
     int warnings = 0;
@@ -167,7 +167,7 @@ void check_print(FILE *stream, const struct scene *scene, const struct check_fou
                 table_text(stream, 11, found->list[k].names);
         }
     if (!all)
-        fputs("All conditions, and what errors of sound speed, track and carrier do: --all\n", stream);
+        fputs("--all: every condition, and the image's sensitivity to sound speed, track and carrier\n", stream);
 }
 
 /* ---- sensitivities ---- */

@@ -100,7 +100,7 @@ enum status machine_rates_keep(const struct rates *rates)
     char path[4096], directory[4096], owner[300];
     struct text_file file;
     if (!rates_plausible(rates))
-        return status_set(STATUS_FAILED, "the times that were measured make no sense; the built-in rates are used");
+        return status_set(STATUS_FAILED, "the measured times are not plausible; the built-in rates are used");
     rates_set(rates);
     machine_rates_path(path, sizeof path);
     if (!*path)
@@ -133,9 +133,9 @@ enum status machine_rates_need(void)
         return status;
     const bool kept = machine_rates_keep(&rates) == STATUS_OK;
     if (!kept)
-        fprintf(stderr, "sasbench: warning: the machine's rates are not kept: %s\n", status_message());
+        fprintf(stderr, "sasbench: warning: this machine's rates are not kept: %s\n", status_message());
     machine_rates_path(path, sizeof path);
-    fprintf(stderr, "sasbench: the rates of this machine were measured, to %.0f %%, and are kept in: %s\n",
-            100 * rates_get()->noise, kept && *path ? path : "nothing");
+    fprintf(stderr, "sasbench: measured this machine's rates, to %.0f %%; kept in %s\n", 100 * rates_get()->noise,
+            kept && *path ? path : "nothing");
     return STATUS_OK;
 }

@@ -283,7 +283,7 @@ static void finding_print(const struct goal *goals, int count, const char *path)
         measured += !isnan(goals[k].margin);
         missed += goals[k].margin < 1;
     }
-    printf("\n%d of %d goals hold", measured - missed, measured);
+    printf("\n%d of %d goals are met", measured - missed, measured);
     if (measured < count)
         printf(" (%d more cannot be measured on this processor)", count - measured);
     if (missed < measured)

@@ -196,8 +196,7 @@ static enum status factorised_complete(const struct setting *setting, struct can
     if (*c->settings || candidate_set_error(c, BUDGETED * setting->budget->error / fmax(setting->ratio, 1)))
         return sums_forecast(setting, c);
     c->verdict = CANDIDATE_ERROR;
-    snprintf(c->reason, sizeof c->reason, "does not take an error as small as the budget of %.2g",
-             setting->budget->error);
+    snprintf(c->reason, sizeof c->reason, "accepts no error as small as the budget of %.2g", setting->budget->error);
     return STATUS_OK;
 }
 

@@ -112,8 +112,8 @@ static enum status cells_check(const struct claims *claims, const struct csv *pu
     if (status == STATUS_OK && comparison_decides(claim->comparison) && !phases_alone
         && claim->measures == comparison_identity(claim->comparison))
         status = status_set(STATUS_INVALID, "%s: line %d: column comparison: %s", csv->path, claim->line,
-                            claim->measures ? "'identity' is for claims that ask for nothing measured"
-                                            : "nothing measured is asked for; 'identity COMPARISON(...)' is needed");
+                            claim->measures ? "'identity' is for claims without measurements"
+                                            : "the claim has no measurement; 'identity COMPARISON(...)' is needed");
     return status;
 }
 

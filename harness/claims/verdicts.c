@@ -95,7 +95,7 @@ enum status verdicts_write(const char *path, const char *head, const struct verd
     row_write(file.stream, "those that depend on LBF21's scheme, corrected", verdicts, NULL, SCHEME_CORRECTED);
     fputc('\n', file.stream);
     reasons_write(file.stream, verdicts);
-    fputs("\n| claim | says | as printed | corrected |\n|---|---|---|---|\n", file.stream);
+    fputs("\n| claim | statement | as printed | corrected |\n|---|---|---|---|\n", file.stream);
     for (int k = 0; k < claims->count; k++)
         if (verdicts->evaluated[k])
             fprintf(file.stream, "| `%s` | %s | %s%s | %s |\n", claims->claims[k].id, claims->claims[k].claim,

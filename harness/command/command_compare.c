@@ -16,7 +16,8 @@ static enum status compare_sides(const struct task *task, struct diff *diff)
                       diff);
     *diff = (struct diff){0};
     if (task->name_count > 2 || task->spec_count > 0)
-        return status_set(STATUS_INVALID, "compare: '%s' is too much without --ab: sasbench compare OLD NEW",
+        return status_set(STATUS_INVALID,
+                          "compare: '%s' is one argument too many without --ab: sasbench compare OLD NEW",
                           task->name_count > 2 ? names[2] : "--algorithm");
     return diff_results(names[0], names[1], diff);
 }

@@ -69,7 +69,7 @@ static enum status plan_scene(const struct task *task, const struct scene *scene
     if (status == STATUS_OK && task->all)
         planned_print(stdout, &planned);
     else if (status == STATUS_OK)
-        puts("All candidates, and what the choice leaves out: --all");
+        puts("--all: every candidate, and what the choice leaves out");
     if (status == STATUS_OK && task->output)
         status = text_file_open_named(task->output, &file);
     if (status == STATUS_OK && task->output) {

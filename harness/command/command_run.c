@@ -55,7 +55,7 @@ static enum status summary_print(const struct batch *batch, int scene_count, con
     results_free(&results);
     if (status != STATUS_OK)
         return status;
-    snprintf(path, sizeof path, "%s/overview.svg", batch->directory);
+    snprintf(path, sizeof path, "%s/overview.png", batch->directory);
     snprintf(text, sizeof text, "Next: %s%s./sasbench report %s%s", access(path, F_OK) == 0 ? path : "",
              access(path, F_OK) == 0 ? "; " : "", batch->directory, tables ? "; ./sasbench help columns" : "");
     table_text(stdout, 0, text);

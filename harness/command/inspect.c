@@ -144,7 +144,7 @@ static void samples_print(const struct acquisition *a, const double complex *sam
         printf(", %.3g %% are zero", 100.0 * (double)silent / (double)count);
     printf("\n");
     if (a->noise > 0.5e-4)
-        printf("noise        %.2g %% of the compressed echoes' energy, by what the samples have beyond the band\n",
+        printf("noise        %.2g %% of the compressed echoes' energy, estimated from the samples outside the band\n",
                100 * a->noise);
 }
 

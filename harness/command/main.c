@@ -22,7 +22,7 @@
 enum { THREADS_MOST = 1024 };
 
 struct command {
-    const char *name, *arguments, *summary;
+    const char *name, *brief, *arguments, *summary;
     const char *options; /* the letters of the options it takes */
     int names_least, names_most;
     enum status (*run)(const struct task *task);
@@ -31,59 +31,69 @@ struct command {
 };
 
 static const struct command commands[] = {
-    {"list", "", "list the algorithms, with summary, reference and traits", "", 0, 0, command_list, false},
-    {"info", "(NAME | FILE.mat)",
+    {"run", "compare algorithms on scenes: error against run time",
+     "([SCENE ...] | --echoes FILE.mat --grid GRID) [--algorithm SPEC ...] [-o DIR] [--all] [--flops]",
+     "compare algorithms on scenes, or on recorded echoes: the fastest for each of four errors", "oategLF", 0, INT_MAX,
+     command_run, true},
+    {"report", "make one page of a results folder", "DIR", "make one page of a results folder: DIR/report.html", "", 1,
+     1, command_report, false},
+    {"list", "list the algorithms", "", "list the algorithms, with summary, reference and traits", "", 0, 0,
+     command_list, false},
+    {"info", "explain an algorithm's settings, or an echo or image file", "(NAME | FILE.mat)",
      "print an algorithm's parameters, with default, bounds and sweep; or the content of an echo or image file, with a "
      "grid to begin with",
      "", 1, 1, command_info, false},
-    {"check", "(SCENE | --echoes FILE.mat --grid GRID) [--algorithm SPEC ...] [--all]",
+    {"check", "which algorithms can image a scene, and which conditions fail",
+     "(SCENE | --echoes FILE.mat --grid GRID) [--algorithm SPEC ...] [--all]",
      "check, before any work, which algorithms can image a scene, and which conditions fail or are near their limit; "
      "exit status 1 where an algorithm is refused",
      "aegL", 0, 1, command_check, false},
-    {"plan", "(SCENE | --echoes FILE.mat --grid GRID) [--error E] [--memory BYTES] [-o FILE.csv] [--all]",
+    {"plan", "the fastest algorithm and settings within an error",
+     "(SCENE | --echoes FILE.mat --grid GRID) [--error E] [--memory BYTES] [-o FILE.csv] [--all]",
      "choose the fastest algorithm and settings within an error, and print error, time, memory and the next of each "
      "family; exit status 1 where nothing fits",
      "oegtEYL", 0, 1, command_plan, false},
-    {"scenes", "random --seed N [-o FILE.cfg]", "draw a scene from a seed, of any band, array and range", "oS", 1, 1,
-     command_scenes, false},
-    {"simulate", "SCENE -o FILE.mat", "write a scene's echoes", "ot", 1, 1, command_simulate, false},
-    {"image",
+    {"scenes", "draw a random scene from a seed", "random --seed N [-o FILE.cfg]",
+     "draw a scene from a seed, of any band, array and range", "oS", 1, 1, command_scenes, false},
+    {"simulate", "write a scene's echoes", "SCENE -o FILE.mat", "write a scene's echoes", "ot", 1, 1, command_simulate,
+     false},
+    {"image", "form one image",
      "(--scene SCENE | --echoes FILE.mat --grid GRID) --algorithm SPEC -o (FILE.mat | FILE.png) [--range DB] "
      "[--verify]",
      "form one image, as numbers or as a picture", "oseagtRW", 0, 0, command_image, false},
-    {"show", "FILE.mat [-o FILE.png] [--range DB]", "draw an image file; the picture is beside it, or at -o", "oR", 1,
-     1, command_show, false},
-    {"score", "(IMAGE.mat | IMAGE.npy) (SCENE | --echoes FILE.mat --grid GRID) [--name NAME] [--seconds S] [-o DIR]",
+    {"show", "draw an image file", "FILE.mat [-o FILE.png] [--range DB]",
+     "draw an image file; the picture is beside it, or at -o", "oR", 1, 1, command_show, false},
+    {"score", "measure an image that another program formed",
+     "(IMAGE.mat | IMAGE.npy) (SCENE | --echoes FILE.mat --grid GRID) [--name NAME] [--seconds S] [-o DIR]",
      "measure an image that another program formed of a scene's echoes, and add its row to a results folder", "oegtNK",
      1, 2, command_score, false},
-    {"filter", "(SCENE | --echoes FILE.mat) [--algorithm wk_polar:...] -o FILE.mat",
+    {"filter", "remove the echoes from outside a target area",
+     "(SCENE | --echoes FILE.mat) [--algorithm wk_polar:...] -o FILE.mat",
      "remove the echoes from outside a target area, and print each target's kept energy", "oeat", 0, 1, command_filter,
      false},
-    {"run", "([SCENE ...] | --echoes FILE.mat --grid GRID) [--algorithm SPEC ...] [-o DIR] [--all] [--flops]",
-     "compare algorithms on scenes, or on recorded echoes: the fastest for each of four errors", "oategLF", 0, INT_MAX,
-     command_run, true},
-    {"compare",
+    {"compare", "how two results, two images or two programs differ",
      "(OLD NEW | IMAGE.mat IMAGE.mat [-o FILE.png] | --ab OLD_BINARY NEW_BINARY [SCENE ...] [--algorithm SPEC ...]) "
      "[--markdown FILE] [--json FILE]",
      "list what got worse between two results folders or CSV files; how two image files differ; or what is slower of "
      "two programs, run side by side",
      "oaBMJ", 2, INT_MAX, command_compare, false},
-    {"measure", "", "the other end of `compare --ab`, which starts it", "", 0, 0, command_measure, false, true},
-    {"baseline", "[-o FILE.csv]", "measure quality and work of the gate's scenes anew, into results/baseline.csv", "ot",
-     0, 0, command_baseline, false},
-    {"reproduce", "[ID ...] [-o DIR]",
+    {"measure", "", "", "the other end of `compare --ab`, which starts it", "", 0, 0, command_measure, false, true},
+    {"baseline", "measure the quality and work that the tests compare with", "[-o FILE.csv]",
+     "measure quality and work of the gate's scenes anew, into results/baseline.csv", "ot", 0, 0, command_baseline,
+     false},
+    {"reproduce", "the papers' tables, figures and claims beside our numbers", "[ID ...] [-o DIR]",
      "measure the papers' tables, figures and claims again, beside the printed numbers", "ot", 0, INT_MAX,
      command_reproduce, true},
-    {"sweep",
+    {"sweep", "error against run time, each algorithm over its settings",
      "([SCENE ...] | --echoes FILE.mat --grid GRID) [--algorithm SPEC ...] [--precision float|double] [-o DIR] [--all]",
      "measure error against run time, each algorithm over its settings", "oategPL", 0, INT_MAX, command_sweep, true},
-    {"report", "DIR", "make one page of a results folder: DIR/report.html", "", 1, 1, command_report, false},
-    {"phase", "([SCENE] [-o DIR] | --at FILE.csv)",
+    {"phase", "phase errors of the two-dimensional spectra (LBF21)", "([SCENE] [-o DIR] | --at FILE.csv)",
      "compute phase errors of the two-dimensional spectra (LBF21 Figs 2-9)", "oA", 0, 1, command_phase, false},
-    {"stability", "[SCENE ...] [--algorithm SPEC ...] [-o DIR] [--quick]",
+    {"stability", "digits lost on extreme scenes in all rounding modes",
+     "[SCENE ...] [--algorithm SPEC ...] [-o DIR] [--quick]",
      "image extreme scenes in all rounding modes: verdicts and digits lost, against results/stability.csv", "oaQ", 0,
      INT_MAX, command_stability, false},
-    {"bench", "[SPEC ...] [-o DIR]",
+    {"bench", "speed of the engines against the processor's peak", "[SPEC ...] [-o DIR]",
      "measure the speed of the engines, or of the SPECs, against the processor's peak and the scalar reference loop",
      "ot", 0, INT_MAX, command_bench, false},
 };
@@ -127,10 +137,10 @@ static const struct {
     {'R', "    --range DB        range of a picture below its peak, 60 dB unless given"},
     {'P', "    --precision WHICH float or double; both unless given, or stated by a SPEC"},
     {'E', "    --error E         of the image after one gain (L2), 1e-3 unless given"},
-    {'Y', "    --memory BYTES    of the image's process, at most; 4G unless given (2GB, 512MiB)"},
+    {'Y', "    --memory BYTES    of the image's process, at most; 4G unless given (512MiB)"},
     {'S', "    --seed N          a whole number from 0 to 1e15"},
-    {'N', "    --name NAME       what the image's program is called; the file's name unless given"},
-    {'K', "    --seconds S       run time that is stated for it; the row says that it is not measured"},
+    {'N', "    --name NAME       of the image's program; the file's name unless given"},
+    {'K', "    --seconds S       run time of that program; the row marks it as stated"},
     {'A', "    --at FILE.csv     points: columns d, r, F, f, fc, v, c"},
     {'B', "    --ab              run two programs side by side and compare their times"},
     {'Q', "    --quick           one scene of each family, in two rounding modes"},
@@ -142,26 +152,17 @@ static const struct {
 };
 static const char exit_text[] = "\nExit status: 0 done, 1 a run failed or got worse, 2 bad usage or bad input.\n";
 
+/* One screen; what a command takes is said by its own help. */
 static void help(void)
 {
-    char text[300];
-    printf("sasbench: imaging algorithms for multi-receiver synthetic aperture sonar,\n"
-           "compared on identical echoes\n\nUsage: sasbench COMMAND [OPTIONS]\n\n");
-    for (size_t k = 0; k < sizeof commands / sizeof *commands; k++) {
-        if (commands[k].hidden)
-            continue;
-        snprintf(text, sizeof text, "%s%s%s", commands[k].name, *commands[k].arguments ? " " : "",
-                 commands[k].arguments);
-        table_text(stdout, 2, text);
-        table_text(stdout, 8, commands[k].summary);
-    }
-    printf("  test [--all]\n        verify this build in two minutes, or by every test (of the ./sasbench script)\n  "
-           "help COMMAND, COMMAND --help\n        show one "
-           "command with its options\n  help columns\n        explain the columns of a table\n  --version\n        "
-           "print version, commit, compiler, libraries, instruction "
-           "set\n\nOptions:\n");
-    for (size_t k = 0; k < sizeof option_texts / sizeof *option_texts; k++)
-        printf("  %s\n", option_texts[k].text);
+    printf("sasbench compares imaging algorithms for multi-receiver synthetic aperture sonar\non identical echoes.\n\n"
+           "Usage: sasbench COMMAND [ARGUMENTS]; begin with: ./sasbench run\n\n");
+    for (size_t k = 0; k < sizeof commands / sizeof *commands; k++)
+        if (!commands[k].hidden)
+            printf("  %-10s %s\n", commands[k].name, commands[k].brief);
+    printf("  %-10s %s\n", "test", "verify this build (a command of the script ./sasbench)");
+    printf("\nhelp COMMAND     its arguments and options\nhelp columns     the columns of a run's table\n"
+           "--version        version, commit, compiler, libraries, instruction set\n");
     fputs(exit_text, stdout);
 }
 

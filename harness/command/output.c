@@ -30,7 +30,7 @@ enum status output_check(const char *command, const char *output)
         return status_set(STATUS_INVALID, "%s: -o FILE.mat is missing", command);
     enum status status = matfile_place(output);
     if (status == STATUS_OK && !has_extension(output, ".mat"))
-        status = status_set(STATUS_INVALID, "%s: -o %s is of no known kind; accepted: FILE.mat%s", command, output,
+        status = status_set(STATUS_INVALID, "%s: -o %s has another ending; accepted: FILE.mat%s", command, output,
                             strcmp(command, "image") == 0 ? ", FILE.png, FILE.svg" : "");
     return status;
 }
@@ -40,7 +40,7 @@ enum status picture_check(const char *command, const char *output)
     enum status status = matfile_place(output);
     if (status == STATUS_OK && !output_is_picture(output))
         status =
-            status_set(STATUS_INVALID, "%s: -o %s is of no known kind; accepted: FILE.png, FILE.svg", command, output);
+            status_set(STATUS_INVALID, "%s: -o %s has another ending; accepted: FILE.png, FILE.svg", command, output);
     return status;
 }
 

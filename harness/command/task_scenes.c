@@ -26,8 +26,8 @@ enum status task_scenes(const char *command, const struct task *task, int usual_
         return scenes_load(command, task->name_count ? task->name_count : usual_count,
                            task->name_count ? task->names : usual, scenes, count);
     if (task->name_count)
-        return status_set(STATUS_INVALID, "%s: '%s' is too much with --echoes %s; one of the two is accepted", command,
-                          task->names[0], task->echoes);
+        return status_set(STATUS_INVALID, "%s: '%s' and --echoes %s are both given; one of the two is accepted",
+                          command, task->names[0], task->echoes);
     *scenes = calloc(1, sizeof **scenes);
     if (!*scenes)
         return status_set(STATUS_FAILED, "%s: no memory for a scene", command);

@@ -390,11 +390,11 @@ static enum status contest_run(struct contest *contest, const struct ab_effort *
     if (status == STATUS_OK)
         status = findings_add(contest, effort);
     if (status == STATUS_OK && contest->diff->finding_count == 0)
-        status = status_set(STATUS_INVALID, "neither program can do what is asked: %s",
+        status = status_set(STATUS_INVALID, "neither program can measure this: %s",
                             contest->diff->note_count > 0 ? contest->diff->notes[0] : "nothing is");
     if (status == STATUS_OK)
         status = diff_note(contest->diff,
-                           "%d rounds in %.0f s, one thread; all intervals together hold with %g %%; "
+                           "%d rounds in %.0f s, one thread; joint confidence of all intervals %g %%; "
                            "a slowdown beyond %g %% warns, beyond %g %% fails",
                            round, seconds_now() - begin, 100 * (1 - ERROR_PROBABILITY), 100 * EFFECT_WARN,
                            100 * EFFECT_FAIL);

@@ -89,7 +89,7 @@ static enum status line_read(struct ab_process *process, const char *question, c
         if (ready < 0 && errno == EINTR)
             continue;
         if (ready <= 0)
-            return status_set(STATUS_INVALID, "%s %s says nothing for %g s %s '%s'", process->role, process->path,
+            return status_set(STATUS_INVALID, "%s %s sends nothing for %g s %s '%s'", process->role, process->path,
                               process->patience_s, *question ? "after" : "instead of", *question ? question : greeting);
         size_t room = sizeof process->buffer - process->held;
         ssize_t got = recv(process->socket, process->buffer + process->held, room, 0);
@@ -133,8 +133,8 @@ enum status ab_process_start(const char *role, const char *path, int turn, doubl
     char line[200];
     enum status status = line_read(process, "", line, sizeof line);
     if (status == STATUS_OK && strcmp(line, greeting) != 0)
-        status = status_set(STATUS_INVALID, "%s %s says '%.60s' instead of '%s': another version, or no sasbench", role,
-                            path, line, greeting);
+        status = status_set(STATUS_INVALID, "%s %s sends '%.60s' in place of '%s': another version, or no sasbench",
+                            role, path, line, greeting);
     if (status != STATUS_OK)
         ab_process_stop(process);
     return status;

@@ -288,8 +288,8 @@ static enum status files_compare(struct diff *diff, const char *const paths[2], 
         int count = comparing.ratio_count;
         status = diff_note(
             diff,
-            "time against the scalar reference loop: NEW takes %.3g of OLD (median of %d rows); a row alone is "
-            "compared beyond a factor of %g, finer by compare --ab",
+            "time against the scalar reference loop: NEW takes %.3g times as long as OLD (median of %d rows); "
+            "one row alone is compared beyond a factor of %g (--ab: finer)",
             median(comparing.ratios, count), count, 1 + metric_first(measurement_columns)->relative_slack);
     }
     free(comparing.ratios);

@@ -195,28 +195,27 @@ void darkness_conditions(const struct darkness *darkness, struct condition list[
                                  NOISE_MOST,
                                  false,
                                  SEVERITY_WARN,
-                                 "the energy of the echoes that reach the pixels over that of the image",
-                                 "a grid that holds what is bright"};
+                                 "the energy of the pixels' echoes over that of the image",
+                                 "a grid that covers the bright echoes"};
     list[1] = (struct condition){"side_lobes",
                                  darkness->edges,
                                  EDGES_MOST,
                                  false,
                                  SEVERITY_WARN,
                                  "the mean square frequency of the echoes that reach the pixels over the pulse's",
-                                 "a grid that holds what is bright, where these are its side lobes in range: they lie "
-                                 "at the ends of the band, where interpolators err most"};
-    list[2] =
-        (struct condition){"unseen_echoes",
-                           darkness->ghosts,
-                           GHOSTS_MOST,
-                           false,
-                           SEVERITY_WARN,
-                           "the energy of the echoes that come to the pixels from pings that neither see nor sample "
-                           "them in azimuth over that of the image",
-                           "an aperture_limit at the edge of the sampled wavenumbers; azimuth transforms show "
-                           "none of them"};
-    condition_cure_add(&list[0],
-                       "; the image's rms is %.3g, that of its echoes %.3g: so much larger may errors be relative to "
-                       "the image than to the echoes",
-                       darkness->image, darkness->echoes);
+                                 "a grid that covers the bright echoes; these are their side lobes in range, at the "
+                                 "ends of the band, where interpolators err most"};
+    list[2] = (struct condition){
+        "unseen_echoes",
+        darkness->ghosts,
+        GHOSTS_MOST,
+        false,
+        SEVERITY_WARN,
+        "the energy at the pixels from pings outside whose beam and sampled wavenumbers they lie, over the image's",
+        "an aperture_limit at the edge of the sampled wavenumbers; azimuth transforms show "
+        "none of them"};
+    condition_cure_add(
+        &list[0],
+        "; the image's rms is %.3g, that of its echoes %.3g: relative to the image, errors may be larger by this ratio",
+        darkness->image, darkness->echoes);
 }

@@ -33,7 +33,7 @@ const char *const phase_setups[] = {[PHASE_SHORT] = "lbf21/_phase_short", [PHASE
 static const double ranges_m[] = {50, 135, 220, 300};
 enum { RANGES = 4, DOPPLERS = 201, FREQUENCIES = 3, RECEIVERS = 2 };
 
-/* Where LBF21 says how large the error is at most in its two set-ups, of the first and the last receiver: the figure in
+/* The largest error that LBF21 prints for its two set-ups, first and last receiver: the figure in
    published.csv. */
 static const struct {
     const char *scene;
@@ -79,7 +79,8 @@ static enum status study_begin(const struct scene *scene, struct study *study)
     struct straight_track track;
     *study = (struct study){.scene = scene->name, .receiver = {1, a->receivers}};
     if (!acquisition_is_straight(a, &track))
-        return status_set(STATUS_UNSUPPORTED, "%s: the spectra hold for uniform straight tracks only", scene->name);
+        return status_set(STATUS_UNSUPPORTED, "%s: the spectra are valid for uniform straight tracks only",
+                          scene->name);
     if (!(a->tx_length > 0))
         return status_set(STATUS_INVALID, "%s: tx_length is %g m; > 0 is needed: it bounds the Doppler frequencies",
                           scene->name, a->tx_length);
@@ -157,12 +158,12 @@ static const char *study_title(const struct study *study)
 
 static void study_print(const struct study *study, const struct csv *published)
 {
-    printf("%s: largest phase error in rad, |f/v| <= %.4g/m (|f| <= %.4g Hz), f_tau = -B/2, 0, B/2\n",
+    printf("%s: largest phase error in rad,\n|f/v| <= %.4g/m (|f| <= %.4g Hz), f_tau = -B/2, 0, B/2\n",
            study_title(study), study->nu_max, study->nu_max * fabs(study->setting.speed));
     printf("%8s %7s  %-22s", "receiver", "d (m)", "formula");
     for (int r = 0; r < RANGES; r++)
         printf("%7g m", ranges_m[r]);
-    printf("  LBF21 says\n");
+    printf("  LBF21 prints\n");
     for (int i = 0; i < RECEIVERS; i++)
         for (int j = 1; j < FORMULAS; j++) {
             printf("%8d %7.3f  %-22s", study->receiver[i], study->offset[i], formulas[j].title);
@@ -174,15 +175,15 @@ static void study_print(const struct study *study, const struct csv *published)
                 printf("  %s%.4g", bound ? "< " : "", printed);
             printf("\n");
         }
-    printf("Largest of all (rad):");
+    printf("Largest of all (rad):\n");
     for (int j = 1; j < FORMULAS; j++) {
         double largest = 0;
         for (int i = 0; i < RECEIVERS; i++)
             for (int r = 0; r < RANGES; r++)
                 largest = fmax(largest, study->largest[i][j][r]);
-        printf("%s %s %.3g", j > 1 ? ";" : "", formulas[j].title, largest);
+        printf("  %-22s %.3g\n", formulas[j].title, largest);
     }
-    printf("\n\n");
+    printf("\n");
 }
 
 /* One picture a receiver, PNG or SVG: a panel a range, a line a formula, the largest of the errors at the three

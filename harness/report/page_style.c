@@ -80,19 +80,19 @@ const char page_style[] =
     "</style>\n";
 
 /* The title of the point that has the focus, below its chart, where it can be read and copied. */
-const char page_script[] = "<script>\n"
-                           "for (const chart of document.querySelectorAll('svg.chart')) {\n"
-                           "  const told = document.createElement('p');\n"
-                           "  told.className = 'told';\n"
-                           "  told.setAttribute('aria-live', 'polite');\n"
-                           "  told.textContent = 'A point of the front, by mouse or Tab: what it is, and the command "
-                           "that measures it again.';\n"
-                           "  chart.after(told);\n"
-                           "  const tell = event => {\n"
-                           "    const point = event.target.closest('.point');\n"
-                           "    if (point) told.textContent = point.querySelector('title').textContent;\n"
-                           "  };\n"
-                           "  chart.addEventListener('focusin', tell);\n"
-                           "  chart.addEventListener('mouseover', tell);\n"
-                           "}\n"
-                           "</script>\n";
+const char page_script[] =
+    "<script>\n"
+    "for (const chart of document.querySelectorAll('svg.chart')) {\n"
+    "  const told = document.createElement('p');\n"
+    "  told.className = 'told';\n"
+    "  told.setAttribute('aria-live', 'polite');\n"
+    "  told.textContent = 'Point at a marker, or press Tab: its values, and the command that measures it again.';\n"
+    "  chart.after(told);\n"
+    "  const tell = event => {\n"
+    "    const point = event.target.closest('.point');\n"
+    "    if (point) told.textContent = point.querySelector('title').textContent;\n"
+    "  };\n"
+    "  chart.addEventListener('focusin', tell);\n"
+    "  chart.addEventListener('mouseover', tell);\n"
+    "}\n"
+    "</script>\n";

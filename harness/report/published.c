@@ -45,7 +45,8 @@ const struct paper_table paper_tables[] = {
      NULL},
     {"lbf21_t5", "LBF21 Table V: times as ratios to LBF with 16 blocks",
      "simulated echoes of the real data's size (48 receivers, 80 pings, 4096 samples into 3200 x 4096 pixels); PCA "
-     "and Wu with 16 blocks share LBF's engine, so that their ratios say nothing; Wu's method is a working definition; "
+     "and Wu with 16 blocks share LBF's engine, so that their ratios mean nothing; Wu's method is a working "
+     "definition; "
      "plain range migration calls libm for each phase, "
      "plain back projection is vectorised; machine and language are others",
      "LBF, 16 blocks"},
@@ -80,7 +81,7 @@ const struct paper_table paper_tables[] = {
      "lambda/(2D) off its axis; offsets are from the places turned by 20 degrees; no numbers are printed",
      NULL},
     {"sq18_f3b", "SQ18 Fig. 3(b): near the targets, at 20 degrees and at broadside", "as sq18_f3a", NULL},
-    {"claims", "what the papers say in words", "", NULL},
+    {"claims", "the papers' claims in words", "", NULL},
     {.id = NULL},
 };
 

@@ -60,7 +60,7 @@ static void fastest_tell(int scene_count, const char *const *scenes, const struc
     if (count == 0)
         snprintf(text, size, "Nothing measured comes within a relative error of 1e-3");
     else if (none)
-        text_append(text, size, "; on %d none comes that far", none);
+        text_append(text, size, "; on %d no algorithm comes within it", none);
     text_append(text, size, ".");
 }
 

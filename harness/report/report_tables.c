@@ -93,9 +93,8 @@ const struct report_table report_tables[REPORT_TABLES] = {
     {.file = "plans.csv",
      .id = "plans",
      .title = "Plans",
-     .text =
-         "What auto chose before it formed an image, and why not others: of each algorithm the fastest setting that is "
-         "within the error, or the nearest to it. Times and errors are predicted; the measured ones are below.",
+     .text = "The settings that `auto` chose, and of each other algorithm the fastest setting within the error, or the "
+             "nearest to it. Times and errors are predicted; the measured ones are below.",
      .group = "scene",
      .summary = plans_summary_show,
      .columns = {{"options", "budget", SHOW_ONCE},
@@ -109,9 +108,8 @@ const struct report_table report_tables[REPORT_TABLES] = {
     {.file = "predictions.csv",
      .id = "predictions",
      .title = "Predicted errors",
-     .text =
-         "Errors as predicted before any plan, over the measured ones after one gain: of all images of an algorithm. "
-         "Below 1 the prediction is too low.",
+     .text = "Predicted errors over those measured after one gain, of all images of an algorithm. Below 1 the "
+             "prediction is too low.",
      .columns = {{"algorithm", "algorithm", SHOW_TEXT},
                  {"images", "images", SHOW_NUMBER},
                  {"least", "least", SHOW_NUMBER},
@@ -122,7 +120,7 @@ const struct report_table report_tables[REPORT_TABLES] = {
     {.file = "rules.csv",
      .id = "rules",
      .title = "Upsampling rules",
-     .text = "Samples for each one recorded that BP22 Eq. (20) and ZP15's lambda/8 rule ask for, and the constants "
+     .text = "Samples for each one recorded that BP22 Eq. (20) and ZP15's lambda/8 rule require, and the constants "
              "of the error laws.",
      .columns = {{"scene", "scene", SHOW_TEXT},
                  {"fc_hz", "fc (Hz)", SHOW_NUMBER},

@@ -367,10 +367,11 @@ enum status batch_close(struct batch *batch, enum status status)
     status = status == STATUS_OK ? closed : status;
     batch->results = NULL;
     if (status == STATUS_OK && batch->failed)
-        status = status_set(STATUS_FAILED, "at least one algorithm failed; the table and %s/measurements.csv say why",
+        status = status_set(STATUS_FAILED,
+                            "at least one algorithm failed; the table and %s/measurements.csv give the reason",
                             batch->directory);
     if (status == STATUS_OK && batch->undrawn > 0)
-        status = status_set(STATUS_FAILED, "%d %s could not be drawn, as is said above; %s/measurements.csv is whole",
+        status = status_set(STATUS_FAILED, "%d %s could not be drawn (see above); %s/measurements.csv is whole",
                             batch->undrawn, batch->undrawn == 1 ? "picture" : "pictures", batch->directory);
     return status;
 }

@@ -72,8 +72,8 @@ static void none_format(const struct run *run, const char *scene, char *text, si
         snprintf(text, size, "no image");
 }
 
-/* A line of a scene, or of the titles: cells stand in their columns, further left where the rest needs the room, and on
-   a next line where there is none. */
+/* A line of a scene, or of the titles: cells behind bars, in their columns, further left where the rest needs the room,
+   and on a next line where there is none. */
 static void line_print(FILE *stream, const char *scene, char cells[BOUNDS][LINE], int width, int first)
 {
     char line[LINE];
@@ -91,7 +91,7 @@ static void line_print(FILE *stream, const char *scene, char cells[BOUNDS][LINE]
             used = 0;
         }
         const int room = width + 1 - rest, at = column < room ? column : room;
-        text_append(line, sizeof line, "%*s%s", at > used ? at - used : 1, "", cells[k]);
+        text_append(line, sizeof line, "%*s|%s", at > used ? at - used - 1 : 0, "", cells[k]);
         rest -= length + 1;
     }
     fprintf(stream, "%s\n", line);
@@ -166,9 +166,9 @@ static void refused_print(FILE *stream, const struct run *run)
     for (int n = 0; n < count; n++) {
         const char *algorithm = list[n].row->algorithm;
         condition_name(list[n].row->reason, name[0], sizeof name[0]);
-        text_append(text, sizeof text, "%s%.*s%s on %d %s%s%s%s",
-                    n ? ", " : "Refused: ", list[n].several ? family_length(algorithm) : (int)strlen(algorithm),
-                    algorithm, list[n].several ? "*" : "", list[n].scenes, list[n].scenes > 1 ? "scenes" : "scene",
+        text_append(text, sizeof text, "%s%.*s%s on %d %s%s%s%s", n ? ", " : "Refused (./sasbench check SCENE: why): ",
+                    list[n].several ? family_length(algorithm) : (int)strlen(algorithm), algorithm,
+                    list[n].several ? "*" : "", list[n].scenes, list[n].scenes > 1 ? "scenes" : "scene",
                     *name[0] ? " (" : "", name[0], *name[0] ? ")" : "");
     }
     if (count > 0)
@@ -200,8 +200,9 @@ static void auto_print(FILE *stream, const struct run *run)
     }
     if (count > 0) {
         char text[400];
-        snprintf(text, sizeof text, "auto: at most %.1f times the fastest (%.200s), 1.1 on %d of %d", most,
-                 worst->scene, fast, count);
+        snprintf(text, sizeof text,
+                 "auto takes at most %.1f times as long as the fastest (%.200s), at most 1.1 times on %d of %d scenes",
+                 most, worst->scene, fast, count);
         shown_make(text);
         table_text(stream, 0, text);
     }
@@ -238,7 +239,7 @@ void run_summary_print(FILE *stream, const struct results *results, int scene_co
                     run.rows.measurements[run.rows.csv.row_count++] = results->measurements[row];
     }
     const int first = (longest < width / 5 ? longest : width / 5) + 1;
-    fputs("\nFastest within a relative error: time, times the scalar loop (=: as to the left)\n", stream);
+    fputs("\nFastest within a relative error: time, speed-up over the scalar loop (= as left)\n", stream);
     line_print(stream, "scene", bounds, width, first);
     for (int s = 0; s < scene_count; s++)
         scene_print(stream, &run, scenes[s].name, width, first);

@@ -319,14 +319,13 @@ struct condition conjugated_condition(const struct scene *scene)
     free(view.record);
     free(view.rows);
     traces_destroy_double(view.traces);
-    struct condition condition = {
-        "conjugated",
-        open ? value : NAN,
-        SHARPER,
-        false,
-        SEVERITY_WARN,
-        "how many times more strongly the strongest echoes focus with conjugated samples or pulse",
-        ""};
+    struct condition condition = {"conjugated",
+                                  open ? value : NAN,
+                                  SHARPER,
+                                  false,
+                                  SEVERITY_WARN,
+                                  "how many times stronger the echoes focus with conjugated samples or pulse",
+                                  ""};
     condition_cure_add(&condition, "%s: an echo's phase is exp(-j 2 pi fc tau), docs/echo_files.md",
                        a->compressed ? cures[SAMPLES] : cures[fault]);
     return condition;

@@ -66,7 +66,7 @@ static struct condition motion_condition(const struct scene *scene)
         MOTION_MOST,
         false,
         SEVERITY_WARN,
-        "motion errors unknown to the imager, which no error counts: rms of the two-way phase (rad)",
+        "motion errors unknown to the imager, which `error` leaves out: rms of the two-way phase (rad)",
         ""};
     condition_cure_add(&condition, "track.errors_known = true, or smaller errors; the most is %.3g rad", motion.most);
     return condition;

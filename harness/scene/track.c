@@ -164,7 +164,7 @@ enum status track_read(struct reading *reading)
     for (int k = 0; k < 4; k++) {
         const bool given = key_member(reading->track, even[k]) != NULL;
         if (measured && given)
-            return refuse(reading, reading->track, "track", even[k], "left out with `file`, which says it");
+            return refuse(reading, reading->track, "track", even[k], "left out with `file`, which gives it");
         if (!measured && !given && k < 2)
             return refuse(reading, reading->track, "track", even[k],
                           k == 0 ? "a number that is finite m/s" : "an integer >= 1");

@@ -39,7 +39,7 @@ const char *exact_ideal_excludes(const struct scene *scene)
     if (scene->recorded)
         return "recorded echoes";
     if (scene->flown)
-        return "motion that the imager does not know";
+        return "motion unknown to the imager";
     if (scene->pulse_kind != PULSE_FLAT)
         return "raw echoes";
     if (scene->noise_std > 0)

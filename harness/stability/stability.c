@@ -204,8 +204,8 @@ static enum status run_compare(const struct run *run, const char *expected, cons
     enum status status = stability_compare(expected, count, run->rows, &differ, &unknown);
     if (status != STATUS_OK)
         return status;
-    printf("%d rows in %d rounding modes, with one and two threads: %d as expected, %d not, %d of which nothing is "
-           "expected.\nResults: %s/stability.csv, stability.png\n",
+    printf("%d rows in %d rounding modes, with one and two threads: %d as expected, %d not, %d without "
+           "an expectation.\nResults: %s/stability.csv, stability.png\n",
            count, run->mode_count, count - differ - unknown, differ, unknown, directory);
     return differ == 0
                ? STATUS_OK
@@ -222,7 +222,7 @@ enum status stability_run(const struct stability_request *request, const char *e
     if (status == STATUS_OK)
         status = folder_take(request->directory, &lock);
     if (status == STATUS_OK)
-        stability_table_head(run.spec_count, run.specs);
+        stability_table_head();
     for (int k = 0; k < run.scene_count && status == STATUS_OK; k++) {
         progress_line(false, "[%d/%d] %s", k + 1, run.scene_count, run.scenes[k]);
         status = scene_check(&run, k);

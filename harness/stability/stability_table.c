@@ -10,69 +10,55 @@
 #include "files/text_file.h"
 #include "results/provenance.h"
 
-enum { NAME_WIDTH = 18, CELL_WIDTH = 12 };
+enum { WORD = 80, REASONS_MOST = 24 };
 
-/* "bp_nearest:exact=true", without what every row of the algorithm says. */
-static void spec_label(const struct spec *spec, char *label, size_t size)
+void stability_table_head(void)
 {
-    snprintf(label, size, "%s%s%s", spec->algorithm->name, *spec->text ? ":" : "", spec->text);
+    printf("Digits that a scene's images lose at most, against the same sums in extended\n"
+           "precision, of all rounding modes and targets; up to %g is accepted.\n\n"
+           "%-18s %6s %6s  %-13s %s\n",
+           DIGITS_MOST, "scene", "images", "digits", "of", "refused by");
 }
 
-/* Is the SPEC the first of those that differ in precision only? */
-static bool begins_column(const struct spec *specs, int k)
+/* What some of a scene's SPECs have in common: the condition that refuses, or "degrade". */
+struct reason {
+    char name[WORD];
+    int count;
+};
+
+static void reason_count(struct reason *reasons, const char *name)
 {
-    return k == 0 || specs[k].algorithm != specs[k - 1].algorithm || strcmp(specs[k].text, specs[k - 1].text) != 0;
+    int k = 0;
+    while (k < REASONS_MOST - 1 && reasons[k].count && strcmp(reasons[k].name, name) != 0)
+        k++;
+    snprintf(reasons[k].name, WORD, "%s", name);
+    reasons[k].count++;
 }
 
-void stability_table_head(int spec_count, const struct spec *specs)
-{
-    int column = 0;
-    printf("Digits lost against the method's own sum in extended precision, the worst of float and double, of rounding "
-           "modes and\ntargets; up to %g is accepted. d: the method degrades; a name: the condition that refuses.\n\n",
-           DIGITS_MOST);
-    for (int k = 0; k < spec_count; k++)
-        if (begins_column(specs, k)) {
-            char label[400];
-            spec_label(&specs[k], label, sizeof label);
-            printf("  %2d  %s\n", ++column, label);
-        }
-    printf("\n%-*s", NAME_WIDTH, "");
-    for (int k = 1; k <= column; k++)
-        printf(" %*d", CELL_WIDTH, k);
-    printf("\n");
-}
-
-/* The worse of a column's precisions. */
-static const struct stability_verdict *worse_of_two(const struct stability_verdict *a,
-                                                    const struct stability_verdict *b)
-{
-    if (a->kind != b->kind)
-        return a->kind > b->kind ? a : b;
-    return isnan(a->digits) || b->digits > a->digits ? b : a;
-}
-
+/* A SPEC in both precisions counts once for each. */
 void stability_table_line(int spec_count, const struct stability_row *rows)
 {
     const char *slash = strrchr(rows[0].scene, '/');
-    printf("%-*.*s", NAME_WIDTH, NAME_WIDTH, slash ? slash + 1 : rows[0].scene);
-    for (int k = 0; k < spec_count;) {
-        char cell[40];
-        const struct stability_verdict *worst = &rows[k].verdict;
-        const int first = k++;
-        for (; k < spec_count && rows[k].spec->algorithm == rows[first].spec->algorithm
-               && strcmp(rows[k].spec->text, rows[first].spec->text) == 0;
-             k++)
-            worst = worse_of_two(worst, &rows[k].verdict);
-        if (worst->kind == CANDIDATE_REFUSED)
-            snprintf(cell, sizeof cell, "%.*s", CELL_WIDTH, worst->why);
-        else if (worst->kind == VERDICT_FAILS)
-            snprintf(cell, sizeof cell, "FAILS");
-        else if (isnan(worst->digits))
-            snprintf(cell, sizeof cell, "%s", worst->kind == VERDICT_DEGRADES ? "d" : "works");
-        else
-            snprintf(cell, sizeof cell, "%s%.1f", worst->kind == VERDICT_DEGRADES ? "d " : "", worst->digits);
-        printf(" %*s", CELL_WIDTH, cell);
+    const struct stability_row *worst = NULL;
+    struct reason reasons[REASONS_MOST] = {0};
+    char digits[24] = "-";
+    int images = 0;
+    for (int k = 0; k < spec_count; k++) {
+        const struct stability_verdict *v = &rows[k].verdict;
+        images += v->kind == VERDICT_WORKS || v->kind == VERDICT_DEGRADES;
+        if (v->kind == CANDIDATE_REFUSED)
+            reason_count(reasons, v->why);
+        else if (v->kind != VERDICT_WORKS)
+            reason_count(reasons, v->kind == VERDICT_FAILS ? "FAILS" : "degrades");
+        if (isfinite(v->digits) && (!worst || v->digits > worst->verdict.digits))
+            worst = &rows[k];
     }
+    if (worst)
+        snprintf(digits, sizeof digits, "%.1f", worst->verdict.digits);
+    printf("%-18.18s %6d %6s  %-13s", slash ? slash + 1 : rows[0].scene, images, digits,
+           worst ? worst->spec->algorithm->name : "");
+    for (int k = 0; k < REASONS_MOST && reasons[k].count; k++)
+        printf("%s%s %d", k ? ", " : " ", reasons[k].name, reasons[k].count);
     printf("\n");
     fflush(stdout);
 }
@@ -224,12 +210,12 @@ enum status stability_compare(const char *path, int count, const struct stabilit
                                 column_names[k]);
     }
     for (int k = 0; k < count && status == STATUS_OK; k++) {
-        char label[400], fault[300];
+        char fault[300];
         int expected = row_find(&csv, columns, &rows[k]);
         if (row_differs(&csv, columns, expected, &rows[k], fault, sizeof fault)) {
-            spec_label(rows[k].spec, label, sizeof label);
-            printf("%s %s %s: %s\n    %s\n", rows[k].scene, label, precision_name(rows[k].spec->precision), fault,
-                   rows[k].verdict.message);
+            const struct spec *spec = rows[k].spec;
+            printf("%s %s%s%s %s: %s\n    %s\n", rows[k].scene, spec->algorithm->name, *spec->text ? ":" : "",
+                   spec->text, precision_name(spec->precision), fault, rows[k].verdict.message);
             ++*differ;
         } else {
             *unknown += expected < 0;

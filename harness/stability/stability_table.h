@@ -12,8 +12,8 @@ struct stability_row {
     struct stability_verdict verdict;
 };
 
-/* One line a scene: digits lost by every SPEC, the worst of its precisions, or the condition that refuses. */
-void stability_table_head(int spec_count, const struct spec *specs);
+/* One line a scene: how many images, the most digits lost and by which algorithm, and how many a condition refuses. */
+void stability_table_head(void);
 void stability_table_line(int spec_count, const struct stability_row *rows);
 
 /* All rows, measured, and what of them is committed. Errors: as text_file.h. */

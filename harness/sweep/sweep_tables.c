@@ -59,7 +59,7 @@ static void rules_write(struct group *group, const struct scene *given, const st
                                 M_PI * M_PI / (12 * sqrt(5)) * fraction * fraction},
                      7, true);
         if (group->told)
-            printf("\n%s: upsampling rates asked for by BP22 Eq. (20) > %.3g, by ZP15's lambda/8 > %.3g\n",
+            printf("\n%s: upsampling rates required by BP22 Eq. (20) > %.3g, by ZP15's lambda/8 > %.3g\n",
                    group->points.scene, bp22, zp15);
     }
     scene_free(&scene);

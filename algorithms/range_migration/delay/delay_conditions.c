@@ -13,7 +13,7 @@ int delay_conditions(const struct rma_view *view, struct condition *list, int co
                                        TERMS_LIMIT,
                                        false,
                                        SEVERITY_REFUSE,
-                                       "what the terms over the receivers leave of their phases (relative L2)",
+                                       "the phase error that the terms over the receivers leave (relative L2)",
                                        "more terms, rows farther away, a shorter array or a narrower beam"};
     list[count++] = (struct condition){"delay_taps",
                                        error,

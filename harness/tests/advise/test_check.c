@@ -58,7 +58,7 @@ static char *checked(const struct scene *scene, const char *text, bool *refused)
     return printed;
 }
 
-/* Does exactly the line of `name` not say "holds", but `verdict`? An empty name: all hold. */
+/* Does exactly the line of `name` not say "met", but `verdict`? An empty name: all hold. */
 static bool names_one(const char *printed, const char *verdict, const char *name)
 {
     int failing = 0, right = 0;
@@ -67,7 +67,7 @@ static bool names_one(const char *printed, const char *verdict, const char *name
         char first[20], second[40];
         if (strncmp(line, "  ", 2) != 0
             || line[2] == ' ' /* a line goes on */ || sscanf(line, "%19s %39s", first, second) != 2
-            || !strcmp(first, "holds") || !strcmp(first, "near"))
+            || !strcmp(first, "met") || !strcmp(first, "near"))
             continue;
         failing++;
         right += !strcmp(first, verdict) && !strcmp(second, name);
@@ -191,7 +191,7 @@ static double value_with(const char *printed, const char *verdict, const char *n
 
 static double value_of(const char *printed, const char *name)
 {
-    return value_with(printed, "holds", name);
+    return value_with(printed, "met", name);
 }
 
 /* Mistakes that any algorithm's image shows: units, pixels, records. */

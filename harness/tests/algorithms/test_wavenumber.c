@@ -401,12 +401,10 @@ static void refusals(void **state)
     refuses(&a, patches, "condition one_receiver");
     struct grid elsewhere = patches[0];
     elsewhere.x_first -= 40;
-    refuses(&scene.acquisition, &elsewhere,
-            "condition in_beam: the number of patches that no ping sees is 1; at most 0");
+    refuses(&scene.acquisition, &elsewhere, "condition in_beam: patches that lie in no ping's beam is 1; at most 0");
     elsewhere = patches[0];
     elsewhere.angle_rad = radians(-40); /* turned about the origin: off the beam */
-    refuses(&scene.acquisition, &elsewhere,
-            "condition in_beam: the number of patches that no ping sees is 1; at most 0");
+    refuses(&scene.acquisition, &elsewhere, "condition in_beam: patches that lie in no ping's beam is 1; at most 0");
     elsewhere.angle_rad = 0;
     elsewhere.r_first = -0.1;
     refuses(&scene.acquisition, &elsewhere, "condition in_front");

@@ -122,7 +122,7 @@ static const struct {
     {"above(x, 1) and", X, {"no such comparison"}},
     {"undecided()", X, {"no such comparison"}},
     {"clearly_above(x, 1)", X, {"clearly_above(value, limit, noise) is needed"}},
-    {"above(x, 0)", X, {"line 2", "column comparison", "nothing measured is asked for", "identity"}},
+    {"above(x, 0)", X, {"line 2", "column comparison", "the claim has no measurement", "identity"}},
     {"identity above(x, 0)", "x = error(bp22/speckle, bp_nearest)", {"'identity' is for claims"}},
     {"identity above(x, 0) else above(x, 0)", X, {"an identity has no else"}},
     {"undecided", "x = time_noise(bp22_t3, fast engines)", {"'bp22_t3'", "accepted: 'bp22_t4', 'lbf21_t5'"}},

@@ -43,7 +43,8 @@ static void help_list_and_info_tell_everything(void **state)
 {
     (void)state;
     static const char *const helps[][ARGUMENTS_MAX] = {{"--help"}, {"-h"}, {"help"}};
-    static const char *const commands[] = {"  list", "  info", "  simulate", "  image", "  run", "  test", "--threads"};
+    static const char *const commands[] = {"\n  list ", "\n  info ", "\n  simulate ", "\n  image ",
+                                           "\n  run ",  "\n  test ", "help COMMAND"};
     for (size_t k = 0; k < COUNT_OF(helps); k++) {
         char *text = program_output(helps[k]);
         for (size_t n = 0; n < COUNT_OF(commands); n++)
@@ -390,9 +391,9 @@ static void check_says_each_condition_once(void **state)
     (void)state;
     struct outcome outcome = program_run((const char *const[ARGUMENTS_MAX]){"check", path_in("scene.cfg"), "--all"});
     assert_int_equal(outcome.status, 1); /* omega-k takes one receiver */
-    const char *first = strstr(outcome.out, "holds    phase_digits");
+    const char *first = strstr(outcome.out, "met      phase_digits");
     assert_non_null(first);
-    assert_null(strstr(first + 1, "holds    phase_digits"));
+    assert_null(strstr(first + 1, "met      phase_digits"));
     const char *refused = strstr(outcome.out, "REFUSED  one_receiver");
     assert_non_null(refused);
     assert_null(strstr(refused + 1, "REFUSED  one_receiver"));
@@ -409,13 +410,14 @@ static void check_answers_first(void **state)
     const char *verdict =
         strstr(outcome.out, "scene: 14 of 17 algorithms take this scene; 0 warnings\n  REFUSED  one_re");
     assert_non_null(verdict);
-    assert_holds(outcome.out, "cure: range migration (rma_*), which takes several receivers");
+    assert_holds(outcome.out, "cure: back projection or range migration (rma_*)");
     assert_holds(outcome.out, "           wk_classic, wk_squint, wk_polar\n");
-    assert_null(strstr(outcome.out, "holds"));
+    assert_null(strstr(outcome.out, "  met "));
     outcome_free(&outcome);
     char *alone = program_output((const char *const[ARGUMENTS_MAX]){"check", path_in("scene.cfg"), "-a", "bp_linear"});
-    assert_holds(alone,
-                 "scene: 1 of 1 algorithm takes this scene; 0 warnings\n  near     unambiguous           0.838  <= 1 ");
+    assert_holds(
+        alone,
+        "scene: 1 of 1 algorithm takes this scene; 0 warnings\n  near     unambiguous           0.838 (at most 1)");
     free(alone);
 }
 

@@ -332,7 +332,7 @@ static void mixtures_are_refused(void **state)
         {{"run", "--echoes", "good.mat", "-o", "r"}, {"run: --echoes good.mat needs --grid"}},
         {{"run", "--grid", "0:1:1,20:1:1", "-o", "r"}, {"run: --grid 0:1:1,20:1:1 goes with --echoes"}},
         {{"run", "study/quick", "--echoes", "good.mat", "--grid", "0:1:1,20:1:1", "-o", "r"},
-         {"'study/quick' is too much with --echoes good.mat"}},
+         {"'study/quick' and --echoes good.mat are both given"}},
         {{"run", "good.mat", "-o", "r"}, {"good.mat: is no scene file", "--echoes FILE.mat --grid GRID"}},
         {{"sweep", "--echoes", "none.mat", "--grid", "0:1:1,20:1:1", "-o", "r"}, {"none.mat: cannot be read"}},
         {{"check"}, {"check: a SCENE, or --echoes FILE.mat with --grid GRID, is missing"}},
