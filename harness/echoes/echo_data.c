@@ -139,6 +139,30 @@ void echoes_free(struct echoes *echoes)
     *echoes = (struct echoes){0};
 }
 
+static void negate(void *numbers, size_t count, enum precision precision)
+{
+    float complex *single = numbers;
+    double complex *both = numbers;
+    for (size_t n = 0; n < count; n++)
+        if (precision == PRECISION_FLOAT)
+            single[n] = -single[n];
+        else
+            both[n] = -both[n];
+}
+
+void echoes_negate(struct echoes *echoes)
+{
+    const struct acquisition *a = echoes->acquisition;
+    negate((void *)echoes->samples, (size_t)a->pings * (size_t)a->receivers * (size_t)a->samples, echoes->precision);
+}
+
+void image_negate(struct image *image)
+{
+    for (int k = 0; k < image->patch_count; k++)
+        negate(image->pixels[k], (size_t)image->patches[k].r_count * (size_t)image->patches[k].x_count,
+               image->precision);
+}
+
 enum status image_allocate(int patch_count, const struct grid *patches, enum precision precision, struct image *image)
 {
     double bytes = 0;

@@ -18,6 +18,9 @@ enum status echoes_allocate(const struct acquisition *acquisition, enum precisio
    where sums overflow and small parts are lost, are divided by a power of two, exactly: to->exponent. */
 enum status echoes_convert(const struct echoes *from, enum precision precision, struct echoes *to);
 void echoes_free(struct echoes *echoes);
+/* Multiply by -1, exactly: samples that the caller owns, and an image. */
+void echoes_negate(struct echoes *echoes);
+void image_negate(struct image *image);
 
 /* Allocate a zeroed image over `patches` (kept by pointer, not copied). Errors: STATUS_FAILED without memory. */
 enum status image_allocate(int patch_count, const struct grid *patches, enum precision precision, struct image *image);

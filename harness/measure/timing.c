@@ -3,6 +3,7 @@
 #include <dirent.h>
 #include <fcntl.h>
 #include <math.h>
+#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/resource.h>
@@ -13,6 +14,8 @@
 #include "common/clock.h"
 #include "echoes/echo_data.h"
 #include "imaging/imaging.h"
+
+#define THREADS_SLACK 1.1 /* of processor time over threads times run time, for clocks that tick apart */
 
 static int compare_double(const void *a, const void *b)
 {
@@ -72,14 +75,75 @@ static double system_s(void)
     return getrusage(RUSAGE_SELF, &usage) == 0 ? usage.ru_stime.tv_sec + 1e-6 * usage.ru_stime.tv_usec : 0;
 }
 
-static enum status run_once(struct imaging *imaging, const struct echoes *echoes, struct stages *stages,
-                            double *seconds)
+/* Runs that are held against each other: every other one images the negated echoes, into an image of NaN. */
+struct trial {
+    struct imaging *imaging;
+    struct echoes *echoes;
+    int runs;           /* so far; the echoes are negated while it is odd */
+    double complex sum; /* of the last image */
+};
+
+static void image_spoil(const struct image *image)
 {
+    const double complex spoilt = CMPLX(NAN, NAN);
+    for (int k = 0; k < image->patch_count; k++) {
+        float complex *single = image->pixels[k];
+        double complex *both = image->pixels[k];
+        const size_t count = (size_t)image->patches[k].r_count * (size_t)image->patches[k].x_count;
+        for (size_t n = 0; n < count; n++)
+            if (image->precision == PRECISION_FLOAT)
+                single[n] = (float complex)spoilt;
+            else
+                both[n] = spoilt;
+    }
+}
+
+/* Of all pixels, with weights; the sum of the negated image is its negative, to the bit. */
+static double complex image_sum(const struct image *image)
+{
+    double complex sum = 0;
+    unsigned weight = 1;
+    for (int k = 0; k < image->patch_count; k++)
+        for (int i = 0; i < image->patches[k].r_count; i++)
+            for (int j = 0; j < image->patches[k].x_count; j++) {
+                weight = 1664525 * weight + 1013904223;
+                sum += (1 + 0x1p-32 * weight) * image_pixel(image, k, i, j);
+            }
+    return sum;
+}
+
+/* What the imaging leaves unwritten stays NaN, which imaging_finish refuses. */
+static enum status run_once(struct trial *trial, struct stages *stages, double *seconds)
+{
+    image_spoil(&trial->imaging->image);
     stages_begin(stages);
     double start = stages->mark;
-    enum status status = imaging_execute(imaging, echoes, stages);
+    enum status status = imaging_execute(trial->imaging, trial->echoes, stages);
     *seconds = seconds_now() - start;
+    const double complex sum = image_sum(&trial->imaging->image), before = trial->sum;
+    echoes_negate(trial->echoes);
+    trial->sum = sum;
+    trial->runs++;
+    if (status == STATUS_OK && trial->runs > 1 && isfinite(cabs(sum)) && isfinite(cabs(before)) && sum != -before)
+        return status_set(STATUS_FAILED, "%s: the image of the negated echoes is not the negated image (run %d)",
+                          trial->imaging->algorithm->name, trial->runs);
     return status;
+}
+
+/* The echoes as they were, and their image. */
+static void trial_end(struct trial *trial)
+{
+    if (trial->runs % 2 == 1)
+        echoes_negate(trial->echoes);
+    else
+        image_negate(&trial->imaging->image);
+}
+
+/* s of processors that the process had. */
+static double busy_s(void)
+{
+    struct timespec now;
+    return clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now) == 0 ? (double)now.tv_sec + 1e-9 * (double)now.tv_nsec : 0;
 }
 
 /* How long runs are repeated: by effort, and in one of several rounds. */
@@ -95,15 +159,14 @@ static const struct budget {
 static const double system_share_most = 0.25;
 
 /* Times of repeated runs, behind those of earlier rounds. */
-static enum status repeat(struct imaging *imaging, const struct echoes *echoes, const struct budget *budget,
-                          struct timing_samples *samples)
+static enum status repeat(struct trial *trial, const struct budget *budget, struct timing_samples *samples)
 {
     double first, begin = seconds_now(), elapsed = 0, waited = waited_s();
     const double system = system_s();
     struct stages stages;
     int runs = 0;
     const int most = budget == &part ? samples->runs + TIMING_RUNS / TIMING_ROUNDS : TIMING_RUNS; /* a round's share */
-    enum status status = run_once(imaging, echoes, &stages, &first);
+    enum status status = run_once(trial, &stages, &first);
     const bool cold = system_s() - system > system_share_most * first;
     const bool single = first >= budget->single && !cold;
     if (first >= budget->first_counts && samples->runs == 0 && !cold) {
@@ -119,12 +182,26 @@ static enum status repeat(struct imaging *imaging, const struct echoes *echoes, 
            && (runs < budget->runs_least || elapsed < budget->seconds_least)
            && (runs < budget->runs_fewest || elapsed < budget->seconds_most);
          runs++) {
-        status = run_once(imaging, echoes, &samples->stages[samples->runs], &samples->seconds[samples->runs]);
+        status = run_once(trial, &samples->stages[samples->runs], &samples->seconds[samples->runs]);
         samples->runs++;
         elapsed = seconds_now() - begin;
     }
     samples->waited += waited_s() - waited;
     samples->elapsed += elapsed;
+    return status;
+}
+
+/* Repeated runs, held against the threads that they were given. */
+static enum status try_runs(struct trial *trial, const struct budget *budget, struct timing_samples *samples)
+{
+    const int threads = omp_get_max_threads();
+    const double begin = seconds_now(), busy = busy_s();
+    const enum status status = repeat(trial, budget, samples);
+    const double processors = (busy_s() - busy) / (seconds_now() - begin);
+    trial_end(trial);
+    if (status == STATUS_OK && processors > THREADS_SLACK * threads)
+        return status_set(STATUS_FAILED, "%s kept %.1f processors busy with --threads %d",
+                          trial->imaging->algorithm->name, processors, threads);
     return status;
 }
 
@@ -157,7 +234,7 @@ static enum status control_sample(struct control *control, bool recent, struct t
     return status;
 }
 
-enum status timing_measure(const struct spec *spec, const struct problem *problem, const struct echoes *echoes,
+enum status timing_measure(const struct spec *spec, const struct problem *problem, struct echoes *echoes,
                            struct control *control, enum effort effort, struct timing_samples *samples,
                            struct image *image, struct timing *timing)
 {
@@ -177,7 +254,7 @@ enum status timing_measure(const struct spec *spec, const struct problem *proble
     status = control_sample(control, true, samples, &before);
     const double begin = seconds_now();
     if (status == STATUS_OK)
-        status = repeat(&imaging, echoes, budget, samples);
+        status = try_runs(&(struct trial){.imaging = &imaging, .echoes = echoes}, budget, samples);
     timing->spent_s = seconds_now() - begin;
     if (status == STATUS_OK)
         status = control_sample(control, effort == EFFORT_BRIEF, samples, &after);

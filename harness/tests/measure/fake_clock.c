@@ -46,6 +46,11 @@ int __wrap_clock_gettime(clockid_t id, struct timespec *now)
 {
     if (!fake.on)
         return __real_clock_gettime(id, now);
+    if (id == CLOCK_PROCESS_CPUTIME_ID) {
+        const long long busy = llround(told.processors * (double)fake.now);
+        *now = (struct timespec){busy / second, busy % second};
+        return 0;
+    }
     if (id != CLOCK_MONOTONIC && id != CLOCK_THREAD_CPUTIME_ID)
         fail_msg("clock %d, which may be set, is read for a time", (int)id);
     const long long at = id == CLOCK_MONOTONIC ? fake.now : fake.now - fake.waited;
@@ -147,7 +152,17 @@ static void spend(double seconds)
 /* A quarter to compress, the rest to focus in two parts. */
 static enum status told_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages)
 {
-    (void)plan, (void)echoes, (void)image;
+    (void)plan;
+    static float complex kept;
+    const struct acquisition *a = echoes->acquisition;
+    if (!told.keeps || runs_done == 0) {
+        kept = 0;
+        for (int n = 0; n < a->samples * a->receivers * a->pings; n++)
+            kept += ((const float complex *)echoes->samples)[n];
+    }
+    for (int k = 0; k < image->patch_count; k++)
+        for (int i = 0; i < image->patches[k].r_count * image->patches[k].x_count; i++)
+            ((float complex *)image->pixels[k])[i] = kept;
     int n = runs_done++;
     fake.system += n == 0 ? llround(1e9 * told.clearing_s) : 0;
     n = n < RUNS_TOLD ? n : RUNS_TOLD - 1;

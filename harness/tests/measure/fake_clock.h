@@ -33,7 +33,9 @@ extern struct told {
     double clearing_s;         /* of the first run, the system's */
     double waited;             /* threads without a processor in each run */
     double pairs;
-    bool busy; /* look at the clock until the time is over */
+    double processors; /* kept busy */
+    bool keeps;        /* the first image is returned again */
+    bool busy;         /* look at the clock until the time is over */
 } told;
 extern int runs_done;                  /* since it was set to 0 */
 extern const struct algorithm telling; /* planning takes 4 ms */

@@ -349,6 +349,31 @@ static void no_time_is_no_result(void **state)
     }
 }
 
+/* An image that is kept from the run before, and threads beyond those that were given, make no result. */
+static void cheats_are_no_result(void **state)
+{
+    (void)state;
+    static const struct {
+        double processors;
+        bool keeps;
+        const char *reason; /* NULL: it does not cheat */
+    } cases[] = {{2, false, NULL},
+                 {2, true, "telling: the image of the negated echoes is not the negated image (run 2)"},
+                 {2.5, false, "telling kept 2.5 processors busy with --threads 2"}};
+    omp_set_num_threads(2);
+    const double first = *(const float *)session.echoes[PRECISION_FLOAT].samples;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct outcome outcome;
+        tell(&(struct told){{0.2}, .pairs = 1e6, .processors = cases[k].processors, .keeps = cases[k].keeps}, steady);
+        outcome_measure(&session, &spec, EFFORT_WHOLE, NULL, &outcome);
+        fake.on = false;
+        assert_string_equal(outcome.row.status, cases[k].reason ? "failed" : "ok");
+        assert_true(!cases[k].reason || strstr(outcome.row.reason, cases[k].reason));
+        assert_true(*(const float *)session.echoes[PRECISION_FLOAT].samples == first);
+        outcome_free(&outcome);
+    }
+}
+
 /* Measured as `run` does it, or `sweep` (in turn): the row, read back. */
 static struct measurement run_row(bool in_turn, struct results *results)
 {
@@ -425,6 +450,7 @@ int main(void)
         cmocka_unit_test(noise_is_told),
         cmocka_unit_test(speed_up_and_rate),
         cmocka_unit_test(no_time_is_no_result),
+        cmocka_unit_test(cheats_are_no_result),
         cmocka_unit_test_setup_teardown(figures_reach_the_report, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(busy_waiting_takes_its_time, folder_make, folder_remove),
     };
