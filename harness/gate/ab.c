@@ -33,7 +33,7 @@ enum { USUAL = sizeof usual / sizeof *usual };
 #define ERROR_PROBABILITY 0.05      /* of any false finding in all of one comparison */
 #define STAGE_LEAST       0.2       /* of the time: smaller stages are not compared alone */
 static const double slot_s = 0.005; /* that one question is to take, by repetition */
-enum { BLOCKS = 3, PARTS_MOST = 13, ROUNDS_MOST = 64 };
+enum { PARTS_MOST = 13, ROUNDS_MOST = 64 };
 
 /* Seconds of one execute in one block of a round: the mean of the two runs of each program. */
 struct sample {
@@ -48,7 +48,7 @@ struct unit {
     int plans[2]; /* this round's number of the unit, by program */
     int rounds, part_count;
     char parts[PARTS_MOST][40];
-    struct sample samples[ROUNDS_MOST * BLOCKS];
+    struct sample samples[ROUNDS_MOST * AB_BLOCKS];
 };
 
 struct contest {
@@ -167,8 +167,8 @@ static enum status unit_round(struct contest *contest, struct unit *unit, int ro
     if (status != STATUS_OK)
         return status;
     int count = (int)fmax(1, slot_s / fmax(fmax(warm[0][0], warm[1][0]), 1e-6));
-    for (int block = 0; block < BLOCKS; block++) {
-        struct sample *sample = &unit->samples[unit->rounds * BLOCKS + block];
+    for (int block = 0; block < AB_BLOCKS; block++) {
+        struct sample *sample = &unit->samples[unit->rounds * AB_BLOCKS + block];
         int first = (round + block) % 2;
         *sample = (struct sample){0};
         for (int k = 0; k < 4 && status == STATUS_OK; k++) {
@@ -210,17 +210,17 @@ static enum status contest_round(struct contest *contest, int round, const struc
 /* The median over the blocks. */
 static double part_seconds(const struct unit *unit, int side, int part)
 {
-    double seconds[ROUNDS_MOST * BLOCKS];
-    for (int k = 0; k < unit->rounds * BLOCKS; k++)
+    double seconds[ROUNDS_MOST * AB_BLOCKS];
+    for (int k = 0; k < unit->rounds * AB_BLOCKS; k++)
         seconds[k] = unit->samples[k].seconds[side][part];
-    return median(seconds, unit->rounds * BLOCKS);
+    return median(seconds, unit->rounds * AB_BLOCKS);
 }
 
 /* The total, and stages that both programs know and that hold enough of the time of either. */
 static bool part_counts(const struct unit *unit, int part)
 {
     double share = 0;
-    for (int k = 0; k < unit->rounds * BLOCKS; k++)
+    for (int k = 0; k < unit->rounds * AB_BLOCKS; k++)
         if (!(unit->samples[k].seconds[0][part] > 0 && unit->samples[k].seconds[1][part] > 0))
             return false;
     for (int side = 0; side < 2; side++)
@@ -228,12 +228,15 @@ static bool part_counts(const struct unit *unit, int part)
     return share >= STAGE_LEAST;
 }
 
-static enum status part_interval(const struct unit *unit, int part, double miss, struct ab_interval *interval)
+static struct ab_interval part_interval(const struct unit *unit, int part, double miss)
 {
-    double ratios[ROUNDS_MOST * BLOCKS];
-    for (int k = 0; k < unit->rounds * BLOCKS; k++)
-        ratios[k] = unit->samples[k].seconds[1][part] / unit->samples[k].seconds[0][part];
-    return ab_interval_find(ratios, unit->rounds, BLOCKS, miss, interval);
+    double ratios[ROUNDS_MOST][AB_BLOCKS];
+    for (int k = 0; k < unit->rounds; k++)
+        for (int block = 0; block < AB_BLOCKS; block++) {
+            const struct sample *sample = &unit->samples[k * AB_BLOCKS + block];
+            ratios[k][block] = sample->seconds[1][part] / sample->seconds[0][part];
+        }
+    return ab_interval_find(ratios, unit->rounds, miss);
 }
 
 /* Bonferroni: over all that is compared and all times that it is looked at; half on either side. */
@@ -246,31 +249,29 @@ static double miss_probability(const struct contest *contest, const struct ab_ef
     return ERROR_PROBABILITY / 2 / fmax(1, comparisons) / looks;
 }
 
-/* Marks the units of which all is decided, or something is worse; *open tells how many are left. */
-static enum status contest_look(struct contest *contest, const struct ab_effort *effort, int *open)
+/* Marks the units of which all is decided, or something is worse, and returns how many are left. */
+static int contest_look(struct contest *contest, const struct ab_effort *effort)
 {
     double miss = miss_probability(contest, effort);
-    enum status status = STATUS_OK;
-    *open = 0;
+    int open = 0;
     for (int k = 0; k < contest->unit_count; k++) {
         struct unit *unit = &contest->units[k];
         bool worse = false, clear = true;
         if (unit->skipped || unit->decided)
             continue;
-        for (int part = 0; part < unit->part_count && status == STATUS_OK; part++) {
-            struct ab_interval interval;
+        for (int part = 0; part < unit->part_count; part++) {
             if (!part_counts(unit, part))
                 continue;
-            status = part_interval(unit, part, miss, &interval);
-            enum verdict verdict = status == STATUS_OK ? ab_interval_verdict(&interval) : VERDICT_NOISY;
+            const struct ab_interval interval = part_interval(unit, part, miss);
+            enum verdict verdict = ab_interval_verdict(&interval);
             worse = worse || verdict == VERDICT_WORSE;
             clear =
                 clear && verdict != VERDICT_NOISY && (verdict != VERDICT_WARNING || interval.high < 1 + EFFECT_FAIL);
         }
         unit->decided = worse || clear;
-        *open += !unit->decided;
+        open += !unit->decided;
     }
-    return status;
+    return open;
 }
 
 static enum status findings_add(struct contest *contest, const struct ab_effort *effort)
@@ -280,13 +281,12 @@ static enum status findings_add(struct contest *contest, const struct ab_effort 
     for (int k = 0; k < contest->unit_count; k++) {
         const struct unit *unit = &contest->units[k];
         for (int part = 0; part < unit->part_count && status == STATUS_OK; part++) {
-            struct ab_interval interval;
             if (!part_counts(unit, part))
                 continue;
+            const struct ab_interval interval = part_interval(unit, part, miss);
             const char *detail = diff_text(contest->diff, "%s", unit->parts[part]);
-            status = detail ? part_interval(unit, part, miss, &interval) : STATUS_FAILED;
-            if (status != STATUS_OK)
-                break;
+            if (!detail)
+                return STATUS_FAILED;
             double before = part_seconds(unit, 0, part), after = part_seconds(unit, 1, part);
             status = diff_add(contest->diff, &(struct finding){.verdict = ab_interval_verdict(&interval),
                                                                .class = CLASS_TIME,
@@ -385,7 +385,7 @@ static enum status contest_run(struct contest *contest, const struct ab_effort *
         status = contest_round(contest, round++, effort);
         if (status == STATUS_OK && round >= effort->rounds_least
             && (round - effort->rounds_least) % effort->rounds_step == 0)
-            status = contest_look(contest, effort, &open);
+            open = contest_look(contest, effort);
     }
     if (status == STATUS_OK)
         status = findings_add(contest, effort);

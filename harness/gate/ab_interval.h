@@ -13,15 +13,15 @@ struct ab_interval {
 #define EFFECT_WARN 0.03
 #define EFFECT_FAIL 0.05
 
-/* Bootstrap interval of the ratio of the medians of times that were measured side by side: `ratios`, [rounds][blocks],
-   NEW by OLD of each block, positive; rounds >= 2. Since each time is taken by the speed of its own block (the
-   geometric mean of both), the ratio of the medians is the median of the ratios. Rounds are drawn, not blocks: what a
-   process happens to get with its start (the places of its memory) is common to a round. `miss`: the probability on
-   each side that the true ratio lies beyond. The drawn medians give the interval of 95 %, its wider side standing for
-   both; Student's t (of rounds - 1 degrees of freedom, so that fewer rounds prove less) widens it to `miss`. Always the
-   same for the same ratios.
-   Errors: STATUS_FAILED without memory. */
-enum status ab_interval_find(const double *ratios, int rounds, int blocks, double miss, struct ab_interval *interval);
+enum { AB_BLOCKS = 3 };
+
+/* `ratios` [rounds][AB_BLOCKS]: times that were measured side by side, NEW by OLD of each block, positive; rounds >= 2.
+   Rounds count, not blocks: what a process happens to get with its start (the places of its memory) is common to a
+   round. Each is the median of its blocks, so that a block that was disturbed does not matter; the middle is the
+   geometric mean of the rounds, and Student's t (of rounds - 1 degrees of freedom, so that fewer rounds prove less)
+   times its standard error the distance of the ends. `miss`: the probability on each side that the true ratio lies
+   beyond. */
+struct ab_interval ab_interval_find(double (*ratios)[AB_BLOCKS], int rounds, double miss);
 
 /* worse: all of it beyond EFFECT_FAIL. warning: beyond EFFECT_WARN. better: as far on the other side. same: a slowdown
    of EFFECT_FAIL is excluded. Else too noisy to tell. */

@@ -5,7 +5,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
-#include <poll.h>
 #include <sched.h>
 #include <signal.h>
 #include <stdio.h>
@@ -14,11 +13,10 @@
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
-
-#include "contract/algorithm.h"
 
 static const char greeting[] = "sasbench measure 1";
 
@@ -50,11 +48,6 @@ static void child_run(const char *path, int turn, int socket)
     _exit(126);
 }
 
-static void pause_ms(long ms)
-{
-    nanosleep(&(struct timespec){.tv_nsec = 1000000 * ms}, NULL);
-}
-
 /* Why it said nothing more: its process has ended, or is about to, or has but closed its output. */
 static enum status silence(struct ab_process *process, const char *question)
 {
@@ -63,7 +56,7 @@ static enum status silence(struct ab_process *process, const char *question)
     for (int k = 0; k < 100 && ended == 0; k++) {
         ended = waitpid(process->pid, &state, WNOHANG);
         if (ended == 0)
-            pause_ms(10);
+            nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);
     }
     char how[80] = "closed its output";
     if (ended > 0) {
@@ -81,30 +74,20 @@ static enum status silence(struct ab_process *process, const char *question)
 
 static enum status line_read(struct ab_process *process, const char *question, char *line, size_t size)
 {
-    double end = seconds_now() + process->patience_s;
-    for (char *stop; !(stop = memchr(process->buffer, '\n', process->held));) {
-        struct pollfd wait = {.fd = process->socket, .events = POLLIN};
-        double left = fmax(end - seconds_now(), 0);
-        int ready = poll(&wait, 1, (int)(1000 * fmin(left, 1e6)));
-        if (ready < 0 && errno == EINTR)
-            continue;
-        if (ready <= 0)
-            return status_set(STATUS_INVALID, "%s %s sends nothing for %g s %s '%s'", process->role, process->path,
-                              process->patience_s, *question ? "after" : "instead of", *question ? question : greeting);
-        size_t room = sizeof process->buffer - process->held;
-        ssize_t got = recv(process->socket, process->buffer + process->held, room, 0);
-        if (got <= 0)
-            return silence(process, question);
-        process->held += (size_t)got;
-        if (process->held == sizeof process->buffer && !memchr(process->buffer, '\n', process->held))
+    char whole[8192];
+    errno = 0;
+    if (fgets(whole, sizeof whole, process->answers)) {
+        const char *end = strchr(whole, '\n');
+        if (!end)
             return status_set(STATUS_INVALID, "%s %s: a line is longer than %zu characters", process->role,
-                              process->path, sizeof process->buffer);
+                              process->path, size);
+        *end = '\0';
+        return STATUS_OK;
     }
-    size_t length = (size_t)((char *)memchr(process->buffer, '\n', process->held) - process->buffer);
-    snprintf(line, size, "%.*s", (int)length, process->buffer);
-    process->held -= length + 1;
-    memmove(process->buffer, process->buffer + length + 1, process->held);
-    return STATUS_OK;
+    if (errno != EAGAIN)
+        return silence(process, question);
+    return status_set(STATUS_INVALID, "%s %s sends nothing for %g s %s '%s'", process->role, process->path,
+                      process->patience_s, *question ? "after" : "instead of", *question ? question : greeting);
 }
 
 enum status ab_process_start(const char *role, const char *path, int turn, double patience_s,
@@ -129,9 +112,12 @@ enum status ab_process_start(const char *role, const char *path, int turn, doubl
         return status_set(STATUS_FAILED, "%s %s: no process: %s", role, path, strerror(errno));
     }
     setpgid(pid, pid); /* here, too: whoever comes first */
-    *process = (struct ab_process){role, path, pid, sockets[0], patience_s, 0, ""};
+    const struct timeval patience = {(time_t)patience_s, (suseconds_t)(1e6 * (patience_s - floor(patience_s)))};
+    setsockopt(sockets[0], SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    *process = (struct ab_process){role, path, pid, sockets[0], patience_s, fdopen(sockets[0], "r")};
     char line[200];
-    enum status status = line_read(process, "", line, sizeof line);
+    enum status status = process->answers ? line_read(process, "", line, sizeof line)
+                                          : status_set(STATUS_FAILED, "%s %s: no memory", role, path);
     if (status == STATUS_OK && strcmp(line, greeting) != 0)
         status = status_set(STATUS_INVALID, "%s %s sends '%.60s' in place of '%s': another version, or no sasbench",
                             role, path, line, greeting);
@@ -161,7 +147,9 @@ void ab_process_stop(struct ab_process *process)
         kill(-process->pid, SIGKILL);
         waitpid(process->pid, NULL, 0);
     }
-    if (process->path)
+    if (process->answers)
+        fclose(process->answers);
+    else if (process->path)
         close(process->socket);
     *process = (struct ab_process){0};
 }

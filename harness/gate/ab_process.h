@@ -2,7 +2,7 @@
 #ifndef SASBENCH_GATE_AB_PROCESS_H
 #define SASBENCH_GATE_AB_PROCESS_H
 
-#include <stddef.h>
+#include <stdio.h>
 #include <sys/types.h>
 
 #include "contract/status.h"
@@ -12,8 +12,7 @@ struct ab_process {
     pid_t pid;               /* 0: none */
     int socket;              /* to its standard input and output; its standard error is dropped */
     double patience_s;       /* it answers within this or has failed */
-    size_t held;
-    char buffer[8192]; /* [held] read and not yet taken */
+    FILE *answers;           /* reads from the socket */
 };
 
 /* Start `path measure` on the `turn`-th of the processors that we may use, round and round, and hear its greeting.

@@ -63,6 +63,8 @@ enum status diff_add(struct diff *diff, const struct finding *finding);
 enum status diff_note(struct diff *diff, const char *format, ...) __attribute__((format(printf, 2, 3)));
 const char *diff_text(struct diff *diff, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+/* Findings of any class with this verdict. */
+int diff_count(const struct diff *diff, enum verdict verdict);
 /* STATUS_FAILED, with a message that says how many, when anything got worse or is gone, or changed from a baseline. */
 enum status diff_status(const struct diff *diff);
 void diff_free(struct diff *diff);

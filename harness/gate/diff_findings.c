@@ -84,7 +84,7 @@ enum status diff_note(struct diff *diff, const char *format, ...)
     return STATUS_OK;
 }
 
-static int count_of(const struct diff *diff, enum verdict verdict)
+int diff_count(const struct diff *diff, enum verdict verdict)
 {
     int count = 0;
     for (int class = 0; class < CLASSES; class ++)
@@ -94,8 +94,8 @@ static int count_of(const struct diff *diff, enum verdict verdict)
 
 enum status diff_status(const struct diff *diff)
 {
-    int worse = count_of(diff, VERDICT_WORSE), gone = count_of(diff, VERDICT_GONE);
-    int changed = diff->to_baseline ? count_of(diff, VERDICT_CHANGED) : 0;
+    int worse = diff_count(diff, VERDICT_WORSE), gone = diff_count(diff, VERDICT_GONE);
+    int changed = diff->to_baseline ? diff_count(diff, VERDICT_CHANGED) : 0;
     if (worse + gone + changed == 0)
         return STATUS_OK;
     if (changed == 0)

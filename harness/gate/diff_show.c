@@ -56,49 +56,32 @@ static struct cell cell_change(const struct finding *finding)
     return cell;
 }
 
-static bool verdict_occurs(const struct diff *diff, int verdict)
-{
-    for (int class = 0; class < CLASSES; class ++)
-        if (diff->counts[class][verdict] > 0)
-            return true;
-    return false;
-}
-
-static bool class_occurs(const struct diff *diff, int class)
-{
-    for (int verdict = 0; verdict < VERDICTS; verdict++)
-        if (diff->counts[class][verdict] > 0)
-            return true;
-    return false;
-}
-
 /* "quality: 3 worse, 120 same", one text a class. */
-static void print_counts(const struct diff *diff, FILE *stream, const char *before, const char *after)
+static void print_counts(const struct diff *diff, FILE *stream, const char *before)
 {
     for (int class = 0; class < CLASSES; class ++) {
-        const char *between = "";
-        if (!class_occurs(diff, class))
-            continue;
-        fprintf(stream, "%s%s: ", before, class_names[class]);
+        bool any = false;
         for (int verdict = 0; verdict < VERDICTS; verdict++)
             if (diff->counts[class][verdict] > 0) {
-                fprintf(stream, "%s%d %s", between, diff->counts[class][verdict], verdict_names[verdict]);
-                between = ", ";
+                fprintf(stream, "%s%s%s%d %s", any ? ", " : before, any ? "" : class_names[class], any ? "" : ": ",
+                        diff->counts[class][verdict], verdict_names[verdict]);
+                any = true;
             }
-        fputs(after, stream);
+        if (any)
+            fputc('\n', stream);
     }
 }
 
 static const char *headline(const struct diff *diff)
 {
-    if (verdict_occurs(diff, VERDICT_WORSE) || verdict_occurs(diff, VERDICT_GONE))
+    if (diff_count(diff, VERDICT_WORSE) || diff_count(diff, VERDICT_GONE))
         return "something got worse";
-    if (verdict_occurs(diff, VERDICT_CHANGED))
+    if (diff_count(diff, VERDICT_CHANGED))
         return diff->to_baseline ? "changed for the better: where that is meant, a new baseline is needed"
                                  : "nothing got worse; what changed for the better is to be reviewed";
-    if (verdict_occurs(diff, VERDICT_WARNING))
+    if (diff_count(diff, VERDICT_WARNING))
         return "nothing failed, with a warning";
-    return verdict_occurs(diff, VERDICT_NOISY) ? "nothing failed, not all could be compared" : "nothing got worse";
+    return diff_count(diff, VERDICT_NOISY) ? "nothing failed, not all could be compared" : "nothing got worse";
 }
 
 static void line_write(FILE *stream, const char *text)
@@ -148,7 +131,7 @@ void diff_print(const struct diff *diff, FILE *stream)
         groups_free(&groups);
     }
     fputc('\n', stream);
-    print_counts(diff, stream, "", "\n");
+    print_counts(diff, stream, "");
     fprintf(stream, "%s\n", headline(diff));
 }
 
@@ -218,7 +201,7 @@ enum status diff_markdown(const struct diff *diff, const char *path)
             shown_markdown(file.stream, diff->notes[k]);
             fputc('\n', file.stream);
         }
-        print_counts(diff, file.stream, "- ", "\n");
+        print_counts(diff, file.stream, "- ");
         if (groups.count > 0) {
             markdown_groups(&groups, file.stream);
             markdown_findings(&groups, file.stream);

@@ -31,24 +31,6 @@ static int key_order_row(const void *a, const void *b)
     return order ? order : (x->row > y->row) - (x->row < y->row);
 }
 
-static int content_order(const void *a, const void *b)
-{
-    const struct scene_content *x = a, *y = b;
-    int order = memcmp(x->name, y->name, x->length < y->length ? x->length : y->length);
-    return order ? order : (x->length > y->length) - (x->length < y->length);
-}
-
-/* False where the comment is about something else. */
-static bool content_read(const char *comment, struct scene_content *content)
-{
-    static const char head[] = "scene ";
-    const char *colon = strrchr(comment, ':');
-    if (strncmp(comment, head, strlen(head)) != 0 || !colon || colon < comment + strlen(head))
-        return false;
-    *content = (struct scene_content){comment + strlen(head), colon + 1, (size_t)(colon - comment) - strlen(head)};
-    return true;
-}
-
 struct row_key row_key_of(const struct results *results, int row)
 {
     if (results->targets) {
@@ -63,7 +45,6 @@ struct row_key row_key_of(const struct results *results, int row)
 void side_close(struct diff_side *side)
 {
     free(side->keys);
-    free(side->contents);
     free(side->matched);
     free(side->closed);
     results_free(&side->results);
@@ -80,12 +61,8 @@ enum status side_open(const char *path, struct diff_side *side)
     side->keys = calloc(rows + 1, sizeof *side->keys);
     side->matched = calloc(rows + 1, sizeof *side->matched);
     side->closed = calloc(rows + 1, sizeof *side->closed);
-    side->contents = calloc((size_t)csv->comment_count + 1, sizeof *side->contents);
-    if (!side->keys || !side->matched || !side->closed || !side->contents)
+    if (!side->keys || !side->matched || !side->closed)
         return status_set(STATUS_FAILED, "%s: no memory for %d rows", path, csv->row_count);
-    for (int k = 0; k < csv->comment_count; k++)
-        side->content_count += content_read(csv->comments[k], &side->contents[side->content_count]);
-    qsort(side->contents, (size_t)side->content_count, sizeof *side->contents, content_order);
     for (int row = 0; row < csv->row_count; row++)
         side->keys[row] = row_key_of(&side->results, row);
     qsort(side->keys, rows, sizeof *side->keys, key_order_row);
@@ -109,10 +86,16 @@ const struct row_key *side_find_measurement(const struct diff_side *side, const 
     return bsearch(key, side->keys, (size_t)side->results.csv.row_count, sizeof *side->keys, key_order_measurement);
 }
 
+/* A name may hold anything, also what ends it: the hash is what the line has behind it. */
 const char *side_hash(const struct diff_side *side, const char *scene)
 {
-    const struct scene_content sought = {scene, NULL, strlen(scene)};
-    const struct scene_content *found =
-        bsearch(&sought, side->contents, (size_t)side->content_count, sizeof *side->contents, content_order);
-    return found ? found->hash : NULL;
+    const struct csv *csv = &side->results.csv;
+    const size_t length = strlen(scene);
+    for (int k = 0; k < csv->comment_count; k++) {
+        const char *name = csv->comments[k] + strlen("scene "), *hash = strrchr(csv->comments[k], ':');
+        if (strncmp(csv->comments[k], "scene ", strlen("scene ")) == 0 && hash && hash - name == (ptrdiff_t)length
+            && strncmp(name, scene, length) == 0)
+            return hash + 1;
+    }
+    return NULL;
 }

@@ -12,20 +12,12 @@ struct row_key {
     int row;
 };
 
-/* A comment "scene NAME: HASH". A name may hold anything, so that its length is kept. */
-struct scene_content {
-    const char *name, *hash; /* borrowed; the name ends at `length` */
-    size_t length;
-};
-
 /* One of the two results, ready to be searched. */
 struct diff_side {
     struct results results;
-    struct row_key *keys;           /* [row_count] sorted */
-    struct scene_content *contents; /* [content_count] sorted by name */
-    int content_count;
-    bool *matched; /* [row_count] by row: found on the other side, too */
-    bool *closed;  /* [row_count] by row: nothing more to say of what belongs to this row */
+    struct row_key *keys; /* [row_count] sorted */
+    bool *matched;        /* [row_count] by row: found on the other side, too */
+    bool *closed;         /* [row_count] by row: nothing more to say of what belongs to this row */
 };
 
 /* The file's rows with their keys. Errors: as results_read; STATUS_INVALID naming both lines of a row that is given

@@ -18,23 +18,22 @@
 
 /* --- Statistics ----------------------------------------------------------------------------------------------- */
 
-enum { ROUNDS = 16, BLOCKS = 3, TRIALS = 200 };
+enum { ROUNDS = 16, TRIALS = 200 };
 
 /* Ratios of times around `ratio`; the noises are standard deviations of a round and of a block. Every tenth block is
    disturbed by up to 50 %, to either side. */
 static struct ab_interval draw_interval(struct random *random, double ratio, double noise_round, double noise_block,
                                         double miss)
 {
-    double ratios[ROUNDS * BLOCKS];
-    struct ab_interval interval;
+    double ratios[ROUNDS][AB_BLOCKS];
     for (int k = 0, round = 0; round < ROUNDS; round++) {
         double shift = noise_round * M_SQRT2 * creal(random_normal(random));
-        for (int block = 0; block < BLOCKS; block++, k++) {
+        for (int block = 0; block < AB_BLOCKS; block++, k++) {
             double hit = k % 10 == 0 ? 0.5 * (2 * random_uniform(random) - 1) : 0;
-            ratios[k] = ratio * exp(shift + hit + noise_block * M_SQRT2 * creal(random_normal(random)));
+            ratios[round][block] = ratio * exp(shift + hit + noise_block * M_SQRT2 * creal(random_normal(random)));
         }
     }
-    assert_int_equal(ab_interval_find(ratios, ROUNDS, BLOCKS, miss, &interval), STATUS_OK);
+    const struct ab_interval interval = ab_interval_find(ratios, ROUNDS, miss);
     assert_true(interval.low <= interval.middle && interval.middle <= interval.high);
     return interval;
 }
