@@ -79,12 +79,6 @@ static enum status scene_predict(const struct results *results, const char *name
     return status;
 }
 
-static int compare(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Of all algorithms with NULL. Nothing for one that has none. */
 static void summary_write(const struct predictions *predictions, const struct algorithm *algorithm, double *ratios,
                           FILE *file)
@@ -96,13 +90,12 @@ static void summary_write(const struct predictions *predictions, const struct al
             ratios[count++] = predictions->list[k].ratio;
     if (count == 0)
         return;
-    qsort(ratios, (size_t)count, sizeof *ratios, compare);
     const double numbers[] = {count,
-                              ratios[0],
+                              quantile(ratios, count, 0),
                               quantile(ratios, count, 0.25),
                               quantile(ratios, count, 0.5),
                               quantile(ratios, count, 0.75),
-                              ratios[count - 1]};
+                              quantile(ratios, count, 1)};
     fields_write(file, (const char *const[]){name, NULL}, numbers, 6, true);
     printf("  %-12s %6d %9.3g %9.3g %9.3g\n", name, count, numbers[1], numbers[3], numbers[5]);
 }

@@ -2,7 +2,6 @@
    of single fields. */
 #include "files/csv.h"
 
-#include <locale.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -215,17 +214,6 @@ const char *csv_comment(const struct csv *csv, const char *key)
     return NULL;
 }
 
-/* Numbers have a decimal point whatever the caller's locale says. newlocale("C") cannot fail and costs nothing. */
-static locale_t locale_enter(void)
-{
-    return uselocale(newlocale(LC_ALL_MASK, "C", (locale_t)0));
-}
-
-static void locale_leave(locale_t before)
-{
-    freelocale(uselocale(before));
-}
-
 bool csv_number(const char *cell, double *value)
 {
     *value = NAN;
@@ -234,9 +222,7 @@ bool csv_number(const char *cell, double *value)
     if (strchr(" \t\r\n\v\f", *cell))
         return false;
     char *end;
-    locale_t before = locale_enter();
     *value = strtod(cell, &end);
-    locale_leave(before);
     return !*end;
 }
 
@@ -260,9 +246,6 @@ void csv_write_text(FILE *file, const char *text)
 
 void csv_write_number(FILE *file, double value)
 {
-    if (isnan(value))
-        return;
-    locale_t before = locale_enter();
-    fprintf(file, "%.9g", value);
-    locale_leave(before);
+    if (!isnan(value))
+        fprintf(file, "%.9g", value);
 }

@@ -80,8 +80,8 @@ static enum status line_read(struct ab_process *process, const char *question, c
         const char *end = strchr(whole, '\n');
         if (!end)
             return status_set(STATUS_INVALID, "%s %s: a line is longer than %zu characters", process->role,
-                              process->path, size);
-        *end = '\0';
+                              process->path, sizeof whole);
+        snprintf(line, size, "%.*s", (int)(end - whole), whole);
         return STATUS_OK;
     }
     if (errno != EAGAIN)

@@ -13,6 +13,7 @@
 #include "measure/darkness.h"
 #include "imaging/imaging.h"
 #include "metrics/metrics.h"
+#include "text/text_append.h"
 
 enum { AXES = 2, DEFINITIONS = 3 };
 static const char *const axis_names[AXES] = {[AXIS_AZIMUTH] = "azimuth", [AXIS_RANGE] = "range"};
@@ -46,13 +47,12 @@ static int target_rows(const struct session *session, const struct image *image,
 /* One more reason, behind those that are there. */
 static void __attribute__((format(printf, 3, 4))) reason_add(char *reason, size_t size, const char *format, ...)
 {
-    size_t used = strlen(reason);
     va_list arguments;
     va_start(arguments, format);
-    if (used > 0 && used < size - 1)
-        used += (size_t)snprintf(reason + used, size - used, "; ");
-    if (used < size)
-        vsnprintf(reason + used, size - used, format, arguments);
+    if (*reason)
+        text_append(reason, size, "; ");
+    const size_t used = strlen(reason);
+    vsnprintf(reason + used, size - used, format, arguments);
     va_end(arguments);
 }
 
@@ -104,10 +104,9 @@ static enum status quality_fill(const struct session *session, struct outcome *o
 
 static void stages_format(const struct stages *stages, char *text, size_t size)
 {
-    size_t used = 0;
-    for (int k = 0; k < stages->count && used < size; k++)
-        used += (size_t)snprintf(text + used, size - used, "%s%s=%.4g", k ? ";" : "", stages->stage[k].name,
-                                 stages->stage[k].seconds);
+    *text = '\0';
+    for (int k = 0; k < stages->count; k++)
+        text_append(text, size, "%s%s=%.4g", k ? ";" : "", stages->stage[k].name, stages->stage[k].seconds);
 }
 
 static void sharpness_fill(struct outcome *outcome)
@@ -142,22 +141,16 @@ static void work_fill(const struct session *session, const struct problem *probl
 static void noise_tell(const struct timing *timing, char *text, size_t size)
 {
     const double spread = timing_spread(timing), waited = timing->waited / omp_get_max_threads();
-    const char *before = OUTCOME_NOISE ": ";
-    size_t used = 0;
-    *text = '\0';
-    if (spread > TIMING_NOISY) {
-        used += (size_t)snprintf(text, size, "%sthe middle half of %d runs spans %.0f %% of the median", before,
-                                 timing->runs, 100 * spread);
-        before = "; ";
-    }
-    if (waited > TIMING_NOISY && used < size) {
-        used += (size_t)snprintf(text + used, size - used, "%sother work had the processors for %.0f %% of the time",
-                                 before, 100 * waited);
-        before = "; ";
-    }
-    if (fabs(timing->drift) > TIMING_NOISY && used < size)
-        snprintf(text + used, size - used, "%sthe scalar reference loop's time changed by %+.0f %% meanwhile", before,
-                 100 * timing->drift);
+    char why[250] = "";
+    if (spread > TIMING_NOISY)
+        reason_add(why, sizeof why, "the middle half of %d runs spans %.0f %% of the median", timing->runs,
+                   100 * spread);
+    if (waited > TIMING_NOISY)
+        reason_add(why, sizeof why, "other work had the processors for %.0f %% of the time", 100 * waited);
+    if (fabs(timing->drift) > TIMING_NOISY)
+        reason_add(why, sizeof why, "the scalar reference loop's time changed by %+.0f %% meanwhile",
+                   100 * timing->drift);
+    snprintf(text, size, "%s%s%s", *why ? OUTCOME_NOISE : "", *why ? ": " : "", why);
 }
 
 static enum status image_time(struct session *session, const struct spec *spec, const struct problem *problem,

@@ -31,14 +31,15 @@ double median(double *values, int count)
     return count % 2 ? values[count / 2] : (values[count / 2 - 1] + values[count / 2]) / 2;
 }
 
-double quantile(const double *sorted, int count, double share)
+double quantile(double *values, int count, double share)
 {
     if (count == 0)
         return NAN;
+    qsort(values, (size_t)count, sizeof *values, compare_double);
     const double place = share * (count - 1);
     const int below = (int)floor(place);
-    return below + 1 < count ? sorted[below] + (place - below) * (sorted[below + 1] - sorted[below])
-                             : sorted[count - 1];
+    return below + 1 < count ? values[below] + (place - below) * (values[below + 1] - values[below])
+                             : values[count - 1];
 }
 
 double timing_spread(const struct timing *timing)

@@ -55,8 +55,8 @@ void seconds_skip_waiting(void);
 #define TIMING_NOISY 0.1
 double timing_spread(const struct timing *timing); /* of these times; NAN for less than 4 runs */
 
-double median(double *values, int count); /* sorts the values; NAN when count is 0 */
-/* The value below which `share` of sorted values lie, linear between two; NAN when count is 0. */
-double quantile(const double *sorted, int count, double share);
+/* Both sort the values; NAN when count is 0. The value below which `share` of them lie, linear between two. */
+double median(double *values, int count);
+double quantile(double *values, int count, double share);
 
 #endif

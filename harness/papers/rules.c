@@ -168,12 +168,6 @@ enum status rules_study(const char *directory)
 
 /* ---- what came of it ---- */
 
-static int compare(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 double rule_value(struct measured *measured, const char *rule, const char *quantity, double number)
 {
     const struct csv *csv = &measured->rules;
@@ -201,6 +195,5 @@ double rule_value(struct measured *measured, const char *rule, const char *quant
     }
     if (count == 0)
         return measured_missing(measured, "no scene from a seed has %s of %s", quantity, rule);
-    qsort(values, (size_t)count, sizeof *values, compare);
     return share ? (double)met / scenes : quantile(values, count, number);
 }

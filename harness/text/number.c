@@ -1,9 +1,8 @@
-/* The one reader of numbers on the command line (number.h). strtod also takes blanks, hexadecimal, "inf" and "nan", and
-   a comma for the point where the locale has one. */
+/* The one reader of numbers on the command line (number.h). strtod also takes blanks, hexadecimal, "inf" and "nan". The
+   program never sets a locale: the point is a point. */
 #include "text/number.h"
 
 #include <errno.h>
-#include <locale.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,15 +29,9 @@ static const char *decimal_end(const char *text)
 const char *number_read(const char *text, double *value)
 {
     const char *end = decimal_end(text);
-    if (end && (*end == 'x' || *end == 'X'))
-        return NULL; /* strtod would go on behind the 0 */
-    locale_t c_locale = end ? newlocale(LC_ALL_MASK, "C", (locale_t)0) : (locale_t)0;
-    if (!c_locale)
+    if (!end || *end == 'x' || *end == 'X') /* strtod would go on behind the 0 */
         return NULL;
-    locale_t before = uselocale(c_locale);
     double number = strtod(text, NULL);
-    uselocale(before);
-    freelocale(c_locale);
     if (!isfinite(number))
         return NULL;
     *value = number;

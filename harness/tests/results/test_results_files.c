@@ -1,5 +1,4 @@
 /* What is written into results, foreign files, places that cannot be written, and the terminal's table. */
-#include <locale.h>
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
