@@ -91,14 +91,6 @@ static enum status tabulate(struct bp *bp, const struct interpolator *in, const 
     return complete ? STATUS_OK : status_set(STATUS_FAILED, "no memory for interpolation weights");
 }
 
-int bp_met_count(const struct bp *bp)
-{
-    int count = 0;
-    for (int p = 0; p < bp->problem.acquisition->pings; p++)
-        count += bp_met(bp, p);
-    return count;
-}
-
 /* The counted and the published work, but for the pairs. BP22 Eq. (11) has N_a records, N_r samples and N_a N_r pixels,
    every pixel summed over every record; here the pixels are counted as they are. LBF21 Eq. (23) lacks the sum over
    records and contradicts it. Its interpolation factor, and BP22's points beta between two samples, follow from how a
@@ -168,7 +160,7 @@ static enum status choose_engine(struct bp *bp, const struct bp_options *options
 static void engine_discard(struct bp *bp)
 {
     if (bp->engine)
-        bp->engine->destroy(bp->state);
+        bp->engine->destroy(bp);
     (bp->problem.precision == PRECISION_DOUBLE ? traces_destroy_double : traces_destroy_float)(bp->traces);
     bp->state = NULL;
     bp->traces = NULL;
@@ -198,21 +190,6 @@ static void aperture_take(struct bp *bp, const struct bp_options *options)
     bp->problem.acquisition = &bp->limited;
 }
 
-static enum status met_find(struct bp *bp)
-{
-    const int pings = bp->problem.acquisition->pings;
-    bp->met = malloc((size_t)pings * sizeof *bp->met);
-    if (!bp->met)
-        return status_set(STATUS_FAILED, "no memory for %d pings", pings);
-    if (pings_met(&bp->problem, bp->met) < pings) {
-        bp->work.bytes += (double)pings * sizeof *bp->met;
-    } else {
-        free(bp->met);
-        bp->met = NULL;
-    }
-    return STATUS_OK;
-}
-
 enum status bp_plan(const struct problem *problem, const struct interpolator *interpolator, const void *options,
                     void **plan)
 {
@@ -230,13 +207,15 @@ enum status bp_plan(const struct problem *problem, const struct interpolator *in
     aperture_take(bp, options);
     enum status status = problem_turn_back(&bp->problem, &bp->turned, &bp->work.bytes);
     if (status == STATUS_OK)
-        status = met_find(bp);
+        status = bp_met_find(bp);
     if (status == STATUS_OK)
         status = tabulate(bp, interpolator, options);
     if (status == STATUS_OK)
         status = choose_engine(bp, options);
     if (status == STATUS_OK)
         status = engine_plan(bp, options);
+    if (status == STATUS_OK && bp->problem.window)
+        status = bp_met_narrow(bp);
     if (status != STATUS_OK) {
         bp_destroy(bp);
         return status;
@@ -259,8 +238,10 @@ struct work bp_work(const void *plan)
     const struct bp *bp = plan;
     const struct acquisition *a = bp->problem.acquisition;
     struct work work = bp->work;
-    double all = (double)a->pings * a->receivers * problem_pixels(&bp->problem);
-    work.pairs = pairs_count(&bp->problem);
+    struct grid part;
+    const struct problem wanted = bp_wanted(bp, &part);
+    double all = (double)a->pings * a->receivers * problem_pixels(&wanted);
+    work.pairs = pairs_count(&wanted);
     work.flops += work.pairs * (4.0 * (bp->table.taps == 1 ? 0 : bp->table.taps - (bp->table.branches > 1)) + 8);
     int length = 0;
     if (work.pairs < all)
@@ -323,7 +304,7 @@ static enum status forecast_begin(const struct problem *problem, const struct in
         status = problem_turn_back(&bp->problem, &bp->turned, NULL);
     if (status == STATUS_OK)
         status = choose_engine(bp, options);
-    return status == STATUS_OK ? met_find(bp) : status;
+    return status == STATUS_OK ? bp_met_find(bp) : status;
 }
 
 /* The work besides pairs. */

@@ -76,6 +76,7 @@ int bp_method_conditions(const struct problem *problem, const void *method, cons
 enum status bp_plan(const struct problem *problem, const struct interpolator *interpolator, const void *options,
                     void **plan);
 enum status bp_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
+void bp_reads(const void *plan, bool *read);
 struct work bp_work(const void *plan);
 void bp_destroy(void *plan);
 /* The forecast of an interpolator: its error law, the delays and the rounding of the engine that bp_plan would choose.

@@ -47,7 +47,7 @@ struct bp_engine {
     /* Make bp->state and bp->traces; adds to bp->work.bytes. */
     enum status (*plan)(struct bp *bp);
     void (*execute)(struct bp *bp, const struct echoes *echoes, struct image *image, struct stages *stages);
-    void (*destroy)(void *state); /* destroy(NULL) does nothing */
+    void (*destroy)(struct bp *bp); /* bp->state, which may be NULL */
 };
 
 extern const struct bp_engine bp_general;   /* any track: delays of runs of range rows */
@@ -60,8 +60,22 @@ static inline bool bp_met(const struct bp *bp, int ping)
 {
     return !bp->met || bp->met[ping];
 }
-/* Pings that any pixel meets. */
+/* Find bp->met: the pings that any pixel of the whole image meets, by which the records' form is planned; then, of a
+   window, those that its own pixels meet, whose records are read. Errors: STATUS_FAILED without memory. */
+enum status bp_met_find(struct bp *bp);
+enum status bp_met_narrow(struct bp *bp);
+/* What of the image is wanted, as a problem of its own; *part is its grid where there is a window. */
+struct problem bp_wanted(const struct bp *bp, struct grid *part);
+/* Pings whose records are read. */
 int bp_met_count(const struct bp *bp);
+
+/* How many neighbouring pings are summed together at the most, the first a multiple of so many. */
+int bp_pings_joined(const struct acquisition *acquisition);
+
+/* Memory of which a window needs a part: all is there, what is not used takes no room and is 0. Adds to
+   bp->work.bytes. */
+void *bp_part_allocate(struct bp *bp, size_t bytes);
+void bp_part_free(const struct bp *bp, void *memory);
 
 static inline size_t real_size(enum precision precision)
 {

@@ -71,3 +71,26 @@ void *memory_columns(size_t alignment, size_t bytes)
 #endif
     return memory;
 }
+
+/* Its size is kept in a page ahead of it. */
+void *memory_sparse(size_t bytes)
+{
+    const size_t page = (size_t)sysconf(_SC_PAGESIZE), all = bytes + page;
+    if (all < bytes)
+        return NULL;
+    char *memory = mmap(NULL, all, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (memory == MAP_FAILED)
+        return NULL;
+#ifdef MADV_NOHUGEPAGE
+    madvise(memory, all, MADV_NOHUGEPAGE); /* advice: huge pages take room for what is not written */
+#endif
+    *(size_t *)memory = all;
+    return memory + page;
+}
+
+void memory_sparse_free(void *memory)
+{
+    const size_t page = (size_t)sysconf(_SC_PAGESIZE);
+    if (memory)
+        munmap((char *)memory - page, *(size_t *)(void *)((char *)memory - page));
+}

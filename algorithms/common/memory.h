@@ -18,4 +18,9 @@ void *memory_aligned(size_t alignment, size_t bytes);
    where the system gives them. Its first use can take a third of a second, for the system clears and gathers them. */
 void *memory_columns(size_t alignment, size_t bytes);
 
+/* Zeroed memory, at a page, of which only the pages that are written take room. Freed by memory_sparse_free, which
+   accepts NULL. NULL where the address space does not hold it. */
+void *memory_sparse(size_t bytes);
+void memory_sparse_free(void *memory);
+
 #endif

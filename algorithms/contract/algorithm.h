@@ -48,15 +48,26 @@ struct target {
     double complex amplitude; /* 1 */
 };
 
-/* One imaging task: every patch of the image is wanted, and nothing else. */
+/* Rows and columns of a grid. */
+struct pixel_window {
+    int row, rows, column, columns; /* first ones, and how many, >= 1 */
+};
+/* The grid of a part of the pixels. Its axes begin at a pixel of the whole, rounded. */
+struct grid grid_part(const struct grid *grid, const struct pixel_window *window);
+
+/* One imaging task: every patch of the image is wanted, and nothing else; or of the only patch a window alone, whose
+   pixels then have the bits that they have in the whole image. */
 struct problem {
     const struct acquisition *acquisition;
-    int patch_count;            /* >= 1 */
-    const struct grid *patches; /* [patch_count] */
-    enum precision precision;   /* of samples, sums and pixels; geometry and phase are always double */
+    int patch_count;                   /* >= 1 */
+    const struct grid *patches;        /* [patch_count] */
+    enum precision precision;          /* of samples, sums and pixels; geometry and phase are always double */
+    const struct pixel_window *window; /* NULL: all; else TRAIT_WINDOW is needed, and patch_count 1 */
 };
 struct problem problem_make(const struct acquisition *acquisition, int patch_count, const struct grid *patches,
                             enum precision precision);
+/* The window, or all of a patch. */
+struct pixel_window problem_window(const struct problem *problem, int patch);
 
 /* The recorded samples, read only. */
 struct echoes {
@@ -130,9 +141,10 @@ struct param {
 
 /* Promises that the conformance test checks. */
 enum trait {
-    TRAIT_EXACT = 1,         /* the image equals `reference` to 1e-8 in double */
-    TRAIT_ANY_TRACK = 2,     /* images any track in space, not only uniform straight ones */
-    TRAIT_APERTURE_LIMIT = 4 /* honours aperture_limit pixel by pixel */
+    TRAIT_EXACT = 1,          /* the image equals `reference` to 1e-8 in double */
+    TRAIT_ANY_TRACK = 2,      /* images any track in space, not only uniform straight ones */
+    TRAIT_APERTURE_LIMIT = 4, /* honours aperture_limit pixel by pixel */
+    TRAIT_WINDOW = 8          /* forms a window of an image, and `reads` says what it needs */
 };
 
 struct algorithm {
@@ -162,6 +174,8 @@ struct algorithm {
     enum status (*plan)(const struct problem *problem, const void *method, const void *options, void **plan);
     /* Echoes of the plan's acquisition and precision into an image of the plan's patches and precision. */
     enum status (*execute)(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
+    /* Set read[pings] where the plan reads a ping's records; those of others may hold anything. NULL: all. */
+    void (*reads)(const void *plan, bool *read);
     struct work (*work)(const void *plan); /* may take its time, to count what the timed plan need not know */
     void (*destroy)(void *plan);           /* destroy(NULL) does nothing */
 };

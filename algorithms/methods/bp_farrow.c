@@ -59,7 +59,7 @@ const struct algorithm bp_farrow = {
     .name = "bp_farrow",
     .summary = "back projection, polynomials between samples by Farrow branches",
     .reference = "Farrow, ISCAS 1988; Abramowitz and Stegun Eq. 10.1.47",
-    .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT,
+    .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT | TRAIT_WINDOW,
     .options_size = sizeof(struct options),
     .params = params,
     .method = &method,
@@ -68,6 +68,7 @@ const struct algorithm bp_farrow = {
     .forecast = bp_method_forecast,
     .plan = bp_method_plan,
     .execute = bp_execute,
+    .reads = bp_reads,
     .work = bp_work,
     .destroy = bp_destroy,
 };

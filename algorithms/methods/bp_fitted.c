@@ -65,7 +65,7 @@ const struct algorithm bp_fitted = {
     .name = "bp_fitted",
     .summary = "back projection, taps fitted to the band by least squares",
     .reference = "Oetken, Parks, Schuessler, IEEE Trans. ASSP 23 (1975)",
-    .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT,
+    .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT | TRAIT_WINDOW,
     .options_size = sizeof(struct options),
     .params = params,
     .method = &method,
@@ -73,6 +73,7 @@ const struct algorithm bp_fitted = {
     .forecast = bp_method_forecast,
     .plan = bp_method_plan,
     .execute = bp_execute,
+    .reads = bp_reads,
     .work = bp_work,
     .destroy = bp_destroy,
 };

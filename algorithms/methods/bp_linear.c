@@ -55,7 +55,7 @@ const struct algorithm bp_linear = {
     .name = "bp_linear",
     .summary = "back projection, linear upsampling by beta, then the nearest",
     .reference = "BP22 Eqs. (6)-(8)",
-    .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT,
+    .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT | TRAIT_WINDOW,
     .options_size = sizeof(struct options),
     .params = params,
     .method = &method,
@@ -63,6 +63,7 @@ const struct algorithm bp_linear = {
     .forecast = bp_method_forecast,
     .plan = bp_method_plan,
     .execute = bp_execute,
+    .reads = bp_reads,
     .work = bp_work,
     .destroy = bp_destroy,
 };

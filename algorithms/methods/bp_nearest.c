@@ -24,7 +24,7 @@ const struct algorithm bp_nearest = {
     .name = "bp_nearest",
     .summary = "back projection, nearest sample",
     .reference = "BP22 Eq. (8), ZP15",
-    .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT,
+    .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT | TRAIT_WINDOW,
     .options_size = sizeof(struct bp_options),
     .params = params,
     .method = &method,
@@ -32,6 +32,7 @@ const struct algorithm bp_nearest = {
     .forecast = bp_method_forecast,
     .plan = bp_method_plan,
     .execute = bp_execute,
+    .reads = bp_reads,
     .work = bp_work,
     .destroy = bp_destroy,
 };

@@ -63,7 +63,7 @@ const struct algorithm bp_sinc = {
     .name = "bp_sinc",
     .summary = "back projection, truncated sinc kernel",
     .reference = "BP22 section 4 (traditional BP), ZP15",
-    .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT,
+    .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT | TRAIT_WINDOW,
     .options_size = sizeof(struct options),
     .params = params,
     .method = &method,
@@ -71,6 +71,7 @@ const struct algorithm bp_sinc = {
     .forecast = bp_method_forecast,
     .plan = bp_method_plan,
     .execute = bp_execute,
+    .reads = bp_reads,
     .work = bp_work,
     .destroy = bp_destroy,
 };

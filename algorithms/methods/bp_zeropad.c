@@ -34,7 +34,7 @@ const struct algorithm bp_zeropad = {
     .name = "bp_zeropad",
     .summary = "back projection, zero padding in frequency by a factor, then the nearest",
     .reference = "ZP15 Eqs. (5)-(7)",
-    .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT,
+    .traits = TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT | TRAIT_WINDOW,
     .options_size = sizeof(struct options),
     .params = params,
     .method = &method,
@@ -42,6 +42,7 @@ const struct algorithm bp_zeropad = {
     .forecast = bp_method_forecast,
     .plan = bp_method_plan,
     .execute = bp_execute,
+    .reads = bp_reads,
     .work = bp_work,
     .destroy = bp_destroy,
 };

@@ -28,10 +28,11 @@ const struct algorithm reference = {
     .name = "reference",
     .summary = "exact band-limited back projection, slow; what errors are measured against",
     .reference = "BP22 Eqs. (1), (5); LBF21 Eq. (1)",
-    .traits = TRAIT_EXACT | TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT,
+    .traits = TRAIT_EXACT | TRAIT_ANY_TRACK | TRAIT_APERTURE_LIMIT | TRAIT_WINDOW,
     .method = &method,
     .plan = bp_method_plan,
     .execute = bp_execute,
+    .reads = bp_reads,
     .work = bp_work,
     .destroy = bp_destroy,
 };

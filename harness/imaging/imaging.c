@@ -6,7 +6,13 @@
 enum status imaging_open(const struct spec *spec, const struct problem *problem, struct imaging *imaging)
 {
     *imaging = (struct imaging){.algorithm = spec->algorithm};
-    enum status status = image_allocate(problem->patch_count, problem->patches, problem->precision, &imaging->image);
+    if (problem->window && !(problem->patch_count == 1 && spec->algorithm->traits & TRAIT_WINDOW))
+        return status_set(STATUS_UNSUPPORTED, "%s: forms no window of an image; back projection of one patch does",
+                          spec->algorithm->name);
+    if (problem->window)
+        imaging->part = grid_part(problem->patches, problem->window);
+    const struct grid *patches = problem->window ? &imaging->part : problem->patches;
+    enum status status = image_allocate(problem->patch_count, patches, problem->precision, &imaging->image);
     if (status == STATUS_OK) {
         double begin = seconds_now();
         status = algorithm_plan(spec->algorithm, problem, spec->options, &imaging->plan);
@@ -17,6 +23,14 @@ enum status imaging_open(const struct spec *spec, const struct problem *problem,
         *imaging = (struct imaging){0};
     }
     return status;
+}
+
+void imaging_reads(const struct imaging *imaging, const struct problem *problem, bool *read)
+{
+    for (int p = 0; p < problem->acquisition->pings; p++)
+        read[p] = true;
+    if (imaging->algorithm->reads)
+        imaging->algorithm->reads(imaging->plan, read);
 }
 
 enum status imaging_execute(struct imaging *imaging, const struct echoes *echoes, struct stages *stages)

@@ -9,7 +9,8 @@ struct imaging {
     const struct algorithm *algorithm;
     void *plan;
     double plan_s;      /* s, what the plan took */
-    struct image image; /* of the problem's patches and precision */
+    struct grid part;   /* of a problem's window */
+    struct image image; /* of the problem's patches, or of `part`, and of its precision */
 };
 
 /* Allocate the image, then plan. Spec, problem's patches and acquisition outlive the imaging. Errors: STATUS_FAILED
@@ -17,11 +18,14 @@ struct imaging {
    to close then. */
 enum status imaging_open(const struct spec *spec, const struct problem *problem, struct imaging *imaging);
 
+/* Set read[pings] where execute reads a ping's records. */
+void imaging_reads(const struct imaging *imaging, const struct problem *problem, bool *read);
+
 /* Execute once, and nothing else: what is timed. Errors: what execute returns. */
 enum status imaging_execute(struct imaging *imaging, const struct echoes *echoes, struct stages *stages);
 
 /* The finished image: checked, scaled by the echoes' exponent, handed over to the caller, who frees it with image_free;
-   the imaging has none from then on. Errors: STATUS_FAILED when a pixel is not finite or memory is missing,
+   the imaging has none from then on. Of a window, image->patches points into the imaging. Errors: STATUS_FAILED when a pixel is not finite or memory is missing,
    STATUS_INVALID when the scaled image is beyond the range of double; *image is then empty. */
 enum status imaging_finish(struct imaging *imaging, const struct echoes *echoes, struct image *image);
 

@@ -108,7 +108,8 @@ static void line_from_records(const struct factorised *plan, int subaperture, in
     const double quintics = budget_quintics(plan->bp.medium.phase_limit, plan->bp.problem.precision);
     for (int p = 0; p < part->pings; p++)
         scratch->boxes[p] = ping_box_make(&seen, p, 1, &grid, quintics);
-    const struct bp_lines lines = {&plan->bp, plan->sum, &seen, plan->normal, scratch->boxes, plan->rows, plan->layout};
+    const struct bp_lines lines = {&plan->bp,      plan->sum,  &seen,        plan->normal,
+                                   scratch->boxes, plan->rows, plan->layout, {0, 0}};
     bp_lines_add(&lines, &to.line, 0, part->pings * a->receivers, to.re, to.im);
     polar_line_end(plan, subaperture, view, &to);
 }
@@ -206,7 +207,7 @@ static void line_of_pixels(const struct factorised *plan, int subaperture, int p
     if (part->level > 0)
         return;
     const struct bp_lines lines = {&plan->bp,   plan->sum,  problem->acquisition, plan->normal,
-                                   plan->boxes, plan->rows, plan->layout};
+                                   plan->boxes, plan->rows, plan->layout,         {0, 0}};
     tree_direct(tree, subaperture, patch, &line, &spans);
     for (int k = 0; k < spans.count; k++) {
         const int begin = spans.span[k].begin;
@@ -276,9 +277,11 @@ enum status factorised_execute(struct factorised *plan, const struct echoes *ech
     progress_part(0, 1, tree->first[tree->settings.stages]);
     for (int n = tree->first[tree->settings.stages - 1]; n < tree->first[tree->settings.stages]; n++)
         subaperture_form(&forming, n);
-    for (int k = 0; k < tree->problem.patch_count; k++)
-        bp_lines_store(plan->bp.problem.precision, &tree->problem.patches[k], tree->along_x[k], plan->sums[k],
+    for (int k = 0; k < tree->problem.patch_count; k++) {
+        const struct pixel_window all = problem_window(&tree->problem, k);
+        bp_lines_store(plan->bp.problem.precision, &tree->problem.patches[k], tree->along_x[k], plan->sums[k], &all,
                        image->pixels[k]);
+    }
     stages_end(stages, "store");
     for (int n = 0; n < plan->threads; n++)
         outside += plan->scratch[n].outside;

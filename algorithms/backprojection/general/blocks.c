@@ -131,7 +131,8 @@ int blocks_make(const struct ping_box *box, const struct pixel_line *line, struc
         bool exact = most < BP_BLOCK_LEAST;
         int parts = exact ? 1 : (rest + most - 1) / most;
         int pixels = !exact ? (rest + parts - 1) / parts : box->reach > 0 && rest > EXACT ? EXACT : rest;
-        blocks[count++] = (struct bp_block){left->begin, left->begin + pixels, exact};
+        blocks[count++] =
+            (struct bp_block){left->begin, left->begin + pixels, exact, {left->begin, left->begin + pixels}};
         left->begin += pixels;
     }
     return count;

@@ -15,7 +15,9 @@ struct ping_box {
 /* Pixels [begin, end) of a line. */
 struct bp_block {
     int begin, end;
-    bool exact; /* too near the array: each delay is evaluated */
+    bool exact;             /* too near the array: each delay is evaluated */
+    struct pair_span shown; /* runs without any of these pixels may be left out, never a part of one: a pixel's bits
+                               depend on its place in the run */
 };
 enum { BP_BLOCKS = 16, BP_BLOCK_LEAST = 16 }; /* blocks made at a time; pixels below which a block does not pay */
 

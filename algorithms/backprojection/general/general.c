@@ -39,13 +39,13 @@ static enum status general_applicable(const struct bp *bp)
     return STATUS_OK;
 }
 
-static void general_destroy(void *state)
+static void general_destroy(struct bp *bp)
 {
-    struct general *general = state;
+    struct general *general = bp->state;
     if (!general)
         return;
     for (int k = 0; general->sums && k < general->patch_count; k++)
-        free(general->sums[k]);
+        bp_part_free(bp, general->sums[k]);
     free(general->sums);
     free(general->along_x);
     free(general->boxes);
@@ -198,13 +198,12 @@ static enum status general_plan(struct bp *bp)
         const struct ping_box *box = &general->boxes[a->pings / 2];
         size_t pixels = (size_t)grid->x_count * (size_t)grid->r_count;
         general->along_x[k] = lines_cost(box, grid, true, 1) < lines_cost(box, grid, false, 1);
-        general->sums[k] = malloc(2 * pixels * size);
+        general->sums[k] = bp_part_allocate(bp, 2 * pixels * size);
         if (!general->sums[k])
             return status_set(STATUS_FAILED, "no memory for the sums of %zu pixels", pixels);
     }
     bp->work.bytes += sizeof *general + general->batch * (double)row_bytes + (double)interleaved
-                      + (double)a->pings * (double)(sizeof *general->normal + sizeof *general->boxes)
-                      + problem_pixels(problem) * 2 * (double)size;
+                      + (double)a->pings * (double)(sizeof *general->normal + sizeof *general->boxes);
     return STATUS_OK;
 }
 
@@ -237,6 +236,13 @@ static int line_parts(const struct general *general, const struct grid *grid, bo
     return along_x ? 1 : (int)fmax(1, fmin(ceil(whole), grid->r_count / PART_LEAST));
 }
 
+/* Lines of a window, or pixels of each of them. */
+static struct pair_span window_span(const struct pixel_window *window, bool rows)
+{
+    const int first = rows ? window->row : window->column;
+    return (struct pair_span){first, first + (rows ? window->rows : window->columns)};
+}
+
 /* A part of `parts`, of one line of patch k. */
 struct line_part {
     int number, part, parts;
@@ -251,12 +257,36 @@ static void sum_part(const struct bp_lines *lines, int k, struct line_part of, s
     struct pixel_line line = grid_line(grid, general->along_x[k], of.number);
     const long long all = line.count;
     const int begin = (int)(all * of.part / of.parts), end = (int)(all * (of.part + 1) / of.parts);
+    const struct pixel_window window = problem_window(&lines->bp->problem, k);
+    const struct pair_span shown = window_span(&window, !general->along_x[k]);
+    if (shown.end <= begin || shown.begin >= end)
+        return;
+    struct bp_lines part = *lines;
+    part.shown = (struct pair_span){shown.begin - begin, shown.end - begin};
     const struct vector from = line_pixel(&line, begin);
     char *re = (char *)general->sums[k] + ((size_t)of.number * (size_t)line.count + (size_t)begin) * size;
     line.x_first = from.x;
     line.r_first = from.y;
     line.count = end - begin;
-    bp_lines_add(lines, &line, first, count, re, re + pixels * size);
+    bp_lines_add(&part, &line, first, count, re, re + pixels * size);
+}
+
+/* The sums that are stored. */
+static void sums_clear(const struct bp *bp, int k)
+{
+    const struct general *general = bp->state;
+    const struct grid *grid = &bp->problem.patches[k];
+    const struct pixel_window window = problem_window(&bp->problem, k);
+    const bool along_x = general->along_x[k];
+    const struct pair_span lines = window_span(&window, along_x), shown = window_span(&window, !along_x);
+    const size_t size = real_size(bp->problem.precision), count = (size_t)(along_x ? grid->x_count : grid->r_count);
+    const size_t pixels = (size_t)grid->x_count * (size_t)grid->r_count,
+                 bytes = (size_t)(shown.end - shown.begin) * size;
+    for (int n = lines.begin; n < lines.end; n++) {
+        char *re = (char *)general->sums[k] + ((size_t)n * count + (size_t)shown.begin) * size;
+        memset(re, 0, bytes);
+        memset(re + pixels * size, 0, bytes);
+    }
 }
 
 static void general_execute(struct bp *bp, const struct echoes *echoes, struct image *image, struct stages *stages)
@@ -266,10 +296,10 @@ static void general_execute(struct bp *bp, const struct echoes *echoes, struct i
     size_t pairs = (size_t)problem->acquisition->pings * (size_t)problem->acquisition->receivers;
     size_t size = real_size(problem->precision), scratch = 2 * bp_record_values(bp) * size;
     struct bp_lines lines = {
-        bp, general->sum, problem->acquisition, general->normal, general->boxes, general->rows, general->layout};
+        bp,    general->sum, problem->acquisition, general->normal, general->boxes, general->rows, general->layout,
+        {0, 0}};
     for (int k = 0; k < problem->patch_count; k++)
-        memset(general->sums[k], 0,
-               2 * (size_t)problem->patches[k].x_count * (size_t)problem->patches[k].r_count * size);
+        sums_clear(bp, k);
     for (size_t begin = 0, next; begin < pairs; begin = next) {
         next = batch_end(general, problem->acquisition, begin);
         size_t first = begin, end = next;
@@ -287,21 +317,25 @@ static void general_execute(struct bp *bp, const struct echoes *echoes, struct i
         const double share = (double)(next - begin) / (double)pairs / problem->patch_count;
         for (int k = 0; k < problem->patch_count; k++) {
             const struct grid *grid = &problem->patches[k];
-            const int numbers = grid_line_count(grid, general->along_x[k]);
+            const struct pixel_window window = problem_window(problem, k);
+            const struct pair_span shown = window_span(&window, general->along_x[k]);
+            const int numbers = shown.end - shown.begin;
             const int parts = line_parts(general, grid, general->along_x[k], general->layout.record * size);
             const double done = (double)begin / (double)pairs + share * k;
             progress_part(done, done + share, numbers * parts);
 #pragma omp parallel for schedule(dynamic)
             for (int n = 0; n < numbers * parts; n++) {
-                sum_part(&lines, k, (struct line_part){n % numbers, n / numbers, parts}, first, count);
+                sum_part(&lines, k, (struct line_part){shown.begin + n % numbers, n / numbers, parts}, first, count);
                 progress_step();
             }
         }
         stages_end(stages, "focus");
     }
-    for (int k = 0; k < problem->patch_count; k++)
-        bp_lines_store(problem->precision, &problem->patches[k], general->along_x[k], general->sums[k],
+    for (int k = 0; k < problem->patch_count; k++) {
+        const struct pixel_window window = problem_window(problem, k);
+        bp_lines_store(problem->precision, &problem->patches[k], general->along_x[k], general->sums[k], &window,
                        image->pixels[k]);
+    }
     stages_end(stages, "store");
 }
 

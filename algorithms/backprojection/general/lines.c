@@ -46,9 +46,18 @@ struct bp_layout bp_layout_make(enum precision precision, size_t length, int bra
 static void sum_span(const struct bp_lines *lines, const struct ping_box *box, const struct bp_pings *pings,
                      const struct pixel_line *line, struct pair_span within, void *re, void *im)
 {
+    const struct pair_span shown = lines->shown;
     struct bp_block blocks[BP_BLOCKS];
-    for (int count; (count = blocks_make(box, line, &within, blocks)) > 0;)
-        lines->sum(&lines->bp->medium, &lines->bp->table, pings, line, count, blocks, re, im);
+    for (int count; (count = blocks_make(box, line, &within, blocks)) > 0;) {
+        int kept = shown.end > 0 ? 0 : count;
+        for (int b = 0; b < count && shown.end > 0; b++)
+            if (blocks[b].begin < shown.end && blocks[b].end > shown.begin) {
+                blocks[kept] = blocks[b];
+                blocks[kept++].shown = shown;
+            }
+        if (kept > 0)
+            lines->sum(&lines->bp->medium, &lines->bp->table, pings, line, kept, blocks, re, im);
+    }
 }
 
 /* Is the delay of every pixel of `within` inside every receiver's record that begins at t0, by the least and the
@@ -176,15 +185,17 @@ void bp_lines_add(const struct bp_lines *lines, const struct pixel_line *line, s
         waiting_add(lines, &to, &waiting);
 }
 
-void bp_lines_store(enum precision precision, const struct grid *grid, bool along_x, const void *sums, void *pixels)
+void bp_lines_store(enum precision precision, const struct grid *grid, bool along_x, const void *sums,
+                    const struct pixel_window *window, void *pixels)
 {
     size_t nx = (size_t)grid->x_count, nr = (size_t)grid->r_count, count = nx * nr;
+    size_t first_row = (size_t)window->row, first_column = (size_t)window->column, columns = (size_t)window->columns;
     size_t row = along_x ? nx : 1, column = along_x ? 1 : nr;
     bool is_double = precision == PRECISION_DOUBLE;
 #pragma omp parallel for schedule(static)
-    for (size_t i = 0; i < nr; i++)
-        for (size_t j = 0; j < nx; j++) {
-            size_t from = i * row + j * column, to = 2 * (i * nx + j);
+    for (size_t i = 0; i < (size_t)window->rows; i++)
+        for (size_t j = 0; j < columns; j++) {
+            size_t from = (first_row + i) * row + (first_column + j) * column, to = 2 * (i * columns + j);
             if (is_double) {
                 ((double *)pixels)[to] = ((const double *)sums)[from];
                 ((double *)pixels)[to + 1] = ((const double *)sums)[count + from];

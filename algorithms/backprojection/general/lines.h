@@ -30,17 +30,18 @@ struct bp_lines {
     const struct ping_box *boxes;          /* [pings] */
     const void *rows;                      /* of record `first` and those behind it */
     struct bp_layout layout;
+    struct pair_span
+        shown; /* pixels of a line that are wanted; others near them may be added to as well. {0, 0}: all */
 };
-
-/* How many neighbouring pings are summed together at the most, the first a multiple of so many. */
-int bp_pings_joined(const struct acquisition *acquisition);
 
 /* Add records [first, first + count) to the pixels of a line that lie inside their times and inside the aperture limit:
    re[i], im[i] of pixel i. */
 void bp_lines_add(const struct bp_lines *lines, const struct pixel_line *line, size_t first, int count, void *re,
                   void *im);
 
-/* Planar sums of a patch, all re and then all im, real [lines][pixels of a line], into its pixels, complex [r][x]. */
-void bp_lines_store(enum precision precision, const struct grid *grid, bool along_x, const void *sums, void *pixels);
+/* Planar sums of a patch, all re and then all im, real [lines][pixels of a line], into the pixels of a window, complex
+   [rows][columns]. */
+void bp_lines_store(enum precision precision, const struct grid *grid, bool along_x, const void *sums,
+                    const struct pixel_window *window, void *pixels);
 
 #endif

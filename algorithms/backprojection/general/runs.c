@@ -357,6 +357,8 @@ void BP_RUNS(const struct receiver_group *group, const struct bp_block *block, d
 #endif
     for (int first = block->begin, count; first < block->end; first += count) {
         count = block->end - first < longest ? block->end - first : longest;
+        if (first >= block->shown.end || first + count <= block->shown.begin)
+            continue;
 #if WINDOWS
         if (flat)
             runs_flat(group, c, first - middle + 0.5 * (count - 1), count, runs);

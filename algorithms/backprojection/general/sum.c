@@ -87,8 +87,9 @@ struct line_sum {
     real *re, *im; /* of the line's pixel 0 */
 };
 
-/* Every delay of pixels [begin, end) evaluated. */
-static void sum_exact(const struct line_sum *sum, const struct bp_ping *ping, int begin, int end)
+/* Every delay of pixels [begin, end) evaluated, of those that are shown at least. */
+static void sum_exact(const struct line_sum *sum, const struct bp_ping *ping, int begin, int end,
+                      struct pair_span shown)
 {
     const struct bp_medium *medium = sum->medium;
     const struct bp_table *table = sum->table;
@@ -103,6 +104,8 @@ static void sum_exact(const struct line_sum *sum, const struct bp_ping *ping, in
     run.base = 0;
     for (int first = begin; first < end; first += RUN_PIXELS) {
         const int count = end - first < RUN_PIXELS ? end - first : RUN_PIXELS;
+        if (first >= shown.end || first + count <= shown.begin)
+            continue;
         places.count = count;
         for (int i = 0; i < count; i++) {
             struct vector p = line_pixel(sum->line, first + i);
@@ -145,7 +148,7 @@ static void sum_block_exact(const struct line_sum *sum, const struct bp_pings *p
     for (int p = 0; p < pings->count; p++) {
         const struct pair_span within = pings->ping[p].within;
         sum_exact(sum, &pings->ping[p], block->begin > within.begin ? block->begin : within.begin,
-                  block->end < within.end ? block->end : within.end);
+                  block->end < within.end ? block->end : within.end, block->shown);
     }
 }
 

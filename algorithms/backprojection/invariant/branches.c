@@ -86,7 +86,8 @@ INLINE void sum_branches(int branches, const struct chunk *shared)
     const int columns = chunk->raster->residue_columns, vectors = (columns + LANES - 1) / LANES;
     const int parts = (vectors + BLOCK_VECTORS - 1) / BLOCK_VECTORS, width = (vectors + parts - 1) / parts * LANES;
     for (int j = 0; j < columns; j += width)
-        sum_block(branches, chunk, scratch, j, columns < j + width ? columns : j + width);
+        if (j < chunk->raster->shown.end && j + width > chunk->raster->shown.begin)
+            sum_block(branches, chunk, scratch, j, columns < j + width ? columns : j + width);
 }
 
 /* Of each count of branches a function of its own. */

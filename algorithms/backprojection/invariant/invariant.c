@@ -117,11 +117,12 @@ static void sum_rows(const struct bp *bp, int k, int first, int count)
     const struct invariant *in = bp->state;
     const struct grid *grid = &bp->problem.patches[k];
     size_t size = real_size(bp->problem.precision), values = row_values(in, k), half = values * (size_t)grid->r_count;
+    const struct pixel_window window = problem_window(&bp->problem, k);
     struct bp_slab slab = in->slab;
     slab.re = in->slab_re;
     slab.im = in->slab_im;
 #pragma omp parallel for schedule(dynamic, ROWS_SUMMED)
-    for (int i = 0; i < grid->r_count; i++) {
+    for (int i = window.row; i < window.row + window.rows; i++) {
         char *re = (char *)in->sums[k] + (size_t)i * values * size;
         const struct bp_row row = {.medium = &bp->medium,
                                    .table = &bp->table,
@@ -139,18 +140,36 @@ static void sum_rows(const struct bp *bp, int k, int first, int count)
     }
 }
 
+/* The sums that are stored. */
+static void sums_clear(const struct bp *bp, int k)
+{
+    const struct invariant *in = bp->state;
+    const struct bp_raster *raster = &in->rasters[k];
+    const struct pixel_window window = problem_window(&bp->problem, k);
+    const size_t size = real_size(bp->problem.precision), values = row_values(in, k), stride = (size_t)in->strides[k];
+    const size_t half = values * (size_t)bp->problem.patches[k].r_count, shown = (size_t)raster->shown.begin;
+    const size_t bytes = ((size_t)raster->shown.end - shown) * size;
+    for (size_t i = (size_t)window.row; i < (size_t)(window.row + window.rows); i++)
+        for (size_t at = i * values; at < (i + 1) * values; at += stride) {
+            memset((char *)in->sums[k] + (at + shown) * size, 0, bytes);
+            memset((char *)in->sums[k] + (half + at + shown) * size, 0, bytes);
+        }
+}
+
 /* The sums [r][rho][j] into the pixels [r][rho + ratio j]. */
 static void store(const struct bp *bp, int k, void *pixels)
 {
     const struct invariant *in = bp->state;
     const struct grid *grid = &bp->problem.patches[k];
-    size_t values = row_values(in, k), half = values * (size_t)grid->r_count, nx = (size_t)grid->x_count;
+    const struct pixel_window window = problem_window(&bp->problem, k);
+    size_t values = row_values(in, k), half = values * (size_t)grid->r_count, columns = (size_t)window.columns;
     size_t ratio = (size_t)in->rasters[k].ratio, stride = (size_t)in->strides[k];
     bool is_double = bp->problem.precision == PRECISION_DOUBLE;
 #pragma omp parallel for schedule(static)
-    for (size_t i = 0; i < (size_t)grid->r_count; i++)
-        for (size_t n = 0; n < nx; n++) {
-            size_t from = i * values + n % ratio * stride + n / ratio, to = 2 * (i * nx + n);
+    for (size_t i = 0; i < (size_t)window.rows; i++)
+        for (size_t j = 0; j < columns; j++) {
+            size_t n = (size_t)window.column + j, to = 2 * (i * columns + j);
+            size_t from = ((size_t)window.row + i) * values + n % ratio * stride + n / ratio;
             if (is_double) {
                 ((double *)pixels)[to] = ((const double *)in->sums[k])[from];
                 ((double *)pixels)[to + 1] = ((const double *)in->sums[k])[half + from];
@@ -167,9 +186,11 @@ static void invariant_execute(struct bp *bp, const struct echoes *echoes, struct
     int receivers = bp->problem.acquisition->receivers;
     size_t size = real_size(bp->problem.precision), slab = (size_t)in->receivers * in->slab.receiver_stride * size;
     for (int k = 0; k < in->patch_count; k++)
-        memset(in->sums[k], 0, 2 * row_values(in, k) * (size_t)bp->problem.patches[k].r_count * size);
-    memset(in->slab_re, 0, slab); /* the lead and the end of each row stay zero */
-    memset(in->slab_im, 0, slab);
+        sums_clear(bp, k);
+    if (!bp->problem.window) {        /* whose memory is zero where it is not used */
+        memset(in->slab_re, 0, slab); /* the lead and the end of each row stay zero */
+        memset(in->slab_im, 0, slab);
+    }
     stages_end(stages, "clear");
     for (int first = 0; first < receivers; first += in->receivers) {
         int count = receivers - first < in->receivers ? receivers - first : in->receivers;
@@ -181,7 +202,7 @@ static void invariant_execute(struct bp *bp, const struct echoes *echoes, struct
                          done = first / in->receivers * in->passes + pass;
             for (int k = 0; k < in->patch_count; k++) {
                 const double sums = passes * in->patch_count, sum = done * in->patch_count + k;
-                progress_part(sum / sums, (sum + 1) / sums, bp->problem.patches[k].r_count);
+                progress_part(sum / sums, (sum + 1) / sums, problem_window(&bp->problem, k).rows);
                 sum_rows(bp, k, first, count);
             }
             stages_end(stages, "focus");

@@ -342,11 +342,10 @@ static enum status plan_track(struct bp *bp, const struct straight_track *track)
 /* How long pieces may be; a phase is counted from a piece's middle on, whose cycles fit 18 bits. */
 static void pieces_plan(const struct bp *bp, struct bp_raster *raster)
 {
-    const struct invariant *in = bp->state;
     const struct bp_medium *medium = &bp->medium;
     const double c = medium->sound_speed, mach = fabs(raster->speed) / c, frequency = fmax(medium->fc, medium->fs);
     const double limit = budget_pieces(medium->phase_limit, bp->problem.precision);
-    raster->fit = &in->fit;
+    raster->fit = &((const struct invariant *)bp->state)->fit;
     raster->longest = 0x1p17 * (1 - mach) * c / frequency;
     raster->reach = limit > 0 && mach <= BP_SLOW ? piece_reach(mach, limit * c / (2 * M_PI * frequency)) : 0;
 }
@@ -363,9 +362,10 @@ static enum status plan_patch(struct bp *bp, const struct straight_track *track,
     /* Sums of branches are read and written for each shift: no vector of them crosses a cache line. */
     in->strides[k] = round_up(raster->residue_columns + BP_LANES_MOST, bp->table.branches > 1 ? BP_LANES_MOST : 8);
     const size_t residues = (size_t)raster_residues(raster);
-    in->sums[k] =
-        allocate(2 * (size_t)grid->r_count * residues * (size_t)in->strides[k] * real_size(bp->problem.precision),
-                 &bp->work.bytes);
+    const struct pixel_window w = problem_window(&bp->problem, k);
+    raster->shown = (struct pair_span){w.column / raster->ratio, (w.column + w.columns - 1) / raster->ratio + 1};
+    in->sums[k] = bp_part_allocate(bp, 2 * (size_t)grid->r_count * residues * (size_t)in->strides[k]
+                                           * real_size(bp->problem.precision));
     if (!in->sums[k])
         return status_set(STATUS_FAILED, "no memory for the sums of %d x %d pixels", grid->x_count, grid->r_count);
     const size_t shifts = (size_t)BP_ENTRIES(raster->pings + raster->residue_columns);
@@ -395,8 +395,8 @@ static enum status plan_memory(struct bp *bp, const struct lengths *lengths)
     struct arena arena = {NULL, 0};
     scratch_take(&arena, lengths, size);
     const size_t per_thread = arena.used;
-    in->slab_re = allocate(values * size, bytes);
-    in->slab_im = allocate(values * size, bytes);
+    in->slab_re = bp_part_allocate(bp, values * size);
+    in->slab_im = bp_part_allocate(bp, values * size);
     in->tile_bytes = (tile + 63) / 64 * 64;
     in->tiles = allocate(threads * in->tile_bytes, &ignored);
     in->tables = allocate(threads * per_thread, &ignored);
@@ -430,20 +430,20 @@ enum status invariant_plan(struct bp *bp)
     plan_slab(bp, lengths.samples);
     return plan_memory(bp, &lengths);
 }
-void invariant_destroy(void *state)
+void invariant_destroy(struct bp *bp)
 {
-    struct invariant *in = state;
+    struct invariant *in = bp->state;
     if (!in)
         return;
     for (int k = 0; in->sums && k < in->patch_count; k++)
-        free(in->sums[k]);
+        bp_part_free(bp, in->sums[k]);
     free(in->sums);
     free(in->strides);
     free(in->tables);
     free(in->scratch);
     free(in->tiles);
-    free(in->slab_im);
-    free(in->slab_re);
+    bp_part_free(bp, in->slab_im);
+    bp_part_free(bp, in->slab_re);
     free(in->offsets);
     free(in->rasters);
     free(in);

@@ -35,6 +35,6 @@ struct invariant {
 enum status invariant_applicable(const struct bp *bp);
 double invariant_units(const struct bp *bp, double *residues);
 enum status invariant_plan(struct bp *bp);
-void invariant_destroy(void *state);
+void invariant_destroy(struct bp *bp);
 
 #endif

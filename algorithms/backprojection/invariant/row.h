@@ -143,6 +143,7 @@ struct bp_raster {
     double grid_first, grid_step; /* m */
     int columns;                  /* of the grid */
     int residue_columns;          /* of one residue at the most: ceil(columns/ratio) */
+    struct pair_span shown;       /* of a residue's columns, those that are wanted: blocks without any are left out */
     double limit;                 /* aperture limit */
     int together; /* residues summed together at most, 2 for up to two taps, 1 for the nearest fine step */
     const struct piece_fit *fit;

@@ -302,6 +302,8 @@ static void sum_columns(const struct kernel *kernel, struct chunk *chunk)
         const int left = (columns - j + LANES - 1) / LANES, parts = (left + widest - 1) / widest;
         width = (left + parts - 1) / parts;
         const int last = columns < j + width * LANES ? columns : j + width * LANES;
+        if (last <= chunk->raster->shown.begin || j >= chunk->raster->shown.end)
+            continue;
         const int stop = most < pings - j ? most : pings - j;
         for (int s = least > 1 - last ? least : 1 - last; s < stop; s = chunk->to) {
             struct region region = {j, width, stop};
@@ -319,8 +321,9 @@ static void sum_columns(const struct kernel *kernel, struct chunk *chunk)
 INLINE void sum_entry(const struct chunk *chunk, int taps, int residue, int entry, const real *wr, const real *wi)
 {
     const int shift = chunk->shift[entry], offset = chunk->scratch->offset[entry];
-    const int stride = chunk->slab->ping_stride, pings = chunk->raster->pings, columns = chunk->raster->residue_columns;
-    const int begin = shift < 0 ? -shift / LANES * LANES : 0, end = pings - shift < columns ? pings - shift : columns;
+    const int stride = chunk->slab->ping_stride, pings = chunk->raster->pings, columns = chunk->raster->shown.end;
+    const int low = -shift > chunk->raster->shown.begin ? -shift : chunk->raster->shown.begin;
+    const int begin = low / LANES * LANES, end = pings - shift < columns ? pings - shift : columns;
     const real *sr = chunk->sr + offset, *si = chunk->si + offset;
     real *re = chunk->re + (size_t)residue * chunk->stride, *im = chunk->im + (size_t)residue * chunk->stride;
     for (int j = begin; j < end; j += LANES) {

@@ -1,0 +1,80 @@
+/* The part of a problem that a window asks for: its records, and memory of which it needs a part (bp_engine.h). */
+#include <stdlib.h>
+
+#include "backprojection/bp_engine.h"
+#include "backprojection/pairs/pairs.h"
+#include "common/memory.h"
+
+void *bp_part_allocate(struct bp *bp, size_t bytes)
+{
+    bp->work.bytes += (double)bytes;
+    return bp->problem.window ? memory_sparse(bytes) : memory_aligned(64, bytes);
+}
+
+void bp_part_free(const struct bp *bp, void *memory)
+{
+    (bp->problem.window ? memory_sparse_free : free)(memory);
+}
+
+struct problem bp_wanted(const struct bp *bp, struct grid *part)
+{
+    struct problem wanted = bp->problem;
+    if (wanted.window) {
+        *part = grid_part(wanted.patches, wanted.window);
+        wanted.patches = part;
+        wanted.window = NULL;
+    }
+    return wanted;
+}
+
+/* Pings that may be summed together are read together. */
+enum status bp_met_narrow(struct bp *bp)
+{
+    struct grid part;
+    const struct problem wanted = bp_wanted(bp, &part);
+    const int pings = wanted.acquisition->pings, joined = bp_pings_joined(wanted.acquisition);
+    if (!bp->met)
+        bp->met = malloc((size_t)pings * sizeof *bp->met);
+    bool *met = malloc((size_t)pings * sizeof *met);
+    if (bp->met && met) {
+        pings_met(&wanted, met);
+        for (int p = 0; p < pings; p++) {
+            const int first = p - p % joined;
+            bp->met[p] = false;
+            for (int k = first; k < first + joined && k < pings; k++)
+                bp->met[p] |= met[k];
+        }
+    }
+    free(met);
+    return bp->met && met ? STATUS_OK : status_set(STATUS_FAILED, "no memory for %d pings", pings);
+}
+
+enum status bp_met_find(struct bp *bp)
+{
+    const int pings = bp->problem.acquisition->pings;
+    bp->met = malloc((size_t)pings * sizeof *bp->met);
+    if (!bp->met)
+        return status_set(STATUS_FAILED, "no memory for %d pings", pings);
+    if (pings_met(&bp->problem, bp->met) < pings) {
+        bp->work.bytes += (double)pings * sizeof *bp->met;
+    } else {
+        free(bp->met);
+        bp->met = NULL;
+    }
+    return STATUS_OK;
+}
+
+int bp_met_count(const struct bp *bp)
+{
+    int count = 0;
+    for (int p = 0; p < bp->problem.acquisition->pings; p++)
+        count += bp_met(bp, p);
+    return count;
+}
+
+void bp_reads(const void *plan, bool *read)
+{
+    const struct bp *bp = plan;
+    for (int p = 0; p < bp->problem.acquisition->pings; p++)
+        read[p] = bp_met(bp, p);
+}
