@@ -182,6 +182,9 @@ static enum status check_usage(const struct task *task)
     if (task->range && !output_is_picture(task->output))
         return status_set(STATUS_INVALID, "image: --range %s applies to pictures; -o FILE.png or FILE.svg is needed",
                           task->range);
+    if (task->tile && (output_is_picture(task->output) || task->verify))
+        return status_set(STATUS_INVALID, "image: --tile %s fills a file of numbers: -o FILE.mat, without --verify",
+                          task->tile);
     return output_is_picture(task->output) ? picture_check("image", task->output) : output_check("image", task->output);
 }
 
@@ -257,6 +260,11 @@ enum status command_image(const struct task *task)
         return status;
     warn(&task->specs[0], &scene);
     origin_fill(task, &scene, &origin);
+    if (task->tile) {
+        status = image_tiles(task, &scene, &origin);
+        scene_free(&scene);
+        return status;
+    }
     status = form_image(&task->specs[0], &scene, task->verify, &image, &origin, &seconds);
     progress_line_clear();
     if (status == STATUS_OK) {

@@ -1,9 +1,10 @@
 /* The commands `list` and `info`: what the algorithm tables say of themselves. */
 #include <stdio.h>
+#include <string.h>
 #include <unistd.h>
 
 #include "command/task.h"
-#include "echoes/matfile.h"
+#include "echoes/mat_tiles.h"
 #include "show/table.h"
 #include "command/inspect.h"
 
@@ -73,6 +74,11 @@ static enum status file_info(const char *path)
     printf("%s: an image%s%s%s%s%s%s%s\n", path, *o->scene ? " of " : "", o->scene, *o->algorithm ? " by " : "",
            o->algorithm, *o->options ? ":" : "", o->options, origin_choice(o).text);
     origin_print(o);
+    int done, count;
+    if (tiles_claimed(path, &done, &count))
+        printf("  unfinished: %d of %d tiles are done, the others are zero\n", done, count);
+    else if (strncmp(o->status, "unfinished", strlen("unfinished")) == 0)
+        printf("  unfinished, and the journal of its tiles, %s" TILES_JOURNAL ", is not there\n", path);
     image_describe(&file.image);
     image_file_close(&file);
     return STATUS_OK;

@@ -59,8 +59,9 @@ static const struct command commands[] = {
      false},
     {"image", "form one image",
      "(--scene SCENE | --echoes FILE.mat --grid GRID) --algorithm SPEC -o (FILE.mat | FILE.png) [--range DB] "
-     "[--verify]",
-     "form one image, as numbers or as a picture", "oseagtRW", 0, 0, command_image, false},
+     "[--verify] [--tile NxM]",
+     "form one image, as numbers or as a picture; with --tile it continues where it was ended", "oseagtRWI", 0, 0,
+     command_image, false},
     {"show", "draw an image file", "FILE.mat [-o FILE.png] [--range DB]",
      "draw an image file; the picture is beside it, or at -o", "oR", 1, 1, command_show, false},
     {"score", "measure an image that another program formed",
@@ -109,6 +110,7 @@ static const struct option long_options[] = {
     {"markdown", required_argument, NULL, 'M'},
     {"json", required_argument, NULL, 'J'},
     {"range", required_argument, NULL, 'R'},
+    {"tile", required_argument, NULL, 'I'},
     {"error", required_argument, NULL, 'E'},
     {"memory", required_argument, NULL, 'Y'},
     {"seed", required_argument, NULL, 'S'},
@@ -135,6 +137,7 @@ static const struct {
     {'g', "-g, --grid GRID       xmin:xstep:xcount,rmin:rstep:rcount[,angle] (m, degrees)"},
     {'t', "-t, --threads N       OpenMP threads, 1 to 1024"},
     {'R', "    --range DB        range of a picture below its peak, 60 dB unless given"},
+    {'I', "    --tile NxM        pixels along x and r that are formed, and put into the file, at a time"},
     {'P', "    --precision WHICH float or double; both unless given, or stated by a SPEC"},
     {'E', "    --error E         of the image after one gain (L2), 1e-3 unless given"},
     {'Y', "    --memory BYTES    of the image's process, at most; 4G unless given (512MiB)"},
@@ -260,10 +263,10 @@ static enum status parse(const struct command *command, int argc, char **argv, s
     const struct {
         int letter;
         const char **field;
-    } texts[] = {{'o', &task->output}, {'s', &task->scene},    {'e', &task->echoes},   {'g', &task->grid},
-                 {'A', &task->at},     {'M', &task->markdown}, {'J', &task->json},     {'t', &threads},
-                 {'R', &task->range},  {'E', &task->error},    {'Y', &task->memory},   {'S', &task->seed},
-                 {'N', &task->name},   {'K', &task->seconds},  {'P', &task->precision}};
+    } texts[] = {{'o', &task->output}, {'s', &task->scene},    {'e', &task->echoes},    {'g', &task->grid},
+                 {'A', &task->at},     {'M', &task->markdown}, {'J', &task->json},      {'t', &threads},
+                 {'R', &task->range},  {'E', &task->error},    {'Y', &task->memory},    {'S', &task->seed},
+                 {'N', &task->name},   {'K', &task->seconds},  {'P', &task->precision}, {'I', &task->tile}};
     enum status status = STATUS_OK;
     opterr = 0;
     for (int letter;

@@ -11,7 +11,7 @@ struct task {
     const char *const *names; /* [name_count] what stands without an option: scenes, an algorithm */
     int name_count;
     const char *output, *scene, *echoes, *grid, *at, *markdown, *json, *range, *precision, *error, *memory, *seed,
-        *name, *seconds;
+        *name, *seconds, *tile;
     bool ab, quick, all, flops, verify;
     int spec_count;
     struct spec *specs; /* [spec_count] of --algorithm */
@@ -56,6 +56,9 @@ enum status command_list(const struct task *task);
 enum status command_info(const struct task *task);
 enum status command_simulate(const struct task *task);
 enum status command_image(const struct task *task);
+/* `image --tile`: what is left of a file that is filled tile by tile. */
+struct image_origin;
+enum status image_tiles(const struct task *task, const struct scene *scene, const struct image_origin *origin);
 enum status command_filter(const struct task *task);
 enum status command_score(const struct task *task);
 enum status command_show(const struct task *task);

@@ -40,6 +40,16 @@ static const char *patch_name(const char *name, int patch, char *text, size_t si
     return text;
 }
 
+void image_axes_write(struct writer *writer, const struct grid *grid, int patch)
+{
+    char text[32];
+    write_axis(writer, patch_name("x", patch, text, sizeof text), grid->x_first, grid->x_step, grid->x_count);
+    write_axis(writer, patch_name("r", patch, text, sizeof text), grid->r_first, grid->r_step, grid->r_count);
+    if (grid->angle_rad != 0) {
+        write_reals(writer, patch_name("angle", patch, text, sizeof text), 1, 1, 1, &grid->angle_rad);
+    }
+}
+
 /* What a file says of itself, each a text or a number of struct image_origin. */
 static const struct {
     struct wanted wanted;
@@ -52,19 +62,21 @@ static const struct {
     {{"scene_hash", KIND_TEXT, true, "a text"}, offsetof(struct image_origin, scene_hash)},
     {{"commit", KIND_TEXT, true, "a text"}, offsetof(struct image_origin, commit)},
     {{"date", KIND_TEXT, true, "a text"}, offsetof(struct image_origin, date)},
+    {{"status", KIND_TEXT, true, "a text"}, offsetof(struct image_origin, status)},
     {{"fc", KIND_SCALAR, true, "a scalar in Hz"}, offsetof(struct image_origin, fc)},
     {{"sound_speed", KIND_SCALAR, true, "a scalar in m/s"}, offsetof(struct image_origin, sound_speed)},
 };
 enum { SAYINGS = sizeof sayings / sizeof *sayings };
 
-static void sayings_write(struct writer *writer, const struct image_origin *origin)
+void image_sayings_write(struct writer *writer, const struct image_origin *origin)
 {
     for (int k = 0; k < SAYINGS; k++) {
         const char *field = (const char *)origin + sayings[k].offset;
         const double *number = (const void *)field;
-        if (sayings[k].wanted.kind == KIND_TEXT) {
+        const bool is_text = sayings[k].wanted.kind == KIND_TEXT;
+        if (is_text && *field) {
             write_text(writer, sayings[k].wanted.name, field);
-        } else if (!isnan(*number)) {
+        } else if (!is_text && !isnan(*number)) {
             write_reals(writer, sayings[k].wanted.name, 1, 1, 1, number);
         }
     }
@@ -88,13 +100,9 @@ enum status image_file_write(const char *path, const struct image *image, const 
         char text[32];
         write_complex(&writer, patch_name("image", k, text, sizeof text), (size_t[]){rows, columns, 1},
                       image->precision, image->pixels[k], rows, columns);
-        write_axis(&writer, patch_name("x", k, text, sizeof text), grid->x_first, grid->x_step, grid->x_count);
-        write_axis(&writer, patch_name("r", k, text, sizeof text), grid->r_first, grid->r_step, grid->r_count);
-        if (grid->angle_rad != 0) {
-            write_reals(&writer, patch_name("angle", k, text, sizeof text), 1, 1, 1, &grid->angle_rad);
-        }
+        image_axes_write(&writer, grid, k);
     }
-    sayings_write(&writer, origin);
+    image_sayings_write(&writer, origin);
     return writer_close(&writer);
 }
 

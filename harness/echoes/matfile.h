@@ -22,6 +22,7 @@ struct image_origin {
     char algorithm[260], options[260], scene[260];
     char engine[260]; /* what the plan chose, as the column `engine`: of `auto` the setting */
     char scene_hash[260], commit[260], date[260];
+    char status[260];       /* of a file that is filled tile by tile (mat_tiles.h): "unfinished", "whole" */
     double fc, sound_speed; /* Hz, m/s */
 };
 

@@ -95,6 +95,9 @@ struct writer {
     struct _mat_t *mat;
     int count; /* variables written */
     enum status status;
+    /* What is added when libmatio has closed the file, before it gets its place; false: errno says why. NULL: none. */
+    bool (*add)(const char *path, void *with);
+    void *with;
 };
 
 /* Both return the writer's status. Errors: STATUS_INVALID when the place cannot be written, STATUS_FAILED without
@@ -108,5 +111,10 @@ void write_reals(struct writer *writer, const char *name, size_t rows, size_t co
 /* Complex numbers, in memory row by row [rows][columns], as MATLAB's array `dims`, column by column. */
 void write_complex(struct writer *writer, const char *name, const size_t dims[3], enum precision precision,
                    const void *values, size_t rows, size_t columns);
+
+/* Of an image file, all but pixels: a patch's axes, and what is said of the image. */
+struct image_origin;
+void image_axes_write(struct writer *writer, const struct grid *grid, int patch);
+void image_sayings_write(struct writer *writer, const struct image_origin *origin);
 
 #endif

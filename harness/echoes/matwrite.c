@@ -64,13 +64,16 @@ enum status writer_open(struct writer *writer, const char *path, size_t largest_
         place_close(&writer->place);
         return writer->status;
     }
+    bool fits_v5 = largest_variable_bytes < ((size_t)1 << 31) - 4096;
+    const bool named = !fits_v5 && place_name(&writer->place, &writer->made); /* HDF5 opens no file without a name */
     /* libmatio opens by name what is there already. */
-    snprintf(writer->temporary, sizeof writer->temporary, "/proc/self/fd/%d", writer->made.descriptor);
+    snprintf(writer->temporary, sizeof writer->temporary, "/proc/self/fd/%d%s%s",
+             named ? writer->place.folder : writer->made.descriptor, named ? "/" : "", named ? writer->made.name : "");
     matio_silence();
     H5dont_atexit(); /* its exit handler crashes after a full disk */
-    bool fits_v5 = largest_variable_bytes < ((size_t)1 << 31) - 4096;
     errno = 0;
-    writer->mat = Mat_CreateVer(writer->temporary, NULL, fits_v5 ? MAT_FT_MAT5 : MAT_FT_MAT73);
+    writer->mat =
+        fits_v5 != named ? Mat_CreateVer(writer->temporary, NULL, fits_v5 ? MAT_FT_MAT5 : MAT_FT_MAT73) : NULL;
     if (!writer->mat) {
         write_failed(writer);
         writer_end(writer);
@@ -147,6 +150,9 @@ enum status writer_close(struct writer *writer)
         errno = ENOSPC;
         write_failed(writer);
     }
+    errno = 0;
+    if (writer->status == STATUS_OK && writer->add && !writer->add(writer->temporary, writer->with))
+        write_failed(writer);
     if (writer->status == STATUS_OK
         && !(place_sync(writer->made.descriptor) && place_put(&writer->place, &writer->made)))
         write_failed(writer);

@@ -168,14 +168,18 @@ bool place_make(const struct place *place, struct made *made)
     return made->descriptor >= 0;
 }
 
+bool place_name(const struct place *place, struct made *made)
+{
+    return *made->name || name_make(place->folder, made, name_link) == 0;
+}
+
 /* No signal comes between the two names. */
 bool place_put(const struct place *place, struct made *made)
 {
     sigset_t all, before;
     sigfillset(&all);
     pthread_sigmask(SIG_BLOCK, &all, &before);
-    const bool named = *made->name || name_make(place->folder, made, name_link) == 0;
-    const bool put = named && renameat(place->folder, made->name, place->folder, place->name) == 0;
+    const bool put = place_name(place, made) && renameat(place->folder, made->name, place->folder, place->name) == 0;
     if (put)
         *made->name = '\0';
     place_drop(place, made);

@@ -40,6 +40,8 @@ struct made {
 };
 /* An empty file, open for writing, in the place's folder. False: errno says why. */
 bool place_make(const struct place *place, struct made *made);
+/* Let it have such a name, for a library that takes no file without one. False: errno says why. */
+bool place_name(const struct place *place, struct made *made);
 /* Give it its name, which outlasts a power cut when this is true, and close it. */
 bool place_put(const struct place *place, struct made *made);
 /* Drop it; errno stays. Accepts one that is put, or was not made. */

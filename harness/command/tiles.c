@@ -1,0 +1,118 @@
+/* `image --tile`: an image formed tile by tile into a file that keeps what is done (echoes/mat_tiles.h). */
+#include <inttypes.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "choice/choice.h"
+#include "command/task.h"
+#include "echoes/echo_data.h"
+#include "echoes/mat_tiles.h"
+#include "imaging/imaging.h"
+#include "run/progress_line.h"
+#include "scene/simulate.h"
+#include "show/table.h"
+#include "text/number.h"
+
+/* "512x4096": pixels along x and r. */
+static enum status tile_parse(const char *text, struct tiles *tiles)
+{
+    long long columns, rows;
+    const char *end = whole_read(text, 1, INT_MAX, &columns);
+    end = end && *end == 'x' ? whole_read(end + 1, 1, INT_MAX, &rows) : NULL;
+    if (!end || *end)
+        return status_set(STATUS_INVALID,
+                          "image: --tile is '%s', must be pixels along x and r, whole numbers above 0: 4096x512", text);
+    tiles->columns = columns < tiles->grid.x_count ? (int)columns : tiles->grid.x_count;
+    tiles->rows = rows < tiles->grid.r_count ? (int)rows : tiles->grid.r_count;
+    return STATUS_OK;
+}
+
+static enum status tile_form(const struct spec *spec, const struct echoes *echoes, struct tiles *tiles, int number)
+{
+    const struct pixel_window window = tiles_window(tiles, number);
+    struct problem problem = problem_make(echoes->acquisition, 1, &tiles->grid, spec->precision);
+    struct imaging imaging;
+    struct image image;
+    struct stages stages;
+    problem.window = &window;
+    enum status status = imaging_open(spec, &problem, &imaging);
+    if (status != STATUS_OK)
+        return status;
+    stages_begin(&stages);
+    status = imaging_execute(&imaging, echoes, &stages);
+    if (status == STATUS_OK)
+        status = imaging_finish(&imaging, echoes, &image);
+    if (status == STATUS_OK) {
+        status = image.precision == tiles->precision
+                     ? tiles_write(tiles, number, image.pixels[0])
+                     : status_set(STATUS_UNSUPPORTED, "image: --tile: float does not hold these echoes' amplitudes; "
+                                                      "precision=double does");
+        image_free(&image);
+    }
+    imaging_close(&imaging);
+    return status;
+}
+
+/* All that decides on pixels. */
+static void settings_format(const struct task *task, const struct scene *scene, const struct image_origin *origin,
+                            char *text, size_t size)
+{
+    const struct spec *spec = &task->specs[0];
+    const struct grid *g = &scene->patches[0];
+    snprintf(text, size,
+             "algorithm: %s:%s,precision=%s\ngrid: %.17g:%.17g:%d,%.17g:%.17g:%d,%.17g\nscene's content: %016" PRIx64
+             "\nprogram: %s\n",
+             spec->algorithm->name, spec->text, precision_name(spec->precision), g->x_first, g->x_step, g->x_count,
+             g->r_first, g->r_step, g->r_count, g->angle_rad, scene->hash, origin->commit);
+}
+
+static enum status tiles_form(const struct task *task, const struct scene *scene, struct tiles *tiles)
+{
+    const struct spec *spec = &task->specs[0];
+    const int count = tiles_count(tiles), before = tiles_done(tiles);
+    struct echoes from = {0}, echoes = {0};
+    enum status status = before < count ? scene_echoes(scene, &from) : STATUS_OK;
+    if (status == STATUS_OK && before < count)
+        status = echoes_convert(&from, spec->precision, &echoes);
+    echoes_free(&from);
+    if (before > 0)
+        printf("%s: %d of %d tiles were done\n", tiles->path, before, count);
+    for (int n = 0; n < count && status == STATUS_OK; n++)
+        if (!tiles->done[n]) {
+            progress_line(false, "%s: tile %d of %d by %s", scene->name, n + 1, count, spec->algorithm->name);
+            status = tile_form(spec, &echoes, tiles, n);
+        }
+    progress_line_clear();
+    echoes_free(&echoes);
+    return status == STATUS_OK ? tiles_seal(tiles) : status;
+}
+
+enum status image_tiles(const struct task *task, const struct scene *scene, const struct image_origin *origin)
+{
+    const struct spec *spec = &task->specs[0];
+    struct tiles tiles = {.path = task->output, .grid = scene->patches[0], .precision = spec->precision};
+    struct budget budget;
+    char settings[1400];
+    if (choice_asked(spec, &budget) || !(spec->algorithm->traits & TRAIT_WINDOW) || scene->patch_count != 1)
+        return status_set(STATUS_UNSUPPORTED,
+                          "image: --tile takes an image of one patch by a back projection that sums each pixel by "
+                          "itself (bp_nearest, bp_linear, bp_sinc, bp_fitted, bp_farrow, bp_zeropad, reference); %s of "
+                          "%d patches is asked for",
+                          spec->algorithm->name, scene->patch_count);
+    enum status status = tile_parse(task->tile, &tiles);
+    if (status != STATUS_OK)
+        return status;
+    settings_format(task, scene, origin, settings, sizeof settings);
+    status = tiles_open(&tiles, settings, origin);
+    if (status != STATUS_OK)
+        return status;
+    const double begin = seconds_now();
+    status = tiles_form(task, scene, &tiles);
+    if (status == STATUS_OK)
+        printf("%s: %s of %s, %d tiles, %s\n", task->output, origin->algorithm, scene->name, tiles_count(&tiles),
+               cell_time(seconds_now() - begin).text);
+    tiles_close(&tiles);
+    return status;
+}

@@ -1,0 +1,417 @@
+/* Image files that are filled tile by tile (mat_tiles.h). */
+#include "echoes/mat_tiles.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <hdf5.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include "echoes/matvar.h"
+
+static const char head[] = "sasbench tiles 1\n", line_of_tiles[] = "tiles: %dx%d, %d in all\n";
+static const char whole[] = "whole     ", unfinished[] = "unfinished";
+
+static int tiles_deep(const struct tiles *tiles)
+{
+    return (tiles->grid.r_count + tiles->rows - 1) / tiles->rows;
+}
+
+int tiles_count(const struct tiles *tiles)
+{
+    return tiles_deep(tiles) * ((tiles->grid.x_count + tiles->columns - 1) / tiles->columns);
+}
+
+struct pixel_window tiles_window(const struct tiles *tiles, int number)
+{
+    const int row = number % tiles_deep(tiles) * tiles->rows, column = number / tiles_deep(tiles) * tiles->columns;
+    const int rows = tiles->grid.r_count - row, columns = tiles->grid.x_count - column;
+    return (struct pixel_window){row, rows < tiles->rows ? rows : tiles->rows, column,
+                                 columns < tiles->columns ? columns : tiles->columns};
+}
+
+int tiles_done(const struct tiles *tiles)
+{
+    int done = 0;
+    for (int n = 0; n < tiles_count(tiles); n++)
+        done += tiles->done[n];
+    return done;
+}
+
+static enum status tiles_fail(const struct tiles *tiles, const char *what)
+{
+    return status_set(STATUS_FAILED, "%s: %s: %s", tiles->path, what, strerror(errno ? errno : EIO));
+}
+
+/* MATLAB's complex numbers. */
+static hid_t complex_type(enum precision precision)
+{
+    const bool is_double = precision == PRECISION_DOUBLE;
+    const hid_t part = is_double ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
+    const size_t size = precision_size(precision);
+    const hid_t type = H5Tcreate(H5T_COMPOUND, size);
+    H5Tinsert(type, "real", 0, part);
+    H5Tinsert(type, "imag", size / 2, part);
+    return type;
+}
+
+static bool attribute_write(hid_t set, const char *name, hid_t type, const void *value)
+{
+    const hid_t space = H5Screate(H5S_SCALAR);
+    const hid_t attribute = H5Acreate2(set, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+    const bool written = attribute >= 0 && H5Awrite(attribute, type, value) >= 0;
+    H5Aclose(attribute);
+    H5Sclose(space);
+    return written;
+}
+
+static bool class_write(hid_t set, const char *class)
+{
+    const int decode = 2; /* MATLAB's text is of codes of two bytes */
+    const hid_t type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, strlen(class));
+    const bool written =
+        attribute_write(set, "MATLAB_class", type, class)
+        && (strcmp(class, "char") != 0 || attribute_write(set, "MATLAB_int_decode", H5T_NATIVE_INT, &decode));
+    H5Tclose(type);
+    return written;
+}
+
+/* A variable of its full size, contiguous, allocated now and never filled: from now on its numbers lie in one place of
+   the file, and writing them there leaves all else as it is. */
+static bool set_make(hid_t file, const char *name, hid_t type, const hsize_t dims[2], const char *class)
+{
+    const hid_t space = H5Screate_simple(2, dims, NULL), settings = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_layout(settings, H5D_CONTIGUOUS);
+    H5Pset_alloc_time(settings, H5D_ALLOC_TIME_EARLY);
+    H5Pset_fill_time(settings, H5D_FILL_TIME_NEVER);
+    const hid_t set = H5Dcreate2(file, name, type, space, H5P_DEFAULT, settings, H5P_DEFAULT);
+    const bool made = set >= 0 && class_write(set, class);
+    H5Dclose(set);
+    H5Pclose(settings);
+    H5Sclose(space);
+    return made;
+}
+
+static bool sets_make(const char *path, const struct tiles *tiles)
+{
+    const bool is_double = tiles->precision == PRECISION_DOUBLE;
+    const hsize_t image[2] = {(hsize_t)tiles->grid.x_count, (hsize_t)tiles->grid.r_count};
+    const hsize_t text[2] = {sizeof unfinished - 1, 1};
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+    const hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT), type = complex_type(tiles->precision);
+    bool made = file >= 0 && set_make(file, "image", type, image, is_double ? "double" : "single")
+                && set_make(file, "status", H5T_NATIVE_UINT16, text, "char");
+    H5Tclose(type);
+    made = H5Fclose(file) >= 0 && made;
+    return made;
+}
+
+/* Where the numbers of a variable lie; -1: not in one place, or not so many of this type. */
+static off_t set_offset(hid_t file, const char *name, hid_t wanted, hsize_t count)
+{
+    const hid_t set = H5Dopen2(file, name, H5P_DEFAULT), type = H5Dget_type(set), space = H5Dget_space(set);
+    const haddr_t offset = H5Dget_offset(set);
+    const bool fits = set >= 0 && offset != HADDR_UNDEF && H5Tequal(type, wanted) > 0
+                      && H5Sget_simple_extent_npoints(space) == (hssize_t)count;
+    H5Sclose(space);
+    H5Tclose(type);
+    H5Dclose(set);
+    return fits ? (off_t)offset : -1;
+}
+
+static bool offsets_find(const char *path, struct tiles *tiles)
+{
+    const hsize_t pixels = (hsize_t)tiles->grid.x_count * (hsize_t)tiles->grid.r_count;
+    const hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT), type = complex_type(tiles->precision);
+    tiles->image_at = set_offset(file, "image", type, pixels);
+    tiles->status_at = set_offset(file, "status", H5T_NATIVE_UINT16, sizeof unfinished - 1);
+    H5Tclose(type);
+    H5Fclose(file);
+    return tiles->image_at > 0 && tiles->status_at > 0;
+}
+
+static bool write_at(int descriptor, const void *data, size_t size, off_t at)
+{
+    for (const char *next = data; size > 0;) {
+        const ssize_t written = pwrite(descriptor, next, size, at);
+        if (written <= 0 && errno != EINTR)
+            return false;
+        if (written > 0) {
+            next += written;
+            at += written;
+            size -= (size_t)written;
+        }
+    }
+    return true;
+}
+
+static bool status_write(const struct tiles *tiles, const char *text)
+{
+    uint16_t codes[sizeof unfinished - 1];
+    for (size_t k = 0; k < sizeof codes / sizeof *codes; k++)
+        codes[k] = (unsigned char)text[k];
+    return write_at(tiles->file, codes, sizeof codes, tiles->status_at) && fdatasync(tiles->file) == 0;
+}
+
+/* The room is taken at once: a full disk shows before the work. */
+static bool room_take(struct tiles *tiles)
+{
+    const size_t bytes = (size_t)tiles->grid.x_count * (size_t)tiles->grid.r_count * precision_size(tiles->precision);
+    errno = posix_fallocate(tiles->file, tiles->image_at, (off_t)bytes);
+    return errno == 0;
+}
+
+/* What is not written tile by tile. */
+static bool sets_add(const char *path, void *with)
+{
+    struct tiles *tiles = with;
+    if (!sets_make(path, tiles) || !offsets_find(path, tiles))
+        return false;
+    tiles->file = open(path, O_RDWR | O_CLOEXEC);
+    return tiles->file >= 0 && room_take(tiles) && status_write(tiles, unfinished);
+}
+
+/* The file, with all but its pixels; tiles->file is open then. */
+static enum status file_make(struct tiles *tiles, const struct image_origin *origin)
+{
+    struct writer writer;
+    if (writer_open(&writer, tiles->path, SIZE_MAX) != STATUS_OK)
+        return writer.status;
+    image_axes_write(&writer, &tiles->grid, 0);
+    image_sayings_write(&writer, origin);
+    writer.add = sets_add;
+    writer.with = tiles;
+    return writer_close(&writer);
+}
+
+/* A tile's numbers in the file, column by column; `write`: from `numbers`, else to them. */
+static bool tile_move(const struct tiles *tiles, int number, bool write, char *numbers)
+{
+    const struct pixel_window w = tiles_window(tiles, number);
+    const size_t size = precision_size(tiles->precision), bytes = (size_t)w.rows * size;
+    for (int j = 0; j < w.columns; j++, numbers += bytes) {
+        const size_t pixel = (size_t)(w.column + j) * (size_t)tiles->grid.r_count + (size_t)w.row;
+        const off_t at = tiles->image_at + (off_t)(pixel * size);
+        if (write ? !write_at(tiles->file, numbers, bytes, at)
+                  : pread(tiles->file, numbers, bytes, at) != (ssize_t)bytes)
+            return false;
+    }
+    return true;
+}
+
+static size_t tile_bytes(const struct tiles *tiles, int number)
+{
+    const struct pixel_window w = tiles_window(tiles, number);
+    return (size_t)w.rows * (size_t)w.columns * precision_size(tiles->precision);
+}
+
+static unsigned long sum_of(const char *numbers, size_t bytes)
+{
+    unsigned long sum = crc32(0, NULL, 0);
+    for (size_t at = 0; at < bytes; at += 1 << 30)
+        sum = crc32(sum, (const unsigned char *)numbers + at, (uInt)(bytes - at < 1 << 30 ? bytes - at : 1 << 30));
+    return sum;
+}
+
+enum status tiles_write(struct tiles *tiles, int number, const void *pixels)
+{
+    const struct pixel_window w = tiles_window(tiles, number);
+    const size_t size = precision_size(tiles->precision), bytes = tile_bytes(tiles, number);
+    char line[64], *turned = malloc(bytes);
+    if (!turned)
+        return status_set(STATUS_FAILED, "%s: out of memory for a tile of %zu bytes", tiles->path, bytes);
+    for (size_t i = 0; i < (size_t)w.rows; i++)
+        for (size_t j = 0; j < (size_t)w.columns; j++)
+            memcpy(turned + (j * (size_t)w.rows + i) * size, (const char *)pixels + (i * (size_t)w.columns + j) * size,
+                   size);
+    errno = 0;
+    bool written = tile_move(tiles, number, true, turned) && fdatasync(tiles->file) == 0;
+    const int length = snprintf(line, sizeof line, "done %d %08lx\n", number, sum_of(turned, bytes));
+    free(turned);
+    /* Not before the numbers are there for sure. */
+    written =
+        written && write_at(tiles->journal, line, (size_t)length, tiles->journal_end) && fdatasync(tiles->journal) == 0;
+    if (!written)
+        return tiles_fail(tiles, "a tile cannot be written");
+    tiles->journal_end += length;
+    tiles->done[number] = true;
+    return STATUS_OK;
+}
+
+/* The tiles that the journal claims, as far as the file has their numbers. */
+static enum status done_read(struct tiles *tiles, const char *line)
+{
+    const int count = tiles_count(tiles);
+    const size_t most = tile_bytes(tiles, 0); /* none is larger */
+    char *numbers = malloc(most);
+    if (!numbers)
+        return status_set(STATUS_FAILED, "%s: out of memory for a tile of %zu bytes", tiles->path, most);
+    for (const char *end; (end = strchr(line, '\n')); line = end + 1) {
+        int number, length = 0;
+        unsigned long sum;
+        if (sscanf(line, "done %d %8lx%n", &number, &sum, &length) == 2 && line + length == end && number >= 0
+            && number < count && tile_move(tiles, number, false, numbers))
+            tiles->done[number] = sum == sum_of(numbers, tile_bytes(tiles, number));
+    }
+    free(numbers);
+    return STATUS_OK;
+}
+
+static void line_copy(const char *text, char *line, size_t size)
+{
+    snprintf(line, size, "%.*s", (int)strcspn(text, "\n"), text);
+}
+
+/* Names the first line that differs. */
+static enum status settings_refuse(const struct tiles *tiles, const char *begun, const char *wanted)
+{
+    char theirs[600], ours[600];
+    size_t same = 0, line = 0;
+    while (begun[same] && begun[same] == wanted[same])
+        if (begun[same++] == '\n')
+            line = same;
+    line_copy(begun + line, theirs, sizeof theirs);
+    line_copy(wanted + line, ours, sizeof ours);
+    return status_set(STATUS_INVALID,
+                      "%s was begun with `%s`, this is `%s`; the same is needed to continue, or remove %s%s to begin "
+                      "anew",
+                      tiles->path, theirs, ours, tiles->path, TILES_JOURNAL);
+}
+
+/* `text`: the journal, from its second line on. */
+static enum status tiles_continue(struct tiles *tiles, const char *text, const char *settings, bool *begun)
+{
+    if (strncmp(text, settings, strlen(settings)) != 0)
+        return settings_refuse(tiles, text, settings);
+    tiles->file = open(tiles->path, O_RDWR | O_CLOEXEC);
+    *begun = tiles->file >= 0 && offsets_find(tiles->path, tiles);
+    return *begun ? done_read(tiles, text + strlen(settings)) : STATUS_OK;
+}
+
+static enum status tiles_begin(struct tiles *tiles, const char *settings, const struct image_origin *origin)
+{
+    if (tiles->file >= 0)
+        close(tiles->file);
+    tiles->file = -1;
+    if (ftruncate(tiles->journal, 0) != 0)
+        return tiles_fail(tiles, "its journal cannot be written");
+    const enum status status = file_make(tiles, origin);
+    if (status != STATUS_OK)
+        return status;
+    const size_t length = strlen(head);
+    tiles->journal_end = (off_t)(length + strlen(settings));
+    return write_at(tiles->journal, settings, strlen(settings), (off_t)length)
+                   && write_at(tiles->journal, head, length, 0) && fsync(tiles->journal) == 0
+               ? STATUS_OK
+               : tiles_fail(tiles, "its journal cannot be written");
+}
+
+/* All of a file, malloc'ed, as a text; cut behind its last whole line. */
+static char *journal_read(struct tiles *tiles)
+{
+    struct stat file;
+    if (fstat(tiles->journal, &file) != 0)
+        return NULL;
+    char *text = malloc((size_t)file.st_size + 1);
+    ssize_t length = text ? pread(tiles->journal, text, (size_t)file.st_size, 0) : -1;
+    while (length > 0 && text[length - 1] != '\n')
+        length--;
+    if (length >= 0)
+        text[length] = '\0';
+    tiles->journal_end = length;
+    return text;
+}
+
+static enum status journal_take(struct tiles *tiles)
+{
+    char name[PATH_MAX];
+    if (snprintf(name, sizeof name, "%s" TILES_JOURNAL, tiles->path) >= (int)sizeof name)
+        return status_set(STATUS_INVALID, "%.100s...: path too long for a journal beside it", tiles->path);
+    tiles->journal = open(name, O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (tiles->journal < 0)
+        return tiles_fail(tiles, "its journal cannot be opened");
+    return flock(tiles->journal, LOCK_EX | LOCK_NB) == 0
+               ? STATUS_OK
+               : status_set(STATUS_INVALID, "%s: another program fills this file", tiles->path);
+}
+
+bool tiles_claimed(const char *path, int *done, int *count)
+{
+    struct tiles tiles = {.path = path};
+    char name[PATH_MAX];
+    int rows, columns;
+    snprintf(name, sizeof name, "%s" TILES_JOURNAL, path);
+    tiles.journal = open(name, O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+    char *text = tiles.journal >= 0 ? journal_read(&tiles) : NULL;
+    const bool ours = text && strncmp(text, head, strlen(head)) == 0
+                      && sscanf(text + strlen(head), line_of_tiles, &columns, &rows, count) == 3;
+    *done = 0;
+    for (const char *line = text; ours && (line = strstr(line, "\ndone ")); line++)
+        ++*done;
+    free(text);
+    if (tiles.journal >= 0)
+        close(tiles.journal);
+    return ours;
+}
+
+static enum status opened(struct tiles *tiles, const char *settings, const struct image_origin *origin)
+{
+    bool begun = false;
+    tiles->file = tiles->journal = -1;
+    tiles->done = calloc((size_t)tiles_count(tiles), sizeof *tiles->done);
+    enum status status = tiles->done ? journal_take(tiles) : tiles_fail(tiles, "out of memory for its tiles");
+    char *text = status == STATUS_OK ? journal_read(tiles) : NULL;
+    if (status == STATUS_OK && !text)
+        status = tiles_fail(tiles, "its journal cannot be read");
+    const bool ours = text && strncmp(text, head, strlen(head)) == 0;
+    if (status == STATUS_OK && *text && !ours)
+        status = status_set(STATUS_INVALID, "%s" TILES_JOURNAL ": is no journal of tiles; remove it to begin anew",
+                            tiles->path);
+    if (status == STATUS_OK && ours)
+        status = tiles_continue(tiles, text + strlen(head), settings, &begun);
+    if (status == STATUS_OK && !begun)
+        status = tiles_begin(tiles, settings, origin);
+    free(text);
+    if (status != STATUS_OK)
+        tiles_close(tiles);
+    return status;
+}
+
+enum status tiles_open(struct tiles *tiles, const char *settings, const struct image_origin *origin)
+{
+    const size_t room = strlen(settings) + 100;
+    char *all = malloc(room);
+    if (!all)
+        return tiles_fail(tiles, "out of memory for its settings");
+    const int length = snprintf(all, room, line_of_tiles, tiles->columns, tiles->rows, tiles_count(tiles));
+    snprintf(all + length, room - (size_t)length, "%s", settings);
+    const enum status status = opened(tiles, all, origin);
+    free(all);
+    return status;
+}
+
+enum status tiles_seal(struct tiles *tiles)
+{
+    char name[PATH_MAX];
+    snprintf(name, sizeof name, "%s" TILES_JOURNAL, tiles->path);
+    errno = 0;
+    return status_write(tiles, whole) && unlink(name) == 0 ? STATUS_OK : tiles_fail(tiles, "cannot be finished");
+}
+
+void tiles_close(struct tiles *tiles)
+{
+    if (tiles->file >= 0)
+        close(tiles->file);
+    if (tiles->journal >= 0)
+        close(tiles->journal);
+    free(tiles->done);
+    tiles->done = NULL;
+    tiles->file = tiles->journal = -1;
+}

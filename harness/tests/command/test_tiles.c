@@ -1,0 +1,157 @@
+/* `image --tile`: the bits of the whole image, also after kill -9 at moments that differ each time; what is refused, and
+   what a damaged or torn file costs. */
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "echoes/mat_tiles.h"
+#include "tests/command/program.h"
+
+#define IMAGE(spec, file) "image", "-s", "study/quick", "-t", "1", "-a", spec, "-o", file
+#define SPEC              "bp_sinc:taps=8"
+
+static void assert_same_image(const char *one, const char *other)
+{
+    struct grid a, b;
+    double complex *pixels, *others;
+    assert_int_equal(image_file_read(path_of(one), &a, &pixels), STATUS_OK);
+    assert_int_equal(image_file_read(path_of(other), &b, &others), STATUS_OK);
+    assert_true(a.x_first == b.x_first && a.x_step == b.x_step && a.r_first == b.r_first && a.r_step == b.r_step);
+    assert_true(a.x_count == b.x_count && a.r_count == b.r_count && a.angle_rad == b.angle_rad);
+    assert_memory_equal(pixels, others, (size_t)a.x_count * (size_t)a.r_count * sizeof *pixels);
+    free(pixels);
+    free(others);
+}
+
+static void bits_of_the_whole(void **state)
+{
+    (void)state;
+    static const char *const specs[] = {SPEC, SPEC ",precision=double", "bp_nearest", "reference"};
+    for (size_t k = 0; k < COUNT_OF(specs); k++) {
+        program_good((const char *const[]){IMAGE(specs[k], "whole.mat"), NULL});
+        program_good((const char *const[]){IMAGE(specs[k], "tiled.mat"), "--tile", "17x5", NULL});
+        assert_same_image("whole.mat", "tiled.mat");
+        assert_false(support_exists("tiled.mat" TILES_JOURNAL));
+        program_good((const char *const[]){"info", "tiled.mat", NULL});
+    }
+}
+
+/* End the program so many seconds after its start, if it still runs. */
+static void kill_after(const char *const *arguments, double seconds)
+{
+    FILE *sink = tmpfile();
+    assert_non_null(sink);
+    const pid_t child = program_start(arguments, sink, sink);
+    nanosleep(&(struct timespec){(time_t)seconds, (long)(1e9 * (seconds - (double)(time_t)seconds))}, NULL);
+    kill(child, SIGKILL);
+    assert_int_equal(waitpid(child, NULL, 0), child);
+    fclose(sink);
+}
+
+/* Half a run, as it is left by a signal. */
+static void image_begin(const char *spec, const char *tile, int least)
+{
+    const char *const arguments[ARGUMENTS_MAX] = {IMAGE(spec, "x.mat"), "--tile", tile};
+    int done = 0, count = 0;
+    for (double seconds = 0.02; done < least || done == count; seconds *= 1.3) {
+        unlink(path_of("x.mat" TILES_JOURNAL));
+        kill_after(arguments, seconds);
+        if (!tiles_claimed(path_of("x.mat"), &done, &count))
+            done = count = 0;
+        assert_true(seconds < 100);
+    }
+}
+
+static void killed(void **state)
+{
+    (void)state;
+    const char *given = getenv("SASBENCH_KILLS");
+    const char *const arguments[ARGUMENTS_MAX] = {IMAGE("reference", "x.mat"), "--tile", "8x2"};
+    struct random random = random_seed(39, 1);
+    struct image_file file;
+    program_good((const char *const[]){IMAGE("reference", "whole.mat"), NULL});
+    double begin = seconds_now();
+    program_good(arguments);
+    const double seconds = seconds_now() - begin;
+    int before = 0, done = 0, count;
+    for (int n = given ? atoi(given) : 8; n > 0; n--) {
+        kill_after(arguments, random_uniform(&random) * seconds / 2);
+        if (support_exists("x.mat")) {
+            assert_int_equal(image_file_open(path_of("x.mat"), &file), STATUS_OK);
+            image_file_close(&file);
+        }
+        before = tiles_claimed(path_of("x.mat"), &done, &count) ? before : 0;
+        assert_true(done >= before); /* nothing is lost */
+        before = done;
+    }
+    program_good(arguments);
+    assert_same_image("whole.mat", "x.mat");
+    assert_false(support_exists("x.mat" TILES_JOURNAL));
+}
+
+static void others_are_refused(void **state)
+{
+    (void)state;
+    image_begin("reference", "8x2", 2);
+    char *text = program_output((const char *const[]){"info", "x.mat", NULL});
+    assert_non_null(strstr(text, "tiles are done"));
+    free(text);
+    const struct refusal refusals[] = {
+        {{IMAGE("reference", "x.mat"), "--tile", "9x2"}, {"tiles: 8x2", "tiles: 9x2", "x.mat.tiles"}},
+        {{IMAGE("bp_nearest", "x.mat"), "--tile", "8x2"}, {"algorithm: reference", "algorithm: bp_nearest"}},
+        {{IMAGE("bp_nearest", "x.mat"), "--tile", "8"}, {"--tile", "'8'"}},
+        {{IMAGE("bp_nearest", "x.mat"), "--tile", "0x8"}, {"--tile", "'0x8'"}},
+        {{IMAGE("bp_nearest", "x.png"), "--tile", "8x2"}, {"--tile", "FILE.mat"}},
+        {{IMAGE("rma_delay", "x.mat"), "--tile", "8x2"}, {"--tile", "rma_delay"}},
+        {{IMAGE("auto", "x.mat"), "--tile", "8x2"}, {"--tile", "auto"}},
+    };
+    for (size_t k = 0; k < COUNT_OF(refusals); k++) {
+        struct outcome outcome = program_run(refusals[k].arguments);
+        if (outcome.status != 2)
+            fail_msg("refusal %zu: status %d", k, outcome.status);
+        for (int n = 0; n < SAYS_MAX && refusals[k].says[n]; n++)
+            if (!strstr(outcome.err, refusals[k].says[n]))
+                fail_msg("refusal %zu lacks '%s': %s", k, refusals[k].says[n], outcome.err);
+        outcome_free(&outcome);
+    }
+    const int journal = open(path_of("x.mat" TILES_JOURNAL), O_RDWR);
+    assert_int_equal(flock(journal, LOCK_EX | LOCK_NB), 0);
+    struct outcome outcome = program_run((const char *const[]){IMAGE("reference", "x.mat"), "--tile", "8x2", NULL});
+    assert_int_equal(outcome.status, 2);
+    assert_non_null(strstr(outcome.err, "another program"));
+    outcome_free(&outcome);
+    close(journal);
+}
+
+/* A tile that the journal claims but whose numbers are others is formed again, and a line cut short is no line. */
+static void damage_is_mended(void **state)
+{
+    (void)state;
+    char wrong[] = "done 0 00000000\ndone 1";
+    image_begin("reference", "8x2", 3);
+    int done, count, kept;
+    assert_true(tiles_claimed(path_of("x.mat"), &done, &count));
+    const int file = open(path_of("x.mat" TILES_JOURNAL), O_WRONLY | O_APPEND);
+    assert_int_equal(write(file, wrong, strlen(wrong)), (ssize_t)strlen(wrong));
+    close(file);
+    struct outcome outcome = program_run((const char *const[]){IMAGE("reference", "x.mat"), "--tile", "8x2", NULL});
+    assert_int_equal(outcome.status, 0);
+    assert_int_equal(sscanf(strstr(outcome.out, ".mat: ") + 6, "%d of", &kept), 1);
+    assert_int_equal(kept, done - 1);
+    outcome_free(&outcome);
+    program_good((const char *const[]){IMAGE("reference", "whole.mat"), NULL});
+    assert_same_image("whole.mat", "x.mat");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(bits_of_the_whole), cmocka_unit_test(killed),
+                                       cmocka_unit_test(others_are_refused), cmocka_unit_test(damage_is_mended)};
+    return cmocka_run_group_tests(tests, inputs_make, folder_remove);
+}
