@@ -18,7 +18,7 @@ struct claim {
     const char *criterion; /* the comparisons in words, or why nothing can be decided */
     const char *comparison, *arguments;
     int line;
-    bool by_scheme; /* it names LBF: it has a verdict as printed and one corrected (schemes.h) */
+    bool by_scheme; /* it names LBF: it has a verdict as printed and one corrected (sources.h) */
     bool phases;    /* it asks for the phase study */
     bool rules;     /* it asks for the rules' study */
     bool scenes;    /* it asks for a number of a scene */

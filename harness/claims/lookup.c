@@ -11,9 +11,8 @@
 #include "imaging/spec.h"
 #include "papers/tables.h"
 #include "papers/assumptions.h"
-#include "papers/filtered.h"
 #include "papers/rules.h"
-#include "papers/scene_numbers.h"
+#include "papers/unimaged.h"
 #include "papers/phase.h"
 
 enum { TEXTS_MAX = 5 };

@@ -9,8 +9,7 @@
 #ifndef SASBENCH_CLAIMS_QUANTITY_H
 #define SASBENCH_CLAIMS_QUANTITY_H
 
-#include "papers/measured.h"
-#include "papers/schemes.h"
+#include "papers/sources.h"
 
 /* One number, or one for each of several targets or ranges: of three methods at 48 targets at most. */
 enum { VALUES_MAX = 144, TARGETS_MAX = 64 };

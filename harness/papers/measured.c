@@ -8,7 +8,7 @@
 
 #include "echoes/echo_data.h"
 #include "files/paths.h"
-#include "imaging/imaging.h"
+#include "imaging/spec.h"
 #include "papers/measured.h"
 #include "papers/assumptions.h"
 #include "papers/phase.h"
@@ -111,53 +111,6 @@ double measured_value(struct measured *measured, const char *scene, const char *
         measured_missing(measured, "%s with %s: %s is undefined%s%s", scene, spec, name, *row->reason ? ", " : "",
                          row->reason);
     return value;
-}
-
-/* Work of a plan at the scene's full size. Errors: as scene_load and the plan. */
-static enum status work_plan(const char *scene_name, const char *spec_text, struct work *work)
-{
-    struct scene scene;
-    struct spec spec;
-    struct imaging imaging;
-    enum status status = assumed_scene_load(scene_name, &scene);
-    if (status != STATUS_OK)
-        return status;
-    status = spec_parse(spec_text, &spec);
-    if (status == STATUS_OK) {
-        struct problem problem = scene_problem(&scene, spec.precision);
-        status = imaging_open(&spec, &problem, &imaging);
-        if (status == STATUS_OK) {
-            *work = spec.algorithm->work(imaging.plan);
-            imaging_close(&imaging);
-        }
-        spec_free(&spec);
-    }
-    scene_free(&scene);
-    return status;
-}
-
-double measured_flops(struct measured *measured, const char *scene, const char *spec, bool by_formula)
-{
-    enum { ROOM = sizeof measured->planned / sizeof *measured->planned };
-    struct work work;
-    int k = 0;
-    const struct measurement *row = measured_row(measured, scene, spec);
-    if (row)
-        return by_formula ? row->flops_published : row->flops;
-    while (k < measured->planned_count
-           && (strcmp(measured->planned[k].scene, scene) != 0 || strcmp(measured->planned[k].spec, spec) != 0))
-        k++;
-    if (k == measured->planned_count) {
-        if (work_plan(scene, spec, &work) != STATUS_OK)
-            return measured_missing(measured, "%s with %s: %s", scene, spec, status_message());
-        k = k < ROOM ? k : ROOM - 1;
-        measured->planned_count = k + 1;
-        measured->planned[k] = (struct planned){.counted = work.flops,
-                                                .by_formula = work.published[0].source ? work.published[0].flops : NAN};
-        snprintf(measured->planned[k].scene, sizeof measured->planned[k].scene, "%s", scene);
-        snprintf(measured->planned[k].spec, sizeof measured->planned[k].spec, "%s", spec);
-    }
-    return by_formula ? measured->planned[k].by_formula : measured->planned[k].counted;
 }
 
 double measured_stage(struct measured *measured, const char *scene, const char *spec, const char *stage)

@@ -9,14 +9,15 @@
 
 #define RULES_FILE "rules_random.csv" /* of a folder (rules.h) */
 
-/* What a plan counts, by scene and SPEC. */
-struct planned {
-    char scene[64], spec[160];
-    double counted, by_formula;
+/* A number that needs no image, as it was worked out (unimaged.h). */
+enum scene_quantity {
+    QUANTITY_SIZE_FACTOR,
+    QUANTITY_UPSAMPLING,
+    QUANTITY_KEPT_DB,
+    QUANTITY_CHANGED_DB,
+    QUANTITY_FLOPS,
+    QUANTITY_FLOPS_PUBLISHED
 };
-
-/* A number that needs no image, as it was worked out (filtered.h). */
-enum scene_quantity { QUANTITY_SIZE_FACTOR, QUANTITY_UPSAMPLING, QUANTITY_KEPT_DB, QUANTITY_CHANGED_DB };
 struct scene_number {
     char scene[80], spec[160];
     int target; /* from 0; -1: of the scene */
@@ -30,9 +31,7 @@ struct measured {
     struct csv phase[PHASE_SETUPS];       /* as phase_study writes them */
     struct csv rules;                     /* as rules_study writes them */
     struct csv published;                 /* results/published.csv */
-    struct planned planned[16];           /* work that was asked for */
-    int planned_count;
-    struct scene_number numbers[192]; /* that were asked for */
+    struct scene_number numbers[192];     /* that were asked for */
     int number_count;
     double load;       /* load average a processor while times were measured; 0: unknown */
     char missing[400]; /* the first value that was not there since it was last cleared */
@@ -53,9 +52,6 @@ const struct measurement *measured_row(const struct measured *measured, const ch
 #define MEASURED(measured, scene, spec, field)                                                                         \
     measured_value(measured, scene, spec, offsetof(struct measurement, field), #field)
 double measured_value(struct measured *measured, const char *scene, const char *spec, size_t offset, const char *name);
-
-/* FLOPs as our plan counts them or by its paper's formula. Planned now where it was not measured. */
-double measured_flops(struct measured *measured, const char *scene, const char *spec, bool by_formula);
 
 /* Seconds of one stage of it ("compress"). */
 double measured_stage(struct measured *measured, const char *scene, const char *spec, const char *stage);

@@ -33,20 +33,17 @@ const char *const phase_setups[] = {[PHASE_SHORT] = "lbf21/_phase_short", [PHASE
 static const double ranges_m[] = {50, 135, 220, 300};
 enum { RANGES = 4, DOPPLERS = 201, FREQUENCIES = 3, RECEIVERS = 2 };
 
-/* The largest error that LBF21 prints for its two set-ups, first and last receiver: the figure in
-   published.csv. */
-static const struct {
-    const char *scene;
-    int receiver;
-    const char *formula, *table, *target, *method;
-    bool bound; /* the paper says only that the error is below it */
-} figures[] = {
-    {"lbf21/_phase_short", 0, "lbf7_fc", "lbf21_f2", "1st receiver, 50 to 300 m", "LBF", false},
-    {"lbf21/_phase_short", 1, "lbf7_fc", "lbf21_f3", "66th receiver, 135 to 300 m", "LBF", false},
-    {"lbf21/_phase_short", 1, "pca", "lbf21_f5", "66th receiver, 135 to 300 m", "PCA", false},
-    {"lbf21/_phase_long", 0, "lbf7_fc", "lbf21_f6", "1st receiver, 50 to 300 m", "LBF", false},
-    {"lbf21/_phase_long", 0, "pca", "lbf21_f7", "1st receiver, 50 to 300 m", "PCA", false},
-    {"lbf21/_phase_long", 1, "lbf7_fc", "lbf21_f8", "last receiver, 50 to 300 m", "LBF", true},
+const struct phase_figure phase_figures[] = {
+    {"lbf21_f2", "1st receiver, 50 to 300 m", PHASE_SHORT, false, 50, 300, "lbf7_fc", "LBF", false},
+    {"lbf21_f3", "66th receiver, 135 to 300 m", PHASE_SHORT, true, 135, 300, "lbf7_fc", "LBF", false},
+    {"lbf21_f4", "1st receiver, 50 to 300 m", PHASE_SHORT, false, 50, 300, NULL, NULL, false},
+    {"lbf21_f5", "66th receiver, 135 to 300 m", PHASE_SHORT, true, 135, 300, "pca", "PCA", false},
+    {"lbf21_f6", "1st receiver, 50 m", PHASE_LONG, false, 50, 50, NULL, NULL, false},
+    {"lbf21_f6", "1st receiver, 50 to 300 m", PHASE_LONG, false, 50, 300, "lbf7_fc", "LBF", false},
+    {"lbf21_f7", "1st receiver, 50 to 300 m", PHASE_LONG, false, 50, 300, "pca", "PCA", false},
+    {"lbf21_f8", "last receiver, 50 to 300 m", PHASE_LONG, true, 50, 300, "lbf7_fc", "LBF", true},
+    {"lbf21_f9", "last receiver, 50 to 300 m", PHASE_LONG, true, 50, 300, NULL, NULL, false},
+    {.table = NULL},
 };
 
 /* One scene's errors. Along each curve the azimuth wavenumber goes evenly from -nu_max to nu_max. */
@@ -133,13 +130,11 @@ static double printed_find(const struct csv *published, const struct study *stud
 {
     double value;
     *bound = false;
-    for (size_t k = 0; k < sizeof figures / sizeof *figures; k++)
-        if (strcmp(figures[k].scene, study->scene) == 0 && figures[k].receiver == receiver
-            && strcmp(figures[k].formula, formulas[formula].name) == 0
-            && published_values(published, figures[k].table, figures[k].target, figures[k].method, "phase_error_rad",
-                                &value, 1)
-                   == 1) {
-            *bound = figures[k].bound;
+    for (const struct phase_figure *f = phase_figures; f->table; f++)
+        if (f->formula && strcmp(phase_setups[f->setup], study->scene) == 0 && f->last == receiver
+            && strcmp(f->formula, formulas[formula].name) == 0
+            && published_values(published, f->table, f->target, f->method, "phase_error_rad", &value, 1) == 1) {
+            *bound = f->bound;
             return value;
         }
     return 0;

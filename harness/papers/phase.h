@@ -13,6 +13,17 @@ const char *phase_formula(int k);
 enum phase_setup { PHASE_SHORT, PHASE_LONG, PHASE_SETUPS };
 extern const char *const phase_setups[PHASE_SETUPS]; /* their scenes */
 
+/* LBF21's figures of it, in published.csv by `table` and `target`. */
+struct phase_figure {
+    const char *table, *target;
+    enum phase_setup setup;
+    bool last;                    /* receiver; else the first */
+    double least_m, most_m;       /* ranges */
+    const char *formula, *method; /* whose largest error the study prints it beside; NULL: of none */
+    bool bound;                   /* the paper says only that the error is below it */
+};
+extern const struct phase_figure phase_figures[]; /* table NULL ends */
+
 /* LBF21's two set-ups: CSV files and pictures in the folder, the largest errors on standard output beside those that
    the paper prints. The caller has made the folder; `taken`: and holds it (folder.h). Errors: STATUS_INVALID for files
    that cannot be read or written. */

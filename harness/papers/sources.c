@@ -5,6 +5,28 @@
 #include <stdio.h>
 #include <string.h>
 
+const char *const scheme_names[SCHEMES] = {[SCHEME_PRINTED] = "as printed", [SCHEME_CORRECTED] = "corrected"};
+
+bool scheme_spec(enum scheme scheme, const char *text, char *spec, size_t size)
+{
+    static const char word[] = "LBF:";
+    const bool is_lbf = strncmp(text, word, sizeof word - 1) == 0;
+    const bool printed = is_lbf && scheme == SCHEME_PRINTED;
+    snprintf(spec, size, "%s%s%s%s%s", is_lbf ? "rma_lbf:" : "", printed ? "variant=printed," : "",
+             printed && !strstr(text, "spacing=") ? "spacing=uniform," : "", printed ? "blend=off," : "",
+             text + (is_lbf ? sizeof word - 1 : 0));
+    return is_lbf;
+}
+
+bool scheme_formula(enum scheme scheme, const char *name, const char **formula)
+{
+    bool eq_5 = strcmp(name, "LBF") == 0, eq_7 = strcmp(name, "LBF7") == 0;
+    *formula = name;
+    if (eq_5 || eq_7)
+        *formula = scheme == SCHEME_CORRECTED ? "lbf_F" : eq_5 ? "lbf_fc" : "lbf7_fc";
+    return eq_5 || eq_7;
+}
+
 static const struct place {
     const char *table, *target, *scene;
     int index;

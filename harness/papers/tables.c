@@ -9,22 +9,7 @@
 #include "papers/sources.h"
 #include "papers/tables.h"
 #include "papers/assumptions.h"
-
-/* Which part of the phase study a figure's printed maximum is of. */
-static const struct figure {
-    const char *table, *target;
-    struct phase_part part; /* the formula is the method's */
-} figures[] = {
-    {"lbf21_f2", "1st receiver, 50 to 300 m", {PHASE_SHORT, false, NULL, 50, 300, 1}},
-    {"lbf21_f3", "66th receiver, 135 to 300 m", {PHASE_SHORT, true, NULL, 135, 300, 1}},
-    {"lbf21_f4", "1st receiver, 50 to 300 m", {PHASE_SHORT, false, NULL, 50, 300, 1}},
-    {"lbf21_f5", "66th receiver, 135 to 300 m", {PHASE_SHORT, true, NULL, 135, 300, 1}},
-    {"lbf21_f6", "1st receiver, 50 m", {PHASE_LONG, false, NULL, 50, 50, 1}},
-    {"lbf21_f6", "1st receiver, 50 to 300 m", {PHASE_LONG, false, NULL, 50, 300, 1}},
-    {"lbf21_f7", "1st receiver, 50 to 300 m", {PHASE_LONG, false, NULL, 50, 300, 1}},
-    {"lbf21_f8", "last receiver, 50 to 300 m", {PHASE_LONG, true, NULL, 50, 300, 1}},
-    {"lbf21_f9", "last receiver, 50 to 300 m", {PHASE_LONG, true, NULL, 50, 300, 1}},
-};
+#include "papers/unimaged.h"
 
 int upsampling_rate(double bin_m, double resolution_m, double wavelength_m)
 {
@@ -194,12 +179,12 @@ static void lines_of_phase(struct lines *lines, int row, const struct paper_tabl
     struct measured *measured = lines->measured;
     const char *target = csv_cell(&measured->published, row, PUBLISHED_TARGET);
     const char *method = csv_cell(&measured->published, row, PUBLISHED_METHOD);
-    for (size_t f = 0; f < sizeof figures / sizeof *figures; f++)
+    for (const struct phase_figure *figure = phase_figures; figure->table; figure++)
         for (size_t k = 0; k < sizeof formulas / sizeof *formulas; k++)
-            if (strcmp(figures[f].table, table->id) == 0 && strcmp(figures[f].target, target) == 0
+            if (strcmp(figure->table, table->id) == 0 && strcmp(figure->target, target) == 0
                 && strcmp(formulas[k].method, method) == 0) {
-                struct phase_part part = figures[f].part;
-                part.formula = formulas[k].formula;
+                const struct phase_part part = {figure->setup,   figure->last,   formulas[k].formula,
+                                                figure->least_m, figure->most_m, 1};
                 line_add(lines, row, table, formulas[k].label, paper, measured_phase(measured, &part));
             }
 }
@@ -225,8 +210,8 @@ static void lines_of_rate(struct lines *lines, int row, const struct paper_table
 bool table_has_phases(const char *id)
 {
     bool has = false;
-    for (size_t f = 0; f < sizeof figures / sizeof *figures; f++)
-        has |= strcmp(figures[f].table, id) == 0;
+    for (const struct phase_figure *figure = phase_figures; figure->table; figure++)
+        has |= strcmp(figure->table, id) == 0;
     return has;
 }
 

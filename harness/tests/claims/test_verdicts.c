@@ -205,6 +205,8 @@ static void scene_numbers_draw(struct measured *measured)
         as_they_are[known] = measured->numbers[known].value;
     for (int k = 0; k < known; k++) {
         struct scene_number *number = &measured->numbers[k];
+        if (number->quantity >= QUANTITY_FLOPS)
+            continue;
         number->value = !altered                                   ? as_they_are[k]
                         : number->quantity == QUANTITY_UPSAMPLING  ? pow(2, floor(drawn(0, 3)))
                         : number->quantity == QUANTITY_SIZE_FACTOR ? drawn(0.5, 8)

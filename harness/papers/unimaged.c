@@ -1,5 +1,5 @@
-/* What plans carry and the polar-format filter keeps (filtered.h). */
-#include "papers/filtered.h"
+/* What scenes and plans carry and the polar-format filter keeps (unimaged.h). */
+#include "papers/unimaged.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -42,17 +42,22 @@ static void keep(struct measured *measured, const struct scene_number *asked, en
 
 /* ---- working it out ---- */
 
-static enum status size_find(struct measured *measured, const struct scene_number *asked, const struct scene *scene,
+/* FLOPs and the size factor of a plan. */
+static enum status plan_find(struct measured *measured, const struct scene_number *asked, const struct scene *scene,
                              const struct spec *spec)
 {
     const struct problem problem = scene_problem(scene, spec->precision);
     struct imaging imaging;
-    if (spec->algorithm->work != wk_work)
+    if (asked->quantity == QUANTITY_SIZE_FACTOR && spec->algorithm->work != wk_work)
         return status_set(STATUS_INVALID, "%s has no size factor; wk_* have", spec->algorithm->name);
     enum status status = imaging_open(spec, &problem, &imaging);
     if (status != STATUS_OK)
         return status;
-    keep(measured, asked, QUANTITY_SIZE_FACTOR, wk_size_factor(imaging.plan));
+    const struct work work = spec->algorithm->work(imaging.plan);
+    keep(measured, asked, QUANTITY_FLOPS, work.flops);
+    keep(measured, asked, QUANTITY_FLOPS_PUBLISHED, work.published[0].source ? work.published[0].flops : NAN);
+    if (spec->algorithm->work == wk_work)
+        keep(measured, asked, QUANTITY_SIZE_FACTOR, wk_size_factor(imaging.plan));
     imaging_close(&imaging);
     return STATUS_OK;
 }
@@ -100,7 +105,8 @@ double unimaged_value(struct measured *measured, const char *scene_name, const c
     if (status == STATUS_OK) {
         status = spec_parse(spec_text, &spec);
         if (status == STATUS_OK) {
-            status = (quantity == QUANTITY_SIZE_FACTOR ? size_find : filter_find)(measured, &asked, &scene, &spec);
+            const bool filtered = quantity >= QUANTITY_UPSAMPLING && quantity <= QUANTITY_CHANGED_DB;
+            status = (filtered ? filter_find : plan_find)(measured, &asked, &scene, &spec);
             spec_free(&spec);
         }
         scene_free(&scene);
@@ -108,4 +114,47 @@ double unimaged_value(struct measured *measured, const char *scene_name, const c
     return status == STATUS_OK && is_kept(measured, &asked, &value)
                ? value
                : measured_missing(measured, "%s with %s: %s", scene_name, spec_text, status_message());
+}
+
+double measured_flops(struct measured *measured, const char *scene, const char *spec, bool by_formula)
+{
+    const struct measurement *row = measured_row(measured, scene, spec);
+    if (row)
+        return by_formula ? row->flops_published : row->flops;
+    return unimaged_value(measured, scene, spec, -1, by_formula ? QUANTITY_FLOPS_PUBLISHED : QUANTITY_FLOPS);
+}
+
+/* ---- of the acquisition ---- */
+
+const char *const scene_number_names[] = {
+    "bin_m",           "wavelength_m",   "tx_length_m",        "recording_s",        "speed_m_s",
+    "sound_speed_m_s", "edge_phase_rad", "linear_2_bound_rad", "linear_8_bound_rad", NULL};
+
+/* What linear upsampling by beta leaves at the edge of the band: the nearest of its points lies up to 1/(beta + 1)
+   of the way off that a nearest sample does, and a point's own phase, atan(t tan(edge)), is not the line's, t edge. */
+static double linear_bound_rad(double edge, int beta)
+{
+    double bent = 0;
+    for (int k = 1 - beta; k < beta; k += 2) {
+        const double t = (double)k / (beta + 1);
+        bent = fmax(bent, fabs(atan(t * tan(edge)) - t * edge));
+    }
+    return edge / (beta + 1) + bent;
+}
+
+double scene_number_value(int place, const struct acquisition *a)
+{
+    struct straight_track track;
+    const bool straight = acquisition_is_straight(a, &track);
+    const double edge = acos(-1) * a->bandwidth / (2 * a->fs); /* what the nearest sample misses there, half a sample */
+    const double numbers[] = {a->sound_speed / (2 * a->fs),
+                              a->sound_speed / a->fc,
+                              a->tx_length,
+                              straight ? a->pings * track.spacing / track.speed : NAN,
+                              straight ? track.speed : NAN,
+                              a->sound_speed,
+                              edge,
+                              linear_bound_rad(edge, 2),
+                              linear_bound_rad(edge, 8)};
+    return numbers[place];
 }
