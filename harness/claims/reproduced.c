@@ -13,8 +13,6 @@
 #include "claims/verdicts.h"
 #include "show/table.h"
 
-enum { COLUMNS_MAX = 12 };
-
 /* Ahead of what is worked out: where, when and with what it was measured. */
 static void head_write(FILE *file, const char *what, const struct measured *measured)
 {
@@ -24,6 +22,11 @@ static void head_write(FILE *file, const char *what, const struct measured *meas
         if (strncmp(csv->comments[k], "sasbench ", 9) != 0 && strncmp(csv->comments[k], "scene ", 6) != 0)
             fprintf(file, "# %s\n", csv->comments[k]);
     fprintf(file, "# load: %.2f a processor (average of 15 minutes when evaluated)\n", measured->load);
+}
+
+static void item_format(const struct reproduced *line, char *item, size_t size)
+{
+    snprintf(item, size, "%s%s%s", line->target, *line->target ? ", " : "", line->method);
 }
 
 static enum status reproduced_write(const char *directory, const struct measured *measured,
@@ -40,7 +43,7 @@ static enum status reproduced_write(const char *directory, const struct measured
     for (int k = 0; k < count; k++) {
         const struct reproduced *l = &lines[k];
         char item[160], assumption[1200];
-        snprintf(item, sizeof item, "%s%s%s", l->target, *l->target ? ", " : "", l->method);
+        item_format(l, item, sizeof item);
         snprintf(assumption, sizeof assumption, "%s%s%s%s%s", l->assumption, *l->note ? "; " : "", l->note,
                  *l->missing ? "; no value: " : "", l->missing);
         const char *const texts[] = {l->table, item, l->quantity, l->definition, l->unit};
@@ -59,99 +62,35 @@ static enum status reproduced_write(const char *directory, const struct measured
     return text_file_close(&file, STATUS_OK);
 }
 
-/* A number and, behind it, how far it is from the paper's. */
-static void cell_print(double value, double paper)
-{
-    char text[40] = "-", difference[40] = "";
-    double size = fmax(fabs(value), fabs(paper));
-    if (isfinite(value))
-        snprintf(text, sizeof text, size > 1e4 || size < 0.1 ? "%.4g" : "%.3f", value);
-    if (isfinite(value) && isfinite(paper))
-        snprintf(difference, sizeof difference, size > 1e4 || size < 0.1 ? "(%+.1e)" : "(%+.3f)", value - paper);
-    printf(" %10s %-10s", text, difference);
-}
-
-/* What published.csv notes on the table's numbers, once for each target. */
-static void notes_print(const struct paper_table *table, const struct reproduced *lines, int count)
-{
-    for (int k = 0; k < count; k++) {
-        const struct reproduced *l = &lines[k];
-        bool printed = strcmp(l->table, table->id) != 0 || !*l->note;
-        for (int n = 0; n < k && !printed; n++)
-            printed = lines[n].table == l->table && strcmp(lines[n].note, l->note) == 0
-                      && strcmp(lines[n].target, l->target) == 0;
-        if (!printed)
-            printf("  %s: %s\n", *l->target ? l->target : "paper", l->note);
-    }
-}
-
-/* Claims and pictures have none. */
-static bool table_has_lines(const struct paper_table *table, const struct reproduced *lines, int count)
-{
-    bool has = false;
-    for (int k = 0; k < count; k++)
-        has |= strcmp(lines[k].table, table->id) == 0;
-    return has;
-}
-
-/* A row a printed number, a column each of `columns` definitions from `first` on. */
-static void columns_print(const struct paper_table *table, const struct reproduced *lines, int count,
-                          const char *const *definitions, int first, int columns)
-{
-    printf("  %-36s %-15s %10s", "", "", "paper");
-    for (int c = first; c < first + columns; c++)
-        printf(" %10s %-10s", (char[]){'(', (char)('1' + c), ')', '\0'}, "");
-    printf("\n");
-    for (int k = 0; k < count;) {
-        const struct reproduced *l = &lines[k];
-        int end = k + 1;
-        while (end < count && lines[end].table == l->table && lines[end].target == l->target
-               && lines[end].method == l->method && lines[end].quantity == l->quantity)
-            end++;
-        if (strcmp(l->table, table->id) == 0) {
-            char item[160], paper[40] = "";
-            snprintf(item, sizeof item, "%s%s%s", l->target, *l->target ? ", " : "", l->method);
-            if (isfinite(l->paper))
-                snprintf(paper, sizeof paper, "%.5g", l->paper);
-            printf("  %-36s %-15s %10s", item, l->quantity, paper);
-            for (int c = first; c < first + columns; c++) {
-                int n = k;
-                while (n < end && strcmp(lines[n].definition, definitions[c]) != 0)
-                    n++;
-                if (n < end)
-                    cell_print(lines[n].ours, lines[n].paper);
-                else
-                    printf(" %10s %-10s", "", "");
-            }
-            printf("\n");
-        }
-        k = end;
-    }
-}
-
-/* One table, in bands of as many definitions as a line holds. */
+/* One table: a line for each number and definition. A note stands once, ahead of the numbers of its target. */
 static void table_print(const struct paper_table *table, const struct reproduced *lines, int count)
 {
-    const char *definitions[COLUMNS_MAX];
-    char assumed[1000];
-    int columns = 0, band = 2;
-    for (int k = 0; k < count; k++) {
-        int c = 0;
-        while (c < columns && strcmp(definitions[c], lines[k].definition) != 0)
-            c++;
-        if (strcmp(lines[k].table, table->id) == 0 && c == columns && columns < COLUMNS_MAX)
-            definitions[columns++] = lines[k].definition;
-    }
+    char text[1000];
+    const struct reproduced *before = NULL;
+    int first = 0;
+    while (first < count && strcmp(lines[first].table, table->id) != 0)
+        first++;
+    if (first == count)
+        return; /* claims and pictures have no lines */
     printf("\n%s  %s\n", table->id, table->title);
-    for (int c = 0; c < columns; c++)
-        printf("  (%d) %s\n", c + 1, definitions[c]);
-    snprintf(assumed, sizeof assumed, "assumed: %s", table->assumption);
-    table_text(stdout, 2, assumed);
-    while (65 + 22 * (band + 1) <= table_width(stdout))
-        band++;
-    for (int c = 0; c < columns || c == 0; c += band)
-        columns_print(table, lines, count, definitions, c, columns - c < band ? columns - c : band);
-    notes_print(table, lines, count);
+    snprintf(text, sizeof text, "assumed: %s", table->assumption);
+    table_text(stdout, 2, text);
+    printf("  %-34s %-16s %10s %10s %10s  definition\n", "", "", "paper", "ours", "difference");
+    for (const struct reproduced *l = lines + first; l < lines + count; l++) {
+        if (strcmp(l->table, table->id) != 0)
+            continue;
+        if (*l->note && (!before || strcmp(before->note, l->note) != 0 || strcmp(before->target, l->target) != 0)) {
+            snprintf(text, sizeof text, "%s: %s", *l->target ? l->target : "paper", l->note);
+            table_text(stdout, 2, text);
+        }
+        item_format(l, text, sizeof text);
+        printf("  %-34s %-16s", text, l->quantity);
+        const double numbers[] = {l->paper, l->ours, l->ours - l->paper};
+        for (int k = 0; k < 3; k++)
+            printf(isfinite(numbers[k]) ? (k < 2 ? " %10.5g" : " %+10.2g") : "          -", numbers[k]);
+        printf("  %s\n", l->definition);
+        before = l;
+    }
 }
 
 /* ---- claims ---- */
@@ -294,7 +233,7 @@ enum status reproduced_report(const char *directory, const struct selection *sel
         status = reproduced_write(directory, &measured, lines, count);
     }
     for (int k = 0; paper_tables[k].id && status == STATUS_OK; k++)
-        if (selection->tables[k] && table_has_lines(&paper_tables[k], lines, count))
+        if (selection->tables[k])
             table_print(&paper_tables[k], lines, count);
     if (status == STATUS_OK)
         status = claims_report(directory, selection, &measured);

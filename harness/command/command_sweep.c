@@ -2,7 +2,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "run/interruption.h"
 #include "text/shown_text.h"
 #include "run/batch.h"
 #include "advise/machine_rates.h"
@@ -84,8 +83,7 @@ enum status command_sweep(const struct task *task)
     batch.in_turn = true;
     if (task->all)
         table_begin(stdout, false);
-    interruption_hold();
-    for (int k = 0; k < scene_count && status == STATUS_OK && !interruption_seen(); k++) {
+    for (int k = 0; k < scene_count && status == STATUS_OK; k++) {
         status = batch_scene(&batch, &scenes[k], settings.count, settings.specs);
         if (status == STATUS_OK)
             status = sweep_tables(directory, scenes, scene_count, scenes[k].name);
@@ -93,14 +91,12 @@ enum status command_sweep(const struct task *task)
             status = plot_results(directory, scenes[k].name, &batch.undrawn);
     }
     bool predicted = false;
-    if (status == STATUS_OK && !interruption_seen())
+    if (status == STATUS_OK)
         status = predicted_write(directory, scenes, scene_count, &predicted);
     if (predicted && status == STATUS_OK && predicted_draw(directory) != STATUS_OK) {
         shown_note(status_message());
         batch.undrawn++;
     }
-    fflush(stdout); /* the signal leaves no time */
-    interruption_end();
     if (status == STATUS_OK)
         printf("\nResults: %s/measurements.csv, targets.csv, fronts.csv, cheapest.csv, slopes.csv, rules.csv%s "
                "and plots.\n",

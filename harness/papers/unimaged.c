@@ -42,7 +42,7 @@ static void keep(struct measured *measured, const struct scene_number *asked, en
 
 /* ---- working it out ---- */
 
-/* FLOPs and the size factor of a plan. */
+/* FLOPs of a plan, or its size factor. */
 static enum status plan_find(struct measured *measured, const struct scene_number *asked, const struct scene *scene,
                              const struct spec *spec)
 {
@@ -54,10 +54,12 @@ static enum status plan_find(struct measured *measured, const struct scene_numbe
     if (status != STATUS_OK)
         return status;
     const struct work work = spec->algorithm->work(imaging.plan);
-    keep(measured, asked, QUANTITY_FLOPS, work.flops);
-    keep(measured, asked, QUANTITY_FLOPS_PUBLISHED, work.published[0].source ? work.published[0].flops : NAN);
-    if (spec->algorithm->work == wk_work)
+    if (asked->quantity == QUANTITY_SIZE_FACTOR) {
         keep(measured, asked, QUANTITY_SIZE_FACTOR, wk_size_factor(imaging.plan));
+    } else {
+        keep(measured, asked, QUANTITY_FLOPS, work.flops);
+        keep(measured, asked, QUANTITY_FLOPS_PUBLISHED, work.published[0].source ? work.published[0].flops : NAN);
+    }
     imaging_close(&imaging);
     return STATUS_OK;
 }

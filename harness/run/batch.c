@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "echoes/echo_data.h"
-#include "run/interruption.h"
 #include "run/progress_line.h"
 #include "show/pictures.h"
 #include "measure/outcome.h"
@@ -35,14 +34,20 @@ static void visit_close(struct visit *visit)
     session_close(&visit->session);
 }
 
-/* As the supervisor knows it; without a SPEC the echoes and the exact image of a scene. */
-static void task_format(const struct scene *scene, const struct spec *spec, char *task, size_t size)
+/* Begin what the supervisor knows by these words, without a SPEC the echoes and the exact image of a scene;
+   supervisor_leave ends it. How an earlier process crashed at it, which is not begun again; NULL: it did not. */
+static const char *task_begin(const struct scene *scene, const struct spec *spec)
 {
+    char task[700];
     if (spec)
-        snprintf(task, size, "%s, %s:%s%sprecision=%s", scene->name, spec->algorithm->name, spec->text,
+        snprintf(task, sizeof task, "%s, %s:%s%sprecision=%s", scene->name, spec->algorithm->name, spec->text,
                  *spec->text ? "," : "", precision_name(spec->precision));
     else
-        snprintf(task, size, "%s, echoes and exact image", scene->name);
+        snprintf(task, sizeof task, "%s, echoes and exact image", scene->name);
+    const char *crash = supervisor_crash(task);
+    if (!crash)
+        supervisor_enter(task);
+    return crash;
 }
 
 /* On failure the visit is closed. */
@@ -50,10 +55,7 @@ static enum status visit_open(struct batch *batch, const struct scene *scene, in
                               struct visit *visit)
 {
     *visit = (struct visit){.specs = specs, .spec_count = spec_count};
-    char task[700];
-    task_format(scene, NULL, task, sizeof task);
-    const char *crash = supervisor_crash(task);
-    supervisor_enter(task);
+    const char *crash = task_begin(scene, NULL);
     enum status status = crash ? status_set(STATUS_FAILED, "making the echoes and the exact image %s", crash)
                                : session_open(scene, &visit->session);
     supervisor_leave();
@@ -132,13 +134,10 @@ static enum status add_crashed(struct batch *batch, const struct scene *scene, c
 static enum status measure(struct batch *batch, struct visit *visit, int index)
 {
     struct outcome outcome;
-    char task[700];
     enum status status = STATUS_OK;
-    task_format(visit->session.scene, &visit->specs[index], task, sizeof task);
-    const char *crash = supervisor_crash(task);
+    const char *crash = task_begin(visit->session.scene, &visit->specs[index]);
     if (crash)
         return add_crashed(batch, visit->session.scene, &visit->specs[index], crash);
-    supervisor_enter(task);
     outcome_measure(&visit->session, &visit->specs[index], batch->effort,
                     visit->samples ? &visit->samples[index - visit->turns_first] : NULL, &outcome);
     supervisor_leave();
@@ -203,17 +202,14 @@ static void turns_take(struct batch *batch, struct visit *visit, int first)
 {
     const struct scene *scene = visit->session.scene;
     const int end = first + TURNS < visit->spec_count ? first + TURNS : visit->spec_count;
-    char task[700];
     visit->turns_first = first;
     memset(visit->samples, 0, TURNS * sizeof *visit->samples);
     for (int round = 1; round < TIMING_ROUNDS; round++)
-        for (int k = first; k < end && !interruption_seen(); k++) {
+        for (int k = first; k < end; k++) {
             const struct spec *spec = &visit->specs[k];
-            task_format(scene, spec, task, sizeof task);
-            if (batch_find(batch, scene, spec) || supervisor_crash(task))
+            if (batch_find(batch, scene, spec) || task_begin(scene, spec))
                 continue;
             progress(batch, scene->name, spec->algorithm->name);
-            supervisor_enter(task);
             outcome_round(&visit->session, spec, &visit->samples[k - first]);
             supervisor_leave();
         }
@@ -230,12 +226,9 @@ const struct measurement *batch_find(const struct batch *batch, const struct sce
 static void redraw(struct visit *visit, int index, const struct measurement *row)
 {
     struct image image = {0};
-    char task[700];
     if (strcmp(row->status, "ok") != 0)
         return;
-    task_format(visit->session.scene, &visit->specs[index], task, sizeof task);
-    const char *crash = supervisor_crash(task);
-    supervisor_enter(task);
+    const char *crash = task_begin(visit->session.scene, &visit->specs[index]);
     enum status status =
         crash ? status_set(STATUS_FAILED, "%s", crash) : session_image(&visit->session, &visit->specs[index], &image);
     supervisor_leave();
@@ -305,12 +298,10 @@ enum status batch_scene(struct batch *batch, const struct scene *scene, int spec
     }
     if (status != STATUS_OK)
         return status;
-    for (int k = 0; k < spec_count && status == STATUS_OK && !interruption_seen(); k++, batch->done++) {
+    for (int k = 0; k < spec_count && status == STATUS_OK; k++, batch->done++) {
         const struct measurement *row = batch_find(batch, scene, &specs[k]);
         if (visited && visit.samples && k % TURNS == 0)
             turns_take(batch, &visit, k);
-        if (interruption_seen())
-            break;
         progress(batch, scene->name, specs[k].algorithm->name);
         batch->measured += !row;
         if (!row)
