@@ -1,13 +1,33 @@
 /* What BP22, ZP15, LBF21, SQ18 and PF05 claim, sentence by sentence, and how our measurements comparison it:
-   results/claims.csv, a row a claim, names what is compared (quantity.h) and by which comparison (comparisons.h).
+   results/claims.csv, a row a claim, names what is compared (quantity.h) and by which comparison (below).
 
    What counts as agreement is the printed number with its last digit's rounding; where a sentence gives no number
    ("slightly", "far less") the criterion says what was taken. */
 #ifndef SASBENCH_CLAIMS_CLAIMS_H
 #define SASBENCH_CLAIMS_CLAIMS_H
 
-#include "claims/comparisons.h"
+#include "report/published.h"
+#include "claims/quantity.h"
 #include "papers/tables.h"
+
+struct evaluation {
+    enum claim_verdict verdict;
+    char evidence[4000]; /* one line, with the numbers */
+};
+
+/* Is it a cell with comparisons, or the word `undecided`? */
+bool comparison_decides(const char *text);
+
+/* Does it say that no measurement can change the answer? */
+bool comparison_identity(const char *text);
+
+/* Decide by a cell "COMPARISON(...) and COMPARISON(...) else COMPARISON(...)": the claim holds if all comparisons
+   ahead of the first `else` agree (a cell that begins with `else` has none), and under its assumption if all of a
+   part behind one do; where none does but noise hides what one says, nothing is decided. "identity COMPARISON(...)"
+   is for what no measurement can change. Their numbers and answers are appended to the evidence. Errors: as
+   quantities_read. */
+enum status comparisons_read(struct formula *formula, const char *column, const char *text,
+                             struct evaluation *evaluation);
 
 #define CLAIMS_FILE  SASBENCH_ROOT "/results/claims.csv"
 #define NUMBERS_FILE SASBENCH_ROOT "/results/numbers.csv" /* that claims name */

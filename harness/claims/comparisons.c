@@ -1,5 +1,5 @@
-/* The comparisons (comparisons.h). Each compares so that NaN disagrees. */
-#include "claims/comparisons.h"
+/* The comparisons (claims.h). Each compares so that NaN disagrees. */
+#include "claims/claims.h"
 #include "text/text_append.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* Numbers that claims.csv asks for by name (lookup.h). */
-#include "claims/lookup.h"
+/* Numbers that claims.csv asks for by name (quantity.h). */
+#include "claims/quantity.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -10,7 +10,6 @@
 
 #include "text/text_append.h"
 #include "measure/timing.h"
-#include "claims/lookup.h"
 
 /* ---- texts ---- */
 

@@ -85,4 +85,11 @@ double values_extreme(const struct values *values, bool largest);
 /* "0.452", or "0.01 to 0.45" of several, at the end of a text in `size` bytes. */
 void values_append(char *text, size_t size, const struct values *values);
 
+/* Is it the name of such a function? */
+bool lookup_exists(const char *name);
+/* The call of `name`, which stands at `at` and whose opening parenthesis was taken. `accepted` are other functions'
+   names, for the message when there is none of that name. Errors: as quantities_read. */
+enum status lookup_read(struct formula *formula, const char *at, const char *name, const char *accepted,
+                        struct values *values);
+
 #endif

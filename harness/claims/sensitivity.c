@@ -1,5 +1,5 @@
-/* Which verdicts depend on what the papers do not print (sensitivity.h). */
-#include "claims/sensitivity.h"
+/* Which verdicts depend on what the papers do not print (reproduce.h). */
+#include "claims/reproduce.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -11,7 +11,6 @@
 
 #include "files/folder.h"
 #include "text/shown_text.h"
-#include "report/page_style.h"
 
 /* --- Text ------------------------------------------------------------------------------------------------------ */
 

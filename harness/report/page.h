@@ -50,12 +50,15 @@ void page_row(struct page *page, const struct page_cell *cells);
 void page_row_note(struct page *page, const char *name, const char *note);
 void page_table_end(struct page *page);
 
-/* A drawing of gnuplot (SVG) stands inline, its names made unique; a PNG is encoded in the page. Errors: STATUS_FAILED when the file cannot be read. */
+/* A drawing of gnuplot (SVG) stands inline, its names made unique; a PNG is encoded in the page. Errors: STATUS_FAILED
+   when the file cannot be read. */
 enum status page_drawing(struct page *page, const char *path, const char *title);
 enum status page_image(struct page *page, const char *path, const char *caption);
 /* The JPEG file of the descriptor `small` in place of a PNG, with a link to the file `name` beside the page. */
 enum status page_thumbnail(struct page *page, int small, const char *name, const char *caption);
 /* A word, then links to files beside the page. */
 void page_files(struct page *page, const char *before, int count, const char *const *names, const char *const *texts);
+
+extern const char page_style[], page_script[];
 
 #endif

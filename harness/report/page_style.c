@@ -1,5 +1,5 @@
 /* How an HTML page looks, on a screen, on a narrow one, and printed; and what its script does. */
-#include "report/page_style.h"
+#include "report/page.h"
 
 const char page_style[] =
     "<style>\n"

@@ -124,3 +124,9 @@ int published_values(const struct csv *csv, const char *table, const char *targe
     }
     return count;
 }
+
+const char *const claim_verdict_names[CLAIM_VERDICTS] = {[CLAIM_HOLDS] = "holds",
+                                                         [CLAIM_ASSUMED] = "holds under stated assumption",
+                                                         [CLAIM_IDENTITY] = "identity",
+                                                         [CLAIM_FAILS] = "does not hold",
+                                                         [CLAIM_UNDECIDED] = "cannot be decided"};

@@ -34,4 +34,9 @@ struct paper_table {
 };
 extern const struct paper_table paper_tables[]; /* id NULL ends */
 
+/* Identity: true by arithmetic or by the paper's own formulas and numbers alone; no measurement can change it. */
+enum claim_verdict { CLAIM_HOLDS, CLAIM_ASSUMED, CLAIM_IDENTITY, CLAIM_FAILS, CLAIM_UNDECIDED, CLAIM_VERDICTS };
+/* "holds", "holds under stated assumption", "identity", "does not hold", "cannot be decided". */
+extern const char *const claim_verdict_names[CLAIM_VERDICTS];
+
 #endif

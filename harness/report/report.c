@@ -9,10 +9,7 @@
 #include "show/plot.h"
 #include "show/plot_points.h"
 #include "results/results.h"
-#include "report/report_fronts.h"
-#include "report/report_measurements.h"
-#include "report/report_pictures.h"
-#include "report/report_tables.h"
+#include "report/report_parts.h"
 #include "files/paths.h"
 #include "files/text_file.h"
 

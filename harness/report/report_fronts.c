@@ -1,5 +1,5 @@
-/* The beginning of a report (report_fronts.h). */
-#include "report/report_fronts.h"
+/* The beginning of a report (report_parts.h). */
+#include "report/report_parts.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
-/* Measurements on a page (report_measurements.h). */
-#include "report/report_measurements.h"
+/* Measurements on a page (report_parts.h). */
+#include "report/report_parts.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
-/* The pictures of a report (report_pictures.h). */
-#include "report/report_pictures.h"
+/* The pictures of a report (report_parts.h). */
+#include "report/report_parts.h"
 
 #include <math.h>
 #include <stdlib.h>

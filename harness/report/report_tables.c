@@ -1,5 +1,5 @@
-/* Tables of `sweep`, `reproduce` and `stability` on a page (report_tables.h). */
-#include "report/report_tables.h"
+/* Tables of `sweep`, `reproduce` and `stability` on a page (report_parts.h). */
+#include "report/report_parts.h"
 
 #include <math.h>
 #include <string.h>
@@ -7,7 +7,6 @@
 
 #include "report/published.h"
 #include "text/text_append.h"
-#include "report/verdict.h"
 #include "show/plot.h"
 
 /* Empty where there is no such column. */

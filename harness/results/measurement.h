@@ -31,8 +31,8 @@ struct target_row {
     double extent_m, position_error_m, phase_error_rad, width_m, pslr_db, islr_db;
 };
 
-/* The one table of metrics: header, writer and reader of the CSV, the empty row, what the regression gate compares, what
-   a claim may ask for, and what terminal and report show come from it. These two add what follows from several
+/* The one table of metrics: header, writer and reader of the CSV, the empty row, what the regression gate compares,
+   what a claim may ask for, and what terminal and report show come from it. These two add what follows from several
    columns (speed-up, rate). */
 struct column {
     const char *name; /* NULL ends the table */
@@ -68,8 +68,8 @@ struct measurement measurement_empty(const char *scene, const char *algorithm, c
                                      enum precision precision);
 
 /* Whether a row has an error up to error_most and costs less (the double at the offset `cost`; of equal ones the
-   faster) than the cheapest so far, which may be NULL: what a sweep's tables and a report's summary call cheapest. A row
-   whose time is stated and was not measured is none. */
+   faster) than the cheapest so far, which may be NULL: what a sweep's tables and a report's summary call cheapest. A
+   row whose time is stated and was not measured is none. */
 bool measurement_is_cheaper(const struct measurement *row, const struct measurement *best, size_t cost,
                             double error_most);
 

@@ -5,7 +5,7 @@
 #define SASBENCH_SHOW_PICTURES_H
 
 #include "show/plot.h"
-#include "show/plot_queue.h"
+#include "show/plot_script.h"
 
 struct pictures {
     const char *directory, *footer; /* borrowed, like scene and exact image; footer: where they are from */

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "show/plot_queue.h"
+#include "show/plot_script.h"
 
 static const double floor_db = -200; /* stands for zero power, far below what is shown */
 

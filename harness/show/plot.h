@@ -19,7 +19,7 @@ struct image_picture {
     bool named; /* the path, by the user: a link there is followed */
 };
 enum status plot_image(const char *path, const char *plots_directory, const struct image_picture *picture);
-/* The same, drawn later (plot_queue.h): what is written until then fails here, the rest there. */
+/* The same, drawn later (plot_script.h): what is written until then fails here, the rest there. */
 struct plot_queue;
 enum status plot_image_later(struct plot_queue *queue, const char *path, const char *plots_directory,
                              const struct image_picture *picture);

@@ -6,7 +6,7 @@
 
 #include "echoes/echo_data.h"
 #include "show/plot.h"
-#include "show/plot_queue.h"
+#include "show/plot_script.h"
 
 enum {
     PIXELS_MAX = 900, /* of a panel, along each axis: about what the screen shows */

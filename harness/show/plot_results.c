@@ -9,7 +9,7 @@
 #include "text/text_append.h"
 #include "show/chart.h"
 #include "show/plot.h"
-#include "show/plot_queue.h"
+#include "show/plot_script.h"
 
 /* Pictures in the making. */
 struct drawer {

@@ -1,5 +1,5 @@
 /* Pictures in the making (plot_script.h). */
-#define _GNU_SOURCE /* memfd_create */
+#define _GNU_SOURCE /* memfd_create, _Fork */
 #include "show/plot_script.h"
 
 #include <errno.h>
@@ -11,6 +11,99 @@
 #include <unistd.h>
 
 #include "files/text_file.h"
+#include <omp.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <sys/prctl.h>
+#include <time.h>
+#include "contract/algorithm.h"
+#include "show/plot.h"
+
+/* ---- gnuplot as a process ---- */
+
+double plot_seconds_most = 60;
+static bool hung; /* it took too long once: it would on every further picture */
+
+/* The first line of `log` that tells what is wrong, for a message. */
+static void gnuplot_complaint(int log, char *text, size_t size)
+{
+    snprintf(text, size, "no message");
+    int copy = dup(log);
+    FILE *file = copy < 0 ? NULL : fdopen(copy, "r");
+    if (!file) {
+        if (copy >= 0)
+            close(copy);
+        return;
+    }
+    rewind(file);
+    /* A failed statement, a '^' below its fault, then "SCRIPT" line N: REASON. */
+    char line[512], statement[200] = "";
+    while (fgets(line, sizeof line, file)) {
+        line[strcspn(line, "\r\n")] = '\0';
+        const char *start = line + strspn(line, " \t^"), *reason = *start == '"' ? strstr(start, "\" line ") : NULL;
+        if (reason) {
+            snprintf(text, size, "%s%s%s", statement, *statement ? ": " : "", reason + 2);
+            break;
+        }
+        if (*start && !*statement) {
+            snprintf(statement, sizeof statement, "%.199s", start);
+            snprintf(text, size, "%s", statement);
+        }
+    }
+    fclose(file);
+}
+
+/* In the child, which ends with this program, by whatever ends it. A group of its own, so that what it starts can be
+   ended with it. --default-settings: the user's own gnuplot start-up files stay out. */
+static _Noreturn void child_run(pid_t parent, const char *script, int picture, int log)
+{
+    const int nothing = open("/dev/null", O_RDONLY);
+    setpgid(0, 0);
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    signal(SIGXFSZ, SIG_DFL); /* which main ignores */
+    if (getppid() == parent && dup2(nothing, STDIN_FILENO) >= 0 && dup2(picture, STDOUT_FILENO) >= 0
+        && dup2(log, STDERR_FILENO) >= 0)
+        execlp("gnuplot", "gnuplot", "--default-settings", script, (char *)NULL);
+    dprintf(STDERR_FILENO, "cannot run gnuplot (Debian: gnuplot-nox): %s\n", strerror(errno));
+    _exit(126);
+}
+
+static enum status gnuplot_start(const char *script, int picture, int log, struct gnuplot *gnuplot)
+{
+    const pid_t parent = getpid();
+    *gnuplot = (struct gnuplot){.begin = seconds_now(), .process = _Fork()};
+    if (gnuplot->process == 0)
+        child_run(parent, script, picture, log);
+    return gnuplot->process > 0 ? STATUS_OK
+                                : status_set(STATUS_FAILED, "plot: no process to run gnuplot in: %s", strerror(errno));
+}
+
+static enum status gnuplot_poll(struct gnuplot *gnuplot, bool *ended)
+{
+    pid_t found = waitpid(gnuplot->process, &gnuplot->exit_status, WNOHANG);
+    *ended = found == gnuplot->process;
+    if (found < 0 && errno != EINTR)
+        return status_set(STATUS_FAILED, "plot: cannot wait for gnuplot: %s", strerror(errno));
+    if (found <= 0 && seconds_now() - gnuplot->begin > plot_seconds_most) {
+        kill(-gnuplot->process, SIGKILL);
+        waitpid(gnuplot->process, &gnuplot->exit_status, 0);
+        hung = true;
+        return status_set(STATUS_FAILED,
+                          "plot: gnuplot did not end within %g s and was stopped; no more pictures "
+                          "are drawn",
+                          plot_seconds_most);
+    }
+    return STATUS_OK;
+}
+
+static void gnuplot_pause(void)
+{
+    nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL);
+}
+
+/* ---- a picture in the making ---- */
 
 static enum status file_failed(const char *path)
 {
@@ -106,7 +199,7 @@ static enum status hung_status(const char *path)
 enum status plot_begin(struct plot *plot, const char *path, bool named)
 {
     *plot = (struct plot){.path = path, .named = named, .picture = -1, .log = -1};
-    return gnuplot_hung() ? hung_status(path) : file_open(plot, &plot->preamble);
+    return hung ? hung_status(path) : file_open(plot, &plot->preamble);
 }
 
 /* Removes what is left; accepts a plot whose beginning failed. */
@@ -120,7 +213,7 @@ void plot_end(struct plot *plot)
         close(plot->log);
 }
 
-enum status plot_prepare(struct plot *plot, const char *plots_directory, const char *script)
+static enum status plot_prepare(struct plot *plot, const char *plots_directory, const char *script)
 {
     plot->plots_directory = plots_directory;
     plot->script = script;
@@ -131,10 +224,10 @@ enum status plot_prepare(struct plot *plot, const char *plots_directory, const c
     return plot_file_flush(plot, plot->preamble);
 }
 
-enum status plot_start(struct plot *plot)
+static enum status plot_start(struct plot *plot)
 {
     char script[PLOT_NAME];
-    if (gnuplot_hung())
+    if (hung)
         return hung_status(plot->path);
     plot->picture = memfd_create("picture", MFD_CLOEXEC);
     plot->log = memfd_create("log", MFD_CLOEXEC);
@@ -144,7 +237,7 @@ enum status plot_start(struct plot *plot)
     return gnuplot_start(script, plot->picture, plot->log, &plot->gnuplot);
 }
 
-enum status plot_poll(struct plot *plot, bool *ended)
+static enum status plot_poll(struct plot *plot, bool *ended)
 {
     enum status status = gnuplot_poll(&plot->gnuplot, ended);
     if (status == STATUS_OK && *ended && plot->gnuplot.exit_status != 0) {
@@ -174,12 +267,6 @@ enum status plot_run(struct plot *plot, const char *plots_directory, const char 
     return status;
 }
 
-bool plot_is_empty(const struct plot *plot)
-{
-    struct stat info;
-    return fstat(plot->picture, &info) == 0 && info.st_size == 0;
-}
-
 /* Whether a picture reaches its end: gnuplot does not notice where it cannot write. */
 static bool picture_is_whole(const struct plot *plot, off_t size)
 {
@@ -196,7 +283,7 @@ static bool picture_is_whole(const struct plot *plot, off_t size)
 }
 
 /* Put the picture in its place. */
-enum status plot_place(const struct plot *plot)
+static enum status plot_place(const struct plot *plot)
 {
     struct text_file file;
     const off_t size = lseek(plot->picture, 0, SEEK_END);
@@ -214,8 +301,93 @@ enum status plot_place(const struct plot *plot)
     return status;
 }
 
-enum status plot_draw(struct plot *plot, const char *plots_directory, const char *script)
+/* ---- later ---- */
+
+enum { PROCESSES_MOST = 16 };
+
+struct queued_plot {
+    struct plot plot; /* its path is ours */
+    bool started, done;
+};
+
+static void queued_end(struct queued_plot *queued)
 {
-    enum status status = plot_run(plot, plots_directory, script);
-    return status == STATUS_OK ? plot_place(plot) : status;
+    plot_end(&queued->plot);
+    free((char *)queued->plot.path);
+}
+
+/* Takes over the plot, even on failure. */
+static enum status add(struct plot_queue *queue, struct plot *plot, const char *plots_directory, const char *script)
+{
+    if (!queue->list)
+        queue->list = malloc(PLOT_QUEUE_MOST * sizeof *queue->list);
+    char *path = queue->list ? strdup(plot->path) : NULL;
+    enum status status = path ? plot_prepare(plot, plots_directory, script)
+                              : status_set(STATUS_FAILED, "plot: '%.300s': no memory", plot->path);
+    if (status != STATUS_OK) {
+        free(path);
+        plot_end(plot);
+        return status;
+    }
+    struct queued_plot *queued = &queue->list[queue->count++];
+    *queued = (struct queued_plot){.plot = *plot};
+    queued->plot.path = path;
+    return STATUS_OK;
+}
+
+enum status plot_finish(struct plot *plot, enum status status, struct plot_queue *queue, const char *plots_directory,
+                        const char *script)
+{
+    if (status == STATUS_OK && queue)
+        return add(queue, plot, plots_directory, script);
+    if (status == STATUS_OK)
+        status = plot_run(plot, plots_directory, script);
+    if (status == STATUS_OK)
+        status = plot_place(plot);
+    plot_end(plot);
+    return status;
+}
+
+/* One step of a picture: it is started, asked whether it is ready, put into its place. */
+static enum status advance(struct queued_plot *queued)
+{
+    bool ended = false;
+    enum status status = STATUS_OK;
+    if (!queued->started)
+        status = plot_start(&queued->plot);
+    else
+        status = plot_poll(&queued->plot, &ended);
+    queued->started = true;
+    if (status == STATUS_OK && ended)
+        status = plot_place(&queued->plot);
+    queued->done = ended || status != STATUS_OK;
+    return status;
+}
+
+void plot_queue_draw(struct plot_queue *queue, void (*failed)(void *to), void *to)
+{
+    /* The last first: a scene's slices take longest. */
+    const int threads = omp_get_max_threads(), most = threads < PROCESSES_MOST ? threads : PROCESSES_MOST;
+    for (int done = 0; done < queue->count;) {
+        int running = 0;
+        done = 0;
+        for (int k = queue->count - 1; k >= 0 && running < most; k--) {
+            if (!queue->list[k].done && advance(&queue->list[k]) != STATUS_OK)
+                failed(to);
+            running += !queue->list[k].done;
+        }
+        for (int k = 0; k < queue->count; k++)
+            done += queue->list[k].done;
+        if (done < queue->count)
+            gnuplot_pause();
+    }
+    plot_queue_free(queue);
+}
+
+void plot_queue_free(struct plot_queue *queue)
+{
+    for (int k = 0; k < queue->count; k++)
+        queued_end(&queue->list[k]);
+    free(queue->list);
+    *queue = (struct plot_queue){NULL, 0};
 }

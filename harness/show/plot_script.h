@@ -4,10 +4,18 @@
 #ifndef SASBENCH_SHOW_PLOT_SCRIPT_H
 #define SASBENCH_SHOW_PLOT_SCRIPT_H
 
+#include <stdbool.h>
 #include <stdio.h>
+#include <sys/types.h>
 
-#include "show/gnuplot.h"
 #include "contract/status.h"
+
+/* gnuplot as a process. */
+struct gnuplot {
+    pid_t process;
+    double begin;    /* seconds_now() */
+    int exit_status; /* once it has ended, as waitpid gives it */
+};
 
 enum { PANELS_MAX = 8, PLOT_FILES_MOST = 66 }; /* more panels do not fit a picture */
 
@@ -40,15 +48,26 @@ void plot_path_variable(FILE *file, const char *name, const char *path);
 void plot_array(FILE *file, const char *name, int count);
 void plot_array_write(FILE *file, const char *name, int index, const char *text);
 
-/* Draw with plots_directory/script, then put the picture in its place; or both. */
+/* Draw with plots_directory/script, without putting the picture in its place. */
 enum status plot_run(struct plot *plot, const char *plots_directory, const char *script);
-enum status plot_place(const struct plot *plot);
-bool plot_is_empty(const struct plot *plot); /* it has drawn nothing */
-enum status plot_draw(struct plot *plot, const char *plots_directory, const char *script);
 
-/* plot_run in steps, for several at a time: prepare, start, poll until *ended. */
-enum status plot_prepare(struct plot *plot, const char *plots_directory, const char *script);
-enum status plot_start(struct plot *plot);
-enum status plot_poll(struct plot *plot, bool *ended);
+enum { PLOT_QUEUE_MOST = 48 };
+
+/* Accepts zeroes; emptied by plot_queue_draw or plot_queue_free. */
+struct plot_queue {
+    struct queued_plot *list; /* [count] */
+    int count;
+};
+
+/* End a plot whose data and variables were written with `status`: without a queue it is drawn, else taken over and
+   drawn later; `plots_directory` and `script` are borrowed until then. The queue must hold fewer than PLOT_QUEUE_MOST.
+   Errors: `status`; as plot_draw; STATUS_FAILED for a full disk or no memory. */
+enum status plot_finish(struct plot *plot, enum status status, struct plot_queue *queue, const char *plots_directory,
+                        const char *script);
+/* Draw all, as many at a time as OpenMP has threads. `failed` is called for each that cannot be drawn, with
+   status_message() saying why. */
+void plot_queue_draw(struct plot_queue *queue, void (*failed)(void *to), void *to);
+/* Drop what is not drawn. */
+void plot_queue_free(struct plot_queue *queue);
 
 #endif

@@ -7,7 +7,7 @@
 
 #include "command/task.h"
 #include "measure/session.h"
-#include "claims/verdicts.h"
+#include "claims/reproduce.h"
 #include "tests/planted.h"
 
 /* --- The file -------------------------------------------------------------------------------------------------- */

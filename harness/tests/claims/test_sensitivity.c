@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "papers/assumptions.h"
-#include "claims/sensitivity.h"
+#include "claims/reproduce.h"
 #include "tests/planted.h"
 
 static const struct assumptions *set_named(const char *name)

@@ -7,7 +7,7 @@
 
 #include "echoes/echo_data.h"
 #include "show/plot.h"
-#include "show/plot_queue.h"
+#include "show/plot_script.h"
 #include "tests/support.h"
 
 static const char real_plots[] = SASBENCH_ROOT "/plots";

@@ -1,0 +1,67 @@
+/* The parts of a report. */
+#ifndef SASBENCH_REPORT_REPORT_PARTS_H
+#define SASBENCH_REPORT_REPORT_PARTS_H
+
+#include "files/csv.h"
+#include <stdbool.h>
+#include "results/results.h"
+#include "report/page.h"
+#include "show/plot_points.h"
+
+/* How much was measured, which are the fastest, what was refused, failed, is noisy or warned of. */
+void report_sentences_show(struct page *page, const struct results *results, int scene_count,
+                           const char *const *scenes);
+/* All scenes at one glance. */
+void report_overview_show(struct page *page, const struct points *points, int scene_count);
+/* Of each scene a chart, its front as a table, and the commands that measure these again. Errors: as page_chart. */
+enum status report_fronts_show(struct page *page, const struct points *points, int scene_count);
+/* A row for each scene, a column for each power of ten of error that any reaches. */
+void report_cheapest_show(struct page *page, const struct results *results, const struct points *points,
+                          int scene_count);
+
+/* Each warning of a scene once, with the images that have it; nothing without any. */
+void report_warnings_show(struct page *page, const struct results *results);
+/* Heading, and a table for each scene, folded; below a row how its image was made. */
+void report_measurements_show(struct page *page, const struct results *results, int scene_count,
+                              const char *const *scenes);
+
+struct pictures_count {
+    int shown, left_out, irregular;
+};
+
+/* Is a file there that the page has room for, when it takes `growth` times its size? Others but missing ones are
+   counted. */
+bool report_room(const struct page *page, const char *path, double growth, struct pictures_count *count);
+/* A PNG of the folder, or in its place the JPEG file of the descriptor `small` (-1: none), which links to it. Errors: as
+   page_image. */
+enum status report_picture_show(struct page *page, const char *path, int small, const char *caption,
+                                struct pictures_count *count);
+/* What of the pictures is not on the page, and why. */
+void report_left_out_show(struct page *page, const struct pictures_count *count);
+
+/* Slices and images that `run` left, by scene. Errors: as page_image. */
+enum status report_pictures_show(struct page *page, const char *directory, const struct results *results,
+                                 int scene_count, const char *const *scenes);
+
+enum { REPORT_COLUMNS = 13 };
+
+/* A CSV file on the page. */
+struct report_table {
+    const char *file, *id, *title, *text;
+    const char *group;                                         /* column whose values become headings, or NULL */
+    void (*summary)(struct page *page, const struct csv *csv); /* of all groups, ahead of them; may be NULL */
+    struct {
+        const char *name, *title;
+        enum { SHOW_TEXT, SHOW_NUMBER, SHOW_VERDICT, SHOW_ONCE } show; /* once: not again in the rows below */
+    } columns[REPORT_COLUMNS];                                         /* title NULL ends */
+};
+enum { REPORT_TABLES = 8, REPORT_STABILITY = 7 };
+extern const struct report_table report_tables[REPORT_TABLES];
+
+/* The file in DIR, into a zeroed *csv, which stays so where there is none. Errors: as csv_read; STATUS_INVALID naming
+   a column that is missing. */
+enum status report_table_read(const char *directory, const struct report_table *table, struct csv *csv);
+/* Heading, text and rows; nothing for a file without rows. */
+void report_table_show(struct page *page, const struct report_table *table, const struct csv *csv);
+
+#endif
