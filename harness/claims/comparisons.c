@@ -1,10 +1,11 @@
 /* The comparisons (claims.h). Each compares so that NaN disagrees. */
 #include "claims/claims.h"
-#include "text/text_append.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+#include "text/text_append.h"
 
 /* ---- comparisons: v[0] is what is evaluated, v[1] and v[2] are single numbers ---- */
 

@@ -3,6 +3,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,7 +12,6 @@
 #include "text/text_append.h"
 #include "show/chart.h"
 #include "show/table.h"
-#include <stdio.h>
 
 /* --- Commands --------------------------------------------------------------------------------------------------- */
 

@@ -2,8 +2,9 @@
 #ifndef SASBENCH_REPORT_REPORT_PARTS_H
 #define SASBENCH_REPORT_REPORT_PARTS_H
 
-#include "files/csv.h"
 #include <stdbool.h>
+
+#include "files/csv.h"
 #include "results/results.h"
 #include "report/page.h"
 #include "show/plot_points.h"
@@ -32,8 +33,8 @@ struct pictures_count {
 /* Is a file there that the page has room for, when it takes `growth` times its size? Others but missing ones are
    counted. */
 bool report_room(const struct page *page, const char *path, double growth, struct pictures_count *count);
-/* A PNG of the folder, or in its place the JPEG file of the descriptor `small` (-1: none), which links to it. Errors: as
-   page_image. */
+/* A PNG of the folder, or in its place the JPEG file of the descriptor `small` (-1: none), which links to it. Errors:
+   as page_image. */
 enum status report_picture_show(struct page *page, const char *path, int small, const char *caption,
                                 struct pictures_count *count);
 /* What of the pictures is not on the page, and why. */
