@@ -1,4 +1,5 @@
 /* The command line: one table of commands, one of options. */
+#include <ctype.h>
 #include <fcntl.h>
 #include <getopt.h>
 #include <limits.h>
@@ -99,60 +100,38 @@ static const struct command commands[] = {
      "ot", 0, INT_MAX, command_bench, false},
 };
 
-static const struct option long_options[] = {
-    {"output", required_argument, NULL, 'o'},
-    {"scene", required_argument, NULL, 's'},
-    {"echoes", required_argument, NULL, 'e'},
-    {"algorithm", required_argument, NULL, 'a'},
-    {"grid", required_argument, NULL, 'g'},
-    {"threads", required_argument, NULL, 't'},
-    {"at", required_argument, NULL, 'A'},
-    {"markdown", required_argument, NULL, 'M'},
-    {"json", required_argument, NULL, 'J'},
-    {"range", required_argument, NULL, 'R'},
-    {"tile", required_argument, NULL, 'I'},
-    {"error", required_argument, NULL, 'E'},
-    {"memory", required_argument, NULL, 'Y'},
-    {"seed", required_argument, NULL, 'S'},
-    {"name", required_argument, NULL, 'N'},
-    {"seconds", required_argument, NULL, 'K'},
-    {"ab", no_argument, NULL, 'B'},
-    {"quick", no_argument, NULL, 'Q'},
-    {"precision", required_argument, NULL, 'P'},
-    {"all", no_argument, NULL, 'L'},
-    {"flops", no_argument, NULL, 'F'},
-    {"verify", no_argument, NULL, 'W'},
-    {"help", no_argument, NULL, 'h'},
-    {NULL, 0, NULL, 0},
+#define IN_TASK(field) offsetof(struct task, field)
+/* Options with their value, which is a text of struct task at the offset; without one a flag there. */
+static const struct named {
+    int letter; /* a small one can be given by itself */
+    const char *name, *value, *text;
+    size_t offset; /* 0: not kept there */
+} options[] = {
+    {'o', "output", "PATH", "file or folder of the result", IN_TASK(output)},
+    {'s', "scene", "SCENE", "a path, or a name below scenes/ without .cfg", IN_TASK(scene)},
+    {'e', "echoes", "FILE", "recorded echoes in MATLAB format", IN_TASK(echoes)},
+    {'a', "algorithm", "SPEC", "NAME or NAME:key=value,...; all take precision=double", 0},
+    {'g', "grid", "GRID", "xmin:xstep:xcount,rmin:rstep:rcount[,angle] (m, degrees)", IN_TASK(grid)},
+    {'t', "threads", "N", "OpenMP threads, 1 to 1024", IN_TASK(threads)},
+    {'R', "range", "DB", "range of a picture below its peak, 60 dB unless given", IN_TASK(range)},
+    {'I', "tile", "NxM", "pixels along x and r that are formed, and put into the file, at a time", IN_TASK(tile)},
+    {'P', "precision", "WHICH", "float or double; both unless given, or stated by a SPEC", IN_TASK(precision)},
+    {'E', "error", "E", "of the image after one gain (L2), 1e-3 unless given", IN_TASK(error)},
+    {'Y', "memory", "BYTES", "of the image's process, at most; 4G unless given (512MiB)", IN_TASK(memory)},
+    {'S', "seed", "N", "a whole number from 0 to 1e15", IN_TASK(seed)},
+    {'N', "name", "NAME", "of the image's program; the file's name unless given", IN_TASK(name)},
+    {'K', "seconds", "S", "run time of that program; the row marks it as stated", IN_TASK(seconds)},
+    {'A', "at", "FILE.csv", "points: columns d, r, F, f, fc, v, c", IN_TASK(at)},
+    {'B', "ab", NULL, "run two programs side by side and compare their times", IN_TASK(ab)},
+    {'Q', "quick", NULL, "one scene of each family, in two rounding modes", IN_TASK(quick)},
+    {'L', "all", NULL, "print every line, not the answer alone", IN_TASK(all)},
+    {'F', "flops", NULL, "count FLOPs by the papers' formulas as well", IN_TASK(flops)},
+    {'W', "verify", NULL, "measure the image's error on some of its pixels", IN_TASK(verify)},
+    {'M', "markdown", "FILE", "the findings as a comment for a CI", IN_TASK(markdown)},
+    {'J', "json", "FILE", "the findings for trackers of benchmarks", IN_TASK(json)},
+    {'h', "help", NULL, NULL, 0},
 };
-
-static const struct {
-    int letter;
-    const char *text;
-} option_texts[] = {
-    {'o', "-o, --output PATH     file or folder of the result"},
-    {'s', "-s, --scene SCENE     a path, or a name below scenes/ without .cfg"},
-    {'e', "-e, --echoes FILE     recorded echoes in MATLAB format"},
-    {'a', "-a, --algorithm SPEC  NAME or NAME:key=value,...; all take precision=double"},
-    {'g', "-g, --grid GRID       xmin:xstep:xcount,rmin:rstep:rcount[,angle] (m, degrees)"},
-    {'t', "-t, --threads N       OpenMP threads, 1 to 1024"},
-    {'R', "    --range DB        range of a picture below its peak, 60 dB unless given"},
-    {'I', "    --tile NxM        pixels along x and r that are formed, and put into the file, at a time"},
-    {'P', "    --precision WHICH float or double; both unless given, or stated by a SPEC"},
-    {'E', "    --error E         of the image after one gain (L2), 1e-3 unless given"},
-    {'Y', "    --memory BYTES    of the image's process, at most; 4G unless given (512MiB)"},
-    {'S', "    --seed N          a whole number from 0 to 1e15"},
-    {'N', "    --name NAME       of the image's program; the file's name unless given"},
-    {'K', "    --seconds S       run time of that program; the row marks it as stated"},
-    {'A', "    --at FILE.csv     points: columns d, r, F, f, fc, v, c"},
-    {'B', "    --ab              run two programs side by side and compare their times"},
-    {'Q', "    --quick           one scene of each family, in two rounding modes"},
-    {'L', "    --all             print every line, not the answer alone"},
-    {'F', "    --flops           count FLOPs by the papers' formulas as well"},
-    {'W', "    --verify          measure the image's error on some of its pixels"},
-    {'M', "    --markdown FILE   the findings as a comment for a CI"},
-    {'J', "    --json FILE       the findings for trackers of benchmarks"},
-};
+enum { OPTIONS = sizeof options / sizeof *options };
 static const char exit_text[] = "\nExit status: 0 done, 1 a run failed or got worse, 2 bad usage or bad input.\n";
 
 /* One screen; what a command takes is said by its own help. */
@@ -178,9 +157,16 @@ static void help_command(const struct command *command)
     snprintf(text, sizeof text, "%s.", command->summary);
     putchar('\n');
     table_text(stdout, 0, text);
-    for (size_t k = 0, shown = 0; k < sizeof option_texts / sizeof *option_texts; k++)
-        if (strchr(command->options, option_texts[k].letter))
-            printf("%s  %s\n", shown++ ? "" : "\nOptions:\n", option_texts[k].text);
+    for (int k = 0, shown = 0; k < OPTIONS; k++) {
+        const struct named *o = &options[k];
+        char brief[8] = "";
+        if (!strchr(command->options, o->letter))
+            continue;
+        if (islower(o->letter))
+            snprintf(brief, sizeof brief, "-%c, ", o->letter);
+        snprintf(text, sizeof text, "--%s%s%s", o->name, o->value ? " " : "", o->value ? o->value : "");
+        printf("%s  %-4s%-17s %s\n", shown++ ? "" : "\nOptions:\n", brief, text, o->text);
+    }
     fputs(exit_text, stdout);
 }
 
@@ -205,8 +191,8 @@ static void option_meant(const struct command *command, int letter, const char *
     struct suggestion suggestion = suggestion_begin(option);
     const char *bare = letter == 's' ? "SCENE" : letter == 'a' ? "SPEC" : "\n";
     suggestion.before = "--";
-    for (const struct option *o = long_options; o->name; o++)
-        if (strchr(command->options, o->val))
+    for (const struct named *o = options; o < options + OPTIONS; o++)
+        if (strchr(command->options, o->letter))
             suggestion_offer(&suggestion, o->name);
     suggestion_text(&suggestion, meant);
     if (strstr(command->arguments, bare))
@@ -218,8 +204,8 @@ static enum status option_refuse(const struct command *command, const char *opti
                                  const char *meant)
 {
     char accepted[160] = "";
-    for (const struct option *o = long_options; o->name; o++)
-        if (strchr(command->options, o->val))
+    for (const struct named *o = options; o < options + OPTIONS; o++)
+        if (strchr(command->options, o->letter))
             text_append(accepted, sizeof accepted, "%s--%s", *accepted ? ", " : "", o->name);
     return status_set(STATUS_INVALID, "%s: option '%s' %s%s accepted: %s", command->name, option, fault, meant,
                       *accepted ? accepted : "none");
@@ -243,8 +229,8 @@ static void option_given(char *const *argv, int letter, char *text, size_t size)
     if (optarg && optarg == word) /* its value stands by itself */
         word = argv[optind - 2];
     bool is_long = strncmp(word, "--", 2) == 0 && (letter != '?' || !optopt);
-    for (const struct option *o = long_options; o->name && letter == '?'; o++) /* one that takes no value has one */
-        is_long |= o->val == optopt && strncmp(word, "--", 2) == 0;
+    for (const struct named *o = options; o < options + OPTIONS && letter == '?'; o++) /* one without a value has one */
+        is_long |= o->letter == optopt && strncmp(word, "--", 2) == 0;
     if (is_long)
         snprintf(text, size, "%.*s", (int)strcspn(word, "="), word);
     else
@@ -259,18 +245,13 @@ static enum status empty_refuse(const struct command *command, const char *what)
 /* Arguments after the command's name. */
 static enum status parse(const struct command *command, int argc, char **argv, struct task *task, bool *helped)
 {
-    const char *threads = NULL;
-    const struct {
-        int letter;
-        const char **field;
-    } texts[] = {{'o', &task->output}, {'s', &task->scene},    {'e', &task->echoes},    {'g', &task->grid},
-                 {'A', &task->at},     {'M', &task->markdown}, {'J', &task->json},      {'t', &threads},
-                 {'R', &task->range},  {'E', &task->error},    {'Y', &task->memory},    {'S', &task->seed},
-                 {'N', &task->name},   {'K', &task->seconds},  {'P', &task->precision}, {'I', &task->tile}};
+    struct option known[OPTIONS + 1] = {{.name = NULL}};
+    for (int k = 0; k < OPTIONS; k++)
+        known[k] = (struct option){options[k].name, options[k].value ? required_argument : no_argument, NULL,
+                                   options[k].letter};
     enum status status = STATUS_OK;
     opterr = 0;
-    for (int letter;
-         status == STATUS_OK && (letter = getopt_long(argc, argv, ":o:s:e:a:g:t:h", long_options, NULL)) != -1;) {
+    for (int letter; status == STATUS_OK && (letter = getopt_long(argc, argv, ":o:s:e:a:g:t:h", known, NULL)) != -1;) {
         char given[80], meant[SUGGESTION_TEXT];
         if (letter == 'h') {
             *helped = true;
@@ -283,26 +264,23 @@ static enum status parse(const struct command *command, int argc, char **argv, s
             option_meant(command, letter, given, meant);
             return option_refuse(command, given, "is not one of this command", meant);
         }
-        for (size_t k = 0; k < sizeof texts / sizeof *texts; k++)
-            if (texts[k].letter == letter) {
-                if (*texts[k].field)
-                    return option_refuse(command, given, "is given twice", ";");
-                if (!*optarg && !strchr("gt", letter)) /* which say themselves what they take */
-                    return empty_refuse(command, given);
-                *texts[k].field = optarg;
-            }
-        if (letter == 'a')
+        if (letter == 'a') {
             status = spec_add(task, optarg);
-        if (letter == 'B')
-            task->ab = true;
-        if (letter == 'Q')
-            task->quick = true;
-        if (letter == 'L')
-            task->all = true;
-        if (letter == 'F')
-            task->flops = true;
-        if (letter == 'W')
-            task->verify = true;
+            continue;
+        }
+        const struct named *option = options;
+        while (option->letter != letter)
+            option++;
+        void *field = (char *)task + option->offset;
+        if (!option->value) {
+            *(bool *)field = true;
+            continue;
+        }
+        if (*(const char **)field)
+            return option_refuse(command, given, "is given twice", ";");
+        if (!*optarg && !strchr("gt", letter)) /* which say themselves what they take */
+            return empty_refuse(command, given);
+        *(const char **)field = optarg;
     }
     task->names = (const char *const *)argv + optind;
     task->name_count = argc - optind;
@@ -310,7 +288,7 @@ static enum status parse(const struct command *command, int argc, char **argv, s
         if (!*task->names[k])
             status = empty_refuse(command, "an argument");
     if (status == STATUS_OK)
-        status = threads_parse(threads);
+        status = threads_parse(task->threads);
     if (status == STATUS_OK && task->name_count < command->names_least)
         return status_set(STATUS_INVALID, "%s: an argument is missing: sasbench %s %s", command->name, command->name,
                           command->arguments);
@@ -326,8 +304,8 @@ static bool is_option(const char *name)
     const char *bare = name + strspn(name, "-");
     const size_t length = strcspn(bare, "=");
     bool is = false;
-    for (const struct option *o = long_options; o->name && *name == '-'; o++)
-        is |= name[1] == '-' ? strncmp(bare, o->name, length) == 0 && !o->name[length] : *bare == o->val && !bare[1];
+    for (const struct named *o = options; o < options + OPTIONS && *name == '-'; o++)
+        is |= name[1] == '-' ? strncmp(bare, o->name, length) == 0 && !o->name[length] : *bare == o->letter && !bare[1];
     return is;
 }
 
