@@ -1,5 +1,5 @@
 # Factorised back projection beside the others: error against time for an aperture of thousands of pings, on a straight track and on one
-# that sways. Draws results/factorised.csv, whose head says how it was measured.
+# that sways. Draws results/factorised.csv, whose head states how it was measured.
 #
 # By hand:    gnuplot -c plots/factorised.gp results/factorised.csv
 # Variables:  csv      scene,algorithm,options,error,cpu_s

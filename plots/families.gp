@@ -1,4 +1,4 @@
-# Colour, point and dash of each algorithm, the same in every picture and report: a row an algorithm. Colours and points are told apart
+# Colour, point and dash of each algorithm, the same in every picture and report: a row an algorithm. Colours and points differ
 # by the colour-blind and in grey together with the dashes; back projections have round and square points, range migration triangles,
 # omega-k crosses. Those that are not in the list share the last row, `others`.
 #

@@ -1,5 +1,5 @@
 # An image in decibels below its peak, one panel a patch, and beside or below each its difference to the exact image. Both axes
-# have one scale, unless that would leave less than a third of the panel: then the label says how many times one is stretched.
+# have one scale, unless that would leave less than a third of the panel: then the label states how many times one is stretched.
 #
 # Variables:  output   the picture to write, PNG or SVG
 #             title    above the picture; footer: below it

@@ -3,7 +3,7 @@
 # Variables:  output   the PNG to write
 #             title    above the picture
 #             panels   array: title of each panel
-#             lines    array: label of each line; algorithms: whose colour it has; printed: the largest error that a paper says, 0 for none
+#             lines    array: label of each line; algorithms: whose colour it has; printed: the largest error that a paper prints, 0 for none
 #             footer   below the picture
 #             data     array: for each panel, for each line a text file of "wavenumber (1/m)  error (rad)"
 #             plots    folder of style.gp (default "plots")

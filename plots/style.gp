@@ -17,7 +17,7 @@ if (svg) {
     set terminal pngcairo noenhanced size width,height font "DejaVu Sans,13" background "#ffffff"
 }
 
-# Lines that can be told apart in greyscale and by the colour-blind: lightness, dash and point all differ. The first
+# Lines for greyscale and the colour-blind: lightness, dash and point all differ. The first
 # is broad and pale, so that a reference stays visible below the lines that lie on it.
 set linetype 1 linecolor "#b8b8b8" linewidth 5.0 dashtype 1 pointtype 0
 set linetype 2 linecolor "#000000" linewidth 1.4 dashtype 1 pointtype 7 pointsize 1.0
@@ -42,7 +42,7 @@ set key Left reverse samplen 4 spacing 1.2
 tic_decade(extent) = 10**floor(log10(extent/5.0))
 tic_step(extent) = tic_decade(extent)*(extent < 7.5*tic_decade(extent) ? 1 : extent < 15*tic_decade(extent) ? 2 : \
     extent < 37.5*tic_decade(extent) ? 5 : 10)
-# As many digits as tell tics apart: six, more far from the origin.
+# As many digits as distinguish tics: six, more far from the origin.
 tic_digits(farthest, step) = farthest < 1e5*step ? 6 : ceil(log10(farthest/step)) + 1
 tic_format(low, high, step) = sprintf("%%.%dg", tic_digits(abs(low) > abs(high) ? abs(low) : abs(high), step))
 # tic_step(extent), or the next longer one where its labels would collide on an axis of `span` drawn on so many pixels.

@@ -13,7 +13,7 @@ enum status command_scenes(const struct task *task)
     long long seed;
     struct text_file file;
     if (strcmp(task->names[0], "random") != 0)
-        return status_set(STATUS_INVALID, "scenes: '%s' is not accepted; random is", task->names[0]);
+        return status_set(STATUS_INVALID, "scenes: '%s' is not accepted; accepted: random", task->names[0]);
     if (!task->seed)
         return status_set(STATUS_INVALID, "scenes: --seed N is missing, a whole number from 0 to 1e15");
     const char *end = whole_read(task->seed, 0, seed_most, &seed);

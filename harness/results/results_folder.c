@@ -178,9 +178,8 @@ static enum status file_read(const char *path, const struct row_kind *kind, stru
         return STATUS_OK;
     csv_free(csv);
     return status_set(STATUS_INVALID,
-                      "%s:1: not a file of ours, whose first line is '# %s'; it is left as it is, "
-                      "name another folder",
-                      path, kind->format);
+                      "%s:1: the first line is not '# %s', so another program wrote it; name another folder", path,
+                      kind->format);
 }
 
 static enum status rows_parse(struct results_folder *folder)

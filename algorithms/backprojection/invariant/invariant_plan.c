@@ -115,8 +115,8 @@ struct condition invariant_condition(const struct problem *problem, enum severit
                                   DRIFT_MOST,
                                   false,
                                   severity,
-                                  "how far columns and pings drift apart over the track (cycles of the carrier, or "
-                                  "samples); the general engine, which takes any, is slower",
+                                  "drift between columns and pings over the track (cycles of the carrier, or samples); "
+                                  "the general engine takes any, but is slower",
                                   "a uniform straight track whose ping spacing is a whole number of azimuth steps"};
     if (step > 0 && isfinite(off)) {
         const double spacing = fabs(track.spacing), ratio = round(spacing / step);

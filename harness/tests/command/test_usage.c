@@ -199,7 +199,7 @@ static const struct refusal places[] = {
     {RUN_INTO(""), {"run: -o is ''", "a path"}},
     {RUN_INTO("/dev/full"), {"/dev/full: cannot be made", "name a folder"}},
     {RUN_INTO(long_name), {"xxxxxx"}},
-    {RUN_INTO("foreign"), {"foreign/measurements.csv:1: not a file of ours", "name another folder"}},
+    {RUN_INTO("foreign"), {"foreign/measurements.csv:1: the first line is not '# sasbench", "name another folder"}},
     {RUN_INTO("crowded"), {"crowded/targets.csv", "a regular file"}},
 
     {{"simulate", "nowhere/scene", "-o", "x.mat"}, {"nowhere/scene.cfg", "the name of a shipped scene"}},

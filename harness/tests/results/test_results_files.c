@@ -28,11 +28,11 @@ static void test_foreign_files(void **state)
 {
     (void)state;
     file_write(measurements_path, "w", "my,own\ndata,1\n");
-    check_refused("measurements.csv:1: not a file of ours");
+    check_refused("measurements.csv:1: the first line is not '# sasbench");
     file_write(measurements_path, "w", "");
-    check_refused("measurements.csv:1: not a file of ours");
+    check_refused("measurements.csv:1: the first line is not '# sasbench");
     file_write(measurements_path, "w", "# sasbench measurements 2\na\n");
-    check_refused("measurements.csv:1: not a file of ours");
+    check_refused("measurements.csv:1: the first line is not '# sasbench");
     file_write(measurements_path, "w", "# sasbench measurements 1\na,b\n1\n");
     check_refused("measurements.csv:3: 1 fields");
     file_write(measurements_path, "w",
@@ -52,7 +52,7 @@ static void test_foreign_files(void **state)
     remove(measurements_path);
     results_folder_close(open_ok("c1", 2));
     file_write(targets_path, "w", "notes\n");
-    check_refused("targets.csv:1: not a file of ours");
+    check_refused("targets.csv:1: the first line is not '# sasbench");
 }
 
 static void test_unwritable(void **state)
