@@ -13,7 +13,7 @@
 
 static const struct param params[] = {
     {PARAM_NAMED(struct wk_options, unfold, wk_unfold_names),
-     .summary = "zeros between pings to hold all wavenumbers, the same after basebanding, or the support only",
+     .summary = "zeros between pings for all wavenumbers, the same after basebanding, or the support only",
      .initial = WK_SUPPORT, .max = WK_SUPPORT, .sweep = "stuff baseband support"},
     WK_TAPS_PARAM,
     {PARAM(struct wk_options, pad), .summary = "least length of the azimuth transform over the pings", .initial = 1,
