@@ -333,8 +333,8 @@ static double error_between_samples(const struct problem *problem, const struct 
                : NAN;
 }
 
-enum status bp_forecast(const struct problem *problem, const struct interpolator *in, const void *options,
-                        struct forecast *forecast)
+enum status bp_cost(const struct problem *problem, const struct interpolator *in, const void *options,
+                    struct forecast *forecast)
 {
     const struct bp_options *given = options;
     struct bp bp;
@@ -344,25 +344,31 @@ enum status bp_forecast(const struct problem *problem, const struct interpolator
         status = forecast_reading(&bp, in, options, forecast);
     if (status == STATUS_OK) {
         const bool general = bp.engine == &bp_general;
-        const double law = error_between_samples(problem, in, options);
         forecast->tables = !general;
         forecast->finer = in->upsample;
-        const double ends = in->upsample == 1 && in->degree == 0 && in->taps > 1 ? law_ends(problem, in->taps) : 0;
-        forecast->error[CAUSE_INTERPOLATION] = hypot(law, ends);
         forecast->error[CAUSE_DELAYS] = general ? DELAYS_SHARE * bp.medium.phase_limit : 1e-7;
         forecast->error[CAUSE_FLOAT] = ROUNDING[general][problem->precision];
-        if (bp.limited.aperture_limit > 0) {
+        if (bp.limited.aperture_limit > 0)
             forecast->error[CAUSE_APERTURE] = aperture_planned(problem, given->aperture);
-        }
         if (forecast->kind == READ_BRANCHES && in->degree == 0)
             bp.kernel.branches = forecast->values;
         forecast_records(&bp, in, forecast);
-        if (isnan(law))
-            status = status_set(STATUS_FAILED, "no memory for an error law");
     }
     free(bp.met);
     turned_free(&bp.turned);
     return status;
+}
+
+enum status bp_forecast(const struct problem *problem, const struct interpolator *in, const void *options,
+                        struct forecast *forecast)
+{
+    const enum status status = bp_cost(problem, in, options, forecast);
+    if (status != STATUS_OK)
+        return status;
+    const double law = error_between_samples(problem, in, options);
+    const double ends = in->upsample == 1 && in->degree == 0 && in->taps > 1 ? law_ends(problem, in->taps) : 0;
+    forecast->error[CAUSE_INTERPOLATION] = hypot(law, ends);
+    return isnan(law) ? status_set(STATUS_FAILED, "no memory for an error law") : STATUS_OK;
 }
 
 void bp_destroy(void *plan)

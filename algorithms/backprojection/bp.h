@@ -67,6 +67,8 @@ enum { BP_MADE_MOST = 4096 };
 enum status bp_method_plan(const struct problem *problem, const void *method, const void *options, void **plan);
 enum status bp_method_forecast(const struct problem *problem, const void *method, const void *options,
                                struct forecast *forecast);
+enum status bp_method_cost(const struct problem *problem, const void *method, const void *options,
+                           struct forecast *forecast);
 /* conditions_sampled and `invariance`, which refuses where the invariant engine is asked for. */
 int bp_method_conditions(const struct problem *problem, const void *method, const void *options, struct condition *list,
                          int room);
@@ -79,8 +81,11 @@ enum status bp_execute(void *plan, const struct echoes *echoes, struct image *im
 void bp_reads(const void *plan, bool *read);
 struct work bp_work(const void *plan);
 void bp_destroy(void *plan);
-/* The forecast of an interpolator: its error law, the delays and the rounding of the engine that bp_plan would choose.
-   Errors: as bp_plan for the engine asked for, and for the conditions; STATUS_FAILED without memory. */
+/* The forecast of an interpolator: its error law, the delays and the rounding of the engine that bp_plan would choose;
+   and all of it but the law, which takes most of the time. Errors: as bp_plan for the engine asked for, and for the
+   conditions; STATUS_FAILED without memory. */
+enum status bp_cost(const struct problem *problem, const struct interpolator *interpolator, const void *options,
+                    struct forecast *forecast);
 enum status bp_forecast(const struct problem *problem, const struct interpolator *interpolator, const void *options,
                         struct forecast *forecast);
 int bp_conditions(const struct problem *problem, const void *options, struct condition *list, int room);

@@ -25,6 +25,15 @@ enum status bp_method_plan(const struct problem *problem, const void *method, co
     return status == STATUS_OK ? bp_plan(problem, &made.interpolator, handed, plan) : status;
 }
 
+enum status bp_method_cost(const struct problem *problem, const void *method, const void *options,
+                           struct forecast *forecast)
+{
+    struct made made;
+    const void *handed;
+    const enum status status = make(problem, method, options, &made, &handed);
+    return status == STATUS_OK ? bp_cost(problem, &made.interpolator, handed, forecast) : status;
+}
+
 enum status bp_method_forecast(const struct problem *problem, const void *method, const void *options,
                                struct forecast *forecast)
 {

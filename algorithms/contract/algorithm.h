@@ -166,8 +166,8 @@ struct algorithm {
        no planner chooses the algorithm. */
     enum status (*forecast)(const struct problem *problem, const void *method, const void *options,
                             struct forecast *forecast);
-    /* Where that is as costly as a plan: the counts alone, which `forecast` then leaves at 0. Errors: as forecast; what
-       only a forecast finds out is not refused. NULL: `forecast` counts. */
+    /* The counts alone, where errors take longer: of those, what costs nothing. Errors: as forecast; what only a
+       forecast finds out is not refused. NULL: `forecast` counts. */
     enum status (*cost)(const struct problem *problem, const void *method, const void *options,
                         struct forecast *forecast);
     /* Make a plan in *plan. Errors: STATUS_UNSUPPORTED with the reason, STATUS_FAILED; *plan is then NULL. */

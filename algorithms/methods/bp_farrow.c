@@ -66,6 +66,7 @@ const struct algorithm bp_farrow = {
     .conditions = bp_method_conditions,
     .promise = promise,
     .forecast = bp_method_forecast,
+    .cost = bp_method_cost,
     .plan = bp_method_plan,
     .execute = bp_execute,
     .reads = bp_reads,

@@ -69,6 +69,7 @@ const struct algorithm bp_sinc = {
     .method = &method,
     .conditions = bp_method_conditions,
     .forecast = bp_method_forecast,
+    .cost = bp_method_cost,
     .plan = bp_method_plan,
     .execute = bp_execute,
     .reads = bp_reads,

@@ -245,7 +245,7 @@ static void runner_up_print(FILE *stream, const struct candidate *c, const struc
     char text[700], name[CANDIDATE_NAME];
     const char *reason = reason_of(c), *cure = strstr(reason, " (cure: ");
     candidate_name(c, name);
-    if (is_slower(c))
+    if (is_slower(c) && c->error < INFINITY)
         snprintf(text, sizeof text, "%s: error %.1e, %s, %.2f times as long", name, c->error,
                  cell_time(c->seconds).text, c->seconds / chosen->seconds);
     else

@@ -1,7 +1,7 @@
-/* Choosing among candidates (choice.h): from the fastest on, that which is within the budget by law is formed, and
-   measured on a probe (imaging/probe.h). Where it fails, it tells how much brighter the echoes are than the image,
-   which no law knows, and the next is chosen by that. Back projection after the first is formed on the probe's
-   pixels alone; range migration, whose images have no pixels of their own, whole. */
+/* Choosing among candidates (choice.h): the fastest that is within the budget by law is formed, and measured on a probe
+   (imaging/probe.h). Where it fails, it tells how much brighter the echoes are than the image, which no law knows, and
+   the next is chosen by that. Back projection after the first is formed on the probe's pixels alone; range migration,
+   whose images have no pixels of their own, whole. */
 #include "choice/choice.h"
 
 #include <math.h>
@@ -21,15 +21,13 @@ static const double DARK = 3;
 /* A setting of less than this share of the chosen one's time is worth a look. */
 static const double PAYS = 0.8;
 enum { LOOKS = 2 };
-/* s: what it takes to forecast images of subapertures. */
-static const double LOOK = 0.05;
 
 struct trial {
     struct setting setting;
     const struct echoes *echoes; /* [2]; NULL: laws alone */
     struct choice *choice;
     struct probe probe; /* made of the first image */
-    bool probed, dark;
+    bool probed, dark, limited;
     double exact; /* the error by law of what stands for the exact image; 0 of `reference` */
 };
 
@@ -95,10 +93,13 @@ static enum status candidate_form(struct trial *t, struct candidate *c, const st
                                   struct image *image, struct work *work)
 {
     const enum precision precision = problem->precision;
+    struct candidate formed = *c;
     struct spec spec;
     struct imaging imaging;
     struct stages stages;
-    enum status status = candidate_spec(c, precision, &spec);
+    if (problem != t->setting.problem) /* few pixels pay neither for tables nor for what stands for taps or delays */
+        candidate_set(&formed, "exact", "true");
+    enum status status = candidate_spec(&formed, precision, &spec);
     if (status != STATUS_OK)
         return status;
     status = imaging_open(&spec, problem, &imaging);
@@ -127,7 +128,7 @@ static void back_projections_compare(struct trial *t)
 {
     for (int k = 0; k < t->choice->count; k++) {
         struct candidate *c = &t->choice->list[k];
-        if (c->measured.pixels == 0 && c->forecast.sums_pairs
+        if (c->measured.pixels == 0 && c->forecast.sums_pairs && !laws_open(c)
             && (c->verdict == CANDIDATE_SLOWER || c->verdict == CANDIDATE_ERROR))
             laws_compare(&t->setting, c);
     }
@@ -143,15 +144,16 @@ static void migrations_compare(struct trial *t, const struct candidate *failed)
     candidate_name(failed, name);
     for (int k = 0; k < t->choice->count; k++) {
         struct candidate *c = &t->choice->list[k];
-        if (c->verdict == CANDIDATE_SLOWER && c->algorithm->cost) {
+        if (c->verdict == CANDIDATE_SLOWER && !laws_sums(c) && !c->budgeted) {
             c->verdict = CANDIDATE_ERROR;
             snprintf(c->reason, sizeof c->reason, "over the budget of %.2g by its spectrum, as %s is", error, name);
         }
     }
 }
 
-/* Take the measured error over. NAN, of an image of zeros, leaves the law's. */
-static void measured_take(struct trial *t, struct candidate *c, const struct probe_error *measured)
+/* Take the measured error over, with `beside` of what the measurement leaves out. NAN, of an image of zeros, leaves the
+   law's. */
+static void measured_take(struct trial *t, struct candidate *c, const struct probe_error *measured, double beside)
 {
     const double budget = t->setting.budget->error, law = forecast_error(&c->forecast);
     c->measured = *measured;
@@ -159,11 +161,11 @@ static void measured_take(struct trial *t, struct candidate *c, const struct pro
         c->error = law;
         return;
     }
-    c->error = hypot(measured->error_gain, t->exact);
+    c->error = hypot(measured->error_gain, hypot(t->exact, beside));
     if (c->forecast.sums_pairs && !c->budgeted)
         t->setting.ratio = c->error / law;
     /* Half of the interval is kept clear: some of what is measured lies above the estimate. */
-    if (sqrt(measured->error_gain * measured->high) <= budget)
+    if (hypot(sqrt(measured->error_gain * measured->high), beside) <= budget)
         return;
     c->verdict = CANDIDATE_ERROR;
     snprintf(c->reason, sizeof c->reason,
@@ -174,14 +176,13 @@ static void measured_take(struct trial *t, struct candidate *c, const struct pro
 /* What follows of one that failed. */
 static enum status failure_learn(struct trial *t, struct candidate *c)
 {
-    if (c->algorithm->cost)
+    if (!c->forecast.sums_pairs) {
         migrations_compare(t, c);
-    if (!c->forecast.sums_pairs)
         return STATUS_OK;
+    }
     back_projections_compare(t);
-    enum status status = laws_extend(&t->setting, t->choice);
-    if (status != STATUS_OK || t->dark || !(t->setting.ratio > DARK))
-        return status;
+    if (t->dark || !(t->setting.ratio > DARK))
+        return STATUS_OK;
     t->dark = true;
     return probe_again(t, NULL);
 }
@@ -205,7 +206,7 @@ static enum status candidate_measure(struct trial *t, struct candidate *c, struc
         status = candidate_form(t, c, &pixels, &part, work);
         if (status == STATUS_OK && c->verdict == CANDIDATE_SLOWER) {
             measured = probe_measure_pixels(&t->probe, &part);
-            measured_take(t, c, &measured);
+            measured_take(t, c, &measured, c->forecast.error[CAUSE_DELAYS]);
             image_free(&part);
         }
         return status;
@@ -217,7 +218,7 @@ static enum status candidate_measure(struct trial *t, struct candidate *c, struc
         status = probe_again(t, image);
     if (status == STATUS_OK) {
         measured = probe_measure(&t->probe, image);
-        measured_take(t, c, &measured);
+        measured_take(t, c, &measured, 0);
     }
     if (status != STATUS_OK || c->verdict != CANDIDATE_SLOWER)
         image_free(image);
@@ -232,8 +233,14 @@ static enum status candidate_try(struct trial *t, struct candidate *c)
     struct image image = {0};
     struct work work;
     enum status status = STATUS_OK;
-    if (laws_open(c) && (c->budgeted || !form))
+    if (!laws_counted(c))
+        return laws_count(&t->setting, c);
+    if (laws_open(c) && (!form || laws_sums(c)))
         return laws_complete(&t->setting, c);
+    if (!t->limited && c->forecast.sums_pairs) {
+        t->limited = true;
+        return laws_limit(&t->setting, choice, c);
+    }
     if (form)
         status = candidate_measure(t, c, &image, &work);
     const bool whole = image.patch_count > 0;
@@ -242,7 +249,7 @@ static enum status candidate_try(struct trial *t, struct candidate *c)
     if (status == STATUS_UNSUPPORTED)
         return laws_refused(c, status);
     if (status == STATUS_OK && c->verdict == CANDIDATE_MEMORY)
-        laws_without_tables(&t->setting, c, choice, &status);
+        status = laws_without_tables(&t->setting, c, choice);
     else if (status == STATUS_OK && c->verdict == CANDIDATE_ERROR)
         status = failure_learn(t, c);
     if (status != STATUS_OK || c->verdict != CANDIDATE_SLOWER) {
@@ -281,7 +288,7 @@ static enum status faster_look(struct trial *t, struct candidate **chosen)
         return STATUS_OK;
     back_projections_compare(t);
     for (int k = 0; k < LOOKS && status == STATUS_OK; k++) {
-        struct candidate *c = laws_fastest(t->choice, false);
+        struct candidate *c = laws_next(t->choice);
         if (c == *chosen || !c->forecast.sums_pairs || c->forecast.image_cost > 0
             || !(c->seconds < PAYS * (*chosen)->seconds))
             return STATUS_OK;
@@ -292,22 +299,13 @@ static enum status faster_look(struct trial *t, struct candidate **chosen)
     return status;
 }
 
-/* The fastest so far. Images of subapertures take as long to forecast as a small image does to be formed: they are
-   looked at ahead of a back projection that takes longer, and after all else. */
-static struct candidate *next_candidate(struct choice *choice)
-{
-    struct candidate *best = laws_fastest(choice, false), *any = laws_fastest(choice, true);
-    const bool pays = best && best->forecast.sums_pairs && best->seconds > LOOK && any->seconds < best->seconds;
-    return best && !pays ? best : any;
-}
-
 static enum status trial_run(struct trial *t, struct candidate **chosen)
 {
     struct choice *choice = t->choice;
     bool least = false;
     enum status status = STATUS_OK;
     while (status == STATUS_OK && !choice->found) {
-        *chosen = next_candidate(choice);
+        *chosen = laws_next(choice);
         if (!*chosen && t->echoes && !least) {
             least = true;
             *chosen = least_by_law(choice);
@@ -348,7 +346,7 @@ static void choice_finish(struct choice *choice, struct candidate *chosen)
     if (choice->found)
         chosen->verdict = CANDIDATE_CHOSEN;
     for (int k = 0; k < choice->count; k++)
-        if (choice->list[k].looked_at)
+        if (laws_counted(&choice->list[k]) || choice->list[k].budgeted)
             choice->list[kept++] = choice->list[k];
     choice->count = kept;
     for (int k = 0; k < choice->count; k++)
@@ -369,6 +367,9 @@ enum status choice_make(const struct problem *problem, const struct echoes *echo
         status = laws_fill(&t.setting, choice);
     if (status == STATUS_OK)
         status = trial_run(&t, &chosen);
+    for (int k = 0; k < choice->count && budget->all && status == STATUS_OK; k++)
+        if (!choice->list[k].budgeted && choice->list[k].verdict == CANDIDATE_SLOWER && &choice->list[k] != chosen)
+            status = (laws_sums(&choice->list[k]) ? laws_complete : laws_count)(&t.setting, &choice->list[k]);
     probe_free(&t.probe);
     if (status == STATUS_OK)
         choice_finish(choice, chosen);

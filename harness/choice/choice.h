@@ -15,8 +15,7 @@ struct candidate {
     const struct algorithm *algorithm;
     char settings[80];           /* as in a SPEC: "degree=4", may be empty */
     max_align_t options[8];      /* the algorithm's options struct */
-    int family;                  /* of candidates, each more exact and slower than the one before */
-    bool looked_at;              /* else the rest is zero: another of its family is exact enough */
+    int family;                  /* of candidates, each slower than the one before */
     bool budgeted;               /* its parameter `error` is set to what the budget allows */
     double sine;                 /* up to which it sums pairs, beside the acquisition's own limit; 1: all */
     struct forecast forecast;    /* zero where refused; range migration's without the error of its spectrum */
@@ -44,6 +43,7 @@ struct budget {
     double error;         /* relative L2 of the complex image after one best complex gain, > 0 */
     double bytes;         /* that the process may take */
     double seconds;       /* that an image may take to be formed for its error to be measured; 0: laws alone */
+    bool all;             /* count slower back projections and find their errors by law as well */
     struct region region; /* of the image, where the error counts */
 };
 

@@ -1,5 +1,4 @@
-/* Candidates before any image (laws.h). Forecasts of back projections are cheap and made of all. The work of range
-   migration is counted, which is cheap as well; the error of its spectrum costs as much as a plan. */
+/* Candidates before any image (laws.h). */
 #include "choice/laws.h"
 
 #include <math.h>
@@ -19,6 +18,8 @@ static const double DELAYS_MOST = 0.4, PHASE_SHARE = 0.8;
 static const double LIMIT_PAYS = 0.95;
 /* Of the budget, what a setting takes that is called by its error: delays and rounding have the rest. */
 static const double BUDGETED = 0.9;
+/* s: what it takes to count images of subapertures, and all range migrations. */
+static const double COUNT_IMAGES = 0.05, COUNT_MIGRATIONS = 0.005;
 
 enum status laws_refused(struct candidate *candidate, enum status status)
 {
@@ -62,62 +63,68 @@ static enum status sums_fill(const struct setting *setting, struct candidate *ca
     return status;
 }
 
-/* Of a back projection, with delays as exact as the budget needs them. */
-static enum status sums_forecast(const struct setting *setting, struct candidate *candidate)
+/* Its work, a back projection's with delays as exact as the budget needs them, and what its settings alone tell of its
+   error; the rest is not known. */
+static enum status candidate_count(const struct setting *setting, struct candidate *candidate)
 {
     const struct algorithm *algorithm = candidate->algorithm;
     const struct problem *problem = setting->problem;
+    struct forecast *f = &candidate->forecast;
     char limit[16];
     snprintf(limit, sizeof limit, "%.1e", PHASE_SHARE * setting->budget->error);
-    enum status status = algorithm_forecast(algorithm, problem, candidate->options, &candidate->forecast);
-    if (status == STATUS_OK && candidate->forecast.sums_pairs
-        && candidate->forecast.error[CAUSE_DELAYS] > DELAYS_MOST * setting->budget->error
+    enum status status = algorithm_cost(algorithm, problem, candidate->options, f);
+    if (status == STATUS_OK && f->sums_pairs && f->error[CAUSE_DELAYS] > DELAYS_MOST * setting->budget->error
         && candidate_set(candidate, "phase_limit", limit))
-        status = algorithm_forecast(algorithm, problem, candidate->options, &candidate->forecast);
+        status = algorithm_cost(algorithm, problem, candidate->options, f);
     if (status == STATUS_OK) {
         laws_compare(setting, candidate);
-        status = sums_fill(setting, candidate);
-    }
-    return laws_refused(candidate, status);
-}
-
-/* Its work, and the errors of its settings; what its spectrum makes of the image is not known. */
-static enum status migration_count(const struct setting *setting, struct candidate *candidate)
-{
-    const struct problem *problem = setting->problem;
-    enum status status = algorithm_cost(candidate->algorithm, problem, candidate->options, &candidate->forecast);
-    if (status == STATUS_OK) {
-        laws_compare(setting, candidate);
-        if (candidate->verdict == CANDIDATE_SLOWER)
+        if (algorithm->cost && (f->sums_pairs || candidate->verdict == CANDIDATE_SLOWER)) {
+            candidate->verdict = CANDIDATE_SLOWER;
             candidate->error = INFINITY;
-        candidate->pairs = 0;
-        candidate->flops = candidate->forecast.migration_flops;
-        candidate->seconds = rates_migration(&candidate->forecast, problem->precision);
+        }
+        if (f->sums_pairs) {
+            status = sums_fill(setting, candidate);
+        } else {
+            candidate->pairs = 0;
+            candidate->flops = f->migration_flops;
+            candidate->seconds = rates_migration(f, problem->precision);
+        }
     }
     return laws_refused(candidate, status);
 }
 
-struct candidate *laws_fastest(struct choice *choice, bool costly)
+bool laws_sums(const struct candidate *candidate)
 {
-    struct candidate *best = NULL;
+    return candidate->algorithm->traits & TRAIT_APERTURE_LIMIT && !candidate->budgeted;
+}
+
+bool laws_counted(const struct candidate *candidate)
+{
+    return candidate->verdict != CANDIDATE_SLOWER || !isnan(candidate->flops);
+}
+
+/* What the fastest takes at least where it pays to count another. */
+static double count_time(const struct candidate *candidate)
+{
+    return candidate->budgeted ? COUNT_IMAGES : laws_sums(candidate) ? 0 : COUNT_MIGRATIONS;
+}
+
+struct candidate *laws_next(struct choice *choice)
+{
+    struct candidate *best = NULL, *more = NULL;
     for (int k = 0; k < choice->count; k++) {
         struct candidate *c = &choice->list[k];
-        if (c->looked_at && c->verdict == CANDIDATE_SLOWER && (costly || !(c->budgeted && laws_open(c)))
-            && (!best || c->seconds < best->seconds))
+        const bool waits = k > 0 && c[-1].family == c->family && c[-1].verdict == CANDIDATE_SLOWER;
+        if (c->verdict != CANDIDATE_SLOWER || waits)
+            continue;
+        if (!laws_counted(c) && (!more || count_time(c) < count_time(more)))
+            more = c;
+        if (laws_counted(c) && (!best || c->seconds < best->seconds))
             best = c;
     }
-    return best;
-}
-
-/* The time of the fastest whose error is known to be within the budget; INFINITY without one. */
-static double fastest_known(const struct choice *choice)
-{
-    double least = INFINITY;
-    for (int k = 0; k < choice->count; k++)
-        if (choice->list[k].looked_at && choice->list[k].verdict == CANDIDATE_SLOWER
-            && choice->list[k].error < INFINITY)
-            least = fmin(least, choice->list[k].seconds);
-    return least;
+    const bool pays = more && best && best->seconds > fmax(count_time(more), more->seconds)
+                      && (best->forecast.sums_pairs || !more->budgeted);
+    return best && !pays ? best : more;
 }
 
 /* ---- an aperture limit ---- */
@@ -151,18 +158,20 @@ static double error_left(const struct setting *setting, const struct candidate *
     return sqrt(fmax(pow(setting->budget->error, 2) - pow(candidate->error, 2), 0));
 }
 
-/* One candidate more: whichever is the fastest with as small an aperture as its error leaves room for. */
-static enum status limit_try(const struct setting *setting, struct choice *choice)
+enum status laws_limit(const struct setting *setting, struct choice *choice, const struct candidate *fastest)
 {
     const struct problem *problem = setting->problem;
     const double most = share_kept(problem, sine_of(problem, setting->budget->error));
-    const struct candidate *from = NULL;
-    double least = LIMIT_PAYS * fastest_known(choice), sine = 1;
+    struct candidate *from = NULL;
+    double least = LIMIT_PAYS * fastest->seconds, sine = 1;
     for (int k = 0; k < choice->count; k++) {
-        const struct candidate *c = &choice->list[k];
-        if (!c->looked_at || c->verdict != CANDIDATE_SLOWER || !c->forecast.sums_pairs || !(most * c->seconds < least))
+        struct candidate *c = &choice->list[k];
+        if (c->verdict != CANDIDATE_SLOWER || !laws_sums(c) || !(most < LIMIT_PAYS))
             continue;
-        const double own = sine_of(problem, error_left(setting, c));
+        const enum status status = laws_complete(setting, c);
+        if (status != STATUS_OK)
+            return status;
+        const double own = c->verdict == CANDIDATE_SLOWER ? sine_of(problem, error_left(setting, c)) : 1;
         const double seconds = own < 1 ? c->seconds * share_kept(problem, own) : INFINITY;
         if (seconds < least) {
             least = seconds;
@@ -180,103 +189,85 @@ static enum status limit_try(const struct setting *setting, struct choice *choic
     if (!candidate_set(limited, "aperture", text))
         return STATUS_OK;
     choice->count++;
-    return sums_forecast(setting, limited);
+    return candidate_count(setting, limited);
 }
 
-/* ---- range migration, and images of subapertures ---- */
+/* ---- one after the other ---- */
 
 bool laws_open(const struct candidate *candidate)
 {
-    return (candidate->budgeted || candidate->algorithm->cost) && candidate->verdict == CANDIDATE_SLOWER
-           && !(candidate->error < INFINITY);
+    return candidate->verdict == CANDIDATE_SLOWER && !(candidate->error < INFINITY);
 }
 
-static enum status factorised_complete(const struct setting *setting, struct candidate *c)
+/* The setting of one that is called by its error. */
+static bool budgeted_set(const struct setting *setting, struct candidate *c)
 {
     if (*c->settings || candidate_set_error(c, BUDGETED * setting->budget->error / fmax(setting->ratio, 1)))
-        return sums_forecast(setting, c);
+        return true;
     c->verdict = CANDIDATE_ERROR;
     snprintf(c->reason, sizeof c->reason, "accepts no error as small as the budget of %.2g", setting->budget->error);
-    return STATUS_OK;
+    return false;
+}
+
+enum status laws_count(const struct setting *setting, struct candidate *c)
+{
+    return !c->budgeted || budgeted_set(setting, c) ? candidate_count(setting, c) : STATUS_OK;
 }
 
 enum status laws_complete(const struct setting *setting, struct candidate *c)
 {
-    if (c->budgeted)
-        return factorised_complete(setting, c);
-    enum status status = algorithm_forecast(c->algorithm, setting->problem, c->options, &c->forecast);
+    enum status status = laws_counted(c) ? STATUS_OK : laws_count(setting, c);
+    if (status != STATUS_OK || !laws_open(c))
+        return status;
+    status = algorithm_forecast(c->algorithm, setting->problem, c->options, &c->forecast);
     if (status == STATUS_OK)
         laws_compare(setting, c);
     return laws_refused(c, status);
 }
 
-static enum status candidate_begin(const struct setting *setting, struct candidate *c)
-{
-    struct forecast images = {.image_cost = setting->reads};
-    c->looked_at = true;
-    c->sine = 1;
-    c->verdict = CANDIDATE_SLOWER;
-    c->error = c->seconds = INFINITY; /* numbers, for they are compared, which of a NAN would raise FE_INVALID */
-    c->flops = c->pairs = c->bytes = NAN;
-    if (c->algorithm->cost)
-        return migration_count(setting, c);
-    if (!c->budgeted)
-        return sums_forecast(setting, c);
-    images.record_flops = setting->records.record_flops;
-    images.slowness = setting->records.slowness;
-    images.record_values = setting->records.record_values;
-    c->seconds = rates_sums(&images, setting->problem->precision, 0); /* a lower bound */
-    return STATUS_OK;
-}
-
-/* No others of its family are worth a look: they are slower, and this one is exact enough. */
-static bool family_done(const struct setting *setting, const struct candidate *last)
-{
-    return last->forecast.sums_pairs && last->error <= LAWS_EXACT * setting->budget->error;
-}
-
-enum status laws_extend(struct setting *setting, struct choice *choice)
-{
-    const struct candidate *last = NULL; /* that was looked at */
-    enum status status = STATUS_OK;
-    bool tables = false; /* else all are of the general engine, whether a setting says so or not */
-    for (int k = 0; k < choice->count && status == STATUS_OK; k++) {
-        struct candidate *c = &choice->list[k];
-        if (k == 1)
-            setting->records = choice->list[0].forecast; /* every back projection reads as much */
-        const bool done = last && last->family == c->family && family_done(setting, last);
-        if (!c->looked_at && !done && (tables || !strstr(c->settings, "engine=general")))
-            status = candidate_begin(setting, c);
-        if (c->looked_at)
-            last = c;
-        tables = tables || c->forecast.tables;
-    }
-    return status;
-}
-
 enum status laws_fill(struct setting *setting, struct choice *choice)
 {
+    const int all = candidates_fill(choice->list);
+    struct candidate *first = &choice->list[0];
+    enum status status = STATUS_OK;
     setting->ratio = 1;
     setting->pairs = pairs_count(setting->problem);
     if (!(setting->pairs >= 0))
         return STATUS_FAILED;
-    setting->reads = factorised_least(setting->problem, setting->pairs);
-    choice->count = candidates_fill(choice->list);
-    const enum status status = laws_extend(setting, choice);
-    return status == STATUS_OK ? limit_try(setting, choice) : status;
+    for (int k = 0; k < all && status == STATUS_OK; k++) {
+        struct candidate *c = &choice->list[choice->count];
+        *c = choice->list[k];
+        /* Without tables all are of the general engine, whether a setting says so or not. */
+        if (k > 0 && !first->forecast.tables && strstr(c->settings, "engine=general"))
+            continue;
+        c->sine = 1;
+        c->verdict = CANDIDATE_SLOWER;
+        c->error = INFINITY;
+        c->seconds = 0;
+        c->flops = c->pairs = c->bytes = NAN;
+        if (k == 0)
+            status = laws_count(setting, c);
+        if (c->budgeted) { /* a lower bound: every back projection reads as much */
+            const struct forecast images = {.image_cost = factorised_least(setting->problem, setting->pairs),
+                                            .record_flops = first->forecast.record_flops,
+                                            .slowness = first->forecast.slowness,
+                                            .record_values = first->forecast.record_values};
+            c->seconds = rates_sums(&images, setting->problem->precision, 0);
+        }
+        choice->count++;
+    }
+    return status;
 }
 
-bool laws_without_tables(const struct setting *setting, const struct candidate *from, struct choice *choice,
-                         enum status *status)
+enum status laws_without_tables(const struct setting *setting, const struct candidate *from, struct choice *choice)
 {
     if (!from->forecast.tables || choice->count == CANDIDATES_MAX)
-        return false;
+        return STATUS_OK;
     struct candidate *general = &choice->list[choice->count];
     *general = *from;
     general->measured = (struct probe_error){.pixels = 0};
     if (!candidate_set(general, "engine", "general"))
-        return false;
+        return STATUS_OK;
     choice->count++;
-    *status = sums_forecast(setting, general);
-    return true;
+    return candidate_count(setting, general);
 }

@@ -89,7 +89,7 @@ static enum status plan_scene(const struct task *task, const struct scene *scene
 enum status command_plan(const struct task *task)
 {
     struct scene *scene = NULL;
-    struct budget budget = {.seconds = 0.5};
+    struct budget budget = {.seconds = 0.5, .all = true};
     int count = 0;
     if (!task->name_count && !task->echoes)
         return status_set(STATUS_INVALID, "plan: a SCENE, or --echoes FILE.mat with --grid GRID, is missing");
