@@ -11,7 +11,9 @@ enum status echoes_scene(const char *command, const struct task *task, struct sc
         return status_set(STATUS_INVALID, "%s: --echoes %s needs --grid xmin:xstep:xcount,rmin:rstep:rcount", command,
                           task->echoes);
     enum status status = grid_parse(task->grid, &grid);
-    return status == STATUS_OK ? scene_from_echoes(task->echoes, &grid, task->grid, scene) : status;
+    if (status != STATUS_OK)
+        return status;
+    return (task->tile ? scene_from_recording : scene_from_echoes)(task->echoes, &grid, task->grid, scene);
 }
 
 enum status task_scenes(const char *command, const struct task *task, int usual_count, const char *const *usual,

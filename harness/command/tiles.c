@@ -1,12 +1,14 @@
 /* `image --tile`: an image formed tile by tile into a file that keeps what is done (echoes/mat_tiles.h). */
 #include <inttypes.h>
 #include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "choice/choice.h"
 #include "command/task.h"
+#include "common/memory.h"
 #include "echoes/echo_data.h"
 #include "echoes/mat_tiles.h"
 #include "imaging/imaging.h"
@@ -29,10 +31,71 @@ static enum status tile_parse(const char *text, struct tiles *tiles)
     return STATUS_OK;
 }
 
-static enum status tile_form(const struct spec *spec, const struct echoes *echoes, struct tiles *tiles, int number)
+/* Into memory of the precision, the pings that are read. Errors: STATUS_UNSUPPORTED where they do not fit it as they
+   are: by a power of two that is no other tile's. */
+static enum status samples_convert(const struct echoes *from, const bool *read, enum precision precision, void *to)
+{
+    const struct acquisition *a = from->acquisition;
+    const size_t each = (size_t)a->receivers * (size_t)a->samples;
+    const double reach = precision == PRECISION_DOUBLE ? 0x1p400 : 0x1p40;
+    double largest = 0;
+    for (size_t p = 0; p < (size_t)a->pings; p++)
+        for (size_t i = p * each; read[p] && i < (p + 1) * each; i++) {
+            const double complex z = ((const double complex *)from->samples)[i];
+            largest = fmax(largest, fmax(fabs(creal(z)), fabs(cimag(z))));
+            if (precision == PRECISION_DOUBLE)
+                ((double complex *)to)[i] = z;
+            else
+                ((float complex *)to)[i] = (float complex)z;
+        }
+    return !(largest > 0) || (largest >= 1 / reach && largest <= reach)
+               ? STATUS_OK
+               : status_set(STATUS_UNSUPPORTED, "image: --tile: the largest sample is %.3g, must be from %.3g to %.3g",
+                            largest, 1 / reach, reach);
+}
+
+/* The pings that a plan reads, alone. */
+static enum status pings_read(const struct scene *scene, const struct imaging *imaging, const struct problem *problem,
+                              struct echoes *echoes)
+{
+    const struct acquisition *a = &scene->acquisition;
+    const size_t size =
+        size_product((size_t)a->pings, (size_t)a->receivers, (size_t)a->samples, precision_size(problem->precision));
+    struct acquisition again;
+    struct echoes from;
+    bool *read = calloc((size_t)a->pings, sizeof *read);
+    void *samples = size > 0 ? memory_sparse(size) : NULL;
+    enum status status = STATUS_OK;
+    if (!read || !samples)
+        status = status_set(STATUS_FAILED, "%s: out of memory for a tile's echoes", scene->recording);
+    if (status == STATUS_OK) {
+        imaging_reads(imaging, problem, read);
+        const struct pings pings = {a->pings, read};
+        status = echo_file_read_pings(scene->recording, &pings, &again, &from);
+    }
+    if (status == STATUS_OK) {
+        if (again.pings == a->pings && again.receivers == a->receivers && again.samples == a->samples)
+            status = samples_convert(&from, read, problem->precision, samples);
+        else
+            status = status_set(STATUS_INVALID, "%s: has been replaced meanwhile", scene->recording);
+        memory_sparse_free((void *)from.samples);
+        acquisition_free(&again);
+    }
+    free(read);
+    if (status != STATUS_OK)
+        memory_sparse_free(samples);
+    else
+        *echoes = (struct echoes){a, problem->precision, samples, 0};
+    return status;
+}
+
+/* `whole`: of a scene that has them in memory. */
+static enum status tile_form(const struct spec *spec, const struct scene *scene, const struct echoes *whole,
+                             struct tiles *tiles, int number)
 {
     const struct pixel_window window = tiles_window(tiles, number);
-    struct problem problem = problem_make(echoes->acquisition, 1, &tiles->grid, spec->precision);
+    struct problem problem = problem_make(&scene->acquisition, 1, &tiles->grid, spec->precision);
+    struct echoes echoes = *whole;
     struct imaging imaging;
     struct image image;
     struct stages stages;
@@ -40,10 +103,16 @@ static enum status tile_form(const struct spec *spec, const struct echoes *echoe
     enum status status = imaging_open(spec, &problem, &imaging);
     if (status != STATUS_OK)
         return status;
+    if (scene->recording)
+        status = pings_read(scene, &imaging, &problem, &echoes);
     stages_begin(&stages);
-    status = imaging_execute(&imaging, echoes, &stages);
+    if (status == STATUS_OK) {
+        status = imaging_execute(&imaging, &echoes, &stages);
+        if (scene->recording)
+            memory_sparse_free((void *)echoes.samples);
+    }
     if (status == STATUS_OK)
-        status = imaging_finish(&imaging, echoes, &image);
+        status = imaging_finish(&imaging, &echoes, &image);
     if (status == STATUS_OK) {
         status = image.precision == tiles->precision
                      ? tiles_write(tiles, number, image.pixels[0])
@@ -73,8 +142,9 @@ static enum status tiles_form(const struct task *task, const struct scene *scene
     const struct spec *spec = &task->specs[0];
     const int count = tiles_count(tiles), before = tiles_done(tiles);
     struct echoes from = {0}, echoes = {0};
-    enum status status = before < count ? scene_echoes(scene, &from) : STATUS_OK;
-    if (status == STATUS_OK && before < count)
+    const bool in_memory = before < count && !scene->recording;
+    enum status status = in_memory ? scene_echoes(scene, &from) : STATUS_OK;
+    if (status == STATUS_OK && in_memory)
         status = echoes_convert(&from, spec->precision, &echoes);
     echoes_free(&from);
     if (before > 0)
@@ -82,7 +152,7 @@ static enum status tiles_form(const struct task *task, const struct scene *scene
     for (int n = 0; n < count && status == STATUS_OK; n++)
         if (!tiles->done[n]) {
             progress_line(false, "%s: tile %d of %d by %s", scene->name, n + 1, count, spec->algorithm->name);
-            status = tile_form(spec, &echoes, tiles, n);
+            status = tile_form(spec, scene, &echoes, tiles, n);
         }
     progress_line_clear();
     echoes_free(&echoes);

@@ -1,6 +1,7 @@
 /* Where a version 7.3 file keeps its numbers. HDF5 fills up what is not there: with zeros where another file that holds
    them is short or missing, from memory that nothing was read into where a chunk is short. MATLAB keeps everything in
    the file itself, packed by gzip or not at all. */
+#include "echoes/matfile.h"
 #include "echoes/matvar.h"
 
 #include <hdf5.h>
@@ -165,4 +166,48 @@ enum status mat73_check(const char *path, const struct stored *stored)
     }
     const size_t found = H5Dget_storage_size(set.id);
     return found >= set.needed ? STATUS_OK : storage_refuse(path, stored->name, "", found, set.needed);
+}
+
+/* Complex numbers, or real ones, as doubles, which are then spread. */
+static bool slab_read(const struct data_set *set, hid_t space, hid_t room, size_t count, double complex *values)
+{
+    if (H5Tget_class(set->type) != H5T_COMPOUND) {
+        double *reals = (double *)values;
+        if (H5Dread(set->id, H5T_NATIVE_DOUBLE, room, space, H5P_DEFAULT, reals) < 0)
+            return false;
+        for (size_t k = count; k-- > 0;)
+            values[k] = reals[k];
+        return true;
+    }
+    const hid_t type = H5Tcreate(H5T_COMPOUND, sizeof *values);
+    H5Tinsert(type, "real", 0, H5T_NATIVE_DOUBLE);
+    H5Tinsert(type, "imag", sizeof(double), H5T_NATIVE_DOUBLE);
+    const bool read = H5Dread(set->id, type, room, space, H5P_DEFAULT, values) >= 0;
+    H5Tclose(type);
+    return read;
+}
+
+bool mat73_read_pings(const char *path, const char *name, const struct pings *pings, size_t first, size_t end,
+                      size_t each, double complex *values)
+{
+    static struct data_set set;
+    const struct stored stored = {name, each * (size_t)pings->count, true, false};
+    if (!set.id && !set_open(path, &stored, &set))
+        return false;
+    hsize_t begin[H5S_MAX_RANK] = {0}, count[H5S_MAX_RANK], numbers = (end - first) * each;
+    const bool by_ping = set.rank > 0 && set.dims[0] == (hsize_t)pings->count;
+    if (!by_ping && pings->count > 1) /* a single ping may have no dimension of its own */
+        return false;
+    for (int k = 0; k < set.rank; k++)
+        count[k] = set.dims[k];
+    if (by_ping) {
+        begin[0] = first;
+        count[0] = end - first;
+    }
+    const hid_t space = H5Dget_space(set.id), room = H5Screate_simple(1, &numbers, NULL);
+    const bool read = H5Sselect_hyperslab(space, H5S_SELECT_SET, begin, NULL, count, NULL) >= 0
+                      && slab_read(&set, space, room, numbers, values);
+    H5Sclose(room);
+    H5Sclose(space);
+    return read;
 }

@@ -177,7 +177,7 @@ static enum status check_area(const char *path, const struct variable *v)
 
 static enum status check_echo_values(const char *path, const struct variable *v)
 {
-    const struct variable *format = &v[FORMAT], *samples = &v[SAMPLES];
+    const struct variable *format = &v[FORMAT];
     size_t length = variable_count(format);
     while (length > 0 && creal(format->values[length - 1]) == 0) {
         length--; /* texts of a fixed length are padded */
@@ -203,8 +203,23 @@ static enum status check_echo_values(const char *path, const struct variable *v)
         return status_set(STATUS_INVALID, "%s: variable `pulse` is missing; raw echoes (compressed 0) need %s", path,
                           echo_variables[PULSE].accepted);
     }
-    size_t count = variable_count(samples);
-    for (size_t i = 0; i < count; i++) {
+    return STATUS_OK;
+}
+
+/* Is ping p of the samples there? */
+static bool ping_read(const struct pings *pings, size_t p)
+{
+    return !pings || (p < (size_t)pings->count && pings->read[p]);
+}
+
+static enum status check_samples(const char *path, const struct pings *pings, const struct variable *samples)
+{
+    const size_t each = samples->dims[0] * samples->dims[1];
+    for (size_t i = 0; i < variable_count(samples); i++) {
+        if (!ping_read(pings, i / each)) {
+            i += each - 1;
+            continue;
+        }
         double complex z = samples->values[i];
         if (!isfinite(creal(z)) || !isfinite(cimag(z))) {
             size_t n = i % samples->dims[0], record = i / samples->dims[0];
@@ -218,8 +233,9 @@ static enum status check_echo_values(const char *path, const struct variable *v)
 
 /* Compression divides by the pulse's energy. A pulse so small or large that squares of it leave the precision is
    brought to 1 by a power of two, and the samples by the same, which leaves the compressed echoes as they are. */
-static enum status normalise_pulse(const char *path, const struct variable *v)
+static enum status normalise_pulse(const char *path, const struct pings *pings, const struct variable *v)
 {
+    const size_t each = v[SAMPLES].dims[0] * v[SAMPLES].dims[1];
     const struct variable *const both[] = {&v[PULSE], &v[SAMPLES]};
     size_t pulse_count = v[PULSE].values ? variable_count(&v[PULSE]) : 0;
     double largest = 0;
@@ -233,6 +249,10 @@ static enum status normalise_pulse(const char *path, const struct variable *v)
     frexp(largest, &exponent);
     for (int k = 0; k < 2; k++) {
         for (size_t i = 0; i < variable_count(both[k]); i++) {
+            if (k == 1 && !ping_read(pings, i / each)) {
+                i += each - 1;
+                continue;
+            }
             double re = ldexp(creal(both[k]->values[i]), -exponent), im = ldexp(cimag(both[k]->values[i]), -exponent);
             if (k == 1 && (!isfinite(re) || !isfinite(im))) {
                 return status_set(STATUS_INVALID,
@@ -288,12 +308,16 @@ static enum status acquisition_fill(const char *path, const struct variable *v, 
     return acquisition_check(a, path);
 }
 
-enum status echo_file_read(const char *path, struct acquisition *acquisition, struct echoes *echoes)
+enum status echo_file_read_pings(const char *path, const struct pings *pings, struct acquisition *acquisition,
+                                 struct echoes *echoes)
 {
     *acquisition = (struct acquisition){0};
     *echoes = (struct echoes){0};
     struct variable variables[ECHO_VARIABLES];
-    enum status status = variables_read(path, echo_variables, ECHO_VARIABLES, variables);
+    struct wanted wanted[ECHO_VARIABLES];
+    memcpy(wanted, echo_variables, sizeof wanted);
+    wanted[SAMPLES].pings = pings;
+    enum status status = variables_read(path, wanted, ECHO_VARIABLES, variables);
     if (status != STATUS_OK) {
         return status;
     }
@@ -305,10 +329,13 @@ enum status echo_file_read(const char *path, struct acquisition *acquisition, st
         status = check_echo_shapes(path, variables);
     }
     if (status == STATUS_OK) {
+        status = check_samples(path, pings, &variables[SAMPLES]);
+    }
+    if (status == STATUS_OK) {
         status = check_area(path, variables);
     }
     if (status == STATUS_OK) {
-        status = normalise_pulse(path, variables);
+        status = normalise_pulse(path, pings, variables);
     }
     if (status == STATUS_OK) {
         status = acquisition_fill(path, variables, acquisition);
@@ -322,7 +349,7 @@ enum status echo_file_read(const char *path, struct acquisition *acquisition, st
     }
     if (status == STATUS_OK) {
         *echoes = (struct echoes){acquisition, PRECISION_DOUBLE, variables[SAMPLES].values, 0};
-        status = noise_measure(echoes, &acquisition->noise);
+        status = pings ? STATUS_OK : noise_measure(echoes, &acquisition->noise);
     }
     if (status == STATUS_OK) {
         variables[SAMPLES].values = NULL;
@@ -332,6 +359,11 @@ enum status echo_file_read(const char *path, struct acquisition *acquisition, st
     }
     variables_free(variables, ECHO_VARIABLES);
     return status;
+}
+
+enum status echo_file_read(const char *path, struct acquisition *acquisition, struct echoes *echoes)
+{
+    return echo_file_read_pings(path, NULL, acquisition, echoes);
 }
 
 enum status echo_file_is(const char *path, bool *is)
@@ -346,105 +378,4 @@ enum status echo_file_is(const char *path, bool *is)
         variables_free(variables, 2);
     }
     return status;
-}
-
-/* Do all pings have the first one's `size` bytes? */
-static bool is_constant(const void *values, size_t size, int pings)
-{
-    for (int p = 1; p < pings; p++) {
-        if (memcmp(values, (const char *)values + (size_t)p * size, size) != 0) {
-            return false;
-        }
-    }
-    return true;
-}
-
-/* Echoes as they were recorded: times 2^exponent. Errors: STATUS_INVALID where double cannot hold them. */
-static enum status echoes_restore(const char *path, const struct echoes *echoes, struct echoes *restored)
-{
-    const struct acquisition *a = echoes->acquisition;
-    enum status status = echoes_allocate(a, PRECISION_DOUBLE, restored);
-    size_t count = (size_t)a->samples * (size_t)a->receivers * (size_t)a->pings;
-    for (size_t i = 0; i < count && status == STATUS_OK; i++) {
-        double complex z = echoes->precision == PRECISION_FLOAT ? ((const float complex *)echoes->samples)[i]
-                                                                : ((const double complex *)echoes->samples)[i];
-        double re = ldexp(creal(z), echoes->exponent), im = ldexp(cimag(z), echoes->exponent);
-        ((double complex *)restored->samples)[i] = __builtin_complex(re, im);
-        if (!isfinite(re) || !isfinite(im))
-            status =
-                status_set(STATUS_INVALID,
-                           "%s: sample %zu would be %g%+gi times 2^%d, beyond the range of double; the echoes must "
-                           "be smaller",
-                           path, i + 1, creal(z), cimag(z), echoes->exponent);
-    }
-    if (status != STATUS_OK)
-        echoes_free(restored);
-    return status;
-}
-
-static void write_scalars(struct writer *writer, const struct acquisition *a)
-{
-    const struct {
-        const char *name;
-        double value;
-        bool is_written;
-    } scalars[] = {
-        {"compressed", a->compressed, true},
-        {"fs", a->fs, true},
-        {"fc", a->fc, true},
-        {"bandwidth", a->bandwidth, true},
-        {"sound_speed", a->sound_speed, true},
-        {"pri", a->pri, a->pri > 0},
-        {"tx_length", a->tx_length, a->tx_length > 0},
-        {"rx_length", a->rx_length, a->rx_length > 0},
-        {"beam_limit", a->aperture_limit, a->aperture_limit <= 1},
-        {"echo_sine", a->echo_sine, a->echo_sine > 0},
-        {"echo_tapers", a->echo_tapers, a->echo_sine > 0},
-        {"echo_squint", a->echo_squint, a->echo_squint != 0},
-    };
-    for (size_t i = 0; i < sizeof scalars / sizeof *scalars; i++)
-        if (scalars[i].is_written)
-            write_reals(writer, scalars[i].name, 1, 1, 1, &scalars[i].value);
-}
-
-enum status echo_file_write(const char *path, const struct echoes *echoes, const char *description)
-{
-    const struct acquisition *a = echoes->acquisition;
-    if (echoes->exponent != 0) {
-        struct echoes restored;
-        enum status status = echoes_restore(path, echoes, &restored);
-        if (status == STATUS_OK) {
-            status = echo_file_write(path, &restored, description);
-            echoes_free(&restored);
-        }
-        return status;
-    }
-    size_t samples = (size_t)a->samples, receivers = (size_t)a->receivers, pings = (size_t)a->pings;
-    size_t samples_bytes = samples * receivers * pings * precision_size(echoes->precision);
-    size_t rx_bytes = receivers * pings * sizeof *a->rx;
-    struct writer writer;
-    if (writer_open(&writer, path, samples_bytes > rx_bytes ? samples_bytes : rx_bytes) != STATUS_OK) {
-        return writer.status;
-    }
-    write_text(&writer, "format", format_text);
-    write_complex(&writer, "samples", (size_t[]){samples, receivers, pings}, echoes->precision, echoes->samples,
-                  samples * receivers * pings, 1);
-    if (!a->compressed) {
-        size_t length = (size_t)a->pulse_length;
-        write_complex(&writer, "pulse", (size_t[]){length, 1, 1}, PRECISION_DOUBLE, a->pulse, length, 1);
-    }
-    write_scalars(&writer, a);
-    if (a->area.half_x > 0) {
-        write_reals(&writer, "area", 1, 4, 1, &a->area.x);
-    }
-    size_t t0_count = is_constant(a->t0, sizeof *a->t0, a->pings) ? 1 : pings;
-    size_t velocity_count = is_constant(a->velocity, sizeof *a->velocity, a->pings) ? 1 : pings;
-    write_reals(&writer, "t0", 1, t0_count, 1, a->t0);
-    write_reals(&writer, "tx", 3, pings, 1, &a->tx->x);
-    write_reals(&writer, "rx", 3, receivers, pings, &a->rx->x);
-    write_reals(&writer, "velocity", 3, velocity_count, 1, &a->velocity->x);
-    if (description) {
-        write_text(&writer, "description", description);
-    }
-    return writer_close(&writer);
 }

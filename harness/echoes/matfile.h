@@ -9,6 +9,16 @@
    Errors: STATUS_INVALID, naming file, variable, value and what is accepted. */
 enum status echo_file_read(const char *path, struct acquisition *acquisition, struct echoes *echoes);
 
+/* Of `count` pings those that are to be read; 0: none, whatever their number. */
+struct pings {
+    int count;
+    const bool *read;
+};
+/* The same of some pings, read alone where the file is of version 7.3; the samples of the others are 0. Their noise is
+   not measured. echoes->samples is freed by memory_sparse_free: what is not read takes no room. */
+enum status echo_file_read_pings(const char *path, const struct pings *pings, struct acquisition *acquisition,
+                                 struct echoes *echoes);
+
 /* Write one: v5, or v7.3 where v5 cannot hold a variable (2 GiB). Written beside `path` and renamed when whole, so
    that nothing is half written. Samples are stored in the echoes' own precision. `description` may be NULL.
    Errors: STATUS_INVALID when the place cannot be written. */

@@ -3,8 +3,7 @@
    A damaged file can make libmatio and HDF5 crash, or allocate what a few bytes claim. So every file is read by a
    child process under resource limits, which sends the variables that we want through a pipe; whatever happens to it,
    the program itself only learns that the file is no good. */
-#define _GNU_SOURCE /* pipe2, _Fork */
-#include "echoes/matvar.h"
+#include "echoes/matread.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -30,16 +29,8 @@
 #endif
 
 enum {
-    MESSAGE_SIZE = 1024,
     BLOCK = 4096,           /* numbers sent at a time */
     SPARE_BYTES = 256 << 20 /* what libmatio and HDF5 may use beyond the numbers themselves */
-};
-
-/* What the child sends: a packet and its values for each variable, then one with index END and the message. */
-struct packet {
-    enum { END = -1 } index; /* of the wanted variable, or END */
-    enum status status;      /* END only */
-    struct variable variable;
 };
 
 static void discard_log(int level, char *message)
@@ -52,8 +43,6 @@ void matio_silence(void)
 {
     Mat_LogInitFunc("sasbench", discard_log);
 }
-
-/* ---- The child ---- */
 
 #define DEFINE_LOAD(type)                                                                                              \
     static double load_##type(const void *data, size_t index)                                                          \
@@ -204,6 +193,26 @@ static bool send_values(mat_complex_split_t parts, enum matio_types type, size_t
     return true;
 }
 
+/* Some pings alone. In version 5 all has been read, into `parts`. */
+static bool send_pings(const char *path, const struct wanted *wanted, const mat_complex_split_t *parts,
+                       enum matio_types type, size_t count, int descriptor)
+{
+    const struct pings *pings = wanted->pings;
+    const size_t each = pings->count > 0 ? count / (size_t)pings->count : 0, most = 1 + (1 << 20) / (each + 1);
+    double complex *values = parts ? NULL : malloc(most * each * sizeof *values);
+    bool sent = parts || values || each == 0;
+    for (size_t first = 0, end = 0; sent && pings_run_next(pings, end, most, &first, &end);) {
+        const size_t size = number_types[type].size;
+        const mat_complex_split_t from = {parts ? (char *)parts->Re + first * each * size : NULL,
+                                          parts && parts->Im ? (char *)parts->Im + first * each * size : NULL};
+        sent = parts ? send_values(from, type, (end - first) * each, descriptor)
+                     : mat73_read_pings(path, wanted->name, pings, first, end, each, values)
+                           && write_fully(descriptor, values, (end - first) * each * sizeof *values);
+    }
+    free(values);
+    return sent;
+}
+
 /* `place` is the variable's element in a file of version 5. */
 static enum status send_variable(const char *path, const struct wanted *wanted, int index, mat_t *mat, matvar_t *matvar,
                                  const struct mat5 *place, size_t file_size, int descriptor)
@@ -231,16 +240,27 @@ static enum status send_variable(const char *path, const struct wanted *wanted, 
     }
     size_t count = variable_count(&packet.variable);
     const struct stored stored = {name, count, matvar->isComplex != 0, matvar->class_type == MAT_C_CHAR};
-    status = place->file ? mat5_check(path, &stored, place) : mat73_check(path, &stored);
+    const struct pings *pings = wanted[index].pings;
+    if (!pings || pings->count == 0 || place->file) /* else it was asked before */
+        status = place->file ? mat5_check(path, &stored, place) : mat73_check(path, &stored);
     if (status != STATUS_OK) {
         return status;
     }
     mat_complex_split_t parts;
+    if (pings && !place->file) {
+        return write_fully(descriptor, &packet, sizeof packet)
+                       && send_pings(path, &wanted[index], NULL, MAT_T_DOUBLE, count, descriptor)
+                   ? STATUS_OK
+                   : status_set(STATUS_INVALID, "%s: variable `%s` cannot be read by pings; %s is needed", path, name,
+                                wanted[index].accepted);
+    }
     if (Mat_VarReadDataAll(mat, matvar) != 0 || !variable_parts(matvar, count, &parts)) {
         return status_set(STATUS_INVALID, "%s: variable `%s` is damaged or cut short; a whole file is needed", path,
                           name);
     }
-    if (!write_fully(descriptor, &packet, sizeof packet) || !send_values(parts, matvar->data_type, count, descriptor)) {
+    if (!write_fully(descriptor, &packet, sizeof packet)
+        || !(pings ? send_pings(path, &wanted[index], &parts, matvar->data_type, count, descriptor)
+                   : send_values(parts, matvar->data_type, count, descriptor))) {
         return status_set(STATUS_FAILED, "%s: nobody reads on", path);
     }
     return STATUS_OK;
@@ -307,8 +327,8 @@ static enum status send_variables(const char *path, const struct wanted *wanted,
     return status;
 }
 
-static _Noreturn void child_run(const char *path, const struct wanted *wanted, int count, size_t file_size,
-                                int descriptor)
+_Noreturn void variables_send(const char *path, const struct wanted *wanted, int count, size_t file_size,
+                              int descriptor)
 {
     /* A crash ends the child quietly: not through handlers of the program, not with words of libraries on stderr. */
     static const int crashes[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU};
@@ -329,97 +349,4 @@ static _Noreturn void child_run(const char *path, const struct wanted *wanted, i
         write_fully(descriptor, message, sizeof message);
     }
     _exit(0); /* the parent's buffers and exit handlers are not ours */
-}
-
-/* ---- The parent ---- */
-
-static bool read_fully(int descriptor, void *data, size_t size)
-{
-    for (char *next = data; size > 0;) {
-        ssize_t got = read(descriptor, next, size);
-        if (got == 0 || (got < 0 && errno != EINTR)) {
-            return false;
-        }
-        if (got > 0) {
-            next += got;
-            size -= (size_t)got;
-        }
-    }
-    return true;
-}
-
-static enum status receive_variables(const char *path, int count, struct variable *variables, int descriptor)
-{
-    struct packet packet;
-    while (read_fully(descriptor, &packet, sizeof packet)) {
-        if (packet.index == END) {
-            char message[MESSAGE_SIZE];
-            if (!read_fully(descriptor, message, sizeof message)) {
-                break;
-            }
-            return packet.status == STATUS_OK ? STATUS_OK : status_set(packet.status, "%s", message);
-        }
-        if (packet.index < 0 || packet.index >= count) {
-            break;
-        }
-        /* Memory as echoes_allocate gives it, so that samples need no copy. */
-        struct variable *variable = &variables[packet.index];
-        *variable = packet.variable;
-        size_t size = size_product(variable_count(variable), sizeof(double complex), 1, 1);
-        variable->values = size > 0 && size <= PTRDIFF_MAX - 63 ? aligned_alloc(64, (size + 63) / 64 * 64) : NULL;
-        if (!variable->values) {
-            return status_set(STATUS_FAILED, "%s: out of memory for a variable of %zu bytes", path, size);
-        }
-        if (!read_fully(descriptor, variable->values, size)) {
-            break;
-        }
-    }
-    return status_set(STATUS_INVALID,
-                      "%s: is damaged (its reader crashed, or ran out of memory or time); a MATLAB "
-                      "file of version 5 or 7.3 is needed",
-                      path);
-}
-
-enum status variables_read(const char *path, const struct wanted *wanted, int count, struct variable *variables)
-{
-    for (int i = 0; i < count; i++) {
-        variables[i] = (struct variable){0};
-    }
-    struct stat file;
-    if (stat(path, &file) != 0 || access(path, R_OK) != 0) {
-        return status_set(STATUS_INVALID, "%s: cannot be read: %s; a readable MATLAB file is needed", path,
-                          strerror(errno));
-    }
-    if (!S_ISREG(file.st_mode)) {
-        return status_set(STATUS_INVALID, "%s: is not a regular file; a MATLAB file is needed", path);
-    }
-    int ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0) {
-        return status_set(STATUS_FAILED, "%s: no pipe to read it through: %s", path, strerror(errno));
-    }
-    /* _Fork runs no handlers: LLVM's OpenMP would set itself up anew in the child and leave a file behind. The other
-       threads are idle here and hold no locks. */
-    pid_t child = _Fork();
-    if (child < 0) {
-        enum status failed = status_set(STATUS_FAILED, "%s: no process to read it: %s", path, strerror(errno));
-        close(ends[0]);
-        close(ends[1]);
-        return failed;
-    }
-    if (child == 0) {
-        close(ends[0]);
-        child_run(path, wanted, count, (size_t)file.st_size, ends[1]);
-    }
-    close(ends[1]);
-    enum status status = receive_variables(path, count, variables, ends[0]);
-    close(ends[0]);
-    while (waitpid(child, NULL, 0) < 0 && errno == EINTR) {
-    }
-    if (status == STATUS_OK) {
-        status = variables_check(path, wanted, count, variables);
-    }
-    if (status != STATUS_OK) {
-        variables_free(variables, count);
-    }
-    return status;
 }

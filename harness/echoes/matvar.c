@@ -1,4 +1,5 @@
 /* Variables of MATLAB files once they are read (matvar.h). */
+#include "common/memory.h"
 #include "echoes/matvar.h"
 
 #include <math.h>
@@ -24,7 +25,7 @@ bool variable_is_vector(const struct variable *variable)
 void variables_free(struct variable *variables, int count)
 {
     for (int i = 0; i < count; i++) {
-        free(variables[i].values);
+        (variables[i].is_sparse ? memory_sparse_free : free)(variables[i].values);
     }
 }
 

@@ -11,12 +11,14 @@
 
 enum kind { KIND_TEXT, KIND_SCALAR, KIND_REAL, KIND_COMPLEX };
 
+struct pings;
 /* A variable that a file may or must have. */
 struct wanted {
     const char *name;
     enum kind kind;
     bool is_optional;
-    const char *accepted; /* for messages: "X is needed" */
+    const char *accepted;      /* for messages: "X is needed" */
+    const struct pings *pings; /* NULL: all of it is read; else of [... x P] these, the rest is 0 */
 };
 
 enum { WANTED_MAX = 20 };
@@ -24,6 +26,7 @@ enum { WANTED_MAX = 20 };
 /* A variable as read: complex doubles whatever its class, text as character codes, MATLAB's order. */
 struct variable {
     bool is_complex, is_single; /* of MATLAB's class single */
+    bool is_sparse;             /* some pings were read: by memory_sparse, not free() */
     size_t dims[3];             /* trailing dimensions of 1 filled in; never 0 */
     double complex *values;     /* 64-byte aligned, free(); NULL: the file does not have it */
 };
@@ -76,6 +79,9 @@ struct stored {
     size_t count;
     bool is_complex, is_text;
 };
+/* Read the numbers of a data set's pings [first, end), of `each` numbers. In a process that ends soon. */
+bool mat73_read_pings(const char *path, const char *name, const struct pings *pings, size_t first, size_t end,
+                      size_t each, double complex *values);
 /* Are all its numbers in the file, in the element at hand (version 5), in a data set of this file (7.3)? Errors:
    STATUS_INVALID, with the length found and the one needed. */
 enum status mat5_check(const char *path, const struct stored *stored, const struct mat5 *file);

@@ -106,11 +106,24 @@ static double share_of(const struct energies *sum, const struct expected *expect
     return expected->kept * of_noise / (expected->kept * of_noise + 1 - of_noise);
 }
 
+/* From one record that is measured to the next, of which the first is step/2. */
+static size_t records_step(const struct acquisition *a)
+{
+    return ((size_t)a->pings * (size_t)a->receivers + RECORDS_MOST - 1) / RECORDS_MOST;
+}
+
+void noise_pings(const struct acquisition *a, bool *read)
+{
+    const size_t records = (size_t)a->pings * (size_t)a->receivers, step = records_step(a);
+    for (size_t n = step / 2; n < records; n += step)
+        read[n / (size_t)a->receivers] = true;
+}
+
 enum status noise_measure(const struct echoes *echoes, double *share)
 {
     const struct acquisition *a = echoes->acquisition;
     const size_t records = (size_t)a->pings * (size_t)a->receivers, samples = (size_t)a->samples;
-    const size_t step = (records + RECORDS_MOST - 1) / RECORDS_MOST;
+    const size_t step = records_step(a);
     const double complex *values = echoes->samples;
     struct expected expected;
     struct energies sum = {0, 0};
@@ -121,8 +134,9 @@ enum status noise_measure(const struct echoes *echoes, double *share)
         return status;
     fftw_complex *record = fftw_malloc(samples * sizeof *record);
     fftw_plan plan = record ? fftw_plan_dft_1d(a->samples, record, record, FFTW_FORWARD, FFTW_ESTIMATE) : NULL;
-    for (size_t i = 0; i < records * samples; i++)
-        most = fmax(most, fmax(fabs(creal(values[i])), fabs(cimag(values[i]))));
+    for (size_t n = step / 2; n < records; n += step)
+        for (size_t i = n * samples; i < (n + 1) * samples; i++)
+            most = fmax(most, fmax(fabs(creal(values[i])), fabs(cimag(values[i]))));
     for (size_t n = step / 2; n < records && plan && most > 0; n += step)
         record_add(values + n * samples, most, a->samples, expected.first, plan, record, &sum);
     if (plan)

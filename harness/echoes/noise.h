@@ -13,4 +13,7 @@ double noise_of_targets(const struct acquisition *a, int target_count, const str
    STATUS_FAILED without memory. */
 enum status noise_measure(const struct echoes *echoes, double *share);
 
+/* Set read[pings] of those that it is measured on. */
+void noise_pings(const struct acquisition *acquisition, bool *read);
+
 #endif

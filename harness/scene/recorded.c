@@ -3,8 +3,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
+#include "common/memory.h"
 #include "echoes/echo_data.h"
+#include "echoes/noise.h"
 #include "scene/contents.h"
 #include "echoes/matfile.h"
 #include "scene/names.h"
@@ -40,7 +43,7 @@ static void recording_hash(const struct scene *scene, uint64_t *hash)
         {&a->area, sizeof a->area},
         {&a->compressed, sizeof a->compressed},
         {a->pulse, (size_t)a->pulse_length * sizeof *a->pulse},
-        {scene->recorded, records * (size_t)a->samples * sizeof *scene->recorded},
+        {scene->recorded, scene->recorded ? records * (size_t)a->samples * sizeof *scene->recorded : 0},
     };
     for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) {
         hash_add(hash, parts[k].bytes, parts[k].count);
@@ -98,11 +101,43 @@ enum status recorded_fill(struct reading *reading)
     return STATUS_OK;
 }
 
-static enum status from_echoes(const char *path, const struct grid *grid, const char *place, struct scene *scene)
+/* All but the samples. What is measured on them is measured on some pings. */
+static enum status recording_open(const char *path, struct scene *scene)
+{
+    struct acquisition again;
+    struct echoes echoes;
+    struct stat file;
+    struct pings pings = {0, NULL};
+    enum status status = echo_file_read_pings(path, &pings, &scene->acquisition, &echoes);
+    if (status != STATUS_OK)
+        return status;
+    memory_sparse_free((void *)echoes.samples);
+    bool *read = calloc((size_t)scene->acquisition.pings, sizeof *read);
+    scene->recording = strdup(path);
+    if (!read || !scene->recording || stat(path, &file) != 0) {
+        free(read);
+        return status_set(STATUS_FAILED, "%s: out of memory for the scene", path);
+    }
+    noise_pings(&scene->acquisition, read);
+    pings = (struct pings){scene->acquisition.pings, read};
+    status = echo_file_read_pings(path, &pings, &again, &echoes);
+    if (status == STATUS_OK) {
+        status = noise_measure(&echoes, &scene->acquisition.noise);
+        memory_sparse_free((void *)echoes.samples);
+        acquisition_free(&again);
+    }
+    free(read);
+    const long long told[] = {file.st_size, file.st_mtim.tv_sec, file.st_mtim.tv_nsec};
+    hash_add(&scene->hash, told, sizeof told);
+    return status;
+}
+
+static enum status from_echoes(const char *path, const struct grid *grid, const char *place, bool whole,
+                               struct scene *scene)
 {
     enum status status = scene_names_fill(scene, path, "");
     if (status == STATUS_OK) {
-        status = recording_read(path, scene);
+        status = (whole ? recording_read : recording_open)(path, scene);
     }
     if (status != STATUS_OK) {
         return status;
@@ -123,14 +158,25 @@ static enum status from_echoes(const char *path, const struct grid *grid, const 
     return grid_meets_records(&scene->acquisition, 1, grid, place);
 }
 
-enum status scene_from_echoes(const char *path, const struct grid *grid, const char *place, struct scene *out)
+static enum status from_file(const char *path, const struct grid *grid, const char *place, bool whole,
+                             struct scene *out)
 {
     *out = (struct scene){.hash = HASH_BEGIN};
-    enum status status = from_echoes(path, grid, place, out);
+    enum status status = from_echoes(path, grid, place, whole, out);
     if (status != STATUS_OK) {
         scene_free(out);
     }
     return status;
+}
+
+enum status scene_from_echoes(const char *path, const struct grid *grid, const char *place, struct scene *out)
+{
+    return from_file(path, grid, place, true, out);
+}
+
+enum status scene_from_recording(const char *path, const struct grid *grid, const char *place, struct scene *out)
+{
+    return from_file(path, grid, place, false, out);
 }
 
 enum status scene_echoes(const struct scene *scene, struct echoes *echoes)

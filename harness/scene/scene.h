@@ -36,6 +36,7 @@ struct scene {
         *flown; /* where the platform truly was; NULL: where `acquisition`, which the imager knows, says */
     double complex *recorded;   /* [pings][receivers][samples] of an echo file; NULL: pulse, beam, targets and noise say
                                    what is simulated */
+    char *recording;            /* the echo file, where the samples are left in it; NULL: they are not */
     enum pulse_kind pulse_kind; /* flat: the echoes are compressed */
     double pulse_duration;      /* s; lfm and lfm_time */
     struct beam beam;
@@ -59,6 +60,9 @@ enum status scene_load(const char *scene, const char *scene_directory, struct sc
 /* The scene of an echo file alone, without targets, called by the file's name; its image is `grid`, which `place` names
    in messages. Errors: as echo_file_read, and STATUS_INVALID where no pixel meets any record; nothing to free then. */
 enum status scene_from_echoes(const char *path, const struct grid *grid, const char *place, struct scene *out);
+/* The same, with the samples left in the file: to be read ping by ping. Its hash has the file's size and time in their
+   place. */
+enum status scene_from_recording(const char *path, const struct grid *grid, const char *place, struct scene *out);
 void scene_free(struct scene *scene);
 /* The whole image from the scene's echoes. Points are known to be all targets where nothing else is heard: no field, no
    noise, no track but the stated one. Borrows from the scene. */

@@ -42,6 +42,20 @@ static void bits_of_the_whole(void **state)
     }
 }
 
+/* Of an echo file, of which a tile reads the pings that it meets. */
+static void recordings_are_read_in_part(void **state)
+{
+    (void)state;
+    static const char *const specs[] = {SPEC, "bp_fitted", "bp_farrow:precision=double"};
+#define ECHO_IMAGE(spec, file) "image", "-e", "e.mat", "-g", "-0.6:0.02:61,19.85:0.025:13", "-a", spec, "-o", file
+    program_good((const char *const[]){"simulate", "study/quick", "-o", "e.mat", NULL});
+    for (size_t k = 0; k < COUNT_OF(specs); k++) {
+        program_good((const char *const[]){ECHO_IMAGE(specs[k], "whole.mat"), NULL});
+        program_good((const char *const[]){ECHO_IMAGE(specs[k], "tiled.mat"), "--tile", "17x5", NULL});
+        assert_same_image("whole.mat", "tiled.mat");
+    }
+}
+
 /* End the program so many seconds after its start, if it still runs. */
 static void kill_after(const char *const *arguments, double seconds)
 {
@@ -151,7 +165,8 @@ static void damage_is_mended(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(bits_of_the_whole), cmocka_unit_test(killed),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(bits_of_the_whole),
+                                       cmocka_unit_test(recordings_are_read_in_part), cmocka_unit_test(killed),
                                        cmocka_unit_test(others_are_refused), cmocka_unit_test(damage_is_mended)};
     return cmocka_run_group_tests(tests, inputs_make, folder_remove);
 }

@@ -1,0 +1,23 @@
+/* What the process that reads a MATLAB file sends to the one that asked for it. */
+#ifndef SASBENCH_ECHOES_MATREAD_H
+#define SASBENCH_ECHOES_MATREAD_H
+
+#include "echoes/matfile.h"
+#include "echoes/matvar.h"
+
+enum { MESSAGE_SIZE = 1024 };
+
+/* What the child sends: a packet and its values for each variable, then one with index END and the message. */
+struct packet {
+    enum { END = -1 } index; /* of the wanted variable, or END */
+    enum status status;      /* END only */
+    struct variable variable;
+};
+
+/* The whole life of the process that reads. */
+_Noreturn void variables_send(const char *path, const struct wanted *wanted, int count, size_t file_size,
+                              int descriptor);
+/* The next run of pings from `from` on that are read, of `most` at the most; false: none. */
+bool pings_run_next(const struct pings *pings, size_t from, size_t most, size_t *first, size_t *end);
+
+#endif
