@@ -22,17 +22,11 @@ enum status command_check(const struct task *task)
         return status;
     }
     check_scene(scene, &found);
-    for (int k = 0; status == STATUS_OK && (task->spec_count > 0 ? k < task->spec_count : algorithms[k] != NULL); k++) {
-        struct spec own = {0};
+    for (int k = 0; status == STATUS_OK && k < task->spec_count; k++) {
         bool refused = false;
-        if (task->spec_count == 0)
-            status = spec_parse(algorithms[k]->name, &own);
-        const struct spec *spec = task->spec_count > 0 ? &task->specs[k] : &own;
-        if (status == STATUS_OK)
-            status = check_algorithm(scene, spec, &found, &refused);
+        status = check_algorithm(scene, &task->specs[k], &found, &refused);
         if (status == STATUS_OK && refused)
-            text_append(names, sizeof names, "%s%s", *names ? ", " : "", spec->algorithm->name);
-        spec_free(&own);
+            text_append(names, sizeof names, "%s%s", *names ? ", " : "", task->specs[k].algorithm->name);
     }
     if (status == STATUS_OK)
         check_print(stdout, scene, &found, task->all);

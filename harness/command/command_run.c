@@ -1,6 +1,5 @@
 /* The command `run`: every scene with every algorithm, measured, recorded and drawn. */
 #include <stdio.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 #include "run/batch.h"
@@ -11,21 +10,6 @@
 #include "run/run_summary.h"
 #include "show/plot.h"
 #include "show/table.h"
-
-/* All algorithms with their defaults. */
-static enum status load_specs(struct spec **specs, int *count)
-{
-    *count = 0;
-    for (int k = 0; algorithms[k]; k++)
-        ++*count;
-    *specs = calloc((size_t)*count, sizeof **specs);
-    if (!*specs)
-        return status_set(STATUS_FAILED, "no memory for %d algorithms", *count);
-    enum status status = STATUS_OK;
-    for (int k = 0; k < *count && status == STATUS_OK; k++)
-        status = spec_parse(algorithms[k]->name, &(*specs)[k]);
-    return status;
-}
 
 static enum status check_twice(const struct task *task)
 {
@@ -65,36 +49,30 @@ static enum status summary_print(const struct batch *batch, int scene_count, con
 enum status command_run(const struct task *task)
 {
     struct scene *scenes = NULL;
-    struct spec *all = NULL;
-    int scene_count = 0, all_count = 0;
+    int scene_count = 0;
     struct batch batch = {0};
     machine_rates_use(NULL);
     enum status status = check_twice(task);
-    if (status == STATUS_OK && task->spec_count == 0)
-        status = load_specs(&all, &all_count);
-    int spec_count = task->spec_count ? task->spec_count : all_count;
     if (status == STATUS_OK)
         status = task_scenes("run", task, 0, NULL, &scenes, &scene_count);
     if (status == STATUS_OK)
-        status = batch_open(task->output ? task->output : "results/latest", scene_count * spec_count, true, &batch);
+        status =
+            batch_open(task->output ? task->output : "results/latest", scene_count * task->spec_count, true, &batch);
     if (batch.rows > ROWS_MANY)
         batch.effort = EFFORT_BRIEF;
     batch.works = task->flops;
     if (task->all)
         table_begin(stdout, false);
     for (int k = 0; k < scene_count && status == STATUS_OK; k++)
-        status = batch_scene(&batch, &scenes[k], spec_count, task->spec_count ? task->specs : all);
+        status = batch_scene(&batch, &scenes[k], task->spec_count, task->specs);
     const double begin = seconds_now();
     if (status == STATUS_OK)
         status = plot_results(batch.directory, NULL, &batch.undrawn);
     batch.drawn_s += seconds_now() - begin;
     if (status == STATUS_OK)
-        status = summary_print(&batch, scene_count, scenes, spec_count, task->spec_count ? task->specs : all,
+        status = summary_print(&batch, scene_count, scenes, task->spec_count, task->specs,
                                task->all || batch.rows <= ROWS_MANY);
     status = batch_close(&batch, status);
     scenes_free(scenes, scene_count);
-    for (int k = 0; k < all_count; k++)
-        spec_free(&all[k]);
-    free(all);
     return status;
 }

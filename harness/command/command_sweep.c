@@ -39,12 +39,6 @@ static enum status settings_load(const struct task *task, struct sweep_settings 
     spec_free(&spec);
     for (int k = 0; k < task->spec_count && status == STATUS_OK; k++)
         status = add(task, &task->specs[k], settings);
-    for (int k = 0; task->spec_count == 0 && algorithms[k] && status == STATUS_OK; k++) {
-        status = spec_parse(algorithms[k]->name, &spec);
-        if (status == STATUS_OK)
-            status = add(task, &spec, settings);
-        spec_free(&spec);
-    }
     return status;
 }
 

@@ -29,13 +29,14 @@ struct command {
     enum status (*run)(const struct task *task);
     bool supervised; /* a crash ends one measurement, and the others go on */
     bool hidden;     /* not for the terminal */
+    bool every;      /* without a SPEC it takes each algorithm by its defaults */
 };
 
 static const struct command commands[] = {
     {"run", "compare algorithms on scenes: error against run time",
      "([SCENE ...] | --echoes FILE.mat --grid GRID) [--algorithm SPEC ...] [-o DIR] [--all] [--flops]",
      "compare algorithms on scenes, or on recorded echoes: the fastest for each of four errors", "oategLF", 0, INT_MAX,
-     command_run, true},
+     command_run, true, .every = true},
     {"report", "make one page of a results folder", "DIR", "make one page of a results folder: DIR/report.html", "", 1,
      1, command_report, false},
     {"list", "list the algorithms", "", "list the algorithms, with summary, reference and traits", "", 0, 0,
@@ -48,7 +49,7 @@ static const struct command commands[] = {
      "(SCENE | --echoes FILE.mat --grid GRID) [--algorithm SPEC ...] [--all]",
      "check, before any work, which algorithms can image a scene, and which conditions fail or are near their limit; "
      "exit status 1 where an algorithm is refused",
-     "aegL", 0, 1, command_check, false},
+     "aegL", 0, 1, command_check, .every = true},
     {"plan", "the fastest algorithm and settings within an error",
      "(SCENE | --echoes FILE.mat --grid GRID) [--error E] [--memory BYTES] [-o FILE.csv] [--all]",
      "choose the fastest algorithm and settings within an error, and print error, time, memory and the next of each "
@@ -88,7 +89,8 @@ static const struct command commands[] = {
      command_reproduce, true},
     {"sweep", "error against run time, each algorithm over its settings",
      "([SCENE ...] | --echoes FILE.mat --grid GRID) [--algorithm SPEC ...] [--precision float|double] [-o DIR] [--all]",
-     "measure error against run time, each algorithm over its settings", "oategPL", 0, INT_MAX, command_sweep, true},
+     "measure error against run time, each algorithm over its settings", "oategPL", 0, INT_MAX, command_sweep, true,
+     .every = true},
     {"phase", "phase errors of the two-dimensional spectra (LBF21)", "([SCENE] [-o DIR] | --at FILE.csv)",
      "compute phase errors of the two-dimensional spectra (LBF21 Figs 2-9)", "oA", 0, 1, command_phase, false},
     {"stability", "digits lost on extreme scenes in all rounding modes",
@@ -287,6 +289,9 @@ static enum status parse(const struct command *command, int argc, char **argv, s
     for (int k = 0; k < task->name_count && status == STATUS_OK; k++)
         if (!*task->names[k])
             status = empty_refuse(command, "an argument");
+    const bool every = command->every && task->spec_count == 0;
+    for (int k = 0; every && algorithms[k] && status == STATUS_OK; k++)
+        status = spec_add(task, algorithms[k]->name);
     if (status == STATUS_OK)
         status = threads_parse(task->threads);
     if (status == STATUS_OK && task->name_count < command->names_least)

@@ -194,17 +194,23 @@ static void name_find(const char *message, char *name, size_t size)
     snprintf(name, size, "%.60s", message);
 }
 
+/* Before anything is measured. */
+static struct stability_verdict verdict_empty(enum verdict_kind kind)
+{
+    return (struct stability_verdict){.kind = kind,
+                                      .error = NAN,
+                                      .error_most = NAN,
+                                      .difference = NAN,
+                                      .conditioning = NAN,
+                                      .digits = NAN,
+                                      .spread = NAN,
+                                      .same_bits = true,
+                                      .finite = true};
+}
+
 struct stability_verdict refusal_verdict(const char *message)
 {
-    struct stability_verdict verdict = {.kind = CANDIDATE_REFUSED,
-                                        .error = NAN,
-                                        .error_most = NAN,
-                                        .difference = NAN,
-                                        .conditioning = NAN,
-                                        .digits = NAN,
-                                        .spread = NAN,
-                                        .same_bits = true,
-                                        .finite = true};
+    struct stability_verdict verdict = verdict_empty(CANDIDATE_REFUSED);
     snprintf(verdict.message, sizeof verdict.message, "%s", message);
     name_find(message, verdict.why, sizeof verdict.why);
     return verdict;
@@ -270,13 +276,10 @@ struct stability_verdict trial_verdict(const struct trial *trial, int spec)
     const struct problem problem = scene_problem(trial->scene, trial->specs[spec].precision);
     const struct method method = method_of(&trial->specs[spec], usual->engine, &problem);
     const struct view ideal = ideal_of(trial), first = {.pixels = trial_image(trial, 0, spec)};
-    verdict = (struct stability_verdict){.error_most = method.error_most,
-                                         .error = ideal.sums || ideal.pixels ? 0 : NAN,
-                                         .difference = NAN,
-                                         .conditioning = NAN,
-                                         .digits = NAN,
-                                         .same_bits = true,
-                                         .finite = true};
+    verdict = verdict_empty(VERDICT_WORKS);
+    verdict.error_most = method.error_most;
+    verdict.error = ideal.sums || ideal.pixels ? 0 : NAN;
+    verdict.spread = 0;
     snprintf(verdict.engine, sizeof verdict.engine, "%s", usual->engine);
     for (int mode = 0; mode < trial->mode_count; mode++) {
         const struct attempt *attempt = trial_attempt(trial, mode, spec);

@@ -39,19 +39,19 @@ const double complex *trial_image(const struct trial *trial, int mode, int spec)
 
 /* ---- in a process of its own ---- */
 
-static void echoes_make(struct trial *trial)
+static enum status echoes_make(struct trial *trial, int unused)
 {
     const struct acquisition *a = &trial->scene->acquisition;
     struct echoes echoes;
-    trial->note->status = scene_echoes(trial->scene, &echoes);
-    if (trial->note->status == STATUS_OK) {
-        memcpy(trial->samples, echoes.samples,
-               (size_t)a->pings * (size_t)a->receivers * (size_t)a->samples * sizeof *trial->samples);
-        trial->note->exponent = echoes.exponent;
-        echoes_free(&echoes);
-    } else {
-        snprintf(trial->note->message, sizeof trial->note->message, "%s", status_message());
-    }
+    (void)unused;
+    enum status status = scene_echoes(trial->scene, &echoes);
+    if (status != STATUS_OK)
+        return status;
+    memcpy(trial->samples, echoes.samples,
+           (size_t)a->pings * (size_t)a->receivers * (size_t)a->samples * sizeof *trial->samples);
+    trial->note->exponent = echoes.exponent;
+    echoes_free(&echoes);
+    return STATUS_OK;
 }
 
 /* The image with so many threads, and what plan and execute raised. */
@@ -96,7 +96,7 @@ static void attempt_make(const struct scene *scene, const struct echoes *echoes,
 }
 
 /* All specs that are not done yet. */
-static void mode_run(struct trial *trial, int mode)
+static enum status mode_run(struct trial *trial, int mode)
 {
     const struct echoes shared = {&trial->scene->acquisition, PRECISION_DOUBLE, trial->samples, trial->note->exponent};
     struct echoes echoes[2]; /* by enum precision */
@@ -111,6 +111,7 @@ static void mode_run(struct trial *trial, int mode)
     }
     echoes_free(&echoes[PRECISION_FLOAT]);
     echoes_free(&echoes[PRECISION_DOUBLE]);
+    return STATUS_OK;
 }
 
 /* To the samples as they were recorded. */
@@ -124,8 +125,9 @@ static void sums_scale(const struct trial *trial, struct exact_sum *sums)
 }
 
 /* The right image, and each method's own where it made one. */
-static void exact_make(struct trial *trial)
+static enum status exact_make(struct trial *trial, int unused)
 {
+    (void)unused;
     const struct scene *scene = trial->scene;
     const struct problem problem = scene_problem(scene, PRECISION_DOUBLE);
     enum status status = trial->ideal_excludes ? STATUS_OK : exact_ideal(scene, trial->ideal);
@@ -138,15 +140,13 @@ static void exact_make(struct trial *trial)
             sums_scale(trial, sums);
         }
     }
-    trial->note->status = status;
-    if (status != STATUS_OK)
-        snprintf(trial->note->message, sizeof trial->note->message, "%s", status_message());
+    return status;
 }
 
 /* ---- the parent ---- */
 
 /* Run `work` in a process of its own; *state is what waitpid says of it. */
-static enum status process_run(struct trial *trial, void (*work)(struct trial *, int), int argument, int *state)
+static enum status process_run(struct trial *trial, enum status (*work)(struct trial *, int), int argument, int *state)
 {
     fflush(NULL);
     pid_t child = fork();
@@ -157,7 +157,9 @@ static enum status process_run(struct trial *trial, void (*work)(struct trial *,
             signal(crashes[k], SIG_DFL); /* whatever the parent does about its own */
         prctl(PR_SET_PDEATHSIG, SIGKILL);
         alarm(PATIENCE_S);
-        work(trial, argument);
+        trial->note->status = work(trial, argument);
+        if (trial->note->status != STATUS_OK)
+            snprintf(trial->note->message, sizeof trial->note->message, "%s", status_message());
         _exit(0);
     }
     if (waitpid(child, state, 0) != child)
@@ -165,20 +167,8 @@ static enum status process_run(struct trial *trial, void (*work)(struct trial *,
     return STATUS_OK;
 }
 
-static void echoes_work(struct trial *trial, int unused)
-{
-    (void)unused;
-    echoes_make(trial);
-}
-
-static void exact_work(struct trial *trial, int unused)
-{
-    (void)unused;
-    exact_make(trial);
-}
-
 /* A process that must come to its end: echoes, exact images. */
-static enum status process_need(struct trial *trial, void (*work)(struct trial *, int), const char *what)
+static enum status process_need(struct trial *trial, enum status (*work)(struct trial *, int), const char *what)
 {
     int state;
     enum status status = process_run(trial, work, 0, &state);
@@ -253,11 +243,11 @@ enum status trial_run(const struct scene *scene, const struct spec *specs, int s
     enum status status = memory_share(trial);
     if (status != STATUS_OK)
         return status;
-    status = process_need(trial, echoes_work, "echoes");
+    status = process_need(trial, echoes_make, "echoes");
     for (int mode = 0; mode < mode_count && status == STATUS_OK; mode++)
         status = mode_trial(trial, mode);
     if (status == STATUS_OK)
-        status = process_need(trial, exact_work, "exact images");
+        status = process_need(trial, exact_make, "exact images");
     if (status != STATUS_OK)
         trial_close(trial);
     return status;
