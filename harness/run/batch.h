@@ -41,6 +41,9 @@ enum status batch_scene(struct batch *batch, const struct scene *scene, int spec
 /* The finished row, or NULL; belongs to the record, valid until batch_close. */
 const struct measurement *batch_find(const struct batch *batch, const struct scene *scene, const struct spec *spec);
 
+/* Show which row is next. */
+void batch_progress(const struct batch *batch, const char *scene, const char *what);
+
 /* Close the folder. Returns `status`, or STATUS_FAILED when that is OK but a measurement failed or a picture could not
    be drawn. */
 enum status batch_close(struct batch *batch, enum status status);

@@ -1,0 +1,38 @@
+/* One scene of a batch while its algorithms are measured and drawn; what crashes is not begun again (supervisor.h). */
+#ifndef SASBENCH_RUN_VISIT_H
+#define SASBENCH_RUN_VISIT_H
+
+#include "run/batch.h"
+#include "show/pictures.h"
+
+struct visit {
+    struct session session;
+    const struct spec *specs;
+    int spec_count;
+    struct pictures pictures;       /* all zero when none are drawn */
+    struct timing_samples *samples; /* [TURNS] of the settings from turns_first on; NULL: each is timed at once */
+    int turns_first;
+};
+enum { TURNS = 24 }; /* settings that are timed in turn */
+
+/* Make echoes and exact image. On failure the visit is closed. */
+enum status visit_open(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs,
+                       struct visit *visit);
+void visit_close(struct visit *visit);
+
+/* Measure one algorithm, record and draw it. Only a fault of the record itself is an error: what fails or is
+   unsupported becomes a row. */
+enum status visit_measure(struct batch *batch, struct visit *visit, int index);
+/* All rounds but the last, which visit_measure adds, of the settings from `first` on that are to be measured. */
+void visit_turns(struct batch *batch, struct visit *visit, int first);
+/* A row that an earlier run finished is not timed again; its image is, for the overlaid slices. What cannot be drawn
+   now is reported and stops nothing. */
+void visit_redraw(struct visit *visit, int index, const struct measurement *row);
+/* Whether an image or the slices of finished rows are still to be drawn. */
+bool visit_pictures_missing(const struct batch *batch, const struct scene *scene, int spec_count,
+                            const struct spec *specs);
+/* A row of what was not measured. */
+struct measurement visit_failed_row(const struct batch *batch, const struct scene *scene, const struct spec *spec,
+                                    const char *reason);
+
+#endif
