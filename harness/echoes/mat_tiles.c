@@ -15,6 +15,7 @@
 
 #include "echoes/matvar.h"
 
+enum { HEADS_MOST = 1 << 16 }; /* bytes that HDF5 adds around the numbers, at most */
 static const char head[] = "sasbench tiles 1\n", line_of_tiles[] = "tiles: %dx%d, %d in all\n";
 static const char whole[] = "whole     ", unfinished[] = "unfinished";
 
@@ -160,11 +161,14 @@ static bool status_write(const struct tiles *tiles, const char *text)
     return write_at(tiles->file, codes, sizeof codes, tiles->status_at) && fdatasync(tiles->file) == 0;
 }
 
-/* The room is taken at once: a full disk shows before the work. */
-static bool room_take(struct tiles *tiles)
+/* The room is taken at once: a full disk shows before the work, and before HDF5, which crashes there. */
+static bool room_take(const struct tiles *tiles)
 {
     const size_t bytes = (size_t)tiles->grid.x_count * (size_t)tiles->grid.r_count * precision_size(tiles->precision);
-    errno = posix_fallocate(tiles->file, tiles->image_at, (off_t)bytes);
+    struct stat file;
+    if (fstat(tiles->file, &file) != 0)
+        return false;
+    errno = posix_fallocate(tiles->file, 0, file.st_size + (off_t)bytes + HEADS_MOST);
     return errno == 0;
 }
 
@@ -172,10 +176,9 @@ static bool room_take(struct tiles *tiles)
 static bool sets_add(const char *path, void *with)
 {
     struct tiles *tiles = with;
-    if (!sets_make(path, tiles) || !offsets_find(path, tiles))
-        return false;
     tiles->file = open(path, O_RDWR | O_CLOEXEC);
-    return tiles->file >= 0 && room_take(tiles) && status_write(tiles, unfinished);
+    return tiles->file >= 0 && room_take(tiles) && sets_make(path, tiles) && offsets_find(path, tiles)
+           && status_write(tiles, unfinished);
 }
 
 /* The file, with all but its pixels; tiles->file is open then. */

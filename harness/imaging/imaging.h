@@ -25,8 +25,9 @@ void imaging_reads(const struct imaging *imaging, const struct problem *problem,
 enum status imaging_execute(struct imaging *imaging, const struct echoes *echoes, struct stages *stages);
 
 /* The finished image: checked, scaled by the echoes' exponent, handed over to the caller, who frees it with image_free;
-   the imaging has none from then on. Of a window, image->patches points into the imaging. Errors: STATUS_FAILED when a pixel is not finite or memory is missing,
-   STATUS_INVALID when the scaled image is beyond the range of double; *image is then empty. */
+   the imaging has none from then on. Of a window, image->patches points into the imaging. Errors: STATUS_FAILED when a
+   pixel is not finite or memory is missing, STATUS_INVALID when the scaled image is beyond the range of double; *image
+   is then empty. */
 enum status imaging_finish(struct imaging *imaging, const struct echoes *echoes, struct image *image);
 
 void imaging_close(struct imaging *imaging);

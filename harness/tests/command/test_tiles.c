@@ -1,5 +1,5 @@
-/* `image --tile`: the bits of the whole image, also after kill -9 at moments that differ each time; what is refused, and
-   what a damaged or torn file costs. */
+/* `image --tile`: the bits of the whole image, also after kill -9 at moments that differ each time; what is refused,
+   and what a damaged or torn file costs. */
 #include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
@@ -163,10 +163,21 @@ static void damage_is_mended(void **state)
     assert_same_image("whole.mat", "x.mat");
 }
 
+/* No room for the pixels: said before the work, and nothing is left but an empty journal. */
+static void full_disks_are_told(void **state)
+{
+    (void)state;
+    assert_shell("ulimit -f 100; \"$SASBENCH_PROGRAM\" image -s study/quick -a bp_nearest -o full.mat --tile 17x5", 2);
+    assert_false(support_exists("full.mat"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(bits_of_the_whole),
-                                       cmocka_unit_test(recordings_are_read_in_part), cmocka_unit_test(killed),
-                                       cmocka_unit_test(others_are_refused), cmocka_unit_test(damage_is_mended)};
+                                       cmocka_unit_test(recordings_are_read_in_part),
+                                       cmocka_unit_test(killed),
+                                       cmocka_unit_test(others_are_refused),
+                                       cmocka_unit_test(damage_is_mended),
+                                       cmocka_unit_test(full_disks_are_told)};
     return cmocka_run_group_tests(tests, inputs_make, folder_remove);
 }
