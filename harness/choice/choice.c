@@ -333,8 +333,8 @@ static void reasons_fill(struct choice *choice)
         if (c->verdict != CANDIDATE_SLOWER)
             continue;
         if (laws_open(c))
-            snprintf(c->reason, sizeof c->reason, "%.2f times the chosen one's time%s, whatever its error", ratio,
-                     c->budgeted ? " or more" : "");
+            snprintf(c->reason, sizeof c->reason, "%.2f times the chosen one's time%s, %s", ratio,
+                     c->budgeted ? " or more" : "", ratio < 1 ? "not tried, which takes longer" : "whatever its error");
         else
             snprintf(c->reason, sizeof c->reason, "within the budget, %.2f times the chosen one's time", ratio);
     }

@@ -86,6 +86,31 @@ static enum status plan_scene(const struct task *task, const struct scene *scene
     return status;
 }
 
+/* --time in place of --error: the least budget whose choice takes no longer, to a quarter. */
+static enum status time_search(const char *text, const struct scene *scene, struct budget *budget)
+{
+    double seconds, low = -7, high = 0.1; /* powers of ten */
+    const char *end = number_read(text, &seconds);
+    if (!(end && !*end && seconds > 0))
+        return status_set(STATUS_INVALID, "plan: --time is '%s', must be a number of seconds above 0", text);
+    while (high - low > 0.1) {
+        struct planned planned;
+        const double middle = (low + high) / 2;
+        const struct budget tried = {.error = pow(10, middle), .bytes = budget->bytes, .seconds = budget->seconds};
+        const enum status status = planned_make(scene, &tried, &planned);
+        if (status != STATUS_OK)
+            return status;
+        const int precision = planned_precision(&planned);
+        const bool fits = precision >= 0 && planned.choices[precision].list[0].seconds <= seconds;
+        *(fits ? &high : &low) = middle;
+        planned_free(&planned);
+    }
+    budget->error = pow(10, high);
+    return budget->error <= 1 ? STATUS_OK
+                              : status_set(STATUS_FAILED, "plan: nothing images %s in %g s and %.6g MB", scene->name,
+                                           seconds, budget->bytes / 1e6);
+}
+
 enum status command_plan(const struct task *task)
 {
     struct scene *scene = NULL;
@@ -93,6 +118,8 @@ enum status command_plan(const struct task *task)
     int count = 0;
     if (!task->name_count && !task->echoes)
         return status_set(STATUS_INVALID, "plan: a SCENE, or --echoes FILE.mat with --grid GRID, is missing");
+    if (task->error && task->time)
+        return status_set(STATUS_INVALID, "plan: one of --error and --time is needed, not both");
     enum status status = error_parse(task->error, &budget.error);
     if (status == STATUS_OK)
         status = memory_parse(task->memory, &budget.bytes);
@@ -100,6 +127,8 @@ enum status command_plan(const struct task *task)
         status = task_scenes("plan", task, 0, NULL, &scene, &count);
     if (status == STATUS_OK)
         status = machine_rates_need();
+    if (status == STATUS_OK && task->time)
+        status = time_search(task->time, &scene[0], &budget);
     if (status == STATUS_OK)
         status = plan_scene(task, &scene[0], &budget);
     scenes_free(scene, count);

@@ -51,10 +51,10 @@ static const struct command commands[] = {
      "exit status 1 where an algorithm is refused",
      "aegL", 0, 1, command_check, .every = true},
     {"plan", "the fastest algorithm and settings within an error",
-     "(SCENE | --echoes FILE.mat --grid GRID) [--error E] [--memory BYTES] [-o FILE.csv] [--all]",
-     "choose the fastest algorithm and settings within an error, and print error, time, memory and the next of each "
-     "family; exit status 1 where nothing fits",
-     "oegtEYL", 0, 1, command_plan, false},
+     "(SCENE | --echoes FILE.mat --grid GRID) [--error E | --time S] [--memory BYTES] [-o FILE.csv] [--all]",
+     "choose the fastest algorithm and settings within an error, or the most exact within a time, and print error, "
+     "time, memory and the next of each family; exit status 1 where nothing fits",
+     "oegtETYL", 0, 1, command_plan, false},
     {"scenes", "draw a random scene from a seed", "random --seed N [-o FILE.cfg]",
      "draw a scene from a seed, of any band, array and range", "oS", 1, 1, command_scenes, false},
     {"simulate", "write a scene's echoes", "SCENE -o FILE.mat", "write a scene's echoes", "ot", 1, 1, command_simulate,
@@ -119,6 +119,7 @@ static const struct named {
     {'I', "tile", "NxM", "pixels along x and r that are formed, and put into the file, at a time", IN_TASK(tile)},
     {'P', "precision", "WHICH", "float or double; both unless given, or stated by a SPEC", IN_TASK(precision)},
     {'E', "error", "E", "of the image after one gain (L2), 1e-3 unless given", IN_TASK(error)},
+    {'T', "time", "S", "of the image, in place of an error: the least error within it", IN_TASK(time)},
     {'Y', "memory", "BYTES", "of the image's process, at most; 4G unless given (512MiB)", IN_TASK(memory)},
     {'S', "seed", "N", "a whole number from 0 to 1e15", IN_TASK(seed)},
     {'N', "name", "NAME", "of the image's program; the file's name unless given", IN_TASK(name)},

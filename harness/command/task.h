@@ -10,8 +10,8 @@
 struct task {
     const char *const *names; /* [name_count] what stands without an option: scenes, an algorithm */
     int name_count;
-    const char *output, *scene, *echoes, *grid, *at, *markdown, *json, *range, *precision, *error, *memory, *seed,
-        *name, *seconds, *tile, *threads;
+    const char *output, *scene, *echoes, *grid, *at, *markdown, *json, *range, *precision, *error, *time, *memory,
+        *seed, *name, *seconds, *tile, *threads;
     bool ab, quick, all, flops, verify;
     int spec_count;
     struct spec *specs; /* [spec_count] of --algorithm */

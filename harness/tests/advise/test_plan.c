@@ -290,6 +290,40 @@ static void command_writes(void **state)
     }
 }
 
+/* --time: the most exact within it; more time, less error; too little is refused. */
+static void time_is_kept(void **state)
+{
+    (void)state;
+    static const char *const times[] = {"1e-4", "1e-3", "1"};
+    const char *names[] = {"study/quick"};
+    double before = INFINITY, first = NAN;
+    for (int k = 0; k < 3; k++) {
+        struct task task = {.names = names, .name_count = 1, .output = path_of("plan.csv"), .time = times[k]};
+        struct csv csv;
+        double error = NAN;
+        assert_int_equal(command_plan(&task), STATUS_OK);
+        assert_int_equal(csv_read(path_of("plan.csv"), CSV_TAIL_KEEP, &csv), STATUS_OK);
+        for (int row = csv.row_count - 1; row >= 0; row--)
+            if (strcmp(csv_cell(&csv, row, csv_column(&csv, "verdict")), "chosen") == 0) {
+                error = atof(csv_cell(&csv, row, csv_column(&csv, "error")));
+                if (strcmp(csv_cell(&csv, row, csv_column(&csv, "precision")), "float") == 0)
+                    assert_true(atof(csv_cell(&csv, row, csv_column(&csv, "seconds"))) <= atof(times[k]));
+            }
+        assert_true(error <= before);
+        before = error;
+        first = k == 0 ? error : first;
+        csv_free(&csv);
+    }
+    assert_true(before < first / 3);
+    static const char *const wrong[] = {"0", "-1", "nan", "1s", ""};
+    for (int k = 0; k < 5; k++)
+        assert_int_equal(command_plan(&(struct task){.names = names, .name_count = 1, .time = wrong[k]}),
+                         STATUS_INVALID);
+    assert_int_equal(command_plan(&(struct task){.names = names, .name_count = 1, .time = "1e-9"}), STATUS_FAILED);
+    const struct task both = {.names = names, .name_count = 1, .time = "1", .error = "1e-3"};
+    assert_int_equal(command_plan(&both), STATUS_INVALID);
+}
+
 /* What range migration takes is counted without a plan: the plan's FLOPs, and a time of which the terms over the
    receivers are a small part, as is measured. */
 static void migration_is_counted(void **state)
@@ -408,6 +442,7 @@ int main(void)
         cmocka_unit_test(steep_slopes_cost),
         cmocka_unit_test_setup_teardown(rates_are_kept, folder_make, folder_remove),
         cmocka_unit_test_setup_teardown(command_writes, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(time_is_kept, folder_make, folder_remove),
     };
     return cmocka_run_group_tests_name("plan", tests, NULL, NULL);
 }
