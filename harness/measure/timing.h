@@ -35,8 +35,8 @@ struct timing_samples {
    system had more than a quarter, to find and clear memory, never counts. */
 enum effort { EFFORT_NONE, EFFORT_BRIEF, EFFORT_WHOLE };
 
-/* Plan and run as often as the effort says, which is not EFFORT_NONE. Every other run images the negated echoes, so that
-   a kept image is found out; the echoes are then as they were. The control is timed before, unless it just was,
+/* Plan and run as often as the effort says, which is not EFFORT_NONE. Every other run images the negated echoes, so
+   that a kept image is found out; the echoes are then as they were. The control is timed before, unless it just was,
    and after, which is left out alike by EFFORT_BRIEF. With `samples` this is one of TIMING_ROUNDS rounds, each a
    part of EFFORT_WHOLE; times are of all runs so far. *image is the finished one (imaging_finish), freed by the
    caller. Errors: as imaging_open, imaging_execute, imaging_finish, control_measure, and STATUS_FAILED for a time that

@@ -197,8 +197,8 @@ static void interrupted_run_is_told(void **state)
     check_interruption_told(sink, "stopped");
 }
 
-/* An interrupted sweep ends by the signal, which a terminal sends to all of its processes; `report` writes what its rows
-   say. */
+/* An interrupted sweep ends by the signal, which a terminal sends to all of its processes; `report` writes what its
+   rows say. */
 static void interrupted_sweep_is_reported(void **state)
 {
     (void)state;
