@@ -51,24 +51,33 @@ static void *allocate_zeroed(size_t size)
     return memory;
 }
 
-static void convert_numbers(const void *from, enum precision from_precision, void *to, enum precision to_precision,
-                            size_t count)
+static double complex number_at(const void *numbers, enum precision precision, size_t index)
 {
-    if (from_precision == to_precision) {
-        memcpy(to, from, count * precision_size(from_precision));
-    } else if (to_precision == PRECISION_DOUBLE) {
-        const float complex *in = from;
-        double complex *out = to;
-        for (size_t i = 0; i < count; i++) {
-            out[i] = in[i];
-        }
-    } else {
-        const double complex *in = from;
-        float complex *out = to;
-        for (size_t i = 0; i < count; i++) {
-            out[i] = (float complex)in[i];
-        }
+    return precision == PRECISION_FLOAT ? ((const float complex *)numbers)[index]
+                                        : ((const double complex *)numbers)[index];
+}
+
+/* Times 2^exponent. */
+static void numbers_copy(const void *from, enum precision from_precision, int exponent, void *to,
+                         enum precision precision, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        double complex z = number_at(from, from_precision, i);
+        if (exponent != 0)
+            z = __builtin_complex(ldexp(creal(z), exponent), ldexp(cimag(z), exponent));
+        if (precision == PRECISION_FLOAT)
+            ((float complex *)to)[i] = __builtin_complex((float)creal(z), (float)cimag(z));
+        else
+            ((double complex *)to)[i] = z;
     }
+}
+
+double largest_part(const double complex *numbers, size_t count)
+{
+    double largest = 0;
+    for (size_t i = 0; i < count; i++)
+        largest = fmax(largest, fmax(fabs(creal(numbers[i])), fabs(cimag(numbers[i]))));
+    return largest;
 }
 
 enum status echoes_allocate(const struct acquisition *acquisition, enum precision precision, struct echoes *echoes)
@@ -90,30 +99,13 @@ enum status echoes_allocate(const struct acquisition *acquisition, enum precisio
 
 /* The power of two that brings the largest part of the numbers below 1; 0 where it lies well within the range of
    `precision`: room for the sums of 2^60 samples, and for parts 2^60 times smaller. */
-static int range_exponent(const double complex *numbers, size_t count, enum precision precision)
+static int range_exponent(double largest, enum precision precision)
 {
     const double reach = precision == PRECISION_FLOAT ? 0x1p40 : 0x1p400;
-    double largest = 0;
     int exponent = 0;
-    for (size_t i = 0; i < count; i++) {
-        largest = fmax(largest, fmax(fabs(creal(numbers[i])), fabs(cimag(numbers[i]))));
-    }
-    if (largest > 0 && largest < INFINITY && !(largest >= 1 / reach && largest <= reach)) {
+    if (largest > 0 && largest < INFINITY && !(largest >= 1 / reach && largest <= reach))
         frexp(largest, &exponent);
-    }
     return exponent;
-}
-
-static void scale_numbers(const double complex *from, int exponent, void *to, enum precision precision, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        double re = ldexp(creal(from[i]), exponent), im = ldexp(cimag(from[i]), exponent);
-        if (precision == PRECISION_FLOAT) {
-            ((float complex *)to)[i] = __builtin_complex((float)re, (float)im);
-        } else {
-            ((double complex *)to)[i] = __builtin_complex(re, im);
-        }
-    }
 }
 
 enum status echoes_convert(const struct echoes *from, enum precision precision, struct echoes *to)
@@ -122,12 +114,9 @@ enum status echoes_convert(const struct echoes *from, enum precision precision, 
     enum status status = echoes_allocate(acquisition, precision, to);
     if (status == STATUS_OK) {
         size_t count = (size_t)acquisition->pings * (size_t)acquisition->receivers * (size_t)acquisition->samples;
-        int exponent = from->precision == PRECISION_DOUBLE ? range_exponent(from->samples, count, precision) : 0;
-        if (exponent != 0) {
-            scale_numbers(from->samples, -exponent, (void *)to->samples, precision, count);
-        } else {
-            convert_numbers(from->samples, from->precision, (void *)to->samples, precision, count);
-        }
+        int exponent =
+            from->precision == PRECISION_DOUBLE ? range_exponent(largest_part(from->samples, count), precision) : 0;
+        numbers_copy(from->samples, from->precision, -exponent, (void *)to->samples, precision, count);
         to->exponent = from->exponent + exponent;
     }
     return status;
@@ -188,14 +177,20 @@ enum status image_allocate(int patch_count, const struct grid *patches, enum pre
     return image->pixels ? STATUS_OK : status_set(STATUS_FAILED, "out of memory for %d image patches", patch_count);
 }
 
-enum status image_convert(const struct image *from, enum precision precision, struct image *to)
+/* Times 2^exponent. */
+static enum status image_copy(const struct image *from, int exponent, enum precision precision, struct image *to)
 {
     enum status status = image_allocate(from->patch_count, from->patches, precision, to);
     for (int i = 0; status == STATUS_OK && i < from->patch_count; i++) {
         size_t count = (size_t)from->patches[i].r_count * (size_t)from->patches[i].x_count;
-        convert_numbers(from->pixels[i], from->precision, to->pixels[i], precision, count);
+        numbers_copy(from->pixels[i], from->precision, exponent, to->pixels[i], precision, count);
     }
     return status;
+}
+
+enum status image_convert(const struct image *from, enum precision precision, struct image *to)
+{
+    return image_copy(from, 0, precision, to);
 }
 
 enum status image_scale(struct image *image, int exponent)
@@ -204,17 +199,12 @@ enum status image_scale(struct image *image, int exponent)
     if (exponent == 0) {
         return STATUS_OK;
     }
-    enum status status = image_convert(image, PRECISION_DOUBLE, &scaled);
-    if (status != STATUS_OK) {
-        return status;
+    enum status status = image_copy(image, exponent, PRECISION_DOUBLE, &scaled);
+    if (status == STATUS_OK) {
+        image_free(image);
+        *image = scaled;
     }
-    for (int i = 0; i < scaled.patch_count; i++) {
-        size_t count = (size_t)scaled.patches[i].r_count * (size_t)scaled.patches[i].x_count;
-        scale_numbers(scaled.pixels[i], exponent, scaled.pixels[i], PRECISION_DOUBLE, count);
-    }
-    image_free(image);
-    *image = scaled;
-    return STATUS_OK;
+    return status;
 }
 
 void image_free(struct image *image)
@@ -229,10 +219,7 @@ void image_free(struct image *image)
 double complex image_pixel(const struct image *image, int patch, int i, int j)
 {
     size_t index = (size_t)i * (size_t)image->patches[patch].x_count + (size_t)j;
-    if (image->precision == PRECISION_FLOAT) {
-        return ((const float complex *)image->pixels[patch])[index];
-    }
-    return ((const double complex *)image->pixels[patch])[index];
+    return number_at(image->pixels[patch], image->precision, index);
 }
 
 bool image_is_finite(const struct image *image)

@@ -30,6 +30,9 @@ enum status image_convert(const struct image *from, enum precision precision, st
 enum status image_scale(struct image *image, int exponent);
 void image_free(struct image *image);
 
+/* The largest magnitude of a real or imaginary part. */
+double largest_part(const double complex *numbers, size_t count);
+
 /* False when any pixel is infinite or not a number: a result that must not be shown. */
 bool image_is_finite(const struct image *image);
 

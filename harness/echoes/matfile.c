@@ -238,11 +238,8 @@ static enum status normalise_pulse(const char *path, const struct pings *pings, 
     const size_t each = v[SAMPLES].dims[0] * v[SAMPLES].dims[1];
     const struct variable *const both[] = {&v[PULSE], &v[SAMPLES]};
     size_t pulse_count = v[PULSE].values ? variable_count(&v[PULSE]) : 0;
-    double largest = 0;
+    const double largest = largest_part(v[PULSE].values, pulse_count);
     int exponent;
-    for (size_t k = 0; k < pulse_count; k++) {
-        largest = fmax(largest, fmax(fabs(creal(v[PULSE].values[k])), fabs(cimag(v[PULSE].values[k]))));
-    }
     if (!(largest > 0 && largest < INFINITY) || (largest >= 0x1p-20 && largest <= 0x1p20)) {
         return STATUS_OK;
     }

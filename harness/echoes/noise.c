@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "common/pulse_band.h"
+#include "echoes/echo_data.h"
 
 enum { RECORDS_MOST = 64 };
 static const double BINS_LEAST = 4;  /* beyond the band, to either side */
@@ -135,8 +136,7 @@ enum status noise_measure(const struct echoes *echoes, double *share)
     fftw_complex *record = fftw_malloc(samples * sizeof *record);
     fftw_plan plan = record ? fftw_plan_dft_1d(a->samples, record, record, FFTW_FORWARD, FFTW_ESTIMATE) : NULL;
     for (size_t n = step / 2; n < records; n += step)
-        for (size_t i = n * samples; i < (n + 1) * samples; i++)
-            most = fmax(most, fmax(fabs(creal(values[i])), fabs(cimag(values[i]))));
+        most = fmax(most, largest_part(values + n * samples, samples));
     for (size_t n = step / 2; n < records && plan && most > 0; n += step)
         record_add(values + n * samples, most, a->samples, expected.first, plan, record, &sum);
     if (plan)

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/turns.h"
 #include "echoes/echo_data.h"
 #include "scene/random.h"
 #include "imaging/imaging.h"
@@ -31,11 +32,6 @@ static int segments_of_row(const struct grid *grid)
 static int segment_first(const struct grid *grid, int k)
 {
     return (int)((long long)k * grid->x_count / segments_of_row(grid));
-}
-
-static double squared(double complex z)
-{
-    return creal(z) * creal(z) + cimag(z) * cimag(z);
 }
 
 /* Does a segment meet the region, which may be narrower than it? */
@@ -66,7 +62,7 @@ static int row_fill(const struct image *pilot, int patch, int row, const struct 
         struct segment *segment = &list[count++];
         *segment = (struct segment){.place = {patch, row, first, 1}};
         for (int j = first; j < end; j++)
-            segment->energy += squared(image_pixel(pilot, patch, row, j));
+            segment->energy += square(image_pixel(pilot, patch, row, j));
     }
     return count;
 }
@@ -240,8 +236,8 @@ static struct energies segment_energies(const struct compared *c, int k, double 
     struct energies sum = {0};
     for (int j = 0; j < c->probe->grids[k].x_count; j++) {
         const double complex exact = image_pixel(&c->probe->exact, k, 0, j);
-        sum.exact += squared(exact);
-        sum.error += squared(gain * compared_pixel(c, k, j) - exact);
+        sum.exact += square(exact);
+        sum.error += square(gain * compared_pixel(c, k, j) - exact);
     }
     return sum;
 }
@@ -257,7 +253,7 @@ static double complex best_gain(const struct compared *c)
         for (int j = 0; j < probe->grids[k].x_count; j++) {
             const double complex value = compared_pixel(c, k, j);
             cross += p->stands_for * image_pixel(&probe->exact, k, 0, j) * conj(value);
-            energy += p->stands_for * squared(value);
+            energy += p->stands_for * square(value);
         }
     }
     return energy > 0 ? cross / energy : 0;

@@ -66,14 +66,12 @@ enum status filtering_measure(const struct filtering *filtering, double complex 
     const struct acquisition *a = filtering->acquisition;
     const size_t count = (size_t)a->samples * (size_t)a->pings;
     double complex *before = malloc(count * sizeof *before);
-    double largest = 0;
     *kept = (struct kept){NAN, NAN};
     if (!before)
         return status_set(STATUS_FAILED, "no memory for the echoes ahead of the filter");
     memcpy(before, records, count * sizeof *before);
     filtering_apply(filtering, records);
-    for (size_t n = 0; n < count; n++)
-        largest = fmax(largest, fmax(fabs(creal(before[n])), fabs(cimag(before[n]))));
+    const double largest = largest_part(before, count);
     if (largest > 0) {
         double own = energy(before, NULL, count, largest);
         kept->kept_db = 10 * log10(energy(records, NULL, count, largest) / own);

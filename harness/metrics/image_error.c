@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "common/turns.h"
 #include "echoes/echo_data.h"
 #include "metrics/interpolation.h"
 #include "metrics/metrics.h"
@@ -62,11 +63,6 @@ enum status metrics_cover(const struct image *image, int count, const struct gri
     return STATUS_OK;
 }
 
-static double squared(double complex z)
-{
-    return creal(z) * creal(z) + cimag(z) * cimag(z);
-}
-
 /* The sums over all pixels that the errors are made of. The gain and the peak come from a first pass, so that small
    errors are summed directly and not as differences of large sums. */
 struct error_sums {
@@ -78,22 +74,22 @@ struct error_sums {
 
 static void pair_add_first(struct error_sums *sums, double complex value, double complex wanted)
 {
-    sums->image += squared(value);
-    sums->reference += squared(wanted);
-    sums->reference_peak = fmax(sums->reference_peak, squared(wanted));
+    sums->image += square(value);
+    sums->reference += square(wanted);
+    sums->reference_peak = fmax(sums->reference_peak, square(wanted));
     sums->cross += wanted * conj(value);
 }
 
 static void pair_add_second(struct error_sums *sums, double complex value, double complex wanted)
 {
     double complex gain = sums->image > 0 ? sums->cross / sums->image : 0;
-    sums->error += squared(value - wanted);
-    sums->error_gain += squared(gain * value - wanted);
-    sums->error_peak = fmax(sums->error_peak, squared(value - wanted));
-    if (squared(wanted) >= 0.01 * sums->reference_peak) {
+    sums->error += square(value - wanted);
+    sums->error_gain += square(gain * value - wanted);
+    sums->error_peak = fmax(sums->error_peak, square(value - wanted));
+    if (square(wanted) >= 0.01 * sums->reference_peak) {
         double phase = value == 0 ? NAN : carg(value * conj(wanted));
-        sums->phase += squared(wanted) * phase * phase;
-        sums->phase_weight += squared(wanted);
+        sums->phase += square(wanted) * phase * phase;
+        sums->phase_weight += square(wanted);
     }
 }
 
