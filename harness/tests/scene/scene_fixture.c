@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 /* One group a line, so that every refusal can be checked for its line. */
 const char *const base_text =
@@ -18,34 +17,10 @@ const char *const base_text =
     "targets = { points = ( { x = 0.1; r = 20.0; } ); };\n"
     "noise = { std = 0.1; seed = 3; };\n" IMAGE "\n";
 
-char scene_folder[256];
-
-const char *scene_path(const char *name)
-{
-    static char path[400];
-    snprintf(path, sizeof path, "%s/%s", scene_folder, name);
-    return path;
-}
-
-const char *scene_path_numbered(int i)
-{
-    char name[20];
-    snprintf(name, sizeof name, "%d.cfg", i);
-    return scene_path(name);
-}
-
-void scene_write(const char *name, const char *text)
-{
-    FILE *file = fopen(scene_path(name), "w");
-    assert_non_null(file);
-    assert_true(fputs(text, file) >= 0);
-    assert_int_equal(fclose(file), 0);
-}
-
 enum status scene_load_text(const char *text, struct scene *scene)
 {
-    scene_write("scene.cfg", text);
-    return scene_load(scene_path("scene.cfg"), SHIPPED, scene);
+    support_write("scene.cfg", text);
+    return scene_load(path_of("scene.cfg"), SHIPPED, scene);
 }
 
 struct scene scene_loaded(const char *text)
@@ -83,28 +58,4 @@ void assert_message_has(const char *part, const char *what)
     if (!strstr(status_message(), part)) {
         fail_msg("%s: '%s' is not in the message: %s", what, part, status_message());
     }
-}
-
-int scene_folder_make(void **state)
-{
-    (void)state;
-    const char *temporary = getenv("TMPDIR");
-    snprintf(scene_folder, sizeof scene_folder, "%s/sasbench-scene-XXXXXX", temporary ? temporary : "/tmp");
-    return mkdtemp(scene_folder) ? 0 : -1;
-}
-
-int scene_folder_remove(void **state)
-{
-    (void)state;
-    const char *const files[] = {"scene.cfg",    "other.cfg",     "third.cfg",       "_part.cfg",
-                                 "sub/deep.cfg", "sub/_part.cfg", "sub/.hidden.cfg", "sub/text.txt",
-                                 "fifo.cfg",     "large.cfg",     "inner.cfg"};
-    for (size_t i = 0; i < COUNT_OF(files); i++) {
-        unlink(scene_path(files[i]));
-    }
-    for (int i = 0; i <= NESTED; i++) {
-        unlink(scene_path_numbered(i));
-    }
-    rmdir(scene_path("sub"));
-    return rmdir(scene_folder);
 }

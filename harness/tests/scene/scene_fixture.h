@@ -1,9 +1,9 @@
-/* Scene files made of text, in a folder of their own. */
+/* Scene files made of text, in the folder of a test (support.h). */
 #ifndef SASBENCH_TEST_SCENE_FIXTURE_H
 #define SASBENCH_TEST_SCENE_FIXTURE_H
 
 #include "scene/scene.h"
-#include "tests/assertions.h"
+#include "tests/support.h"
 
 #define SHIPPED         SASBENCH_ROOT "/scenes"
 #define IMAGE           "image = { around_targets = { half_x = 0.2; half_r = 0.1; x_step = 0.02; r_step = 0.025; }; };"
@@ -12,13 +12,7 @@
 
 /* One group a line, so that every refusal can be checked for its line. */
 extern const char *const base_text;
-extern char scene_folder[256];
 
-/* Of a name in the folder; the last one stays valid. */
-const char *scene_path(const char *name);
-/* "FOLDER/3.cfg" */
-const char *scene_path_numbered(int i);
-void scene_write(const char *name, const char *text);
 /* The text as scene.cfg. scene_loaded: the test fails where that fails. */
 enum status scene_load_text(const char *text, struct scene *scene);
 struct scene scene_loaded(const char *text);
@@ -26,8 +20,5 @@ struct scene scene_loaded(const char *text);
 char *scene_varied(const char *find, const char *replace);
 uint64_t scene_hash_of(const char *text);
 void assert_message_has(const char *part, const char *what);
-/* Fixtures: a folder of its own for every test. The removal fails when a temporary file was left behind. */
-int scene_folder_make(void **state);
-int scene_folder_remove(void **state);
 
 #endif

@@ -190,7 +190,7 @@ int main(void)
         cmocka_unit_test(records_hold_their_ends),
         cmocka_unit_test(lone_pixels_are_found),
         cmocka_unit_test(meeting_agrees_with_trying_every_pixel),
-        cmocka_unit_test_setup_teardown(odd_grids_meet_or_not, scene_folder_make, scene_folder_remove),
+        cmocka_unit_test_setup_teardown(odd_grids_meet_or_not, folder_make, folder_remove),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

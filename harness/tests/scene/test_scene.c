@@ -243,11 +243,10 @@ int main(void)
         cmocka_unit_test(shipped_scenes_load),
         cmocka_unit_test(reference_scenes_have_the_reference_geometry),
         cmocka_unit_test(full_size_scenes_have_their_papers_sizes),
-        cmocka_unit_test_setup_teardown(keys_arrive, scene_folder_make, scene_folder_remove),
-        cmocka_unit_test_setup_teardown(choices_and_defaults_arrive, scene_folder_make, scene_folder_remove),
-        cmocka_unit_test_setup_teardown(fields_can_be_repeated, scene_folder_make, scene_folder_remove),
-        cmocka_unit_test_setup_teardown(reference_patches_are_cut_from_the_grid, scene_folder_make,
-                                        scene_folder_remove),
+        cmocka_unit_test_setup_teardown(keys_arrive, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(choices_and_defaults_arrive, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(fields_can_be_repeated, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(reference_patches_are_cut_from_the_grid, folder_make, folder_remove),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

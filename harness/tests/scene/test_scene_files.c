@@ -11,8 +11,8 @@
 static void one_scene_varies_another(void **state)
 {
     (void)state;
-    scene_write("other.cfg", base_text);
-    scene_write("_part.cfg", "sonar = { fc = 100e3; bandwidth = 10e3; fs = 30e3; };\n");
+    support_write("other.cfg", base_text);
+    support_write("_part.cfg", "sonar = { fc = 100e3; bandwidth = 10e3; fs = 30e3; };\n");
     struct scene scene = scene_loaded("base = {\n  @include \"other.cfg\"\n};\n"
                                       "track = { speed = 1; pri = 0.1; pings = 3; };\n"
                                       "@include \"_part.cfg\"\n");
@@ -23,8 +23,8 @@ static void one_scene_varies_another(void **state)
     scene_free(&scene);
 
     /* A variant of a variant, and the hash of the same content in one file. */
-    scene_write("third.cfg", "base = {\n@include \"other.cfg\"\n};\n@include \"_part.cfg\"\n"
-                             "description = \"third\";\n");
+    support_write("third.cfg", "base = {\n@include \"other.cfg\"\n};\n@include \"_part.cfg\"\n"
+                               "description = \"third\";\n");
     scene = scene_loaded("base = {\n@include \"third.cfg\"\n};\ntrack = { speed = 1; pri = 0.1; pings = 3; };\n");
     assert_true(scene.acquisition.pings == 3 && scene.acquisition.fc == 100e3 && scene.noise_seed == 3);
     assert_string_equal(scene.description, "third");
@@ -32,16 +32,16 @@ static void one_scene_varies_another(void **state)
     scene_free(&scene);
 
     /* What an included file gets wrong is said with that file's name and line. */
-    scene_write("_part.cfg", "\nsonar = { fc = 100e3; bandwidth = 10e3; fs = -3; };\n");
+    support_write("_part.cfg", "\nsonar = { fc = 100e3; bandwidth = 10e3; fs = -3; };\n");
     struct scene bad;
     assert_int_equal(scene_load_text("base = {\n@include \"other.cfg\"\n};\n@include \"_part.cfg\"\n", &bad),
                      STATUS_INVALID);
-    assert_message_has(scene_path("_part.cfg:2: key 'sonar.fs' is -3, must be a number > 0 Hz"), "included");
+    assert_message_has(path_of("_part.cfg:2: key 'sonar.fs' is -3, must be a number > 0 Hz"), "included");
     char *text = scene_varied("fc = 150e3;", "fc = 150e3; colour = 3;");
-    scene_write("other.cfg", text);
+    support_write("other.cfg", text);
     free(text);
     assert_int_equal(scene_load_text("base = {\n@include \"other.cfg\"\n};\n", &bad), STATUS_INVALID);
-    assert_message_has(scene_path("other.cfg:2: key 'base.sonar.colour' is 3, must be left out"), "base");
+    assert_message_has(path_of("other.cfg:2: key 'base.sonar.colour' is 3, must be left out"), "base");
 }
 
 /* The hash of the scene file `name` with includes that are not beside it looked for in `directory`. */
@@ -61,13 +61,13 @@ static void shipped_scenes_can_be_included(void **state)
 {
     (void)state;
     char absolute[300];
-    scene_write("other.cfg", "@include \"study/speckle.cfg\"\n");
-    snprintf(absolute, sizeof absolute, "@include \"%s\"\n", scene_path("other.cfg"));
+    support_write("other.cfg", "@include \"study/speckle.cfg\"\n");
+    snprintf(absolute, sizeof absolute, "@include \"%s\"\n", path_of("other.cfg"));
     assert_true(scene_hash_of(absolute) == hash_of_file("study/speckle", SHIPPED));
     assert_true(scene_hash_of("@include \"study/near.cfg\"\n") == hash_of_file("study/near", SHIPPED));
     struct scene scene;
     assert_int_equal(scene_load_text("@include \"study/near\"\n", &scene), STATUS_INVALID);
-    assert_message_has(scene_path("scene.cfg:1: @include of "), "no extension");
+    assert_message_has(path_of("scene.cfg:1: @include of "), "no extension");
     assert_message_has("study/near: No such file", "no extension");
     assert_message_has("from " SHIPPED, "no extension");
     assert_int_equal(scene_load_text("@include \"/study/near.cfg\"\n", &scene), STATUS_INVALID);
@@ -78,34 +78,34 @@ static void shipped_scenes_can_be_included(void **state)
 static void includes_are_relative_to_their_file(void **state)
 {
     (void)state;
-    assert_int_equal(mkdir(scene_path("sub"), 0777), 0);
-    scene_write("other.cfg", base_text);
-    scene_write("sub/deep.cfg", "base = {\n@include \"../other.cfg\"\n};\n@include \"_part.cfg\"");
-    scene_write("sub/_part.cfg", "sonar = { fc = 100e3; bandwidth = 10e3; fs = 30e3; };  # without a line's end");
-    scene_write("_part.cfg", "sonar = { fc = 200e3; bandwidth = 10e3; fs = 30e3; };\n");
+    assert_int_equal(mkdir(path_of("sub"), 0777), 0);
+    support_write("other.cfg", base_text);
+    support_write("sub/deep.cfg", "base = {\n@include \"../other.cfg\"\n};\n@include \"_part.cfg\"");
+    support_write("sub/_part.cfg", "sonar = { fc = 100e3; bandwidth = 10e3; fs = 30e3; };  # without a line's end");
+    support_write("_part.cfg", "sonar = { fc = 200e3; bandwidth = 10e3; fs = 30e3; };\n");
     struct scene scene = scene_loaded("@include \"sub/deep.cfg\"\nnoise = { std = 7; };\n");
     assert_true(scene.acquisition.fc == 100e3 && scene.acquisition.pings == 6 && scene.noise_std == 7);
     scene_free(&scene);
 
-    assert_int_equal(scene_load("sub/deep", scene_folder, &scene), STATUS_OK);
+    assert_int_equal(scene_load("sub/deep", folder, &scene), STATUS_OK);
     assert_true(scene.acquisition.fc == 100e3);
     scene_free(&scene);
-    assert_int_equal(unlink(scene_path("sub/_part.cfg")), 0);
-    assert_int_equal(scene_load("sub/deep", scene_folder, &scene), STATUS_OK);
+    assert_int_equal(unlink(path_of("sub/_part.cfg")), 0);
+    assert_int_equal(scene_load("sub/deep", folder, &scene), STATUS_OK);
     assert_true(scene.acquisition.fc == 200e3);
     scene_free(&scene);
-    assert_int_equal(mkdir(scene_path("sub/_part.cfg"), 0777), 0); /* no file, but there */
-    assert_int_equal(scene_load("sub/deep", scene_folder, &scene), STATUS_INVALID);
+    assert_int_equal(mkdir(path_of("sub/_part.cfg"), 0777), 0); /* no file, but there */
+    assert_int_equal(scene_load("sub/deep", folder, &scene), STATUS_INVALID);
     assert_message_has("sub/_part.cfg: not a regular file", "folder");
-    assert_int_equal(rmdir(scene_path("sub/_part.cfg")), 0);
+    assert_int_equal(rmdir(path_of("sub/_part.cfg")), 0);
 }
 
 /* The first line of each file counts as 1, wherever it is included, and the lines after an include go on. */
 static void errors_name_the_line_of_their_file(void **state)
 {
     (void)state;
-    assert_int_equal(mkdir(scene_path("sub"), 0777), 0);
-    scene_write("other.cfg", base_text);
+    assert_int_equal(mkdir(path_of("sub"), 0777), 0);
+    support_write("other.cfg", base_text);
     const struct {
         const char *scene, *deep, *part, *message; /* scene.cfg includes sub/deep.cfg, and that sub/_part.cfg */
     } cases[] = {
@@ -127,16 +127,16 @@ static void errors_name_the_line_of_their_file(void **state)
     for (size_t i = 0; i < COUNT_OF(cases); i++) {
         char text[300], expected[500];
         struct scene scene;
-        scene_write("sub/_part.cfg", cases[i].part);
+        support_write("sub/_part.cfg", cases[i].part);
         snprintf(text, sizeof text, "\n\n  @include \"_part.cfg\"  # at the end of deep's third line\n\n%s\n",
                  cases[i].deep);
-        scene_write("sub/deep.cfg", text);
+        support_write("sub/deep.cfg", text);
         snprintf(text, sizeof text,
                  "base = {\n@include \"other.cfg\"\n};\nsonar = {\n@include \"sub/deep.cfg\"\n};"
                  "\n\n%s\n",
                  cases[i].scene);
         assert_int_equal(scene_load_text(text, &scene), STATUS_INVALID);
-        snprintf(expected, sizeof expected, "%s/%s", scene_folder, cases[i].message);
+        snprintf(expected, sizeof expected, "%s/%s", folder, cases[i].message);
         if (strncmp(status_message(), expected, strlen(expected)) != 0) {
             fail_msg("case %zu: the message does not begin with '%s': %s", i, expected, status_message());
         }
@@ -153,18 +153,18 @@ static void includes_have_bounds(void **state)
         char name[20], text[60];
         snprintf(name, sizeof name, "%d.cfg", i);
         snprintf(text, sizeof text, "@include \"%d.cfg\"\n", i + 1);
-        scene_write(name, text);
+        support_write(name, text);
     }
-    scene_write("10.cfg", base_text);
+    support_write("10.cfg", base_text);
     assert_true(scene_hash_of("@include \"1.cfg\"\n") == scene_hash_of(base_text));
     assert_int_equal(scene_load_text("@include \"0.cfg\"\n", &scene), STATUS_INVALID);
-    assert_message_has(scene_path("9.cfg:1: @include of 10.cfg is nested too deep"), "depth");
+    assert_message_has(path_of("9.cfg:1: @include of 10.cfg is nested too deep"), "depth");
 
     char *comment = malloc(LONG + 1);
     assert_non_null(comment);
     memset(comment, '#', LONG);
     comment[LONG] = '\0';
-    scene_write("0.cfg", comment);
+    support_write("0.cfg", comment);
     free(comment);
     char nine[400] = "";
     for (int i = 0; i < 9; i++) {
@@ -179,10 +179,10 @@ static void only_regular_files_are_read(void **state)
 {
     (void)state;
     char fifo[300], large[300], text[700];
-    snprintf(fifo, sizeof fifo, "%s", scene_path("fifo.cfg"));
-    snprintf(large, sizeof large, "%s", scene_path("large.cfg"));
+    snprintf(fifo, sizeof fifo, "%s", path_of("fifo.cfg"));
+    snprintf(large, sizeof large, "%s", path_of("large.cfg"));
     assert_int_equal(mkfifo(fifo, 0600), 0);
-    scene_write("large.cfg", "#");
+    support_write("large.cfg", "#");
     assert_int_equal(truncate(large, (off_t)3 << 30), 0);
     const struct {
         const char *path, *says;
@@ -199,12 +199,12 @@ static void only_regular_files_are_read(void **state)
     alarm(60);
     for (size_t k = 0; k < sizeof files / sizeof *files; k++) {
         snprintf(text, sizeof text, "# within\n@include \"%s\"\n", files[k].path);
-        scene_write("inner.cfg", text);
+        support_write("inner.cfg", text);
         assert_int_equal(scene_load_text(text, &scene), STATUS_INVALID);
         assert_message_has(files[k].path, "include");
         assert_message_has(files[k].says, "include");
         assert_int_equal(scene_load_text("@include \"inner.cfg\"\n", &scene), STATUS_INVALID);
-        assert_message_has(scene_path("inner.cfg:2: @include of "), "nested");
+        assert_message_has(path_of("inner.cfg:2: @include of "), "nested");
         assert_message_has(files[k].says, "nested");
     }
     assert_int_equal(scene_load(fifo, SHIPPED, &scene), STATUS_INVALID);
@@ -258,23 +258,23 @@ static void names_are_found_below_the_folder(void **state)
     (void)state;
     char **names;
     int count;
-    scene_write("scene.cfg", base_text);
-    scene_write("_part.cfg", "");
-    assert_int_equal(mkdir(scene_path("sub"), 0777), 0);
-    scene_write("sub/deep.cfg", "");
-    scene_write("sub/.hidden.cfg", "");
-    scene_write("sub/text.txt", "");
-    assert_int_equal(scene_names(scene_folder, &names, &count), STATUS_OK);
+    support_write("scene.cfg", base_text);
+    support_write("_part.cfg", "");
+    assert_int_equal(mkdir(path_of("sub"), 0777), 0);
+    support_write("sub/deep.cfg", "");
+    support_write("sub/.hidden.cfg", "");
+    support_write("sub/text.txt", "");
+    assert_int_equal(scene_names(folder, &names, &count), STATUS_OK);
     assert_int_equal(count, 2);
     assert_string_equal(names[0], "scene");
     assert_string_equal(names[1], "sub/deep");
     struct scene scene;
-    assert_int_equal(scene_load(names[0], scene_folder, &scene), STATUS_OK);
+    assert_int_equal(scene_load(names[0], folder, &scene), STATUS_OK);
     assert_string_equal(scene.name, "scene");
     scene_free(&scene);
     scene_names_free(names, count);
 
-    assert_int_equal(scene_names(scene_path("nosuch"), &names, &count), STATUS_INVALID);
+    assert_int_equal(scene_names(path_of("nosuch"), &names, &count), STATUS_INVALID);
     assert_message_has("nosuch: not a readable folder", "names");
     assert_true(!names && count == 0);
 }
@@ -282,14 +282,14 @@ static void names_are_found_below_the_folder(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(one_scene_varies_another, scene_folder_make, scene_folder_remove),
-        cmocka_unit_test_setup_teardown(shipped_scenes_can_be_included, scene_folder_make, scene_folder_remove),
-        cmocka_unit_test_setup_teardown(includes_are_relative_to_their_file, scene_folder_make, scene_folder_remove),
-        cmocka_unit_test_setup_teardown(errors_name_the_line_of_their_file, scene_folder_make, scene_folder_remove),
-        cmocka_unit_test_setup_teardown(includes_have_bounds, scene_folder_make, scene_folder_remove),
-        cmocka_unit_test_setup_teardown(only_regular_files_are_read, scene_folder_make, scene_folder_remove),
-        cmocka_unit_test_setup_teardown(hash_follows_the_content, scene_folder_make, scene_folder_remove),
-        cmocka_unit_test_setup_teardown(names_are_found_below_the_folder, scene_folder_make, scene_folder_remove),
+        cmocka_unit_test_setup_teardown(one_scene_varies_another, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(shipped_scenes_can_be_included, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(includes_are_relative_to_their_file, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(errors_name_the_line_of_their_file, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(includes_have_bounds, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(only_regular_files_are_read, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(hash_follows_the_content, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(names_are_found_below_the_folder, folder_make, folder_remove),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

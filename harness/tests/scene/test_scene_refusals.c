@@ -148,8 +148,7 @@ static void malformed_scenes_are_refused(void **state)
         if (status != STATUS_INVALID) {
             fail_msg("'%s' gives status %d", refusal->replace, status);
         }
-        snprintf(place, sizeof place, refusal->line ? "%s/scene.cfg:%d: " : "%s/scene.cfg: ", scene_folder,
-                 refusal->line);
+        snprintf(place, sizeof place, refusal->line ? "%s/scene.cfg:%d: " : "%s/scene.cfg: ", folder, refusal->line);
         if (strncmp(status_message(), place, strlen(place)) != 0) {
             fail_msg("'%s': the message does not begin with '%s': %s", refusal->replace, place, status_message());
         }
@@ -186,25 +185,25 @@ static void files_that_are_no_scenes_are_refused(void **state)
     assert_int_equal(scene_load_text("", &scene), STATUS_INVALID);
     assert_message_has("key 'sonar' is missing", "empty");
 
-    assert_int_equal(mkdir(scene_path("other.cfg"), 0777), 0);
-    assert_int_equal(scene_load(scene_path("other.cfg"), SHIPPED, &scene), STATUS_INVALID);
+    assert_int_equal(mkdir(path_of("other.cfg"), 0777), 0);
+    assert_int_equal(scene_load(path_of("other.cfg"), SHIPPED, &scene), STATUS_INVALID);
     assert_message_has("not a regular file", "folder");
-    assert_int_equal(rmdir(scene_path("other.cfg")), 0);
+    assert_int_equal(rmdir(path_of("other.cfg")), 0);
 
-    FILE *file = fopen(scene_path("scene.cfg"), "wb"); /* a zero inside, as of a damaged disk */
+    FILE *file = fopen(path_of("scene.cfg"), "wb"); /* a zero inside, as of a damaged disk */
     assert_non_null(file);
     assert_int_equal(fwrite(base_text, 1, strlen(base_text) + 1, file), strlen(base_text) + 1);
     fclose(file);
-    assert_int_equal(scene_load(scene_path("scene.cfg"), SHIPPED, &scene), STATUS_INVALID);
+    assert_int_equal(scene_load(path_of("scene.cfg"), SHIPPED, &scene), STATUS_INVALID);
     assert_message_has("holds a zero byte", "zero");
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(malformed_scenes_are_refused, scene_folder_make, scene_folder_remove),
-        cmocka_unit_test_setup_teardown(bounds_are_accepted, scene_folder_make, scene_folder_remove),
-        cmocka_unit_test_setup_teardown(files_that_are_no_scenes_are_refused, scene_folder_make, scene_folder_remove),
+        cmocka_unit_test_setup_teardown(malformed_scenes_are_refused, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(bounds_are_accepted, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(files_that_are_no_scenes_are_refused, folder_make, folder_remove),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -77,8 +77,8 @@ static void noise_is_that_of_the_stream(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(sampled_chirps_are_weighted, scene_folder_make, scene_folder_remove),
-        cmocka_unit_test_setup_teardown(noise_is_that_of_the_stream, scene_folder_make, scene_folder_remove),
+        cmocka_unit_test_setup_teardown(sampled_chirps_are_weighted, folder_make, folder_remove),
+        cmocka_unit_test_setup_teardown(noise_is_that_of_the_stream, folder_make, folder_remove),
     };
     return cmocka_run_group_tests_name("simulate", tests, NULL, NULL);
 }
