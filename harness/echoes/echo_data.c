@@ -177,34 +177,21 @@ enum status image_allocate(int patch_count, const struct grid *patches, enum pre
     return image->pixels ? STATUS_OK : status_set(STATUS_FAILED, "out of memory for %d image patches", patch_count);
 }
 
-/* Times 2^exponent. */
-static enum status image_copy(const struct image *from, int exponent, enum precision precision, struct image *to)
-{
-    enum status status = image_allocate(from->patch_count, from->patches, precision, to);
-    for (int i = 0; status == STATUS_OK && i < from->patch_count; i++) {
-        size_t count = (size_t)from->patches[i].r_count * (size_t)from->patches[i].x_count;
-        numbers_copy(from->pixels[i], from->precision, exponent, to->pixels[i], precision, count);
-    }
-    return status;
-}
-
-enum status image_convert(const struct image *from, enum precision precision, struct image *to)
-{
-    return image_copy(from, 0, precision, to);
-}
-
 enum status image_scale(struct image *image, int exponent)
 {
     struct image scaled;
-    if (exponent == 0) {
+    if (exponent == 0)
         return STATUS_OK;
+    enum status status = image_allocate(image->patch_count, image->patches, PRECISION_DOUBLE, &scaled);
+    if (status != STATUS_OK)
+        return status;
+    for (int i = 0; i < image->patch_count; i++) {
+        const size_t count = (size_t)image->patches[i].r_count * (size_t)image->patches[i].x_count;
+        numbers_copy(image->pixels[i], image->precision, exponent, scaled.pixels[i], PRECISION_DOUBLE, count);
     }
-    enum status status = image_copy(image, exponent, PRECISION_DOUBLE, &scaled);
-    if (status == STATUS_OK) {
-        image_free(image);
-        *image = scaled;
-    }
-    return status;
+    image_free(image);
+    *image = scaled;
+    return STATUS_OK;
 }
 
 void image_free(struct image *image)

@@ -24,7 +24,6 @@ void image_negate(struct image *image);
 
 /* Allocate a zeroed image over `patches` (kept by pointer, not copied). Errors: STATUS_FAILED without memory. */
 enum status image_allocate(int patch_count, const struct grid *patches, enum precision precision, struct image *image);
-enum status image_convert(const struct image *from, enum precision precision, struct image *to);
 /* Multiply an image by 2^exponent, exactly: what execute made of echoes with that exponent. Unless the exponent is 0
    the image is double afterwards, for float may not hold it. Errors: STATUS_FAILED without memory. */
 enum status image_scale(struct image *image, int exponent);

@@ -163,18 +163,6 @@ static enum status patch_fill(const char *path, const struct wanted *wanted, con
     return STATUS_OK;
 }
 
-enum status image_file_read(const char *path, struct grid *grid, double complex **pixels)
-{
-    *pixels = NULL;
-    struct variable variables[IMAGE_VARIABLES];
-    enum status status = variables_read(path, image_variables, IMAGE_VARIABLES, variables);
-    if (status == STATUS_OK) {
-        status = patch_fill(path, image_variables, variables, grid, pixels);
-        variables_free(variables, IMAGE_VARIABLES);
-    }
-    return status;
-}
-
 /* The patch of this number, one more than there are so far; *more is false where the file has none. */
 static enum status patch_add(const char *path, struct image_file *file, bool *more)
 {

@@ -1,4 +1,5 @@
 /* What findings are kept in (diff.h), and what they come to. */
+#define _GNU_SOURCE /* vasprintf */
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -43,20 +44,15 @@ enum status diff_add(struct diff *diff, const struct finding *finding)
 /* The text is kept; NULL without memory. */
 static const char *text_keep(struct diff *diff, const char *format, va_list arguments)
 {
-    va_list again;
-    va_copy(again, arguments);
-    int length = vsnprintf(NULL, 0, format, again);
-    va_end(again);
     char **texts = array_room(diff->texts, diff->text_count, &diff->text_room, sizeof *texts);
     if (!texts)
         return NULL;
     diff->texts = texts;
-    char *text = malloc((size_t)length + 1);
-    if (!text) {
-        status_set(STATUS_FAILED, "no memory for a text of %d characters", length);
+    char *text;
+    if (vasprintf(&text, format, arguments) < 0) {
+        status_set(STATUS_FAILED, "no memory for a text");
         return NULL;
     }
-    vsnprintf(text, (size_t)length + 1, format, arguments);
     texts[diff->text_count++] = text;
     return text;
 }

@@ -1,4 +1,5 @@
 /* The results folder: two CSV files that are appended to row by row and taken up again after a cut. */
+#define _GNU_SOURCE /* asprintf */
 #include "results/results_folder.h"
 
 #include <errno.h>
@@ -41,11 +42,8 @@ static enum status rows_done(FILE *file, const char *path)
 
 static char *path_join(const char *directory, const char *name)
 {
-    size_t size = strlen(directory) + strlen(name) + 2;
-    char *joined = malloc(size);
-    if (joined)
-        snprintf(joined, size, "%s/%s", directory, name);
-    return joined;
+    char *joined;
+    return asprintf(&joined, "%s/%s", directory, name) < 0 ? NULL : joined;
 }
 
 static bool key_equal(const struct csv *a, int row_a, const struct csv *b, int row_b)

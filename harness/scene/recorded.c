@@ -1,4 +1,5 @@
 /* Scenes of recorded echoes: a scene file that names an echo file, or an echo file alone. */
+#define _GNU_SOURCE /* asprintf */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -64,13 +65,8 @@ char *path_beside(const struct reading *reading, const config_setting_t *setting
 {
     const char *from = line_path(reading, config_setting_source_line(setting));
     const char *slash = *name == '/' ? NULL : strrchr(from, '/');
-    const size_t folder = slash ? (size_t)(slash - from) + 1 : 0;
-    char *path = malloc(folder + strlen(name) + 1);
-    if (path) {
-        memcpy(path, from, folder);
-        strcpy(path + folder, name);
-    }
-    return path;
+    char *path;
+    return asprintf(&path, "%.*s%s", slash ? (int)(slash - from) + 1 : 0, from, name) < 0 ? NULL : path;
 }
 
 enum status recorded_fill(struct reading *reading)

@@ -1,5 +1,6 @@
 /* Scene files: the text is put together in text.c, its keys are read in keys.c, the scene is made in contents.c. All
    keys: scenes/README.md. */
+#define _GNU_SOURCE /* asprintf */
 #include "scene/scene.h"
 
 #include <stdio.h>
@@ -73,15 +74,11 @@ enum status scene_load(const char *scene, const char *scene_directory, struct sc
         return status_set(STATUS_INVALID,
                           "%s: is no scene file; recorded echoes are named by --echoes FILE.mat --grid GRID", scene);
     }
-    char *path = malloc(strlen(scene) + strlen(scene_directory) + sizeof "/" SCENE_EXTENSION);
-    if (!path) {
+    char *path;
+    if ((scene_has_extension(scene) ? asprintf(&path, "%s", scene)
+                                    : asprintf(&path, "%s/%s%s", scene_directory, scene, SCENE_EXTENSION))
+        < 0)
         return status_set(STATUS_FAILED, "%s: out of memory for the scene", scene);
-    }
-    if (scene_has_extension(scene)) {
-        strcpy(path, scene);
-    } else {
-        sprintf(path, "%s/%s%s", scene_directory, scene, SCENE_EXTENSION);
-    }
     struct reading reading = {.path = path, .scene = {.hash = HASH_BEGIN}};
     enum status status = scene_names_fill(&reading.scene, path, scene_directory);
     if (status == STATUS_OK && !scene_has_extension(scene) && access(path, F_OK) != 0) {

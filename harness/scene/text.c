@@ -1,5 +1,6 @@
 /* A scene file and all that it includes as one text for libconfig. libconfig 1.5 itself finds includes in one folder
    only, ends the program when it is to include a folder, and wraps integers beyond int without a word. */
+#define _GNU_SOURCE /* asprintf */
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>
@@ -47,12 +48,11 @@ static enum status piece_begin(struct scene_text *text, const struct source *sou
 
 static char *path_join(const char *folder, size_t folder_length, const char *name, size_t name_length)
 {
-    char *path = malloc(folder_length + name_length + 2);
-    if (path) {
-        bool separate = folder_length > 0 && folder[folder_length - 1] != '/';
-        sprintf(path, "%.*s%s%.*s", (int)folder_length, folder, separate ? "/" : "", (int)name_length, name);
-    }
-    return path;
+    const bool separate = folder_length > 0 && folder[folder_length - 1] != '/';
+    char *path;
+    const int length =
+        asprintf(&path, "%.*s%s%.*s", (int)folder_length, folder, separate ? "/" : "", (int)name_length, name);
+    return length < 0 ? NULL : path;
 }
 
 /* The path of what @include calls `name`: absolute, beside `asked_by`, or shipped; NULL without memory. */

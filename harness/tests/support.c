@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "imaging/imaging.h"
+#include "echoes/matfile.h"
 #include "echoes/noise.h"
 #include "scene/random_scene.h"
 #include "scene/simulate.h"
@@ -275,4 +276,18 @@ char *support_read_cells(const char *path)
     if (to)
         *to = '\0';
     return text;
+}
+
+enum status image_file_read(const char *path, struct grid *grid, double complex **pixels)
+{
+    struct image_file file;
+    const enum status status = image_file_open(path, &file);
+    *pixels = NULL;
+    if (status != STATUS_OK)
+        return status;
+    *grid = file.patches[0];
+    *pixels = file.image.pixels[0];
+    file.image.pixels[0] = NULL;
+    image_file_close(&file);
+    return STATUS_OK;
 }

@@ -41,6 +41,10 @@ double support_peak(const struct image *image);
    is not there. */
 bool support_recording(const char *file, char *path, size_t size);
 
+/* The first patch of an image file, its pixels malloc'ed complex double [r_count][x_count]. Errors: as
+   image_file_open. */
+enum status image_file_read(const char *path, struct grid *grid, double complex **pixels);
+
 /* A folder of its own for every test: fixtures, and the path of a name in it (the last four stay valid). */
 extern char folder[256];
 int folder_make(void **state);

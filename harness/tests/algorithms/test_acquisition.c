@@ -296,22 +296,20 @@ static void samples_are_allocated_and_converted(void **state)
     acquisition_free(&a);
 }
 
-static void images_are_allocated_and_converted(void **state)
+static void images_are_allocated_and_scaled(void **state)
 {
     (void)state;
     const struct grid patches[] = {{0, 1, 3, 0, 1, 2}, {0, 1, 1, 0, 1, 5}};
-    struct image image, copy;
-    assert_int_equal(image_allocate(2, patches, PRECISION_DOUBLE, &image), STATUS_OK);
-    ((double complex *)image.pixels[0])[1 * 3 + 2] = 0.1 + 2 * I;
-    ((double complex *)image.pixels[1])[4] = -7;
-    assert_int_equal(image_convert(&image, PRECISION_FLOAT, &copy), STATUS_OK);
-    assert_true(image_pixel(&image, 0, 1, 2) == 0.1 + 2 * I);
-    assert_true(image_pixel(&copy, 0, 1, 2) == 0.1f + 2 * I);
-    assert_true(image_pixel(&copy, 1, 4, 0) == -7);
-    assert_true(image_pixel(&copy, 1, 3, 0) == 0);
+    struct image image;
+    assert_int_equal(image_allocate(2, patches, PRECISION_FLOAT, &image), STATUS_OK);
+    ((float complex *)image.pixels[0])[1 * 3 + 2] = 0.1f + 2 * I;
+    ((float complex *)image.pixels[1])[4] = -7;
+    assert_int_equal(image_scale(&image, 200), STATUS_OK);
+    assert_true(image_pixel(&image, 0, 1, 2) == 0x1p200 * 0.1f + 0x1p201 * I);
+    assert_true(image_pixel(&image, 1, 4, 0) == -7 * 0x1p200);
+    assert_true(image_pixel(&image, 1, 3, 0) == 0);
     image_free(&image);
-    image_free(&copy);
-    image_free(&copy);
+    image_free(&image);
     const struct grid huge = {0, 1, INT32_MAX, 0, 1, INT32_MAX};
     assert_int_equal(image_allocate(1, &huge, PRECISION_DOUBLE, &image), STATUS_FAILED);
     assert_null(image.pixels);
@@ -342,7 +340,7 @@ int main(void)
         cmocka_unit_test(other_tracks_are_not_straight),
         cmocka_unit_test(heading_follows_the_track),
         cmocka_unit_test(samples_are_allocated_and_converted),
-        cmocka_unit_test(images_are_allocated_and_converted),
+        cmocka_unit_test(images_are_allocated_and_scaled),
         cmocka_unit_test(sizes_do_not_overflow),
     };
     return cmocka_run_group_tests_name("acquisition", tests, NULL, NULL);

@@ -5,7 +5,7 @@
 #include <matio.h>
 
 #include "echoes/matfile.h"
-#include "tests/assertions.h"
+#include "tests/support.h"
 
 extern char directory[128];
 extern char path[160]; /* the one file in it */
