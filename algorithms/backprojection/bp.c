@@ -19,11 +19,10 @@ static bool kernel_make(struct bp *bp, const struct interpolator *in, const void
     const size_t count = KERNEL_BRANCHES_MOST * (size_t)in->taps;
     const double tolerance = bp->problem.precision == PRECISION_DOUBLE ? 1e-10 : 3.5e-6;
     bp->kernel = (struct bp_kernel){.taps = in->taps, .first = in->first};
-    bp->kernel.coefficients = malloc(count * sizeof *bp->kernel.coefficients);
+    bp->kernel.coefficients = store_room(&bp->tables, count, sizeof *bp->kernel.coefficients, 1);
     if (!bp->kernel.coefficients)
         return false;
     bp->kernel.branches = kernel_branches(in, options, tolerance, bp->kernel.coefficients);
-    bp->work.bytes += (double)count * sizeof *bp->kernel.coefficients;
     return bp->kernel.branches >= 0;
 }
 
@@ -50,7 +49,7 @@ static enum status tabulate(struct bp *bp, const struct interpolator *in, const 
     bool line = in->taps == 2 && in->steps > 0;
     size_t rows = in->steps > 0 ? (size_t)in->steps : 4 * (size_t)BP_INTERVALS, taps = (size_t)in->taps;
     double *w = malloc(rows * taps * sizeof *w), *at = malloc(4 * taps * sizeof *at);
-    bp->weights = malloc(rows * taps * real_size(bp->problem.precision));
+    bp->weights = store_room(&bp->tables, rows * taps, real_size(bp->problem.precision), 1);
     if (w && at && bp->weights) {
         if (in->steps > 0)
             for (int p = 0; p < in->steps; p++) {
@@ -87,7 +86,6 @@ static enum status tabulate(struct bp *bp, const struct interpolator *in, const 
     free(at);
     bp->table.weights = bp->weights;
     bp->table.reading = line ? BP_LINE : in->steps > 0 ? BP_STEPS : BP_CUBICS;
-    bp->work.bytes += (double)(rows * taps * real_size(bp->problem.precision));
     return complete ? STATUS_OK : status_set(STATUS_FAILED, "no memory for interpolation weights");
 }
 
@@ -156,25 +154,13 @@ static enum status choose_engine(struct bp *bp, const struct bp_options *options
     return STATUS_OK;
 }
 
-/* Give up what the engine has made. */
-static void engine_discard(struct bp *bp)
-{
-    if (bp->engine)
-        bp->engine->destroy(bp);
-    (bp->problem.precision == PRECISION_DOUBLE ? traces_destroy_double : traces_destroy_float)(bp->traces);
-    bp->state = NULL;
-    bp->traces = NULL;
-}
-
 /* The engine's plan; where tables would be too large and nobody asked for them, the general engine's. */
 static enum status engine_plan(struct bp *bp, const struct bp_options *options)
 {
-    double bytes = bp->work.bytes;
     enum status status = bp->engine->plan(bp);
     if (status == STATUS_UNSUPPORTED && bp->engine == &bp_invariant && options->engine == BP_ENGINE_AUTO) {
-        engine_discard(bp);
+        store_release(&bp->engines);
         bp->engine = &bp_general;
-        bp->work.bytes = bytes;
         status = bp->engine->plan(bp);
     }
     return status;
@@ -203,7 +189,7 @@ enum status bp_plan(const struct problem *problem, const struct interpolator *in
         return status_set(STATUS_FAILED, "no memory for the plan");
     bp->problem = *problem;
     bp->medium = (struct bp_medium){a->sound_speed, a->fc, a->fs, 0, a->samples - 1, 0};
-    bp->work.bytes = sizeof *bp;
+    bp->work.bytes = BP_BYTES(*bp);
     aperture_take(bp, options);
     enum status status = problem_turn_back(&bp->problem, &bp->turned, &bp->work.bytes);
     if (status == STATUS_OK)
@@ -220,6 +206,7 @@ enum status bp_plan(const struct problem *problem, const struct interpolator *in
         bp_destroy(bp);
         return status;
     }
+    bp->work.bytes += bp->tables.bytes + bp->engines.bytes;
     count_work(bp, interpolator);
     *plan = bp;
     return STATUS_OK;
@@ -276,11 +263,11 @@ static enum status forecast_reading(const struct bp *bp, const struct interpolat
         forecast->kind = READ_BRANCHES;
         forecast->values = kernel.kernel.branches;
     }
-    free(kernel.kernel.coefficients);
+    store_release(&kernel.tables);
     return made ? STATUS_OK : status_set(STATUS_FAILED, "no memory for interpolation weights");
 }
 
-/* Who does the sums, and which records are read, without a plan: of *bp `met` and `turned` are to be freed. */
+/* Who does the sums, and which records are read, without a plan: of *bp `tables` and `turned` are to be freed. */
 static enum status forecast_begin(const struct problem *problem, const struct interpolator *in,
                                   const struct bp_options *options, struct bp *bp)
 {
@@ -318,8 +305,8 @@ static void forecast_records(struct bp *bp, const struct interpolator *in, struc
     forecast->pair_flops =
         4.0 * (in->taps == 1 && in->degree == 0 ? 0 : forecast->values - (forecast->kind == READ_BRANCHES)) + 8;
     double sums = 0;
-    forecast->record_flops = records * traces_flops_float(a, &form, &sums); /* alike in both precisions */
-    forecast->slowness = fft_slowness(traces_period_float(a, &form));
+    forecast->record_flops = records * traces_float.flops(a, &form, &sums); /* alike in both precisions */
+    forecast->slowness = fft_slowness(traces_float.period(a, &form));
     forecast->kernel_flops = records * (4.0 * forecast->values * taps * fine + sums);
     forecast->record_values = records * fine * (forecast->kind == READ_BRANCHES ? forecast->values : 1);
 }
@@ -354,7 +341,7 @@ enum status bp_cost(const struct problem *problem, const struct interpolator *in
             bp.kernel.branches = forecast->values;
         forecast_records(&bp, in, forecast);
     }
-    free(bp.met);
+    store_release(&bp.tables);
     turned_free(&bp.turned);
     return status;
 }
@@ -376,10 +363,8 @@ void bp_destroy(void *plan)
     struct bp *bp = plan;
     if (!bp)
         return;
-    engine_discard(bp);
-    free(bp->weights);
-    free(bp->kernel.coefficients);
-    free(bp->met);
+    store_release(&bp->engines);
+    store_release(&bp->tables);
     turned_free(&bp->turned);
     free(bp);
 }

@@ -6,6 +6,7 @@
 #include "backprojection/planes.h"
 #include "backprojection/reading.h"
 #include "common/isa.h"
+#include "common/memory.h"
 #include "backprojection/traces.h"
 #include "backprojection/pairs/turned.h"
 
@@ -30,7 +31,11 @@ struct bp {
     struct turned_problem turned; /* what `problem` points to where grids are turned */
     struct acquisition limited;   /* and where the settings limit the aperture */
     bool *met;                    /* [pings] pings_met: records of others are not read; NULL: all are met */
+    struct store tables, engines; /* the weights and `met`; the traces and the engine's own */
 };
+
+/* Bytes of a plan's struct, but for what keeps account. */
+#define BP_BYTES(plan) ((double)(sizeof(plan) - 2 * sizeof(struct store)))
 
 /* One way of doing the sums. */
 struct bp_engine {
@@ -44,10 +49,9 @@ struct bp_engine {
     double (*units)(const struct bp *bp, double *residues);
     /* m: how far along the track beyond the pairs' places delays are evaluated; NULL: nowhere. */
     double (*beside)(const struct bp *bp);
-    /* Make bp->state and bp->traces; adds to bp->work.bytes. */
+    /* Make bp->state and bp->traces, of what bp->engines owns. */
     enum status (*plan)(struct bp *bp);
     void (*execute)(struct bp *bp, const struct echoes *echoes, struct image *image, struct stages *stages);
-    void (*destroy)(struct bp *bp); /* bp->state, which may be NULL */
 };
 
 extern const struct bp_engine bp_general;   /* any track: delays of runs of range rows */
@@ -72,10 +76,8 @@ int bp_met_count(const struct bp *bp);
 /* How many neighbouring pings are summed together at the most, the first a multiple of so many. */
 int bp_pings_joined(const struct acquisition *acquisition);
 
-/* Memory of which a window needs a part: all is there, what is not used takes no room and is 0. Adds to
-   bp->work.bytes. */
+/* Memory of bp->engines of which a window needs a part: all is there, what is not used takes no room and is 0. */
 void *bp_part_allocate(struct bp *bp, size_t bytes);
-void bp_part_free(const struct bp *bp, void *memory);
 
 static inline size_t real_size(enum precision precision)
 {
@@ -84,15 +86,16 @@ static inline size_t real_size(enum precision precision)
 
 /* What of the records pairs read, into bp->medium, and the form of their rows; all where there is no engine. */
 struct traces_form bp_records_form(struct bp *bp);
-/* Records for up to omp_get_max_threads() threads; fills bp->traces and bp->shape and counts their bytes; `origin` of
+/* Records for up to omp_get_max_threads() threads; fills bp->traces, which bp->engines owns, and bp->shape; `origin` of
    the table follows from them. */
 enum status bp_plan_traces(struct bp *bp);
 /* Name into `text` of `room` characters, behind `join`, the samples that no row needs; nothing where there are none. */
 void bp_records_skipped(const struct bp *bp, char *text, size_t room, const char *join);
-/* Compress record `index` into a row of bp->shape.length complex values. */
-void bp_fill_row(const struct bp *bp, int thread, const struct echoes *echoes, size_t index, void *row);
-/* In two steps, for a phase alone (traces.h). */
-void bp_fill_spectrum(const struct bp *bp, int thread, const struct echoes *echoes, size_t index, void *spectrum);
-void bp_fill_plane(const struct bp *bp, int thread, void *spectrum, int plane, void *values);
+/* Record `index` of the echoes, complex [samples]. */
+static inline const void *bp_record(const struct bp *bp, const struct echoes *echoes, size_t index)
+{
+    const size_t samples = (size_t)bp->problem.acquisition->samples;
+    return (const char *)echoes->samples + index * samples * 2 * real_size(bp->problem.precision);
+}
 
 #endif

@@ -46,41 +46,15 @@ enum status bp_plan_traces(struct bp *bp)
 {
     const struct acquisition *a = bp->problem.acquisition;
     const struct traces_form form = bp_records_form(bp);
-    bool is_double = bp->problem.precision == PRECISION_DOUBLE;
-    enum status status =
-        (is_double ? traces_plan_double : traces_plan_float)(a, &form, omp_get_max_threads(), &bp->shape, &bp->traces);
+    const enum status status =
+        traces_of(bp->problem.precision)->plan(a, &form, omp_get_max_threads(), &bp->shape, &bp->traces);
     if (status != STATUS_OK)
         return status;
-    bp->work.bytes += bp->shape.bytes;
+    bp->engines.bytes += bp->shape.bytes;
+    store_keep(&bp->engines, bp->traces, traces_of(bp->problem.precision)->destroy);
     bp->planes = planes_choose(bp->problem.precision);
     bp->table.origin = bp->table.guard - bp->shape.first * bp->table.upsample;
     return STATUS_OK;
-}
-
-void bp_fill_row(const struct bp *bp, int thread, const struct echoes *echoes, size_t index, void *row)
-{
-    size_t offset = index * (size_t)bp->problem.acquisition->samples;
-    if (bp->problem.precision == PRECISION_DOUBLE)
-        traces_fill_double(bp->traces, thread, (const double complex *)echoes->samples + offset, row);
-    else
-        traces_fill_float(bp->traces, thread, (const float complex *)echoes->samples + offset, row);
-}
-
-void bp_fill_spectrum(const struct bp *bp, int thread, const struct echoes *echoes, size_t index, void *spectrum)
-{
-    size_t offset = index * (size_t)bp->problem.acquisition->samples;
-    if (bp->problem.precision == PRECISION_DOUBLE)
-        traces_spectrum_double(bp->traces, thread, (const double complex *)echoes->samples + offset, spectrum);
-    else
-        traces_spectrum_float(bp->traces, thread, (const float complex *)echoes->samples + offset, spectrum);
-}
-
-void bp_fill_plane(const struct bp *bp, int thread, void *spectrum, int plane, void *values)
-{
-    if (bp->problem.precision == PRECISION_DOUBLE)
-        traces_plane_double(bp->traces, thread, spectrum, plane, values);
-    else
-        traces_plane_float(bp->traces, thread, spectrum, plane, values);
 }
 
 void bp_records_skipped(const struct bp *bp, char *text, size_t room, const char *join)

@@ -10,9 +10,9 @@
 
 #include "backprojection/farrow.h"
 #include "backprojection/planes.h"
+#include "common/fft.h"
 #include "common/fft_length.h"
-#include "common/memory.h"
-#include "common/real.h"
+#include "common/pulse_band.h"
 
 struct traces {
     struct traces_shape shape;
@@ -29,6 +29,7 @@ struct traces {
        [2][wide], the first two with neighbours, in order. */
     complex_real *scratch;
     size_t wide, each; /* complex values: of a branch with neighbours; of a thread, whole cache lines */
+    struct store store;
 };
 
 /* Branches that are transformed; they make the others (farrow.h). */
@@ -37,19 +38,14 @@ static int transformed(int branches)
     return branches < 2 ? branches : 2;
 }
 
-static void filter_fill(const struct acquisition *acquisition, int length, double complex *work, complex_real *filter)
+/* False without memory. */
+static bool filter_fill(const struct acquisition *acquisition, int length, complex_real *filter)
 {
-    double energy = 0;
-    memset(work, 0, (size_t)length * sizeof *work);
-    for (int k = 0; k < acquisition->pulse_length; k++) {
-        work[k] = acquisition->pulse[k];
-        energy += creal(work[k]) * creal(work[k]) + cimag(work[k]) * cimag(work[k]);
-    }
-    fftw_plan plan = fftw_plan_dft_1d(length, work, work, FFTW_FORWARD, FFTW_ESTIMATE);
-    fftw_execute(plan);
-    fftw_destroy_plan(plan);
+    double complex *made = acquisition->compressed ? NULL : pulse_filter(acquisition, length);
     for (int k = 0; k < length; k++)
-        filter[k] = (complex_real)(conj(work[k]) / (energy * length));
+        filter[k] = made ? (complex_real)made[k] : (real)1 / (real)length;
+    fftw_free(made);
+    return made || acquisition->compressed;
 }
 
 /* Linear interpolation between samples takes off sinc^2(nu) at nu cycles a sample. */
@@ -120,11 +116,10 @@ static enum status transforms_plan(struct traces *traces, const struct acquisiti
     if (shape->branches > 1) {
         const int reach = reach_of(shape->branches - 1, shape->upsample);
         traces->wide = whole_lines(convolved(shape) + 2 * reach);
-        traces->taps = malloc(sizeof *traces->taps);
+        traces->taps = store_room(&traces->store, 1, sizeof *traces->taps, 1);
         if (traces->taps)
             farrow_taps_make(shape->branches - 1, shape->upsample, fmin(1, acquisition->bandwidth / acquisition->fs),
                              reach, traces->taps);
-        shape->bytes += sizeof *traces->taps;
     }
     traces->each = (2 + (size_t)shape->upsample) * pitch + 2 * traces->wide;
     /* Scratch, filter, factors, the pulse's spectrum, and as much as FFTW's plans may hold. */
@@ -134,34 +129,23 @@ static enum status transforms_plan(struct traces *traces, const struct acquisiti
                      "range compression");
     if (status != STATUS_OK)
         return status;
-    traces->scratch = FFTW(malloc)((size_t)threads * traces->each * sizeof *traces->scratch);
-    traces->filter = FFTW(malloc)((size_t)length * sizeof *traces->filter);
-    traces->factors = factors > 0 ? FFTW(malloc)(factors * sizeof *traces->factors) : NULL;
-    traces->gains = gains > 0 ? FFTW(malloc)(gains * sizeof *traces->gains) : NULL;
-    double complex *work = fftw_malloc((size_t)length * sizeof *work);
-    if (traces->scratch && traces->filter && work && (traces->factors || factors == 0) && (traces->gains || gains == 0)
-        && (traces->taps || shape->branches == 1)) {
-        if (acquisition->compressed)
-            for (int k = 0; k < length; k++)
-                traces->filter[k] = (real)1 / (real)length;
-        else
-            filter_fill(acquisition, length, work, traces->filter);
+    struct store *store = &traces->store;
+    complex_real *a = traces->scratch = store_room(store, (size_t)threads * traces->each, sizeof *a, 1.0 / threads);
+    traces->filter = store_room(store, (size_t)length, sizeof *traces->filter, 1);
+    traces->factors = factors > 0 ? store_room(store, factors, sizeof *traces->factors, 1) : NULL;
+    traces->gains = gains > 0 ? store_room(store, gains, sizeof *traces->gains, 1) : NULL;
+    if (!store->failed && filter_fill(acquisition, length, traces->filter)) {
         if (preemphasis)
             emphasise(length, traces->filter);
         if (planes > 1)
             factors_fill(traces);
-        /* ESTIMATE: the same algorithm, hence the same bits, at every planning; measuring costs more than a scene's
-           compression. */
-        complex_real *a = traces->scratch;
-        traces->forward = FFTW(plan_dft_1d)(length, a, a + pitch, FFTW_FORWARD, FFTW_ESTIMATE);
-        traces->inverse = FFTW(plan_dft_1d)(length, a, a + pitch, FFTW_BACKWARD, FFTW_ESTIMATE);
+        traces->forward = fft_line(store, length, a, a + pitch, FFTW_FORWARD);
+        traces->inverse = fft_line(store, length, a, a + pitch, FFTW_BACKWARD);
     }
-    fftw_free(work);
     if (!traces->forward || !traces->inverse)
         return status_set(STATUS_FAILED, "no memory for range compression (%.0f MB)",
                           threads * (double)traces->each * sizeof(complex_real) / 1e6);
-    shape->bytes +=
-        (double)(traces->each + (size_t)length + factors) * sizeof(complex_real) + (double)gains * sizeof(real);
+    shape->bytes += store->bytes;
     return STATUS_OK;
 }
 
@@ -177,7 +161,7 @@ static bool cuts(const struct acquisition *acquisition, const struct traces_form
     return form->count > 0 && (compresses || !transforms(acquisition, form));
 }
 
-int REAL_NAME(traces_period)(const struct acquisition *acquisition, const struct traces_form *form)
+static int period_of(const struct acquisition *acquisition, const struct traces_form *form)
 {
     const int n = cuts(acquisition, form) ? form->count : acquisition->samples;
     return acquisition->compressed ? n : fft_length_quick((long long)n + acquisition->pulse_length - 1);
@@ -195,9 +179,9 @@ static void shape_cut(const struct acquisition *acquisition, const struct traces
         shape->read = shape->samples + pulse - 1;
 }
 
-double REAL_NAME(traces_flops)(const struct acquisition *acquisition, const struct traces_form *form, double *sums)
+static double flops_of(const struct acquisition *acquisition, const struct traces_form *form, double *sums)
 {
-    const double length = REAL_NAME(traces_period)(acquisition, form);
+    const double length = period_of(acquisition, form);
     const double planes = transformed(form->degree + 1) * form->upsample;
     const int samples = form->count > 0 ? form->count : acquisition->samples;
     *sums = 0;
@@ -211,13 +195,21 @@ double REAL_NAME(traces_flops)(const struct acquisition *acquisition, const stru
     return (planes + 1) * fft_flops(length) + 6 * length + product * planes * length;
 }
 
-enum status REAL_NAME(traces_plan)(const struct acquisition *acquisition, const struct traces_form *form, int threads,
-                                   struct traces_shape *shape, struct traces **out)
+static void destroy(void *made)
+{
+    struct traces *traces = made;
+    if (traces)
+        store_release(&traces->store);
+    free(traces);
+}
+
+static enum status plan(const struct acquisition *acquisition, const struct traces_form *form, int threads,
+                        struct traces_shape *shape, struct traces **out)
 {
     *out = NULL;
     const int n = form->count > 0 ? form->count : acquisition->samples;
     const int upsample = form->upsample, branches = form->degree + 1;
-    const int length = REAL_NAME(traces_period)(acquisition, form);
+    const int length = period_of(acquisition, form);
     long long fine = (long long)length * upsample, row = (long long)(n - 1) * upsample + 1 + 2LL * form->guard;
     if (length == 0 || fine * branches > INT_MAX / 4 || row * branches > INT_MAX / 4)
         return status_set(STATUS_UNSUPPORTED,
@@ -232,17 +224,17 @@ enum status REAL_NAME(traces_plan)(const struct acquisition *acquisition, const 
                                           .branches = branches,
                                           .length = (int)row,
                                           .period = length,
-                                          .bytes = sizeof *traces};
+                                          .bytes = sizeof *traces - sizeof traces->store};
     shape_cut(acquisition, form, &traces->shape);
     double sums;
-    traces->shape.flops = REAL_NAME(traces_flops)(acquisition, form, &sums);
+    traces->shape.flops = flops_of(acquisition, form, &sums);
     traces->shape.flops += sums;
     traces->planes = planes_choose(REAL_DOUBLE ? PRECISION_DOUBLE : PRECISION_FLOAT);
     traces->transforms = transforms(acquisition, form);
     enum status status =
         traces->transforms ? transforms_plan(traces, acquisition, form->preemphasis, threads) : STATUS_OK;
     if (status != STATUS_OK) {
-        REAL_NAME(traces_destroy)(traces);
+        destroy(traces);
         return status;
     }
     *shape = traces->shape;
@@ -256,19 +248,17 @@ static complex_real *scratch_of(const struct traces *traces, int thread)
     return traces->scratch + (size_t)thread * traces->each;
 }
 
-void REAL_NAME(traces_spectrum)(const struct traces *traces, int thread, const complex_real *record,
-                                complex_real *spectrum)
+static void spectrum_fill(const struct traces *traces, int thread, const void *record, void *spectrum)
 {
     const size_t n = (size_t)traces->shape.read, length = (size_t)traces->shape.period;
     complex_real *padded = scratch_of(traces, thread);
-    memcpy(padded, record + traces->shape.from, n * sizeof *padded);
+    memcpy(padded, (const complex_real *)record + traces->shape.from, n * sizeof *padded);
     memset(padded + n, 0, (length - n) * sizeof *padded);
     FFTW(execute_dft)(traces->forward, padded, spectrum);
     traces->planes->filter(spectrum, traces->filter, length);
 }
 
-void REAL_NAME(traces_plane)(const struct traces *traces, int thread, complex_real *spectrum, int plane,
-                             complex_real *values)
+static void plane_fill(const struct traces *traces, int thread, void *spectrum, int plane, void *values)
 {
     const size_t length = (size_t)traces->shape.period;
     complex_real *turned = scratch_of(traces, thread);
@@ -335,20 +325,20 @@ static void branches_fill(const struct traces *traces, const complex_real *first
     }
 }
 
-void REAL_NAME(traces_fill)(const struct traces *traces, int thread, const complex_real *record, complex_real *row)
+static void fill(const struct traces *traces, int thread, const void *record, void *row)
 {
     const struct traces_shape *shape = &traces->shape;
     if (!traces->transforms) {
-        row_fill(shape, record + shape->from, row);
+        row_fill(shape, (const complex_real *)record + shape->from, row);
         return;
     }
     complex_real *spectrum = scratch_of(traces, thread) + shape->pitch, *values = spectrum + shape->pitch;
     complex_real *first = values + (size_t)shape->upsample * shape->pitch;
-    REAL_NAME(traces_spectrum)(traces, thread, record, spectrum);
+    spectrum_fill(traces, thread, record, spectrum);
     for (int branch = 0; branch < transformed(shape->branches); branch++) {
         for (int phase = 0; phase < shape->upsample; phase++)
-            REAL_NAME(traces_plane)
-        (traces, thread, spectrum, branch * shape->upsample + phase, values + (size_t)phase * shape->pitch);
+            plane_fill(traces, thread, spectrum, branch * shape->upsample + phase,
+                       values + (size_t)phase * shape->pitch);
         if (shape->branches == 1)
             row_fill(shape, values, row);
         else
@@ -359,18 +349,4 @@ void REAL_NAME(traces_fill)(const struct traces *traces, int thread, const compl
         branches_fill(traces, first, row);
 }
 
-void REAL_NAME(traces_destroy)(struct traces *traces)
-{
-    if (!traces)
-        return;
-    if (traces->forward)
-        FFTW(destroy_plan)(traces->forward);
-    if (traces->inverse)
-        FFTW(destroy_plan)(traces->inverse);
-    FFTW(free)(traces->filter);
-    FFTW(free)(traces->factors);
-    FFTW(free)(traces->gains);
-    FFTW(free)(traces->scratch);
-    free(traces->taps);
-    free(traces);
-}
+const struct traces_build REAL_NAME(traces) = {period_of, flops_of, plan, fill, spectrum_fill, plane_fill, destroy};

@@ -43,33 +43,30 @@ struct traces_shape {
     double bytes;   /* held with one thread */
 };
 
-/* `period` of the shape without a plan; 0 where it is too long. */
-int traces_period_float(const struct acquisition *acquisition, const struct traces_form *form);
-int traces_period_double(const struct acquisition *acquisition, const struct traces_form *form);
-/* `flops` of the shape without a plan, in two parts: of transforms and products, and *sums over neighbours. */
-double traces_flops_float(const struct acquisition *acquisition, const struct traces_form *form, double *sums);
-double traces_flops_double(const struct acquisition *acquisition, const struct traces_form *form, double *sums);
-/* `threads`: how many threads may call fill at once. Errors: STATUS_FAILED without memory, STATUS_UNSUPPORTED when a
-   row is too long to index. *traces is NULL then. */
-enum status traces_plan_float(const struct acquisition *acquisition, const struct traces_form *form, int threads,
-                              struct traces_shape *shape, struct traces **traces);
-enum status traces_plan_double(const struct acquisition *acquisition, const struct traces_form *form, int threads,
-                               struct traces_shape *shape, struct traces **traces);
-/* Turn one record, complex [the acquisition's samples], into a row; `thread` < threads names the scratch to use. */
-void traces_fill_float(const struct traces *traces, int thread, const float complex *record, float complex *row);
-void traces_fill_double(const struct traces *traces, int thread, const double complex *record, double complex *row);
-/* The same in two steps, where pitch > 0: a record's spectrum, complex [period], compressed; and of it one plane,
-   number branch times upsample + phase, branch < 2: complex [period], of which value n is fine sample (from + n)
-   upsample + phase. Both arrays begin at cache lines; the spectrum is not changed. */
-void traces_spectrum_float(const struct traces *traces, int thread, const float complex *record,
-                           float complex *spectrum);
-void traces_spectrum_double(const struct traces *traces, int thread, const double complex *record,
-                            double complex *spectrum);
-void traces_plane_float(const struct traces *traces, int thread, float complex *spectrum, int plane,
-                        float complex *values);
-void traces_plane_double(const struct traces *traces, int thread, double complex *spectrum, int plane,
-                         double complex *values);
-void traces_destroy_float(struct traces *traces);
-void traces_destroy_double(struct traces *traces);
+/* Of each precision, whose values records and rows have. */
+struct traces_build {
+    /* `period` of the shape without a plan; 0 where it is too long. */
+    int (*period)(const struct acquisition *acquisition, const struct traces_form *form);
+    /* `flops` of the shape without a plan, in two parts: of transforms and products, and *sums over neighbours. */
+    double (*flops)(const struct acquisition *acquisition, const struct traces_form *form, double *sums);
+    /* `threads`: how many threads may call fill at once. Errors: STATUS_FAILED without memory, STATUS_UNSUPPORTED when a
+       row is too long to index. *traces is NULL then. */
+    enum status (*plan)(const struct acquisition *acquisition, const struct traces_form *form, int threads,
+                        struct traces_shape *shape, struct traces **traces);
+    /* Turn one record, complex [the acquisition's samples], into a row; `thread` < threads names the scratch to use. */
+    void (*fill)(const struct traces *traces, int thread, const void *record, void *row);
+    /* The same in two steps, where pitch > 0: a record's spectrum, complex [period], compressed; and of it one plane,
+       number branch times upsample + phase, branch < 2: complex [period], of which value n is fine sample (from + n)
+       upsample + phase. Both arrays begin at cache lines; the spectrum is not changed. */
+    void (*spectrum)(const struct traces *traces, int thread, const void *record, void *spectrum);
+    void (*plane)(const struct traces *traces, int thread, void *spectrum, int plane, void *values);
+    void (*destroy)(void *traces);
+};
+extern const struct traces_build traces_float, traces_double;
+
+static inline const struct traces_build *traces_of(enum precision precision)
+{
+    return precision == PRECISION_DOUBLE ? &traces_double : &traces_float;
+}
 
 #endif

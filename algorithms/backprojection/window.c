@@ -3,17 +3,13 @@
 
 #include "backprojection/bp_engine.h"
 #include "backprojection/pairs/pairs.h"
-#include "common/memory.h"
 
 void *bp_part_allocate(struct bp *bp, size_t bytes)
 {
-    bp->work.bytes += (double)bytes;
-    return bp->problem.window ? memory_sparse(bytes) : memory_aligned(64, bytes);
-}
-
-void bp_part_free(const struct bp *bp, void *memory)
-{
-    (bp->problem.window ? memory_sparse_free : free)(memory);
+    if (!bp->problem.window)
+        return store_room(&bp->engines, bytes, 1, 1);
+    bp->engines.bytes += (double)bytes;
+    return store_keep(&bp->engines, memory_sparse(bytes), memory_sparse_free);
 }
 
 struct problem bp_wanted(const struct bp *bp, struct grid *part)
@@ -34,7 +30,7 @@ enum status bp_met_narrow(struct bp *bp)
     const struct problem wanted = bp_wanted(bp, &part);
     const int pings = wanted.acquisition->pings, joined = bp_pings_joined(wanted.acquisition);
     if (!bp->met)
-        bp->met = malloc((size_t)pings * sizeof *bp->met);
+        bp->met = store_keep(&bp->tables, malloc((size_t)pings * sizeof *bp->met), free);
     bool *met = malloc((size_t)pings * sizeof *met);
     if (bp->met && met) {
         pings_met(&wanted, met);
@@ -52,14 +48,14 @@ enum status bp_met_narrow(struct bp *bp)
 enum status bp_met_find(struct bp *bp)
 {
     const int pings = bp->problem.acquisition->pings;
-    bp->met = malloc((size_t)pings * sizeof *bp->met);
-    if (!bp->met)
+    bool *met = malloc((size_t)pings * sizeof *met);
+    if (!met)
         return status_set(STATUS_FAILED, "no memory for %d pings", pings);
-    if (pings_met(&bp->problem, bp->met) < pings) {
-        bp->work.bytes += (double)pings * sizeof *bp->met;
+    if (pings_met(&bp->problem, met) < pings) {
+        bp->met = store_keep(&bp->tables, met, free);
+        bp->tables.bytes += (double)pings * sizeof *met;
     } else {
-        free(bp->met);
-        bp->met = NULL;
+        free(met);
     }
     return STATUS_OK;
 }

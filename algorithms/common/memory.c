@@ -4,9 +4,12 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
+
+enum { LINE = 64 /* bytes of the cache's */ };
 
 /* Memory and swap that the machine could give, by Linux's own estimate; INFINITY where it does not tell. */
 static double machine_free(void)
@@ -93,4 +96,51 @@ void memory_sparse_free(void *memory)
     const size_t page = (size_t)sysconf(_SC_PAGESIZE);
     if (memory)
         munmap((char *)memory - page, *(size_t *)(void *)((char *)memory - page));
+}
+
+struct stored {
+    struct stored *before;
+    void *thing;
+    void (*release)(void *thing);
+};
+
+void *store_keep(struct store *store, void *thing, void (*release)(void *thing))
+{
+    struct stored *stored = thing ? malloc(sizeof *stored) : NULL;
+    if (!stored) {
+        store->failed = true;
+        if (thing)
+            release(thing);
+        return NULL;
+    }
+    *stored = (struct stored){store->last, thing, release};
+    store->last = stored;
+    return thing;
+}
+
+void *store_take(struct store *store, size_t count, size_t size, double share)
+{
+    const size_t bytes = (count * size + LINE - 1) / LINE * LINE;
+    void *memory = store_keep(store, memory_columns(LINE, bytes), free);
+    if (memory)
+        memset(memory, 0, bytes);
+    store->bytes += share * (double)bytes;
+    return memory;
+}
+
+void *store_room(struct store *store, size_t count, size_t size, double share)
+{
+    store->bytes += share * (double)(count * size);
+    return store_keep(store, memory_aligned(LINE, count * size), free);
+}
+
+void store_release(struct store *store)
+{
+    while (store->last) {
+        struct stored *last = store->last;
+        store->last = last->before;
+        last->release(last->thing);
+        free(last);
+    }
+    *store = (struct store){0};
 }

@@ -2,6 +2,7 @@
 #ifndef SASBENCH_COMMON_MEMORY_H
 #define SASBENCH_COMMON_MEMORY_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "contract/status.h"
@@ -22,5 +23,20 @@ void *memory_columns(size_t alignment, size_t bytes);
    accepts NULL. NULL where the address space does not hold it. */
 void *memory_sparse(size_t bytes);
 void memory_sparse_free(void *memory);
+
+/* What a plan owns, memory and FFT plans: released together. A zeroed struct owns nothing. */
+struct store {
+    struct stored *last;
+    double bytes; /* of memory, as far as it is counted */
+    bool failed;  /* something was not to be had */
+};
+/* Zeroed memory at a cache line, whole lines of it, by memory_columns; `share` of it is counted. NULL without. */
+void *store_take(struct store *store, size_t count, size_t size, double share);
+/* Memory at a cache line as it comes, by memory_aligned; counted to the byte. NULL without. */
+void *store_room(struct store *store, size_t count, size_t size, double share);
+/* A thing that was made, with what releases it; NULL: it failed. Returns it, NULL where it cannot be kept. */
+void *store_keep(struct store *store, void *thing, void (*release)(void *thing));
+/* Release all, what came last first. */
+void store_release(struct store *store);
 
 #endif

@@ -1,6 +1,5 @@
 #include "common/pulse_band.h"
 
-#include <complex.h>
 #include <fftw3.h>
 #include <math.h>
 #include <stdlib.h>
@@ -8,27 +7,46 @@
 
 #define BAND_LOSS 4e-6 /* of the compressed pulse's energy may lie outside the band */
 
+/* The replica's spectrum, to be given to fftw_free; NULL without memory. */
+static double complex *spectrum_make(const struct acquisition *a, int length)
+{
+    double complex *work = length > 0 ? fftw_malloc((size_t)length * sizeof *work) : NULL;
+    if (!work)
+        return NULL;
+    memset(work, 0, (size_t)length * sizeof *work);
+    memcpy(work, a->pulse, (size_t)a->pulse_length * sizeof *work);
+    fftw_plan forward = fftw_plan_dft_1d(length, work, work, FFTW_FORWARD, FFTW_ESTIMATE);
+    fftw_execute(forward);
+    fftw_destroy_plan(forward);
+    return work;
+}
+
+double complex *pulse_filter(const struct acquisition *a, int length)
+{
+    double complex *filter = spectrum_make(a, length);
+    double energy = 0;
+    for (int k = 0; k < a->pulse_length; k++)
+        energy += creal(a->pulse[k]) * creal(a->pulse[k]) + cimag(a->pulse[k]) * cimag(a->pulse[k]);
+    for (int k = 0; filter && k < length; k++)
+        filter[k] = conj(filter[k]) / (energy * length);
+    return filter;
+}
+
 double *pulse_energy(const struct acquisition *a, int length)
 {
     double *energy = length > 0 ? malloc((size_t)length * sizeof *energy) : NULL;
-    double complex *work = length > 0 ? fftw_malloc((size_t)length * sizeof *work) : NULL;
+    double complex *spectrum = spectrum_make(a, length);
     double magnitudes = 0; /* at least those of the spectrum: no power overflows */
     for (int k = 0; k < a->pulse_length; k++)
         magnitudes += cabs(a->pulse[k]);
-    if (energy && work) {
-        memset(work, 0, (size_t)length * sizeof *work);
-        memcpy(work, a->pulse, (size_t)a->pulse_length * sizeof *work);
-        fftw_plan forward = fftw_plan_dft_1d(length, work, work, FFTW_FORWARD, FFTW_ESTIMATE);
-        fftw_execute(forward);
-        fftw_destroy_plan(forward);
-        for (int k = 0; k < length; k++)
-            energy[k] = pow(cabs(work[k]) / magnitudes, 4);
-    } else {
+    for (int k = 0; energy && spectrum && k < length; k++)
+        energy[k] = pow(cabs(spectrum[k]) / magnitudes, 4);
+    if (!energy || !spectrum) {
         status_set(STATUS_FAILED, "no memory for the replica's spectrum");
         free(energy);
         energy = NULL;
     }
-    fftw_free(work);
+    fftw_free(spectrum);
     return energy;
 }
 

@@ -2,6 +2,8 @@
 #ifndef SASBENCH_COMMON_PULSE_BAND_H
 #define SASBENCH_COMMON_PULSE_BAND_H
 
+#include <complex.h>
+
 #include "contract/acquisition.h"
 
 struct pulse_band {
@@ -18,6 +20,10 @@ enum status pulse_band_find(const struct acquisition *acquisition, int transform
    added up to 1: energy[length] in FFTW's order, bin k at k fs/length; length >= pulse_length. Returned memory is the
    caller's to free; NULL without memory, with STATUS_FAILED's message set. */
 double *pulse_energy(const struct acquisition *acquisition, int length);
+
+/* The matched filter of raw echoes for transforms of `length`: conj(P)/sum|p|^2 and the inverse transform's 1/length, in
+   FFTW's order; length >= pulse_length. To be given to fftw_free; NULL without memory. */
+double complex *pulse_filter(const struct acquisition *acquisition, int length);
 
 /* Hz, -fs/2 to fs/2: of its bin k. */
 double pulse_bin_frequency(const struct acquisition *acquisition, int k, int length);

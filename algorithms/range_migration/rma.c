@@ -5,11 +5,9 @@
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "common/fft_length.h"
 #include "common/isa.h"
-#include "common/memory.h"
 #include "common/progress.h"
 #include "range_migration/rma_engine.h"
 
@@ -40,16 +38,6 @@ static rma_map_function *const map_functions[][2] = {
     [ISA_V4] = {rma_map_float_v4, rma_map_double_v4},
 #endif
 };
-
-void *rma_take(struct rma *rma, size_t count, size_t size, double share)
-{
-    size_t bytes = (count * size + RMA_ALIGNMENT - 1) / RMA_ALIGNMENT * RMA_ALIGNMENT;
-    void *memory = memory_columns(RMA_ALIGNMENT, bytes);
-    if (memory)
-        memset(memory, 0, bytes);
-    rma->work.bytes += share * (double)bytes;
-    return memory;
-}
 
 static const struct rma_transform *transform(const struct rma *rma)
 {
@@ -198,7 +186,7 @@ enum status rma_count(const struct problem *problem, const struct rma_method *me
     rma->method = *method;
     rma->options = *options;
     rma->threads = omp_get_max_threads();
-    rma->work.bytes = sizeof *rma;
+    rma->work.bytes = sizeof *rma - sizeof rma->store;
     fit_nodes_fill(FIT_DEGREE + 1, rma->fit.nodes, rma->fit.powers);
     enum status status = rma_layout(rma);
     if (status == STATUS_OK)
@@ -231,6 +219,7 @@ enum status rma_plan(const struct problem *problem, const struct rma_method *met
         rma_destroy(rma);
         return status;
     }
+    rma->work.bytes += rma->store.bytes;
     *plan = rma;
     return STATUS_OK;
 }
@@ -294,13 +283,8 @@ void rma_destroy(void *plan)
     struct rma *rma = plan;
     if (!rma)
         return;
-    transform(rma)->destroy(rma);
-    free(rma->swaths);
-    free(rma->patches);
-    free(rma->block_list);
-    free(rma->offset);
     if (rma->delay)
         delay_terms_free(&rma->delay->terms);
-    free(rma->delay);
+    store_release(&rma->store);
     free(rma);
 }

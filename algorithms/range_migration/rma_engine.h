@@ -56,6 +56,7 @@
 #include <stdbool.h>
 
 #include "common/fit.h"
+#include "common/memory.h"
 #include "range_migration/delay_compensation.h"
 #include "range_migration/rma.h"
 
@@ -243,6 +244,7 @@ struct rma {
     size_t scratch_bytes;           /* of a thread */
     void *scratch;                  /* [threads] */
     void *focused;                  /* complex [rows][columns] of the swath at work, wavenumbers in their turns */
+    struct store store;
 };
 
 /* ---- rma_layout.c ---- */
@@ -268,9 +270,6 @@ static inline double rma_last_row(const struct grid *grid)
    STATUS_UNSUPPORTED where work or memory would be too large; *rma is then NULL. */
 enum status rma_count(const struct problem *problem, const struct rma_method *method, const struct rma_options *options,
                       struct rma **rma);
-
-/* Zeroed memory on the plan's account, `share` of it; NULL without memory. */
-void *rma_take(struct rma *rma, size_t count, size_t size, double share);
 
 /* ---- rma_blocks.c ---- */
 
@@ -324,9 +323,9 @@ double rma_fold_flops(const struct rma *rma);
 
 /* ---- delay_plan.c ---- */
 
-/* The tables of swath->map. False without memory. */
-bool rma_map_plan_float(struct rma *rma, struct rma_swath *swath);
-bool rma_map_plan_double(struct rma *rma, struct rma_swath *swath);
+/* The tables of swath->map. */
+void rma_map_plan_float(struct rma *rma, struct rma_swath *swath);
+void rma_map_plan_double(struct rma *rma, struct rma_swath *swath);
 
 /* ---- delay_map.c ---- */
 
@@ -340,7 +339,6 @@ rma_map_function rma_map_float_v4, rma_map_double_v4;
 /* ---- rma_transform.c ---- */
 struct rma_transform {
     enum status (*plan)(struct rma *rma); /* memory, tables and FFT plans */
-    void (*destroy)(struct rma *rma);     /* accepts what `plan` left unfinished */
     /* `map` is only called where the plan compensates delays; the threads' seconds are added: compressing, mapping. */
     void (*compress)(const struct rma *rma, rma_map_function *map, const void *samples, double seconds[2]);
     void (*spread)(const struct rma *rma, const struct rma_swath *swath);

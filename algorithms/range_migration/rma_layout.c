@@ -32,7 +32,7 @@ static enum status lay_receivers(struct rma *rma)
     const struct acquisition *a = rma->problem.acquisition;
     const double tolerance = a->sound_speed / a->fc / 1000;
     rma->receivers = a->receivers;
-    rma->offset = malloc((size_t)a->receivers * sizeof *rma->offset);
+    rma->offset = store_take(&rma->store, (size_t)a->receivers, sizeof *rma->offset, 0);
     if (!rma->offset)
         return status_set(STATUS_FAILED, "no memory for %d receivers", a->receivers);
     rma->groups = (a->receivers + RMA_GROUP - 1) / RMA_GROUP;
@@ -51,7 +51,7 @@ static enum status lay_receivers(struct rma *rma)
 /* What is known of delay compensation without its tables. */
 static enum status lay_delay(struct rma *rma)
 {
-    struct rma_delay *delay = rma->delay = calloc(1, sizeof *delay);
+    struct rma_delay *delay = rma->delay = store_take(&rma->store, 1, sizeof *delay, 0);
     if (!delay)
         return status_set(STATUS_FAILED, "%s: no memory for %d receivers", rma->method.name, rma->receivers);
     delay->terms.terms = rma->method.terms < rma->receivers ? rma->method.terms : rma->receivers;
@@ -151,8 +151,8 @@ static int patches_order(const void *a, const void *b)
 static enum status lay_patches(struct rma *rma)
 {
     int count = rma->problem.patch_count;
-    rma->patches = calloc((size_t)count, sizeof *rma->patches);
-    rma->swaths = calloc((size_t)count, sizeof *rma->swaths);
+    rma->patches = store_take(&rma->store, (size_t)count, sizeof *rma->patches, 0);
+    rma->swaths = store_take(&rma->store, (size_t)count, sizeof *rma->swaths, 0);
     if (!rma->patches || !rma->swaths)
         return status_set(STATUS_FAILED, "no memory for %d patches", count);
     rma->patch_count = count;
@@ -325,7 +325,8 @@ static enum status lay_swaths(struct rma *rma)
                                                                                    swath_samples, swath_patches};
     rma->taps = stolt_taps[rma->options.stolt];
     rma->shape = kaiser_shape(rma->taps, RMA_OVERSAMPLING);
-    rma->block_list = malloc((size_t)rma->block_count * (size_t)rma->swath_count * sizeof *rma->block_list);
+    rma->block_list =
+        store_take(&rma->store, (size_t)rma->block_count * (size_t)rma->swath_count, sizeof *rma->block_list, 0);
     if (!rma->block_list)
         return status_set(STATUS_FAILED, "no memory for %d blocks", rma->block_count);
     enum status status = STATUS_OK;

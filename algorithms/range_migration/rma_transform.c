@@ -1,12 +1,12 @@
 /* The transforms of range migration along range and azimuth, with their memory (rma_engine.h). Compiled once for each
    precision. */
 #include <omp.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "common/clock.h"
+#include "common/fft.h"
 #include "common/kaiser.h"
-#include "common/real.h"
+#include "common/pulse_band.h"
 #include "common/stream.h"
 #include "range_migration/rma_engine.h"
 
@@ -22,46 +22,27 @@ static real *scratch_of(const struct rma *rma, enum rma_buffer buffer)
     return (real *)(scratch + rma->scratch_at[buffer]);
 }
 
-static complex_real rotor(double cycles)
-{
-    double angle = 2 * M_PI * (cycles - floor(cycles + 0.5));
-    return (real)cos(angle) + (real)sin(angle) * (complex_real)I;
-}
-
 /* Transforms of this file work on the scratch's begin: from there, to as far behind it as `count` values need. */
 static complex_real *behind(complex_real *memory, size_t count)
 {
     return memory + (count + LANES - 1) / LANES * LANES;
 }
 
-/* From one array into another, which spares FFTW copies of its own. ESTIMATE: the same algorithm, hence the same bits,
-   at every planning. */
-static void *plan_line(const struct rma *rma, int length, int sign)
+static void *plan_line(struct rma *rma, int length, int sign)
 {
-    return FFTW(plan_dft_1d)(length, (complex_real *)scratch_of(rma, RMA_WAVE),
-                             (complex_real *)scratch_of(rma, RMA_TRANSFORMED), sign, FFTW_ESTIMATE);
+    return fft_line(&rma->store, length, (complex_real *)scratch_of(rma, RMA_WAVE),
+                    (complex_real *)scratch_of(rma, RMA_TRANSFORMED), sign);
 }
 
-/* conj(P)/sum|p|^2 and the inverse transform's 1/length; transforms in double. */
-static bool filter_fill(struct rma *rma)
+/* The matched filter. */
+static void filter_fill(struct rma *rma)
 {
-    const struct acquisition *a = rma->problem.acquisition;
     complex_real *filter = rma->filter;
-    double complex *work = rma_take(rma, (size_t)rma->record_length, sizeof *work, 0);
-    double energy = 0;
-    if (!work)
-        return false;
-    for (int k = 0; k < a->pulse_length; k++) {
-        work[k] = a->pulse[k];
-        energy += creal(work[k]) * creal(work[k]) + cimag(work[k]) * cimag(work[k]);
-    }
-    fftw_plan forward = fftw_plan_dft_1d(rma->record_length, work, work, FFTW_FORWARD, FFTW_ESTIMATE);
-    fftw_execute(forward);
-    fftw_destroy_plan(forward);
-    for (int k = 0; k < rma->record_length; k++)
-        filter[k] = (complex_real)(conj(work[k]) / (energy * rma->record_length));
-    free(work);
-    return true;
+    double complex *made = pulse_filter(rma->problem.acquisition, rma->record_length);
+    for (int k = 0; made && k < rma->record_length; k++)
+        filter[k] = (complex_real)made[k];
+    rma->store.failed = rma->store.failed || !made;
+    fftw_free(made);
 }
 
 /* The Kaiser kernel of the Stolt interpolation. */
@@ -89,19 +70,19 @@ static void apodization_fill(const struct rma *rma, const struct rma_swath *swat
 
 /* The azimuth sum onto a grid's columns, wavenumbers nu = (q - Q/2) dnu and columns x = x0 + j dx: one transform where
    1/(dnu dx) is its length, or a convolution (chirp z),  2 q j = q^2 + j^2 - (j - q)^2. */
-static bool azimuth_fill(struct rma *rma, const struct rma_swath *swath, struct rma_patch *patch)
+static void azimuth_fill(struct rma *rma, const struct rma_swath *swath, struct rma_patch *patch)
 {
     const int q_count = swath->wavenumbers, x_count = patch->grid.x_count, length = patch->columns;
-    int *bins = rma_take(rma, swath->columns, sizeof *bins, 1);
-    complex_real *after = rma_take(rma, (size_t)x_count, sizeof *after, 1);
-    complex_real *kernel = patch->folds ? NULL : rma_take(rma, (size_t)length, sizeof *kernel, 1);
+    int *bins = store_take(&rma->store, swath->columns, sizeof *bins, 1);
+    complex_real *after = store_take(&rma->store, (size_t)x_count, sizeof *after, 1);
+    complex_real *kernel = patch->folds ? NULL : store_take(&rma->store, (size_t)length, sizeof *kernel, 1);
     complex_real *wave = rma->scratch, *turned = behind(wave, (size_t)length + 1);
     patch->bins = bins;
     patch->after = after;
     patch->kernel = kernel;
-    patch->azimuth_inverse = FFTW(plan_dft_1d)(length, wave, turned, FFTW_BACKWARD, FFTW_ESTIMATE);
-    if (!bins || !after || !patch->azimuth_inverse)
-        return false;
+    patch->azimuth_inverse = fft_line(&rma->store, length, wave, turned, FFTW_BACKWARD);
+    if (rma->store.failed)
+        return;
     const double period = swath->period * fabs(rma->spacing),
                  turn = patch->folds ? 1.0 / length : patch->grid.x_step / period;
     const double square = patch->folds ? 0 : 0.5 * turn;
@@ -112,39 +93,54 @@ static bool azimuth_fill(struct rma *rma, const struct rma_swath *swath, struct 
     for (int j = 0; j < x_count; j++)
         after[j] = rotor(square * j * j - turn * (q_count / 2) * j) / (real)(patch->folds ? period : period * length);
     if (patch->folds)
-        return true;
-    patch->azimuth_forward = FFTW(plan_dft_1d)(length, turned, wave, FFTW_FORWARD, FFTW_ESTIMATE);
-    if (!kernel || !patch->azimuth_forward)
-        return false;
+        return;
+    patch->azimuth_forward = fft_line(&rma->store, length, turned, wave, FFTW_FORWARD);
+    if (rma->store.failed)
+        return;
     memset(turned, 0, (size_t)length * sizeof *turned);
     for (int i = -(q_count - 1); i < x_count; i++)
         turned[i < 0 ? i + length : i] = rotor(-square * i * i);
     FFTW(execute_dft)(patch->azimuth_forward, turned, wave);
     memcpy(kernel, wave, (size_t)length * sizeof *wave);
-    return true;
 }
 
-static bool plan_swath(struct rma *rma, struct rma_swath *swath)
+static void plan_swath(struct rma *rma, struct rma_swath *swath)
 {
     complex_real *lines = rma->scratch, *turned = behind(lines, BLOCKS * LANES * (size_t)swath->period);
-    swath->data =
-        rma_take(rma, (size_t)swath->period * (size_t)rma->receivers, 2 * (size_t)swath->row * sizeof(real), 1);
-    swath->apodization = rma_take(rma, (size_t)swath->stolt_length, sizeof(real), 1);
-    if (!swath->data || !swath->apodization || (rma->delay && !REAL_NAME(rma_map_plan)(rma, swath)))
-        return false;
+    swath->data = store_take(&rma->store, (size_t)swath->period * (size_t)rma->receivers,
+                             2 * (size_t)swath->row * sizeof(real), 1);
+    swath->apodization = store_take(&rma->store, (size_t)swath->stolt_length, sizeof(real), 1);
+    if (rma->delay)
+        REAL_NAME(rma_map_plan)(rma, swath);
+    if (rma->store.failed)
+        return;
     apodization_fill(rma, swath);
     swath->range_forward = plan_line(rma, swath->length, FFTW_FORWARD);
     swath->range_inverse = plan_line(rma, swath->length, FFTW_BACKWARD);
     swath->stolt_forward = plan_line(rma, swath->stolt_length, FFTW_FORWARD);
-    swath->azimuth_forward = FFTW(plan_many_dft)(1, &swath->period, LANES, lines, NULL, LANES, 1, turned, NULL, LANES,
-                                                 1, FFTW_FORWARD, FFTW_ESTIMATE);
-    bool complete = swath->range_forward && swath->range_inverse && swath->stolt_forward && swath->azimuth_forward;
-    for (int k = 0; complete && k < swath->patch_count; k++) {
-        struct rma_patch *patch = &swath->patches[k];
-        patch->focus_plan = plan_line(rma, patch->length, FFTW_BACKWARD);
-        complete = patch->focus_plan && azimuth_fill(rma, swath, patch);
+    swath->azimuth_forward = fft_strip(&rma->store, swath->period, LANES, lines, turned, FFTW_FORWARD);
+    for (int k = 0; k < swath->patch_count; k++) {
+        swath->patches[k].focus_plan = plan_line(rma, swath->patches[k].length, FFTW_BACKWARD);
+        azimuth_fill(rma, swath, &swath->patches[k]);
     }
-    return complete;
+}
+
+/* What serves all swaths. */
+static void tables_fill(struct rma *rma)
+{
+    real *tapers = rma->tapers, *basis = rma->delay ? rma->delay->basis : NULL;
+    for (int k = 0; k < rma->taper; k++)
+        tapers[k] = (real)pow(sin(M_PI / 2 * (k + 0.5) / rma->taper), 2);
+    kernel_fill(rma);
+    for (int k = 0; basis && k < rma->delay->terms.terms * rma->receivers; k++)
+        basis[k] = (real)rma->delay->terms.basis[k];
+    if (rma->record_length == 0)
+        return;
+    complex_real *record = (complex_real *)scratch_of(rma, RMA_RECORD),
+                 *turned = (complex_real *)scratch_of(rma, RMA_TRANSFORMED);
+    rma->record_forward = fft_line(&rma->store, rma->record_length, record, turned, FFTW_FORWARD);
+    rma->record_inverse = fft_line(&rma->store, rma->record_length, turned, record, FFTW_BACKWARD);
+    filter_fill(rma);
 }
 
 static enum status plan(struct rma *rma)
@@ -159,79 +155,21 @@ static enum status plan(struct rma *rma)
     strip = 2 * (strip + LANES) * sizeof(complex_real);
     if (rma->scratch_bytes < strip)
         rma->scratch_bytes = (strip / RMA_ALIGNMENT + 1) * RMA_ALIGNMENT;
-    rma->scratch = rma_take(rma, (size_t)rma->threads, rma->scratch_bytes, 1.0 / rma->threads);
-    rma->focused = rma_take(rma, focused, sizeof(complex_real), 1);
-    rma->tapers = rma_take(rma, (size_t)rma->taper, sizeof(real), 1);
-    rma->kernel = rma_take(rma, (RMA_INTERVALS + 2) * (size_t)rma->taps, sizeof(real), 1);
-    rma->filter = rma_take(rma, (size_t)rma->record_length, sizeof(complex_real), 1);
-    bool complete = rma->scratch && rma->focused && rma->tapers && rma->kernel && rma->filter;
-    if (complete) {
-        real *tapers = rma->tapers;
-        for (int k = 0; k < rma->taper; k++)
-            tapers[k] = (real)pow(sin(M_PI / 2 * (k + 0.5) / rma->taper), 2);
-        kernel_fill(rma);
-    }
-    if (complete && rma->delay) {
-        const size_t count = (size_t)rma->delay->terms.terms * (size_t)rma->receivers;
-        real *basis = rma->delay->basis = rma_take(rma, count, sizeof *basis, 1);
-        for (size_t k = 0; basis && k < count; k++)
-            basis[k] = (real)rma->delay->terms.basis[k];
-        complete = basis != NULL;
-    }
-    if (complete && rma->record_length > 0) {
-        complex_real *record = (complex_real *)scratch_of(rma, RMA_RECORD),
-                     *turned = (complex_real *)scratch_of(rma, RMA_TRANSFORMED);
-        rma->record_forward = FFTW(plan_dft_1d)(rma->record_length, record, turned, FFTW_FORWARD, FFTW_ESTIMATE);
-        rma->record_inverse = FFTW(plan_dft_1d)(rma->record_length, turned, record, FFTW_BACKWARD, FFTW_ESTIMATE);
-        complete = rma->record_forward && rma->record_inverse && filter_fill(rma);
-    }
-    for (int n = 0; complete && n < rma->swath_count; n++)
-        complete = plan_swath(rma, &rma->swaths[n]);
-    return complete ? STATUS_OK
-                    : status_set(STATUS_FAILED, "no memory for range migration (%.0f MB for a thread)",
-                                 rma->work.bytes / 1e6);
-}
-
-static void plan_destroy(void *made)
-{
-    if (made)
-        FFTW(destroy_plan)(made);
-}
-
-static void destroy(struct rma *rma)
-{
-    for (int k = 0; rma->patches && k < rma->patch_count; k++) {
-        struct rma_patch *patch = &rma->patches[k];
-        plan_destroy(patch->focus_plan);
-        plan_destroy(patch->azimuth_forward);
-        plan_destroy(patch->azimuth_inverse);
-        free(patch->bins);
-        free(patch->after);
-        free(patch->kernel);
-    }
-    for (int n = 0; n < rma->swath_count; n++) {
-        struct rma_swath *swath = &rma->swaths[n];
-        plan_destroy(swath->range_forward);
-        plan_destroy(swath->range_inverse);
-        plan_destroy(swath->stolt_forward);
-        plan_destroy(swath->azimuth_forward);
-        free(swath->map.first);
-        free(swath->map.weights);
-        free(swath->map.slopes);
-        free(swath->map.phases);
-        free(swath->map.edges);
-        free(swath->data);
-        free(swath->apodization);
-    }
-    plan_destroy(rma->record_forward);
-    plan_destroy(rma->record_inverse);
+    rma->scratch = store_take(&rma->store, (size_t)rma->threads, rma->scratch_bytes, 1.0 / rma->threads);
+    rma->focused = store_take(&rma->store, focused, sizeof(complex_real), 1);
+    rma->tapers = store_take(&rma->store, (size_t)rma->taper, sizeof(real), 1);
+    rma->kernel = store_take(&rma->store, (RMA_INTERVALS + 2) * (size_t)rma->taps, sizeof(real), 1);
+    rma->filter = store_take(&rma->store, (size_t)rma->record_length, sizeof(complex_real), 1);
     if (rma->delay)
-        free(rma->delay->basis);
-    free(rma->filter);
-    free(rma->tapers);
-    free(rma->kernel);
-    free(rma->focused);
-    free(rma->scratch);
+        rma->delay->basis =
+            store_take(&rma->store, (size_t)rma->delay->terms.terms * (size_t)rma->receivers, sizeof(real), 1);
+    if (!rma->store.failed)
+        tables_fill(rma);
+    for (int n = 0; !rma->store.failed && n < rma->swath_count; n++)
+        plan_swath(rma, &rma->swaths[n]);
+    return !rma->store.failed ? STATUS_OK
+                              : status_set(STATUS_FAILED, "no memory for range migration (%.0f MB for a thread)",
+                                           rma->store.bytes / 1e6);
 }
 
 /* a[k] *= b[k], written out: a complex product would check for NaN. */
@@ -389,4 +327,4 @@ static void inverse(const struct rma *rma, const struct rma_swath *swath, const 
     }
 }
 
-const struct rma_transform REAL_NAME(rma_transform) = {plan, destroy, compress, spread, inverse};
+const struct rma_transform REAL_NAME(rma_transform) = {plan, compress, spread, inverse};

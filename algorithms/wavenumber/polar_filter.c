@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "contract/delay.h"
+#include "common/fft.h"
 #include "common/fft_length.h"
-#include "common/memory.h"
 #include "common/phasor.h"
 
 enum {
@@ -36,24 +36,10 @@ struct polar_filter {
     complex_real *scratch; /* [threads][scratch_length] */
     size_t scratch_length;
     FFTW(plan) range_forward, range_inverse, track_forward, track_inverse;
+    struct store store;
 };
 
-static void *take(struct polar_filter *f, size_t count, size_t size, double share)
-{
-    size_t bytes = (count * size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
-    void *memory = memory_columns(ALIGNMENT, bytes);
-    if (memory)
-        memset(memory, 0, bytes);
-    f->shape.bytes += share * (double)bytes;
-    return memory;
-}
-
-static FFTW(plan) plan_strip(int length, complex_real *memory, int sign)
-{
-    return FFTW(plan_many_dft)(1, &length, STRIP, memory, NULL, STRIP, 1, memory, NULL, STRIP, 1, sign, FFTW_ESTIMATE);
-}
-
-static bool plan_apertures(struct polar_filter *f)
+static void plan_apertures(struct polar_filter *f)
 {
     const struct acquisition *a = f->acquisition;
     const int count = f->shape.subapertures;
@@ -66,14 +52,11 @@ static bool plan_apertures(struct polar_filter *f)
         p->sine = polar_filter_sine(a, p->x);
         p->rho = hypot(a->area.x - p->x, a->area.r);
         p->length = 2 * (p->end - p->begin);
-        p->forward = plan_strip(p->length, f->scratch, FFTW_FORWARD);
-        p->inverse = plan_strip(p->length, f->scratch, FFTW_BACKWARD);
-        if (!p->forward || !p->inverse)
-            return false;
+        p->forward = fft_strip(&f->store, p->length, STRIP, f->scratch, f->scratch, FFTW_FORWARD);
+        p->inverse = fft_strip(&f->store, p->length, STRIP, f->scratch, f->scratch, FFTW_BACKWARD);
         double all = (double)p->length * f->length;
         f->shape.flops += f->length * 2 * fft_flops(p->length) + all * 2;
     }
-    return true;
 }
 
 static bool plan_memory(struct polar_filter *f, int threads)
@@ -83,24 +66,24 @@ static bool plan_memory(struct polar_filter *f, int threads)
            line = (size_t)f->length; /* a padded sub-aperture; both track transforms */
     f->scratch_length = (strip > line ? strip : line) + ALIGNMENT;
     f->scratch_length = f->scratch_length / ALIGNMENT * ALIGNMENT;
-    f->apertures = take(f, (size_t)f->shape.subapertures, sizeof *f->apertures, 1);
-    f->delay = take(f, (size_t)f->rows, sizeof *f->delay, 1);
-    f->field = take(f, (size_t)f->rows * (size_t)f->length, sizeof *f->field, 1);
-    f->scratch = take(f, (size_t)threads, f->scratch_length * sizeof *f->scratch, 1.0 / threads);
-    if (!f->apertures || !f->delay || !f->field || !f->scratch)
+    f->apertures = store_take(&f->store, (size_t)f->shape.subapertures, sizeof *f->apertures, 1);
+    f->delay = store_take(&f->store, (size_t)f->rows, sizeof *f->delay, 1);
+    f->field = store_take(&f->store, (size_t)f->rows * (size_t)f->length, sizeof *f->field, 1);
+    f->scratch = store_take(&f->store, (size_t)threads, f->scratch_length * sizeof *f->scratch, 1.0 / threads);
+    if (f->store.failed)
         return false;
     const struct vector centre = {a->area.x, a->area.r, 0};
     for (int i = 0; i < f->rows; i++) {
         struct vector tx = {a->tx[0].x + i * f->spacing / f->up, 0, 0};
         f->delay[i] = delay_exact(tx, tx, a->velocity[0], centre, a->sound_speed);
     }
-    f->range_forward = FFTW(plan_dft_1d)(f->length, f->scratch, f->scratch, FFTW_FORWARD, FFTW_ESTIMATE);
-    f->range_inverse = FFTW(plan_dft_1d)(f->length, f->scratch, f->scratch, FFTW_BACKWARD, FFTW_ESTIMATE);
+    f->range_forward = fft_line(&f->store, f->length, f->scratch, f->scratch, FFTW_FORWARD);
+    f->range_inverse = fft_line(&f->store, f->length, f->scratch, f->scratch, FFTW_BACKWARD);
     if (f->up > 1) {
-        f->track_forward = plan_strip(f->pings, f->scratch, FFTW_FORWARD);
-        f->track_inverse = plan_strip(f->rows, f->scratch, FFTW_BACKWARD);
+        f->track_forward = fft_strip(&f->store, f->pings, STRIP, f->scratch, f->scratch, FFTW_FORWARD);
+        f->track_inverse = fft_strip(&f->store, f->rows, STRIP, f->scratch, f->scratch, FFTW_BACKWARD);
     }
-    return f->range_forward && f->range_inverse && (f->up == 1 || (f->track_forward && f->track_inverse));
+    return !f->store.failed;
 }
 
 enum status REAL_NAME(polar_filter_plan)(const struct acquisition *a, const struct polar_setting *setting, int threads,
@@ -123,7 +106,7 @@ enum status REAL_NAME(polar_filter_plan)(const struct acquisition *a, const stru
                                .pings = a->pings,
                                .samples = a->samples,
                                .length = fft_length_fast(a->samples),
-                               .shape = {setting->subapertures, 1, 0, sizeof *f}};
+                               .shape = {setting->subapertures, 1, 0, sizeof *f - sizeof f->store}};
     const int most = polar_filter_most(a);
     double up = 0;
     f->shape.subapertures = polar_filter_subapertures(a, setting->subapertures);
@@ -141,7 +124,9 @@ enum status REAL_NAME(polar_filter_plan)(const struct acquisition *a, const stru
     f->rows = f->up * f->pings;
     if (status == STATUS_OK)
         status = memory_check((double)f->rows * f->length * sizeof(complex_real), "the polar-format filter");
-    if (status == STATUS_OK && !(plan_memory(f, threads) && plan_apertures(f)))
+    if (status == STATUS_OK && plan_memory(f, threads))
+        plan_apertures(f);
+    if (f->store.failed)
         status = status_set(STATUS_FAILED, "no memory for the polar-format filter");
     if (status != STATUS_OK) {
         REAL_NAME(polar_filter_destroy)(f);
@@ -151,29 +136,17 @@ enum status REAL_NAME(polar_filter_plan)(const struct acquisition *a, const stru
     f->shape.flops += 2 * (rows + pings) * fft_flops(length) + (rows + pings) * length * (setting->curvature ? 14 : 8);
     if (f->up > 1)
         f->shape.flops += length * (fft_flops(pings) + fft_flops(rows));
+    f->shape.bytes += f->store.bytes;
     *shape = f->shape;
     *out = f;
     return STATUS_OK;
 }
 
-void REAL_NAME(polar_filter_destroy)(struct polar_filter *f)
+void REAL_NAME(polar_filter_destroy)(void *filter)
 {
-    if (!f)
-        return;
-    FFTW(plan) plans[] = {f->range_forward, f->range_inverse, f->track_forward, f->track_inverse};
-    for (size_t k = 0; k < sizeof plans / sizeof *plans; k++)
-        if (plans[k])
-            FFTW(destroy_plan)(plans[k]);
-    for (int s = 0; f->apertures && s < f->shape.subapertures; s++) {
-        if (f->apertures[s].forward)
-            FFTW(destroy_plan)(f->apertures[s].forward);
-        if (f->apertures[s].inverse)
-            FFTW(destroy_plan)(f->apertures[s].inverse);
-    }
-    free(f->apertures);
-    free(f->delay);
-    free(f->field);
-    free(f->scratch);
+    struct polar_filter *f = filter;
+    if (f)
+        store_release(&f->store);
     free(f);
 }
 

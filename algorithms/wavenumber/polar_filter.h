@@ -57,7 +57,7 @@ enum status polar_filter_plan_double(const struct acquisition *acquisition, cons
    threads. */
 void polar_filter_apply_float(const struct polar_filter *filter, float complex *records);
 void polar_filter_apply_double(const struct polar_filter *filter, double complex *records);
-void polar_filter_destroy_float(struct polar_filter *filter);
-void polar_filter_destroy_double(struct polar_filter *filter);
+void polar_filter_destroy_float(void *filter);
+void polar_filter_destroy_double(void *filter);
 
 #endif

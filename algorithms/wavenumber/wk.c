@@ -116,7 +116,7 @@ enum status wk_plan(const struct problem *problem, const void *method, const voi
     wk->line_loop = loops[isa_choose()][problem->precision].line;
     wk->row_loop = loops[isa_choose()][problem->precision].row;
     fit_nodes_fill(FIT_DEGREE + 1, wk->fit.nodes, wk->fit.powers);
-    wk->work.bytes = sizeof *wk + (double)problem->patch_count * sizeof *wk->patches;
+    wk->work.bytes = sizeof *wk - sizeof wk->store + (double)problem->patch_count * sizeof *wk->patches;
     status = transform(wk)->plan(wk);
     if (status != STATUS_OK) {
         wk_destroy(wk);
@@ -192,7 +192,6 @@ void wk_destroy(void *plan)
     struct wk *wk = plan;
     if (!wk)
         return;
-    transform(wk)->destroy(wk);
-    free(wk->patches);
+    store_release(&wk->store);
     free(wk);
 }

@@ -17,6 +17,7 @@
 #include <math.h>
 
 #include "common/fit.h"
+#include "common/memory.h"
 #include "range_migration/rma_conditions.h"
 #include "wavenumber/wk.h"
 
@@ -144,6 +145,7 @@ struct wk {
     void *data;    /* [azimuth_length][row] */
     void *focused; /* [rows][line_stride] */
     void *range_forward, *azimuth_forward;
+    struct store store;
 };
 
 /* Ky0 of frequency F at Kx0, both in the own axes; NAN where evanescent. */
@@ -183,7 +185,6 @@ void wk_count(struct wk *wk);
 /* ---- wk_transform.c ---- */
 struct wk_transform {
     enum status (*plan)(struct wk *wk);
-    void (*destroy)(struct wk *wk);
     void (*compress)(const struct wk *wk, const void *samples); /* filter only */
     void (*range)(const struct wk *wk, const void *samples);
     void (*azimuth)(const struct wk *wk);

@@ -103,7 +103,7 @@ enum status wk_cost(const struct problem *problem, const void *method, const voi
     if (status != STATUS_OK)
         return status;
     if (!a->compressed)
-        wk->work.flops += wk->pings * traces_flops_float(a, &form, &sums);
+        wk->work.flops += wk->pings * traces_float.flops(a, &form, &sums);
     cost_fill(wk, forecast->migration);
     wk_count(wk);
     forecast->error[CAUSE_STOLT] = interpolations_error(wk);

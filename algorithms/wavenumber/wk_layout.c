@@ -1,7 +1,6 @@
 /* What an omega-k image needs of its scene (wk_engine.h): the track, the conditions, the axes and the lengths of all
    transforms. All in double; nothing of it depends on the echoes. */
 #include <limits.h>
-#include <stdlib.h>
 
 #include "common/fft_length.h"
 #include "common/kaiser.h"
@@ -248,7 +247,7 @@ static enum status lay_rotated(struct wk *wk)
 static enum status lay_patches(struct wk *wk)
 {
     wk->patch_count = wk->problem.patch_count;
-    wk->patches = calloc((size_t)wk->patch_count, sizeof *wk->patches);
+    wk->patches = store_take(&wk->store, (size_t)wk->patch_count, sizeof *wk->patches, 0);
     if (!wk->patches)
         return status_set(STATUS_FAILED, "no memory for %d patches", wk->patch_count);
     for (int n = 0; n < wk->patch_count; n++) {
@@ -358,12 +357,12 @@ enum status wk_period(const struct wk *wk, double *period)
 {
     struct wk along = *wk; /* as if it did not turn */
     along.method.rotates = false;
-    along.patches = NULL;
+    along.store = (struct store){0};
     lay_track(&along);
     const enum status status = lay_patches(&along);
     if (status == STATUS_OK)
         *period = fmax(whole_above(own_period(&along) / along.spacing + 1), along.pings);
-    free(along.patches);
+    store_release(&along.store);
     return status;
 }
 

@@ -1,13 +1,11 @@
 /* The transforms of omega-k along range and azimuth, with their memory, and the resampling of an image to other axes
    (wk_engine.h). Compiled once for each precision. */
 #include <omp.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "backprojection/traces.h"
+#include "common/fft.h"
 #include "common/kaiser.h"
-#include "common/memory.h"
-#include "common/real.h"
 #include "wavenumber/wk_engine.h"
 #include "wavenumber/polar_filter.h"
 
@@ -17,32 +15,9 @@ enum {
     TAPS_MOST = 16
 };
 
-/* Zeroed memory on the plan's account; failure shows as NULL. */
-static void *take(struct wk *wk, size_t count, size_t size, double share)
-{
-    size_t bytes = (count * size + WK_ALIGNMENT - 1) / WK_ALIGNMENT * WK_ALIGNMENT;
-    void *memory = memory_columns(WK_ALIGNMENT, bytes);
-    if (memory)
-        memset(memory, 0, bytes);
-    wk->work.bytes += share * (double)bytes;
-    return memory;
-}
-
 static real *scratch_of(const struct wk *wk)
 {
     return (real *)((char *)wk->scratch + (size_t)omp_get_thread_num() * wk->scratch_bytes);
-}
-
-static complex_real rotor(double cycles)
-{
-    double angle = 2 * M_PI * (cycles - floor(cycles + 0.5));
-    return (real)cos(angle) + (real)sin(angle) * (complex_real)I;
-}
-
-/* ESTIMATE: the same algorithm, hence the same bits, at every planning. */
-static void *plan_line(int length, void *memory, int sign)
-{
-    return FFTW(plan_dft_1d)(length, memory, memory, sign, FFTW_ESTIMATE);
 }
 
 /* A kernel's tap t for a cell that lies u beyond the last bin ahead of it. */
@@ -51,22 +26,21 @@ static double tap_value(const struct wk_kernel *kernel, int t, double u)
     return kaiser_value(kernel->taps, kernel->shape, u - (1 - kernel->taps / 2 + t));
 }
 
-static bool range_kernel_fill(struct wk *wk)
+static void range_kernel_fill(struct wk *wk)
 {
     struct wk_kernel *kernel = &wk->range_kernel;
     const size_t width = (size_t)wk_kernel_width(kernel->taps);
-    real *values = kernel->values = take(wk, width * (WK_INTERVALS + 2), sizeof(real), 1);
+    real *values = kernel->values = store_take(&wk->store, width * (WK_INTERVALS + 2), sizeof(real), 1);
     for (int i = 0; values && i < WK_INTERVALS + 2; i++, values += width)
         for (int t = 0; t < kernel->taps; t++)
             values[2 * t] = values[2 * t + 1] = (real)tap_value(kernel, t, (double)i / WK_INTERVALS);
-    return kernel->values;
 }
 
-static bool azimuth_kernel_fill(struct wk *wk)
+static void azimuth_kernel_fill(struct wk *wk)
 {
     double nodes[WK_POWERS], powers[WK_POWERS][WK_POWERS];
     struct wk_kernel *kernel = &wk->azimuth_kernel;
-    real *values = kernel->values = take(wk, (size_t)(kernel->taps / 2) * WK_POWERS, sizeof(real), 1);
+    real *values = kernel->values = store_take(&wk->store, (size_t)(kernel->taps / 2) * WK_POWERS, sizeof(real), 1);
     fit_nodes_fill(WK_POWERS, nodes, powers);
     for (int t = 0; values && t < kernel->taps / 2; t++)
         for (int power = 0; power < WK_POWERS; power++) {
@@ -75,7 +49,6 @@ static bool azimuth_kernel_fill(struct wk *wk)
                 sum += powers[power][n] * tap_value(kernel, t, 0.5 + 0.5 * nodes[n]);
             *values++ = (real)ldexp(sum, power); /* nodes are in [-1, 1], u - 1/2 is in half of it */
         }
-    return kernel->values;
 }
 
 /* 1 over the kernel's transform; held where nothing lies. */
@@ -84,36 +57,34 @@ static double weight_at(const struct wk_kernel *kernel, double place, double mos
     return 1 / kaiser_transform(kernel->taps, kernel->shape, fmin(fabs(place), most));
 }
 
-static bool weights_fill(struct wk *wk)
+static void weights_fill(struct wk *wk)
 {
     const int count = wk->samples + 2 * wk->weights_beside + 1;
-    real *range = wk->range_weights = take(wk, (size_t)count, sizeof(real), 1);
-    real *azimuth = wk->azimuth_weights = take(wk, (size_t)wk->pings, sizeof(real), 1);
-    if (!range || !azimuth)
-        return false;
-    for (int i = 0; i < count; i++) {
+    real *range = wk->range_weights = store_take(&wk->store, (size_t)count, sizeof(real), 1);
+    real *azimuth = wk->azimuth_weights = store_take(&wk->store, (size_t)wk->pings, sizeof(real), 1);
+    for (int i = 0; range && i < count; i++) {
         double place = (double)(i - wk->weights_beside - wk->centre) / wk->range_length;
         range[i] = (real)weight_at(&wk->range_kernel, place, 0.5 / wk->oversampling);
     }
-    for (int n = 0; n < wk->pings; n++)
+    for (int n = 0; azimuth && n < wk->pings; n++)
         azimuth[n] = wk->angle != 0
                          ? (real)weight_at(&wk->azimuth_kernel, (double)(n - wk->middle) / wk->azimuth_length, 0.45)
                          : 1;
-    return true;
 }
 
 /* The azimuth sum over lines kx = kx_first + i kx_step onto columns x = x0 + j dx: one transform where 2 pi/(kx_step
    dx) is its length, or a convolution (chirp z),  2 i j = i^2 + j^2 - (j - i)^2. */
-static bool azimuth_fill(struct wk *wk, struct wk_patch *patch)
+static void azimuth_fill(struct wk *wk, struct wk_patch *patch)
 {
     const struct grid *g = &patch->own;
     const int length = patch->columns;
-    complex_real *before = patch->before = take(wk, (size_t)wk->lines, sizeof *before, 1);
-    complex_real *after = patch->after = take(wk, (size_t)g->x_count, sizeof *after, 1);
-    complex_real *kernel = patch->kernel = patch->folds ? NULL : take(wk, (size_t)length, sizeof *kernel, 1);
-    patch->azimuth_inverse = plan_line(length, wk->scratch, FFTW_BACKWARD);
-    if (!before || !after || !patch->azimuth_inverse)
-        return false;
+    complex_real *before = patch->before = store_take(&wk->store, (size_t)wk->lines, sizeof *before, 1);
+    complex_real *after = patch->after = store_take(&wk->store, (size_t)g->x_count, sizeof *after, 1);
+    complex_real *kernel = patch->kernel =
+        patch->folds ? NULL : store_take(&wk->store, (size_t)length, sizeof *kernel, 1);
+    patch->azimuth_inverse = fft_line(&wk->store, length, wk->scratch, wk->scratch, FFTW_BACKWARD);
+    if (wk->store.failed)
+        return;
     const double first = (wk->kx_first - patch->kx_carrier) / (2 * M_PI), step = wk->kx_step / (2 * M_PI);
     const double turn = patch->folds ? 1.0 / length : step * g->x_step, square = patch->folds ? 0 : 0.5 * turn;
     const double place = step * g->x_step, place_first = first * g->x_step;
@@ -124,14 +95,13 @@ static bool azimuth_fill(struct wk *wk, struct wk_patch *patch)
     for (int j = 0; j < g->x_count; j++)
         after[j] = rotor(square * j * j + first * g->x_step * j) * (real)(patch->folds ? step : step / length);
     if (patch->folds)
-        return true;
-    patch->azimuth_forward = plan_line(length, wk->scratch, FFTW_FORWARD);
-    if (!kernel || !patch->azimuth_forward)
-        return false;
+        return;
+    patch->azimuth_forward = fft_line(&wk->store, length, wk->scratch, wk->scratch, FFTW_FORWARD);
+    if (wk->store.failed)
+        return;
     for (int i = -(wk->lines - 1); i < g->x_count; i++)
         kernel[i < 0 ? i + length : i] = rotor(-square * i * i);
     FFTW(execute_dft)(patch->azimuth_forward, kernel, kernel);
-    return true;
 }
 
 /* Values from one column of a strip to the next: an odd number of the cache's lines, so that they do not lie on top of
@@ -158,36 +128,36 @@ static size_t scratch_size(const struct wk *wk)
     return (complex_count * sizeof(complex_real) / WK_ALIGNMENT + 2) * WK_ALIGNMENT;
 }
 
-static bool plan_patch(struct wk *wk, struct wk_patch *patch)
+static void plan_patch(struct wk *wk, struct wk_patch *patch)
 {
     if (patch->resampled) {
-        patch->wide = take(wk, (size_t)patch->own.r_count * (size_t)patch->own.x_count, sizeof(complex_real), 1);
-        real *taper = patch->taper = take(wk, (size_t)patch->length, sizeof(real), 1);
-        if (!patch->wide || !taper)
-            return false;
-        for (int k = 0; k < patch->length; k++) {
+        patch->wide =
+            store_take(&wk->store, (size_t)patch->own.r_count * (size_t)patch->own.x_count, sizeof(complex_real), 1);
+        real *taper = patch->taper = store_take(&wk->store, (size_t)patch->length, sizeof(real), 1);
+        for (int k = 0; taper && k < patch->length; k++) {
             double place = (double)(k < patch->length / 2 ? k : k - patch->length) / patch->length;
             taper[k] = (real)weight_at(&wk->range_kernel, place, 0.5 / WK_OVERSAMPLING);
         }
     }
-    patch->focus_plan = plan_line(patch->length, wk->scratch, FFTW_BACKWARD);
-    return patch->focus_plan && azimuth_fill(wk, patch);
+    patch->focus_plan = fft_line(&wk->store, patch->length, wk->scratch, wk->scratch, FFTW_BACKWARD);
+    azimuth_fill(wk, patch);
 }
 
-static bool plan_all(struct wk *wk)
+static void plan_all(struct wk *wk)
 {
-    wk->data = take(wk, (size_t)wk->azimuth_length * (size_t)wk->row + WK_GUARD, sizeof(complex_real), 1);
-    wk->focused = take(wk, wk->rows * wk->line_stride, sizeof(complex_real), 1);
-    wk->scratch = take(wk, (size_t)wk->threads, wk->scratch_bytes, 1.0 / wk->threads);
-    if (!wk->data || !wk->focused || !wk->scratch || !weights_fill(wk) || !range_kernel_fill(wk)
-        || (wk->angle != 0 && !azimuth_kernel_fill(wk)))
-        return false;
-    wk->range_forward = plan_line(wk->range_length, wk->scratch, FFTW_FORWARD);
-    wk->azimuth_forward = plan_line(wk->azimuth_length, wk->scratch, FFTW_FORWARD);
-    bool complete = wk->range_forward && wk->azimuth_forward;
-    for (int k = 0; complete && k < wk->patch_count; k++)
-        complete = plan_patch(wk, &wk->patches[k]);
-    return complete;
+    wk->data = store_take(&wk->store, (size_t)wk->azimuth_length * (size_t)wk->row + WK_GUARD, sizeof(complex_real), 1);
+    wk->focused = store_take(&wk->store, wk->rows * wk->line_stride, sizeof(complex_real), 1);
+    wk->scratch = store_take(&wk->store, (size_t)wk->threads, wk->scratch_bytes, 1.0 / wk->threads);
+    weights_fill(wk);
+    range_kernel_fill(wk);
+    if (wk->angle != 0)
+        azimuth_kernel_fill(wk);
+    if (!wk->scratch)
+        return;
+    wk->range_forward = fft_line(&wk->store, wk->range_length, wk->scratch, wk->scratch, FFTW_FORWARD);
+    wk->azimuth_forward = fft_line(&wk->store, wk->azimuth_length, wk->scratch, wk->scratch, FFTW_FORWARD);
+    for (int k = 0; k < wk->patch_count; k++)
+        plan_patch(wk, &wk->patches[k]);
 }
 
 static enum status plan_compression(struct wk *wk)
@@ -197,8 +167,9 @@ static enum status plan_compression(struct wk *wk)
     struct traces_shape shape;
     enum status status = STATUS_OK;
     if (!a->compressed) {
-        status = REAL_NAME(traces_plan)(a, &form, wk->threads, &shape, &wk->traces);
+        status = REAL_NAME(traces).plan(a, &form, wk->threads, &shape, &wk->traces);
         if (status == STATUS_OK) {
+            store_keep(&wk->store, wk->traces, REAL_NAME(traces).destroy);
             wk->work.bytes += shape.bytes;
             wk->work.flops += shape.flops * wk->pings;
         }
@@ -210,10 +181,11 @@ static enum status plan_compression(struct wk *wk)
     status = REAL_NAME(polar_filter_plan)(a, &setting, wk->threads, &filter, &wk->filter);
     if (status != STATUS_OK)
         return status;
+    store_keep(&wk->store, wk->filter, REAL_NAME(polar_filter_destroy));
     wk->work.bytes += filter.bytes;
     wk->work.flops += filter.flops;
-    wk->compressed = take(wk, (size_t)wk->pings * (size_t)wk->samples, sizeof(complex_real), 1);
-    return wk->compressed ? STATUS_OK : status_set(STATUS_FAILED, "no memory for the filtered echoes");
+    wk->compressed = store_take(&wk->store, (size_t)wk->pings * (size_t)wk->samples, sizeof(complex_real), 1);
+    return STATUS_OK;
 }
 
 static enum status plan(struct wk *wk)
@@ -228,42 +200,12 @@ static enum status plan(struct wk *wk)
     enum status status = memory_check(bytes, wk->method.name);
     if (status == STATUS_OK)
         status = plan_compression(wk);
-    if (status == STATUS_OK && !plan_all(wk))
+    if (status == STATUS_OK)
+        plan_all(wk);
+    wk->work.bytes += wk->store.bytes;
+    if (status == STATUS_OK && wk->store.failed)
         status = status_set(STATUS_FAILED, "no memory for %s (%.0f MB)", wk->method.name, bytes / 1e6);
     return status;
-}
-
-static void plan_destroy(void *made)
-{
-    if (made)
-        FFTW(destroy_plan)(made);
-}
-
-static void destroy(struct wk *wk)
-{
-    for (int k = 0; wk->patches && k < wk->patch_count; k++) {
-        struct wk_patch *patch = &wk->patches[k];
-        plan_destroy(patch->focus_plan);
-        plan_destroy(patch->azimuth_forward);
-        plan_destroy(patch->azimuth_inverse);
-        free(patch->before);
-        free(patch->after);
-        free(patch->kernel);
-        free(patch->wide);
-        free(patch->taper);
-    }
-    plan_destroy(wk->range_forward);
-    plan_destroy(wk->azimuth_forward);
-    REAL_NAME(traces_destroy)(wk->traces);
-    REAL_NAME(polar_filter_destroy)(wk->filter);
-    free(wk->compressed);
-    free(wk->range_kernel.values);
-    free(wk->azimuth_kernel.values);
-    free(wk->range_weights);
-    free(wk->azimuth_weights);
-    free(wk->data);
-    free(wk->focused);
-    free(wk->scratch);
 }
 
 /* Records through the matched filter and the polar-format filter. */
@@ -275,7 +217,7 @@ static void compress(const struct wk *wk, const void *samples)
 #pragma omp parallel for schedule(static) num_threads(wk->threads)
     for (int n = 0; n < wk->pings; n++) {
         if (wk->traces)
-            REAL_NAME(traces_fill)(wk->traces, omp_get_thread_num(), from + count * (size_t)n, to + count * (size_t)n);
+            REAL_NAME(traces).fill(wk->traces, omp_get_thread_num(), from + count * (size_t)n, to + count * (size_t)n);
         else
             memcpy(to + count * (size_t)n, from + count * (size_t)n, count * sizeof *to);
     }
@@ -290,8 +232,7 @@ static void range(const struct wk *wk, const void *samples)
         const real *from = (const real *)samples + record;
         real *scratch = scratch_of(wk);
         if (wk->traces && !wk->filter) {
-            REAL_NAME(traces_fill)
-            (wk->traces, omp_get_thread_num(), (const complex_real *)from, (complex_real *)scratch + wk->range_length);
+            REAL_NAME(traces).fill(wk->traces, omp_get_thread_num(), from, (complex_real *)scratch + wk->range_length);
             from = scratch + 2 * (size_t)wk->range_length;
         }
         wk->record_loop(wk, n, from, scratch);
@@ -399,4 +340,4 @@ static void resample(const struct wk *wk, const struct wk_patch *patch, void *pi
     }
 }
 
-const struct wk_transform REAL_NAME(wk_transform) = {plan, destroy, compress, range, azimuth, inverse, resample};
+const struct wk_transform REAL_NAME(wk_transform) = {plan, compress, range, azimuth, inverse, resample};

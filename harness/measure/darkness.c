@@ -64,7 +64,7 @@ static const double complex *record_read(const struct survey *survey, int pair)
     for (size_t n = 0; n < samples; n++)
         record[n] = echoes->precision == PRECISION_DOUBLE ? ((const double complex *)echoes->samples)[first + n]
                                                           : ((const float complex *)echoes->samples)[first + n];
-    traces_fill_double(survey->traces, thread, record, record + samples);
+    traces_double.fill(survey->traces, thread, record, record + samples);
     return record + samples;
 }
 
@@ -177,10 +177,10 @@ struct darkness image_darkness(const struct echoes *echoes, const struct image *
     survey.records = (int)fmin(survey.pairs, fmax(RECORDS_LEAST, VISITS / survey.pixels));
     survey.visits = (int)fmin(survey.pixels, VISITS / survey.records);
     survey.scratch = malloc(2 * (size_t)a->samples * (size_t)threads * sizeof *survey.scratch);
-    const bool ready = survey.scratch && traces_plan_double(a, &form, threads, &shape, &survey.traces) == STATUS_OK;
+    const bool ready = survey.scratch && traces_double.plan(a, &form, threads, &shape, &survey.traces) == STATUS_OK;
     const struct energies sums = ready ? echo_energies(&survey) : (struct energies){NAN, NAN, NAN};
     const double met = sums.met, shown = image_energy(image, echoes->exponent);
-    traces_destroy_double(survey.traces);
+    traces_double.destroy(survey.traces);
     free(survey.scratch);
     return (struct darkness){ldexp(sqrt(met / survey.pixels), echoes->exponent),
                              ldexp(sqrt(shown / survey.pixels), echoes->exponent), met == 0 ? 0 : met / shown,

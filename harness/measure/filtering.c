@@ -13,7 +13,7 @@
 
 void filtering_close(struct filtering *filtering)
 {
-    traces_destroy_double(filtering->traces);
+    traces_double.destroy(filtering->traces);
     polar_filter_destroy_double(filtering->filter);
 }
 
@@ -27,7 +27,7 @@ enum status filtering_open(const struct acquisition *acquisition, const struct s
     enum status status =
         polar_filter_plan_double(acquisition, &setting, omp_get_max_threads(), &filtering->shape, &filtering->filter);
     if (status == STATUS_OK)
-        status = traces_plan_double(acquisition, &form, omp_get_max_threads(), &shape, &filtering->traces);
+        status = traces_double.plan(acquisition, &form, omp_get_max_threads(), &shape, &filtering->traces);
     if (status != STATUS_OK)
         filtering_close(filtering);
     return status;
@@ -40,7 +40,7 @@ void filtering_compress(const struct filtering *filtering, double complex *recor
     const size_t samples = (size_t)filtering->acquisition->samples;
 #pragma omp parallel for schedule(static)
     for (int p = 0; p < filtering->acquisition->pings; p++)
-        traces_fill_double(filtering->traces, omp_get_thread_num(), records + samples * (size_t)p,
+        traces_double.fill(filtering->traces, omp_get_thread_num(), records + samples * (size_t)p,
                            records + samples * (size_t)p);
 }
 

@@ -61,7 +61,7 @@ static void row_fill(const struct view *view, size_t record, double complex *row
     const double complex *values = view->recorded + record * (size_t)a->samples;
     for (int n = 0; n < a->samples; n++)
         view->record[n] = view->conjugated ? conj(values[n]) : values[n];
-    traces_fill_double(view->traces, 0, view->record, row);
+    traces_double.fill(view->traces, 0, view->record, row);
 }
 
 static double delay_at(const struct acquisition *a, size_t record, struct vector place)
@@ -286,7 +286,7 @@ static bool view_open(struct view *view)
 {
     const struct acquisition *a = view->acquisition;
     const struct traces_form form = {.upsample = UPSAMPLE};
-    if (traces_plan_double(a, &form, 1, &view->shape, &view->traces) != STATUS_OK)
+    if (traces_double.plan(a, &form, 1, &view->shape, &view->traces) != STATUS_OK)
         return false;
     view->summed = (int)fmin(fmax(floor(BYTES_MOST / sizeof *view->rows / (double)view->shape.length), 1), SUMMED);
     view->record = malloc((size_t)a->samples * sizeof *view->record);
@@ -318,7 +318,7 @@ struct condition conjugated_condition(const struct scene *scene)
     free(points);
     free(view.record);
     free(view.rows);
-    traces_destroy_double(view.traces);
+    traces_double.destroy(view.traces);
     struct condition condition = {"conjugated",
                                   open ? value : NAN,
                                   SHARPER,

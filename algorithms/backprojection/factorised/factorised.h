@@ -67,8 +67,8 @@ enum status factorised_forecast(const struct problem *problem, const struct tree
 /* stages >= 1. Errors: as factorised_cost, and STATUS_UNSUPPORTED for records too long. *out is NULL then. */
 enum status factorised_plan(const struct problem *problem, const struct tree_settings *settings,
                             struct factorised **out);
-/* Fill needed, direct and add to flops, line by line; false without memory. The images' part of factorised_plan. */
-bool factorised_count(struct factorised *plan);
+/* Fill needed, direct and add to flops, line by line. The images' part of factorised_plan. */
+void factorised_count(struct factorised *plan);
 /* Errors: STATUS_FAILED where images would be read outside of their grids, which is a fault of the tree. */
 enum status factorised_execute(struct factorised *plan, const struct echoes *echoes, struct image *image,
                                struct stages *stages);

@@ -7,7 +7,6 @@
 
 #include "backprojection/budget.h"
 #include "backprojection/factorised/factorised.h"
-#include "common/memory.h"
 
 static polar_trace_function *const trace_functions[][2] = {
     [ISA_BASELINE] = {polar_trace_float_baseline, polar_trace_double_baseline},
@@ -17,13 +16,12 @@ static polar_trace_function *const trace_functions[][2] = {
 #endif
 };
 
-static void *allocate(struct factorised *plan, size_t bytes)
+static void *room(struct factorised *plan, size_t count, size_t size)
 {
-    plan->bp.work.bytes += (double)bytes;
-    return memory_aligned(64, bytes);
+    return store_room(&plan->bp.engines, count, size, 1);
 }
 
-static bool images_make(struct factorised *plan)
+static void images_make(struct factorised *plan)
 {
     const struct tree *tree = &plan->tree;
     const size_t size = real_size(plan->bp.problem.precision);
@@ -35,30 +33,22 @@ static bool images_make(struct factorised *plan)
             if (tree->subapertures[n].values > plan->slot[level])
                 plan->slot[level] = tree->subapertures[n].values;
         plan->slot[level] += 16;
-        plan->images[level] = allocate(plan, (size_t)slots * plan->slot[level] * size);
-        if (!plan->images[level])
-            return false;
+        plan->images[level] = room(plan, (size_t)slots * plan->slot[level], size);
     }
-    return true;
 }
 
-static bool phasors_make(struct factorised *plan)
+static void phasors_make(struct factorised *plan)
 {
     const struct tree *tree = &plan->tree;
     const struct acquisition *a = plan->bp.problem.acquisition;
     const int count = tree->settings.stages * tree->views;
     const bool is_double = plan->bp.problem.precision == PRECISION_DOUBLE;
-    plan->phasors = calloc((size_t)count, sizeof *plan->phasors);
-    if (!plan->phasors)
-        return false;
-    plan->bp.work.bytes += (double)count * sizeof *plan->phasors;
-    for (int k = 0; k < count; k++) {
+    plan->phasors = room(plan, (size_t)count, sizeof *plan->phasors);
+    for (int k = 0; k < count && !plan->bp.engines.failed; k++) {
         const struct polar_step *step = &tree->steps[k];
         const size_t size = (size_t)step->count;
-        plan->phasors[k] = allocate(plan, 2 * (size + 1) * real_size(plan->bp.problem.precision));
-        if (!plan->phasors[k])
-            return false;
-        for (size_t n = 0; n < size; n++) {
+        plan->phasors[k] = room(plan, 2 * (size + 1), real_size(plan->bp.problem.precision));
+        for (size_t n = 0; plan->phasors[k] && n < size; n++) {
             double cycles = a->fc * 2 * ((double)step->place_first + (double)n) * step->rho / a->sound_speed;
             cycles -= floor(cycles);
             const double c = cos(2 * M_PI * cycles), s = sin(2 * M_PI * cycles);
@@ -71,7 +61,6 @@ static bool phasors_make(struct factorised *plan)
             }
         }
     }
-    return true;
 }
 
 /* The longest trace, in places. */
@@ -84,70 +73,54 @@ static int places_most(const struct tree *tree)
     return most;
 }
 
-static bool scratch_make(struct factorised *plan)
+static void scratch_make(struct factorised *plan)
 {
     const struct acquisition *a = plan->bp.problem.acquisition;
     const size_t size = real_size(plan->bp.problem.precision), base = (size_t)plan->tree.settings.base;
     const size_t receivers = (size_t)a->receivers, row = plan->polar_layout.record + 1;
     plan->threads = omp_get_max_threads();
-    plan->scratch = calloc((size_t)plan->threads, sizeof *plan->scratch);
-    if (!plan->scratch)
-        return false;
-    double bytes = 0;
-    for (int n = 0; n < plan->threads; n++) {
+    const double share = 1.0 / plan->threads;
+    struct store *store = &plan->bp.engines;
+    plan->scratch = store_room(store, (size_t)plan->threads, sizeof *plan->scratch, share);
+    for (int n = 0; plan->scratch && n < plan->threads; n++) {
         struct factorised_scratch *s = &plan->scratch[n];
-        const double before = plan->bp.work.bytes;
-        s->interleaved = allocate(plan, 2 * bp_record_values(&plan->bp) * size);
-        s->tx = allocate(plan, base * sizeof *s->tx);
-        s->velocity = allocate(plan, base * sizeof *s->velocity);
-        s->rx = allocate(plan, base * receivers * sizeof *s->rx);
-        s->boxes = allocate(plan, base * sizeof *s->boxes);
-        s->trace = allocate(plan, 2 * plan->trace_pitch * size);
-        s->row = allocate(plan, row * size);
-        if (!s->interleaved || !s->tx || !s->velocity || !s->rx || !s->boxes || !s->trace || !s->row)
-            return false;
+        s->interleaved = store_room(store, 2 * bp_record_values(&plan->bp), size, share);
+        s->tx = store_room(store, base, sizeof *s->tx, share);
+        s->velocity = store_room(store, base, sizeof *s->velocity, share);
+        s->rx = store_room(store, base * receivers, sizeof *s->rx, share);
+        s->boxes = store_room(store, base, sizeof *s->boxes, share);
+        s->trace = store_room(store, 2 * plan->trace_pitch, size, share);
+        s->row = store_room(store, row, size, share);
+        if (store->failed)
+            return;
         /* What lies behind a trace is computed with, unused: what memory holds may be subnormal, which is slow. */
         memset(s->trace, 0, 2 * plan->trace_pitch * size);
         memset(s->row, 0, row * size);
-        bytes = plan->bp.work.bytes - before;
-        plan->bp.work.bytes = before;
     }
-    plan->bp.work.bytes += bytes + sizeof *plan->scratch; /* of one thread */
-    return true;
 }
 
-static bool sums_make(struct factorised *plan)
+static void sums_make(struct factorised *plan)
 {
     const struct problem *problem = &plan->bp.problem;
-    plan->sums = calloc((size_t)problem->patch_count, sizeof *plan->sums);
-    if (!plan->sums)
-        return false;
-    plan->bp.work.bytes += (double)problem->patch_count * sizeof *plan->sums;
-    for (int k = 0; k < problem->patch_count; k++) {
-        const size_t pixels = (size_t)problem->patches[k].x_count * (size_t)problem->patches[k].r_count;
-        plan->sums[k] = allocate(plan, 2 * pixels * real_size(problem->precision));
-        if (!plan->sums[k])
-            return false;
-    }
-    return true;
+    plan->sums = room(plan, (size_t)problem->patch_count, sizeof *plan->sums);
+    for (int k = 0; plan->sums && k < problem->patch_count; k++)
+        plan->sums[k] = room(plan, 2 * (size_t)problem->patches[k].x_count * (size_t)problem->patches[k].r_count,
+                             real_size(problem->precision));
 }
 
-static bool pings_make(struct factorised *plan)
+static void pings_make(struct factorised *plan)
 {
     const struct problem *problem = &plan->bp.problem;
     const struct acquisition *a = problem->acquisition;
     const double quintics = budget_quintics(plan->bp.medium.phase_limit, problem->precision);
-    plan->normal = allocate(plan, (size_t)a->pings * sizeof *plan->normal);
-    plan->boxes = allocate(plan, (size_t)a->pings * sizeof *plan->boxes);
-    const size_t row = plan->layout.record * real_size(problem->precision);
-    plan->rows = allocate(plan, (size_t)plan->tree.settings.base * (size_t)a->receivers * row + row);
-    if (!plan->normal || !plan->boxes || !plan->rows)
-        return false;
-    for (int p = 0; p < a->pings; p++) {
+    plan->normal = room(plan, (size_t)a->pings, sizeof *plan->normal);
+    plan->boxes = room(plan, (size_t)a->pings, sizeof *plan->boxes);
+    const size_t records = (size_t)plan->tree.settings.base * (size_t)a->receivers;
+    plan->rows = room(plan, records + 1, plan->layout.record * real_size(problem->precision));
+    for (int p = 0; !plan->bp.engines.failed && p < a->pings; p++) {
         plan->normal[p] = acquisition_normal(a, p);
         plan->boxes[p] = ping_box_make(a, p, problem->patch_count, problem->patches, quintics);
     }
-    return true;
 }
 
 /* Records, tables and layouts. */
@@ -205,7 +178,7 @@ enum status factorised_plan(const struct problem *problem, const struct tree_set
     if (!plan)
         return status_set(STATUS_FAILED, "no memory for the plan");
     plan->bp.problem = *problem;
-    plan->bp.work.bytes = sizeof *plan;
+    plan->bp.work.bytes = BP_BYTES(*plan);
     enum status status = problem_turn_back(&plan->bp.problem, &plan->bp.turned, &plan->bp.work.bytes);
     if (status == STATUS_OK)
         status = tree_make(&plan->bp.problem, settings, &plan->tree);
@@ -214,9 +187,16 @@ enum status factorised_plan(const struct problem *problem, const struct tree_set
     plan->bp.work.bytes += plan->tree.bytes;
     if (status == STATUS_OK)
         status = reading_make(plan);
-    if (status == STATUS_OK
-        && !(pings_make(plan) && images_make(plan) && phasors_make(plan) && scratch_make(plan) && sums_make(plan)
-             && factorised_count(plan)))
+    if (status == STATUS_OK) {
+        pings_make(plan);
+        images_make(plan);
+        phasors_make(plan);
+        scratch_make(plan);
+        sums_make(plan);
+        factorised_count(plan);
+    }
+    plan->bp.work.bytes += plan->bp.engines.bytes;
+    if (status == STATUS_OK && plan->bp.engines.failed)
         status = status_set(STATUS_FAILED, "no memory for images of subapertures");
     if (status != STATUS_OK) {
         factorised_destroy(plan);
@@ -231,30 +211,7 @@ void factorised_destroy(struct factorised *plan)
 {
     if (!plan)
         return;
-    for (int k = 0; plan->sums && k < plan->bp.problem.patch_count; k++)
-        free(plan->sums[k]);
-    for (int k = 0; plan->phasors && k < plan->tree.settings.stages * plan->tree.views; k++)
-        free(plan->phasors[k]);
-    for (int n = 0; plan->scratch && n < plan->threads; n++) {
-        struct factorised_scratch *s = &plan->scratch[n];
-        free(s->interleaved);
-        free(s->tx);
-        free(s->velocity);
-        free(s->rx);
-        free(s->boxes);
-        free(s->trace);
-        free(s->row);
-    }
-    for (int level = 0; level < STAGES_MOST; level++)
-        free(plan->images[level]);
-    free(plan->scratch);
-    free(plan->sums);
-    free(plan->phasors);
-    free(plan->needed);
-    free(plan->normal);
-    free(plan->boxes);
-    free(plan->rows);
-    (plan->bp.problem.precision == PRECISION_DOUBLE ? traces_destroy_double : traces_destroy_float)(plan->bp.traces);
+    store_release(&plan->bp.engines);
     tree_free(&plan->tree);
     turned_free(&plan->bp.turned);
     free(plan);

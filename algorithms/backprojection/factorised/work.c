@@ -1,7 +1,6 @@
 /* What factorised back projection does: counted work, and its cost, by which the number of levels is chosen. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "backprojection/factorised/factorised.h"
 
@@ -202,16 +201,13 @@ enum status factorised_forecast(const struct problem *problem, const struct tree
     return STATUS_OK;
 }
 
-bool factorised_count(struct factorised *plan)
+void factorised_count(struct factorised *plan)
 {
     const struct tree *tree = &plan->tree;
     const int patches = tree->problem.patch_count, count = tree->first[tree->settings.stages];
     struct amounts all = {0};
-    plan->needed = malloc((size_t)(count * patches) * sizeof *plan->needed);
-    if (!plan->needed)
-        return false;
-    plan->bp.work.bytes += (double)(count * patches) * sizeof *plan->needed;
-    for (int n = 0; n < count; n++) {
+    plan->needed = store_room(&plan->bp.engines, (size_t)(count * patches), sizeof *plan->needed, 1);
+    for (int n = 0; plan->needed && n < count; n++) {
         count_images(tree, &tree->subapertures[n], &all);
         plan->flops += 6 * (double)tree->subapertures[n].values / 2;
         for (int k = 0; k < patches; k++) {
@@ -224,7 +220,6 @@ bool factorised_count(struct factorised *plan)
         }
     }
     plan->flops += all.records * (4.0 * (plan->bp.table.branches - 1) + 8) + flops_of(tree, &all);
-    return true;
 }
 
 struct work factorised_work(const struct factorised *plan)

@@ -5,7 +5,6 @@
 #include <limits.h>
 #include <math.h>
 #include <omp.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "backprojection/bp_engine.h"
@@ -27,32 +26,16 @@ struct general {
     int batch;              /* records */
     struct bp_layout layout;
     void *rows;        /* real [batch][layout.record]; one value more may be read */
-    void *interleaved; /* complex [threads][branches][shape.length] */
-    int patch_count;
-    bool *along_x; /* [patch_count] the lines' direction */
-    void **sums;   /* [patch_count]: re then im, real [lines][pixels of a line] each */
+    void *interleaved; /* [threads][each]: complex [branches][shape.length] */
+    size_t each;       /* bytes */
+    bool *along_x;     /* [patch_count] the lines' direction */
+    void **sums;       /* [patch_count]: re then im, real [lines][pixels of a line] each */
 };
 
 static enum status general_applicable(const struct bp *bp)
 {
     (void)bp;
     return STATUS_OK;
-}
-
-static void general_destroy(struct bp *bp)
-{
-    struct general *general = bp->state;
-    if (!general)
-        return;
-    for (int k = 0; general->sums && k < general->patch_count; k++)
-        bp_part_free(bp, general->sums[k]);
-    free(general->sums);
-    free(general->along_x);
-    free(general->boxes);
-    free(general->normal);
-    free(general->interleaved);
-    free(general->rows);
-    free(general);
 }
 
 /* Measured, in pixels of a block: a block's quintic takes as long as 30, an exact delay as long as three. */
@@ -158,10 +141,11 @@ static enum status general_plan(struct bp *bp)
 {
     const struct problem *problem = &bp->problem;
     const struct acquisition *a = problem->acquisition;
-    struct general *general = bp->state = calloc(1, sizeof *general);
+    struct store *store = &bp->engines;
+    struct general *general = bp->state = store_take(store, 1, sizeof *general, 0);
     if (!general)
         return status_set(STATUS_FAILED, "no memory for the plan");
-    enum status status = bp_plan_traces(bp);
+    const enum status status = bp_plan_traces(bp);
     if (status != STATUS_OK)
         return status;
     if (bp->kernel.branches > 0 && bp->medium.phase_limit > 0)
@@ -177,16 +161,15 @@ static enum status general_plan(struct bp *bp)
     double pairs = (double)a->pings * a->receivers;
     general->sum = bp_sum_choose(problem->precision);
     general->batch = (int)fmin(pairs, fmax(BATCH_LEAST, (double)(BATCH_BYTES / row_bytes)));
-    general->rows = memory_aligned(64, (size_t)general->batch * row_bytes + size);
-    const size_t interleaved = 2 * bp_record_values(bp) * size;
-    general->interleaved = malloc((size_t)omp_get_max_threads() * interleaved);
-    general->normal = calloc((size_t)a->pings, sizeof *general->normal);
-    general->boxes = calloc((size_t)a->pings, sizeof *general->boxes);
-    general->patch_count = problem->patch_count;
-    general->along_x = calloc((size_t)problem->patch_count, sizeof *general->along_x);
-    general->sums = calloc((size_t)problem->patch_count, sizeof *general->sums);
-    if (!general->rows || !general->interleaved || !general->normal || !general->boxes || !general->along_x
-        || !general->sums)
+    general->rows = store_room(store, (size_t)general->batch * row_bytes + size, 1, 0);
+    const size_t threads = (size_t)omp_get_max_threads();
+    general->each = 2 * bp_record_values(bp) * size;
+    general->interleaved = store_room(store, threads, general->each, 1.0 / (double)threads);
+    general->normal = store_room(store, (size_t)a->pings, sizeof *general->normal, 1);
+    general->boxes = store_room(store, (size_t)a->pings, sizeof *general->boxes, 1);
+    general->along_x = store_room(store, (size_t)problem->patch_count, sizeof *general->along_x, 0);
+    general->sums = store_room(store, (size_t)problem->patch_count, sizeof *general->sums, 0);
+    if (store->failed)
         return status_set(STATUS_FAILED, "no memory for %d records of %d values", general->batch, bp->shape.length);
     const double quintics = budget_quintics(bp->medium.phase_limit, problem->precision);
     for (int p = 0; p < a->pings; p++) {
@@ -202,8 +185,7 @@ static enum status general_plan(struct bp *bp)
         if (!general->sums[k])
             return status_set(STATUS_FAILED, "no memory for the sums of %zu pixels", pixels);
     }
-    bp->work.bytes += sizeof *general + general->batch * (double)row_bytes + (double)interleaved
-                      + (double)a->pings * (double)(sizeof *general->normal + sizeof *general->boxes);
+    store->bytes += sizeof *general + general->batch * (double)row_bytes;
     return STATUS_OK;
 }
 
@@ -294,7 +276,7 @@ static void general_execute(struct bp *bp, const struct echoes *echoes, struct i
     struct general *general = bp->state;
     const struct problem *problem = &bp->problem;
     size_t pairs = (size_t)problem->acquisition->pings * (size_t)problem->acquisition->receivers;
-    size_t size = real_size(problem->precision), scratch = 2 * bp_record_values(bp) * size;
+    const size_t size = real_size(problem->precision);
     struct bp_lines lines = {
         bp,    general->sum, problem->acquisition, general->normal, general->boxes, general->rows, general->layout,
         {0, 0}};
@@ -311,7 +293,7 @@ static void general_execute(struct bp *bp, const struct echoes *echoes, struct i
         for (int n = 0; n < count; n++)
             if (bp_met(bp, (int)((first + (size_t)n) / (size_t)problem->acquisition->receivers)))
                 bp_record_fill(bp, &general->layout, echoes, first + (size_t)n,
-                               (char *)general->interleaved + (size_t)omp_get_thread_num() * scratch,
+                               (char *)general->interleaved + (size_t)omp_get_thread_num() * general->each,
                                (char *)general->rows + (size_t)n * general->layout.record * size);
         stages_end(stages, "compress");
         const double share = (double)(next - begin) / (double)pairs / problem->patch_count;
@@ -359,5 +341,4 @@ const struct bp_engine bp_general = {
     .beside = general_beside,
     .plan = general_plan,
     .execute = general_execute,
-    .destroy = general_destroy,
 };

@@ -228,7 +228,7 @@ void bp_record_fill(const struct bp *bp, const struct bp_layout *layout, const s
     const size_t branches = (size_t)bp->table.branches, length = bp_branch_length(bp), blocks = (size_t)layout->blocks;
     const size_t block = layout->apart, size = real_size(bp->problem.precision);
     char *from = scratch, *to = row;
-    bp_fill_row(bp, omp_get_thread_num(), echoes, index, from);
+    traces_of(bp->problem.precision)->fill(bp->traces, omp_get_thread_num(), bp_record(bp, echoes, index), from);
     if (bp->table.branches > bp->shape.branches) {
         filter(bp, from);
         from += 2 * (size_t)bp->shape.length * size;

@@ -60,7 +60,8 @@ static void fill_rows(const struct bp *bp, const struct echoes *echoes, int m, c
     for (int p = 0; p < place->count; p++) {
         char *row = tile + (size_t)p * pitch * bytes;
         if (tile_met(bp, place->ping + p, 1))
-            bp_fill_row(bp, thread, echoes, record_of(bp, place->ping + p, m), row);
+            traces_of(bp->problem.precision)
+                ->fill(bp->traces, thread, bp_record(bp, echoes, record_of(bp, place->ping + p, m)), row);
         else
             memset(row, 0, pitch * bytes);
     }
@@ -74,16 +75,18 @@ static void fill_steps(const struct bp *bp, const struct echoes *echoes, int m, 
     const struct invariant *in = bp->state;
     const size_t bytes = bp->shape.pitch * 2 * real_size(bp->problem.precision);
     const size_t samples = (size_t)bp->shape.samples;
+    const struct traces_build *traces = traces_of(bp->problem.precision);
     const size_t begin = (size_t)(bp->shape.first - bp->shape.from) * 2 * real_size(bp->problem.precision);
     const int thread = omp_get_thread_num();
     char *spectra = (char *)in->tiles + (size_t)thread * in->tile_bytes, *tile = spectra + TILE * bytes;
     for (int p = 0; p < place->count; p++)
         if (tile_met(bp, place->ping + p, 1))
-            bp_fill_spectrum(bp, thread, echoes, record_of(bp, place->ping + p, m), spectra + (size_t)p * bytes);
+            traces->spectrum(bp->traces, thread, bp_record(bp, echoes, record_of(bp, place->ping + p, m)),
+                             spectra + (size_t)p * bytes);
     for (int k = 0; k < in->slab.step_count && in->slab.step_first + k < bp->table.upsample; k++) {
         for (int p = 0; p < place->count; p++)
             if (tile_met(bp, place->ping + p, 1))
-                bp_fill_plane(bp, thread, spectra + (size_t)p * bytes, in->slab.step_first + k,
+                traces->plane(bp->traces, thread, spectra + (size_t)p * bytes, in->slab.step_first + k,
                               tile + (size_t)p * bytes);
             else
                 memset(tile + (size_t)p * bytes, 0, bytes);
@@ -234,5 +237,4 @@ const struct bp_engine bp_invariant = {
     .beside = invariant_beside,
     .plan = invariant_plan,
     .execute = invariant_execute,
-    .destroy = invariant_destroy,
 };

@@ -5,10 +5,8 @@
 #include <limits.h>
 #include <math.h>
 #include <omp.h>
-#include <stdlib.h>
 
 #include "backprojection/budget.h"
-#include "common/memory.h"
 
 enum {
     SLAB_BYTES = 64 << 20, /* receivers are taken together up to this: the image is read and written for each slab */
@@ -151,12 +149,6 @@ enum status invariant_applicable(const struct bp *bp)
             return status;
     }
     return STATUS_OK;
-}
-
-static void *allocate(size_t bytes, double *total)
-{
-    *total += (double)bytes;
-    return memory_aligned(64, bytes);
 }
 
 /* The largest distance along the track between a ping and a pixel at r that are a pair. */
@@ -322,17 +314,17 @@ static enum status plan_track(struct bp *bp, const struct straight_track *track)
     const struct problem *problem = &bp->problem;
     const struct acquisition *a = problem->acquisition;
     struct invariant *in = bp->state;
-    double *bytes = &bp->work.bytes;
+    struct store *store = &bp->engines;
     in->row = row_functions[isa_choose()][problem->precision];
     in->scatter = scatter_functions[isa_choose()][problem->precision];
     piece_fit_make(&in->fit);
     in->reversed = track->spacing < 0;
     in->patch_count = problem->patch_count;
-    in->rasters = allocate((size_t)problem->patch_count * sizeof *in->rasters, bytes);
-    in->strides = allocate((size_t)problem->patch_count * sizeof *in->strides, bytes);
-    in->sums = calloc((size_t)problem->patch_count, sizeof *in->sums);
-    in->offsets = allocate((size_t)a->receivers * sizeof *in->offsets, bytes);
-    if (!in->rasters || !in->strides || !in->sums || !in->offsets)
+    in->rasters = store_room(store, (size_t)problem->patch_count, sizeof *in->rasters, 1);
+    in->strides = store_room(store, (size_t)problem->patch_count, sizeof *in->strides, 1);
+    in->sums = store_room(store, (size_t)problem->patch_count, sizeof *in->sums, 0);
+    in->offsets = store_room(store, (size_t)a->receivers, sizeof *in->offsets, 1);
+    if (store->failed)
         return status_set(STATUS_FAILED, "no memory for the plan");
     for (int m = 0; m < a->receivers; m++)
         in->offsets[m] = a->rx[m].x - a->tx[0].x;
@@ -386,7 +378,7 @@ static enum status plan_memory(struct bp *bp, const struct lengths *lengths)
     const size_t tile =
         (bp_whole(&bp->table) ? (size_t)bp->shape.branches * (size_t)bp->shape.length : 2 * bp->shape.pitch) * TILE * 2
         * size;
-    double *bytes = &bp->work.bytes, ignored = 0;
+    struct store *store = &bp->engines;
     if (!((double)lengths->entries * (double)lengths->spread < INT_MAX))
         return status_set(STATUS_UNSUPPORTED, "tables of %zu entries are too long to index", lengths->entries);
     if (!(in->slab.receiver_stride < INT_MAX))
@@ -398,12 +390,11 @@ static enum status plan_memory(struct bp *bp, const struct lengths *lengths)
     in->slab_re = bp_part_allocate(bp, values * size);
     in->slab_im = bp_part_allocate(bp, values * size);
     in->tile_bytes = (tile + 63) / 64 * 64;
-    in->tiles = allocate(threads * in->tile_bytes, &ignored);
-    in->tables = allocate(threads * per_thread, &ignored);
-    in->scratch = allocate(threads * sizeof *in->scratch, &ignored);
-    if (!in->slab_re || !in->slab_im || !in->tiles || !in->tables || !in->scratch)
+    in->tiles = store_room(store, threads, in->tile_bytes, 1.0 / (double)threads);
+    in->tables = store_room(store, threads, per_thread, 1.0 / (double)threads);
+    in->scratch = store_room(store, threads, sizeof *in->scratch, 1.0 / (double)threads);
+    if (store->failed)
         return status_set(STATUS_FAILED, "no memory for records of %d receivers", in->receivers);
-    *bytes += (double)(in->tile_bytes + per_thread + sizeof *in->scratch);
     arena = (struct arena){in->tables, 0};
     for (size_t t = 0; t < threads; t++)
         in->scratch[t] = scratch_take(&arena, lengths, size);
@@ -416,7 +407,7 @@ enum status invariant_plan(struct bp *bp)
     struct lengths lengths = {.entries = ENTRIES_LEAST,
                               .taps = (size_t)bp->table.taps,
                               .spread = bp->table.branches > 1 ? 1 : (size_t)bp->table.taps + BP_SPREAD};
-    bp->state = calloc(1, sizeof(struct invariant));
+    bp->state = store_take(&bp->engines, 1, sizeof(struct invariant), 0);
     if (!bp->state)
         return status_set(STATUS_FAILED, "no memory for the plan");
     enum status status = bp_plan_traces(bp);
@@ -429,22 +420,4 @@ enum status invariant_plan(struct bp *bp)
         return status;
     plan_slab(bp, lengths.samples);
     return plan_memory(bp, &lengths);
-}
-void invariant_destroy(struct bp *bp)
-{
-    struct invariant *in = bp->state;
-    if (!in)
-        return;
-    for (int k = 0; in->sums && k < in->patch_count; k++)
-        bp_part_free(bp, in->sums[k]);
-    free(in->sums);
-    free(in->strides);
-    free(in->tables);
-    free(in->scratch);
-    free(in->tiles);
-    bp_part_free(bp, in->slab_im);
-    bp_part_free(bp, in->slab_re);
-    free(in->offsets);
-    free(in->rasters);
-    free(in);
 }

@@ -35,6 +35,5 @@ struct invariant {
 enum status invariant_applicable(const struct bp *bp);
 double invariant_units(const struct bp *bp, double *residues);
 enum status invariant_plan(struct bp *bp);
-void invariant_destroy(struct bp *bp);
 
 #endif

@@ -92,22 +92,21 @@ static void edges_fill(const struct rma *rma, const struct rma_swath *swath)
     }
 }
 
-bool REAL_NAME(rma_map_plan)(struct rma *rma, struct rma_swath *swath)
+void REAL_NAME(rma_map_plan)(struct rma *rma, struct rma_swath *swath)
 {
     struct rma_map *map = &swath->map;
     map->runs = (swath->held + RMA_RUN - 1) / RMA_RUN;
     const size_t runs = (size_t)map->runs * (size_t)rma->receivers, taps = (size_t)rma->delay->taps.taps;
-    map->first = rma_take(rma, runs, sizeof *map->first, 1);
-    map->weights = rma_take(rma, runs * taps, sizeof(real), 1);
-    map->slopes = rma_take(rma, runs * taps, sizeof(real), 1);
-    map->phases = rma_take(rma, runs * RMA_RUN, sizeof(complex_real), 1);
-    map->edges = rma_take(rma, (size_t)(rma->delay->terms.angles * rma->delay->terms.terms),
-                          ((size_t)swath->row / LANES + 1) * sizeof(complex_real), 1);
-    if (!map->first || !map->weights || !map->slopes || !map->phases || !map->edges)
-        return false;
+    map->first = store_take(&rma->store, runs, sizeof *map->first, 1);
+    map->weights = store_take(&rma->store, runs * taps, sizeof(real), 1);
+    map->slopes = store_take(&rma->store, runs * taps, sizeof(real), 1);
+    map->phases = store_take(&rma->store, runs * RMA_RUN, sizeof(complex_real), 1);
+    map->edges = store_take(&rma->store, (size_t)(rma->delay->terms.angles * rma->delay->terms.terms),
+                            ((size_t)swath->row / LANES + 1) * sizeof(complex_real), 1);
+    if (rma->store.failed)
+        return;
     edges_fill(rma, swath);
     for (int m = 0; m < rma->receivers; m++)
         for (int run = 0; run < map->runs; run++)
             run_fill(rma, swath, m, run);
-    return true;
 }

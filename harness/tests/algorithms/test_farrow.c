@@ -146,14 +146,14 @@ static void rows_hold_branches(void **state)
         struct traces *traces;
         struct traces_shape shape;
         const struct traces_form form = {.upsample = upsample, .degree = degree, .guard = GUARD};
-        assert_int_equal(traces_plan_double(&a, &form, 1, &shape, &traces), STATUS_OK);
+        assert_int_equal(traces_double.plan(&a, &form, 1, &shape, &traces), STATUS_OK);
         for (int k = 1 - SAMPLES / 2; k < SAMPLES / 2; k++) {
             const double nu = (double)k / SAMPLES / upsample;
             double gains[FARROW_MOST + 1];
             farrow_gains(degree, nu, gains);
             for (int i = 0; i < SAMPLES; i++)
                 record[i] = cexp(2 * M_PI * I * k * i / SAMPLES);
-            traces_fill_double(traces, 0, record, row);
+            traces_double.fill(traces, 0, record, row);
             for (int m = 0; m <= degree; m++)
                 for (int i = 0; i < shape.length; i++) {
                     const bool inside = i >= GUARD && i < shape.length - GUARD;
@@ -163,7 +163,7 @@ static void rows_hold_branches(void **state)
                         fail_msg("degree %d, bin %d, branch %d, value %d", degree, k, m, i);
                 }
         }
-        traces_destroy_double(traces);
+        traces_double.destroy(traces);
         acquisition_free(&a);
     }
 }

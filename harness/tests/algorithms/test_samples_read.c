@@ -223,14 +223,14 @@ static void compress(const struct acquisition *a, const struct echoes *raw, stru
 {
     struct traces_shape shape;
     struct traces *traces;
-    assert_int_equal(traces_plan_double(a, &(struct traces_form){.upsample = 1}, 1, &shape, &traces), STATUS_OK);
+    assert_int_equal(traces_double.plan(a, &(struct traces_form){.upsample = 1}, 1, &shape, &traces), STATUS_OK);
     *out = *a;
     out->compressed = true;
     assert_int_equal(echoes_allocate(out, PRECISION_DOUBLE, echoes), STATUS_OK);
     for (int i = 0; i < PINGS * RECEIVERS; i++)
-        traces_fill_double(traces, 0, (const double complex *)raw->samples + i * SAMPLES,
+        traces_double.fill(traces, 0, (const double complex *)raw->samples + i * SAMPLES,
                            (double complex *)echoes->samples + i * SAMPLES);
-    traces_destroy_double(traces);
+    traces_double.destroy(traces);
 }
 
 /* What range migration compresses of a record; its work does not grow with what is recorded beside it. */
