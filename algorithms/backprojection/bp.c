@@ -10,11 +10,11 @@
 #include "backprojection/pairs/omission.h"
 #include "backprojection/pairs/pairs.h"
 #include "common/fft_length.h"
-#include "common/image_spectrum.h"
+#include "common/pulse_band.h"
 
 /* The kernel's branches, where they are few enough; false without memory. In float they may be as far off as phase
    factors are rounded (ROUNDING). */
-static bool kernel_make(struct bp *bp, const struct interpolator *in, const void *options)
+static bool kernel_make(struct bp *bp, const struct interpolator *in)
 {
     const size_t count = KERNEL_BRANCHES_MOST * (size_t)in->taps;
     const double tolerance = bp->problem.precision == PRECISION_DOUBLE ? 1e-10 : 3.5e-6;
@@ -22,28 +22,37 @@ static bool kernel_make(struct bp *bp, const struct interpolator *in, const void
     bp->kernel.coefficients = store_room(&bp->tables, count, sizeof *bp->kernel.coefficients, 1);
     if (!bp->kernel.coefficients)
         return false;
-    bp->kernel.branches = kernel_branches(in, options, tolerance, bp->kernel.coefficients);
+    bp->kernel.branches = kernel_branches(in, tolerance, bp->kernel.coefficients);
     return bp->kernel.branches >= 0;
 }
 
-/* Tabulate the interpolator's weights in the plan's precision. */
-static enum status tabulate(struct bp *bp, const struct interpolator *in, const void *options)
+/* How it is read, but for the weights. */
+static struct bp_table table_of(const struct interpolator *in)
 {
-    bp->table = (struct bp_table){.upsample = in->upsample,
-                                  .steps = in->steps,
-                                  .taps = in->taps,
-                                  .first = in->first,
-                                  .guard = in->taps,
-                                  .branches = 1,
-                                  .preemphasis = in->preemphasis};
     if (in->degree > 0)
-        bp->table = (struct bp_table){.reading = BP_BRANCHES,
-                                      .upsample = in->upsample,
-                                      .steps = 1,
-                                      .taps = in->degree + 1,
-                                      .guard = BP_BRANCHES_GUARD,
-                                      .branches = in->degree + 1,
-                                      .shift = 0.5};
+        return (struct bp_table){.reading = BP_BRANCHES,
+                                 .upsample = in->upsample,
+                                 .steps = 1,
+                                 .taps = in->degree + 1,
+                                 .guard = BP_BRANCHES_GUARD,
+                                 .branches = in->degree + 1,
+                                 .shift = 0.5};
+    return (struct bp_table){.reading = in->taps == 1   ? BP_NEAREST
+                                        : in->steps > 0 ? BP_STEPS
+                                                        : BP_CUBICS,
+                             .upsample = in->upsample,
+                             .steps = in->steps,
+                             .taps = in->taps,
+                             .first = in->first,
+                             .guard = in->taps,
+                             .branches = 1,
+                             .preemphasis = in->preemphasis};
+}
+
+/* Tabulate the interpolator's weights in the plan's precision. */
+static enum status tabulate(struct bp *bp, const struct interpolator *in)
+{
+    bp->table = table_of(in);
     if (in->taps == 1)
         return STATUS_OK; /* BP_NEAREST, BP_BRANCHES */
     bool line = in->taps == 2 && in->steps > 0;
@@ -54,7 +63,7 @@ static enum status tabulate(struct bp *bp, const struct interpolator *in, const 
         if (in->steps > 0)
             for (int p = 0; p < in->steps; p++) {
                 double fraction = (double)p / in->steps, *at_p = w + (size_t)p * taps;
-                in->weights(options, fraction, at_p);
+                in->weights(in, fraction, at_p);
                 line = line && fabs(at_p[0] - (1 - fraction)) <= 1e-15 && fabs(at_p[1] - fraction) <= 1e-15;
             }
         for (int k = 0; in->steps == 0 && k < BP_INTERVALS; k++) {
@@ -62,7 +71,7 @@ static enum status tabulate(struct bp *bp, const struct interpolator *in, const 
             double u[4], *c = w + (size_t)k * 4 * taps;
             for (int n = 0; n < 4; n++) {
                 u[n] = 0.5 - 0.5 * cos(M_PI * (2 * n + 1) / 8);
-                in->weights(options, (k + u[n]) / BP_INTERVALS, at + (size_t)n * taps);
+                in->weights(in, (k + u[n]) / BP_INTERVALS, at + (size_t)n * taps);
             }
             for (size_t t = 0; t < taps; t++) {
                 double d[4] = {at[t], at[taps + t], at[2 * taps + t], at[3 * taps + t]};
@@ -81,11 +90,12 @@ static enum status tabulate(struct bp *bp, const struct interpolator *in, const 
             else
                 ((float *)bp->weights)[i] = (float)w[i];
     }
-    bool complete = w && at && bp->weights && (in->steps > 0 || kernel_make(bp, in, options));
+    bool complete = w && at && bp->weights && (in->steps > 0 || kernel_make(bp, in));
     free(w);
     free(at);
     bp->table.weights = bp->weights;
-    bp->table.reading = line ? BP_LINE : in->steps > 0 ? BP_STEPS : BP_CUBICS;
+    if (line)
+        bp->table.reading = BP_LINE;
     return complete ? STATUS_OK : status_set(STATUS_FAILED, "no memory for interpolation weights");
 }
 
@@ -118,8 +128,10 @@ static void count_work(struct bp *bp, const struct interpolator *in)
 const char *const bp_engine_names[] = {"auto", "general", "invariant", NULL};
 const char *const bp_exact_names[] = {"false", "true", NULL};
 
-int bp_conditions(const struct problem *problem, const void *options, struct condition *list, int room)
+int bp_method_conditions(const struct problem *problem, const void *method, const void *options, struct condition *list,
+                         int room)
 {
+    (void)method;
     const struct bp_options *given = options;
     int count = conditions_sampled(problem, list, room);
     if (count < room)
@@ -176,8 +188,8 @@ static void aperture_take(struct bp *bp, const struct bp_options *options)
     bp->problem.acquisition = &bp->limited;
 }
 
-enum status bp_plan(const struct problem *problem, const struct interpolator *interpolator, const void *options,
-                    void **plan)
+enum status bp_plan(const struct problem *problem, const struct interpolator *interpolator,
+                    const struct bp_options *options, void **plan)
 {
     const struct acquisition *a = problem->acquisition;
     *plan = NULL;
@@ -195,7 +207,7 @@ enum status bp_plan(const struct problem *problem, const struct interpolator *in
     if (status == STATUS_OK)
         status = bp_met_find(bp);
     if (status == STATUS_OK)
-        status = tabulate(bp, interpolator, options);
+        status = tabulate(bp, interpolator);
     if (status == STATUS_OK)
         status = choose_engine(bp, options);
     if (status == STATUS_OK)
@@ -248,8 +260,7 @@ static const double ROUNDING[][2] = {{3e-7, 1e-13}, {2.5e-6, 1e-9}};
 static const double DELAYS_SHARE = 0.3;
 
 /* What a pair reads in the general engine: a kernel of few branches is read as those. */
-static enum status forecast_reading(const struct bp *bp, const struct interpolator *in, const void *options,
-                                    struct forecast *forecast)
+static enum status forecast_reading(const struct bp *bp, const struct interpolator *in, struct forecast *forecast)
 {
     struct bp kernel = {.problem = bp->problem};
     kernel.problem.precision = PRECISION_FLOAT; /* so that both precisions are forecast alike */
@@ -258,7 +269,7 @@ static enum status forecast_reading(const struct bp *bp, const struct interpolat
     forecast->values = in->degree > 0 ? in->degree + 1 : in->taps;
     if (bp->engine == &bp_invariant || in->degree > 0 || in->taps == 1 || in->steps > 0)
         return STATUS_OK;
-    const bool made = kernel_make(&kernel, in, options);
+    const bool made = kernel_make(&kernel, in);
     if (made && kernel.kernel.branches > 0 && bp->medium.phase_limit > 0) {
         forecast->kind = READ_BRANCHES;
         forecast->values = kernel.kernel.branches;
@@ -273,19 +284,10 @@ static enum status forecast_begin(const struct problem *problem, const struct in
 {
     const struct acquisition *a = problem->acquisition;
     *bp = (struct bp){.problem = *problem, .medium = {a->sound_speed, a->fc, a->fs, 0, a->samples - 1, 0}};
-    bp->table = (struct bp_table){.reading = in->degree > 0  ? BP_BRANCHES
-                                             : in->taps == 1 ? BP_NEAREST
-                                             : in->steps > 0 ? BP_STEPS
-                                                             : BP_CUBICS,
-                                  .upsample = in->upsample,
-                                  .steps = in->steps,
-                                  .taps = in->degree > 0 ? in->degree + 1 : in->taps,
-                                  .first = in->degree > 0 ? 0 : in->first,
-                                  .branches = in->degree > 0 ? in->degree + 1 : 1,
-                                  .preemphasis = in->preemphasis};
+    bp->table = table_of(in);
     struct condition list[CONDITIONS_MAX];
     enum status status =
-        conditions_check("back projection", list, bp_conditions(problem, options, list, CONDITIONS_MAX));
+        conditions_check("back projection", list, bp_method_conditions(problem, NULL, options, list, CONDITIONS_MAX));
     aperture_take(bp, options);
     if (status == STATUS_OK)
         status = problem_turn_back(&bp->problem, &bp->turned, NULL);
@@ -312,23 +314,21 @@ static void forecast_records(struct bp *bp, const struct interpolator *in, struc
 }
 
 /* NAN without memory. */
-static double error_between_samples(const struct problem *problem, const struct interpolator *in, const void *options)
+static double error_between_samples(const struct problem *problem, const struct interpolator *in)
 {
     struct law_spectrum spectrum;
-    return law_spectrum(problem->acquisition, image_cells(problem), &spectrum)
-               ? interpolation_error(in, options, &spectrum)
-               : NAN;
+    return law_spectrum(problem->acquisition, image_cells(problem), &spectrum) ? interpolation_error(in, &spectrum)
+                                                                               : NAN;
 }
 
-enum status bp_cost(const struct problem *problem, const struct interpolator *in, const void *options,
+enum status bp_cost(const struct problem *problem, const struct interpolator *in, const struct bp_options *options,
                     struct forecast *forecast)
 {
-    const struct bp_options *given = options;
     struct bp bp;
     *forecast = (struct forecast){.sums_pairs = true};
-    enum status status = forecast_begin(problem, in, given, &bp);
+    enum status status = forecast_begin(problem, in, options, &bp);
     if (status == STATUS_OK)
-        status = forecast_reading(&bp, in, options, forecast);
+        status = forecast_reading(&bp, in, forecast);
     if (status == STATUS_OK) {
         const bool general = bp.engine == &bp_general;
         forecast->tables = !general;
@@ -336,7 +336,7 @@ enum status bp_cost(const struct problem *problem, const struct interpolator *in
         forecast->error[CAUSE_DELAYS] = general ? DELAYS_SHARE * bp.medium.phase_limit : 1e-7;
         forecast->error[CAUSE_FLOAT] = ROUNDING[general][problem->precision];
         if (bp.limited.aperture_limit > 0)
-            forecast->error[CAUSE_APERTURE] = aperture_planned(problem, given->aperture);
+            forecast->error[CAUSE_APERTURE] = aperture_planned(problem, options->aperture);
         if (forecast->kind == READ_BRANCHES && in->degree == 0)
             bp.kernel.branches = forecast->values;
         forecast_records(&bp, in, forecast);
@@ -346,16 +346,44 @@ enum status bp_cost(const struct problem *problem, const struct interpolator *in
     return status;
 }
 
-enum status bp_forecast(const struct problem *problem, const struct interpolator *in, const void *options,
+enum status bp_forecast(const struct problem *problem, const struct interpolator *in, const struct bp_options *options,
                         struct forecast *forecast)
 {
     const enum status status = bp_cost(problem, in, options, forecast);
     if (status != STATUS_OK)
         return status;
-    const double law = error_between_samples(problem, in, options);
+    const double law = error_between_samples(problem, in);
     const double ends = in->upsample == 1 && in->degree == 0 && in->taps > 1 ? law_ends(problem, in->taps) : 0;
     forecast->error[CAUSE_INTERPOLATION] = hypot(law, ends);
     return isnan(law) ? status_set(STATUS_FAILED, "no memory for an error law") : STATUS_OK;
+}
+
+enum status bp_method_plan(const struct problem *problem, const void *given, const void *options, void **plan)
+{
+    const struct bp_method *method = given;
+    struct interpolator interpolator;
+    *plan = NULL;
+    const enum status status = method->make(problem, options, &interpolator);
+    return status == STATUS_OK ? bp_plan(problem, &interpolator, method->fixed ? method->fixed : options, plan)
+                               : status;
+}
+
+enum status bp_method_forecast(const struct problem *problem, const void *given, const void *options,
+                               struct forecast *forecast)
+{
+    const struct bp_method *method = given;
+    struct interpolator interpolator;
+    const enum status status = method->make(problem, options, &interpolator);
+    return status == STATUS_OK ? bp_forecast(problem, &interpolator, options, forecast) : status;
+}
+
+enum status bp_method_cost(const struct problem *problem, const void *given, const void *options,
+                           struct forecast *forecast)
+{
+    const struct bp_method *method = given;
+    struct interpolator interpolator;
+    const enum status status = method->make(problem, options, &interpolator);
+    return status == STATUS_OK ? bp_cost(problem, &interpolator, options, forecast) : status;
 }
 
 void bp_destroy(void *plan)

@@ -8,6 +8,7 @@
 #ifndef SASBENCH_BACKPROJECTION_BP_H
 #define SASBENCH_BACKPROJECTION_BP_H
 
+#include "backprojection/fitted.h"
 #include "contract/algorithm.h"
 
 /* The value at sample coordinate q = (tau - t0) fs upsample is  sum over k < taps of
@@ -22,7 +23,11 @@ struct interpolator {
     int degree;       /* > 0: in place of taps, the record's Farrow branches up to this power (farrow.h) are read at
                         floor(q + 1/2); taps and steps are not used */
     /* Fill w[taps] for a fraction in [0, 1). Called while planning only; NULL when taps == 1 (the weight is 1). */
-    void (*weights)(const void *options, double fraction, double *w);
+    void (*weights)(const struct interpolator *interpolator, double fraction, double *w);
+    union {
+        double beta;          /* of a Kaiser window */
+        struct fitted fitted; /* taps by least squares */
+    } kernel;                 /* what `weights` makes them of */
     bool in_papers; /* BP22 Eq. (11) and LBF21 Eq. (23) count its FLOPs (struct work): published numbers are given */
 };
 
@@ -55,15 +60,15 @@ extern const char *const bp_engine_names[], *const bp_exact_names[];
 
 /* `method` of struct algorithm: what options, which begin with a struct bp_options, make of a problem. */
 struct bp_method {
-    /* Fill *interpolator and made[made_size], which its weights are handed, and which begins with a struct bp_options
-       as well; made_size 0: they are handed the options. Errors: STATUS_UNSUPPORTED with the reason, STATUS_FAILED. */
-    enum status (*make)(const struct problem *problem, const void *options, struct interpolator *interpolator,
-                        void *made);
-    size_t made_size; /* at most BP_MADE_MOST */
+    /* Errors: STATUS_UNSUPPORTED with the reason, STATUS_FAILED. */
+    enum status (*make)(const struct problem *problem, const void *options, struct interpolator *interpolator);
+    const struct bp_options *fixed; /* in place of options; NULL: there are some */
 };
-enum { BP_MADE_MOST = 4096 };
 
-/* The callbacks of struct algorithm, whose `method` is a struct bp_method (bp_method.c). */
+/* The callbacks of struct algorithm, whose `method` is a struct bp_method. */
+#define BP_CALLBACKS                                                                                                   \
+    .conditions = bp_method_conditions, .forecast = bp_method_forecast, .cost = bp_method_cost,                        \
+    .plan = bp_method_plan, .execute = bp_execute, .reads = bp_reads, .work = bp_work, .destroy = bp_destroy
 enum status bp_method_plan(const struct problem *problem, const void *method, const void *options, void **plan);
 enum status bp_method_forecast(const struct problem *problem, const void *method, const void *options,
                                struct forecast *forecast);
@@ -73,10 +78,10 @@ enum status bp_method_cost(const struct problem *problem, const void *method, co
 int bp_method_conditions(const struct problem *problem, const void *method, const void *options, struct condition *list,
                          int room);
 
-/* The same for an interpolator. `options` begins with a struct bp_options and is only used during the call. Errors:
-   STATUS_UNSUPPORTED when the engine asked for cannot do the problem, with the reason. */
-enum status bp_plan(const struct problem *problem, const struct interpolator *interpolator, const void *options,
-                    void **plan);
+/* The same for an interpolator, which like the options is only used during the call. Errors: STATUS_UNSUPPORTED when the
+   engine asked for cannot do the problem, with the reason. */
+enum status bp_plan(const struct problem *problem, const struct interpolator *interpolator,
+                    const struct bp_options *options, void **plan);
 enum status bp_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
 void bp_reads(const void *plan, bool *read);
 struct work bp_work(const void *plan);
@@ -84,11 +89,10 @@ void bp_destroy(void *plan);
 /* The forecast of an interpolator: its error law, the delays and the rounding of the engine that bp_plan would choose;
    and all of it but the law, which takes most of the time. Errors: as bp_plan for the engine asked for, and for the
    conditions; STATUS_FAILED without memory. */
-enum status bp_cost(const struct problem *problem, const struct interpolator *interpolator, const void *options,
-                    struct forecast *forecast);
-enum status bp_forecast(const struct problem *problem, const struct interpolator *interpolator, const void *options,
-                        struct forecast *forecast);
-int bp_conditions(const struct problem *problem, const void *options, struct condition *list, int room);
+enum status bp_cost(const struct problem *problem, const struct interpolator *interpolator,
+                    const struct bp_options *options, struct forecast *forecast);
+enum status bp_forecast(const struct problem *problem, const struct interpolator *interpolator,
+                        const struct bp_options *options, struct forecast *forecast);
 
 /* sinc(z) w(z) with w a Kaiser window of parameter beta over |z| <= taps/2 (beta = 0: no window):
    I0(beta sqrt(1 - (2z/taps)^2))/I0(beta), at the distances of `taps` taps -taps/2+1 .. taps/2 from floor(q). */

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "common/bessel.h"
-#include "common/image_spectrum.h"
+#include "common/pulse_band.h"
 
 void farrow_gains(int degree, double nu, double *gains)
 {

@@ -1,10 +1,24 @@
-/* Chebyshev series of a kernel's weights (kernel.h). */
+/* A sinc kernel's weights (bp.h); Chebyshev series of any kernel's (kernel.h). */
 #include "backprojection/kernel.h"
 
 #include <math.h>
 #include <stdlib.h>
 
+#include "common/bessel.h"
+
 enum { MOST = KERNEL_BRANCHES_MOST, BRANCHES_LEAST = 2 /* one alone would be read as single samples */ };
+
+void sinc_weights(int taps, double beta, double fraction, double *w)
+{
+    const double sine = sin(M_PI * fraction), whole = bessel_i0(beta);
+    for (int k = 0; k < taps; k++) {
+        int n = k + 1 - taps / 2;
+        double z = fraction - n, edge = 1 - 4 * z * z / ((double)taps * taps);
+        /* sin(pi (fraction - n)) = (-1)^n sin(pi fraction): exact zeros at whole samples, no large arguments */
+        double value = fabs(z) < 1e-9 ? 1 : (n % 2 ? -sine : sine) / (M_PI * z);
+        w[k] = value * bessel_i0(beta * sqrt(edge > 0 ? edge : 0)) / whole;
+    }
+}
 
 /* Coefficients of z^m in the Chebyshev polynomials T_n(z). */
 static void chebyshev(double powers[MOST][MOST])
@@ -16,8 +30,7 @@ static void chebyshev(double powers[MOST][MOST])
         }
 }
 
-int kernel_branches(const struct interpolator *interpolator, const void *options, double tolerance,
-                    double *coefficients)
+int kernel_branches(const struct interpolator *interpolator, double tolerance, double *coefficients)
 {
     const int taps = interpolator->taps;
     double powers[MOST][MOST], left = 0, *values = malloc(2 * MOST * (size_t)taps * sizeof *values);
@@ -25,7 +38,7 @@ int kernel_branches(const struct interpolator *interpolator, const void *options
         return -1;
     double *series = values + MOST * taps;
     for (int k = 0; k < MOST; k++)
-        interpolator->weights(options, 0.5 + 0.5 * cos(M_PI * (k + 0.5) / MOST), values + k * taps);
+        interpolator->weights(interpolator, 0.5 + 0.5 * cos(M_PI * (k + 0.5) / MOST), values + k * taps);
     for (int n = 0; n < MOST; n++)
         for (int t = 0; t < taps; t++) {
             double sum = 0;

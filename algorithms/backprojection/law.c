@@ -30,13 +30,13 @@ static double error_of(const struct moments *list, const struct law_spectrum *sp
     return sqrt(fmax(variance, 0) / ((1 + mean) * (1 + mean) + variance)); /* <|H|^2> = |<H>|^2 + variance */
 }
 
-double interpolation_error(const struct interpolator *in, const void *options, const struct law_spectrum *spectrum)
+double interpolation_error(const struct interpolator *in, const struct law_spectrum *spectrum)
 {
     struct moments list[LAW_NODES] = {{0}};
     struct response response;
     const int steps = in->steps, rounded = steps > 0 ? IN_A_STEP * steps : 0;
     const int count = rounded > FRACTIONS ? rounded : steps > 0 ? FRACTIONS / steps * steps : FRACTIONS;
-    if (!response_begin(in, options, spectrum, &response))
+    if (!response_begin(in, spectrum, &response))
         return NAN;
     for (int k = 0; k < count; k++) {
         double complex read[LAW_NODES];

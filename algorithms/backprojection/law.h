@@ -13,8 +13,7 @@
 #include "backprojection/law_spectrum.h"
 
 /* The error law; the interpolator's own upsampling divides the frequencies. NAN without memory. */
-double interpolation_error(const struct interpolator *interpolator, const void *options,
-                           const struct law_spectrum *spectrum);
+double interpolation_error(const struct interpolator *interpolator, const struct law_spectrum *spectrum);
 
 /* The error by taps that read zero beyond the records' ends, relative L2 over an image of echoes that come from every
    pixel alike: 0 where no pixel lies within taps/2 samples of an end. */

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 
 #include "common/fft_length.h"
-#include "common/image_spectrum.h"
 #include "common/pulse_band.h"
 
 enum { GAUSS = 8, BINS = LAW_NODES, FINER = 16 };

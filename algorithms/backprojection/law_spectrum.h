@@ -6,7 +6,7 @@
 
 enum { LAW_NODES = 48 };
 
-/* Positive frequencies and their share of the image (common/image_spectrum.h): of compressed echoes, flat over the
+/* Positive frequencies and their share of the image (common/pulse_band.h): of compressed echoes, flat over the
    bandwidth, or, of raw ones, the replica's own, which has flanks beyond it and may lie off the carrier; and of their
    noise, which is white in compressed echoes. The means of both signs of a frequency are the same but for the sign of
    their imaginary parts. */

@@ -26,10 +26,9 @@ static double complex taps_response(const double *taps, int first, int count, do
     return sum;
 }
 
-bool response_begin(const struct interpolator *in, const void *options, const struct law_spectrum *spectrum,
-                    struct response *response)
+bool response_begin(const struct interpolator *in, const struct law_spectrum *spectrum, struct response *response)
 {
-    *response = (struct response){.in = in, .options = options, .spectrum = spectrum};
+    *response = (struct response){.in = in, .spectrum = spectrum};
     response->taps = malloc((size_t)in->taps * sizeof *response->taps);
     for (int n = 0; n < spectrum->count && in->degree > 0; n++)
         farrow_gains(in->degree, spectrum->nu[n] / in->upsample, response->gains[n]);
@@ -45,7 +44,7 @@ void response_at(struct response *response, double fraction, double complex *lis
     const int whole = (int)floor(place);
     response->taps[0] = 1;
     if (in->weights)
-        in->weights(response->options, place - whole, response->taps);
+        in->weights(in, place - whole, response->taps);
     for (int n = 0; n < response->spectrum->count; n++) {
         const double nu = response->spectrum->nu[n] / in->upsample;
         const double complex read = in->degree > 0

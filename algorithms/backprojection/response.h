@@ -10,14 +10,13 @@
 
 struct response {
     const struct interpolator *in;
-    const void *options;
     const struct law_spectrum *spectrum;
     double gains[LAW_NODES][FARROW_MOST + 1]; /* of branches */
     double *taps;                             /* [in->taps] */
 };
 
 /* What it is given must outlive it. False without memory; then there is nothing to free. */
-bool response_begin(const struct interpolator *interpolator, const void *options, const struct law_spectrum *spectrum,
+bool response_begin(const struct interpolator *interpolator, const struct law_spectrum *spectrum,
                     struct response *response);
 /* H at each frequency of the spectrum, list [spectrum->count]; the fraction, 0 to 1, is of upsampled samples. */
 void response_at(struct response *response, double fraction, double complex *list);

@@ -49,8 +49,8 @@ struct traces_build {
     int (*period)(const struct acquisition *acquisition, const struct traces_form *form);
     /* `flops` of the shape without a plan, in two parts: of transforms and products, and *sums over neighbours. */
     double (*flops)(const struct acquisition *acquisition, const struct traces_form *form, double *sums);
-    /* `threads`: how many threads may call fill at once. Errors: STATUS_FAILED without memory, STATUS_UNSUPPORTED when a
-       row is too long to index. *traces is NULL then. */
+    /* `threads`: how many threads may call fill at once. Errors: STATUS_FAILED without memory, STATUS_UNSUPPORTED when
+       a row is too long to index. *traces is NULL then. */
     enum status (*plan)(const struct acquisition *acquisition, const struct traces_form *form, int threads,
                         struct traces_shape *shape, struct traces **traces);
     /* Turn one record, complex [the acquisition's samples], into a row; `thread` < threads names the scratch to use. */

@@ -3,6 +3,7 @@
 #define SASBENCH_COMMON_PEAK_H
 
 #include "contract/algorithm.h"
+#include "common/isa.h"
 
 /* FLOP/s of independent multiply-adds in registers (2 FLOPs a lane), on `threads` threads, with the instruction set
    that the engines use; the best of several measurements of some 20 ms. On a machine without fused multiply-adds: of
@@ -11,7 +12,6 @@ double peak_flops(enum precision precision, int threads);
 
 /* One chunk of work for each instruction set: returns FLOPs done; *sink keeps the compiler honest. */
 typedef double peak_function(long long rounds, volatile double *sink);
-peak_function peak_float_baseline, peak_float_v3, peak_float_v4;
-peak_function peak_double_baseline, peak_double_v3, peak_double_v4;
+ISA_DECLARE(peak_function, peak);
 
 #endif

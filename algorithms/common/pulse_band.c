@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "contract/condition.h"
+
 #define BAND_LOSS 4e-6 /* of the compressed pulse's energy may lie outside the band */
 
 /* The replica's spectrum, to be given to fftw_free; NULL without memory. */
@@ -76,4 +78,22 @@ enum status pulse_band_find(const struct acquisition *a, int length, struct puls
     free(energy);
     *band = (struct pulse_band){half * a->fs / length, outside / total};
     return STATUS_OK;
+}
+
+double image_cells(const struct problem *problem)
+{
+    const struct acquisition *a = problem->acquisition;
+    const double cell = a->sound_speed / (4 * a->fc * fmin(condition_cut_sine(a), 1));
+    double width = 0;
+    for (int k = 0; k < problem->patch_count; k++) {
+        const struct grid *g = &problem->patches[k];
+        width = fmax(width, fabs(g->x_count * g->x_step * cos(g->angle_rad))
+                                + fabs(g->r_count * g->r_step * sin(g->angle_rad)));
+    }
+    return width / cell;
+}
+
+double image_gain(const struct acquisition *a, double cells, double frequency)
+{
+    return cells > 0 ? fmin(fabs(a->fc / (a->fc + frequency)), cells) / fmin(1, cells) : 1;
 }

@@ -1,10 +1,10 @@
-/* The compressed pulse's spectrum, and which part of the sampled band holds it. */
+/* The compressed pulse's spectrum, which part of the sampled band holds it, and what images show of it. */
 #ifndef SASBENCH_COMMON_PULSE_BAND_H
 #define SASBENCH_COMMON_PULSE_BAND_H
 
 #include <complex.h>
 
-#include "contract/acquisition.h"
+#include "contract/algorithm.h"
 
 struct pulse_band {
     double half_hz; /* the band that matters is |f| <= half_hz; at most fs/2 */
@@ -21,11 +21,21 @@ enum status pulse_band_find(const struct acquisition *acquisition, int transform
    caller's to free; NULL without memory, with STATUS_FAILED's message set. */
 double *pulse_energy(const struct acquisition *acquisition, int length);
 
-/* The matched filter of raw echoes for transforms of `length`: conj(P)/sum|p|^2 and the inverse transform's 1/length, in
-   FFTW's order; length >= pulse_length. To be given to fftw_free; NULL without memory. */
+/* The matched filter of raw echoes for transforms of `length` >= pulse_length: conj(P)/(length sum|p|^2), in FFTW's
+   order. To be given to fftw_free; NULL without memory. */
 double complex *pulse_filter(const struct acquisition *acquisition, int length);
 
 /* Hz, -fs/2 to fs/2: of its bin k. */
 double pulse_bin_frequency(const struct acquisition *acquisition, int k, int length);
+
+/* The image of a target is as wide along the track as its wavelength makes it: of each pair's energy at low frequencies,
+   which a pulse of few cycles has in its flanks, images show more. */
+
+/* The width of the grids where errors count, the widest of them, over that of a target's image at the carrier. */
+double image_cells(const struct problem *problem);
+
+/* Energy in an image of that many cells at fc + `frequency` Hz over that at fc, of echoes that have the same at both:
+   as |fc / (fc + frequency)|, unless the grid ends first. */
+double image_gain(const struct acquisition *acquisition, double cells, double frequency);
 
 #endif

@@ -47,9 +47,8 @@ enum status acquisition_turn(const struct acquisition *acquisition, double angle
     const double cosine = cos(angle), sine = sin(angle);
     *out = *acquisition;
     enum status status = acquisition_allocate(out);
-    if (status != STATUS_OK) {
+    if (status != STATUS_OK)
         return status;
-    }
     for (int p = 0; p < out->pings; p++) {
         out->t0[p] = acquisition->t0[p];
         out->tx[p] = vector_turn(acquisition->tx[p], cosine, sine);
@@ -59,9 +58,8 @@ enum status acquisition_turn(const struct acquisition *acquisition, double angle
             out->rx[k] = vector_turn(acquisition->rx[k], cosine, sine);
         }
     }
-    for (int k = 0; k < out->pulse_length; k++) {
+    for (int k = 0; k < out->pulse_length; k++)
         out->pulse[k] = acquisition->pulse[k];
-    }
     return STATUS_OK;
 }
 
@@ -98,39 +96,32 @@ static enum status check_scalars(const struct acquisition *a, const char *place)
     };
     for (size_t i = 0; i < sizeof scalars / sizeof *scalars; i++) {
         double value = scalars[i].value;
-        if (!isfinite(value) || !(value > 0 || (scalars[i].may_be_zero && value == 0))) {
+        if (!isfinite(value) || !(value > 0 || (scalars[i].may_be_zero && value == 0)))
             return status_set(STATUS_INVALID, "%s: %s is %g%s; a finite number %s 0 is needed", place, scalars[i].name,
                               value, scalars[i].unit, scalars[i].may_be_zero ? ">=" : ">");
-        }
     }
-    if (!(a->sound_speed <= SOUND_SPEED_MOST)) {
+    if (!(a->sound_speed <= SOUND_SPEED_MOST))
         return status_set(STATUS_INVALID, "%s: sound_speed is %g m/s; at most %g m/s is accepted", place,
                           a->sound_speed, SOUND_SPEED_MOST);
-    }
-    if (!(a->fs >= a->bandwidth)) {
+    if (!(a->fs >= a->bandwidth))
         return status_set(STATUS_INVALID, "%s: bandwidth is %.15g Hz; at most fs = %.15g Hz is accepted", place,
                           a->bandwidth, a->fs);
-    }
-    if (!(a->fc >= FC_LEAST * a->fs)) {
+    if (!(a->fc >= FC_LEAST * a->fs))
         return status_set(STATUS_INVALID, "%s: fc is %.15g Hz; at least %.15g Hz, a millionth of fs, is needed", place,
                           a->fc, FC_LEAST * a->fs);
-    }
-    if (!(fabs(a->echo_squint) < M_PI / 2)) {
+    if (!(fabs(a->echo_squint) < M_PI / 2))
         return status_set(STATUS_INVALID, "%s: the beam's squint is %g degrees; within +-90 is needed", place,
                           a->echo_squint * 180 / M_PI);
-    }
     const struct target_area *area = &a->area;
     bool none = area->half_x == 0 && area->half_r == 0;
-    if (!none && !(area->half_x > 0 && area->half_r > 0 && isfinite(area->x + area->r + area->half_x + area->half_r))) {
+    if (!none && !(area->half_x > 0 && area->half_r > 0 && isfinite(area->x + area->r + area->half_x + area->half_r)))
         return status_set(
             STATUS_INVALID,
             "%s: target area about (%g, %g) m, %g and %g m to either side; finite numbers are needed, and "
             "sizes > 0",
             place, area->x, area->r, area->half_x, area->half_r);
-    }
-    if (!(a->aperture_limit > 0)) {
+    if (!(a->aperture_limit > 0))
         return status_set(STATUS_INVALID, "%s: aperture limit is %g; a sine > 0 is needed", place, a->aperture_limit);
-    }
     return STATUS_OK;
 }
 
@@ -141,36 +132,31 @@ static enum status check_counts(const struct acquisition *a, const char *place)
         int value, min;
     } counts[] = {{"samples", a->samples, 2}, {"receivers", a->receivers, 1}, {"pings", a->pings, 1}};
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
-        if (counts[i].value < counts[i].min) {
+        if (counts[i].value < counts[i].min)
             return status_set(STATUS_INVALID, "%s: number of %s is %d; at least %d is needed", place, counts[i].name,
                               counts[i].value, counts[i].min);
-        }
     }
     size_t records = (size_t)a->receivers * (size_t)a->pings;
-    if (records > PTRDIFF_MAX / sizeof(double complex) / (size_t)a->samples) {
+    if (records > PTRDIFF_MAX / sizeof(double complex) / (size_t)a->samples)
         return status_set(STATUS_INVALID, "%s: %d samples x %d receivers x %d pings do not fit the address space",
                           place, a->samples, a->receivers, a->pings);
-    }
     return STATUS_OK;
 }
 
 static enum status check_pulse(const struct acquisition *a, const char *place)
 {
     if (a->compressed) {
-        if (a->pulse_length != 0 || a->pulse) {
+        if (a->pulse_length != 0 || a->pulse)
             return status_set(STATUS_INVALID, "%s: pulse has %d samples; compressed echoes have none", place,
                               a->pulse_length);
-        }
         return STATUS_OK;
     }
-    if (a->pulse_length < 1 || !a->pulse) {
+    if (a->pulse_length < 1 || !a->pulse)
         return status_set(STATUS_INVALID, "%s: pulse has %d samples; raw echoes need at least 1", place,
                           a->pulse_length);
-    }
     double energy = 0;
-    for (int k = 0; k < a->pulse_length; k++) {
+    for (int k = 0; k < a->pulse_length; k++)
         energy += creal(a->pulse[k]) * creal(a->pulse[k]) + cimag(a->pulse[k]) * cimag(a->pulse[k]);
-    }
     if (!isfinite(energy) || !(energy > 0)) { /* one sample that is not finite makes the sum so */
         return status_set(STATUS_INVALID, "%s: energy of pulse is %g; a finite number > 0 is needed", place, energy);
     }
@@ -185,49 +171,41 @@ static double largest_delay(const struct acquisition *a, int p)
 
 static enum status check_ping(const struct acquisition *a, int p, const char *place)
 {
-    if (!isfinite(a->t0[p])) {
+    if (!isfinite(a->t0[p]))
         return status_set(STATUS_INVALID, "%s: t0 of ping %d is %g s; a finite number is needed", place, p + 1,
                           a->t0[p]);
-    }
     double phase_error = 8 * M_PI * a->fc * largest_delay(a, p) * DBL_EPSILON;
-    if (!(phase_error <= 1e-3)) {
+    if (!(phase_error <= 1e-3))
         return status_set(STATUS_INVALID,
                           "%s: delays of up to %g s at fc = %g Hz (ping %d) leave a phase error of %g rad in double "
                           "precision; at most 0.001 is accepted",
                           place, largest_delay(a, p), a->fc, p + 1, phase_error);
-    }
-    if (!vector_is_finite(a->tx[p])) {
+    if (!vector_is_finite(a->tx[p]))
         return status_set(STATUS_INVALID, "%s: tx of ping %d is (%g, %g, %g) m; finite numbers are needed", place,
                           p + 1, a->tx[p].x, a->tx[p].y, a->tx[p].z);
-    }
     for (int m = 0; m < a->receivers; m++) {
         struct vector rx = a->rx[(size_t)p * (size_t)a->receivers + (size_t)m];
-        if (!vector_is_finite(rx)) {
+        if (!vector_is_finite(rx))
             return status_set(STATUS_INVALID, "%s: rx %d of ping %d is (%g, %g, %g) m; finite numbers are needed",
                               place, m + 1, p + 1, rx.x, rx.y, rx.z);
-        }
     }
     struct vector v = a->velocity[p];
-    if (!(vector_length(v) < a->sound_speed)) {
+    if (!(vector_length(v) < a->sound_speed))
         return status_set(STATUS_INVALID,
                           "%s: velocity of ping %d is (%g, %g, %g) m/s; a speed below sound_speed = %g m/s is needed",
                           place, p + 1, v.x, v.y, v.z, a->sound_speed);
-    }
     return STATUS_OK;
 }
 
 enum status acquisition_check(const struct acquisition *acquisition, const char *place)
 {
     enum status status = check_scalars(acquisition, place);
-    if (status == STATUS_OK) {
+    if (status == STATUS_OK)
         status = check_counts(acquisition, place);
-    }
-    if (status == STATUS_OK) {
+    if (status == STATUS_OK)
         status = check_pulse(acquisition, place);
-    }
-    for (int p = 0; status == STATUS_OK && p < acquisition->pings; p++) {
+    for (int p = 0; status == STATUS_OK && p < acquisition->pings; p++)
         status = check_ping(acquisition, p, place);
-    }
     return status;
 }
 
@@ -236,13 +214,11 @@ struct vector acquisition_heading(const struct acquisition *acquisition, int pin
     int before = ping > 0 ? ping - 1 : ping;
     int after = ping < acquisition->pings - 1 ? ping + 1 : ping;
     struct vector heading = vector_difference(acquisition->tx[after], acquisition->tx[before]);
-    if (!(vector_length(heading) > 0)) {
+    if (!(vector_length(heading) > 0))
         heading = acquisition->velocity[ping];
-    }
     double length = vector_length(heading);
-    if (!(length > 0)) {
+    if (!(length > 0))
         return (struct vector){1, 0, 0};
-    }
     return (struct vector){heading.x / length, heading.y / length, heading.z / length};
 }
 
@@ -250,9 +226,8 @@ struct vector acquisition_normal(const struct acquisition *acquisition, int ping
 {
     const struct vector heading = acquisition_heading(acquisition, ping);
     const double squint = acquisition->echo_squint;
-    if (squint == 0) {
+    if (squint == 0)
         return heading;
-    }
     const double way = heading.x < 0 ? -1 : 1;
     return vector_turn((struct vector){way * heading.x, way * heading.y, way * heading.z}, cos(squint), -sin(squint));
 }
@@ -262,9 +237,8 @@ struct vector acquisition_normal(const struct acquisition *acquisition, int ping
 static struct straight_track fit_even_spacing(const struct acquisition *a)
 {
     struct straight_track track = {.x_first = a->tx[0].x, .speed = a->velocity[0].x};
-    if (a->pings == 1) {
+    if (a->pings == 1)
         return track;
-    }
     int last = a->pings - 1;
     track.spacing = (a->tx[last].x - a->tx[0].x) / last;
     double sum = 0, moment = 0, inertia = 0;
@@ -315,8 +289,7 @@ bool acquisition_is_straight(const struct acquisition *acquisition, struct strai
           <= acquisition->sound_speed / acquisition->fc * ACQUISITION_UNEVEN_MOST)) {
         return false;
     }
-    if (track) {
+    if (track)
         *track = fit;
-    }
     return true;
 }

@@ -16,6 +16,22 @@
 static const double LOBE = 0.443;
 static const double LOBES = 3; /* of a beam that tapers are followed this far, in nulls */
 
+struct condition condition_most(enum severity severity, const char *name, double value, double limit,
+                                const char *meaning, const char *cure)
+{
+    struct condition condition = {name, value, limit, false, severity, meaning, ""};
+    condition_cure_add(&condition, "%s", cure);
+    return condition;
+}
+
+struct condition condition_least(enum severity severity, const char *name, double value, double limit,
+                                 const char *meaning, const char *cure)
+{
+    struct condition condition = condition_most(severity, name, value, limit, meaning, cure);
+    condition.at_least = true;
+    return condition;
+}
+
 bool condition_holds(const struct condition *condition)
 {
     return condition->at_least ? condition->value > condition->limit : condition->value <= condition->limit;
@@ -359,27 +375,22 @@ int conditions_general(const struct problem *problem, struct condition *list, in
     const double interval = ping_interval(a);
     int count = 0;
     add(list, room, &count,
-        (struct condition){"subsonic", 1 - condition_speed(a) / a->sound_speed, 0, true, SEVERITY_REFUSE, "1 - |v|/c",
-                           "a lower speed"});
+        condition_least(SEVERITY_REFUSE, "subsonic", 1 - condition_speed(a) / a->sound_speed, 0, "1 - |v|/c",
+                        "a lower speed"));
     add(list, room, &count,
-        (struct condition){"sampled", a->bandwidth / a->fs, 1, false, SEVERITY_REFUSE, "bandwidth over sampling rate",
-                           "a higher sampling rate"});
+        condition_most(SEVERITY_REFUSE, "sampled", a->bandwidth / a->fs, 1, "bandwidth over sampling rate",
+                       "a higher sampling rate"));
     add(list, room, &count,
-        (struct condition){"phase_digits", 8 * M_PI * a->fc * extent.delay * DBL_EPSILON / 2, 1e-3, false,
-                           SEVERITY_REFUSE, "the phase's rounding in double, 8 pi fc tau 2^-53 (rad)",
-                           "shorter delays or a lower carrier"});
+        condition_most(SEVERITY_REFUSE, "phase_digits", 8 * M_PI * a->fc * extent.delay * DBL_EPSILON / 2, 1e-3,
+                       "the phase's rounding in double, 8 pi fc tau 2^-53 (rad)", "shorter delays or a lower carrier"));
     add(list, room, &count,
-        (struct condition){"index_digits", extent.places, INT_MAX, false, SEVERITY_REFUSE,
-                           "the largest sample coordinate that is read", "shorter records"});
+        condition_most(SEVERITY_REFUSE, "index_digits", extent.places, INT_MAX,
+                       "the largest sample coordinate that is read", "shorter records"));
     if (a->pings > 1 && interval > 0) {
-        struct condition unambiguous = {
-            "unambiguous",
-            extent.delay / interval,
-            1,
-            false,
-            SEVERITY_WARN,
-            "the longest delay over the time from ping to ping, beyond which real records overlap",
-            "more time from ping to ping"};
+        struct condition unambiguous =
+            condition_most(SEVERITY_WARN, "unambiguous", extent.delay / interval, 1,
+                           "the longest delay over the time from ping to ping, beyond which real records overlap",
+                           "more time from ping to ping");
         condition_cure_add(&unambiguous, " than %.3g s", extent.delay);
         add(list, room, &count, unambiguous);
     }

@@ -28,6 +28,12 @@ struct condition {
 
 enum { CONDITIONS_MAX = 24 }; /* of one algorithm */
 
+/* One whose value may be at most `limit`, or must lie above it. */
+struct condition condition_most(enum severity severity, const char *name, double value, double limit,
+                                const char *meaning, const char *cure);
+struct condition condition_least(enum severity severity, const char *name, double value, double limit,
+                                 const char *meaning, const char *cure);
+
 /* A NaN does not hold. */
 bool condition_holds(const struct condition *condition);
 /* A further part of the cure, formatted. */

@@ -27,6 +27,8 @@ int param_choice(const struct param *param, const char *name)
 
 void options_fill(const struct algorithm *algorithm, void *options)
 {
+    if (algorithm->options_size > 0)
+        memset(options, 0, algorithm->options_size);
     for (const struct param *param = algorithm->params; param && param->name; param++)
         param_store(param, options, param->initial);
 }

@@ -10,7 +10,7 @@ double param_load(const struct param *param, const void *options);
 /* Index of a name among a choice's, -1 if it is none. */
 int param_choice(const struct param *param, const char *name);
 
-/* Every field of an algorithm's options [options_size] at its default. */
+/* Every parameter of an algorithm's options [options_size] at its default, all else 0. */
 void options_fill(const struct algorithm *algorithm, void *options);
 
 #endif

@@ -42,18 +42,16 @@ static double promise(const void *options)
     return o->degree == DEGREE_AUTO ? o->error : NAN;
 }
 
-static enum status make(const struct problem *problem, const void *options, struct interpolator *interpolator,
-                        void *made)
+static enum status make(const struct problem *problem, const void *options, struct interpolator *interpolator)
 {
     const struct options *o = options;
     const int degree = o->degree == DEGREE_AUTO ? farrow_degree_choose(o->error, problem, o->factor)
                                                 : FARROW_LEAST + o->degree - DEGREE_FIRST;
-    (void)made;
     *interpolator = (struct interpolator){.upsample = o->factor, .taps = 1, .degree = degree};
     return degree > 0 ? STATUS_OK : STATUS_FAILED;
 }
 
-static const struct bp_method method = {make};
+static const struct bp_method method = {make, NULL};
 
 const struct algorithm bp_farrow = {
     .name = "bp_farrow",
@@ -63,13 +61,6 @@ const struct algorithm bp_farrow = {
     .options_size = sizeof(struct options),
     .params = params,
     .method = &method,
-    .conditions = bp_method_conditions,
     .promise = promise,
-    .forecast = bp_method_forecast,
-    .cost = bp_method_cost,
-    .plan = bp_method_plan,
-    .execute = bp_execute,
-    .reads = bp_reads,
-    .work = bp_work,
-    .destroy = bp_destroy,
+    BP_CALLBACKS,
 };

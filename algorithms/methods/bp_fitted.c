@@ -9,7 +9,6 @@
 #include <math.h>
 
 #include "backprojection/bp.h"
-#include "backprojection/fitted.h"
 #include "backprojection/law_spectrum.h"
 
 struct options {
@@ -28,19 +27,12 @@ static const struct param params[] = {
     {.name = NULL},
 };
 
-/* What `weights` is handed in place of the options. */
-struct planned {
-    struct bp_options bp;
-    struct fitted fitted;
-};
-
-static void weights(const void *options, double fraction, double *w)
+static void weights(const struct interpolator *in, double fraction, double *w)
 {
-    fitted_weights(&((const struct planned *)options)->fitted, fraction, w);
+    fitted_weights(&in->kernel.fitted, fraction, w);
 }
 
-static enum status make(const struct problem *problem, const void *options, struct interpolator *interpolator,
-                        void *made)
+static enum status make(const struct problem *problem, const void *options, struct interpolator *interpolator)
 {
     const struct acquisition *a = problem->acquisition;
     const struct options *o = options;
@@ -50,16 +42,13 @@ static enum status make(const struct problem *problem, const void *options, stru
     const double band = law_band_fitted(a);
     if (isnan(band))
         return STATUS_FAILED;
-    struct planned *planned = made;
-    planned->bp = o->bp;
-    fitted_make(o->taps, fmin(band / (a->fs * upsample), 1), &planned->fitted);
     *interpolator =
         (struct interpolator){.upsample = upsample, .taps = o->taps, .first = 1 - o->taps / 2, .weights = weights};
+    fitted_make(o->taps, fmin(band / (a->fs * upsample), 1), &interpolator->kernel.fitted);
     return STATUS_OK;
 }
 
-static const struct bp_method method = {make, sizeof(struct planned)};
-_Static_assert(sizeof(struct planned) <= BP_MADE_MOST, "room for what is made");
+static const struct bp_method method = {make, NULL};
 
 const struct algorithm bp_fitted = {
     .name = "bp_fitted",
@@ -69,12 +58,5 @@ const struct algorithm bp_fitted = {
     .options_size = sizeof(struct options),
     .params = params,
     .method = &method,
-    .conditions = bp_method_conditions,
-    .forecast = bp_method_forecast,
-    .cost = bp_method_cost,
-    .plan = bp_method_plan,
-    .execute = bp_execute,
-    .reads = bp_reads,
-    .work = bp_work,
-    .destroy = bp_destroy,
+    BP_CALLBACKS,
 };

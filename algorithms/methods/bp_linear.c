@@ -28,18 +28,17 @@ static const struct param params[] = {
     {.name = NULL},
 };
 
-static void weights(const void *options, double fraction, double *w)
+static void weights(const struct interpolator *in, double fraction, double *w)
 {
-    (void)options;
+    (void)in;
     w[0] = 1 - fraction;
     w[1] = fraction;
 }
 
-static enum status make(const struct problem *problem, const void *options, struct interpolator *interpolator,
-                        void *made)
+static enum status make(const struct problem *problem, const void *options, struct interpolator *interpolator)
 {
     const struct options *o = options;
-    (void)problem, (void)made;
+    (void)problem;
     *interpolator = (struct interpolator){.upsample = 1,
                                           .steps = o->beta + 1,
                                           .taps = 2,
@@ -49,7 +48,7 @@ static enum status make(const struct problem *problem, const void *options, stru
     return STATUS_OK;
 }
 
-static const struct bp_method method = {make};
+static const struct bp_method method = {make, NULL};
 
 const struct algorithm bp_linear = {
     .name = "bp_linear",
@@ -59,12 +58,5 @@ const struct algorithm bp_linear = {
     .options_size = sizeof(struct options),
     .params = params,
     .method = &method,
-    .conditions = bp_method_conditions,
-    .forecast = bp_method_forecast,
-    .cost = bp_method_cost,
-    .plan = bp_method_plan,
-    .execute = bp_execute,
-    .reads = bp_reads,
-    .work = bp_work,
-    .destroy = bp_destroy,
+    BP_CALLBACKS,
 };

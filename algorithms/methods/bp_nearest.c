@@ -10,15 +10,14 @@ static const struct param params[] = {
     {.name = NULL},
 };
 
-static enum status make(const struct problem *problem, const void *options, struct interpolator *interpolator,
-                        void *made)
+static enum status make(const struct problem *problem, const void *options, struct interpolator *interpolator)
 {
-    (void)problem, (void)options, (void)made;
+    (void)problem, (void)options;
     *interpolator = (struct interpolator){.upsample = 1, .steps = 1, .taps = 1, .in_papers = true};
     return STATUS_OK;
 }
 
-static const struct bp_method method = {make};
+static const struct bp_method method = {make, NULL};
 
 const struct algorithm bp_nearest = {
     .name = "bp_nearest",
@@ -28,12 +27,5 @@ const struct algorithm bp_nearest = {
     .options_size = sizeof(struct bp_options),
     .params = params,
     .method = &method,
-    .conditions = bp_method_conditions,
-    .forecast = bp_method_forecast,
-    .cost = bp_method_cost,
-    .plan = bp_method_plan,
-    .execute = bp_execute,
-    .reads = bp_reads,
-    .work = bp_work,
-    .destroy = bp_destroy,
+    BP_CALLBACKS,
 };

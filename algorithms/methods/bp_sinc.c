@@ -17,13 +17,6 @@ struct options {
     int taps, window;
 };
 
-/* What `weights` is handed in place of the options. */
-struct planned {
-    struct bp_options bp;
-    int taps;
-    double beta;
-};
-
 static const char *const windows[] = {"none", "kaiser", "kaiser_band", NULL};
 
 static const struct param params[] = {
@@ -36,14 +29,12 @@ static const struct param params[] = {
     {.name = NULL},
 };
 
-static void weights(const void *options, double fraction, double *w)
+static void weights(const struct interpolator *in, double fraction, double *w)
 {
-    const struct planned *planned = options;
-    sinc_weights(planned->taps, planned->beta, fraction, w);
+    sinc_weights(in->taps, in->kernel.beta, fraction, w);
 }
 
-static enum status make(const struct problem *problem, const void *options, struct interpolator *interpolator,
-                        void *made)
+static enum status make(const struct problem *problem, const void *options, struct interpolator *interpolator)
 {
     const struct acquisition *a = problem->acquisition;
     const struct options *o = options;
@@ -51,13 +42,16 @@ static enum status make(const struct problem *problem, const void *options, stru
         return status_set(STATUS_UNSUPPORTED, "bp_sinc: taps is %d, must be even", o->taps);
     const double band = o->window == WINDOW_KAISER_BAND ? law_band_fitted(a) : a->bandwidth;
     const double betas[] = {0, 5, 0.5 * M_PI * o->taps * (1 - fmin(band / a->fs, 1))};
-    *(struct planned *)made = (struct planned){o->bp, o->taps, betas[o->window]};
-    *interpolator = (struct interpolator){
-        .upsample = 1, .taps = o->taps, .first = 1 - o->taps / 2, .weights = weights, .in_papers = true};
+    *interpolator = (struct interpolator){.upsample = 1,
+                                          .taps = o->taps,
+                                          .first = 1 - o->taps / 2,
+                                          .weights = weights,
+                                          .kernel.beta = betas[o->window],
+                                          .in_papers = true};
     return isnan(band) ? STATUS_FAILED : STATUS_OK;
 }
 
-static const struct bp_method method = {make, sizeof(struct planned)};
+static const struct bp_method method = {make, NULL};
 
 const struct algorithm bp_sinc = {
     .name = "bp_sinc",
@@ -67,12 +61,5 @@ const struct algorithm bp_sinc = {
     .options_size = sizeof(struct options),
     .params = params,
     .method = &method,
-    .conditions = bp_method_conditions,
-    .forecast = bp_method_forecast,
-    .cost = bp_method_cost,
-    .plan = bp_method_plan,
-    .execute = bp_execute,
-    .reads = bp_reads,
-    .work = bp_work,
-    .destroy = bp_destroy,
+    BP_CALLBACKS,
 };

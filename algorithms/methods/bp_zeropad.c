@@ -19,16 +19,15 @@ static const struct param params[] = {
     {.name = NULL},
 };
 
-static enum status make(const struct problem *problem, const void *options, struct interpolator *interpolator,
-                        void *made)
+static enum status make(const struct problem *problem, const void *options, struct interpolator *interpolator)
 {
     const struct options *o = options;
-    (void)problem, (void)made;
+    (void)problem;
     *interpolator = (struct interpolator){.upsample = o->factor, .steps = 1, .taps = 1, .in_papers = true};
     return STATUS_OK;
 }
 
-static const struct bp_method method = {make};
+static const struct bp_method method = {make, NULL};
 
 const struct algorithm bp_zeropad = {
     .name = "bp_zeropad",
@@ -38,12 +37,5 @@ const struct algorithm bp_zeropad = {
     .options_size = sizeof(struct options),
     .params = params,
     .method = &method,
-    .conditions = bp_method_conditions,
-    .forecast = bp_method_forecast,
-    .cost = bp_method_cost,
-    .plan = bp_method_plan,
-    .execute = bp_execute,
-    .reads = bp_reads,
-    .work = bp_work,
-    .destroy = bp_destroy,
+    BP_CALLBACKS,
 };

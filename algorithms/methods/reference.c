@@ -6,23 +6,22 @@
 
 enum { UPSAMPLE = 4, TAPS = 20 };
 
-static void weights(const void *options, double fraction, double *w)
+static void weights(const struct interpolator *in, double fraction, double *w)
 {
-    (void)options;
+    (void)in;
     sinc_weights(TAPS, 21, fraction, w);
 }
 
-static enum status make(const struct problem *problem, const void *options, struct interpolator *interpolator,
-                        void *made)
+static enum status make(const struct problem *problem, const void *options, struct interpolator *interpolator)
 {
     (void)problem, (void)options;
-    *(struct bp_options *)made = (struct bp_options){.engine = BP_ENGINE_GENERAL, .exact = 1};
     *interpolator = (struct interpolator){
         .upsample = UPSAMPLE, .taps = TAPS, .first = 1 - TAPS / 2, .weights = weights, .in_papers = true};
     return STATUS_OK;
 }
 
-static const struct bp_method method = {make, sizeof(struct bp_options)};
+static const struct bp_options exact = {.engine = BP_ENGINE_GENERAL, .exact = 1};
+static const struct bp_method method = {make, &exact};
 
 const struct algorithm reference = {
     .name = "reference",

@@ -10,35 +10,11 @@
    on. */
 #include "range_migration/rma.h"
 
-enum variant { PRINTED, CORRECTED };
-static const char *const variants[] = {[PRINTED] = "printed", [CORRECTED] = "corrected", NULL};
-
-struct lbf_options {
-    struct rma_options shared; /* first: RMA_PARAMS lie in it */
-    int variant;               /* enum variant */
-};
-
-static const struct param params[] = {
-    {PARAM_NAMED(struct lbf_options, variant, variants), .summary = "theta at the carrier, as printed, or at F",
-     .initial = CORRECTED, .max = CORRECTED, .sweep = "printed corrected"},
-    RMA_PARAMS,
-    {.name = NULL},
-};
-
-static void choose(const void *options, struct rma_method *method, struct rma_options *shared)
-{
-    static spectrum_function *const spectra[] = {
-        [PRINTED] = spectrum_lbf_printed, [CORRECTED] = spectrum_lbf_corrected};
-    const struct lbf_options *lbf = options;
-    method->spectrum = spectra[lbf->variant];
-    *shared = lbf->shared;
-}
-
 static const struct rma_method method = {
-    .choose = choose,
     .name = "rma_lbf",
     .law = "lbf_law",
     .error_limit = 0.1,
+    .spectrum = spectrum_lbf_corrected,
     .source = "LBF21 Eq. (20)",
     .range = {2, 2},
     .azimuth = {1, 1},
@@ -50,15 +26,8 @@ const struct algorithm rma_lbf = {
     .name = "rma_lbf",
     .summary = "range migration by Loffeld's bistatic formula",
     .reference = "LBF21 Eqs. (3) to (5), section IV",
-    .options_size = sizeof(struct lbf_options),
-    .params = params,
+    .options_size = sizeof(struct rma_options),
+    .params = rma_params,
     .method = &method,
-    .conditions = rma_method_conditions,
-    .promise = rma_promise,
-    .forecast = rma_method_forecast,
-    .cost = rma_method_cost,
-    .plan = rma_method_plan,
-    .execute = rma_execute,
-    .work = rma_work,
-    .destroy = rma_destroy,
+    RMA_CALLBACKS,
 };

@@ -6,11 +6,6 @@
    Error: none of its own; what is left comes from the method of stationary phase and from the width of the blocks. */
 #include "range_migration/rma.h"
 
-static const struct param params[] = {
-    RMA_PARAMS,
-    {.name = NULL},
-};
-
 static const struct rma_method method = {
     .name = "rma_numeric",
     .law = "phase",
@@ -28,14 +23,7 @@ const struct algorithm rma_numeric = {
     .summary = "range migration with the exact spectrum, found numerically",
     .reference = "LBF21 Eqs. (8) and (9), section IV",
     .options_size = sizeof(struct rma_options),
-    .params = params,
+    .params = rma_params + 1,
     .method = &method,
-    .conditions = rma_method_conditions,
-    .promise = rma_promise,
-    .forecast = rma_method_forecast,
-    .cost = rma_method_cost,
-    .plan = rma_method_plan,
-    .execute = rma_execute,
-    .work = rma_work,
-    .destroy = rma_destroy,
+    RMA_CALLBACKS,
 };

@@ -9,11 +9,6 @@
    and 9). */
 #include "range_migration/rma.h"
 
-static const struct param params[] = {
-    RMA_PARAMS,
-    {.name = NULL},
-};
-
 static const struct rma_method method = {
     .name = "rma_pca",
     .law = "pca_law",
@@ -31,14 +26,7 @@ const struct algorithm rma_pca = {
     .summary = "range migration after phase-centre approximation",
     .reference = "LBF21 Eq. (6), section IV",
     .options_size = sizeof(struct rma_options),
-    .params = params,
+    .params = rma_params + 1,
     .method = &method,
-    .conditions = rma_method_conditions,
-    .promise = rma_promise,
-    .forecast = rma_method_forecast,
-    .cost = rma_method_cost,
-    .plan = rma_method_plan,
-    .execute = rma_execute,
-    .work = rma_work,
-    .destroy = rma_destroy,
+    RMA_CALLBACKS,
 };

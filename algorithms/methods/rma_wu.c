@@ -5,11 +5,6 @@
    Error: that of PCA, as both take targets to be broadside; less only where d^4/r^3 counts. */
 #include "range_migration/rma.h"
 
-static const struct param params[] = {
-    RMA_PARAMS,
-    {.name = NULL},
-};
-
 static const struct rma_method method = {
     .name = "rma_wu",
     .law = "wu_law",
@@ -27,14 +22,7 @@ const struct algorithm rma_wu = {
     .summary = "range migration after reference range history (a working definition of Wu's method)",
     .reference = "LBF21 [22], section IV",
     .options_size = sizeof(struct rma_options),
-    .params = params,
+    .params = rma_params + 1,
     .method = &method,
-    .conditions = rma_method_conditions,
-    .promise = rma_promise,
-    .forecast = rma_method_forecast,
-    .cost = rma_method_cost,
-    .plan = rma_method_plan,
-    .execute = rma_execute,
-    .work = rma_work,
-    .destroy = rma_destroy,
+    RMA_CALLBACKS,
 };

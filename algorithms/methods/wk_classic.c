@@ -30,12 +30,8 @@ const struct algorithm wk_classic = {
     .options_size = sizeof(struct wk_options),
     .params = params,
     .method = &method,
-    .conditions = wk_conditions,
     .promise = rma_promise,
     .forecast = wk_forecast,
     .cost = wk_cost,
-    .plan = wk_plan,
-    .execute = wk_execute,
-    .work = wk_work,
-    .destroy = wk_destroy,
+    WK_CALLBACKS,
 };

@@ -26,9 +26,5 @@ const struct algorithm wk_polar = {
     .options_size = sizeof(struct wk_options),
     .params = params,
     .method = &method,
-    .conditions = wk_conditions,
-    .plan = wk_plan,
-    .execute = wk_execute,
-    .work = wk_work,
-    .destroy = wk_destroy,
+    WK_CALLBACKS,
 };

@@ -25,12 +25,8 @@ const struct algorithm wk_squint = {
     .options_size = sizeof(struct wk_options),
     .params = params,
     .method = &method,
-    .conditions = wk_conditions,
     .promise = rma_promise,
     .forecast = wk_forecast,
     .cost = wk_cost,
-    .plan = wk_plan,
-    .execute = wk_execute,
-    .work = wk_work,
-    .destroy = wk_destroy,
+    WK_CALLBACKS,
 };

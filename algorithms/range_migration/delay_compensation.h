@@ -76,7 +76,4 @@ double delay_taps_expected(const struct rma_view *view, int taps, double half);
 /* Weights for the signal `fraction` samples (0 to 1) after tap taps/2 - 1, and their slopes over it. */
 void delay_taps_weights(const struct delay_taps *taps, double fraction, double *weights, double *slopes);
 
-/* Append delay_terms and delay_taps to a list, whose values are NAN without memory; returns the number. */
-int delay_conditions(const struct rma_view *view, struct condition *list, int count);
-
 #endif

@@ -1,4 +1,4 @@
-/* Grating lobes (ghosts.h). The ghost of a target at (x_t, r_t) in pixel (x, r) is
+/* Grating lobes (rma_conditions.h). The ghost of a target at (x_t, r_t) in pixel (x, r) is
 
        sum over receivers and pings of  a sinc(B dtau) exp(j 2 pi fc dtau),
 
@@ -9,12 +9,10 @@
    is as narrow as the pulse: on each of some columns of a patch, the rows are found where a ping's delay is the
    target's, and its energy is summed over those. The target's own energy is that of a response as wide as 1/band in
    azimuth and c/2B in range. */
-#include "range_migration/ghosts.h"
+#include "range_migration/rma_conditions.h"
 
 #include <complex.h>
 #include <math.h>
-
-#include "range_migration/rma_conditions.h"
 
 enum {
     PATCHES = 8,   /* of an image, at most */
@@ -235,14 +233,12 @@ struct condition ghosts_condition(const struct problem *problem, const struct st
         worst = fmax(worst, shares.own + shares.others);
         refusing = fmax(refusing, shares.others);
     }
-    return (struct condition){
-        "grating_lobes",
-        sqrt(worst),
-        LIMIT,
-        false,
-        refusing > LIMIT * LIMIT || a->aperture_limit < 1 ? SEVERITY_REFUSE : SEVERITY_WARN,
-        "ghosts of point targets, from pings that back projection sums and a transform leaves out (relative L2)",
+    return condition_most(
+        refusing > LIMIT * LIMIT || a->aperture_limit < 1 ? SEVERITY_REFUSE : SEVERITY_WARN, "grating_lobes",
+        sqrt(worst), LIMIT,
+        "ghosts of point targets in other places, by pings that back projection sums there and a transform does not "
+        "image "
+        "(relative L2)",
         "an aperture_limit at the edge of the sampled wavenumbers or of the element's first null; pings closer "
-        "together",
-    };
+        "together");
 }

@@ -1,4 +1,4 @@
-/* Prediction of an image's error (prediction.h).
+/* Prediction of an image's error (rma_conditions.h).
 
    Back projection multiplies the echo of receiver m, u metres ahead of the pixel, by exp(j 2 pi F tau_m(u)). Range
    migration puts in its place (rma.h)
@@ -14,7 +14,7 @@
    dtau the difference of the delays of pixel and target and a the beam's amplitude; its error is the same sum with e_m.
    Energies are summed over the slices of some targets, and errors over some frequencies. Few of many pings and
    receivers stand for all. */
-#include "range_migration/prediction.h"
+#include "range_migration/rma_conditions.h"
 
 #include <complex.h>
 #include <fftw3.h>

@@ -7,37 +7,43 @@
 #include <stdlib.h>
 
 #include "common/fft_length.h"
-#include "common/isa.h"
 #include "common/progress.h"
 #include "range_migration/rma_engine.h"
 
-const char *const rma_spacing_names[] = {"uniform", "inverse", NULL};
-const char *const rma_blend_names[] = {"off", "on", NULL};
+static const char *const variants[] = {"printed", "corrected", NULL}, *const spacings[] = {"uniform", "inverse", NULL},
+                         *const blends[] = {"off", "on", NULL}, *const orders[] = {"before", "after", NULL},
+                         *const phases[] = {"recurrence", "libm", NULL};
 const char *const rma_stolt_names[] = {"direct", "4", "6", "8", "12", "16", NULL};
-const char *const rma_sum_names[] = {"before", "after", NULL};
-const char *const rma_phases_names[] = {"recurrence", "libm", NULL};
+const char *const rma_delay_taps_names[] = {"8", "12", "16", "24", NULL};
+
+const struct param rma_params[] = {
+    {PARAM_NAMED(struct rma_options, variant, variants), .summary = "theta at the carrier, as printed, or at F",
+     .initial = RMA_CORRECTED, .max = RMA_CORRECTED, .sweep = "printed corrected"},
+    {PARAM(struct rma_options, blocks), .summary = "range blocks of the conversion; 0: as many as Eq. (13) requires",
+     .initial = 0, .min = 0, .max = 4096, .sweep = "1 2 4 8 16 32"},
+    {PARAM(struct rma_options, limit), .summary = "largest phase error inside a block (rad) where blocks = 0",
+     .initial = 0.78539816339744831, .min = 1e-3, .max = 100, .terse = true},
+    {PARAM_NAMED(struct rma_options, spacing, spacings), .summary = "blocks of equal width in r or in 1/r",
+     .initial = RMA_INVERSE, .max = RMA_INVERSE, .sweep = "uniform inverse", .terse = true},
+    {PARAM_NAMED(struct rma_options, blend, blends),
+     .summary = "blocks blend: each row is the cubic through the nearest four", .initial = 1, .max = 1,
+     .sweep = "off on", .terse = true},
+    {PARAM_NAMED(struct rma_options, stolt, rma_stolt_names),
+     .summary = "Kaiser taps of the Stolt interpolation, or a direct sum", .initial = 3, .max = 5,
+     .sweep = "4 6 8 12 16", .terse = true},
+    {PARAM_NAMED(struct rma_options, sum, orders), .summary = "receivers are summed before or after the range IFFT",
+     .initial = RMA_SUM_BEFORE, .max = RMA_SUM_AFTER, .terse = true, .hidden = true},
+    {PARAM_NAMED(struct rma_options, phases, phases),
+     .summary = "by recurrence over the receivers, or by libm for each cell", .initial = RMA_RECURRENCE,
+     .max = RMA_LIBM, .terse = true, .hidden = true},
+    {.name = NULL},
+};
 
 static const double WORK_LIMIT = 1e11;                      /* operations: some twenty seconds */
 static const double MEMORY_LIMIT = 5e8, MEMORY_FACTOR = 50; /* bytes */
 
 static const char *const stage_names[RMA_STAGES] = {"receivers",   "bulk",  "differential",
                                                     "reconstruct", "stolt", "focus"};
-
-static rma_column_function *const column_functions[][2] = {
-    [ISA_BASELINE] = {rma_column_float_baseline, rma_column_double_baseline},
-#ifdef SASBENCH_X86_64
-    [ISA_V3] = {rma_column_float_v3, rma_column_double_v3},
-    [ISA_V4] = {rma_column_float_v4, rma_column_double_v4},
-#endif
-};
-
-static rma_map_function *const map_functions[][2] = {
-    [ISA_BASELINE] = {rma_map_float_baseline, rma_map_double_baseline},
-#ifdef SASBENCH_X86_64
-    [ISA_V3] = {rma_map_float_v3, rma_map_double_v3},
-    [ISA_V4] = {rma_map_float_v4, rma_map_double_v4},
-#endif
-};
 
 static const struct rma_transform *transform(const struct rma *rma)
 {
@@ -185,6 +191,8 @@ enum status rma_count(const struct problem *problem, const struct rma_method *me
     rma->problem = *problem;
     rma->method = *method;
     rma->options = *options;
+    if (method->terms > 0)
+        rma->options.blocks = 1;
     rma->threads = omp_get_max_threads();
     rma->work.bytes = sizeof *rma - sizeof rma->store;
     fit_nodes_fill(FIT_DEGREE + 1, rma->fit.nodes, rma->fit.powers);
@@ -201,16 +209,16 @@ enum status rma_count(const struct problem *problem, const struct rma_method *me
     return STATUS_OK;
 }
 
-enum status rma_plan(const struct problem *problem, const struct rma_method *method, const struct rma_options *options,
-                     void **plan)
+enum status rma_plan(const struct problem *problem, const void *given, const void *options, void **plan)
 {
+    const struct rma_method method = rma_choose(given, options);
     struct condition list[CONDITIONS_MAX];
     struct rma *rma = NULL;
-    const int count = rma_conditions(problem, method, list, CONDITIONS_MAX);
-    enum status status = rma_conditions_check(method, list, count);
+    const int count = rma_conditions(problem, given, options, list, CONDITIONS_MAX);
+    enum status status = rma_conditions_check(method.name, list, count);
     *plan = NULL;
     if (status == STATUS_OK)
-        status = rma_count(problem, method, options, &rma);
+        status = rma_count(problem, &method, options, &rma);
     if (status == STATUS_OK && rma->delay)
         status = rma_delay_tables(rma);
     if (status == STATUS_OK)
@@ -240,7 +248,7 @@ static void stages_share(struct stages *stages, int count, const char *const *na
 /* All wavenumbers of a swath, from the receivers' spectra to focused rows. */
 static void migrate(const struct rma *rma, const struct rma_swath *swath, struct stages *stages)
 {
-    rma_column_function *column = column_functions[isa_choose()][rma->problem.precision];
+    rma_column_function *column = ISA_CHOOSE(rma_column, rma->problem.precision);
     double seconds[RMA_STAGES] = {0};
 #pragma omp parallel num_threads(rma->threads) reduction(+ : seconds[:RMA_STAGES])
     {
@@ -258,7 +266,7 @@ enum status rma_execute(void *plan, const struct echoes *echoes, struct image *i
     struct rma *rma = plan;
     static const char *const first_stages[] = {"compress", "map"};
     double seconds[2] = {0};
-    transform(rma)->compress(rma, map_functions[isa_choose()][rma->problem.precision], echoes->samples, seconds);
+    transform(rma)->compress(rma, ISA_CHOOSE(rma_map, rma->problem.precision), echoes->samples, seconds);
     stages_share(stages, 2, first_stages, seconds);
     for (const struct rma_swath *swath = rma->swaths; swath < rma->swaths + rma->swath_count; swath++) {
         transform(rma)->spread(rma, swath);

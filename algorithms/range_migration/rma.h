@@ -27,70 +27,29 @@
 #include "contract/algorithm.h"
 #include "range_migration/spectrum.h"
 
+/* Settings of all methods; those that a method does not have are 0. */
 struct rma_options {
     int blocks;                             /* range blocks over all rows asked for; 0: by Eq. (13) and limit */
     double limit;                           /* rad: the phase error that Eq. (13) accepts */
-    int spacing, blend, stolt, sum, phases; /* indices into the choices of RMA_PARAMS */
+    int spacing, blend, stolt, sum, phases; /* indices into the choices of rma_params */
+    int variant;                            /* enum rma_variant: of rma_lbf */
+    int terms, taps;                        /* of rma_delay; taps: index into rma_delay_taps_names */
 };
 
 enum rma_spacing { RMA_UNIFORM, RMA_INVERSE };
 enum rma_sum { RMA_SUM_BEFORE, RMA_SUM_AFTER };
 enum rma_phases { RMA_RECURRENCE, RMA_LIBM };
+enum rma_variant { RMA_PRINTED, RMA_CORRECTED };
 
-extern const char *const rma_spacing_names[],
-    *const rma_blend_names[], *const rma_stolt_names[], *const rma_sum_names[], *const rma_phases_names[];
-
-/* The parameters that all methods have. */
-#define RMA_PARAMS                                                                                                     \
-    {PARAM(struct rma_options, blocks),                                                                                \
-     .summary = "range blocks of the conversion; 0: as many as Eq. (13) requires",                                     \
-     .initial = 0,                                                                                                     \
-     .min = 0,                                                                                                         \
-     .max = 4096,                                                                                                      \
-     .sweep = "1 2 4 8 16 32"},                                                                                        \
-        {PARAM(struct rma_options, limit),                                                                             \
-         .summary = "largest phase error inside a block (rad) where blocks = 0",                                       \
-         .initial = 0.78539816339744831,                                                                               \
-         .min = 1e-3,                                                                                                  \
-         .max = 100,                                                                                                   \
-         .terse = true},                                                                                               \
-        {PARAM_NAMED(struct rma_options, spacing, rma_spacing_names),                                                  \
-         .summary = "blocks of equal width in r or in 1/r",                                                            \
-         .initial = RMA_INVERSE,                                                                                       \
-         .max = RMA_INVERSE,                                                                                           \
-         .sweep = "uniform inverse",                                                                                   \
-         .terse = true},                                                                                               \
-        {PARAM_NAMED(struct rma_options, blend, rma_blend_names),                                                      \
-         .summary = "blocks blend: each row is the cubic through the nearest four",                                    \
-         .initial = 1,                                                                                                 \
-         .max = 1,                                                                                                     \
-         .sweep = "off on",                                                                                            \
-         .terse = true},                                                                                               \
-        {PARAM_NAMED(struct rma_options, stolt, rma_stolt_names),                                                      \
-         .summary = "Kaiser taps of the Stolt interpolation, or a direct sum",                                         \
-         .initial = 3,                                                                                                 \
-         .max = 5,                                                                                                     \
-         .sweep = "4 6 8 12 16",                                                                                       \
-         .terse = true},                                                                                               \
-        {PARAM_NAMED(struct rma_options, sum, rma_sum_names),                                                          \
-         .summary = "receivers are summed before or after the range IFFT",                                             \
-         .initial = RMA_SUM_BEFORE,                                                                                    \
-         .max = RMA_SUM_AFTER,                                                                                         \
-         .terse = true,                                                                                                \
-         .hidden = true},                                                                                              \
-    {                                                                                                                  \
-        PARAM_NAMED(struct rma_options, phases, rma_phases_names),                                                     \
-            .summary = "by recurrence over the receivers, or by libm for each cell", .initial = RMA_RECURRENCE,        \
-            .max = RMA_LIBM, .terse = true, .hidden = true                                                             \
-    }
+extern const char *const rma_stolt_names[], *const rma_delay_taps_names[];
+/* The parameters of methods that convert in blocks; from rma_params + 1 on without the variant. */
+extern const struct param rma_params[];
 
 struct rma_method {
-    /* Options other than a struct rma_options: what they make of it and of the method. NULL: they are one. */
-    void (*choose)(const void *options, struct rma_method *method, struct rma_options *shared);
     const char *name, *law; /* law: of the condition that bounds the error of `spectrum` (rma_conditions.h) */
     double error_limit;     /* of the predicted error of an image */
     spectrum_function *spectrum;
-    int terms, taps; /* of delay compensation (delay_compensation.h); 0: conversion in blocks */
+    int terms, taps; /* of delay compensation (delay_compensation.h), by the options; 0: conversion in blocks */
     /* The paper's FLOPs for M receivers (LBF21 Eqs. (20) to (22)): numbers[0] M + numbers[1] range transforms of
        1.5 N_a N_r log2 N_r, azimuth transforms alike, products of N_a N_r; interpolations of N_a N_r (2 taps - 1). */
     const char *source;
@@ -114,19 +73,17 @@ double rma_focused(const struct acquisition *acquisition, const struct rma_bound
 /* What images by azimuth transforms keep to, range migration's and omega-k's: the conditions are to see to it. */
 double rma_promise(const void *options);
 
-/* The callbacks of struct algorithm, whose `method` is a struct rma_method, and whose options are a struct rma_options
-   or what it chooses by (rma_method.c). */
-int rma_method_conditions(const struct problem *problem, const void *method, const void *options,
-                          struct condition *list, int room);
-enum status rma_method_forecast(const struct problem *problem, const void *method, const void *options,
-                                struct forecast *forecast);
-enum status rma_method_cost(const struct problem *problem, const void *method, const void *options,
-                            struct forecast *forecast);
-enum status rma_method_plan(const struct problem *problem, const void *method, const void *options, void **plan);
-
-/* The same of a method as the options make it; these are only used during the call. */
-enum status rma_plan(const struct problem *problem, const struct rma_method *method, const struct rma_options *options,
-                     void **plan);
+/* The callbacks of struct algorithm, whose `method` is a struct rma_method, and whose options are a struct rma_options.
+   Conditions, forecast and cost: rma_conditions.h. */
+#define RMA_CALLBACKS                                                                                                  \
+    .conditions = rma_conditions, .promise = rma_promise, .forecast = rma_forecast, .cost = rma_cost,                  \
+    .plan = rma_plan, .execute = rma_execute, .work = rma_work, .destroy = rma_destroy
+int rma_conditions(const struct problem *problem, const void *method, const void *options, struct condition *list,
+                   int room);
+enum status rma_forecast(const struct problem *problem, const void *method, const void *options,
+                         struct forecast *forecast);
+enum status rma_cost(const struct problem *problem, const void *method, const void *options, struct forecast *forecast);
+enum status rma_plan(const struct problem *problem, const void *method, const void *options, void **plan);
 enum status rma_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);
 struct work rma_work(const void *plan);
 void rma_destroy(void *plan);

@@ -6,15 +6,25 @@
 #include <string.h>
 
 #include "range_migration/delay_compensation.h"
-#include "range_migration/ghosts.h"
-#include "range_migration/prediction.h"
 
 static const double SLOWEST = 0.1; /* 1 - |v|/c that spectra need */
 static const double ERROR_LIMIT = 0.1, PROMISE = 0.12;
-static const double LAW_LIMIT = 0.1;    /* rad: an image is as wrong as its phases */
+static const double LAW_LIMIT = 0.1;                       /* rad: an image is as wrong as its phases */
+static const double TERMS_LIMIT = 0.05, TAPS_LIMIT = 0.05; /* relative L2: half of what the predicted error may be */
 static const double WIDEST_SINE = 0.95; /* of the aperture where neither sampling nor element length bounds it */
 static const double ECHO_ZONES = 4;     /* Fresnel zones beyond the echoes' own sine, over which their spectrum fades */
 static const double FRESNEL_ZONES = 6;  /* beyond the track's ends: what is cut farther out leaves no ripple */
+
+struct rma_method rma_choose(const struct rma_method *method, const struct rma_options *options)
+{
+    static const int tap_counts[] = {8, 12, 16, 24};
+    struct rma_method chosen = *method;
+    if (chosen.spectrum == spectrum_lbf_corrected && options->variant == RMA_PRINTED)
+        chosen.spectrum = spectrum_lbf_printed;
+    chosen.terms = options->terms;
+    chosen.taps = options->terms > 0 ? tap_counts[options->taps] : 0;
+    return chosen;
+}
 
 double rma_promise(const void *options)
 {
@@ -128,13 +138,9 @@ static double stationary_at(const struct rma_view *view, double r, double low, d
 
 static struct condition stationary(const struct rma_view *view)
 {
-    return (struct condition){"stationary",
-                              worst_row(view, stationary_at),
-                              0.01,
-                              false,
-                              SEVERITY_REFUSE,
-                              "the first term that stationary phase drops, lambda/(32 pi r cos theta)",
-                              "rows farther away, or a higher frequency"};
+    return condition_most(SEVERITY_REFUSE, "stationary", worst_row(view, stationary_at), 0.01,
+                          "the first term that stationary phase drops, lambda/(32 pi r cos theta)",
+                          "rows farther away, or a higher frequency");
 }
 
 static double amplitude_at(const struct rma_view *view, double r, double low, double high)
@@ -147,13 +153,9 @@ static double amplitude_at(const struct rma_view *view, double r, double low, do
 
 static struct condition spa_amplitude(const struct rma_view *view)
 {
-    return (struct condition){"spa_amplitude",
-                              worst_row(view, amplitude_at),
-                              0.05,
-                              false,
-                              SEVERITY_REFUSE,
-                              "the amplitude error of a monostatic weight, (1 + (d/2r)^2)^.75 - 1",
-                              "rows farther away, or receivers nearer to the transmitter"};
+    return condition_most(SEVERITY_REFUSE, "spa_amplitude", worst_row(view, amplitude_at), 0.05,
+                          "the amplitude error of a monostatic weight, (1 + (d/2r)^2)^.75 - 1",
+                          "rows farther away, or receivers nearer to the transmitter");
 }
 
 /* Root mean square over the beam, the band and the array of the phase that the method's formula misses. */
@@ -184,27 +186,21 @@ static struct condition formula(const struct rma_view *view)
 {
     bool exact = view->method->spectrum == spectrum_exact || !view->converts;
     double off = exact ? 0 : worst_row(view, formula_at);
-    return (struct condition){view->method->law,
-                              isnan(off) ? INFINITY : off, /* the formula ends inside the beam */
-                              LAW_LIMIT,
-                              false,
-                              SEVERITY_WARN,
-                              "the formula's phase error over the beam (rad, rms)",
-                              "rma_numeric, which has no such error; rows farther away or nearer, a narrower beam or a "
-                              "lower speed"};
+    return condition_most(SEVERITY_WARN, view->method->law,
+                          isnan(off) ? INFINITY : off, /* the formula ends inside the beam */
+                          LAW_LIMIT, "the formula's phase error over the beam (rad, rms)",
+                          "rma_numeric, which has no such error; rows farther away or nearer, a narrower beam or a "
+                          "lower speed");
 }
 
 struct condition rma_predicted_error(const struct rma_view *view)
 {
     double error = prediction_error(view);
-    struct condition condition = {"predicted_error",
-                                  error,
-                                  ERROR_LIMIT,
-                                  false,
-                                  error <= view->method->error_limit ? SEVERITY_WARN : SEVERITY_REFUSE,
-                                  "the error predicted for azimuth slices through point targets (relative L2)",
-                                  "more pings in the beam, columns within the track, pings closer together, or rows "
-                                  "farther away"};
+    struct condition condition =
+        condition_most(error <= view->method->error_limit ? SEVERITY_WARN : SEVERITY_REFUSE, "predicted_error", error,
+                       ERROR_LIMIT, "the error predicted for azimuth slices through point targets (relative L2)",
+                       "more pings in the beam, columns within the track, pings closer together, or rows "
+                       "farther away");
     condition_beam_named(view->problem->acquisition, &condition);
     return condition;
 }
@@ -220,41 +216,41 @@ bool azimuth_requirements(const struct problem *problem, struct condition *list,
             const struct grid *g = &problem->patches[k];
             nearest = fmin(nearest, grid_point(g, corner / 2 * (g->r_count - 1), corner % 2 * (g->x_count - 1)).y);
         }
-    list[(*count)++] = (struct condition){"above_dc",
-                                          a->fc - a->bandwidth / 2,
-                                          0,
-                                          true,
-                                          SEVERITY_REFUSE,
-                                          "the lowest frequency fc - B/2 (Hz)",
-                                          "a higher carrier or a narrower band"};
+    list[(*count)++] = condition_least(SEVERITY_REFUSE, "above_dc", a->fc - a->bandwidth / 2, 0,
+                                       "the lowest frequency fc - B/2 (Hz)", "a higher carrier or a narrower band");
     list[(*count)++] =
-        (struct condition){"uniform_track",
-                           acquisition_unevenness(a, track) * a->fc / a->sound_speed,
-                           ACQUISITION_UNEVEN_MOST,
-                           false,
-                           SEVERITY_REFUSE,
-                           "how far pings, receivers and starts of record lie off a uniform straight track along x "
-                           "(wavelengths)",
-                           "back projection"};
-    list[(*count)++] = (struct condition){
-        "pings",          a->pings, 1, true, SEVERITY_REFUSE, "the number of pings (one has no azimuth spectrum)",
-        "back projection"};
+        condition_most(SEVERITY_REFUSE, "uniform_track", acquisition_unevenness(a, track) * a->fc / a->sound_speed,
+                       ACQUISITION_UNEVEN_MOST,
+                       "how far pings, receivers and starts of record lie off a uniform straight track along x "
+                       "(wavelengths)",
+                       "back projection");
+    list[(*count)++] = condition_least(SEVERITY_REFUSE, "pings", a->pings, 1,
+                                       "the number of pings (one has no azimuth spectrum)", "back projection");
     /* A limit at the edge of the echoes' own beam leaves out nothing but pairs without an echo of the pixel. */
     double whole = fmin(1, a->echo_sine > 0 ? a->echo_sine : 1);
-    list[(*count)++] = (struct condition){"whole_aperture",
-                                          a->aperture_limit,
-                                          nextafter(whole, 0),
-                                          true,
-                                          SEVERITY_REFUSE,
-                                          "the scene's aperture_limit (a sine; an azimuth transform cannot choose "
-                                          "pings pixel by pixel)",
-                                          "back projection, or a limit beyond the echoes' beam"};
-    list[(*count)++] = (struct condition){
-        "in_front", nearest, 0, true, SEVERITY_REFUSE, "the range r of the nearest pixel (m)", "pixels at r > 0"};
+    list[(*count)++] = condition_least(SEVERITY_REFUSE, "whole_aperture", a->aperture_limit, nextafter(whole, 0),
+                                       "the scene's aperture_limit (a sine; an azimuth transform cannot choose "
+                                       "pings pixel by pixel)",
+                                       "back projection, or a limit beyond the echoes' beam");
+    list[(*count)++] = condition_least(SEVERITY_REFUSE, "in_front", nearest, 0, "the range r of the nearest pixel (m)",
+                                       "pixels at r > 0");
     for (; first < list + *count; first++)
         if (!condition_holds(first))
             return false;
     return true;
+}
+
+/* What delay compensation needs beyond all that (delay_compensation.h). */
+static int delay_conditions(const struct rma_view *view, struct condition *list, int count)
+{
+    const double error = view->converts ? delay_taps_error(view->problem->acquisition, view->method->taps) : 0;
+    list[count++] = condition_most(SEVERITY_REFUSE, "delay_terms", delay_terms_left(view, view->method->terms),
+                                   TERMS_LIMIT, "the phase error that the terms over the receivers leave (relative L2)",
+                                   "more terms, rows farther away, a shorter array or a narrower beam");
+    list[count++] = condition_most(SEVERITY_REFUSE, "delay_taps", error, TAPS_LIMIT,
+                                   "the error of a delay by half a sample (relative L2 of the pulse)",
+                                   "more taps, or a higher sampling rate");
+    return count;
 }
 
 /* The predicted error, and what may have caused it. */
@@ -286,16 +282,11 @@ static bool along_track(const struct problem *problem, struct condition *all, in
     for (int k = 0; k < problem->patch_count; k++)
         turned = fmax(turned, fabs(problem->patches[k].angle_rad) * 180 / M_PI);
     if (squint > 0)
-        all[(*count)++] = (struct condition){
-            "squint", squint, 0, false, SEVERITY_REFUSE, "the beam's squint (degrees)", "wk_classic, wk_squint"};
+        all[(*count)++] = condition_most(SEVERITY_REFUSE, "squint", squint, 0, "the beam's squint (degrees)",
+                                         "wk_classic, wk_squint");
     if (turned > 0)
-        all[(*count)++] = (struct condition){"axes",
-                                             turned,
-                                             0,
-                                             false,
-                                             SEVERITY_REFUSE,
-                                             "the angle of the image's axes (degrees)",
-                                             "axes along the track"};
+        all[(*count)++] = condition_most(SEVERITY_REFUSE, "axes", turned, 0, "the angle of the image's axes (degrees)",
+                                         "axes along the track");
     return squint == 0 && turned == 0;
 }
 
@@ -309,26 +300,28 @@ static bool requirements(const struct problem *problem, struct condition all[CON
            && condition_holds(&all[0]);
 }
 
-enum status rma_requirements_check(const struct problem *problem, const struct rma_method *method)
+enum status rma_requirements_check(const struct problem *problem, const char *method)
 {
     struct straight_track track;
     struct condition all[CONDITIONS_MAX];
     int count;
     requirements(problem, all, &count, &track);
-    return conditions_check(method->name, all, count);
+    return conditions_check(method, all, count);
 }
 
-int rma_conditions(const struct problem *problem, const struct rma_method *method, struct condition *list, int room)
+int rma_conditions(const struct problem *problem, const void *given, const void *options, struct condition *list,
+                   int room)
 {
+    const struct rma_method method = rma_choose(given, options);
     struct straight_track track;
     struct condition all[CONDITIONS_MAX];
     int count;
     if (requirements(problem, all, &count, &track)) {
-        struct rma_view view = rma_view_of(problem, method, &track);
+        struct rma_view view = rma_view_of(problem, &method, &track);
         all[count++] = stationary(&view);
         if (condition_holds(&all[count - 1]))
             count = prediction_conditions(&view, &track, all, count);
-        if (method->terms > 0)
+        if (method.terms > 0)
             count = delay_conditions(&view, all, count);
         if (conditions_accept(all, count))
             all[count++] = ghosts_condition(problem, &track);
@@ -338,11 +331,11 @@ int rma_conditions(const struct problem *problem, const struct rma_method *metho
     return count < room ? count : room;
 }
 
-enum status rma_conditions_check(const struct rma_method *method, const struct condition *list, int count)
+enum status rma_conditions_check(const char *method, const struct condition *list, int count)
 {
     static const char *const computed[] = {"predicted_error", "delay_terms", "delay_taps"};
     for (int k = 0; k < 3 * count; k++)
         if (strcmp(list[k / 3].name, computed[k % 3]) == 0 && isnan(list[k / 3].value))
-            return status_set(STATUS_FAILED, "%s: no memory to predict the image's error", method->name);
-    return conditions_check(method->name, list, count);
+            return status_set(STATUS_FAILED, "%s: no memory to predict the image's error", method);
+    return conditions_check(method, list, count);
 }

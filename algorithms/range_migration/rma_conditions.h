@@ -21,6 +21,9 @@ struct rma_view {
     double period; /* pings and zeros; 0: range migration */
 };
 
+/* A method as its options make it. */
+struct rma_method rma_choose(const struct rma_method *method, const struct rma_options *options);
+
 struct rma_view rma_view_of(const struct problem *problem, const struct rma_method *method,
                             const struct straight_track *track);
 
@@ -37,30 +40,44 @@ bool rma_view_aperture(const struct rma_view *view, const struct grid *patch, do
 bool azimuth_requirements(const struct problem *problem, struct condition *list, int *count,
                           struct straight_track *track);
 
-/* The conditions of range migration by a method, conditions_general among them. What may cause a large error
-   (doppler, the formula's law) refuses only where the predicted error is too large, and then stands for it; without
-   such a cause predicted_error itself refuses. spa_amplitude always refuses: the prediction takes the beam of a pair
-   for that of its transmitter. Its value is NAN without memory. */
-int rma_conditions(const struct problem *problem, const struct rma_method *method, struct condition *list, int room);
+/* ---- prediction.c: the error of an image before it is formed, of a point target in azimuth ---- */
+
+/* Relative L2 error of azimuth slices through point targets on the wanted columns (1), the worst of every patch's first
+   and last row and of some between them; INFINITY where no ping sees any of them, NAN without memory. */
+double prediction_error(const struct rma_view *view);
+
+/* ---- ghosts.c: grating lobes, where back projection and azimuth transforms differ by principle ---- */
+
+/* The condition grating_lobes of a uniform straight track (acquisition_is_straight) and patches at r > 0, turned or
+   not. Back projection also sums, at a pixel, pings from which the pixel has a wavenumber that the pings do not sample;
+   what such a ping saw elsewhere at the same delay is a ghost in back projection's image, and not in that of a
+   transform. With an aperture limit it may be the other way round. The value is the ghosts of point targets in the
+   patches over the targets' own images (relative L2), the worst of the patches. It refuses where a patch holds ghosts
+   of the other patches' targets, and with an aperture limit. Where a patch without one is so wide that targets at its
+   ends make ghosts within it, it warns: whether there are such targets is not known (omega-k refuses there too, as it
+   predicts no error). */
+struct condition ghosts_condition(const struct problem *problem, const struct straight_track *track);
+
+/* ---- rma_conditions.c ---- */
+
+/* rma_conditions: conditions_general among them. What may cause a large error (doppler, the formula's law) refuses only
+   where the predicted error is too large, and then stands for it; without such a cause predicted_error itself refuses.
+   spa_amplitude always refuses: the prediction takes the beam of a pair for that of its transmitter. Its value is NAN
+   without memory. */
 
 /* The last of them, which refuses beyond the method's error_limit. */
 struct condition rma_predicted_error(const struct rma_view *view);
 
 /* STATUS_UNSUPPORTED as conditions_check, STATUS_FAILED where a value is NAN without memory. */
-enum status rma_conditions_check(const struct rma_method *method, const struct condition *list, int count);
+enum status rma_conditions_check(const char *method, const struct condition *list, int count);
 
 /* STATUS_UNSUPPORTED where track, axes or rows alone refuse; far cheaper than rma_conditions. */
-enum status rma_requirements_check(const struct problem *problem, const struct rma_method *method);
+enum status rma_requirements_check(const struct problem *problem, const char *method);
 
 /* What an image loses at the ends of the band, energy, relative: beyond what it keeps or up to `edge` (cycles a sample)
    inside of that, or at half the sampling rate. Errors: STATUS_FAILED without memory. */
 enum status rma_band_lost(const struct rma_view *view, double edge, double *lost);
-/* The forecast by a method, its errors alone. Errors: as rma_conditions_check. */
-enum status rma_forecast(const struct problem *problem, const struct rma_method *method,
-                         const struct rma_options *options, struct forecast *forecast);
-/* Its counts alone. Errors: STATUS_UNSUPPORTED as rma_requirements_check, and where transforms, work or memory are too
-   large; STATUS_FAILED without memory. */
-enum status rma_cost(const struct problem *problem, const struct rma_method *method, const struct rma_options *options,
-                     struct forecast *forecast);
+/* rma_forecast's errors: as rma_conditions_check. rma_cost's: STATUS_UNSUPPORTED as rma_requirements_check, and where
+   transforms, work or memory are too large; STATUS_FAILED without memory. */
 
 #endif

@@ -55,6 +55,7 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "common/isa.h"
 #include "common/fit.h"
 #include "common/memory.h"
 #include "range_migration/delay_compensation.h"
@@ -332,9 +333,7 @@ void rma_map_plan_double(struct rma *rma, struct rma_swath *swath);
 /* A swath's row, complex [runs RMA_RUN], from a compressed record with its guards. */
 typedef void rma_map_function(const struct rma *rma, const struct rma_swath *swath, int receiver, const void *padded,
                               void *row);
-rma_map_function rma_map_float_baseline, rma_map_double_baseline;
-rma_map_function rma_map_float_v3, rma_map_double_v3;
-rma_map_function rma_map_float_v4, rma_map_double_v4;
+ISA_DECLARE(rma_map_function, rma_map);
 
 /* ---- rma_transform.c ---- */
 struct rma_transform {
@@ -352,8 +351,6 @@ enum rma_stage { RMA_RECEIVERS, RMA_BULK, RMA_DIFFERENTIAL, RMA_RECONSTRUCT, RMA
    are added. */
 typedef void rma_column_function(const struct rma *rma, const struct rma_swath *swath, int thread, int turn,
                                  double seconds[RMA_STAGES]);
-rma_column_function rma_column_float_baseline, rma_column_double_baseline;
-rma_column_function rma_column_float_v3, rma_column_double_v3;
-rma_column_function rma_column_float_v4, rma_column_double_v4;
+ISA_DECLARE(rma_column_function, rma_column);
 
 #endif

@@ -6,9 +6,8 @@
 #include <string.h>
 
 #include "common/fft_length.h"
-#include "common/image_spectrum.h"
-#include "common/kaiser.h"
 #include "common/pulse_band.h"
+#include "common/kaiser.h"
 #include "range_migration/rma_engine.h"
 
 static const int stolt_taps[] = {0, 4, 6, 8, 12, 16}; /* of rma_stolt_names; 0: a direct sum */
@@ -153,7 +152,7 @@ static enum status settings_errors(const struct problem *problem, const struct r
         return status;
     error[CAUSE_DELAYS] = terms ? delay_taps_expected(&view, method->taps, band.half) : 0;
     /* Blocks that are asked for by number, or have hard edges, have no law. */
-    const bool lawless = options->blocks || !options->blend;
+    const bool lawless = options->blocks || !options->blend; /* not of terms */
     error[CAUSE_BLOCKS] = terms            ? TERMS_SHARE * delay_terms_left(&view, method->terms)
                           : !view.converts ? 0
                           : lawless        ? INFINITY
@@ -166,16 +165,16 @@ static enum status settings_errors(const struct problem *problem, const struct r
                : STATUS_OK;
 }
 
-enum status rma_cost(const struct problem *problem, const struct rma_method *method, const struct rma_options *options,
-                     struct forecast *forecast)
+enum status rma_cost(const struct problem *problem, const void *given, const void *options, struct forecast *forecast)
 {
+    const struct rma_method method = rma_choose(given, options);
     struct rma *rma = NULL;
-    enum status status = rma_requirements_check(problem, method);
+    enum status status = rma_requirements_check(problem, method.name);
     *forecast = (struct forecast){.sums_pairs = false};
     if (status == STATUS_OK)
-        status = settings_errors(problem, method, options, forecast->error);
+        status = settings_errors(problem, &method, options, forecast->error);
     if (status == STATUS_OK)
-        status = rma_count(problem, method, options, &rma);
+        status = rma_count(problem, &method, options, &rma);
     if (status != STATUS_OK)
         return status;
     forecast->migration_flops = rma->work.flops;
@@ -188,20 +187,21 @@ enum status rma_cost(const struct problem *problem, const struct rma_method *met
     return STATUS_OK;
 }
 
-enum status rma_forecast(const struct problem *problem, const struct rma_method *method,
-                         const struct rma_options *options, struct forecast *forecast)
+enum status rma_forecast(const struct problem *problem, const void *given, const void *options,
+                         struct forecast *forecast)
 {
+    const struct rma_method method = rma_choose(given, options);
     struct condition list[CONDITIONS_MAX];
     struct straight_track track;
     struct band band;
-    const int count = rma_conditions(problem, method, list, CONDITIONS_MAX);
-    enum status status = rma_conditions_check(method, list, count);
+    const int count = rma_conditions(problem, given, options, list, CONDITIONS_MAX);
+    enum status status = rma_conditions_check(method.name, list, count);
     if (status == STATUS_OK)
-        status = rma_cost(problem, method, options, forecast);
+        status = rma_cost(problem, given, options, forecast);
     if (status != STATUS_OK)
         return status;
     acquisition_is_straight(problem->acquisition, &track);
-    const struct rma_view view = rma_view_of(problem, method, &track);
+    const struct rma_view view = rma_view_of(problem, &method, &track);
     status = band_of(&view, 0, &band);
     /* Where B = fs, the bin at fs/2 stands for both ends of the band: no law. */
     forecast->error[CAUSE_SPECTRUM] =

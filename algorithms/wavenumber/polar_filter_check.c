@@ -172,10 +172,9 @@ static double loss_db(const struct acquisition *a, const struct polar_setting *s
 struct condition polar_filter_kept(const struct acquisition *a, const struct polar_setting *setting)
 {
     const int count = polar_filter_subapertures(a, setting->subapertures), most = polar_filter_most(a);
-    struct condition kept = {"area_kept",    loss_db(a, setting, count),
-                             LOSS_MOST,      false,
-                             SEVERITY_WARN,  "the filter's loss on targets inside its own area, out to 0.8 of it (dB)",
-                             "a larger area"};
+    struct condition kept =
+        condition_most(SEVERITY_WARN, "area_kept", loss_db(a, setting, count), LOSS_MOST,
+                       "the filter's loss on targets inside its own area, out to 0.8 of it (dB)", "a larger area");
     int better = count;
     while (better <= most && !condition_holds(&kept) && loss_db(a, setting, better) > LOSS_MOST)
         better *= 2;

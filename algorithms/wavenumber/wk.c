@@ -9,7 +9,6 @@
 #include <string.h>
 
 #include "common/fft_length.h"
-#include "common/isa.h"
 #include "common/progress.h"
 #include "wavenumber/wk_engine.h"
 
@@ -17,21 +16,6 @@ const char *const wk_taps_names[] = {"4", "6", "8", "12", "16", NULL};
 const char *const wk_unfold_names[] = {"stuff", "baseband", "support", NULL};
 
 static const char *const stage_names[WK_STAGES] = {"rotate", "stolt", "focus"};
-
-static const struct {
-    wk_record_function *record;
-    wk_line_function *line;
-    wk_row_function *row;
-} loops[][2] = {
-    [ISA_BASELINE] = {{wk_record_float_baseline, wk_line_float_baseline, wk_row_float_baseline},
-                      {wk_record_double_baseline, wk_line_double_baseline, wk_row_double_baseline}},
-#ifdef SASBENCH_X86_64
-    [ISA_V3] = {{wk_record_float_v3, wk_line_float_v3, wk_row_float_v3},
-                {wk_record_double_v3, wk_line_double_v3, wk_row_double_v3}},
-    [ISA_V4] = {{wk_record_float_v4, wk_line_float_v4, wk_row_float_v4},
-                {wk_record_double_v4, wk_line_double_v4, wk_row_double_v4}},
-#endif
-};
 
 static const struct wk_transform *transform(const struct wk *wk)
 {
@@ -112,9 +96,9 @@ enum status wk_plan(const struct problem *problem, const void *method, const voi
     if (status != STATUS_OK)
         return status;
     wk->threads = omp_get_max_threads();
-    wk->record_loop = loops[isa_choose()][problem->precision].record;
-    wk->line_loop = loops[isa_choose()][problem->precision].line;
-    wk->row_loop = loops[isa_choose()][problem->precision].row;
+    wk->record_loop = ISA_CHOOSE(wk_record, problem->precision);
+    wk->line_loop = ISA_CHOOSE(wk_line, problem->precision);
+    wk->row_loop = ISA_CHOOSE(wk_row, problem->precision);
     fit_nodes_fill(FIT_DEGREE + 1, wk->fit.nodes, wk->fit.powers);
     wk->work.bytes = sizeof *wk - sizeof wk->store + (double)problem->patch_count * sizeof *wk->patches;
     status = transform(wk)->plan(wk);

@@ -58,6 +58,8 @@ struct wk_method {
 };
 
 /* The callbacks of struct algorithm, whose `method` is a struct wk_method, and whose options a struct wk_options. */
+#define WK_CALLBACKS                                                                                                   \
+    .conditions = wk_conditions, .plan = wk_plan, .execute = wk_execute, .work = wk_work, .destroy = wk_destroy
 enum status wk_plan(const struct problem *problem, const void *method, const void *options, void **plan);
 /* Of one that rotates, for a slower platform; of one that filters, with what that takes off its own targets. */
 int wk_conditions(const struct problem *problem, const void *method, const void *options, struct condition *list,

@@ -1,10 +1,7 @@
 /* The conditions of omega-k (docs/conditions.md). */
 #include <math.h>
-#include <string.h>
 
 #include "range_migration/rma_conditions.h"
-#include "range_migration/ghosts.h"
-#include "range_migration/prediction.h"
 #include "range_migration/spectrum.h"
 #include "wavenumber/wk_engine.h"
 #include "wavenumber/polar_filter.h"
@@ -87,39 +84,23 @@ static void beam_conditions(const struct problem *problem, const struct straight
                             int *count)
 {
     const struct view view = view_of(problem->acquisition, track);
-    all[(*count)++] = (struct condition){"squint",
-                                         asin(fmin(fabs(view.slope), 1)) * 180 / M_PI,
-                                         asin(WK_WIDEST_SINE) * 180 / M_PI,
-                                         false,
-                                         SEVERITY_REFUSE,
-                                         "the angle of the beam's axis off broadside (degrees)",
-                                         "back projection, or a beam nearer to broadside"};
+    all[(*count)++] = condition_most(
+        SEVERITY_REFUSE, "squint", asin(fmin(fabs(view.slope), 1)) * 180 / M_PI, asin(WK_WIDEST_SINE) * 180 / M_PI,
+        "the angle of the beam's axis off broadside (degrees)", "back projection, or a beam nearer to broadside");
     if (!condition_holds(&all[*count - 1]))
         return;
     const struct worst worst = patches_see(&view, problem);
-    all[(*count)++] = (struct condition){"in_beam",
-                                         worst.unseen,
-                                         0,
-                                         false,
-                                         SEVERITY_REFUSE,
-                                         "patches that lie in no ping's beam",
-                                         "patches where the beam looks, in axes turned as it is"};
-    all[(*count)++] = (struct condition){
-        "doppler",
-        worst.doppler,
-        1.05,
-        false,
-        SEVERITY_REFUSE,
-        "the largest azimuth wavenumber of the beam, off its centroid, over that which pings sample, 1/(2 spacing)",
-        "pings closer together, or a narrower beam"};
+    all[(*count)++] = condition_most(SEVERITY_REFUSE, "in_beam", worst.unseen, 0, "patches that lie in no ping's beam",
+                                     "patches where the beam looks, in axes turned as it is");
+    all[(*count)++] =
+        condition_most(SEVERITY_REFUSE, "doppler", worst.doppler, 1.05,
+                       "the widest azimuth wavenumber in the beam, off its centroid, over what the pings sample, "
+                       "1/(2 spacing)",
+                       "pings closer together, or a narrower beam");
     condition_beam_named(problem->acquisition, &all[*count - 1]);
-    all[(*count)++] = (struct condition){"stationary",
-                                         worst.stationary,
-                                         0.01,
-                                         false,
-                                         SEVERITY_REFUSE,
-                                         "the first term that stationary phase drops, lambda/(32 pi r cos theta)",
-                                         "rows farther away, or a higher frequency"};
+    all[(*count)++] = condition_most(SEVERITY_REFUSE, "stationary", worst.stationary, 0.01,
+                                     "the first term that stationary phase drops, lambda/(32 pi r cos theta)",
+                                     "rows farther away, or a higher frequency");
 }
 
 struct rma_view wk_view_of(const struct problem *problem, const struct straight_track *track)
@@ -139,20 +120,11 @@ static int requirements(const struct problem *problem, struct condition all[COND
     int count = conditions_general(problem, all, CONDITIONS_MAX);
     all[0].limit = SLOWEST; /* subsonic */
     double aside = fmax(fabs(condition_offset(a, 0)), fabs(condition_offset(a, 2)));
-    all[count++] = (struct condition){"one_receiver",
-                                      a->receivers,
-                                      1,
-                                      false,
-                                      SEVERITY_REFUSE,
-                                      "the number of receivers",
-                                      "back projection or range migration (rma_*)"};
-    all[count++] = (struct condition){"monostatic",
-                                      aside * a->fc / a->sound_speed,
-                                      1e-3,
-                                      false,
-                                      SEVERITY_REFUSE,
-                                      "how far the receiver is from the transmitter along the track (wavelengths)",
-                                      "back projection or range migration (rma_*)"};
+    all[count++] = condition_most(SEVERITY_REFUSE, "one_receiver", a->receivers, 1, "the number of receivers",
+                                  "back projection or range migration (rma_*)");
+    all[count++] = condition_most(SEVERITY_REFUSE, "monostatic", aside * a->fc / a->sound_speed, 1e-3,
+                                  "how far the receiver is from the transmitter along the track (wavelengths)",
+                                  "back projection or range migration (rma_*)");
     if (azimuth_requirements(problem, all, &count, track) && conditions_accept(all, count))
         beam_conditions(problem, track, all, &count);
     return count;
@@ -195,10 +167,7 @@ enum status wk_conditions_check(const struct problem *problem, const struct wk_m
 {
     struct condition all[CONDITIONS_MAX];
     const int count = refusals(problem, method, all, CONDITIONS_MAX);
-    for (int k = 0; k < count; k++)
-        if (strcmp(all[k].name, "predicted_error") == 0 && isnan(all[k].value))
-            return status_set(STATUS_FAILED, "%s: no memory to predict the image's error", method->name);
-    return conditions_check(method->name, all, count);
+    return rma_conditions_check(method->name, all, count);
 }
 
 enum status wk_requirements_check(const struct problem *problem, const struct wk_method *method)

@@ -16,6 +16,7 @@
 
 #include <math.h>
 
+#include "common/isa.h"
 #include "common/fit.h"
 #include "common/memory.h"
 #include "range_migration/rma_conditions.h"
@@ -81,15 +82,9 @@ typedef void wk_record_function(const struct wk *wk, int n, const void *record, 
 typedef void wk_line_function(const struct wk *wk, int thread, int first, double seconds[WK_STAGES]);
 /* wk_row.c: row i of a patch, from `focused` onto its columns. `wave`: [columns], as FFTW was told. */
 typedef void wk_row_function(const struct wk *wk, const struct wk_patch *patch, int i, void *wave, void *pixels);
-wk_record_function wk_record_float_baseline, wk_record_double_baseline;
-wk_record_function wk_record_float_v3, wk_record_double_v3;
-wk_record_function wk_record_float_v4, wk_record_double_v4;
-wk_line_function wk_line_float_baseline, wk_line_double_baseline;
-wk_line_function wk_line_float_v3, wk_line_double_v3;
-wk_line_function wk_line_float_v4, wk_line_double_v4;
-wk_row_function wk_row_float_baseline, wk_row_double_baseline;
-wk_row_function wk_row_float_v3, wk_row_double_v3;
-wk_row_function wk_row_float_v4, wk_row_double_v4;
+ISA_DECLARE(wk_record_function, wk_record);
+ISA_DECLARE(wk_line_function, wk_line);
+ISA_DECLARE(wk_row_function, wk_row);
 
 struct wk {
     struct problem problem;

@@ -5,7 +5,7 @@
 #include "backprojection/traces.h"
 #include "common/fft_length.h"
 #include "common/kaiser.h"
-#include "range_migration/prediction.h"
+#include "range_migration/rma_conditions.h"
 #include "wavenumber/wk_engine.h"
 
 /* Padded less, what the record's ends leave beyond them depends on where targets are: no law. */

@@ -8,7 +8,7 @@
 #include "backprojection/law_spectrum.h"
 #include "backprojection/pairs/pairs.h"
 #include "backprojection/traces.h"
-#include "common/image_spectrum.h"
+#include "common/pulse_band.h"
 #include "common/turns.h"
 #include "contract/delay.h"
 #include "echoes/echo_data.h"

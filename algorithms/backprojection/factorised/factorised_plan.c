@@ -8,14 +8,6 @@
 #include "backprojection/budget.h"
 #include "backprojection/factorised/factorised.h"
 
-static polar_trace_function *const trace_functions[][2] = {
-    [ISA_BASELINE] = {polar_trace_float_baseline, polar_trace_double_baseline},
-#ifdef SASBENCH_X86_64
-    [ISA_V3] = {polar_trace_float_v3, polar_trace_double_v3},
-    [ISA_V4] = {polar_trace_float_v4, polar_trace_double_v4},
-#endif
-};
-
 static void *room(struct factorised *plan, size_t count, size_t size)
 {
     return store_room(&plan->bp.engines, count, size, 1);
@@ -143,8 +135,8 @@ static enum status reading_make(struct factorised *plan)
         return status;
     const enum precision precision = bp->problem.precision;
     const size_t places = (size_t)places_most(&plan->tree);
-    plan->sum = bp_sum_choose(precision);
-    plan->trace = trace_functions[isa_choose()][precision];
+    plan->sum = ISA_CHOOSE(bp_sum, precision);
+    plan->trace = ISA_CHOOSE(polar_trace, precision);
     plan->layout = bp_layout_make(precision, bp_branch_length(bp), degree + 1, true);
     plan->polar_layout = bp_layout_make(precision, places + 3 * BP_BRANCHES_GUARD, branches, true);
     plan->polar_table = bp->table;

@@ -8,9 +8,9 @@ enum { TAPS_MOST = 12, FRACTIONS = 16, STEPS = 40 };
 /* As fine as FINEST, relative, rounding moves no place that matters. */
 static const double OVERSAMPLING_MOST = 6, FINEST = 1e-12;
 
-static void weights(const void *fitted, double fraction, double *w)
+static void weights(const struct interpolator *in, double fraction, double *w)
 {
-    fitted_weights(fitted, fraction, w);
+    fitted_weights(&in->kernel.fitted, fraction, w);
 }
 
 /* Root mean square over fractions of |H - 1| over a flat band: 1 - 2 w.s + w.R w with fitted.h's sinc functions. */
@@ -78,7 +78,6 @@ static double oversampling_of(int taps, double error, double least, double cheap
 enum status polar_taps_choose(double error, double least, struct polar_taps *chosen)
 {
     double cheapest = INFINITY;
-    struct fitted fitted;
     for (int taps = 2; taps <= TAPS_MOST; taps += 2) {
         const double oversampling = oversampling_of(taps, error, least, cheapest);
         if (cost_of(taps, oversampling) < cheapest) {
@@ -89,9 +88,8 @@ enum status polar_taps_choose(double error, double least, struct polar_taps *cho
     }
     if (cheapest == INFINITY)
         return status_set(STATUS_UNSUPPORTED, "no taps interpolate polar grids with an error of %g", error);
-    chosen->error = error_of(chosen->taps, chosen->oversampling, &fitted);
-    const struct interpolator in = {
-        .upsample = 1, .taps = chosen->taps, .first = 1 - chosen->taps / 2, .weights = weights};
-    chosen->branches = kernel_branches(&in, &fitted, 0.1 * chosen->error, chosen->coefficients);
+    struct interpolator in = {.upsample = 1, .taps = chosen->taps, .first = 1 - chosen->taps / 2, .weights = weights};
+    chosen->error = error_of(chosen->taps, chosen->oversampling, &in.kernel.fitted);
+    chosen->branches = kernel_branches(&in, 0.1 * chosen->error, chosen->coefficients);
     return chosen->branches > 0 ? STATUS_OK : status_set(STATUS_FAILED, "no memory for interpolation weights");
 }

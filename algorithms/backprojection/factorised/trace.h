@@ -3,6 +3,7 @@
 #ifndef SASBENCH_BACKPROJECTION_FACTORISED_TRACE_H
 #define SASBENCH_BACKPROJECTION_FACTORISED_TRACE_H
 
+#include "common/isa.h"
 #include "backprojection/factorised/tree.h"
 #include "backprojection/general/sum.h"
 
@@ -28,8 +29,6 @@ struct polar_crossing {
    cross beside its lines, where zero is read: none in a tree as it should be. */
 typedef int polar_trace_function(const struct polar_image *image, const struct polar_crossing *line, int first,
                                  int count, void *trace, size_t trace_pitch, const struct bp_layout *layout, void *row);
-polar_trace_function polar_trace_float_baseline, polar_trace_double_baseline;
-polar_trace_function polar_trace_float_v3, polar_trace_double_v3;
-polar_trace_function polar_trace_float_v4, polar_trace_double_v4;
+ISA_DECLARE(polar_trace_function, polar_trace);
 
 #endif

@@ -8,7 +8,7 @@
 #include "backprojection/budget.h"
 #include "backprojection/factorised/grids.h"
 #include "backprojection/farrow.h"
-#include "common/image_spectrum.h"
+#include "common/pulse_band.h"
 
 /* Steps of range, over a record's samples c/(2 fs), at most: runs of pixels are fastest below one sample a pixel
    (general/run.h), of a level's image as of the one that it is made of. */

@@ -5,6 +5,7 @@
 #include <limits.h>
 #include <math.h>
 #include <omp.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "backprojection/bp_engine.h"
@@ -142,7 +143,7 @@ static enum status general_plan(struct bp *bp)
     const struct problem *problem = &bp->problem;
     const struct acquisition *a = problem->acquisition;
     struct store *store = &bp->engines;
-    struct general *general = bp->state = store_take(store, 1, sizeof *general, 0);
+    struct general *general = bp->state = store_keep(store, calloc(1, sizeof *general), free);
     if (!general)
         return status_set(STATUS_FAILED, "no memory for the plan");
     const enum status status = bp_plan_traces(bp);
@@ -159,7 +160,7 @@ static enum status general_plan(struct bp *bp)
         bp_layout_make(problem->precision, bp_branch_length(bp), table->branches, table->reading == BP_BRANCHES);
     size_t size = real_size(problem->precision), row_bytes = general->layout.record * size;
     double pairs = (double)a->pings * a->receivers;
-    general->sum = bp_sum_choose(problem->precision);
+    general->sum = ISA_CHOOSE(bp_sum, problem->precision);
     general->batch = (int)fmin(pairs, fmax(BATCH_LEAST, (double)(BATCH_BYTES / row_bytes)));
     general->rows = store_room(store, (size_t)general->batch * row_bytes + size, 1, 0);
     const size_t threads = (size_t)omp_get_max_threads();
@@ -167,8 +168,8 @@ static enum status general_plan(struct bp *bp)
     general->interleaved = store_room(store, threads, general->each, 1.0 / (double)threads);
     general->normal = store_room(store, (size_t)a->pings, sizeof *general->normal, 1);
     general->boxes = store_room(store, (size_t)a->pings, sizeof *general->boxes, 1);
-    general->along_x = store_room(store, (size_t)problem->patch_count, sizeof *general->along_x, 0);
-    general->sums = store_room(store, (size_t)problem->patch_count, sizeof *general->sums, 0);
+    general->along_x = store_keep(store, malloc((size_t)problem->patch_count * sizeof *general->along_x), free);
+    general->sums = store_keep(store, malloc((size_t)problem->patch_count * sizeof *general->sums), free);
     if (store->failed)
         return status_set(STATUS_FAILED, "no memory for %d records of %d values", general->batch, bp->shape.length);
     const double quintics = budget_quintics(bp->medium.phase_limit, problem->precision);

@@ -4,19 +4,6 @@
 #include <omp.h>
 #include <string.h>
 
-static bp_sum_function *const sum_functions[][2] = {
-    [ISA_BASELINE] = {bp_sum_float_baseline, bp_sum_double_baseline},
-#ifdef SASBENCH_X86_64
-    [ISA_V3] = {bp_sum_float_v3, bp_sum_double_v3},
-    [ISA_V4] = {bp_sum_float_v4, bp_sum_double_v4},
-#endif
-};
-
-bp_sum_function *bp_sum_choose(enum precision precision)
-{
-    return sum_functions[isa_choose()][precision];
-}
-
 size_t bp_branch_length(const struct bp *bp)
 {
     return (size_t)(bp->shape.length + 2 * (bp->table.guard - bp->shape.guard));

@@ -7,9 +7,6 @@
 #include "backprojection/general/sum.h"
 #include "backprojection/pairs/pairs.h"
 
-/* The build of the inner sums for this machine. */
-bp_sum_function *bp_sum_choose(enum precision precision);
-
 /* How a record of `length` values in each of `branches` lies in memory; `blocks`: it is read as BP_BRANCHES. */
 struct bp_layout bp_layout_make(enum precision precision, size_t length, int branches, bool blocks);
 

@@ -4,6 +4,7 @@
 #ifndef SASBENCH_BACKPROJECTION_GENERAL_SUM_H
 #define SASBENCH_BACKPROJECTION_GENERAL_SUM_H
 
+#include "common/isa.h"
 #include "backprojection/general/blocks.h"
 #include "backprojection/reading.h"
 
@@ -42,8 +43,6 @@ typedef void bp_sum_function(const struct bp_medium *medium, const struct bp_tab
                              const struct pixel_line *line, int block_count, const struct bp_block *blocks, void *re,
                              void *im);
 
-bp_sum_function bp_sum_float_baseline, bp_sum_double_baseline;
-bp_sum_function bp_sum_float_v3, bp_sum_double_v3; /* x86-64-v3: AVX2, FMA */
-bp_sum_function bp_sum_float_v4, bp_sum_double_v4; /* x86-64-v4: AVX-512 */
+ISA_DECLARE(bp_sum_function, bp_sum);
 
 #endif

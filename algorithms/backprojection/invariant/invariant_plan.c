@@ -5,6 +5,7 @@
 #include <limits.h>
 #include <math.h>
 #include <omp.h>
+#include <stdlib.h>
 
 #include "backprojection/budget.h"
 
@@ -13,22 +14,6 @@ enum {
     READ_BYTES = 4 << 20,  /* and as long as what one row of the image reads of them stays in the shared cache */
     SLAB_MOST = 128 << 20, /* one receiver's upsampled traces: beyond it their fine steps are taken in passes */
     ENTRIES_LEAST = 1024   /* entries of the tables that are made at once, where a group has fewer */
-};
-
-static bp_row_function *const row_functions[][2] = {
-    [ISA_BASELINE] = {bp_row_float_baseline, bp_row_double_baseline},
-#ifdef SASBENCH_X86_64
-    [ISA_V3] = {bp_row_float_v3, bp_row_double_v3},
-    [ISA_V4] = {bp_row_float_v4, bp_row_double_v4},
-#endif
-};
-
-static bp_scatter_function *const scatter_functions[][2] = {
-    [ISA_BASELINE] = {bp_scatter_float_baseline, bp_scatter_double_baseline},
-#ifdef SASBENCH_X86_64
-    [ISA_V3] = {bp_scatter_float_v3, bp_scatter_double_v3},
-    [ISA_V4] = {bp_scatter_float_v4, bp_scatter_double_v4},
-#endif
 };
 
 static int round_up(int value, int multiple)
@@ -108,14 +93,11 @@ struct condition invariant_condition(const struct problem *problem, enum severit
             off = fmax(off, beside);
         }
     }
-    struct condition condition = {"invariance",
-                                  off * fmax(a->fc, a->fs) / a->sound_speed,
-                                  DRIFT_MOST,
-                                  false,
-                                  severity,
-                                  "drift between columns and pings over the track (cycles of the carrier, or samples); "
-                                  "the general engine takes any, but is slower",
-                                  "a uniform straight track whose ping spacing is a whole number of azimuth steps"};
+    struct condition condition =
+        condition_most(severity, "invariance", off * fmax(a->fc, a->fs) / a->sound_speed, DRIFT_MOST,
+                       "drift between columns and pings over the track (cycles of the carrier, or samples); "
+                       "the general engine takes any, but is slower",
+                       "a uniform straight track whose ping spacing is a whole number of azimuth steps");
     if (step > 0 && isfinite(off)) {
         const double spacing = fabs(track.spacing), ratio = round(spacing / step);
         condition_cure_add(&condition, ": steps of %.12g m in place of %.12g m, or pings %.12g m apart",
@@ -315,14 +297,14 @@ static enum status plan_track(struct bp *bp, const struct straight_track *track)
     const struct acquisition *a = problem->acquisition;
     struct invariant *in = bp->state;
     struct store *store = &bp->engines;
-    in->row = row_functions[isa_choose()][problem->precision];
-    in->scatter = scatter_functions[isa_choose()][problem->precision];
+    in->row = ISA_CHOOSE(bp_row, problem->precision);
+    in->scatter = ISA_CHOOSE(bp_scatter, problem->precision);
     piece_fit_make(&in->fit);
     in->reversed = track->spacing < 0;
     in->patch_count = problem->patch_count;
     in->rasters = store_room(store, (size_t)problem->patch_count, sizeof *in->rasters, 1);
     in->strides = store_room(store, (size_t)problem->patch_count, sizeof *in->strides, 1);
-    in->sums = store_room(store, (size_t)problem->patch_count, sizeof *in->sums, 0);
+    in->sums = store_keep(store, malloc((size_t)problem->patch_count * sizeof *in->sums), free);
     in->offsets = store_room(store, (size_t)a->receivers, sizeof *in->offsets, 1);
     if (store->failed)
         return status_set(STATUS_FAILED, "no memory for the plan");
@@ -407,7 +389,7 @@ enum status invariant_plan(struct bp *bp)
     struct lengths lengths = {.entries = ENTRIES_LEAST,
                               .taps = (size_t)bp->table.taps,
                               .spread = bp->table.branches > 1 ? 1 : (size_t)bp->table.taps + BP_SPREAD};
-    bp->state = store_take(&bp->engines, 1, sizeof(struct invariant), 0);
+    bp->state = store_keep(&bp->engines, calloc(1, sizeof(struct invariant)), free);
     if (!bp->state)
         return status_set(STATUS_FAILED, "no memory for the plan");
     enum status status = bp_plan_traces(bp);

@@ -102,6 +102,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "common/isa.h"
 #include "backprojection/invariant/pieces.h"
 #include "backprojection/pairs/pairs.h"
 #include "backprojection/reading.h"
@@ -217,8 +218,6 @@ struct bp_row {
 /* Add the receivers to the row. */
 typedef void bp_row_function(const struct bp_row *row);
 
-bp_row_function bp_row_float_baseline, bp_row_double_baseline;
-bp_row_function bp_row_float_v3, bp_row_double_v3; /* x86-64-v3: AVX2, FMA */
-bp_row_function bp_row_float_v4, bp_row_double_v4; /* x86-64-v4: AVX-512 */
+ISA_DECLARE(bp_row_function, bp_row);
 
 #endif

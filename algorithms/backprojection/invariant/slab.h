@@ -4,6 +4,8 @@
 
 #include <stddef.h>
 
+#include "common/isa.h"
+
 /* Where values go: sample i of ping p, complex value p pitch + i of a tile, to [i step + p] of re and of im. */
 struct bp_scattering {
     size_t samples, pitch, step;
@@ -14,8 +16,6 @@ struct bp_scattering {
    rows have that room. */
 typedef void bp_scatter_function(const struct bp_scattering *scattering, const void *tile, int count);
 
-bp_scatter_function bp_scatter_float_baseline, bp_scatter_double_baseline;
-bp_scatter_function bp_scatter_float_v3, bp_scatter_double_v3;
-bp_scatter_function bp_scatter_float_v4, bp_scatter_double_v4;
+ISA_DECLARE(bp_scatter_function, bp_scatter);
 
 #endif

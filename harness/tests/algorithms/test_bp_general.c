@@ -300,9 +300,9 @@ static void no_carrier_leaves_the_record(void **state)
     }
 }
 
-static void weights_linear(const void *options, double fraction, double *w)
+static void weights_linear(const struct interpolator *in, double fraction, double *w)
 {
-    (void)options;
+    (void)in;
     w[0] = 1 - fraction;
     w[1] = fraction;
 }

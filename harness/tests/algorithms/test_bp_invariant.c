@@ -205,9 +205,9 @@ static void rows_cross_the_track(void **state)
     }
 }
 
-static void weights_flat(const void *options, double fraction, double *w)
+static void weights_flat(const struct interpolator *in, double fraction, double *w)
 {
-    (void)options;
+    (void)in;
     for (int t = 0; t < 8; t++)
         w[t] = 1 + fraction;
 }

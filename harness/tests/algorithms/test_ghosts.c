@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "range_migration/ghosts.h"
+#include "range_migration/rma_conditions.h"
 #include "tests/support.h"
 
 /* Pings 0.04 m apart at 1 cm wavelength sample sines up to 0.0625; the beam ends at 0.025, the element's first null is
