@@ -78,8 +78,8 @@ enum status bp_method_cost(const struct problem *problem, const void *method, co
 int bp_method_conditions(const struct problem *problem, const void *method, const void *options, struct condition *list,
                          int room);
 
-/* The same for an interpolator, which like the options is only used during the call. Errors: STATUS_UNSUPPORTED when the
-   engine asked for cannot do the problem, with the reason. */
+/* The same for an interpolator, which like the options is only used during the call. Errors: STATUS_UNSUPPORTED when
+   the engine asked for cannot do the problem, with the reason. */
 enum status bp_plan(const struct problem *problem, const struct interpolator *interpolator,
                     const struct bp_options *options, void **plan);
 enum status bp_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages);

@@ -5,6 +5,10 @@
 /* s, the system's. Threads of an algorithm take their stages' shares by it: seconds_now may be for one thread only. */
 double clock_monotonic(void);
 
+struct stages;
+/* The threads' time in each stage, as shares of the time that passed. */
+void stages_share(struct stages *stages, int count, const char *const *names, const double *seconds);
+
 /* From now on seconds_now is `clock`, in s. Call it before threads that time something. */
 void clock_set(double (*clock)(void));
 

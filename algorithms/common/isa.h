@@ -13,8 +13,8 @@ enum isa isa_choose(void);
 enum status isa_check(void);
 const char *isa_name(enum isa isa);
 
-/* Of a function that is built for each precision and instruction set: its declarations, and the build of a precision for
-   this machine. */
+/* Of a function that is built for each precision and instruction set: its declarations, and the build of a precision
+   for this machine. */
 #define ISA_DECLARE(type, name)                                                                                        \
     type name##_float_baseline, name##_double_baseline, name##_float_v3, name##_double_v3, name##_float_v4,            \
         name##_double_v4

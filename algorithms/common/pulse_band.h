@@ -28,8 +28,8 @@ double complex *pulse_filter(const struct acquisition *acquisition, int length);
 /* Hz, -fs/2 to fs/2: of its bin k. */
 double pulse_bin_frequency(const struct acquisition *acquisition, int k, int length);
 
-/* The image of a target is as wide along the track as its wavelength makes it: of each pair's energy at low frequencies,
-   which a pulse of few cycles has in its flanks, images show more. */
+/* The image of a target is as wide along the track as its wavelength makes it: of each pair's energy at low
+   frequencies, which a pulse of few cycles has in its flanks, images show more. */
 
 /* The width of the grids where errors count, the widest of them, over that of a target's image at the carrier. */
 double image_cells(const struct problem *problem);

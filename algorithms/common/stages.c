@@ -42,3 +42,15 @@ void stages_end(struct stages *stages, const char *name)
         stages->stage[stages->count++].name = name;
     stages->stage[i].seconds += seconds;
 }
+
+void stages_share(struct stages *stages, int count, const char *const *names, const double *seconds)
+{
+    double sum = 0, passed = seconds_now() - stages->mark;
+    for (int k = 0; k < count; k++)
+        sum += seconds[k];
+    for (int k = 0; k < count; k++)
+        if (seconds[k] > 0) {
+            stages->mark = seconds_now() - passed * seconds[k] / sum;
+            stages_end(stages, names[k]);
+        }
+}

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "common/clock.h"
 #include "common/fft_length.h"
 #include "common/progress.h"
 #include "range_migration/rma_engine.h"
@@ -230,19 +231,6 @@ enum status rma_plan(const struct problem *problem, const void *given, const voi
     rma->work.bytes += rma->store.bytes;
     *plan = rma;
     return STATUS_OK;
-}
-
-/* The threads' time in each stage, as shares of the time that passed. */
-static void stages_share(struct stages *stages, int count, const char *const *names, const double *seconds)
-{
-    double sum = 0, passed = seconds_now() - stages->mark;
-    for (int k = 0; k < count; k++)
-        sum += seconds[k];
-    for (int k = 0; k < count; k++)
-        if (seconds[k] > 0) {
-            stages->mark = seconds_now() - passed * seconds[k] / sum;
-            stages_end(stages, names[k]);
-        }
 }
 
 /* All wavenumbers of a swath, from the receivers' spectra to focused rows. */

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/clock.h"
 #include "common/fft_length.h"
 #include "common/progress.h"
 #include "wavenumber/wk_engine.h"
@@ -113,22 +114,14 @@ enum status wk_plan(const struct problem *problem, const void *method, const voi
 
 static void focus_lines(const struct wk *wk, struct stages *stages)
 {
-    double seconds[WK_STAGES] = {0}, sum = 0;
+    double seconds[WK_STAGES] = {0};
     progress_part(0, 1, wk->lines / WK_TILE);
 #pragma omp parallel for schedule(static) num_threads(wk->threads) reduction(+ : seconds[:WK_STAGES])
     for (int first = 0; first < wk->lines; first += WK_TILE) {
         wk->line_loop(wk, omp_get_thread_num(), first, seconds);
         progress_step();
     }
-    /* The threads' time in each stage, as shares of the time that passed. */
-    for (int k = 0; k < WK_STAGES; k++)
-        sum += seconds[k];
-    double passed = seconds_now() - stages->mark;
-    for (int k = 0; k < WK_STAGES; k++)
-        if (seconds[k] > 0) {
-            stages->mark = seconds_now() - passed * seconds[k] / sum;
-            stages_end(stages, stage_names[k]);
-        }
+    stages_share(stages, WK_STAGES, stage_names, seconds);
 }
 
 enum status wk_execute(void *plan, const struct echoes *echoes, struct image *image, struct stages *stages)
