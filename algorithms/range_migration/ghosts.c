@@ -236,9 +236,7 @@ struct condition ghosts_condition(const struct problem *problem, const struct st
     return condition_most(
         refusing > LIMIT * LIMIT || a->aperture_limit < 1 ? SEVERITY_REFUSE : SEVERITY_WARN, "grating_lobes",
         sqrt(worst), LIMIT,
-        "ghosts of point targets in other places, by pings that back projection sums there and a transform does not "
-        "image "
-        "(relative L2)",
+        "ghosts of point targets, from pings that back projection sums and a transform leaves out (relative L2)",
         "an aperture_limit at the edge of the sampled wavenumbers or of the element's first null; pings closer "
         "together");
 }

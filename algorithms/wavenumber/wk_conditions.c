@@ -92,11 +92,10 @@ static void beam_conditions(const struct problem *problem, const struct straight
     const struct worst worst = patches_see(&view, problem);
     all[(*count)++] = condition_most(SEVERITY_REFUSE, "in_beam", worst.unseen, 0, "patches that lie in no ping's beam",
                                      "patches where the beam looks, in axes turned as it is");
-    all[(*count)++] =
-        condition_most(SEVERITY_REFUSE, "doppler", worst.doppler, 1.05,
-                       "the widest azimuth wavenumber in the beam, off its centroid, over what the pings sample, "
-                       "1/(2 spacing)",
-                       "pings closer together, or a narrower beam");
+    all[(*count)++] = condition_most(
+        SEVERITY_REFUSE, "doppler", worst.doppler, 1.05,
+        "the largest azimuth wavenumber of the beam, off its centroid, over that which pings sample, 1/(2 spacing)",
+        "pings closer together, or a narrower beam");
     condition_beam_named(problem->acquisition, &all[*count - 1]);
     all[(*count)++] = condition_most(SEVERITY_REFUSE, "stationary", worst.stationary, 0.01,
                                      "the first term that stationary phase drops, lambda/(32 pi r cos theta)",
