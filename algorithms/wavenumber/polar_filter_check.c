@@ -92,17 +92,20 @@ int polar_filter_subapertures(const struct acquisition *a, int asked)
 
 /* ---- what the filter keeps ---- */
 
-enum { PINGS_MOST = 500, CELLS = 4, PARTS = 4 };
+enum { PINGS_MOST = 500, CELLS = 4, PARTS = 16 };
 static const double PLACE = 0.8;   /* of the area's halves, where targets count as inside */
 static const double LEAKS = 0.01;  /* side lobes, of what lies outside */
 static const double LOSS_MOST = 3; /* dB: half of the energy */
 
-/* The share of a sinc's energy, its null at 1, that lies within (low, high). */
-static double share_within(double low, double high)
+/* The share of a sinc's energy, its null at 1, that lies within (low, high): in the samples of the mask, at `from` and
+   every `step` beside it, of which a thin area holds one or none. */
+static double share_within(double low, double high, double from, double step)
 {
     double within = 0, all = 0;
-    for (int k = -CELLS * PARTS; k <= CELLS * PARTS; k++) {
-        const double z = (double)k / PARTS, energy = pow(condition_sinc(z), 2);
+    while (step < 1.0 / PARTS) /* fine enough */
+        step *= 2;
+    for (double z = from - step * floor((from + CELLS) / step); z <= CELLS; z += step) {
+        const double energy = pow(condition_sinc(z), 2);
         within += low < z && z < high ? energy : 0;
         all += energy;
     }
@@ -141,8 +144,10 @@ static void aperture_add(const struct acquisition *a, bool curvature, int first,
         const double off_r = r * sqrt(fmax(1 - sine * sine, 0)) - area->r;
         const double off_x = middle + r * sine - area->x, cell_x = cell_sine * r;
         energy->all += weight;
-        energy->kept += weight * share_within((-area->half_r - off_r) / cell_r, (area->half_r - off_r) / cell_r)
-                        * share_within((-area->half_x - off_x) / cell_x, (area->half_x - off_x) / cell_x);
+        energy->kept += weight
+                        * share_within((-area->half_r - off_r) / cell_r, (area->half_r - off_r) / cell_r,
+                                       (rho - r) / cell_r, a->bandwidth / a->fs)
+                        * share_within((-area->half_x - off_x) / cell_x, (area->half_x - off_x) / cell_x, 0, 0.25);
     }
 }
 

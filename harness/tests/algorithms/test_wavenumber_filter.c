@@ -187,10 +187,12 @@ static void own_targets_lost_are_warned_of(void **state)
         struct target_area area;
         struct polar_setting setting;
     } cases[] = {
-        {{0, 30, 5, 10}, {0, false}},  {{0, 30, 5, 10}, {4, false}},  {{0, 30, 5, 1}, {1, false}},
-        {{0, 30, 5, 0.3}, {0, false}}, {{0, 30, 5, 0.3}, {1, true}},  {{0, 30, 2, 0.3}, {2, false}},
-        {{0, 30, 2, 0.3}, {4, true}},  {{0, 30, 0.3, 5}, {2, false}}, {{0, 30, 0.3, 5}, {1, true}},
-        {{2, 40, 3, 0.5}, {1, false}}, {{1, 25, 1, 0.2}, {1, false}},
+        {{0, 30, 5, 10}, {0, false}},      {{0, 30, 5, 10}, {4, false}},       {{0, 30, 5, 1}, {1, false}},
+        {{0, 30, 5, 0.3}, {0, false}},     {{0, 30, 5, 0.3}, {1, true}},       {{0, 30, 2, 0.3}, {2, false}},
+        {{0, 30, 2, 0.3}, {4, true}},      {{0, 30, 0.3, 5}, {2, false}},      {{0, 30, 0.3, 5}, {1, true}},
+        {{2, 40, 3, 0.5}, {1, false}},     {{1, 25, 1, 0.2}, {1, false}},      {{0, 30, 5, 0.05}, {4, false}},
+        {{0, 30, 2, 0.02}, {8, false}},    {{1, 30.013, 2, 0.01}, {4, false}}, {{0, 30, 0.03, 5}, {2, false}},
+        {{0, 30, 0.03, 0.03}, {2, false}},
     };
     int warned = 0;
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
