@@ -149,12 +149,52 @@ double condition_amplitude(const struct acquisition *a, double r, double u)
     return condition_pair_amplitude(a, r, u, 0);
 }
 
+static double dot(struct vector v, struct vector w)
+{
+    return v.x * w.x + v.y * w.y + v.z * w.z;
+}
+
+static struct vector difference(struct vector v, struct vector w)
+{
+    return (struct vector){v.x - w.x, v.y - w.y, v.z - w.z};
+}
+
+double condition_along(struct vector axis, struct vector from, struct vector to)
+{
+    return dot(difference(to, from), axis);
+}
+
+/* From one ping to another; where they are at one place, acquisition_heading there. */
+static struct vector axis_between(const struct acquisition *a, int first, int last)
+{
+    const struct vector way = difference(a->tx[last], a->tx[first]);
+    const double length = sqrt(dot(way, way));
+    const struct vector axis =
+        length > 0 ? (struct vector){way.x / length, way.y / length, way.z / length} : acquisition_heading(a, first);
+    return axis.x < 0 ? (struct vector){-axis.x, -axis.y, -axis.z} : axis;
+}
+
+/* Over many pings, so that sway from ping to ping turns no beam. */
+static struct vector axis_about(const struct acquisition *a, int ping)
+{
+    enum { PART = 16 };
+    const int around = a->pings / PART > 0 ? a->pings / PART : 1, last = a->pings - 1;
+    return axis_between(a, ping > around ? ping - around : 0, ping + around < last ? ping + around : last);
+}
+
+struct vector condition_axis(const struct acquisition *a)
+{
+    return axis_between(a, 0, a->pings - 1);
+}
+
 double condition_offset(const struct acquisition *a, int n)
 {
+    const struct vector axis = condition_axis(a);
     double least = INFINITY, greatest = -INFINITY;
     for (int m = 0; m < a->receivers; m++) {
-        least = fmin(least, a->rx[m].x - a->tx[0].x);
-        greatest = fmax(greatest, a->rx[m].x - a->tx[0].x);
+        const double offset = condition_along(axis, a->tx[0], a->rx[m]);
+        least = fmin(least, offset);
+        greatest = fmax(greatest, offset);
     }
     return least + n / 2.0 * (greatest - least);
 }
@@ -180,7 +220,10 @@ struct extent {
    places within the beam's sine of their distance. */
 static double off_axis(const struct acquisition *a, int p, struct vector place, double *distance)
 {
-    double u = a->tx[p].x - place.x, across2 = pow(a->tx[p].y - place.y, 2) + pow(a->tx[p].z, 2);
+    const struct vector axis = axis_about(a, p), way = difference(a->tx[p], place);
+    const double u = dot(way, axis);
+    const struct vector across = {way.x - u * axis.x, way.y - u * axis.y, way.z - u * axis.z};
+    const double across2 = dot(across, across);
     *distance = sqrt(u * u + across2);
     return a->echo_squint != 0 ? u * cos(a->echo_squint) + sqrt(across2) * sin(a->echo_squint) : u;
 }
@@ -213,16 +256,22 @@ static void pings_seeing(const struct acquisition *a, double sine, struct vector
     }
 }
 
+static struct vector moved(struct vector place, struct vector axis, double m)
+{
+    return (struct vector){place.x + m * axis.x, place.y + m * axis.y, place.z + m * axis.z};
+}
+
 /* Pings lie closer to the edge of the beam for other columns than for those that are looked at: the place as far along
    the track, up to where the next ping, which does not see `place`, is beside it. */
 static struct vector place_at_edge(const struct acquisition *a, double sine, int ping, int next, struct vector place)
 {
-    double inside = 0, outside = a->tx[ping].x - a->tx[next].x;
+    const struct vector axis = axis_about(a, ping);
+    double inside = 0, outside = condition_along(axis, a->tx[next], a->tx[ping]);
     for (int k = 0; k < 50; k++) {
         const double middle = (inside + outside) / 2;
-        *(sees(a, sine, ping, (struct vector){place.x + middle, place.y, place.z}) ? &inside : &outside) = middle;
+        *(sees(a, sine, ping, moved(place, axis, middle)) ? &inside : &outside) = middle;
     }
-    return (struct vector){place.x + inside, place.y, place.z};
+    return moved(place, axis, inside);
 }
 
 /* The receiver farthest from `from`, at the first ping. */
@@ -241,7 +290,7 @@ static int receiver_farthest(const struct acquisition *a, struct vector from)
 static void extent_add_pings(const struct acquisition *a, double sine, struct vector p, const int pings[3],
                              struct extent *extent)
 {
-    const double step = a->sound_speed / a->fc / 100, axis = -2 * sin(a->echo_squint) / a->sound_speed;
+    const double step = a->sound_speed / a->fc / 100, on_axis = -2 * sin(a->echo_squint) / a->sound_speed;
     for (int n = 0; n < 6; n++) {
         const int ping = pings[n / 2], m = extent->ends[n % 2];
         const int next = n / 2 == 0 ? ping - 1 : n / 2 == 1 ? ping + 1 : -1;
@@ -249,12 +298,13 @@ static void extent_add_pings(const struct acquisition *a, double sine, struct ve
             continue;
         const struct vector tx = a->tx[ping], rx = a->rx[(size_t)ping * (size_t)a->receivers + (size_t)m];
         const struct vector edge = next >= 0 && next < a->pings ? place_at_edge(a, sine, ping, next, p) : p;
-        const struct vector beside = {edge.x - step, edge.y, edge.z};
+        const struct vector axis = axis_about(a, ping);
+        const struct vector behind = moved(edge, axis, -step / 2), ahead = moved(edge, axis, step / 2);
         const double delay = delay_exact(tx, rx, a->velocity[ping], p, a->sound_speed);
-        const double change = delay_exact(tx, rx, a->velocity[ping], beside, a->sound_speed)
-                              - delay_exact(tx, rx, a->velocity[ping], edge, a->sound_speed);
+        const double change = delay_exact(tx, rx, a->velocity[ping], behind, a->sound_speed)
+                              - delay_exact(tx, rx, a->velocity[ping], ahead, a->sound_speed);
         const double place = (delay - a->t0[ping]) * a->fs;
-        extent->slope = fmax(extent->slope, fabs(change / step - axis));
+        extent->slope = fmax(extent->slope, fabs(change / step - on_axis));
         if (place >= 0 && place <= a->samples - 1) {
             extent->delay = fmax(extent->delay, delay);
             extent->places = fmax(extent->places, place);
@@ -326,7 +376,7 @@ double condition_slope(const struct problem *problem)
 
 static double length_of(struct vector v)
 {
-    return sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+    return sqrt(dot(v, v));
 }
 
 double condition_speed(const struct acquisition *a)
@@ -342,7 +392,7 @@ static double interval_after(const struct acquisition *a, int p)
 {
     const struct vector *tx = a->tx + p;
     const double speed = (length_of(a->velocity[p]) + length_of(a->velocity[p + 1])) / 2;
-    const double way = length_of((struct vector){tx[1].x - tx[0].x, tx[1].y - tx[0].y, tx[1].z - tx[0].z});
+    const double way = length_of(difference(tx[1], tx[0]));
     return speed > 0 ? way / speed : 0;
 }
 

@@ -73,7 +73,12 @@ struct condition condition_ghost(const struct acquisition *acquisition, double s
 
 /* m/s: of the fastest ping. */
 double condition_speed(const struct acquisition *acquisition);
-/* s/m: the steepest delay along x, less that on the beam's axis, over places of the patches and pings that see them. */
+/* Unit vector from the first ping to the last, x >= 0, along which an array's offsets count; how far a place is ahead
+   of another one along it, m. */
+struct vector condition_axis(const struct acquisition *acquisition);
+double condition_along(struct vector axis, struct vector from, struct vector to);
+/* s/m: the steepest delay along the track, less that on the beam's axis, over places of the patches and pings that see
+   them. */
 double condition_slope(const struct problem *problem);
 /* Offset of the receiver that is n/2 of the way from the least to the greatest, m along the track; n = 0, 1, 2. */
 double condition_offset(const struct acquisition *acquisition, int n);

@@ -8,7 +8,7 @@
 /* Phase centre of a receiver along the track (m), with a `period` > 0 within one. */
 static double centre_of(const struct acquisition *a, int receiver, double period)
 {
-    const double place = (a->rx[receiver].x - a->tx[0].x) / 2;
+    const double place = condition_along(condition_axis(a), a->tx[0], a->rx[receiver]) / 2;
     return period > 0 ? place - period * floor(place / period) : place;
 }
 
@@ -68,24 +68,52 @@ struct condition condition_ghost(const struct acquisition *a, double spacing)
     return ghost;
 }
 
-/* Near enough to a uniform straight track that gaps between the pings are what `track` has: no ping is farther off than
-   a quarter of the spacing along the track, or the spacing across it, and the receivers stay where they are on it. */
-static bool is_sampled_evenly(const struct acquisition *a, struct straight_track *track)
+/* m, signed: the even spacing nearest to a track along `axis`, and where along it from ping 0 on it begins: the
+   line through both ends, plus the least-squares line of what is left. */
+static double even_spacing(const struct acquisition *a, struct vector axis, double *first)
 {
-    if (acquisition_is_straight(a, track))
-        return true;
-    acquisition_unevenness(a, track);
-    const double spacing = fabs(track->spacing);
+    const int last = a->pings - 1;
+    const double chord = condition_along(axis, a->tx[0], a->tx[last]) / last;
+    double sum = 0, moment = 0, inertia = 0;
+    for (int p = 0; p < a->pings; p++) {
+        const double left = condition_along(axis, a->tx[0], a->tx[p]) - p * chord, arm = p - 0.5 * last;
+        sum += left;
+        moment += arm * left;
+        inertia += arm * arm;
+    }
+    *first = sum / a->pings - 0.5 * last * moment / inertia;
+    return chord + moment / inertia;
+}
+
+/* m: how far a place lies from the line along `axis` through another one. */
+static double aside(struct vector axis, struct vector from, struct vector to)
+{
+    const double u = condition_along(axis, from, to);
+    return hypot(hypot(to.x - from.x - u * axis.x, to.y - from.y - u * axis.y), to.z - from.z - u * axis.z);
+}
+
+/* m: the spacing of pings so near to a uniform straight track, along any axis, that gaps between them are what it has;
+   0 of others. No ping is farther off than a quarter of it along the track, or all of it across, and the receivers stay
+   where they are. */
+static double spacing_sampled(const struct acquisition *a)
+{
+    struct straight_track track;
+    const struct vector axis = condition_axis(a);
+    double first = 0;
+    if (acquisition_is_straight(a, &track))
+        return fabs(track.spacing);
+    const double step = even_spacing(a, axis, &first), spacing = fabs(step);
     for (int p = 0; p < a->pings; p++) {
         const struct vector *rx = a->rx + (size_t)p * (size_t)a->receivers;
-        if (!(fabs(a->tx[p].x - track->x_first - p * track->spacing) <= spacing / 4
-              && fmax(fabs(a->tx[p].y - a->tx[0].y), fabs(a->tx[p].z - a->tx[0].z)) <= spacing))
-            return false;
+        if (!(fabs(condition_along(axis, a->tx[0], a->tx[p]) - first - p * step) <= spacing / 4
+              && aside(axis, a->tx[0], a->tx[p]) <= spacing))
+            return 0;
         for (int m = 0; m < a->receivers; m++)
-            if (!(fabs(rx[m].x - a->tx[p].x - a->rx[m].x + a->tx[0].x) <= spacing / 4))
-                return false;
+            if (!(fabs(condition_along(axis, a->tx[p], rx[m]) - condition_along(axis, a->tx[0], a->rx[m]))
+                  <= spacing / 4))
+                return 0;
     }
-    return spacing > 0;
+    return spacing;
 }
 
 void condition_beam_named(const struct acquisition *a, struct condition *condition)
@@ -114,7 +142,6 @@ struct condition condition_doppler(const struct problem *problem, double spacing
 int conditions_sampled(const struct problem *problem, struct condition *list, int room)
 {
     const struct acquisition *a = problem->acquisition;
-    struct straight_track track;
     struct condition all[CONDITIONS_MAX];
     int count = conditions_general(problem, all, CONDITIONS_MAX);
     all[count++] = (struct condition){"above_dc",
@@ -124,10 +151,11 @@ int conditions_sampled(const struct problem *problem, struct condition *list, in
                                       SEVERITY_WARN,
                                       "the lowest frequency fc - B/2 (Hz)",
                                       "a higher carrier or a narrower band"};
-    if (a->pings > 1 && is_sampled_evenly(a, &track)) {
-        all[count++] = condition_doppler(problem, track.spacing);
+    const double spacing = a->pings > 1 ? spacing_sampled(a) : 0;
+    if (spacing > 0) {
+        all[count++] = condition_doppler(problem, spacing);
         if (a->receivers > 1)
-            all[count++] = condition_ghost(a, track.spacing);
+            all[count++] = condition_ghost(a, spacing);
     }
     for (int k = 0; k < count && k < room; k++)
         list[k] = all[k];

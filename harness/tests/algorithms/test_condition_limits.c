@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "scene/random.h"
 #include "tests/algorithms/rma_scenes.h"
 
 static const struct {
@@ -97,6 +98,59 @@ static void limits_hold_on_one_side(void **state)
                          holds[k / 4][k % 4]);
 }
 
+/* All conditions of back projection and of the scene itself, of the scene seen from axes turned by -angle. */
+static int turned_conditions(const struct scene *scene, double angle, struct condition list[])
+{
+    struct acquisition turned;
+    struct grid grids[64];
+    assert_true(scene->patch_count <= (int)(sizeof grids / sizeof *grids));
+    for (int k = 0; k < scene->patch_count; k++) {
+        grids[k] = scene->patches[k];
+        grids[k].angle_rad += angle;
+    }
+    assert_int_equal(acquisition_turn(&scene->acquisition, -angle, &turned), STATUS_OK);
+    const struct problem problem = problem_make(&turned, scene->patch_count, grids, PRECISION_FLOAT);
+    int count = conditions_sampled(&problem, list, CONDITIONS_MAX);
+    count += conditions_scene(&problem, list + count);
+    acquisition_free(&turned);
+    return count;
+}
+
+/* Scenes turned with their image, those that squint to less than across: every condition has the same value. */
+static void turned_scenes_are_alike(void **state)
+{
+    (void)state;
+    enum { SHIPPED = 4, SEEDS = 40, TURNS = 3 };
+    static const char *const scenes[SHIPPED] = {"study/quick", "study/sway", "gate/squint", "bp22/table3"};
+    static const double turns[TURNS] = {30 * M_PI / 180, M_PI / 2};
+    struct random random = random_seed(36, 0);
+    int compared = 0, sampled = 0;
+    for (int s = 0; s < SHIPPED + SEEDS; s++) {
+        struct scene scene;
+        struct condition straight[CONDITIONS_MAX + CONDITIONS_SCENE], turned[CONDITIONS_MAX + CONDITIONS_SCENE];
+        if (s < SHIPPED)
+            support_scene(scenes[s], &scene);
+        else
+            support_random_scene(s, &scene);
+        const int count = turned_conditions(&scene, 0, straight);
+        for (int n = 0; n < TURNS; n++) {
+            const double most = scene.acquisition.echo_squint != 0 ? M_PI / 3 : M_PI;
+            const double angle = n < TURNS - 1 && most == M_PI ? turns[n] : (2 * random_uniform(&random) - 1) * most;
+            assert_int_equal(turned_conditions(&scene, angle, turned), count);
+            for (int k = 0; k < count; k++, compared++) {
+                const double value = straight[k].value, off = fabs(turned[k].value - value);
+                assert_string_equal(turned[k].name, straight[k].name);
+                sampled += strcmp(straight[k].name, "doppler") == 0 || strcmp(straight[k].name, "ghost") == 0;
+                if (turned[k].value != value && !(off <= 1e-6 * fmax(1e-3, fabs(value))))
+                    fail_msg("scene %d turned by %.17g rad: %s is %.9g, must be %.9g", s, angle, straight[k].name,
+                             turned[k].value, value);
+            }
+        }
+        scene_free(&scene);
+    }
+    assert_true(compared > 1000 && sampled > 100);
+}
+
 /* The largest predicted error that an algorithm goes on with, over tracks ever faster. */
 static double accepted(const char *text)
 {
@@ -136,6 +190,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(limits_are_as_documented),
         cmocka_unit_test(limits_hold_on_one_side),
+        cmocka_unit_test(turned_scenes_are_alike),
         cmocka_unit_test(predicted_errors_refuse),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
