@@ -303,7 +303,7 @@ static void forecast_records(struct bp *bp, const struct interpolator *in, struc
     const struct traces_form form = bp_records_form(bp);
     const double records = (double)bp_met_count(bp) * a->receivers, fine = (form.count - 1.0) * in->upsample + 1;
     const int taps = forecast->kind == READ_BRANCHES && in->degree == 0 ? in->taps : 0; /* of a kernel's branches */
-    forecast->units = bp->engine->units(bp, &forecast->residues);
+    bp->engine->units(bp, forecast);
     forecast->pair_flops =
         4.0 * (in->taps == 1 && in->degree == 0 ? 0 : forecast->values - (forecast->kind == READ_BRANCHES)) + 8;
     double sums = 0;

@@ -42,11 +42,11 @@ struct bp_engine {
     const char *name;
     /* Can it do the problem of bp->problem? When not, the reason is the status message (STATUS_UNSUPPORTED). */
     enum status (*applicable)(const struct bp *bp);
-    /* What a plan would make for the pairs to read by, all records together: entries of tables, or blocks of pixels.
-       Known from bp->problem, medium and table, before any plan; of a problem that is applicable. *residues: of tables,
-       columns from ping to ping whose neighbours share loads, the fewest of all patches: 1 where the nearest fine step
-       is read, which none share; 0 without tables. */
-    double (*units)(const struct bp *bp, double *residues);
+    /* What a plan would make for the pairs to read by, all records together: `units`, entries of tables or blocks of
+       pixels. Known from bp->problem, medium and table, before any plan; of a problem that is applicable. `residues`:
+       of tables, columns from ping to ping whose neighbours share loads, the fewest of all patches: 1 where the nearest
+       fine step is read, which none share. `apart`: without tables, the share of pairs that share no loads. */
+    void (*units)(const struct bp *bp, struct forecast *forecast);
     /* m: how far along the track beyond the pairs' places delays are evaluated; NULL: nowhere. */
     double (*beside)(const struct bp *bp);
     /* Make bp->state and bp->traces, of what bp->engines owns. */

@@ -41,6 +41,7 @@ struct forecast {
     int finer;         /* how many values of a record stand for a sample */
     double units;      /* that are made for them: entries of tables, or blocks of pixels */
     double residues;   /* by tables: columns from ping to ping, of which neighbours share what they load */
+    double apart;      /* by the general engine: share of the pairs whose pixels share no loads, a sample apart */
     double pair_flops; /* of a pair */
     /* Of all records together: */
     double record_flops;  /* of the transforms of range compression */

@@ -69,11 +69,12 @@ static enum status probe_run(struct imaging *imaging, const struct echoes *echoe
 }
 
 /* What is probed: some rows of the scene with all of its columns; with many pairs for each entry of a table, as many
-   records of fewer receivers and more pings, fewer rows and more columns; and with few pairs, few columns. */
+   records of fewer receivers and more pings, fewer rows and more columns; with few pairs, few columns; and a column of
+   pixels further apart than samples. */
 struct bench {
     struct scene scene;
     struct acquisition dense;
-    struct grid usual, wide, narrow;
+    struct grid usual, wide, narrow, steep;
     struct echoes echoes[2];
 };
 
@@ -105,7 +106,7 @@ static const char *const specs[] = {"bp_nearest:engine=",
                                     "bp_farrow:degree=3,engine=",
                                     "bp_farrow:degree=7,engine=",
                                     "bp_nearest:precision=double,engine="};
-enum { NEAREST, LINE, FEW_TAPS, MANY_TAPS, FEW_BRANCHES, MANY_BRANCHES, DOUBLE, PROBES };
+enum { NEAREST, LINE, FEW_TAPS, MANY_TAPS, FEW_BRANCHES, MANY_BRANCHES, DOUBLE, PROBES, PROBE_SETS = 5 };
 
 /* Of a probe on two images: focus = pairs p + units u, twice. Neither is below 0. */
 static void parts_solve(const struct probe *wide, const struct probe *narrow, double *pair, double *unit)
@@ -137,8 +138,24 @@ static void kind_fill(int engine, enum reading_kind kind, const struct probe *wi
     values_solve(units[0], units[1], values, &rates->unit[engine][kind], &rates->unit_value[engine][kind]);
 }
 
+/* What pairs that share no loads take more than others, where those of few values and of many do. */
+static void apart_fill(enum reading_kind kind, const struct probe *few, const struct probe *many, struct rates *rates)
+{
+    const struct probe *of[2] = {few, many};
+    const int values[2] = {few->forecast.values, many->forecast.values};
+    double more[2];
+    for (int k = 0; k < 2; k++) {
+        const double pair = rates->pair[0][kind] + rates->value[0][kind] * values[k],
+                     unit = rates->unit[0][kind] + rates->unit_value[0][kind] * values[k];
+        const double pairs = of[k]->work.pairs, alone = pairs * of[k]->forecast.apart;
+        more[k] = alone > 0 ? fmax(of[k]->focus - pairs * pair - of[k]->forecast.units * unit, 0) / alone : 0;
+    }
+    values_solve(more[0], more[1], values, &rates->apart[kind], &rates->apart_value[kind]);
+}
+
 struct probes {
     struct probe of[2][PROBES], narrow[2][PROBES]; /* by engine; on the narrow image */
+    struct probe steep[PROBES];                    /* by the general engine */
     struct probe blocks, terms, images;
     double nearest[ROUNDS]; /* s: of the general engine, in each round */
     double noise;
@@ -147,16 +164,20 @@ struct probes {
 static enum status round_run(const struct bench *bench, struct probes *probes)
 {
     enum status status = STATUS_OK;
-    for (int k = 0; k < 4 * PROBES && status == STATUS_OK; k++) {
+    const struct {
+        const struct grid *grid;
+        struct probe *probes;
+        const char *engine;
+    } sets[] = {{&bench->usual, probes->of[0], "general"},
+                {&bench->wide, probes->of[1], "invariant"},
+                {&bench->narrow, probes->narrow[0], "general"},
+                {&bench->narrow, probes->narrow[1], "invariant"},
+                {&bench->steep, probes->steep, "general"}};
+    for (int k = 0; k < PROBE_SETS * PROBES && status == STATUS_OK; k++) {
         char text[80];
-        const int engine = k / PROBES % 2, n = k % PROBES;
-        const bool narrow = k >= 2 * PROBES;
-        snprintf(text, sizeof text, "%s%s", specs[n], engine ? "invariant" : "general");
-        status = probe_spec(bench, text,
-                            narrow   ? &bench->narrow
-                            : engine ? &bench->wide
-                                     : &bench->usual,
-                            narrow ? &probes->narrow[engine][n] : &probes->of[engine][n]);
+        const int set = k / PROBES, n = k % PROBES;
+        snprintf(text, sizeof text, "%s%s", specs[n], sets[set].engine);
+        status = probe_spec(bench, text, sets[set].grid, &sets[set].probes[n]);
     }
     if (status == STATUS_OK)
         status = probe_spec(bench, "bp_factorised:stages=1,error=1e-3", &bench->usual, &probes->images);
@@ -218,6 +239,9 @@ static void rates_fill(const struct probes *probes, struct rates *rates)
                 (const struct probe *[]){&probes->of[engine][kinds[k].few], &probes->of[engine][kinds[k].many]},
                 (const struct probe *[]){&probes->narrow[engine][kinds[k].few], &probes->narrow[engine][kinds[k].many]},
                 rates);
+    for (int k = 0; k < READ_KINDS; k++)
+        if (kinds[k].kind != READ_TAPS) /* whose pixels always load their own */
+            apart_fill(kinds[k].kind, &probes->steep[kinds[k].few], &probes->steep[kinds[k].many], rates);
     records_fill(probes, rates);
     image_fill(&probes->images, rates);
     for (int k = 0; k < MIGRATIONS; k++) {
@@ -233,11 +257,11 @@ static void rates_fill(const struct probes *probes, struct rates *rates)
 static enum status rounds_run(const struct bench *bench, struct probes *probes)
 {
     struct probe none = {.total = INFINITY, .compress = INFINITY, .focus = INFINITY};
-    struct probe *const all[] = {probes->of[0], probes->of[1], probes->narrow[0], probes->narrow[1]};
+    struct probe *const all[] = {probes->of[0], probes->of[1], probes->narrow[0], probes->narrow[1], probes->steep};
     enum status status = STATUS_OK;
     for (int k = 0; k < MIGRATIONS; k++)
         none.parts[k] = INFINITY;
-    for (int k = 0; k < 4 * PROBES; k++)
+    for (int k = 0; k < PROBE_SETS * PROBES; k++)
         all[k / PROBES][k % PROBES] = none;
     probes->blocks = probes->terms = probes->images = none;
     for (int number = 0; number < ROUNDS && status == STATUS_OK; number++) {
@@ -297,6 +321,10 @@ enum status machine_rates_measure(struct rates *rates)
     bench.wide.x_count *= 4;
     bench.wide.x_first -= 1.5 * bench.usual.x_count * bench.usual.x_step;
     bench.narrow.x_count /= 4;
+    bench.steep = bench.usual;
+    bench.steep.x_count /= 10;
+    bench.steep.r_count *= 10;
+    bench.steep.r_step *= 1.25; /* samples */
     status = dense_make(&bench);
     for (int precision = 0; precision < 2 && status == STATUS_OK; precision++)
         status = echoes_allocate(&bench.scene.acquisition, (enum precision)precision, &bench.echoes[precision]);

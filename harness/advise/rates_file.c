@@ -40,10 +40,16 @@ static double *rate_at(struct rates *rates, int k, char name[48])
         snprintf(name, 48, "%s_%s_%s", engines[engine], kinds[kind], pairs[k % 4].name);
         return &pairs[k % 4].rates[engine][kind];
     }
-    if (k - of_pairs >= (int)(sizeof others / sizeof *others))
+    k -= of_pairs;
+    if (k < 2 * READ_KINDS) {
+        snprintf(name, 48, "general_%s_apart%s", kinds[k / 2], k % 2 ? "_value" : "");
+        return &(k % 2 ? rates->apart_value : rates->apart)[k / 2];
+    }
+    k -= 2 * READ_KINDS;
+    if (k >= (int)(sizeof others / sizeof *others))
         return NULL;
-    snprintf(name, 48, "%s", others[k - of_pairs].name);
-    return others[k - of_pairs].rate;
+    snprintf(name, 48, "%s", others[k].name);
+    return others[k].rate;
 }
 
 void machine_rates_path(char *path, size_t size)

@@ -11,6 +11,8 @@ static struct rates rates = {
     .unit = {{[READ_NEAREST] = 5.1e-8, [READ_LINE] = 5.4e-8, [READ_TAPS] = 5.3e-8, [READ_BRANCHES] = 4.7e-8},
              {[READ_NEAREST] = 1.5e-9, [READ_LINE] = 3.7e-9, [READ_TAPS] = 1.9e-9, [READ_BRANCHES] = 1.2e-9}},
     .unit_value = {{[READ_BRANCHES] = 8.7e-10}, {[READ_TAPS] = 5.1e-10, [READ_BRANCHES] = 3.7e-10}},
+    .apart = {[READ_NEAREST] = 6.7e-10, [READ_LINE] = 7.4e-10, [READ_BRANCHES] = 1.7e-9},
+    .apart_value = {[READ_BRANCHES] = 5.7e-10},
     .compress = 1.6e-11,
     .filter = 1.3e-11,
     .image = 3.8e-10,
@@ -78,7 +80,10 @@ bool rates_plausible(const struct rates *r)
         const double pair = r->pair[engine][kind], value = r->value[engine][kind];
         const double unit = r->unit[engine][kind], unit_value = r->unit_value[engine][kind];
         good = good && takes_time(pair + value) && unit + unit_value < 1e-3;
+        const double apart = r->apart[kind], apart_value = r->apart_value[kind];
+        good = good && apart + apart_value < 1e-3;
         least = fmin(fmin(least, fmin(pair, value)), fmin(unit, unit_value)); /* either of two may be 0 */
+        least = fmin(least, fmin(apart, apart_value));
     }
     for (int k = 0; k < MIGRATIONS; k++)
         good = good && takes_time(r->migrate[k]);
@@ -98,7 +103,8 @@ double rates_sums(const struct forecast *f, enum precision precision, double pai
 {
     const int engine = f->tables, kind = f->kind;
     const int more = engine && kind == READ_TAPS && f->values > VECTOR && f->values % VECTOR > 0 ? PART : 0;
-    const double pair = alone(f) * (rates.pair[engine][kind] + rates.value[engine][kind] * (f->values + more));
+    const double pair = alone(f) * (rates.pair[engine][kind] + rates.value[engine][kind] * (f->values + more))
+                        + f->apart * (rates.apart[kind] + rates.apart_value[kind] * f->values);
     const double unit = rates.unit[engine][kind] + rates.unit_value[engine][kind] * (f->values + more);
     const double records = f->record_flops * f->slowness * rates.compress + f->kernel_flops * rates.filter
                            + f->record_values * rates.put[engine];

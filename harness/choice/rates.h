@@ -13,13 +13,15 @@ enum { RATES_COLUMNS = 8 };
 struct rates {
     double pair[2][READ_KINDS], value[2][READ_KINDS];
     double unit[2][READ_KINDS], unit_value[2][READ_KINDS]; /* alike: a block of pixels; an entry of the tables */
-    double compress;                                       /* a FLOP of range compression's transforms */
-    double filter;                                         /* a FLOP of branches that stand for taps */
-    double image;                                          /* what images of subapertures cost for one pair */
-    double put[2];                                         /* a value of a record, put where pairs read it */
-    double migrate[MIGRATIONS];                            /* a FLOP or a value of range migration's parts */
-    double doubled; /* factor for double, the same for all, so that both precisions choose alike */
-    double noise;   /* relative: by how much the same time was off when it was measured again */
+    /* What a pair takes more whose pixel loads its own samples, by the general engine: it, and for each value. */
+    double apart[READ_KINDS], apart_value[READ_KINDS];
+    double compress;            /* a FLOP of range compression's transforms */
+    double filter;              /* a FLOP of branches that stand for taps */
+    double image;               /* what images of subapertures cost for one pair */
+    double put[2];              /* a value of a record, put where pairs read it */
+    double migrate[MIGRATIONS]; /* a FLOP or a value of range migration's parts */
+    double doubled;             /* factor for double, the same for all, so that both precisions choose alike */
+    double noise;               /* relative: by how much the same time was off when it was measured again */
 };
 
 /* Those in use: of the machine that the program was written on, until others are set, so that choices are the same

@@ -169,15 +169,17 @@ double factorised_least(const struct problem *problem, double pairs)
 enum status factorised_cost_direct(const struct problem *problem, const struct forecast *forecast, double *pairs)
 {
     /* Of tables, in pairs of the general engine, measured: what a pair takes, more of it where the columns from ping to
-       ping are few and share no loads; an entry. */
-    static const double PAIR = 0.19, ALONE = 0.8, COLUMNS = 8, ENTRY = 6.6;
+       ping are few and share no loads; an entry. Without tables, what a pair that shares no loads takes more, and for
+       each value. */
+    static const double PAIR = 0.19, ALONE = 0.8, COLUMNS = 8, ENTRY = 6.6, APART = 5, APART_VALUE = 1.7;
     struct problem seen = *problem;
     struct turned_problem turned;
     enum status status = problem_turn_back(&seen, &turned, NULL);
     if (status == STATUS_OK)
         *pairs = forecast->tables
                      ? (PAIR + ALONE / fmin(forecast->residues, COLUMNS)) * pairs_about(&seen) + ENTRY * forecast->units
-                     : pairs_about(&seen) + BLOCK * forecast->units;
+                     : (1 + forecast->apart * (APART + APART_VALUE * forecast->values)) * pairs_about(&seen)
+                           + BLOCK * forecast->units;
     turned_free(&turned);
     return status;
 }
@@ -195,6 +197,7 @@ enum status factorised_forecast(const struct problem *problem, const struct tree
     double *error = &forecast->error[CAUSE_INTERPOLATION]; /* of the records alone, which have a share of it */
     *error = hypot(settings->error, sqrt(fmax(*error * *error - share * share, 0)));
     forecast->units = cost->blocks;
+    forecast->apart = 0; /* images are sampled more finely than records */
     forecast->image_pairs = cost->records;
     forecast->image_cost = cost->images;
     forecast->image_flops = cost->flops;

@@ -112,13 +112,11 @@ static int block_longest(const struct ping_box *box, const struct pixel_line *li
     return end - begin;
 }
 
-bool blocks_steep(const struct acquisition *a, double finest_hz, int ping, const struct pixel_line *line,
-                  struct pair_span span)
+double blocks_slope(const struct acquisition *a, int ping, const struct pixel_line *line, struct pair_span span)
 {
-    static const double STEEP = 0.99; /* samples, as in runs.c */
     const struct vector tx = a->tx[ping], p = line_pixel(line, span.begin), q = line_pixel(line, span.end - 1);
     const double near = hypot(hypot(p.x - tx.x, p.y - tx.y), tx.z), far = hypot(hypot(q.x - tx.x, q.y - tx.y), tx.z);
-    return 2 * fabs(far - near) / a->sound_speed * finest_hz > STEEP * (span.end - span.begin - 1);
+    return 2 * fabs(far - near) / a->sound_speed / fmax(1, span.end - span.begin - 1);
 }
 
 int blocks_make(const struct ping_box *box, const struct pixel_line *line, struct pair_span *left,

@@ -32,10 +32,9 @@ struct ping_box ping_box_join(const struct ping_box *a, const struct ping_box *b
 double ping_box_clearance(const struct ping_box *box, const struct pixel_line *line, int begin, int end);
 double ping_box_extent(const struct ping_box *box, const struct pixel_line *line, int begin, int end);
 
-/* Do the pixels of a span lie a sample apart, or more, at `finest_hz` samples a second, in the mean, seen from a
-   transmitter? Each of them then loads its own values of branches (run.h). */
-bool blocks_steep(const struct acquisition *acquisition, double finest_hz, int ping, const struct pixel_line *line,
-                  struct pair_span span);
+/* s: how far the delays of a span's neighbours lie apart, in the mean, seen from a transmitter. */
+double blocks_slope(const struct acquisition *acquisition, int ping, const struct pixel_line *line,
+                    struct pair_span span);
 
 /* Take up to BP_BLOCKS blocks off the beginning of *left; returns their count, 0 when nothing is left. */
 int blocks_make(const struct ping_box *box, const struct pixel_line *line, struct pair_span *left,

@@ -41,13 +41,10 @@ static enum status general_applicable(const struct bp *bp)
 
 /* Measured, in pixels of a block: a block's quintic takes as long as 30, an exact delay as long as three. */
 enum { BLOCK_COST = 30, EXACT_COST = 3, VECTOR = 16 };
-/* Of a unit, what a value of branches takes more where each pixel loads its own, on slopes of a sample a pixel (run.h);
-   measured. */
-static const double STEEP_COST = 0.008;
-
 /* Whole numbers, in which the order of sums does not matter. */
 struct line_counts {
     double blocks, pixels, exact; /* pixels of whole vectors; and of exact delays */
+    double met, apart;            /* pixels; those that load their own samples */
 };
 
 static void span_count(const struct ping_box *box, const struct pixel_line *line, struct pair_span left,
@@ -80,48 +77,62 @@ static int step_of(int count)
     return (count + LOOKED_AT - 1) / LOOKED_AT;
 }
 
+/* Pixels of neighbours further apart than this load their own samples (run.h): branches, and one value or two. */
+static double steep_most(const struct bp *bp)
+{
+    return bp->kernel.branches > 0 || bp->table.branches > 1 ? 0.99 : 0.49;
+}
+
+/* Count what ping p's pairs with a patch are made of, on each `step`-th line: [along range, along x]. */
+static void ping_count(const struct bp *bp, int p, const struct ping_box *box, const struct grid *grid,
+                       struct line_counts *sum)
+{
+    const struct acquisition *a = bp->problem.acquisition;
+    const struct vector normal = acquisition_normal(a, p);
+    const int steps[] = {step_of(grid_line_count(grid, false)), step_of(grid_line_count(grid, true))};
+    const bool along_x =
+        steps[1] * lines_cost(box, grid, true, steps[1]) < steps[0] * lines_cost(box, grid, false, steps[0]);
+    const int lines = grid_line_count(grid, along_x), step = steps[along_x];
+    const double looked = ceil((double)lines / step), finest = a->fs * bp->table.upsample;
+    struct line_counts counts = {0};
+    for (int n = 0; n < lines; n += step) {
+        const struct pixel_line line = grid_line(grid, along_x, n);
+        struct pair_span spans[2];
+        const int count = pair_spans(a, p, normal, &line, spans);
+        for (int s = 0; s < count; s++) {
+            const double pixels = spans[s].end - spans[s].begin;
+            span_count(box, &line, spans[s], &counts);
+            counts.met += pixels;
+            counts.apart += blocks_slope(a, p, &line, spans[s]) * finest > steep_most(bp) ? pixels : 0;
+        }
+    }
+    sum->blocks += counts.blocks * lines / looked;
+    sum->exact += counts.exact * lines / looked;
+    sum->met += counts.met * lines / looked;
+    sum->apart += counts.apart * lines / looked;
+}
+
 /* Blocks of some pings that are met and of some lines, times all of them. Exact delays count as the blocks that last as
    long. */
-static double general_units(const struct bp *bp, double *residues)
+static void general_units(const struct bp *bp, struct forecast *forecast)
 {
-    *residues = 0;
     const struct problem *problem = &bp->problem;
     const struct acquisition *a = problem->acquisition;
     const double quintics = budget_quintics(bp->medium.phase_limit, problem->precision);
-    const double finest = a->fs * bp->table.upsample;
-    const int branches = bp->kernel.branches > 0 ? bp->kernel.branches : bp->table.branches;
     const int met = bp_met_count(bp), pings = step_of(met);
     int passed = 0, looked_at = 0;
-    double units = 0;
+    struct line_counts sum = {0};
     for (int p = 0; p < a->pings; p++) {
         if (!bp_met(bp, p) || passed++ % pings != pings / 2)
             continue;
         looked_at++;
         const struct ping_box box = ping_box_make(a, p, problem->patch_count, problem->patches, quintics);
-        const struct vector normal = acquisition_normal(a, p);
-        for (int k = 0; k < problem->patch_count; k++) {
-            const struct grid *grid = &problem->patches[k];
-            const int steps[] = {step_of(grid_line_count(grid, false)), step_of(grid_line_count(grid, true))};
-            const bool along_x =
-                steps[1] * lines_cost(&box, grid, true, steps[1]) < steps[0] * lines_cost(&box, grid, false, steps[0]);
-            struct line_counts counts = {0};
-            double steep = 0; /* pixels */
-            for (int n = 0; n < grid_line_count(grid, along_x); n += steps[along_x]) {
-                const struct pixel_line line = grid_line(grid, along_x, n);
-                struct pair_span spans[2];
-                const int count = pair_spans(a, p, normal, &line, spans);
-                for (int s = 0; s < count; s++) {
-                    span_count(&box, &line, spans[s], &counts);
-                    if (branches > 1 && blocks_steep(a, finest, p, &line, spans[s]))
-                        steep += spans[s].end - spans[s].begin;
-                }
-            }
-            const double looked = ceil((double)grid_line_count(grid, along_x) / steps[along_x]);
-            units += (counts.blocks + counts.exact * EXACT_COST / BLOCK_COST + steep * STEEP_COST * branches)
-                     * grid_line_count(grid, along_x) / looked;
-        }
+        for (int k = 0; k < problem->patch_count; k++)
+            ping_count(bp, p, &box, &problem->patches[k], &sum);
     }
-    return looked_at > 0 ? units * a->receivers * met / looked_at : 0;
+    const double units = sum.blocks + sum.exact * EXACT_COST / BLOCK_COST;
+    forecast->units = looked_at > 0 ? units * a->receivers * met / looked_at : 0;
+    forecast->apart = sum.met > 0 ? sum.apart / sum.met : 0;
 }
 
 /* A kernel's branches in place of its taps. */

@@ -143,25 +143,25 @@ static double reach(const struct bp_raster *raster, const struct grid *grid, dou
 }
 
 /* Of each residue, the shifts that bring a ping inside the aperture to any of its columns. */
-double invariant_units(const struct bp *bp, double *residues)
+void invariant_units(const struct bp *bp, struct forecast *forecast)
 {
-    *residues = INFINITY;
+    forecast->units = forecast->residues = INFINITY;
     struct straight_track track;
     struct bp_raster raster = {0};
     double units = 0;
     if (!acquisition_is_straight(bp->problem.acquisition, &track))
-        return INFINITY;
+        return;
     for (int k = 0; k < bp->problem.patch_count; k++) {
         const struct grid *grid = &bp->problem.patches[k];
         const double r = fabs(grid->r_first + (grid->r_count - 1) * grid->r_step / 2);
         if (raster_make(bp, &track, grid, &raster) != STATUS_OK)
-            return INFINITY;
+            return;
         const double shifts =
             fmin(raster.pings + raster.residue_columns - 1, 2 * reach(&raster, grid, r) / raster.spacing + 1);
         units += (double)grid->r_count * raster_residues(&raster) * shifts;
-        *residues = fmin(*residues, bp_whole(&bp->table) ? raster_residues(&raster) : 1);
+        forecast->residues = fmin(forecast->residues, bp_whole(&bp->table) ? raster_residues(&raster) : 1);
     }
-    return units * bp->problem.acquisition->receivers;
+    forecast->units = units * bp->problem.acquisition->receivers;
 }
 
 /* The least and the largest distance between a row of the grid and the track, whose side is no matter. */

@@ -33,7 +33,7 @@ struct invariant {
 
 /* The callbacks of struct bp_engine, but for execute. */
 enum status invariant_applicable(const struct bp *bp);
-double invariant_units(const struct bp *bp, double *residues);
+void invariant_units(const struct bp *bp, struct forecast *forecast);
 enum status invariant_plan(struct bp *bp);
 
 #endif

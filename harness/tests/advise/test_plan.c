@@ -1,6 +1,7 @@
 /* Planning: the fastest choice, refusals with the best that there is, and what the command prints and writes. */
 #include <fcntl.h>
 #include <math.h>
+#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -402,30 +403,35 @@ static struct forecast column_forecast(const char *text, double share)
     return forecast;
 }
 
-static double units_of(const char *text, double share)
-{
-    return column_forecast(text, share).units;
-}
-
-/* Pixels a sample apart load branches one by one, which takes time; one value each, it does not matter. Branches that
-   stand for a kernel are such, too, but need no transforms of their own. */
+/* Pixels whose neighbours lie further apart than half a sample, of branches a sample, load their own, which takes time
+   by the rates for it; blocks of pixels are as many. Branches that stand for a kernel are such, too, but need no
+   transforms of their own. */
 static void steep_slopes_cost(void **state)
 {
     (void)state;
-    const double values[] = {3, 5};
-    const char *const specs[] = {"bp_farrow:degree=2", "bp_farrow:degree=4"};
-    const double nearest = units_of("bp_nearest", 0.9);
-    double more[2];
-    for (int k = 0; k < 2; k++) {
-        assert_true(units_of(specs[k], 0.9) == nearest);
-        more[k] = (units_of(specs[k], 1.1) - nearest) / values[k];
+    static const struct {
+        const char *text;
+        double near, far; /* samples */
+    } cases[] = {{"bp_nearest", 0.45, 0.55},
+                 {"bp_linear", 0.45, 0.55},
+                 {"bp_farrow:degree=2", 0.9, 1.1},
+                 {"bp_farrow:degree=4", 0.9, 1.1},
+                 {"bp_fitted:taps=8", 0.9, 1.1}};
+    const double pairs = 1e9;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const struct forecast near = column_forecast(cases[k].text, cases[k].near),
+                              far = column_forecast(cases[k].text, cases[k].far);
+        struct forecast alike = far;
+        alike.apart = 0;
+        assert_true(near.apart == 0 && far.apart == 1 && near.units == far.units);
+        const double more = rates_sums(&far, PRECISION_FLOAT, pairs) - rates_sums(&alike, PRECISION_FLOAT, pairs);
+        const struct rates *rates = rates_get();
+        const double own = rates->apart[far.kind] + rates->apart_value[far.kind] * far.values;
+        assert_true(own > 0);
+        assert_close(more * omp_get_max_threads() / pairs / own, 1, 1e-6);
     }
-    assert_true(more[0] > 0.05 * nearest);
-    assert_close(more[1] / more[0], 1, 0.01);
-    assert_true(units_of("bp_nearest", 1.1) == nearest);
     const struct forecast kernel = column_forecast("bp_fitted:taps=8", 1.1), one = column_forecast("bp_nearest", 1.1);
     assert_true(kernel.kind == READ_BRANCHES && kernel.values > 3);
-    assert_close((kernel.units - nearest) / kernel.values / more[0], 1, 0.01);
     assert_true(kernel.record_flops == one.record_flops);
 }
 
