@@ -40,8 +40,8 @@ struct image_origin {
    image_2, x_2, r_2, and so on. Same rules. */
 enum status image_file_write(const char *path, const struct image *image, const struct image_origin *origin);
 
-/* All patches of an image file, their grids from x, r (uniform to 1e-6 of a step) and angle, and what it says of itself.
-   Errors: STATUS_INVALID; nothing to close then. */
+/* All patches of an image file, their grids from x, r (uniform to 1e-6 of a step) and angle, and what it says of
+   itself. Errors: STATUS_INVALID; nothing to close then. */
 struct image_file {
     struct image image; /* double */
     struct grid *patches;

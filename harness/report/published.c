@@ -8,7 +8,8 @@ const struct paper_table paper_tables[] = {
     {"bp22_t1", "BP22 Table 1, Eq. (11): FLOPs at N_a = 2880, N_r = 4800",
      "an FFT of N counts 5 N log2 N; counted: what our plans do, which read two taps where BP22 upsamples first", NULL},
     {"bp22_t3", "BP22 Table 3: PSLR and ISLR of six targets",
-     "the text prints no target positions: six targets on range bins, 40 to 225 m; sound speed 1500 m/s and rect beam cut "
+     "the text prints no target positions: six targets on range bins, 40 to 225 m; sound speed 1500 m/s and rect beam "
+     "cut "
      "at sin "
      "theta = .405 lambda/D_tx, neither of them printed, f_s = 2B, pings every 0.8 m on the pixels' raster; the "
      "scatter among the printed targets does not reproduce",
@@ -33,7 +34,8 @@ const struct paper_table paper_tables[] = {
      "theta at F",
      NULL},
     {"lbf21_t3", "LBF21 Table III: six targets, short integration time",
-     "the text prints no target positions: azimuths of Fig. 13, ranges 50, 90, 135, 180, 225, 270 m; imaged in two parts, "
+     "the text prints no target positions: azimuths of Fig. 13, ranges 50, 90, 135, 180, 225, 270 m; imaged in two "
+     "parts, "
      "near (50 to "
      "90 "
      "m) and far (135 to 270 m), with 16 blocks each, 2.5 and 8.4 m wide, where section V-A prefers 10 m; beam and "
@@ -41,7 +43,8 @@ const struct paper_table paper_tables[] = {
      "speed as in Table II; BP is the exact image; corrected: theta at F, blocks in 1/r that blend",
      NULL},
     {"lbf21_t4", "LBF21 Table IV: four targets, long integration time",
-     "the text prints no target positions: ranges 50, 80, 225, 260 m; near and far part with 16 blocks each, 2.8 m wide; "
+     "the text prints no target positions: ranges 50, 80, 225, 260 m; near and far part with 16 blocks each, 2.8 m "
+     "wide; "
      "pixels of 0.01 "
      "m, half those of the short array; "
      "Wu's method is a working definition",
@@ -69,7 +72,8 @@ const struct paper_table paper_tables[] = {
      "the text prints no target positions but for some azimuths; as lbf21_t3", NULL},
     {"lbf21_f14", "LBF21 Fig. 14: images of six targets", "as lbf21_t3", NULL},
     {"lbf21_f15", "LBF21 Fig. 15: azimuth slices of the six targets", "as lbf21_t3", NULL},
-    {"lbf21_f16", "LBF21 Fig. 16: places of the four targets", "the text prints no target positions; as lbf21_t4", NULL},
+    {"lbf21_f16", "LBF21 Fig. 16: places of the four targets", "the text prints no target positions; as lbf21_t4",
+     NULL},
     {"lbf21_f17", "LBF21 Fig. 17: images of four targets, long integration time", "as lbf21_t4", NULL},
     {"lbf21_f18", "LBF21 Fig. 18: azimuth slices of the four targets", "as lbf21_t4", NULL},
     {"pf05_t1", "PF05 Table 1: azimuth resolution",

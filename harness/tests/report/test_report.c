@@ -66,10 +66,11 @@ static void folder_fill(void)
                                 "x-2,BP22,4.2,second,does not hold,holds,two & three\n"
                                 "x-3,ZP15,3,third,holds under stated assumption,,e\n"
                                 "x-4,ZP15,4,fourth,cannot be decided,,e\n");
-    support_write("reproduced.csv", "table,item,quantity,definition,unit,paper,ours,difference,assumption\n"
-                                    "bp22_t3,T1,pslr_db,null,dB,-14.62,-13.46,1.159,the text prints no target positions\n"
-                                    "bp22_t3,T1,islr_db,null,dB,-8.08,,,the text prints no target positions\n"
-                                    "unheard_of,T1,islr_db,null,dB,-8.08,,,\n");
+    support_write("reproduced.csv",
+                  "table,item,quantity,definition,unit,paper,ours,difference,assumption\n"
+                  "bp22_t3,T1,pslr_db,null,dB,-14.62,-13.46,1.159,the text prints no target positions\n"
+                  "bp22_t3,T1,islr_db,null,dB,-8.08,,,the text prints no target positions\n"
+                  "unheard_of,T1,islr_db,null,dB,-8.08,,,\n");
     static const char *const pictures[][2] = {{"a", "slices"}, {"a", "bp_linear:beta=8"}, {"a", "not a row"}};
     for (size_t k = 0; k < sizeof pictures / sizeof *pictures; k++) {
         char path[400], name[64];
