@@ -115,6 +115,7 @@ void *store_keep(struct store *store, void *thing, void (*release)(void *thing))
     }
     *stored = (struct stored){store->last, thing, release};
     store->last = stored;
+    store->bytes += sizeof *stored;
     return thing;
 }
 
