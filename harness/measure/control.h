@@ -5,26 +5,26 @@
 #include "backprojection/pairs/turned.h"
 #include "measure/scalar_loop.h"
 
-enum { CONTROL_RUNS = 2 }; /* of the loop, one after the other: the faster one is free of most interruptions */
+enum { CONTROL_RUNS = 2 }; /* the loop's runs in turn; the faster one is free of most interruptions */
 
-/* Made by control_begin, ended by control_end, which accepts zeroes. The pairs are chosen when it is first measured. */
+/* Made by control_begin, released by control_end, which accepts zeroes. The first measurement chooses the pairs. */
 struct control {
     struct problem
-        problem; /* with no grid turned, once it is open: the loop knows rows and columns along x and r only */
+        problem; /* once open, with turned grids turned back: the loop's rows and columns are along x and r only */
     struct turned_problem turned;
     const struct echoes *echoes;
     struct scalar_loop loop;
     bool open;
-    double seconds[CONTROL_RUNS]; /* of a pair, when it was last measured */
-    double measured;              /* seconds_now() then */
-    double spent_s;               /* on all of it so far */
+    double seconds[CONTROL_RUNS]; /* a pair's time, last measured */
+    double measured;              /* seconds_now() at that time */
+    double spent_s;               /* so far, on all measurements */
 };
 
-/* `echoes`: in float, whatever the problem's precision; borrowed, as what the problem points to is. */
+/* `echoes` are in float, whatever the problem's precision; they and what the problem points to are borrowed. */
 struct control control_begin(const struct problem *problem, const struct echoes *echoes);
 void control_end(struct control *control);
-/* Time it into control->seconds; with `recent`, what was measured within the last second is taken again. *least is the
-   faster one. Errors: as problem_turn_back. */
+/* Time the loop into control->seconds; *least is the faster run. With `recent`, a measurement of the last second is
+   used again. Errors: as problem_turn_back. */
 enum status control_measure(struct control *control, bool recent, double *least);
 
 #endif

@@ -1,5 +1,4 @@
-/* The polar-format filter (wavenumber/polar_filter.h) on echoes as they are recorded, and how much of each target it
-   keeps. */
+/* The polar-format filter (wavenumber/polar_filter.h) on recorded echoes, and how much of each target it keeps. */
 #ifndef SASBENCH_MEASURE_FILTERING_H
 #define SASBENCH_MEASURE_FILTERING_H
 
@@ -23,19 +22,20 @@ struct filtering {
 enum status filtering_open(const struct acquisition *acquisition, const struct spec *spec, struct filtering *filtering);
 void filtering_close(struct filtering *filtering);
 
-/* Both in place, on records [pings][samples]: as they were recorded to compressed ones, and these to filtered ones. */
+/* Both in place, on records [pings][samples]: filtering_compress takes recorded ones, filtering_apply compressed
+   ones. */
 void filtering_compress(const struct filtering *filtering, double complex *records);
 void filtering_apply(const struct filtering *filtering, double complex *records);
 
-/* What the filter does to echoes: their energy behind it and the energy of what it changes, both over that ahead of it;
-   NAN where there are no echoes. */
+/* The filter's effect on echoes: the energy that it keeps and the energy of what it changes, both over the energy of
+   its input; NAN without echoes. */
 struct kept {
     double kept_db, changed_db;
 };
 
-/* Compressed echoes, which are filtered in place. Errors: STATUS_FAILED without memory. */
+/* Filters compressed echoes in place. Errors: STATUS_FAILED without memory. */
 enum status filtering_measure(const struct filtering *filtering, double complex *records, struct kept *kept);
-/* Point target `index` of the scene by itself, for the filter is linear. Errors: as filtering_measure and
+/* The same for point target `index` of the scene by itself: the filter is linear. Errors: as filtering_measure and
    scene_simulate. */
 enum status filtering_target(const struct filtering *filtering, const struct scene *scene, int index,
                              struct kept *kept);

@@ -4,20 +4,20 @@
 
 #include "contract/algorithm.h"
 
-/* The scalar reference loop: nearest neighbour, one pair at a time, delay by double square roots, phase by libm's sin
-   and cos, float sums, one thread, compiled with -O2 and without vectorisation. It is timed over a quarter of a million
-   pairs (some 8 ms) that are spread evenly over the problem and whose delay lies in the record: what is skipped costs
-   less and is no pair. */
+/* The scalar reference loop: nearest neighbour, one pair at a time, delay by double square roots, phase by libm's
+   sin and cos, float sums, one thread, compiled with -O2 and without vectorisation. It is timed over a quarter of a
+   million pairs (some 8 ms), spread evenly over the problem. Only pairs whose delay lies in the record count:
+   skipped ones cost less. */
 struct scalar_loop {
     const struct acquisition *acquisition;
     const struct grid *grid;
     const float *samples;
-    struct scalar_pair *pairs; /* [count]; NULL where there are none, or no memory */
+    struct scalar_pair *pairs; /* [count]; NULL without pairs or memory */
     int count;
 };
 
-/* Choose the pairs, freed with scalar_loop_free. The problem and its echoes, float samples that are read as they are,
-   are borrowed; no grid of it is turned. */
+/* Choose the pairs, freed with scalar_loop_free. The problem and its echoes (float, read as they are) are borrowed;
+   its grids must not be turned. */
 struct scalar_loop scalar_loop_choose(const struct problem *problem, const struct echoes *echoes);
 void scalar_loop_free(struct scalar_loop *loop);
 /* Seconds that one pixel-pulse pair takes; NAN without pairs. */

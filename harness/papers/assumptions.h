@@ -1,4 +1,4 @@
-/* What the papers do not print and our scenes assume, changed one at a time: which verdicts depend on it? */
+/* Assumptions of our scenes where the papers print nothing, changed one at a time: which verdicts depend on them? */
 #ifndef SASBENCH_PAPERS_ASSUMPTIONS_H
 #define SASBENCH_PAPERS_ASSUMPTIONS_H
 
@@ -7,19 +7,19 @@
 /* One set of assumptions; the first, "nominal", changes nothing. */
 struct assumptions {
     const char *name, *title;
-    double sound_speed;              /* m/s; 0: the scene's. Targets on range bins are moved to the nearest new one */
+    double sound_speed;              /* m/s; 0: the scene's. Targets on range bins move to the nearest new one */
     double limit;                    /* of the beam's truncation, in lambda/D_tx; 0: the scene's */
-    enum truncation_kind truncation; /* that the limit is of */
-    bool off_bins;                   /* targets, with their patches, are moved by half a range bin */
+    enum truncation_kind truncation; /* kind of truncation that the limit belongs to */
+    bool off_bins;                   /* move targets and their patches by half a range bin */
 };
 extern const struct assumptions assumption_sets[]; /* name NULL ends */
 
-/* Load a shipped scene under the assumptions that were chosen last; they are nominal at first. Where they change it,
-   its name becomes NAME@ASSUMPTIONS ("bp22/table3@c_1450") and its hash another. Errors: as scene_load, and
-   STATUS_FAILED without memory. */
+/* Load a shipped scene under the current assumptions; they are nominal at first. Where they change it, its name
+   becomes NAME@ASSUMPTIONS ("bp22/table3@c_1450") and its hash another. Errors: as scene_load, and STATUS_FAILED
+   without memory. */
 enum status assumed_scene_load(const char *name, struct scene *scene);
-/* The name that a scene has under them: its own where they change nothing, or where it cannot be loaded. It stays
-   valid. */
+/* The scene's name under the current assumptions: its own where they change nothing, or where it cannot be loaded.
+   It stays valid. */
 const char *assumed_scene_name(const char *name);
 void assumptions_choose(const struct assumptions *assumptions);
 

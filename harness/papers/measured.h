@@ -1,5 +1,4 @@
-/* A results folder as the papers' tables and claims look into it. All that is said of the papers is worked out from
-   that folder and from published.csv alone, so that no number comes from anywhere else. */
+/* A results folder as input of the papers' tables and claims. They use that folder and published.csv alone. */
 #ifndef SASBENCH_PAPERS_MEASURED_H
 #define SASBENCH_PAPERS_MEASURED_H
 
@@ -9,7 +8,7 @@
 
 #define RULES_FILE "rules_random.csv" /* of a folder (rules.h) */
 
-/* A number that needs no image, as it was worked out (unimaged.h). */
+/* A computed number that needs no image (unimaged.h). */
 enum scene_quantity {
     QUANTITY_SIZE_FACTOR,
     QUANTITY_UPSAMPLING,
@@ -25,27 +24,26 @@ struct scene_number {
     double value;
 };
 
-/* A folder's measurements. What is asked of it and not there is NAN, and `missing` then says why. */
+/* A folder's measurements. A value that is not there is NAN, and `missing` then has the reason. */
 struct measured {
-    struct results measurements, targets; /* as results.h reads them; all zero when there is no file */
+    struct results measurements, targets; /* as results.h reads them; all zero without a file */
     struct csv phase[PHASE_SETUPS];       /* as phase_study writes them */
     struct csv rules;                     /* as rules_study writes them */
     struct csv published;                 /* results/published.csv */
-    struct scene_number numbers[192];     /* that were asked for */
+    struct scene_number numbers[192];     /* requested so far */
     int number_count;
-    double load;       /* load average a processor while times were measured; 0: unknown */
-    char missing[400]; /* the first value that was not there since it was last cleared */
+    double load;       /* load average a processor while times were measured; 0: not recorded */
+    char missing[400]; /* the first missing value since this was last cleared */
 };
 
-/* Files that are not there yet are no error. Errors: those of results_read and csv_read; free in any case. */
+/* Missing files are no error. Errors: those of results_read and csv_read; free in any case. */
 enum status measured_read(const char *directory, struct measured *measured);
 void measured_free(struct measured *measured);
 
-/* What was just asked for is not there: keep the reason unless there is one already. Returns NAN. */
+/* The requested value is not there: keep the reason unless there is one already. Returns NAN. */
 double measured_missing(struct measured *measured, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* The measurement of `spec` (SPEC text) on `scene` if there is one that went well, else NULL; nothing is then
-   missing. */
+/* The successful measurement of `spec` (SPEC text) on `scene`, else NULL, which sets nothing missing. */
 const struct measurement *measured_row(const struct measured *measured, const char *scene, const char *spec);
 
 /* A field of the measurement of `spec` (SPEC text) on `scene`: MEASURED(measured, scene, spec, error). */
@@ -53,10 +51,11 @@ const struct measurement *measured_row(const struct measured *measured, const ch
     measured_value(measured, scene, spec, offsetof(struct measurement, field), #field)
 double measured_value(struct measured *measured, const char *scene, const char *spec, size_t offset, const char *name);
 
-/* Seconds of one stage of it ("compress"). */
+/* Seconds of one stage of the measurement ("compress"). */
 double measured_stage(struct measured *measured, const char *scene, const char *spec, const char *stage);
 
-/* A field of its azimuth slice through a target (from 0) by a definition ("pixel"); `name` is for messages. */
+/* A field of the measurement's azimuth slice through a target (from 0) by a definition ("pixel"); `name` is for
+   messages. */
 double measured_target(struct measured *measured, const char *scene, const char *spec, int target,
                        const char *definition, size_t offset, const char *name);
 

@@ -6,33 +6,32 @@
 
 #include "scene/scene.h"
 
-/* Name of formula k, of which the study's files have a column NAME_error_rad; NULL for k behind the last. */
+/* Name of formula k; the study's files have its column NAME_error_rad. NULL for k behind the last. */
 const char *phase_formula(int k);
 
 /* LBF21's two set-ups. */
 enum phase_setup { PHASE_SHORT, PHASE_LONG, PHASE_SETUPS };
 extern const char *const phase_setups[PHASE_SETUPS]; /* their scenes */
 
-/* LBF21's figures of it, in published.csv by `table` and `target`. */
+/* LBF21's printed phase errors, in published.csv by `table` and `target`. */
 struct phase_figure {
     const char *table, *target;
     enum phase_setup setup;
-    bool last;                    /* receiver; else the first */
+    bool last;                    /* the last receiver; else the first */
     double least_m, most_m;       /* ranges */
-    const char *formula, *method; /* whose largest error the study prints it beside; NULL: of none */
-    bool bound;                   /* the paper says only that the error is below it */
+    const char *formula, *method; /* the study prints this formula's largest error beside it; NULL: none */
+    bool bound;                   /* the paper gives only an upper bound */
 };
 extern const struct phase_figure phase_figures[]; /* table NULL ends */
 
-/* LBF21's two set-ups: CSV files and pictures in the folder, the largest errors on standard output beside those that
-   the paper prints. The caller has made the folder; `taken`: and holds it (folder.h). Errors: STATUS_INVALID for files
-   that cannot be read or written. */
+/* LBF21's two set-ups: CSV files and pictures in the folder; on standard output, the largest errors beside those
+   that the paper prints. The folder exists; `taken`: the caller has locked it, too (folder.h). Errors:
+   STATUS_INVALID for files that cannot be read or written. */
 enum status phase_study(const char *directory, bool taken);
 /* The same for the array of one scene, by name or path; the folder is made. */
 enum status phase_scene_study(const char *scene, const char *directory, bool taken);
 
-/* The CSV file alone, of a scene that was loaded. Errors: as above; STATUS_UNSUPPORTED for a track that is not
-   straight. */
+/* The CSV file alone, of a loaded scene. Errors: as above; STATUS_UNSUPPORTED for a track that is not straight. */
 enum status phase_curves_write(const struct scene *scene, const char *directory);
 /* "DIR/phase-SCENE" and what follows it: the study's files. */
 void phase_path(const char *directory, const char *scene, const char *rest, char *path, size_t size);

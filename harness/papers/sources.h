@@ -1,20 +1,20 @@
-/* Which measurement stands for a printed number: methods of the papers, ways to measure them, and places of targets. */
+/* Which measurement corresponds to a printed number: the papers' methods, ways to measure them, and targets. */
 #ifndef SASBENCH_PAPERS_SOURCES_H
 #define SASBENCH_PAPERS_SOURCES_H
 
 #include "papers/measured.h"
 
-/* LBF21's method in two schemes, each of which has a verdict of its own: as the paper prints it (theta at the carrier,
-   sub-blocks of equal width, cut out and put together with hard edges: section IV-C), and corrected (theta at F, blocks
-   evenly spaced in 1/r that blend). The paper's other methods have no sub-blocks and are the same in both. */
+/* LBF21's method in two schemes, each with its own verdict: as the paper prints it (theta at the carrier, sub-blocks
+   of equal width with hard edges: section IV-C), and corrected (theta at F, blocks evenly spaced in 1/r that blend).
+   The paper's other methods have no sub-blocks and are the same in both. */
 enum scheme { SCHEME_PRINTED, SCHEME_CORRECTED, SCHEMES };
 /* "as printed", "corrected". */
 extern const char *const scheme_names[SCHEMES];
-/* The SPEC that `text` means: "LBF:OPTIONS" is rma_lbf with the scheme's options and these; any other text is itself.
+/* The SPEC of `text`: "LBF:OPTIONS" is rma_lbf with the scheme's options and these; any other text is itself.
    Returns whether the text depends on the scheme. */
 bool scheme_spec(enum scheme scheme, const char *text, char *spec, size_t size);
-/* The formula of the phase study that `name` means: LBF is Eq. (5), LBF7 is Eq. (7), both with theta at the carrier
-   in the one scheme, and Eq. (5) with theta at F in the other. Returns whether the name depends on the scheme. */
+/* The formula of the phase study for `name`: LBF is Eq. (5), LBF7 is Eq. (7). Both have theta at the carrier as
+   printed; corrected, both are Eq. (5) with theta at F. Returns whether the name depends on the scheme. */
 bool scheme_formula(enum scheme scheme, const char *name, const char **formula);
 
 /* Engines and settings that stand for the papers' methods; LBF by the scheme that is evaluated. PCA's
@@ -31,12 +31,12 @@ bool scheme_formula(enum scheme scheme, const char *name, const char **formula);
 #define PCA_16    "rma_pca:blocks=16"
 #define WU_16     "rma_wu:blocks=16"
 #define TURNED    "wk_squint"
-#define IDEAL     "wk_classic" /* of echoes from inside the target area alone */
+#define IDEAL     "wk_classic" /* for echoes from inside the target area alone */
 #define POLAR_4   "wk_polar:subapertures=4"
 #define POLAR_2   "wk_polar:subapertures=2"
 
-/* Plain engines, which are what the papers compare: every delay evaluated; every cell's phase by libm and each
-   receiver summed by itself. */
+/* Plain engines, as the papers compare them: every delay evaluated, every cell's phase by libm, each receiver summed
+   by itself. */
 #define PLAIN_BP  "engine=general,exact=true"
 #define PLAIN_RMA "sum=after,phases=libm"
 
@@ -47,17 +47,16 @@ bool scheme_formula(enum scheme scheme, const char *name, const char **formula);
 #define FAST_SINC    "fast engines, BP by sinc"
 #define FAST_LIMITED "fast engines, aperture limited"
 
-/* One measurement that a table rests on. `spec` may name LBF. */
+/* One measurement that a table needs. `spec` may name LBF. */
 struct need {
     const char *scene, *spec;
 };
-/* Add one to needs [count of room] unless it is there; returns how many there are then. What finds no room is left
-   out. */
+/* Add one to needs [count of room] unless it is there; returns their new number. Without room, it is left out. */
 int need_add(struct need *needs, int count, int room, struct need need);
 /* Add the needs of the table `id`. */
 int table_needs(const char *id, struct need *needs, int count, int room);
 
-/* Each stage of a part is scaled to the whole. */
+/* Scales each stage of a part to the whole. */
 struct scaling {
     double factor; /* of the stages in `stages` (separated by blanks) */
     const char *stages;
@@ -72,27 +71,28 @@ struct source {
     char spec[200];                /* a SPEC: LBF is replaced by the scheme's */
     const struct scaling *scaling; /* of a time; NULL: the whole was timed */
     enum scheme scheme;
-    bool by_scheme; /* else it is the same for both */
-    bool planned;   /* the number comes from the plan; nothing has to be measured */
+    bool by_scheme; /* depends on the scheme; else it is the same for both */
+    bool planned;   /* the number comes from the plan, without a measurement */
 };
 /* The source k; false behind the last. */
 bool source_at(int k, struct source *source);
-/* The scene whose target, *index from 0, stands for a printed one; NULL if there is none. */
+/* The scene whose target, *index from 0, corresponds to a printed one; NULL if there is none. */
 const char *source_place(const char *table, const char *target, int *index);
 
 /* Seconds of a method of a table of times by one of its definitions ("fast engines"), scaled to the full size where
-   only a part of it was timed. Back projection by sinc is a definition of its own, the same as the others for all other
+   only a part was timed. Back projection by sinc is a definition of its own, equal to the others for all other
    methods. */
 double table_seconds(struct measured *measured, enum scheme scheme, const char *id, const char *method,
                      const char *definition);
-/* How far apart two times of a table may lie by chance, relative: the largest of a tenth, of the runs of one method,
-   of the scalar reference loop, which was timed beside each of a scene's methods, and of what others did on the
-   machine. */
+/* How far apart two times of a table may lie by chance, relative: the largest of a tenth, the scatter of one
+   method's runs, that of the scalar reference loop beside the methods of one scene, and the share of other work on
+   the machine. */
 double table_noise(const struct measured *measured, const char *id, const char *definition);
 
-/* Is there such a time? -1, or which of the three texts (from 0) is unknown; `accepted` then lists those that are. */
+/* Is there such a time? -1, or which of the three texts (from 0) does not exist; `accepted` then lists those that
+   do. */
 int table_seconds_check(const char *id, const char *method, const char *definition, char *accepted, size_t size);
-/* The measurement that stands for such a time; false if there is none. */
+/* The measurement behind such a time; false if there is none. */
 bool table_time_source(enum scheme scheme, const char *id, const char *method, const char *definition,
                        struct source *source);
 

@@ -10,13 +10,12 @@ int upsampling_rate(double bin_m, double resolution_m, double wavelength_m);
 /* One line of reproduced.csv. Texts are borrowed. */
 struct reproduced {
     const char *table, *target, *method, *quantity, *definition, *unit;
-    double paper, ours;            /* NAN: not printed, not measured */
+    double paper, ours;            /* NAN: not printed, or not measured */
     const char *assumption, *note; /* of the table; of the printed number */
-    char missing[400];             /* why `ours` is not there */
+    char missing[400];             /* why `ours` is missing */
 };
-/* All lines, malloc'ed, [*count], for the caller to free; those of a table that takes its numbers from plans, which
-   may be large, only where it is `asked` for ([place in paper_tables]; NULL: all). Errors: STATUS_FAILED without
-   memory. */
+/* All lines, malloc'ed, [*count], for the caller to free. Tables whose numbers come from plans, which may be large,
+   are evaluated only where `asked` ([place in paper_tables]; NULL: all). Errors: STATUS_FAILED without memory. */
 enum status tables_evaluate(struct measured *measured, const bool *asked, struct reproduced **lines, int *count);
 
 /* Is it a figure of the phase study? */

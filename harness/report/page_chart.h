@@ -1,4 +1,4 @@
-/* Error against run time on a page: SVG of our own, whose points have names and can be reached by key. */
+/* Error against run time on a page: our own SVG, whose points have names and can be reached by keyboard. */
 #ifndef SASBENCH_REPORT_PAGE_CHART_H
 #define SASBENCH_REPORT_PAGE_CHART_H
 
@@ -13,18 +13,18 @@ struct family {
     int point;                /* as gnuplot numbers them, filled */
 };
 struct families {
-    struct family list[FAMILIES_MOST]; /* [count] at least one: the last is that of all others */
+    struct family list[FAMILIES_MOST]; /* [count] at least one: the last is for all other algorithms */
     int count;
 };
 /* Without a readable table all algorithms look alike. */
 void families_read(const char *plots_directory, struct families *families);
 const struct family *family_of(const struct families *families, const char *algorithm);
 
-/* One scene's points; those of the front can be focused, and say how they are measured again. Errors: STATUS_FAILED
-   without memory. */
+/* One scene's points. Those of the front can be focused and show the command that measures them again. Errors:
+   STATUS_FAILED without memory. */
 enum status page_chart(struct page *page, const struct families *families, const struct points *points);
-/* All scenes as small panels with the same axes, each a link to #scene-1, #scene-2 ..., and what the points stand for.
-   Scenes without points have none. */
+/* All scenes as small panels with the same axes, each a link to #scene-1, #scene-2 ..., and a legend of the points.
+   Scenes without points have no panel. */
 void page_overview(struct page *page, const struct families *families, const struct points *scenes, int count);
 /* The command that measures a row again. */
 void measured_again(const struct measurement *row, char *text, size_t size);

@@ -1,5 +1,5 @@
-/* What BP22, ZP15, LBF21, SQ18 and PF05 print: the list of their tables and figures, and their numbers, which stand in
-   results/published.csv and nowhere else. */
+/* The printed results of BP22, ZP15, LBF21, SQ18 and PF05: the list of their tables and figures, and their numbers,
+   which are in results/published.csv alone. */
 #ifndef SASBENCH_REPORT_PUBLISHED_H
 #define SASBENCH_REPORT_PUBLISHED_H
 
@@ -20,16 +20,16 @@ enum published_column {
 /* Errors: those of csv_read; STATUS_INVALID naming a column that is not in its place. */
 enum status published_read(struct csv *csv);
 
-/* The numbers of one method and quantity, in the file's order, into values [room]; returns how many there are.
-   `targets` is a target, or FIRST..LAST for the rows from the first of the one to the last of the other. Empty cells
-   are left out. */
+/* The numbers of one method and quantity, in the file's order, into values [room]; returns their number. `targets`
+   is a target, or FIRST..LAST for the rows from the first target's first to the last target's last. Empty cells are
+   left out. */
 int published_values(const struct csv *csv, const char *table, const char *targets, const char *method,
                      const char *quantity, double *values, int room);
 
 /* One of the papers' tables or figures, or the claims; `id` is its name on the command line. */
 struct paper_table {
     const char *id, *title;
-    const char *assumption; /* what had to be assumed */
+    const char *assumption; /* what we had to assume */
     const char *base;       /* the method that times are divided by; NULL: no times */
 };
 extern const struct paper_table paper_tables[]; /* id NULL ends */

@@ -4,11 +4,11 @@
 
 #include "contract/status.h"
 
-/* Write, into a folder that is taken (folder.h), DIR/report.html, self-contained: three sentences, all scenes side by
-   side, the fronts, the fastest settings, warnings; then the tables, folded, pictures, and the machine, as far as the
+/* Write DIR/report.html, self-contained, into a locked folder (folder.h): three sentences, all scenes side by side,
+   the fronts, the fastest settings, warnings; then the tables, folded, pictures, and the machine, as far as the
    folder has them. Images are thumbnails that link to the files beside it; the page stays below REPORT_HTML_BYTES:
-   pictures beyond are counted and left out. Errors: STATUS_INVALID for a folder without a measurements.csv of ours,
-   with a file that is not as results/README.md says, or that cannot be written; an older page is then left as it is. */
+   further pictures are counted and left out. Errors: STATUS_INVALID for a folder without a measurements.csv of ours,
+   with a file that is not as in results/README.md, or that cannot be written; an older page is then left as it is. */
 enum status report_write(const char *directory);
 
 enum { REPORT_HTML_BYTES = 3 << 20 };

@@ -1,4 +1,4 @@
-/* What is measured: rows of numbers, and the metrics among them. */
+/* Rows of measurements.csv and targets.csv, and the metrics among their columns. */
 #ifndef SASBENCH_RESULTS_MEASUREMENT_H
 #define SASBENCH_RESULTS_MEASUREMENT_H
 
@@ -31,52 +31,52 @@ struct target_row {
     double extent_m, position_error_m, phase_error_rad, width_m, pslr_db, islr_db;
 };
 
-/* The one table of metrics: header, writer and reader of the CSV, the empty row, what the regression gate compares,
-   what a claim may ask for, and what terminal and report show come from it. These two add what follows from several
-   columns (speed-up, rate). */
+/* The one table of metrics. It defines header, writer and reader of the CSV, the empty row, what the regression gate
+   compares, what a claim may name, and what terminal and report show. The latter two add values from several columns
+   (speed-up, rate). */
 struct column {
     const char *name; /* NULL ends the table */
     enum { COLUMN_TEXT, COLUMN_INTEGER, COLUMN_REAL } type;
     size_t offset; /* of the field in struct measurement or target_row */
     /* Of a metric, a real number that is compared: */
     const char *unit;                                                       /* NULL: no metric */
-    enum { BETTER_NONE, BETTER_LOWER, BETTER_HIGHER, BETTER_SMALL } better; /* small: of magnitude */
+    enum { BETTER_NONE, BETTER_LOWER, BETTER_HIGHER, BETTER_SMALL } better; /* small: of small magnitude */
     enum metric_class { CLASS_QUALITY, CLASS_WORK, CLASS_TIME } class;
     double absolute_slack[2]; /* by enum precision; a change within either slack is none */
     double relative_slack;
-    /* Of a metric that tables show: */
+    /* Of a metric in tables: */
     struct {
-        const char *title, *unit; /* title NULL: none shows it */
-        double scale;             /* to that unit */
+        const char *title, *unit; /* title NULL: not shown */
+        double scale;             /* factor to that unit */
         const char *format;       /* NULL: three digits */
         const char *brief;        /* its title on the terminal; NULL: only the report shows it */
         bool wide;                /* on a wide terminal only */
-        enum { SHOWN_OF_ALL, SHOWN_OF_TARGETS, SHOWN_WITHOUT_TARGETS } of; /* the last two stand in one place */
+        enum { SHOWN_OF_ALL, SHOWN_OF_TARGETS, SHOWN_WITHOUT_TARGETS } of; /* the last two share one place */
     } shown;
 };
 extern const struct column measurement_columns[], target_columns[];
 
-/* The first metric from a column on; NULL where there is none. */
+/* The first metric from a column on; NULL without one. */
 const struct column *metric_first(const struct column *columns);
-/* Is it shown of scenes with point targets, or of those without? */
+/* Is it shown for scenes with point targets, or for those without? */
 bool column_is_shown(const struct column *column, bool targets);
-/* The field of a row becomes what is written as an empty one. */
+/* Set the field of a row to the value that is written as an empty one. */
 void column_clear(const struct column *column, void *row);
 
 /* A row before anything is measured: numbers undefined, status ok. Texts are borrowed. */
 struct measurement measurement_empty(const char *scene, const char *algorithm, const char *options,
                                      enum precision precision);
 
-/* Whether a row has an error up to error_most and costs less (the double at the offset `cost`; of equal ones the
-   faster) than the cheapest so far, which may be NULL: what a sweep's tables and a report's summary call cheapest. A
-   row whose time is stated and was not measured is none. */
+/* Is this row cheaper than the cheapest so far, `best`, which may be NULL? It needs an error up to error_most and a
+   lower cost (the double at the offset `cost`; the faster of equal ones). Rows with stated, unmeasured times do not
+   count. A sweep's tables and a report's summary use it. */
 bool measurement_is_cheaper(const struct measurement *row, const struct measurement *best, size_t cost,
                             double error_most);
 
-/* s that one stage of it took; NAN where it has no such stage. */
+/* s of one of its stages; NAN without that stage. */
 double measurement_stage(const struct measurement *row, const char *stage);
 
-/* s: the quartiles of the runs, or both the median where there are none. */
+/* s: the quartiles of the runs; without quartiles both are the median. */
 void measurement_interval(const struct measurement *row, double *low, double *high);
 
 #endif

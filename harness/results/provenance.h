@@ -2,13 +2,13 @@
 #ifndef SASBENCH_RESULTS_PROVENANCE_H
 #define SASBENCH_RESULTS_PROVENANCE_H
 
-/* What makes rows comparable: written as `# key: value` lines ahead of the rows. */
+/* Rows are comparable where these agree: written as `# key: value` lines ahead of the rows. */
 struct provenance {
     char machine[128], isa[16], compiler[160], flags[256], libraries[160], commit[80], program[32], date[32];
     int threads;
 };
 void provenance_fill(struct provenance *provenance, int threads);
-/* What stands below a picture that is drawn now: "sasbench COMMIT, DATE". */
+/* The line below a new picture: "sasbench COMMIT, DATE". */
 enum { PROVENANCE_LINE = 160 };
 void provenance_line(char text[PROVENANCE_LINE]);
 

@@ -8,7 +8,7 @@
 #include "files/csv.h"
 #include "results/measurement.h"
 
-/* Scene content that rows were measured on. */
+/* Hash of the scene content that rows were measured on. */
 struct scene_hash {
     char *scene;
     uint64_t hash;
@@ -18,15 +18,15 @@ struct scene_hash {
    zeroed struct. Texts of the rows belong to the csv. */
 struct results {
     struct csv csv;
-    bool targets;                     /* which of the two it is */
+    bool targets;                     /* targets.csv, not measurements.csv */
     struct measurement *measurements; /* [csv.row_count], or NULL */
     struct target_row *target_rows;   /* [csv.row_count], or NULL */
 };
-/* Errors: STATUS_INVALID naming file, line, column and value: not a file of ours or of another version, other columns,
-   a number that is none or not finite, a time that is not above 0, a status that is none. */
+/* Errors: STATUS_INVALID naming file, line, column and value: not our file or another version of it, other columns,
+   no number or one that is not finite, a time that is not above 0, a status that does not exist. */
 enum status results_read(const char *path, struct results *results);
 void results_free(struct results *results);
-/* A whole measurements file without provenance, the same on every machine. `note` is one line that says what it is and
+/* A whole measurements file without provenance, the same on every machine. `note` is one line: what the file is and
    how it is made. Errors: STATUS_INVALID when it cannot be written; an older file is then left as it is. */
 enum status measurements_write(const char *path, const char *note, const struct scene_hash *scenes, int scene_count,
                                const struct measurement *rows, int row_count);

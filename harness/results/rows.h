@@ -1,4 +1,4 @@
-/* Rows on disk: the header of both files, and how one row is written and read. Used within measure/ only. */
+/* Rows on disk: the header of both files, and how one row is written and read. Used within results/ only. */
 #ifndef SASBENCH_RESULTS_ROWS_H
 #define SASBENCH_RESULTS_ROWS_H
 
@@ -7,14 +7,14 @@
 #include "results/provenance.h"
 #include "results/results.h"
 
-/* The columns of both kinds begin with the columns that tell one measurement from another. */
+/* Both kinds begin with these columns, which identify a measurement. */
 #define KEY_COLUMNS 4
 
 enum { KIND_MEASUREMENTS, KIND_TARGETS, KINDS };
 
 /* One of the two files. */
 struct row_kind {
-    const char *file, *format; /* the first line of a file of ours */
+    const char *file, *format; /* `format`: the first line of our files */
     const struct column *columns;
 };
 extern const struct row_kind row_kinds[KINDS];
@@ -33,7 +33,7 @@ enum status header_check(const struct csv *csv, const struct row_kind *kind);
    column and value. */
 enum status row_parse(const struct csv *csv, int row, const struct row_kind *kind, void *out);
 
-/* Why rows of a file are not gone on with by a program of this provenance; empty when they are. */
+/* Why a program of this provenance cannot continue a file's rows; empty when it can. */
 void provenance_differs(const struct csv *csv, const struct provenance *provenance, char *text, size_t size);
 
 #endif

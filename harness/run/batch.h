@@ -1,4 +1,4 @@
-/* Scenes measured with algorithms into a results folder: what run, sweep and reproduce have in common. */
+/* Scenes measured with algorithms into a results folder: the common part of run, sweep and reproduce. */
 #ifndef SASBENCH_RUN_BATCH_H
 #define SASBENCH_RUN_BATCH_H
 
@@ -10,13 +10,13 @@
 
 struct batch {
     const char *directory;        /* borrowed */
-    char footer[PROVENANCE_LINE]; /* of its pictures */
+    char footer[PROVENANCE_LINE]; /* below its pictures */
     struct results_folder *results;
     int threads;
-    bool details;       /* of every scene: draw images and slices */
-    bool works;         /* of every scene: print FLOPs by formula */
+    bool details;       /* for every scene: draw images and slices */
+    bool works;         /* for every scene: print FLOPs by formula */
     enum effort effort; /* of times; EFFORT_WHOLE from batch_open on */
-    bool in_turn;       /* time settings by rounds, so that a bad minute is not one setting's alone */
+    bool in_turn;       /* time settings by rounds, so that a disturbed minute does not hit one setting alone */
     bool failed;        /* a measurement failed */
     int undrawn;        /* pictures that could not be drawn */
     /* For the progress line: */
@@ -26,22 +26,22 @@ struct batch {
     double drawn_s;
 };
 
-enum { ROWS_MANY = 100 }; /* more than that are timed briefly by `run`, and a scene takes one line of the terminal */
+enum { ROWS_MANY = 100 }; /* `run` times more rows than these briefly, and shows a scene in one line */
 
 /* Open the folder (results_folder_open: finished rows of an earlier run are kept) and begin the terminal's table.
-   rows: how many measurements will be asked for. Errors: as results_folder_open; *batch is then safe to close. */
+   rows: the number of measurements to come. Errors: as results_folder_open; *batch is then safe to close. */
 enum status batch_open(const char *directory, int rows, bool details, struct batch *batch);
 
-/* Measure one scene with every spec: echoes and exact image once, then a row in the CSVs and on the terminal for each
-   spec as it is done. Rows that are there already are only printed, unless a picture of the scene is missing, which an
-   earlier run was cut ahead of: then its pictures are drawn. What fails or is unsupported becomes a row, and so does a
-   scene whose echoes cannot be made; errors: STATUS_FAILED for a record that cannot be written. */
+/* Measure one scene with every spec: echoes and exact image once, then for each spec a row in the CSVs and on the
+   terminal as soon as it is done. Existing rows are only printed; if an interrupted run left a picture of the scene
+   out, its pictures are drawn. A failure or a refusal becomes a row, and so does a scene whose echoes cannot be
+   made. Errors: STATUS_FAILED for a record that cannot be written. */
 enum status batch_scene(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs);
 
 /* The finished row, or NULL; belongs to the record, valid until batch_close. */
 const struct measurement *batch_find(const struct batch *batch, const struct scene *scene, const struct spec *spec);
 
-/* Show which row is next. */
+/* Show which row comes next. */
 void batch_progress(const struct batch *batch, const char *scene, const char *what);
 
 /* Close the folder. Returns `status`, or STATUS_FAILED when that is OK but a measurement failed or a picture could not

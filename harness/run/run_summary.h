@@ -1,4 +1,4 @@
-/* What a run found, in half a terminal. */
+/* The results of a run, in half a terminal. */
 #ifndef SASBENCH_RUN_RUN_SUMMARY_H
 #define SASBENCH_RUN_RUN_SUMMARY_H
 
@@ -8,8 +8,8 @@
 #include "imaging/spec.h"
 #include "scene/scene.h"
 
-/* For four errors the fastest algorithm on each scene, a line a scene; what was refused; what the choices of `auto`
-   took; where the time was `spent`, and how noisy times are. Of the rows of these scenes and SPECs. */
+/* For four errors, the fastest algorithm on each scene, one line a scene; then the refusals, the time of `auto`'s
+   choices, where the time was `spent`, and how noisy times are. Only rows of these scenes and SPECs count. */
 void run_summary_print(FILE *stream, const struct results *results, int scene_count, const struct scene *scenes,
                        int spec_count, const struct spec *specs, const char *spent);
 

@@ -1,4 +1,5 @@
-/* One scene of a batch while its algorithms are measured and drawn; what crashes is not begun again (supervisor.h). */
+/* One scene of a batch while its algorithms are measured and drawn; a crashed task is not begun again
+   (supervisor.h). */
 #ifndef SASBENCH_RUN_VISIT_H
 #define SASBENCH_RUN_VISIT_H
 
@@ -20,18 +21,18 @@ enum status visit_open(struct batch *batch, const struct scene *scene, int spec_
                        struct visit *visit);
 void visit_close(struct visit *visit);
 
-/* Measure one algorithm, record and draw it. Only a fault of the record itself is an error: what fails or is
-   unsupported becomes a row. */
+/* Measure one algorithm, record and draw it. Only a fault of the record itself is an error: a failure or a refusal
+   becomes a row. */
 enum status visit_measure(struct batch *batch, struct visit *visit, int index);
-/* All rounds but the last, which visit_measure adds, of the settings from `first` on that are to be measured. */
+/* All rounds but the last, of the settings from `first` on that are to be measured; visit_measure adds the last. */
 void visit_turns(struct batch *batch, struct visit *visit, int first);
-/* A row that an earlier run finished is not timed again; its image is, for the overlaid slices. What cannot be drawn
-   now is reported and stops nothing. */
+/* Draw a row that an earlier run finished. It is not timed again; its image is formed for the overlaid slices.
+   Pictures that cannot be drawn are reported and stop nothing. */
 void visit_redraw(struct visit *visit, int index, const struct measurement *row);
-/* Whether an image or the slices of finished rows are still to be drawn. */
+/* Is an image, or are the slices, of finished rows still to be drawn? */
 bool visit_pictures_missing(const struct batch *batch, const struct scene *scene, int spec_count,
                             const struct spec *specs);
-/* A row of what was not measured. */
+/* The row of a failed measurement. */
 struct measurement visit_failed_row(const struct batch *batch, const struct scene *scene, const struct spec *spec,
                                     const char *reason);
 

@@ -1,4 +1,4 @@
-/* What a key is, and the types that it may have. Used within scene/ only. */
+/* The struct of a key, and its possible types. Used within scene/ only. */
 #ifndef SASBENCH_SCENE_KEY_TYPES_H
 #define SASBENCH_SCENE_KEY_TYPES_H
 
@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#define REQUIRED NAN          /* as a default: there is none */
+#define REQUIRED NAN          /* as a default: none, the key is required */
 #define ABOVE_0  DBL_TRUE_MIN /* as a lower bound: > 0 */
 
 struct key {
@@ -19,7 +19,7 @@ struct key {
     const char *const *choices; /* NULL-terminated, else NULL */
 };
 
-/* read: a setting into its field, or the default when the setting is NULL; false when it is not acceptable. */
+/* read: store a setting in its field, or the default when the setting is NULL; false when the setting is refused. */
 struct type {
     const char *accepts;
     bool (*read)(const struct key *key, config_setting_t *setting, void *field);

@@ -8,11 +8,11 @@
 #include "scene/text.h"
 
 #define SCATTERERS_MAX 10000000 /* of all fields */
-/* What is accepted of a key that an echo file stands for. */
+/* The accepted value of a key whose value comes from the echo file. */
 #define LEFT_OUT   "left out with `echoes`, whose file says it"
 #define HASH_BEGIN 14695981039346656037u /* FNV-1a */
 
-/* Groups are kept as libconfig settings until they are read in turn; NULL when the file leaves them out. */
+/* Groups stay libconfig settings until they are read in turn; NULL when the file leaves them out. */
 struct reading {
     const char *path; /* of the scene file */
     struct scene_text text;
@@ -25,7 +25,7 @@ struct reading {
     struct pose *poses; /* [pings] malloc'ed; NULL until they are made */
     config_setting_t *base, *sonar, *pulse, *array, *track, *record, *beam, *area, *targets, *noise, *image;
     double first_offset_m, pitch_m;
-    double speed_m_s, spacing_m, x_first_m; /* spacing 0: that of speed and pri */
+    double speed_m_s, spacing_m, x_first_m; /* spacing 0: follows from speed and pri */
     double squint_deg, angle_deg;           /* of the beam; of the image's axes */
     double x_offset_m;                      /* added to every x of transmitters, targets and pixels */
     int first_sample;
@@ -34,7 +34,7 @@ struct reading {
     config_setting_t *x, *r, *reference, *around_targets, *patches;
 };
 
-/* Where the platform is at a ping. */
+/* The platform's position at a ping. */
 struct pose {
     struct vector tx, velocity; /* m, m/s */
     double yaw;                 /* rad, of the receivers about the transmitter, towards +r */
@@ -68,24 +68,24 @@ struct around_keys {
 /* Read every key of `group` ("targets.points") from its setting (NULL: all defaults) into that group's struct, and
    add the values to the scene's hash. Errors: STATUS_INVALID. */
 enum status group_read(struct reading *reading, config_setting_t *setting, const char *group, void *out);
-/* The same for the file itself and all groups that it has once. */
+/* The same for the file's own keys and all groups that occur once. */
 enum status groups_read(struct reading *reading, config_setting_t *root);
 
-/* A setting of a group, or of the nearest scene that the group's `base` holds; NULL if there is none. */
+/* A setting of a group, or of the nearest scene of the group's `base` chain; NULL if there is none. */
 config_setting_t *key_member(const config_setting_t *group, const char *name);
 
 /* Add bytes to a scene's hash. */
 void hash_add(uint64_t *hash, const void *bytes, size_t count);
 
-/* What the keys say about each other. Errors: STATUS_INVALID. */
+/* Check the keys against each other. Errors: STATUS_INVALID. */
 enum status keys_check(const struct reading *reading);
 
-/* The one error of a key: "FILE:LINE: key 'sonar.fs' is -3, must be ..."; `format` says what is accepted. `name` NULL
+/* The one error of a key: "FILE:LINE: key 'sonar.fs' is -3, must be ..."; `format` is what is accepted. `name` NULL
    means the group itself; `group_name` is used where the group is missing. Returns STATUS_INVALID. */
 enum status refuse(const struct reading *reading, const config_setting_t *group, const char *group_name,
                    const char *name, const char *format, ...) __attribute__((format(printf, 5, 6)));
 
-/* The file that a line of the scene's text is from. */
+/* The file of a line of the scene's text. */
 const char *line_path(const struct reading *reading, unsigned line);
 /* "FILE:LINE" of a line of the scene's text as libconfig counts them; 0: "FILE", the scene's. */
 void place_format(const struct reading *reading, unsigned line, char *text, size_t size);

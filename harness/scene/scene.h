@@ -7,15 +7,15 @@
 
 #include "contract/algorithm.h"
 
-#define COORDINATE_MAX_M 1e12 /* bound of every coordinate that is read, so that no square overflows */
+#define COORDINATE_MAX_M 1e12 /* bound of every coordinate read, so that no square overflows */
 
 enum pulse_kind { PULSE_LFM, PULSE_LFM_TIME, PULSE_FLAT };
 enum beam_kind { BEAM_RECT, BEAM_TXRX };
 enum truncation_kind { TRUNCATION_NONE, TRUNCATION_TX, TRUNCATION_MID, TRUNCATION_DOPPLER, TRUNCATION_SINE };
 
-/* Where a beam points is part of the acquisition (echo_squint): all its angles count from there.
-   Amplitude of the echo of one pair (element beams sinc(D sin(theta)/lambda) or rect, and their truncation).
-   theta_t is measured at emission, theta_r at reception. A property of the echoes: it never limits imaging. */
+/* The beam's direction is part of the acquisition (echo_squint): all angles here count from it. Amplitude of the
+   echo of one pair (element beams sinc(D sin(theta)/lambda) or rect, and their truncation). theta_t is measured at
+   emission, theta_r at reception. A property of the echoes: it never limits imaging. */
 struct beam {
     enum beam_kind kind; /* rect: 1; txrx: sinc(D_tx sin theta_t F/c) sinc(D_rx sin theta_r F/c) */
     enum truncation_kind truncation;
@@ -30,17 +30,16 @@ struct scene {
     char *path;        /* of the file, absolute and without links */
     bool shipped;      /* it lies below scenes/ */
     char *description; /* one line, from the file */
-    uint64_t hash;     /* FNV-1a of the content after @include: the same text measures the same thing */
+    uint64_t hash;     /* FNV-1a of the content after @include: scenes of the same text have the same hash */
     struct acquisition acquisition;
-    struct acquisition
-        *flown; /* where the platform truly was; NULL: where `acquisition`, which the imager knows, says */
-    double complex *recorded;   /* [pings][receivers][samples] of an echo file; NULL: pulse, beam, targets and noise say
-                                   what is simulated */
-    char *recording;            /* the echo file, where the samples are left in it; NULL: they are not */
+    struct acquisition *flown; /* the platform's true motion; NULL: that of `acquisition`, which the imager uses */
+    double complex
+        *recorded; /* [pings][receivers][samples] of an echo file; NULL: simulate from pulse, beam, targets and noise */
+    char *recording;            /* the echo file, if its samples stay in it; else NULL */
     enum pulse_kind pulse_kind; /* flat: the echoes are compressed */
     double pulse_duration;      /* s; lfm and lfm_time */
     struct beam beam;
-    int point_count;        /* the first targets are points, the ones that metrics measure */
+    int point_count;        /* the first targets are points: metrics measure these */
     int target_count;       /* points, then all scatterers of the fields, drawn from their seeds */
     struct target *targets; /* [target_count] */
     double noise_std;       /* standard deviation of the complex noise of each sample; 0 = none */
@@ -49,7 +48,7 @@ struct scene {
     struct grid *patches; /* [patch_count] the image */
     bool full_size;       /* left out of the default `run` */
     /* Where `reference` is computed when that is not the whole image: sub-grids of patches[0] around each point
-       target. reference_count == 0: reference_patches is NULL and the patches themselves are meant. */
+       target. reference_count == 0: reference_patches is NULL and the patches themselves are used. */
     int reference_count;
     struct grid *reference_patches;
 };
@@ -57,26 +56,26 @@ struct scene {
 /* SCENE is a path to a .cfg file, or a name below `scene_directory` without its extension.
    Errors: STATUS_INVALID, the message naming file, line, key, value and what is accepted. */
 enum status scene_load(const char *scene, const char *scene_directory, struct scene *out);
-/* The scene of an echo file alone, without targets, called by the file's name; its image is `grid`, which `place` names
+/* The scene of an echo file alone, without targets, named after the file; its image is `grid`, which `place` names
    in messages. Errors: as echo_file_read, and STATUS_INVALID where no pixel meets any record; nothing to free then. */
 enum status scene_from_echoes(const char *path, const struct grid *grid, const char *place, struct scene *out);
-/* The same, with the samples left in the file: to be read ping by ping. Its hash has the file's size and time in their
+/* The same, with the samples left in the file and read ping by ping. Its hash has the file's size and time in their
    place. */
 enum status scene_from_recording(const char *path, const struct grid *grid, const char *place, struct scene *out);
 void scene_free(struct scene *scene);
-/* The whole image from the scene's echoes. Points are known to be all targets where nothing else is heard: no field, no
-   noise, no track but the stated one. Borrows from the scene. */
+/* The whole image from the scene's echoes. The point targets count as all targets where the echoes have no field, no
+   noise and no motion beside the stated track. Borrows from the scene. */
 struct problem scene_problem(const struct scene *scene, enum precision precision);
-/* Two files of one name, not both shipped, get as much of their folders in their names as tells them apart. Errors:
-   STATUS_FAILED without memory. */
+/* Where two files share a name and not both are shipped, lengthen their names by the folders that distinguish them.
+   Errors: STATUS_FAILED without memory. */
 enum status scenes_tell_apart(struct scene *a, struct scene *b);
 
-/* Fill `list` with the conditions of the scene by itself, conditions_scene, what its recorded samples say and what its
-   motion does that the imager is not told of, and return the number. All of them warn. */
+/* Fill `list` with conditions_scene, the conditions of recorded samples and those of motion errors without the
+   imager's knowledge, and return their number. All of them warn. */
 enum { SCENE_CONDITIONS = CONDITIONS_SCENE + 3 };
 int scene_conditions(const struct scene *scene, struct condition list[SCENE_CONDITIONS]);
 
-/* The folder below the scenes that `stability` alone goes through: some of its scenes must be refused. */
+/* The folder below the scenes that `stability` alone uses: some of its scenes must be refused. */
 #define SCENES_EXTREME "extreme"
 
 /* Names of all scenes below `scene_directory` (recursive, sorted, without extension; files whose name begins with '_'
@@ -85,8 +84,8 @@ int scene_conditions(const struct scene *scene, struct condition list[SCENE_COND
 enum status scene_names(const char *scene_directory, char ***names, int *count);
 void scene_names_free(char **names, int count);
 
-/* GRID as on the command line, "xmin:xstep:xcount,rmin:rstep:rcount" in metres, with ",angle" in degrees where the axes
-   are turned as by a scene's image.angle. Errors: STATUS_INVALID. */
+/* GRID as on the command line, "xmin:xstep:xcount,rmin:rstep:rcount" in metres, with ",angle" in degrees for axes
+   turned as by a scene's image.angle. Errors: STATUS_INVALID. */
 enum status grid_parse(const char *text, struct grid *grid);
 /* Positive finite steps, counts >= 1, count products that fit; `place` begins the message. Errors: STATUS_INVALID. */
 enum status grid_check(const struct grid *grid, const char *place);

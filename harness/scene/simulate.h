@@ -11,7 +11,7 @@
    STATUS_INVALID for numbers so extreme that an echo is not finite; nothing to free then. */
 enum status scene_simulate(const struct scene *scene, struct echoes *echoes);
 
-/* The scene's echoes, whether they are recorded (then a copy) or simulated as above. Same errors. */
+/* The scene's echoes: a copy of recorded ones, or simulated as above. Same errors. */
 enum status scene_echoes(const struct scene *scene, struct echoes *echoes);
 
 /* The replica of an LFM pulse: exp(j pi (B/T)(t - T/2)^2), t = k/fs in [0, T): floor(T fs) samples, at least 1. */
@@ -21,7 +21,7 @@ void pulse_lfm(double bandwidth, double duration, double fs, int length, double 
 /* Amplitude of a pair's echo from target point p at total frequency F (Hz), tau = the exact delay. */
 double beam_weight(const struct scene *scene, int ping, int receiver, struct vector p, double tau, double frequency);
 
-/* |sin theta_t| up to which the scene's beam sees targets, by its truncation; INFINITY where nothing bounds it. */
+/* |sin theta_t| up to which the scene's beam sees targets, by its truncation; INFINITY without a bound. */
 double beam_sine(const struct scene *scene);
 
 #endif

@@ -1,4 +1,4 @@
-/* The text of a scene file with all that it includes. Used within scene/ only. */
+/* The text of a scene file with all its includes. Used within scene/ only. */
 #ifndef SASBENCH_SCENE_TEXT_H
 #define SASBENCH_SCENE_TEXT_H
 
@@ -7,13 +7,13 @@
 
 #include "contract/status.h"
 
-/* Lines of the text from `first_line` on, which are those of the file `path` from `line` on. */
+/* Lines of the text from `first_line` on; in the file `path` they begin at `line`. */
 struct text_piece {
     char *path;
     int line, first_line;
 };
 
-/* A scene file with all that it includes in place, and where each line is from. Freed with scene_text_free. */
+/* A scene file with all includes in place, and the origin of each line. Freed with scene_text_free. */
 struct scene_text {
     char *text;
     size_t length, room; /* bytes filled, allocated */
@@ -23,8 +23,8 @@ struct scene_text {
     const char *scene_directory; /* of the shipped scenes */
 };
 
-/* Put the scene file at `path` and all that it includes (where includes are found: scenes/README.md) together, and
-   refuse what libconfig would take wrongly. Errors: STATUS_INVALID; nothing to free then. */
+/* Assemble the scene file at `path` and all its includes (search rules: scenes/README.md), and refuse text that
+   libconfig would misread. Errors: STATUS_INVALID; nothing to free then. */
 enum status scene_text_read(const char *path, const char *scene_directory, struct scene_text *text);
 void scene_text_free(struct scene_text *text);
 

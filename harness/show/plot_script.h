@@ -1,6 +1,6 @@
-/* A picture in the making: data files and a short preamble of variables, all in memory, where gnuplot reads them: one
-   of the scripts in plots/ draws them. The picture goes to memory, too, and to its place when it is whole. Used within
-   show/ only. */
+/* A picture in the making: data files and a short preamble of variables, all in memory. gnuplot draws them with one
+   of the scripts in plots/. The picture goes to memory, too, and to its place when it is complete. Used within show/
+   and by report/thumbnails. */
 #ifndef SASBENCH_SHOW_PLOT_SCRIPT_H
 #define SASBENCH_SHOW_PLOT_SCRIPT_H
 
@@ -14,28 +14,28 @@
 struct gnuplot {
     pid_t process;
     double begin;    /* seconds_now() */
-    int exit_status; /* once it has ended, as waitpid gives it */
+    int exit_status; /* its exit status from waitpid */
 };
 
-enum { PANELS_MAX = 8, PLOT_FILES_MOST = 66 }; /* more panels do not fit a picture */
+enum { PANELS_MAX = 8, PLOT_FILES_MOST = 66 }; /* limit of panels in one picture */
 
 /* One picture in the making. */
 struct plot {
-    FILE *files[PLOT_FILES_MOST]; /* [file_count] in memory: the preamble, then what data it has */
+    FILE *files[PLOT_FILES_MOST]; /* [file_count] in memory: the preamble, then data files */
     int file_count;
-    int picture, log;                     /* files in memory: the picture until it is whole, what gnuplot prints; -1 */
-    const char *path;                     /* the picture */
-    bool named;                           /* by the user: links are followed */
-    FILE *preamble;                       /* files[0], sets the script's variables */
-    const char *plots_directory, *script; /* that it is drawn with, once it is prepared */
+    int picture, log; /* files in memory: the picture until it is complete, gnuplot's messages; -1 */
+    const char *path; /* the picture */
+    bool named;       /* the user gave it: follow links */
+    FILE *preamble;   /* files[0], sets the script's variables */
+    const char *plots_directory, *script; /* to draw it with, once prepared */
     struct gnuplot gnuplot;
 };
 
-/* `named` as of text_file_open_named. Errors: STATUS_FAILED. plot_end removes what is left, and accepts a plot whose
+/* `named` as in text_file_open_named. Errors: STATUS_FAILED. plot_end removes what is left, and accepts a plot whose
    beginning failed. */
 enum status plot_begin(struct plot *plot, const char *path, bool named);
 void plot_end(struct plot *plot);
-/* A new file, by whose name, array[index], the script finds it; flushed before it is read. Errors: STATUS_FAILED. */
+/* A new file; the script finds its name in array[index]. Flushed before it is read. Errors: STATUS_FAILED. */
 enum status plot_file_open(struct plot *plot, const char *array, int index, FILE **file);
 enum status plot_file_flush(const struct plot *plot, FILE *file);
 /* The name by which gnuplot finds an open file. */
@@ -59,13 +59,13 @@ struct plot_queue {
     int count;
 };
 
-/* End a plot whose data and variables were written with `status`: without a queue it is drawn, else taken over and
-   drawn later; `plots_directory` and `script` are borrowed until then. The queue must hold fewer than PLOT_QUEUE_MOST.
-   Errors: `status`; as plot_draw; STATUS_FAILED for a full disk or no memory. */
+/* End a plot whose data and variables were written with `status`: without a queue it is drawn, else the queue takes
+   it over and draws it later; `plots_directory` and `script` are borrowed until then. The queue must hold fewer than
+   PLOT_QUEUE_MOST. Errors: `status`; as plot_draw; STATUS_FAILED for a full disk or no memory. */
 enum status plot_finish(struct plot *plot, enum status status, struct plot_queue *queue, const char *plots_directory,
                         const char *script);
-/* Draw all, as many at a time as OpenMP has threads. `failed` is called for each that cannot be drawn, with
-   status_message() saying why. */
+/* Draw all, as many at a time as OpenMP has threads. `failed` is called for each failed picture, with the reason in
+   status_message(). */
 void plot_queue_draw(struct plot_queue *queue, void (*failed)(void *to), void *to);
 /* Drop what is not drawn. */
 void plot_queue_free(struct plot_queue *queue);

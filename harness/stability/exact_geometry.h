@@ -1,5 +1,5 @@
 /* Delays, angles and beams in extended precision, written apart from the engines (contract/delay.h) and from the
-   simulator, so that a fault in those cannot hide here. long double holds 64 bits of mantissa or more. */
+   simulator, so that their faults cannot hide here. long double has at least 64 bits of mantissa. */
 #ifndef SASBENCH_STABILITY_EXACT_GEOMETRY_H
 #define SASBENCH_STABILITY_EXACT_GEOMETRY_H
 

@@ -1,5 +1,5 @@
-/* What each method promises: how it reads records, the error it may make against the right image, and what its engine
-   changes on purpose. */
+/* The promise of each method: how it reads records, its largest error against the right image, and the deliberate
+   approximations of its engine. */
 #ifndef SASBENCH_STABILITY_METHOD_H
 #define SASBENCH_STABILITY_METHOD_H
 
@@ -7,16 +7,14 @@
 #include "stability/exact_image.h"
 
 struct method {
-    bool has_reading; /* `reading` can be done in extended precision: back projection */
+    bool has_reading; /* extended precision can do the `reading`: back projection */
     struct exact_reading reading;
     double error_most; /* relative L2 error of a right image: the method's error law with room for extreme scenes */
-    double phase_rad;  /* what the engine changes the phase of a pair by on purpose: interpolated delays, short
-                          polynomials */
-    double weight;     /* and the weight of a sample: tabulated kernels */
+    double phase_rad;  /* deliberate change of a pair's phase by the engine: interpolated delays, short polynomials */
+    double weight;     /* and of a sample's weight: tabulated kernels */
 };
 
-/* `engine` is what the plan says of itself (struct work). A method that is not known has no reading, and the widest
- * error. */
+/* `engine` is the plan's text (struct work). Other methods than ours have no reading, and the widest error. */
 struct method method_of(const struct spec *spec, const char *engine, const struct problem *problem);
 
 #endif

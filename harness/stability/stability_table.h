@@ -1,4 +1,4 @@
-/* Rows of stability.csv: on the terminal, in the file, and against those that are expected. */
+/* Rows of stability.csv: on the terminal, in the file, and compared with the expected ones. */
 #ifndef SASBENCH_STABILITY_STABILITY_TABLE_H
 #define SASBENCH_STABILITY_STABILITY_TABLE_H
 
@@ -12,16 +12,17 @@ struct stability_row {
     struct stability_verdict verdict;
 };
 
-/* One line a scene: how many images, the most digits lost and by which algorithm, and how many a condition refuses. */
+/* One line a scene: the number of images, the most digits lost and the algorithm that loses them, and the number of
+   refusals by a condition. */
 void stability_table_head(void);
 void stability_table_line(int spec_count, const struct stability_row *rows);
 
-/* All rows, measured, and what of them is committed. Errors: as text_file.h. */
+/* All rows, measured, and the committed part of them. Errors: as text_file.h. */
 enum status stability_write(const char *path, int mode_count, int count, const struct stability_row *rows);
 enum status stability_expected_write(const char *path, int count, const struct stability_row *rows);
 
-/* Print every row that is not as `path` expects. *differ: how many; *unknown: how many the file does not hold, which
-   must only not fail. Errors: STATUS_INVALID for a file that is none of ours. */
+/* Print every row that differs from `path`. *differ: their number; *unknown: the number of rows missing in the file,
+   which only must not fail. Errors: STATUS_INVALID for a file that is not ours. */
 enum status stability_compare(const char *path, int count, const struct stability_row *rows, int *differ, int *unknown);
 
 #endif

@@ -1,6 +1,5 @@
-/* One scene imaged in every rounding mode. Threads take the mode over when they start, so each mode has a process of
-   its own, which sets it before anything else; what crashes ends that process alone. The processes write into memory
-   that all share. */
+/* One scene imaged in every rounding mode. Threads inherit the mode when they start, so each mode has a process of
+   its own, which sets it first; a crash ends that process alone. The processes write into shared memory. */
 #ifndef SASBENCH_STABILITY_TRIAL_H
 #define SASBENCH_STABILITY_TRIAL_H
 
@@ -15,18 +14,18 @@ extern const char *const trial_mode_names[TRIAL_MODES]; /* nearest, downward, up
 struct attempt {
     bool done;
     enum status status; /* of plan and execute */
-    char message[400];  /* why it is not OK; or how the process ended */
+    char message[400];  /* why status is not OK; or how the process ended */
     char engine[96];
     bool same_bits;  /* one and two threads made the same image */
     int exceptions;  /* FE_INVALID, FE_DIVBYZERO, FE_OVERFLOW that plan or execute raised, with one thread */
-    bool is_stopped; /* the process ended by a signal */
+    bool is_stopped; /* a signal ended the process */
 };
 
-/* What the process of the echoes and that of the exact images say. */
+/* Results of the process of the echoes and of that of the exact images. */
 struct trial_exact {
     enum status status;
     char message[400];
-    int exponent; /* of the echoes: recorded were the samples times 2^exponent */
+    int exponent; /* of the echoes: the recorded samples are these times 2^exponent */
 };
 
 /* Made by trial_run, released by trial_close. */
@@ -41,7 +40,7 @@ struct trial {
     struct attempt *attempts;   /* [mode][spec] */
     double complex *images;     /* [mode][spec][pixels] */
     struct exact_sum *ideal;    /* [pixels] the right image */
-    struct exact_sum *exact;    /* [spec][pixels] the method's own, where it has a reading */
+    struct exact_sum *exact;    /* [spec][pixels] the method's own sum, where it has a reading */
     struct trial_exact *note;   /* of the processes that make the echoes and the exact images */
     const char *ideal_excludes; /* why there is no closed form; the ideal is then reference's image */
 };

@@ -1,4 +1,4 @@
-/* The points of one scene as the tables of a sweep take them. */
+/* The points of one scene for the tables of a sweep. */
 #ifndef SASBENCH_SWEEP_SWEEP_GROUP_H
 #define SASBENCH_SWEEP_SWEEP_GROUP_H
 
@@ -8,7 +8,7 @@
 #include "scene/scene.h"
 #include "show/plot_points.h"
 
-/* The points of one scene (plot_points.h), and room for values of each of them. */
+/* The points of one scene (plot_points.h), and room for values of each. */
 struct group {
     struct points points;
     double *error, *cost; /* [count] of a front, or of a series */
@@ -17,16 +17,16 @@ struct group {
     bool told;            /* on the terminal as well */
 };
 
-/* Has a row ahead of this one the same scene? */
+/* Does an earlier row have the same scene? */
 bool scene_seen(const struct results *results, int row);
-/* The scene of a name, or NULL. */
+/* The scene with a name, or NULL. */
 const struct scene *scene_find(const struct scene *scenes, int count, const char *name);
 
 /* Errors: STATUS_FAILED without memory; *group is to be freed in any case. */
 enum status group_fill(const struct results *results, const char *scene, struct group *group);
 void group_free(struct group *group);
 
-/* What a setting costs: run time, which is known to an interval only, and counted operations. */
+/* A cost of a setting: run time, of which only an interval is measured, or counted operations. */
 struct sweep_cost {
     const char *name, *title;
     size_t offset; /* of the double in struct measurement */
@@ -36,7 +36,7 @@ extern const struct sweep_cost sweep_costs[SWEEP_COSTS];
 /* Fill error, cost, low and high. */
 void group_values(struct group *group, const struct sweep_cost *cost);
 
-/* Fields of a row of CSV, texts first, then numbers; NULL ends the texts. `ends`: they are the row's last. */
+/* Fields of a row of CSV, texts first, then numbers; NULL ends the texts. `ends`: they end the row. */
 void fields_write(FILE *file, const char *const *texts, const double *numbers, int number_count, bool ends);
 
 /* The cheapest setting for each decade of error, of all algorithms and of each family, as rows of cheapest.csv. */

@@ -10,10 +10,10 @@ struct sweep_settings {
     int count;
 };
 
-/* Append `start` with every combination of the values that its params' `sweep` names, in float and in double. What
-   was given in the SPEC stays as it is, and so do the terse params, whose defaults are meant to be kept. An exact
-   algorithm has nothing to trade: it is appended once, as it is. Errors: STATUS_FAILED without memory; STATUS_INVALID
-   when `sweep` names a value that the param does not take. */
+/* Append `start` with every combination of the values in its params' `sweep`, in float and in double. Values given
+   in the SPEC stay, and so do the defaults of terse params. An exact algorithm has nothing to trade: it is appended
+   once, unchanged. Errors: STATUS_FAILED without memory; STATUS_INVALID when `sweep` names a value that the param
+   refuses. */
 enum status settings_add(struct sweep_settings *settings, const struct spec *start);
 void settings_free(struct sweep_settings *settings);
 

@@ -1,5 +1,5 @@
-/* What the rows of a sweep say: the Pareto fronts, the cheapest setting for each decade of error, how the error falls
-   along each series of settings that differ in one parameter, and the papers' rules for the upsampling rate. */
+/* Tables from the rows of a sweep: the Pareto fronts, the cheapest setting for each decade of error, the fall of the
+   error along each series of settings that differ in one parameter, and the papers' rules for the upsampling rate. */
 #ifndef SASBENCH_SWEEP_SWEEP_TABLES_H
 #define SASBENCH_SWEEP_SWEEP_TABLES_H
 
@@ -19,13 +19,13 @@ struct line_fit line_fit(int count, const double *rate, const double *error);
    differ more: there is no floor. */
 int floor_find(int count, const double *error);
 
-/* Read DIR/measurements.csv, write fronts.csv, cheapest.csv, slopes.csv and rules.csv beside it (results/README.md has
-   their columns) and print the last three of the scene `told` (NULL: of none). `scenes` are those that were measured;
-   others are looked for by name, of which only shipped ones are found. Errors: as results_read; STATUS_INVALID for a
-   folder that cannot be written; STATUS_FAILED without memory. */
+/* Read DIR/measurements.csv, write fronts.csv, cheapest.csv, slopes.csv and rules.csv beside it (results/README.md
+   has their columns) and print the last three of the scene `told` (NULL: of none). `scenes` are the measured ones;
+   others are looked up by name among the shipped ones. Errors: as results_read; STATUS_INVALID for a folder that
+   cannot be written; STATUS_FAILED without memory. */
 enum status sweep_tables(const char *directory, const struct scene *scenes, int scene_count, const char *told);
 
-/* Does a folder hold an algorithm in two settings on one scene? */
+/* Does a folder contain an algorithm in two settings on one scene? */
 bool sweep_is(const char *directory);
 
 #endif

@@ -1,10 +1,10 @@
-/* A text that is made part by part. */
+/* A text made part by part. */
 #ifndef SASBENCH_TEXT_TEXT_APPEND_H
 #define SASBENCH_TEXT_TEXT_APPEND_H
 
 #include <stddef.h>
 
-/* Add a formatted part behind text[size], a string, which is cut where there is no room. */
+/* Add a formatted part behind the string text[size]; it is cut where there is no room. */
 void text_append(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
 #endif
