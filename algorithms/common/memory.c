@@ -104,7 +104,7 @@ struct stored {
     void (*release)(void *thing);
 };
 
-void *store_keep(struct store *store, void *thing, void (*release)(void *thing))
+static void *keep(struct store *store, void *thing, void (*release)(void *thing), size_t bytes, double share)
 {
     struct stored *stored = thing ? malloc(sizeof *stored) : NULL;
     if (!stored) {
@@ -115,24 +115,28 @@ void *store_keep(struct store *store, void *thing, void (*release)(void *thing))
     }
     *stored = (struct stored){store->last, thing, release};
     store->last = stored;
-    store->bytes += sizeof *stored;
+    store->bytes += share * (double)bytes + (double)sizeof *stored;
     return thing;
+}
+
+void *store_keep(struct store *store, void *thing, void (*release)(void *thing))
+{
+    return keep(store, thing, release, 0, 1);
 }
 
 void *store_take(struct store *store, size_t count, size_t size, double share)
 {
     const size_t bytes = (count * size + LINE - 1) / LINE * LINE;
-    void *memory = store_keep(store, memory_columns(LINE, bytes), free);
+    void *memory = keep(store, memory_columns(LINE, bytes), free, bytes, share);
     if (memory)
         memset(memory, 0, bytes);
-    store->bytes += share * (double)bytes;
     return memory;
 }
 
 void *store_room(struct store *store, size_t count, size_t size, double share)
 {
-    store->bytes += share * (double)(count * size);
-    return store_keep(store, memory_aligned(LINE, count * size), free);
+    const size_t bytes = count * size;
+    return keep(store, memory_aligned(LINE, bytes), free, bytes, share);
 }
 
 void store_release(struct store *store)

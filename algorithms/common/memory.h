@@ -27,7 +27,7 @@ void memory_sparse_free(void *memory);
 /* What a plan owns, memory and FFT plans: released together. A zeroed struct owns nothing. */
 struct store {
     struct stored *last;
-    double bytes; /* of memory, as far as it is counted */
+    double bytes; /* of memory, as far as it is counted, and of the account of it */
     bool failed;  /* something was not to be had */
 };
 /* Zeroed memory at a cache line, whole lines of it, by memory_columns; `share` of it is counted. NULL without. */

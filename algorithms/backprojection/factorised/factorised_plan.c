@@ -65,29 +65,39 @@ static int places_most(const struct tree *tree)
     return most;
 }
 
+/* Of all threads in one block, so that its account is the same for any number of them. */
 static void scratch_make(struct factorised *plan)
 {
+    enum { PARTS = 7, LINE = 64 };
     const struct acquisition *a = plan->bp.problem.acquisition;
     const size_t size = real_size(plan->bp.problem.precision), base = (size_t)plan->tree.settings.base;
-    const size_t receivers = (size_t)a->receivers, row = plan->polar_layout.record + 1;
+    const size_t row = plan->polar_layout.record + 1, vectors = base * sizeof(struct vector);
+    const size_t bytes[PARTS] = {2 * bp_record_values(&plan->bp) * size,
+                                 vectors,
+                                 vectors,
+                                 vectors * (size_t)a->receivers,
+                                 base * sizeof(struct ping_box),
+                                 2 * plan->trace_pitch * size,
+                                 row * size};
+    size_t from[PARTS + 1] = {0}; /* each at a cache line */
+    for (int k = 0; k < PARTS; k++)
+        from[k + 1] = from[k] + (bytes[k] + LINE - 1) / LINE * LINE;
     plan->threads = omp_get_max_threads();
     const double share = 1.0 / plan->threads;
     struct store *store = &plan->bp.engines;
     plan->scratch = store_room(store, (size_t)plan->threads, sizeof *plan->scratch, share);
-    for (int n = 0; plan->scratch && n < plan->threads; n++) {
-        struct factorised_scratch *s = &plan->scratch[n];
-        s->interleaved = store_room(store, 2 * bp_record_values(&plan->bp), size, share);
-        s->tx = store_room(store, base, sizeof *s->tx, share);
-        s->velocity = store_room(store, base, sizeof *s->velocity, share);
-        s->rx = store_room(store, base * receivers, sizeof *s->rx, share);
-        s->boxes = store_room(store, base, sizeof *s->boxes, share);
-        s->trace = store_room(store, 2 * plan->trace_pitch, size, share);
-        s->row = store_room(store, row, size, share);
-        if (store->failed)
-            return;
+    char *block = store_room(store, (size_t)plan->threads, from[PARTS], share);
+    for (int n = 0; !store->failed && n < plan->threads; n++, block += from[PARTS]) {
+        plan->scratch[n] = (struct factorised_scratch){.interleaved = block,
+                                                       .tx = (void *)(block + from[1]),
+                                                       .velocity = (void *)(block + from[2]),
+                                                       .rx = (void *)(block + from[3]),
+                                                       .boxes = (void *)(block + from[4]),
+                                                       .trace = block + from[5],
+                                                       .row = block + from[6]};
         /* What lies behind a trace is computed with, unused: what memory holds may be subnormal, which is slow. */
-        memset(s->trace, 0, 2 * plan->trace_pitch * size);
-        memset(s->row, 0, row * size);
+        memset(block + from[5], 0, bytes[5]);
+        memset(block + from[6], 0, bytes[6]);
     }
 }
 
