@@ -1,4 +1,4 @@
-/* A plan in words: what is chosen, why, and what it leaves out (choice/choice.h). */
+/* A plan in words: the chosen setting, the reasons, and what it leaves out (choice/choice.h). */
 #ifndef SASBENCH_ADVISE_PLANNED_H
 #define SASBENCH_ADVISE_PLANNED_H
 
@@ -15,25 +15,25 @@ struct planned {
     struct choice choices[2]; /* by enum precision; double by laws alone where float is within the budget */
 };
 
-/* Plan a scene, freed with planned_free even on failure: by images of its echoes that take at most `budget->seconds`
-   each, and by laws beyond that. Errors: as choice_make. */
+/* Plan a scene by images of its echoes that take at most `budget->seconds` each, and by laws beyond that. planned_free
+   is due even on failure. Errors: as choice_make. */
 enum status planned_make(const struct scene *scene, const struct budget *budget, struct planned *planned);
 void planned_free(struct planned *planned);
-/* The precision that is chosen: float, unless only double fits the budget; -1 where nothing does. */
+/* The chosen precision: float, unless only double is within the budget; -1 where neither is. */
 int planned_precision(const struct planned *planned);
 
 extern const char *const plan_verdict_names[]; /* by enum verdict */
-/* Is candidate k, over the budget or refused, the nearest of an algorithm none of whose candidates fits? */
+/* Is candidate k, over the budget or refused, the one nearest to it of an algorithm without any within it? */
 bool planned_nearest(const struct choice *choice, int k);
-/* What the chosen way does not do, and what each of these adds to the error: a line each. */
+/* A line for each thing that the chosen setting leaves out, with what it adds to the error. */
 void planned_left_out(const struct problem *problem, const struct candidate *chosen,
                       void (*line)(void *to, const char *text), void *to);
 
-/* The choice, the command that runs it on a `source` ("--scene NAME"), and why: the next of each family. */
+/* Print the choice, the command that runs it on a `source` ("--scene NAME"), and why: the next of each family. */
 void planned_answer(FILE *stream, const struct planned *planned, const char *source);
-/* The candidates of the precision that is chosen, the chosen one first, and what it leaves out. */
+/* Print the candidates of the chosen precision, the chosen one first, and what it leaves out. */
 void planned_print(FILE *stream, const struct planned *planned);
-/* All of both as CSV. */
+/* Write the candidates of both precisions as CSV. */
 void planned_write(FILE *stream, const struct planned *planned);
 
 #endif

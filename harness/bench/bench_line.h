@@ -15,10 +15,10 @@ struct bench_line {
     bool measured;
     struct timing_samples *samples;  /* while it is measured */
     double peaks[2 * TIMING_ROUNDS]; /* FLOP/s, before and after each round */
-    struct measurement row;          /* its texts, but for those below, are gone */
+    struct measurement row;          /* its texts are no longer valid, but for those below */
     char engine[96], stages[512];
     int columns, rows;      /* of the first patch */
-    struct fft_seconds fft; /* NAN where it is no measure: of pairs, and in double */
+    struct fft_seconds fft; /* NAN for algorithms that sum pairs, and in double */
 };
 
 /* Is the instruction set below the one that is chosen, or the line for that one? Other lines are left out. */
@@ -28,7 +28,7 @@ bool bench_line_here(const struct bench_line *line);
    fails or is refused. */
 enum status bench_lines_measure(const struct scene *scene, struct bench_line *const *lines, int count);
 
-/* What a goal may ask for, by name; NULL ends the names. NAN where the line has none. */
+/* The names of values for goals; NULL ends them. A value is NAN where the line has none. */
 extern const char *const bench_values[];
 double bench_value(const struct bench_line *line, int value);
 double bench_peak(const struct bench_line *line); /* FLOP/s, the median */

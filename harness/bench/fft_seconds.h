@@ -1,4 +1,4 @@
-/* FFTW's own time: what whole algorithms are measured in. */
+/* FFTW's own time, the unit for the times of whole algorithms. */
 #ifndef SASBENCH_BENCH_FFT_SECONDS_H
 #define SASBENCH_BENCH_FFT_SECONDS_H
 
@@ -8,7 +8,7 @@
 struct fft_seconds {
     double plan;   /* by one two-dimensional plan */
     double strips; /* rows by themselves, columns by strips that are copied to and fro */
-    double best;   /* the less of both */
+    double best;   /* the smaller of both */
 };
 
 /* One forward and one inverse transform of rows x columns in place, float, planned by measurement. Errors:

@@ -10,9 +10,9 @@ enum { CANDIDATES_MAX = 128 };
    is zero. Returns their number. */
 int candidates_fill(struct candidate *list);
 
-/* One more setting of a candidate; false where its algorithm has no such parameter or does not take the value. */
+/* Add a setting to a candidate; false where its algorithm has no such parameter or does not accept the value. */
 bool candidate_set(struct candidate *candidate, const char *key, const char *value);
-/* Its parameter `error`, rounded down to two digits, or as much as it takes; false where that is too small. */
+/* Set its parameter `error`, rounded down to two digits, at most the largest accepted; false where it is too small. */
 bool candidate_set_error(struct candidate *candidate, double error);
 
 #endif

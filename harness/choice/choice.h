@@ -1,6 +1,6 @@
-/* Which algorithm, with which settings, images a problem within an error budget in the least time: every candidate's
-   time from the work that is counted and the machine's rates, its error by law, the fastest's measured on some pixels
-   of the very image, and why each is chosen or not. */
+/* Which algorithm, with which settings, images a problem within an error budget in the least time? A candidate's time
+   follows from its counted work and the machine's rates, its error from a law. The fastest's error is measured on some
+   pixels of the image itself. Each has the reason why it is chosen or not. */
 #ifndef SASBENCH_CHOICE_CHOICE_H
 #define SASBENCH_CHOICE_CHOICE_H
 
@@ -19,13 +19,13 @@ struct candidate {
     bool budgeted;               /* its parameter `error` is set to what the budget allows */
     double sine;                 /* up to which it sums pairs, beside the acquisition's own limit; 1: all */
     struct forecast forecast;    /* zero where refused; range migration's without the error of its spectrum */
-    double error;                /* relative L2: measured, or else by law; INFINITY where neither is known */
+    double error;                /* relative L2: measured, or else by law; INFINITY without either */
     struct probe_error measured; /* `pixels` is 0 where it was not */
     double seconds;              /* of a run; INFINITY where unknown; of bp_factorised without a forecast a bound */
     double flops, pairs;         /* counted; NAN where unknown */
     double bytes;                /* of the process (process.h); NAN where no plan was made */
     enum candidacy verdict;
-    char reason[480]; /* why it is not chosen; empty for the one that is */
+    char reason[480]; /* why it is not chosen; empty for the chosen one */
 };
 
 /* Made by choice_make, released by choice_free, which accepts a zeroed struct. */
@@ -38,18 +38,18 @@ struct choice {
     struct image image; /* by the chosen one, finished (imaging.h), where choosing formed all of it; else empty */
 };
 
-/* What is asked for. */
+/* The budgets of a choice. */
 struct budget {
     double error;         /* relative L2 of the complex image after one best complex gain, > 0 */
     double bytes;         /* that the process may take */
-    double seconds;       /* that an image may take to be formed for its error to be measured; 0: laws alone */
-    bool all;             /* count slower back projections and find their errors by law as well */
+    double seconds;       /* that an image may take that is formed to measure its error; 0: laws alone */
+    bool all;             /* count slower back projections and compute their errors by law as well */
     struct region region; /* of the image, where the error counts */
 };
 
 /* Choose among all candidates for the problem's precision. `echoes` [2] by enum precision, or NULL: laws alone. The
-   choice follows from the problem, the echoes and the rates (rates.h): it is the same again. Errors: STATUS_FAILED
-   without memory, as imaging_finish. Where nothing fits, found is false, and the reasons say why. */
+   same problem, echoes and rates (rates.h) give the same choice. Where nothing fits, found is false, and each candidate
+   has its reason. Errors: STATUS_FAILED without memory, as imaging_finish. */
 enum status choice_make(const struct problem *problem, const struct echoes *echoes, const struct budget *budget,
                         struct choice *choice);
 void choice_free(struct choice *choice);

@@ -4,9 +4,9 @@
 
 #include "contract/algorithm.h"
 
-/* Bytes at most: the program with its libraries, the image, and the plan with the echoes in double, as they are
-   simulated or read, and in the image's precision; or, where that is more, a copy of the image, as it is written. What
-   threads beyond the first take is not in it. */
+/* An upper bound in bytes: the program with its libraries, the image, and the plan with the echoes in double, as
+   simulated or read, and in the image's precision; or, if larger, a copy of the image while it is written. The memory
+   of threads beyond the first is not in it. */
 double process_bytes(const struct problem *problem, double plan_bytes);
 
 #endif

@@ -1,4 +1,4 @@
-/* How fast this machine does what a plan counts. */
+/* This machine's time for the work that a plan counts. */
 #ifndef SASBENCH_CHOICE_RATES_H
 #define SASBENCH_CHOICE_RATES_H
 
@@ -13,7 +13,8 @@ enum { RATES_COLUMNS = 8 };
 struct rates {
     double pair[2][READ_KINDS], value[2][READ_KINDS];
     double unit[2][READ_KINDS], unit_value[2][READ_KINDS]; /* alike: a block of pixels; an entry of the tables */
-    /* What a pair takes more whose pixel loads its own samples, by the general engine: it, and for each value. */
+    /* What a pair of the general engine takes more if its pixel loads its own samples: by itself, and for each
+       value. */
     double apart[READ_KINDS], apart_value[READ_KINDS];
     double compress;            /* a FLOP of range compression's transforms */
     double filter;              /* a FLOP of branches that stand for taps */
@@ -21,18 +22,17 @@ struct rates {
     double put[2];              /* a value of a record, put where pairs read it */
     double migrate[MIGRATIONS]; /* a FLOP or a value of range migration's parts */
     double doubled;             /* factor for double, the same for all, so that both precisions choose alike */
-    double noise;               /* relative: by how much the same time was off when it was measured again */
+    double noise;               /* relative: by how much the same time differed when it was measured again */
 };
 
-/* Those in use: of the machine that the program was written on, until others are set, so that choices are the same
-   everywhere. rates_set is called before any plan is made, by one thread. */
+/* The rates in use. Until others are set they are those of the machine that the program was written on, so that choices
+   are the same everywhere. One thread calls rates_set, before any plan is made. */
 const struct rates *rates_get(void);
 void rates_set(const struct rates *rates);
-/* Can they be measured: none is negative or beyond reason, and whatever is counted takes time? */
+/* Are they plausible: none is negative or beyond reason, and all counted work takes time? */
 bool rates_plausible(const struct rates *rates);
 
-/* With all threads that OpenMP has: the seconds that a forecast's sums take of `pairs` pairs; those of its range
-   migration. */
+/* Seconds with all of OpenMP's threads: of a forecast's sums of `pairs` pairs; of its range migration. */
 double rates_sums(const struct forecast *forecast, enum precision precision, double pairs);
 double rates_migration(const struct forecast *forecast, enum precision precision);
 

@@ -1,8 +1,8 @@
-/* What BP22, ZP15, LBF21, SQ18 and PF05 claim, sentence by sentence, and how our measurements comparison it:
-   results/claims.csv, a row a claim, names what is compared (quantity.h) and by which comparison (below).
+/* The claims of BP22, ZP15, LBF21, SQ18 and PF05, sentence by sentence, compared with our measurements. Each row of
+   results/claims.csv is a claim: what is compared (quantity.h), and by which comparison (below).
 
-   What counts as agreement is the printed number with its last digit's rounding; where a sentence gives no number
-   ("slightly", "far less") the criterion says what was taken. */
+   A result agrees with a printed number within the rounding of its last digit. Where a sentence gives no number
+   ("slightly", "far less") the criterion has the limit that we took. */
 #ifndef SASBENCH_CLAIMS_CLAIMS_H
 #define SASBENCH_CLAIMS_CLAIMS_H
 
@@ -18,14 +18,13 @@ struct evaluation {
 /* Is it a cell with comparisons, or the word `undecided`? */
 bool comparison_decides(const char *text);
 
-/* Does it say that no measurement can change the answer? */
+/* Is it a cell whose answer no measurement can change? */
 bool comparison_identity(const char *text);
 
-/* Decide by a cell "COMPARISON(...) and COMPARISON(...) else COMPARISON(...)": the claim holds if all comparisons
-   ahead of the first `else` agree (a cell that begins with `else` has none), and under its assumption if all of a
-   part behind one do; where none does but noise hides what one says, nothing is decided. "identity COMPARISON(...)"
-   is for what no measurement can change. Their numbers and answers are appended to the evidence. Errors: as
-   quantities_read. */
+/* Decide by a cell "COMPARISON(...) and COMPARISON(...) else COMPARISON(...)". The claim holds if all comparisons ahead
+   of the first `else` agree (a cell that begins with `else` has none), and under its assumption if all of a part behind
+   one agree. If none does but noise hides the answer of one, it is undecided. "identity COMPARISON(...)" is for what no
+   measurement can change. Numbers and answers are appended to the evidence. Errors: as quantities_read. */
 enum status comparisons_read(struct formula *formula, const char *column, const char *text,
                              struct evaluation *evaluation);
 
@@ -39,13 +38,13 @@ struct claim {
     const char *comparison, *arguments;
     int line;
     bool by_scheme; /* it names LBF: it has a verdict as printed and one corrected (sources.h) */
-    bool phases;    /* it asks for the phase study */
-    bool rules;     /* it asks for the rules' study */
-    bool scenes;    /* it asks for a number of a scene */
-    bool times;     /* it asks for a time, or for a scene that is for times */
-    bool measures;  /* else it is decided by formulas and printed numbers alone */
+    bool phases;    /* it needs the phase study */
+    bool rules;     /* it needs the rules' study */
+    bool scenes;    /* it needs a number of a scene */
+    bool times;     /* it needs a time, or a scene that is for times */
+    bool measures;  /* else formulas and printed numbers alone decide it */
     int need_count;
-    struct need *needs; /* [need_count] the measurements that it asks for; owned */
+    struct need *needs; /* [need_count] the measurements that it needs; owned */
 };
 
 enum { CLAIMS_MAX = 400 }; /* that are evaluated together */
@@ -60,8 +59,8 @@ struct claims {
 enum status claims_read(const char *path, struct claims *claims);
 void claims_free(struct claims *claims);
 
-/* The verdict on a claim by one scheme. The evidence is one line: the numbers, the criterion, each comparison with its
-   threshold, the settings, the scenes with what these assume, and the tables whose printed numbers are used. Where a
+/* The verdict on a claim by one scheme. The evidence is one line: numbers, criterion, each comparison with its
+   threshold, settings, scenes with their assumptions, and the tables whose printed numbers are used. Where a
    measurement is missing, failed or unsupported: CLAIM_UNDECIDED with the reason in place of numbers and
    comparisons. */
 struct evaluation claim_evaluate(const struct claims *claims, const struct claim *claim, enum scheme scheme,

@@ -5,30 +5,29 @@
 #include "claims/claims.h"
 #include "contract/status.h"
 
-/* The tables of these ids (all of them when count is 0), measured where the folder does not hold them yet. Errors:
-   STATUS_INVALID for an id that is none (naming those that are), a folder whose claims.csv is the list of claims, or
+/* The tables of these ids (all of them when count is 0), measured where the folder does not have them yet. Errors:
+   STATUS_INVALID for an unknown id (listing the accepted ones), a folder whose claims.csv is the list of claims, or
    files that cannot be read or written; STATUS_FAILED when a measurement failed. */
 enum status papers_reproduce(const char *const *ids, int count, const char *directory);
 
 enum { TABLES_MAX = 64 };
 
-/* What was asked for: tables by their place in paper_tables, claims by theirs in the list. */
+/* The request: tables by their place in paper_tables, claims by theirs in the list. */
 struct selection {
     const struct claims *claims;
     bool tables[TABLES_MAX], asked[CLAIMS_MAX];
 };
 
-/* Print the tables and claims asked for; write reproduced.csv and claims.csv with these, and with what else the folder
-   holds all measurements of, so that nothing that was measured earlier is lost. Where all claims were asked for,
-   verdicts.md counts and lists them. Errors: those of measured_read, of
-   files that cannot be written, of memory. */
+/* Print the requested tables and claims. Write them into reproduced.csv and claims.csv, with all others that the folder
+   has the measurements of, so that no earlier result is lost. If all claims are requested, verdicts.md counts and lists
+   them. Errors: those of measured_read, of files that cannot be written, of memory. */
 enum status reproduced_report(const char *directory, const struct selection *selection);
 
-/* Measure all that verdicts of BP22, ZP15 and LBF21 on image quality and phase rest on under each set of assumptions,
-   into DIR/sensitivity, and write DIR/sensitivity.md: the verdicts that flip, a row a claim, a column a set of
-   assumptions, and the IDs of those that do not. Verdicts on times, and those that no scene takes part in, are left
-   out; what a set does not change is measured once. `measure` measures needs into a folder, which it makes. Errors: of
-   measuring; of files. */
+/* Measure, under each set of assumptions and into DIR/sensitivity, what the verdicts of BP22, ZP15 and LBF21 on image
+   quality and phase rest on. Write DIR/sensitivity.md: the verdicts that flip, a row a claim, a column a set of
+   assumptions, and the IDs of those that do not. Verdicts on times, and those without a scene, are left out; what a set
+   does not change is measured once. `measure` measures needs into a folder, which it makes. Errors: of measuring; of
+   files. */
 enum status sensitivity_study(const char *directory, const struct claims *claims,
                               enum status (*measure)(const char *directory, struct need *needs, int count));
 
@@ -36,18 +35,18 @@ enum status sensitivity_study(const char *directory, const struct claims *claims
 struct verdicts {
     const struct claims *claims;
     bool evaluated[CLAIMS_MAX];
-    bool noisy[CLAIMS_MAX]; /* as printed: nothing is decided because a time lies within the noise of its run */
+    bool noisy[CLAIMS_MAX]; /* as printed: undecided because a time lies within the noise of its run */
     enum claim_verdict of[CLAIMS_MAX][SCHEMES];
 };
 
-/* A claim's evaluations by each scheme; one that names no scheme has the first alone. */
+/* A claim's evaluations by each scheme; a claim that names no scheme has the first alone. */
 void verdicts_add(struct verdicts *verdicts, int claim, const struct evaluation evaluations[SCHEMES]);
 
-/* The counts of those that were evaluated, by scheme. */
+/* The counts of the evaluated claims, by scheme. */
 void verdicts_print(FILE *stream, const struct verdicts *verdicts);
 
-/* The counts by paper and scheme, and a row for each claim that was evaluated, in Markdown; `head`: what was
-   measured with what. Errors: of files. */
+/* Write the counts by paper and scheme, and a row for each evaluated claim, in Markdown; `head`: what was measured with
+   what. Errors: of files. */
 enum status verdicts_write(const char *path, const char *head, const struct verdicts *verdicts);
 
 #endif

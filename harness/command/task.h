@@ -1,4 +1,4 @@
-/* What a command is asked to do, and the commands themselves. */
+/* A command's arguments, and the commands themselves. */
 #ifndef SASBENCH_COMMAND_TASK_H
 #define SASBENCH_COMMAND_TASK_H
 
@@ -8,7 +8,7 @@
 
 /* The command line after parsing; texts are borrowed from argv. Unused fields are NULL or 0. */
 struct task {
-    const char *const *names; /* [name_count] what stands without an option: scenes, an algorithm */
+    const char *const *names; /* [name_count] arguments without an option: scenes, an algorithm */
     int name_count;
     const char *output, *scene, *echoes, *grid, *at, *markdown, *json, *range, *precision, *error, *time, *memory,
         *seed, *name, *seconds, *tile, *threads;
@@ -17,20 +17,20 @@ struct task {
     struct spec *specs; /* [spec_count] of --algorithm */
 };
 
-/* Does a path (NULL: no) end in an extension, ".mat", in small letters or large? */
+/* Does a path (NULL: no) end in an extension, ".mat", in lower or upper case? */
 bool has_extension(const char *path, const char *extension);
-/* -o of a command that writes a MATLAB file, or a picture: its place exists, its extension says so. Errors:
+/* Check -o of a command that writes a MATLAB file, or a picture: its place exists, its extension fits. Errors:
    STATUS_INVALID. */
 enum status output_check(const char *command, const char *output);
 enum status picture_check(const char *command, const char *output);
 bool output_is_picture(const char *output); /* by its extension; NULL is none */
-/* --range: dB below the peak; NULL is the usual. Errors: STATUS_INVALID. */
+/* --range: dB below the peak; NULL is the default. Errors: STATUS_INVALID. */
 enum status range_parse(const char *command, const char *text, double *range_db);
-/* An image as a picture, the points of a scene (NULL: none) named in it; `named`: the path, by the user. Errors: as
+/* Draw an image, with the points of a scene (NULL: none) named in it; `named`: the user gave the path. Errors: as
    plot_image. */
 enum status picture_draw(const char *path, bool named, const struct image *image, const char *title, double range_db,
                          const struct scene *scene);
-/* An image and its difference to another of the same grid, named by the user's paths. Errors: as plot_image. */
+/* Draw an image and its difference to another of the same grid; the user gave the path. Errors: as plot_image. */
 enum status picture_differ(const char *path, const struct image *image, const struct image *reference,
                            const char *const names[2]);
 struct image_origin;
@@ -38,16 +38,16 @@ struct image_origin;
 struct choice_text {
     char text[280];
 } origin_choice(const struct image_origin *origin);
-/* What is known of an image beside its scene, algorithm and options, for the terminal. */
+/* Print an image's origin beside its scene, algorithm and options. */
 void origin_print(const struct image_origin *origin);
-/* Its extent and its peak, for the terminal. */
+/* Print its extent and its peak. */
 void image_describe(const struct image *image);
 
 /* The scene of --echoes and --grid. Errors: STATUS_INVALID where one of the two is missing, and as scene_from_echoes;
    *scene needs no scene_free then. */
 enum status echoes_scene(const char *command, const struct task *task, struct scene *scene);
-/* Scenes by name, those of `usual` (NULL: all that are not full size) where none is named, or that of --echoes; freed
-   with scenes_free even on failure. Errors: as scenes_load. */
+/* Scenes by name; without names those of `usual` (NULL: all that are not full size), or that of --echoes. Freed with
+   scenes_free even on failure. Errors: as scenes_load. */
 enum status task_scenes(const char *command, const struct task *task, int usual_count, const char *const *usual,
                         struct scene **scenes, int *count);
 
@@ -56,7 +56,7 @@ enum status command_list(const struct task *task);
 enum status command_info(const struct task *task);
 enum status command_simulate(const struct task *task);
 enum status command_image(const struct task *task);
-/* `image --tile`: what is left of a file that is filled tile by tile. */
+/* `image --tile`: form the tiles that its file lacks. */
 struct image_origin;
 enum status image_tiles(const struct task *task, const struct scene *scene, const struct image_origin *origin);
 enum status command_filter(const struct task *task);

@@ -1,4 +1,4 @@
-/* Samples and images in memory: who allocates, converts and frees them. */
+/* Samples and images in memory: allocation, conversion, release. */
 #ifndef SASBENCH_ECHOES_ECHO_DATA_H
 #define SASBENCH_ECHOES_ECHO_DATA_H
 
@@ -8,23 +8,23 @@
 size_t precision_size(enum precision precision);
 const char *precision_name(enum precision precision); /* "float", "double" */
 
-/* a * b * c * d bytes, or 0 when that overflows size_t. */
+/* a * b * c * d bytes, or 0 if that overflows size_t. */
 size_t size_product(size_t a, size_t b, size_t c, size_t d);
 
 /* Allocate zeroed samples for an acquisition, owned by the caller (free(): the samples pointer is malloc'ed and
    64-byte aligned). Errors: STATUS_FAILED without memory. */
 enum status echoes_allocate(const struct acquisition *acquisition, enum precision precision, struct echoes *echoes);
-/* A copy in the other precision, same ownership. Samples whose largest lies near the ends of the precision's range,
-   where sums overflow and small parts are lost, are divided by a power of two, exactly: to->exponent. */
+/* A copy in the other precision, same ownership. If the largest sample lies near the ends of the precision's range,
+   where sums overflow and small parts are lost, samples are divided by a power of two, exactly: to->exponent. */
 enum status echoes_convert(const struct echoes *from, enum precision precision, struct echoes *to);
 void echoes_free(struct echoes *echoes);
-/* Multiply by -1, exactly: samples that the caller owns, and an image. */
+/* Multiply by -1, exactly: samples that the caller owns; an image. */
 void echoes_negate(struct echoes *echoes);
 void image_negate(struct image *image);
 
 /* Allocate a zeroed image over `patches` (kept by pointer, not copied). Errors: STATUS_FAILED without memory. */
 enum status image_allocate(int patch_count, const struct grid *patches, enum precision precision, struct image *image);
-/* Multiply an image by 2^exponent, exactly: what execute made of echoes with that exponent. Unless the exponent is 0
+/* Multiply an image by 2^exponent, exactly: the exponent of the echoes that it was made of. Unless the exponent is 0
    the image is double afterwards, for float may not hold it. Errors: STATUS_FAILED without memory. */
 enum status image_scale(struct image *image, int exponent);
 void image_free(struct image *image);
@@ -32,7 +32,7 @@ void image_free(struct image *image);
 /* The largest magnitude of a real or imaginary part. */
 double largest_part(const double complex *numbers, size_t count);
 
-/* False when any pixel is infinite or not a number: a result that must not be shown. */
+/* False if any pixel is infinite or not a number: such a result must not be shown. */
 bool image_is_finite(const struct image *image);
 
 /* Pixel (i, j) of a patch as double, whatever the precision. */

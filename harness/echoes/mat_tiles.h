@@ -1,7 +1,7 @@
-/* An image file of version 7.3 that is filled tile by tile: it is created of its full size, a valid MATLAB file from
-   then on, whose pixels are written in their place. A journal beside it has the settings and, once a tile is on the
-   disk, its checksum; whatever ends the program, the next one continues. The journal goes when the image is whole;
-   until then the file's variable `status` is "unfinished". */
+/* An image file of version 7.3 that is filled tile by tile. It is created at its full size and is a valid MATLAB file
+   from then on; pixels are written in their place. A journal beside it has the settings and, once a tile is on the
+   disk, its checksum: after any end of the program, the next one continues. When the image is whole, the journal is
+   removed; until then the file's variable `status` is "unfinished". */
 #ifndef SASBENCH_ECHOES_MAT_TILES_H
 #define SASBENCH_ECHOES_MAT_TILES_H
 
@@ -9,7 +9,7 @@
 
 #include <sys/types.h>
 
-#define TILES_JOURNAL ".tiles" /* behind the file's name */
+#define TILES_JOURNAL ".tiles" /* appended to the file's name */
 
 struct tiles {
     const char *path;         /* these are set by the caller */
@@ -26,14 +26,14 @@ int tiles_done(const struct tiles *tiles);
 /* Tiles of a stretch of columns follow one another. */
 struct pixel_window tiles_window(const struct tiles *tiles, int number);
 
-/* Create the file, or continue one: what its journal has is verified by the checksums, and is done. `settings`: lines
-   "KEY: VALUE" of all that decides on pixels but for the tiles themselves. Errors: STATUS_INVALID where it was begun by
-   others (the first that differs is named), where another program fills it, and as image_file_write; nothing to close
-   then. */
+/* Create the file, or continue one: the tiles of its journal are verified by their checksums, and are done. `settings`:
+   lines "KEY: VALUE" of all that determines pixels but for the tiles themselves. Errors: STATUS_INVALID where its
+   settings differ (the first that differs is named), where another program fills it, and as image_file_write; nothing
+   to close then. */
 enum status tiles_open(struct tiles *tiles, const char *settings, const struct image_origin *origin);
-/* Write pixels [rows][columns] of a tile, onto the disk. Errors: STATUS_FAILED. */
+/* Write pixels [rows][columns] of a tile to the disk. Errors: STATUS_FAILED. */
 enum status tiles_write(struct tiles *tiles, int number, const void *pixels);
-/* All tiles are done. Errors: STATUS_FAILED. */
+/* Finish the file: all tiles are done. Errors: STATUS_FAILED. */
 enum status tiles_seal(struct tiles *tiles);
 void tiles_close(struct tiles *tiles);
 

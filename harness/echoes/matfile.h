@@ -9,39 +9,40 @@
    Errors: STATUS_INVALID, naming file, variable, value and what is accepted. */
 enum status echo_file_read(const char *path, struct acquisition *acquisition, struct echoes *echoes);
 
-/* Of `count` pings those that are to be read; 0: none, whatever their number. */
+/* The pings to read, of `count`; 0: none, whatever their number. */
 struct pings {
     int count;
     const bool *read;
 };
-/* The same of some pings, read alone where the file is of version 7.3; the samples of the others are 0. Their noise is
-   not measured. echoes->samples is freed by memory_sparse_free: what is not read takes no room. */
+/* Read some pings, alone where the file is of version 7.3; the samples of the others are 0. Their noise is not
+   measured. echoes->samples is freed by memory_sparse_free: samples that are not read take no room. */
 enum status echo_file_read_pings(const char *path, const struct pings *pings, struct acquisition *acquisition,
                                  struct echoes *echoes);
 
-/* Write one: v5, or v7.3 where v5 cannot hold a variable (2 GiB). Written beside `path` and renamed when whole, so
-   that nothing is half written. Samples are stored in the echoes' own precision. `description` may be NULL.
+/* Write an echo file: v5, or v7.3 where v5 cannot hold a variable (2 GiB). It is written beside `path` and renamed when
+   whole, so that no half of a file remains. Samples are stored in the echoes' own precision. `description` may be NULL.
    Errors: STATUS_INVALID when the place cannot be written. */
 enum status echo_file_write(const char *path, const struct echoes *echoes, const char *description);
 
-/* Can a file be made here? Asked before long work whose result goes there. Errors: STATUS_INVALID. */
+/* Can a file be made here? Asked before long work. Errors: STATUS_INVALID. */
 enum status matfile_place(const char *path);
 
-/* What an image file says of itself: texts of plain signs, empty where it says nothing, and numbers, NAN likewise. */
+/* An image's origin as its file has it: texts of plain characters, empty where missing, and numbers, NAN where
+   missing. */
 struct image_origin {
     char algorithm[260], options[260], scene[260];
-    char engine[260]; /* what the plan chose, as the column `engine`: of `auto` the setting */
+    char engine[260]; /* the plan's choice, as the column `engine`: of `auto` the setting */
     char scene_hash[260], commit[260], date[260];
     char status[260];       /* of a file that is filled tile by tile (mat_tiles.h): "unfinished", "whole" */
     double fc, sound_speed; /* Hz, m/s */
 };
 
-/* Write an image with x, r, angle (of turned axes), and what is said of it, each a variable. The second patch is
-   image_2, x_2, r_2, and so on. Same rules. */
+/* Write an image with x, r, angle (of turned axes), and its origin, each a variable. The second patch is image_2, x_2,
+   r_2, and so on. Same rules. */
 enum status image_file_write(const char *path, const struct image *image, const struct image_origin *origin);
 
-/* All patches of an image file, their grids from x, r (uniform to 1e-6 of a step) and angle, and what it says of
-   itself. Errors: STATUS_INVALID; nothing to close then. */
+/* Read all patches of an image file, their grids from x, r (uniform to 1e-6 of a step) and angle, and its origin.
+   Errors: STATUS_INVALID; nothing to close then. */
 struct image_file {
     struct image image; /* double */
     struct grid *patches;

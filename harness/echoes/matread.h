@@ -1,4 +1,4 @@
-/* What the process that reads a MATLAB file sends to the one that asked for it. */
+/* The messages of the process that reads a MATLAB file to the one that started it. */
 #ifndef SASBENCH_ECHOES_MATREAD_H
 #define SASBENCH_ECHOES_MATREAD_H
 
@@ -7,17 +7,17 @@
 
 enum { MESSAGE_SIZE = 1024 };
 
-/* What the child sends: a packet and its values for each variable, then one with index END and the message. */
+/* The child sends a packet and its values for each variable, then one with index END and the message. */
 struct packet {
     enum { END = -1 } index; /* of the wanted variable, or END */
     enum status status;      /* END only */
     struct variable variable;
 };
 
-/* The whole life of the process that reads. */
+/* All that the reading process does, until it ends. */
 _Noreturn void variables_send(const char *path, const struct wanted *wanted, int count, size_t file_size,
                               int descriptor);
-/* The next run of pings from `from` on that are read, of `most` at the most; false: none. */
+/* The next run of pings to read from `from` on, of at most `most`; false: none. */
 bool pings_run_next(const struct pings *pings, size_t from, size_t most, size_t *first, size_t *end);
 
 #endif

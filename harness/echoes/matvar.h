@@ -1,4 +1,4 @@
-/* MATLAB files variable by variable: what matfile.c reads and writes is made of these. */
+/* MATLAB files variable by variable: the base of matfile.c. */
 #ifndef SASBENCH_ECHOES_MATVAR_H
 #define SASBENCH_ECHOES_MATVAR_H
 
@@ -18,7 +18,7 @@ struct wanted {
     enum kind kind;
     bool is_optional;
     const char *accepted;      /* for messages: "X is needed" */
-    const struct pings *pings; /* NULL: all of it is read; else of [... x P] these, the rest is 0 */
+    const struct pings *pings; /* NULL: all of it is read; else these pings of [... x P], and the rest is 0 */
 };
 
 enum { WANTED_MAX = 20 };
@@ -26,22 +26,22 @@ enum { WANTED_MAX = 20 };
 /* A variable as read: complex doubles whatever its class, text as character codes, MATLAB's order. */
 struct variable {
     bool is_complex, is_single; /* of MATLAB's class single */
-    bool is_sparse;             /* some pings were read: by memory_sparse, not free() */
+    bool is_sparse;             /* some pings were read: from memory_sparse, not for free() */
     size_t dims[3];             /* trailing dimensions of 1 filled in; never 0 */
-    double complex *values;     /* 64-byte aligned, free(); NULL: the file does not have it */
+    double complex *values;     /* 64-byte aligned, free(); NULL: not in the file */
 };
 
 /* Read the wanted variables of a file (count <= WANTED_MAX) into variables[count], freed with variables_free. Other
-   variables are not read. Errors, with nothing to free: STATUS_INVALID naming file, variable and what is accepted,
-   for every file that is not whole or lacks one; STATUS_FAILED without memory. */
+   variables are not read. Errors, with nothing to free: STATUS_INVALID naming file, variable and what is accepted, for
+   every file that is not whole or lacks a needed one; STATUS_FAILED without memory. */
 enum status variables_read(const char *path, const struct wanted *wanted, int count, struct variable *variables);
 void variables_free(struct variable *variables, int count);
-/* What the table of wanted variables says of them: there, real, a scalar. Errors: STATUS_INVALID. */
+/* Check a variable by the table of wanted ones: there, real, a scalar. Errors: STATUS_INVALID. */
 enum status variables_check(const char *path, const struct wanted *wanted, int count, const struct variable *variables);
-/* Of class single, positions lie on a raster that is coarser the farther they are from the origin, all in m. Errors:
-   STATUS_INVALID where it is more than a fiftieth of a wavelength. */
+/* Check the raster of positions of class single, which is coarser the farther they are from the origin, all in m.
+   Errors: STATUS_INVALID where it is more than a fiftieth of a wavelength. */
 enum status positions_check(const char *path, const char *name, const struct variable *positions, double wavelength);
-/* [rows x columns] to [columns x rows]. Errors: STATUS_FAILED without memory. */
+/* Transpose [rows x columns] to [columns x rows]. Errors: STATUS_FAILED without memory. */
 enum status variable_transpose(struct variable *variable);
 /* Number `index` of vectors that follow one another, as in [3 x M x P]. */
 struct vector variable_vector(const struct variable *variable, size_t index);
@@ -49,9 +49,9 @@ size_t variable_count(const struct variable *variable);
 bool variable_is_vector(const struct variable *variable); /* a row or a column */
 bool variable_has_shape(const struct variable *variable, size_t rows, size_t columns, size_t pages);
 
-/* Let HDF5 read names of MATLAB's classes as h5py writes them; those of no fixed length are empty, so that the variable
-   is one of no class and is not left out with all that follow. Errors: STATUS_INVALID for complex numbers whose parts
-   are not `real` and `imag`, of which libmatio would read nothing, silently. */
+/* Let HDF5 read names of MATLAB's classes as h5py writes them. Names of no fixed length become empty: such a variable
+   has no class, but it and all that follow are still listed. Errors: STATUS_INVALID for complex numbers whose parts are
+   not `real` and `imag`, of which libmatio would read nothing, silently. */
 enum status hdf5_prepare(const char *path, const struct wanted *wanted, int count);
 
 /* Keep libmatio from printing: what matters is in the status message. */
@@ -64,16 +64,16 @@ struct mat5 {
     uint32_t type, length;   /* of the element at hand */
     off_t first, next, size; /* where its data and what follows it begin; where the file ends */
 };
-/* False where there is none; what was opened is closed. */
+/* False where there is none; what was opened is then closed. */
 bool mat5_open(struct mat5 *file, const char *path);
 bool mat5_next(struct mat5 *file);
 void mat5_close(struct mat5 *file);
 
-/* Variables in a version 5 file; -1 when their lengths do not end where the file does. libmatio takes a file that was
-   cut short for one with fewer variables, and does not notice a full disk either. */
+/* The number of variables in a version 5 file; -1 when their lengths do not end where the file does. libmatio takes a
+   truncated file for one with fewer variables, and does not notice a full disk either. */
 int mat5_count(const char *path);
 
-/* What libmatio takes a variable for: it reads what the dimensions ask for, whether that is there or not. */
+/* A variable as libmatio takes it: it reads what the dimensions ask for, whether that is there or not. */
 struct stored {
     const char *name;
     size_t count;
@@ -87,12 +87,12 @@ bool mat73_read_pings(const char *path, const char *name, const struct pings *pi
 enum status mat5_check(const char *path, const struct stored *stored, const struct mat5 *file);
 enum status mat73_check(const char *path, const struct stored *stored);
 bool mat73_has(const char *path, const char *name);
-/* What a file that is no MATLAB file of these versions probably is, and how to write one that is. */
+/* For a file of no such version: what it probably is, and how to write a MATLAB file. */
 const char *file_other_format(const char *path);
 enum status storage_refuse(const char *path, const char *name, const char *part, size_t found, size_t needed);
 
-/* A file on its way. The first failure is kept and what follows it does nothing, so that only writer_open (after
-   whose failure the writer is not closed) and writer_close need be looked at. */
+/* A file that is being written. The first failure is kept, and later calls do nothing. So only writer_open (after whose
+   failure the writer is not closed) and writer_close need checking. */
 struct writer {
     const char *path;
     struct place place; /* of the file that a symbolic link stands for, or of `path` itself */
@@ -101,7 +101,7 @@ struct writer {
     struct _mat_t *mat;
     int count; /* variables written */
     enum status status;
-    /* What is added when libmatio has closed the file, before it gets its place; false: errno says why. NULL: none. */
+    /* Adds to the file that libmatio has closed, before it gets its place; false: errno has the reason. NULL: none. */
     bool (*add)(const char *path, void *with);
     void *with;
 };
@@ -118,7 +118,7 @@ void write_reals(struct writer *writer, const char *name, size_t rows, size_t co
 void write_complex(struct writer *writer, const char *name, const size_t dims[3], enum precision precision,
                    const void *values, size_t rows, size_t columns);
 
-/* Of an image file, all but pixels: a patch's axes, and what is said of the image. */
+/* Write all of an image file but its pixels: a patch's axes, and the image's origin. */
 struct image_origin;
 void image_axes_write(struct writer *writer, const struct grid *grid, int patch);
 void image_sayings_write(struct writer *writer, const struct image_origin *origin);

@@ -5,8 +5,8 @@
 #include "echoes/matfile.h"
 
 /* Read an array [r_count][x_count] of complex or real numbers, float or double, as the image of a grid: one patch, in
-   double; of its origin nothing is known. Closed with image_file_close. Errors: STATUS_INVALID, naming file, value and
-   what is accepted; STATUS_FAILED for memory; nothing to close then. */
+   double, of unknown origin. Closed with image_file_close. Errors: STATUS_INVALID, naming file, value and what is
+   accepted; STATUS_FAILED for memory; nothing to close then. */
 enum status npy_image_read(const char *path, const struct grid *grid, struct image_file *file);
 
 #endif

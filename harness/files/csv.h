@@ -21,13 +21,13 @@ struct csv {
     char *text;      /* the file; all texts above point into it */
 };
 
-/* What to do with a last line that has no newline: a reader of finished files takes it as RFC 4180 does, one that
-   resumes after a cut drops it, for nobody knows how much of it is missing. */
+/* What to do with a last line without newline. A reader of finished files accepts it, as RFC 4180 does. One that
+   resumes after a cut drops it, since an unknown part of it is missing. */
 enum csv_tail { CSV_TAIL_KEEP, CSV_TAIL_DROP };
 
 /* Errors: STATUS_INVALID naming file and line (not readable, above 256 MiB, broken quoting, a row whose fields do not
-   match the header), and the column of a control character, which are not accepted but as line ends; STATUS_FAILED
-   without memory. *csv is then zeroed. A comment line begins with '#'. A byte order mark is skipped. */
+   match the header), and the column of a control character other than a line end; STATUS_FAILED without memory. *csv is
+   then zeroed. A comment line begins with '#'. A byte order mark is skipped. */
 enum status csv_read(const char *path, enum csv_tail tail, struct csv *csv);
 void csv_free(struct csv *csv);
 
@@ -37,10 +37,10 @@ const char *csv_cell(const struct csv *csv, int row, int column);
 /* The value of the comment `# key: value`; NULL if there is none. */
 const char *csv_comment(const struct csv *csv, const char *key);
 
-/* A number as the files hold it: empty is NAN. False for anything that is not a number from end to end. */
+/* A number of these files: empty is NAN. False for anything that is not a number from end to end. */
 bool csv_number(const char *cell, double *value);
 
-/* One field, quoted where RFC 4180 (or a leading '#') asks for it, control characters as '?'. NULL is written as an
+/* Write one field, quoted where RFC 4180 (or a leading '#') asks for it, control characters as '?'. NULL becomes an
    empty field. */
 void csv_write_text(FILE *file, const char *text);
 /* %.9g; NAN is an empty field. */

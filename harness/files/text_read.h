@@ -8,9 +8,9 @@
 
 enum { TEXT_REASON_SIZE = 160 };
 
-/* The whole text of the regular file at `path`, of `most` bytes at most: *text, the caller's to free, ends with a zero
-   byte that *length does not count. Reads nothing else, and waits for nobody: not for the writer of a pipe, not for the
-   kernel's log. Errors, with why in `reason`: STATUS_INVALID, or STATUS_FAILED without memory. */
+/* Read the whole regular file at `path`, of at most `most` bytes: *text, the caller's to free, ends with a zero byte
+   that *length does not count. It reads nothing else, and never waits: not for the writer of a pipe, not for the
+   kernel's log. Errors, with the cause in `reason`: STATUS_INVALID, or STATUS_FAILED without memory. */
 enum status text_read(const char *path, size_t most, char **text, size_t *length, char reason[TEXT_REASON_SIZE]);
 
 #endif

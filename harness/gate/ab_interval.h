@@ -1,4 +1,4 @@
-/* What paired times say of two programs: an interval of their ratio, and what may be concluded from it. */
+/* Paired times of two programs: an interval of their ratio, and the verdict. */
 #ifndef SASBENCH_GATE_AB_INTERVAL_H
 #define SASBENCH_GATE_AB_INTERVAL_H
 
@@ -15,12 +15,11 @@ struct ab_interval {
 
 enum { AB_BLOCKS = 3 };
 
-/* `ratios` [rounds][AB_BLOCKS]: times that were measured side by side, NEW by OLD of each block, positive; rounds >= 2.
-   Rounds count, not blocks: what a process happens to get with its start (the places of its memory) is common to a
-   round. Each is the median of its blocks, so that a block that was disturbed does not matter; the middle is the
-   geometric mean of the rounds, and Student's t (of rounds - 1 degrees of freedom, so that fewer rounds prove less)
-   times its standard error the distance of the ends. `miss`: the probability on each side that the true ratio lies
-   beyond. */
+/* `ratios` [rounds][AB_BLOCKS]: NEW's time by OLD's in each block, measured side by side, positive; rounds >= 2. Rounds
+   count, not blocks: what a process gets with its start (the places of its memory) is common to a round. A round's
+   ratio is the median of its blocks, so that a disturbed block does not matter. The middle is the geometric mean of the
+   rounds. Its distance from the ends is its standard error times Student's t, of rounds - 1 degrees of freedom, so that
+   fewer rounds prove less. `miss`: the probability on each side that the true ratio lies beyond. */
 struct ab_interval ab_interval_find(double (*ratios)[AB_BLOCKS], int rounds, double miss);
 
 /* worse: all of it beyond EFFECT_FAIL. warning: beyond EFFECT_WARN. better: as far on the other side. same: a slowdown

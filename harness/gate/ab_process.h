@@ -15,9 +15,9 @@ struct ab_process {
     FILE *answers;           /* reads from the socket */
 };
 
-/* Start `path measure` on the `turn`-th of the processors that we may use, round and round, and hear its greeting.
-   Errors: STATUS_INVALID naming role, path and what is wrong (cannot be run, says something else, ends, stays silent);
-   nothing is then left to stop. */
+/* Start `path measure` on the `turn`-th of the processors that we may use, round and round, and read its greeting.
+   Errors: STATUS_INVALID naming role, path and the fault (cannot be run, wrong greeting, ends, no answer); nothing is
+   then left to stop. */
 enum status ab_process_start(const char *role, const char *path, int turn, double patience_s,
                              struct ab_process *process);
 /* Send a line (without its end), receive one. Errors: as above; the process is still to be stopped. */

@@ -14,7 +14,7 @@ void baseline_row(struct session *session, const struct spec *spec, char *reason
    scene_load, session_open, folder_take_around and measurements_write; nothing is then written. */
 enum status baseline_write(const char *path);
 
-/* Where the reviewed one lies. */
+/* The path of the reviewed one. */
 #define BASELINE_PATH SASBENCH_ROOT "/results/baseline.csv"
 
 #endif

@@ -8,7 +8,7 @@
 enum verdict {
     VERDICT_WORSE,   /* beyond the slack, or of --ab: beyond the effect that fails */
     VERDICT_GONE,    /* defined in OLD only */
-    VERDICT_CHANGED, /* better by much or in many rows, as a fault in the measuring would look */
+    VERDICT_CHANGED, /* better by much or in many rows, which may be a fault in the measuring */
     VERDICT_WARNING, /* of --ab: slower, beyond the effect that warns */
     VERDICT_NOISY,   /* of --ab: too noisy to tell */
     VERDICT_BETTER,
@@ -28,9 +28,9 @@ struct finding {
     const char *metric, *unit;
     double before, after;                 /* NAN: not defined */
     const char *before_text, *after_text; /* instead of the numbers where not NULL */
-    double change;                        /* after/before - 1 where that says more; else NAN */
-    double change_low, change_high;       /* interval of the change; both 0: none is known */
-    double slack;                         /* of `after`: changes within it are none; NAN: unknown */
+    double change;                        /* after/before - 1 where that is clearer; else NAN */
+    double change_low, change_high;       /* interval of the change; both 0: none */
+    double slack;                         /* of `after`: a change within it counts as none; NAN: unknown */
     bool lower_is_better;
 };
 
@@ -45,9 +45,9 @@ struct diff {
     const char *notes[64]; /* remarks to read before the findings */
 };
 
-/* A value of quality or work that is better by more than CHANGED_SLACKS slacks (of work, which has none: by more than
-   CHANGED_WORK), a metric that is better in CHANGED_ROWS rows or more, and a row that was refused and is not any more
-   are VERDICT_CHANGED instead of VERDICT_BETTER. */
+/* VERDICT_CHANGED instead of VERDICT_BETTER: a value of quality or work that is better by more than CHANGED_SLACKS
+   slacks (of work, which has none: by more than CHANGED_WORK), a metric that is better in CHANGED_ROWS rows or more,
+   and a row that is no longer refused. */
 enum { CHANGED_SLACKS = 10, CHANGED_ROWS = 5 };
 #define CHANGED_WORK 0.01
 
@@ -57,19 +57,20 @@ enum { CHANGED_SLACKS = 10, CHANGED_ROWS = 5 };
    memory. *diff is to be freed in any case. */
 enum status diff_results(const char *old, const char *new, struct diff *diff);
 
-/* For those who find: add a finding (copied, and counted), a remark, and a text that lives as long as the struct (NULL
-   without memory, with the status message set). Errors: STATUS_FAILED without memory. */
+/* For makers of findings: add a finding (copied, and counted), a remark, and a text that lives as long as the struct
+   (NULL without memory, with the status message set). Errors: STATUS_FAILED without memory. */
 enum status diff_add(struct diff *diff, const struct finding *finding);
 enum status diff_note(struct diff *diff, const char *format, ...) __attribute__((format(printf, 2, 3)));
 const char *diff_text(struct diff *diff, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* Findings of any class with this verdict. */
 int diff_count(const struct diff *diff, enum verdict verdict);
-/* STATUS_FAILED, with a message that says how many, when anything got worse or is gone, or changed from a baseline. */
+/* STATUS_FAILED, with the numbers, when anything got worse or is gone, or changed from a baseline. */
 enum status diff_status(const struct diff *diff);
 void diff_free(struct diff *diff);
 
-/* Readable text: remarks, the findings but the same ones by what may have caused them (diff_groups.h), counts. */
+/* Readable text: remarks, all findings but the same ones, grouped by what may have caused them (diff_groups.h),
+   counts. */
 void diff_print(const struct diff *diff, FILE *stream);
 /* The same for a comment of a CI, as Markdown; at most 100 findings, the worst first. Errors: of text_file. */
 enum status diff_markdown(const struct diff *diff, const char *path);

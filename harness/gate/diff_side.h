@@ -4,7 +4,7 @@
 
 #include "results/results.h"
 
-/* What tells a row from the others. Those of measurements have target 0 and no axis and definition. */
+/* The key of a row. Measurements have target 0 and no axis and definition. */
 struct row_key {
     const char *scene, *algorithm, *options, *precision;
     int target;
@@ -17,7 +17,7 @@ struct diff_side {
     struct results results;
     struct row_key *keys; /* [row_count] sorted */
     bool *matched;        /* [row_count] by row: found on the other side, too */
-    bool *closed;         /* [row_count] by row: nothing more to say of what belongs to this row */
+    bool *closed;         /* [row_count] by row: all that belongs to it is reported */
 };
 
 /* The file's rows with their keys. Errors: as results_read; STATUS_INVALID naming both lines of a row that is given

@@ -1,4 +1,5 @@
-/* One algorithm at work on one problem: plan, execute, the check of the result and destroy stand here alone. */
+/* One algorithm at work on one problem: images are formed here alone, by plan, execute, a check of the result and
+   destroy. */
 #ifndef SASBENCH_IMAGING_IMAGING_H
 #define SASBENCH_IMAGING_IMAGING_H
 
@@ -25,14 +26,14 @@ void imaging_reads(const struct imaging *imaging, const struct problem *problem,
 enum status imaging_execute(struct imaging *imaging, const struct echoes *echoes, struct stages *stages);
 
 /* The finished image: checked, scaled by the echoes' exponent, handed over to the caller, who frees it with image_free;
-   the imaging has none from then on. Of a window, image->patches points into the imaging. Errors: STATUS_FAILED when a
-   pixel is not finite or memory is missing, STATUS_INVALID when the scaled image is beyond the range of double; *image
-   is then empty. */
+   the imaging keeps none. Of a window, image->patches points into the imaging. Errors: STATUS_FAILED when a pixel is
+   not finite or memory is missing, STATUS_INVALID when the scaled image is beyond the range of double; *image is then
+   empty. */
 enum status imaging_finish(struct imaging *imaging, const struct echoes *echoes, struct image *image);
 
 void imaging_close(struct imaging *imaging);
 
-/* All of it once. *work (may be NULL) is the plan's. Errors: as above; *image is then empty. */
+/* Plan, execute and finish. *work (may be NULL) is the plan's. Errors: as above; *image is then empty. */
 enum status imaging_form(const struct spec *spec, const struct problem *problem, const struct echoes *echoes,
                          struct image *image, struct work *work);
 

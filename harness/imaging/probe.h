@@ -1,12 +1,12 @@
-/* An image's error, measured on few of its pixels: the exact image of some segments of rows, half of them the brightest
-   of a pilot image, half drawn from the rest in order of brightness. It is relative to what the image shows, whatever
-   the scene, and needs neither targets nor the whole exact image. */
+/* An image's error, measured on some of its pixels. The exact image is formed of segments of rows: half of them the
+   brightest of a pilot image, half drawn from the rest in order of brightness. The error is relative to the image,
+   whatever the scene, and needs neither targets nor the whole exact image. */
 #ifndef SASBENCH_IMAGING_PROBE_H
 #define SASBENCH_IMAGING_PROBE_H
 
 #include "imaging/spec.h"
 
-/* At most so many pixels are compared; an image of twice as many is taken whole. */
+/* The most pixels that are compared; an image of up to twice as many is taken whole. */
 #define PROBE_PIXELS 1024
 
 /* Where a segment lies in the image: columns from `column` on of one row of a patch. */
@@ -43,7 +43,7 @@ void probe_free(struct probe *probe);
 /* The problem of the segments alone, which points into the probe. */
 struct problem probe_problem(const struct probe *probe, const struct problem *problem);
 
-/* Relative L2 of the complex image, as metrics_error says it of all pixels. */
+/* Relative L2 of the complex image, as metrics_error computes it of all pixels. */
 struct probe_error {
     double error, error_gain; /* plain, and after one best complex gain; NAN where the exact segments are all zero */
     double low, high; /* of error_gain, at 95 % confidence; both error_gain where the probe is the whole image */
