@@ -10,7 +10,7 @@
 #include "measure/session.h"
 #include "show/table.h"
 
-/* ---- conditions that only the scene's own targets tell ---- */
+/* ---- conditions of the scene's own targets ---- */
 
 /* Two of them: amplitudes, and how far apart they lie. */
 static int targets_conditions(const struct scene *scene, enum precision precision, struct condition *list)
@@ -45,7 +45,7 @@ static int targets_conditions(const struct scene *scene, enum precision precisio
     return count;
 }
 
-/* Within a fifth of its limit; a count that is met exactly is not. */
+/* Within a fifth of its limit; but not a count that is met exactly. */
 static bool is_near(const struct condition *c)
 {
     return condition_holds(c) && c->severity != SEVERITY_INFORM && c->limit > 0
@@ -79,7 +79,7 @@ void check_warnings(FILE *stream, const struct scene *scene, bool proposed)
     char text[500];
     int count = scene_conditions(scene, list);
     count += conditions_sampled(&problem, list + count, CONDITIONS_MAX);
-    if (proposed) { /* pixels that follow from units say nothing of them */
+    if (proposed) { /* such pixels are no fault of the scene */
         problem.patch_count = 0;
         conditions_scene(&problem, list);
     }
@@ -131,7 +131,7 @@ enum status check_algorithm(const struct scene *scene, const struct spec *spec, 
         condition_keep(found, &list[k], spec->algorithm->name);
     enum status status = STATUS_OK;
     *refused = !conditions_accept(list, count);
-    if (!*refused && spec->algorithm->plan) { /* a choice among the others has none */
+    if (!*refused && spec->algorithm->plan) { /* `auto` has none */
         status = algorithm_plan(spec->algorithm, &problem, spec->options, &plan);
         spec->algorithm->destroy(plan);
         *refused = status == STATUS_UNSUPPORTED;
@@ -174,7 +174,8 @@ void check_print(FILE *stream, const struct scene *scene, const struct check_fou
 
 enum quantity { SOUND_SPEED, CARRIER, RANGE, SPEED, POSITION };
 
-/* Phase (rad) of a pair whose quantity is off by a small relative error, the transmitter's position by metres. */
+/* Phase (rad) of a pair after a small relative error of the quantity, or an error in metres of the transmitter's
+   position. */
 static double phase_of(const struct scene *scene, int ping, int receiver, struct vector p,
                        const double off[SENSITIVITIES])
 {

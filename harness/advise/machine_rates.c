@@ -17,7 +17,7 @@
 static const char scene_name[] = "sweep/speckle";
 enum { RUNS = 2, ROUNDS = 3 }; /* of a probe in a round; rounds of all probes */
 
-/* The least of some runs: what other work on the machine takes only adds. */
+/* The least of some runs, for other work on the machine only adds time. */
 struct probe {
     double total, compress, focus; /* s */
     double parts[MIGRATIONS];      /* s: of range migration */
@@ -59,7 +59,7 @@ static enum status probe_run(struct imaging *imaging, const struct echoes *echoe
         const double begin = stages.mark;
         status = imaging_execute(imaging, echoes, &stages);
         if (k == 0)
-            continue; /* warms up */
+            continue; /* warm-up */
         probe->total = fmin(probe->total, seconds_now() - begin);
         probe->compress = fmin(probe->compress, stage_seconds(&stages, "compress"));
         probe->focus = fmin(probe->focus, stage_seconds(&stages, "focus"));
@@ -68,9 +68,9 @@ static enum status probe_run(struct imaging *imaging, const struct echoes *echoe
     return status;
 }
 
-/* What is probed: some rows of the scene with all of its columns; with many pairs for each entry of a table, as many
-   records of fewer receivers and more pings, fewer rows and more columns; with few pairs, few columns; and a column of
-   pixels further apart than samples. */
+/* The images of the probes: some rows of the scene with all of its columns; for many pairs for each entry of a table,
+   as many records of fewer receivers and more pings, fewer rows and more columns; for few pairs, few columns; and a
+   column of pixels further apart than samples. */
 struct bench {
     struct scene scene;
     struct acquisition dense;
@@ -253,7 +253,7 @@ static void rates_fill(const struct probes *probes, struct rates *rates)
     rates->noise = probes->noise;
 }
 
-/* Rounds of all probes; by how much the first of them was slower in a round than in the fastest is the noise. */
+/* Rounds of all probes. The noise: by how much the first of them was slower in the median round than in the fastest. */
 static enum status rounds_run(const struct bench *bench, struct probes *probes)
 {
     struct probe none = {.total = INFINITY, .compress = INFINITY, .focus = INFINITY};
@@ -315,7 +315,7 @@ enum status machine_rates_measure(struct rates *rates)
     if (status != STATUS_OK)
         return status;
     bench.usual = bench.scene.patches[0];
-    bench.usual.r_count = 40; /* are enough */
+    bench.usual.r_count = 40; /* are enough rows */
     bench.wide = bench.narrow = bench.usual;
     bench.wide.r_count /= 4;
     bench.wide.x_count *= 4;
@@ -328,7 +328,7 @@ enum status machine_rates_measure(struct rates *rates)
     status = dense_make(&bench);
     for (int precision = 0; precision < 2 && status == STATUS_OK; precision++)
         status = echoes_allocate(&bench.scene.acquisition, (enum precision)precision, &bench.echoes[precision]);
-    omp_set_num_threads(1); /* whose waiting for a processor is known */
+    omp_set_num_threads(1); /* its time of waiting for a processor is measured */
     seconds_skip_waiting();
     if (status == STATUS_OK)
         status = rounds_run(&bench, &probes);

@@ -16,8 +16,8 @@ const char *const plan_verdict_names[] = {[CANDIDATE_CHOSEN] = "chosen",
                                           [CANDIDATE_MEMORY] = "memory",
                                           [CANDIDATE_REFUSED] = "refused"};
 
-/* Echoes that an error can be measured with in the time of a plan: of some of the targets, evenly, where there are
-   more. Recorded ones as they are. */
+/* Echoes to measure an error within the time of a plan: of some of the targets, evenly chosen, if there are more.
+   Recorded ones as they are. */
 enum { TARGETS_MOST = 16, SAMPLES_MOST = 30000000 };
 
 static enum status echoes_make(const struct scene *scene, struct echoes echoes[2])
@@ -69,7 +69,7 @@ int planned_precision(const struct planned *planned)
                                                       : -1;
 }
 
-/* "2.1e-04", or "-" of what is unknown or none. */
+/* "2.1e-04", or "-" where unknown or none. */
 static const char *error_text(double error, char text[16])
 {
     if (error > 0 && error < INFINITY)
@@ -114,7 +114,7 @@ static const char *reason_of(const struct candidate *c)
     return c->reason + (named ? own + 2 : 0);
 }
 
-/* A reason that several algorithms share is told once. */
+/* A reason that several algorithms share is printed once. */
 static void rejected_print(FILE *stream, const struct choice *choice)
 {
     const char *said = "", *by = "";
@@ -183,7 +183,7 @@ static void line_print(void *stream, const char *text)
     table_text(stream, 2, text);
 }
 
-/* Does the image keep up with the platform? Said of one grid: patches are only places of an image. */
+/* Does the image keep up with the platform? Printed for one grid only: patches are only places of an image. */
 static void passage_print(FILE *stream, const struct scene *scene, double seconds)
 {
     const struct grid *g = &scene->patches[0];
@@ -224,7 +224,7 @@ static bool family_same(const struct candidate *a, const struct candidate *b)
     return strncmp(a->algorithm->name, b->algorithm->name, length + 1) == 0;
 }
 
-/* The fastest within the budget, or else the one nearest to it, of a family's algorithms but the chosen one. */
+/* Of a family's algorithms but the chosen one: the fastest within the budget, or else the one nearest to it. */
 static const struct candidate *runner_up(const struct choice *choice, const struct candidate *of)
 {
     const struct candidate *best = NULL;

@@ -1,4 +1,4 @@
-/* What was planned, beside what was measured (plans.h). */
+/* Plans, kept beside measurements (plans.h). */
 #include "advise/plans.h"
 
 #include <math.h>

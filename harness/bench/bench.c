@@ -1,4 +1,4 @@
-/* The command `bench` (bench.h): what is measured and what should be reached stands in scenes/bench. */
+/* The command `bench` (bench.h); scenes/bench has its lines and goals. */
 #include "bench/bench.h"
 
 #include <math.h>
@@ -211,7 +211,7 @@ static const char *const goal_columns[] = {"line", "value", "over", "sense", "go
 struct goal {
     char what[200];
     bool least;                 /* at least the goal; else at most */
-    double value, goal, margin; /* margin: above 1 it holds; NAN: not measured here */
+    double value, goal, margin; /* margin: at least 1 if it is met; NAN: not measured here */
 };
 
 static const struct bench_line *line_find(const struct bench *bench, const char *name)
@@ -222,7 +222,7 @@ static const struct bench_line *line_find(const struct bench *bench, const char 
     return NULL;
 }
 
-/* What a value is divided by: NAN where it is not measured, 0 where nothing has that name. */
+/* The divisor of a value: NAN where it is not measured, 0 for an unknown name. */
 static double goal_over(const struct bench *bench, const struct bench_line *line, int value, const char *over)
 {
     const struct bench_line *other = line_find(bench, over);
@@ -274,7 +274,8 @@ static int by_margin(const void *a, const void *b)
     return isnan(x) || isnan(y) ? isnan(x) - isnan(y) : (x > y) - (x < y);
 }
 
-/* The finding, in five lines at most: how many hold, and those that do not, the worst first. `goals` are in order. */
+/* Print the finding, in five lines at most: how many goals are met, and those that are not, the worst first. `goals`
+   are in order. */
 static void finding_print(const struct goal *goals, int count, const char *path)
 {
     enum { SHOWN = 3 };
@@ -384,7 +385,7 @@ static const struct wanted {
 };
 enum { CANDIDATES = sizeof candidates / sizeof *candidates };
 
-/* Whether an algorithm takes the scene, without its echoes: its plan and its work say so. */
+/* Can an algorithm image the scene? Its plan and its work decide, without echoes. */
 static enum status candidate_try(const struct spec *spec, const struct wanted *candidate)
 {
     struct scene scene;

@@ -1,4 +1,4 @@
-/* Lines of the command `bench`, measured (bench_line.h). Rounds lie apart, since what else the machine does lasts for
+/* Lines of the command `bench`, measured (bench_line.h). Rounds lie apart, since other load on the machine lasts for
    seconds to minutes. */
 #define _GNU_SOURCE /* strdup, setenv */
 #include "bench/bench_line.h"
@@ -21,7 +21,7 @@ bool bench_line_here(const struct bench_line *line)
     return lower;
 }
 
-/* FFTW's time for as many values as are recorded or imaged, whichever is more; the last one is kept. */
+/* FFTW's time for records or image, whichever is larger along each axis; the last one is kept. */
 static enum status transforms_measure(const struct acquisition *a, struct bench_line *line)
 {
     static struct {

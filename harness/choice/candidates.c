@@ -7,7 +7,7 @@
 
 #include "contract/param.h"
 
-/* THE list: an algorithm with a forecast, what is fixed, and the values that one parameter takes; `budget`: the planner
+/* THE list: an algorithm with a forecast, its fixed settings, and the values of one parameter; `budget`: the planner
    sets it. */
 static const struct {
     const char *algorithm, *fixed, *varied, *values; /* "key=value,key=value", "key", "value value" */
@@ -39,7 +39,7 @@ static const struct {
     {"wk_squint", "", "taps", "4 6 8"},
 };
 
-/* Set a parameter of the table by its text. False where it is none, or takes no such value. */
+/* Set a parameter of the table by its text. False where it is unknown, or does not accept the value. */
 static bool setting_store(const struct algorithm *algorithm, void *options, const char *key, const char *value)
 {
     for (const struct param *param = algorithm->params; param && param->name; param++)
@@ -74,7 +74,7 @@ bool candidate_set_error(struct candidate *candidate, double error)
     return false;
 }
 
-/* One candidate of a family; false where the algorithm does not take its settings. */
+/* One candidate of a family; false where the algorithm does not accept its settings. */
 static bool candidate_fill(int family, const char *value, struct candidate *candidate)
 {
     const struct algorithm *algorithm = algorithm_find(families[family].algorithm);

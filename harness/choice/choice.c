@@ -1,7 +1,7 @@
-/* Choosing among candidates (choice.h): the fastest that is within the budget by law is formed, and measured on a probe
-   (imaging/probe.h). Where it fails, it tells how much brighter the echoes are than the image, which no law knows, and
-   the next is chosen by that. Back projection after the first is formed on the probe's pixels alone; range migration,
-   whose images have no pixels of their own, whole. */
+/* Choosing among candidates (choice.h). The fastest that is within the budget by law is formed, and its error measured
+   on a probe (imaging/probe.h). If it fails, its error over its law is how much brighter the echoes are than the image,
+   which no law includes, and corrects the laws for the next. Back projection after the first is formed on the probe's
+   pixels alone; range migration, whose images have no pixels of their own, whole. */
 #include "choice/choice.h"
 
 #include <math.h>
@@ -16,7 +16,7 @@
 #include "echoes/echo_data.h"
 #include "imaging/imaging.h"
 
-/* Measured errors over their laws from which on it is `reference` itself. */
+/* From this ratio of measured errors to their laws on, `reference` forms the exact image. */
 static const double DARK = 3;
 /* A setting of less than this share of the chosen one's time is worth a look. */
 static const double PAYS = 0.8;
@@ -48,8 +48,8 @@ static enum status candidate_spec(const struct candidate *c, enum precision prec
 
 /* ---- the exact image on the probe ---- */
 
-/* The fastest that is exact beside the budget by law; of an image that is dark beside its echoes no law tells. In the
-   general engine, by every delay: few pixels pay neither for tables nor for what stands for delays. */
+/* The fastest whose error by law is small beside the budget; no law covers an image that is dark beside its echoes. In
+   the general engine, by every delay: few pixels pay neither for tables nor for what stands for delays. */
 static enum status exact_spec(struct trial *t, struct spec *spec)
 {
     static const char *const settings[] = {"bp_sinc:window=kaiser_band,exact=true,taps=16",
@@ -134,7 +134,7 @@ static void back_projections_compare(struct trial *t)
     }
 }
 
-/* All range migrations of one spectrum are over the budget where one of them is by more than its settings' error. */
+/* All range migrations of one spectrum are over the budget if one exceeds it by more than its settings' error. */
 static void migrations_compare(struct trial *t, const struct candidate *failed)
 {
     const double error = t->setting.budget->error, own = forecast_error(&failed->forecast);
@@ -151,7 +151,7 @@ static void migrations_compare(struct trial *t, const struct candidate *failed)
     }
 }
 
-/* Take the measured error over, with `beside` of what the measurement leaves out. NAN, of an image of zeros, leaves the
+/* Use the measured error, with `beside` for what the measurement leaves out. NAN, of an image of zeros, leaves the
    law's. */
 static void measured_take(struct trial *t, struct candidate *c, const struct probe_error *measured, double beside)
 {
@@ -164,7 +164,7 @@ static void measured_take(struct trial *t, struct candidate *c, const struct pro
     c->error = hypot(measured->error_gain, hypot(t->exact, beside));
     if (c->forecast.sums_pairs && !c->budgeted)
         t->setting.ratio = c->error / law;
-    /* Half of the interval is kept clear: some of what is measured lies above the estimate. */
+    /* Half of the interval is kept clear, since a true error may lie above its estimate. */
     if (hypot(sqrt(measured->error_gain * measured->high), beside) <= budget)
         return;
     c->verdict = CANDIDATE_ERROR;
@@ -173,7 +173,7 @@ static void measured_take(struct trial *t, struct candidate *c, const struct pro
              measured->high, measured->pixels, budget);
 }
 
-/* What follows of one that failed. */
+/* Update the others after one that failed. */
 static enum status failure_learn(struct trial *t, struct candidate *c)
 {
     if (!c->forecast.sums_pairs) {
@@ -187,13 +187,13 @@ static enum status failure_learn(struct trial *t, struct candidate *c)
     return probe_again(t, NULL);
 }
 
-/* Does back projection of the probe's pixels tell of the whole image? */
+/* Do the probe's pixels, back projected, represent the whole image? */
 static bool by_pixels(const struct trial *t, const struct candidate *c)
 {
     return t->probed && !t->probe.whole && c->forecast.sums_pairs && !(c->forecast.image_cost > 0);
 }
 
-/* Measure it: on the probe's pixels, or on the whole image, which *image then is. */
+/* Measure it: on the probe's pixels, or on the whole image, which goes to *image. */
 static enum status candidate_measure(struct trial *t, struct candidate *c, struct image *image, struct work *work)
 {
     const struct problem *problem = t->setting.problem;
@@ -265,7 +265,7 @@ static enum status candidate_try(struct trial *t, struct candidate *c)
 
 /* ---- all of them ---- */
 
-/* Where the law, an upper bound, leaves none: the back projection of least error. */
+/* If the law, an upper bound, leaves none: the back projection of least error. */
 static struct candidate *least_by_law(struct choice *choice)
 {
     struct candidate *best = NULL;
@@ -280,7 +280,7 @@ static struct candidate *least_by_law(struct choice *choice)
     return best;
 }
 
-/* A faster one than that which was found, now that the laws are known to be above what is measured. */
+/* A faster one than the choice, now that laws are known to exceed what is measured. */
 static enum status faster_look(struct trial *t, struct candidate **chosen)
 {
     enum status status = STATUS_OK;

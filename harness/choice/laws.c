@@ -11,14 +11,14 @@
 #include "choice/candidates.h"
 #include "choice/rates.h"
 
-/* Of the budget, what interpolated delays may take: where that is more, they are made more exact, by a phase limit
-   (rad) of this share of the budget. */
+/* Of the budget, the share of interpolated delays. If theirs is more, they are made more exact, by a phase limit (rad)
+   of this share of the budget. */
 static const double DELAYS_MOST = 0.4, PHASE_SHARE = 0.8;
-/* Of a candidate's time, what an aperture limit leaves at most, where it is looked at. */
+/* An aperture limit is examined if it leaves at most this share of a candidate's time. */
 static const double LIMIT_PAYS = 0.95;
-/* Of the budget, what a setting takes that is called by its error: delays and rounding have the rest. */
+/* Of the budget, the share of a setting with a parameter `error`; delays and rounding have the rest. */
 static const double BUDGETED = 0.9;
-/* s: what it takes to count images of subapertures, and all range migrations. */
+/* s: the time to count images of subapertures, and all range migrations. */
 static const double COUNT_IMAGES = 0.05, COUNT_MIGRATIONS = 0.005;
 
 enum status laws_refused(struct candidate *candidate, enum status status)
@@ -63,8 +63,8 @@ static enum status sums_fill(const struct setting *setting, struct candidate *ca
     return status;
 }
 
-/* Its work, a back projection's with delays as exact as the budget needs them, and what its settings alone tell of its
-   error; the rest is not known. */
+/* Its work, a back projection's with delays as exact as the budget needs them, and the part of its error that follows
+   from its settings alone; the rest is unknown. */
 static enum status candidate_count(const struct setting *setting, struct candidate *candidate)
 {
     const struct algorithm *algorithm = candidate->algorithm;
@@ -103,7 +103,7 @@ bool laws_counted(const struct candidate *candidate)
     return candidate->verdict != CANDIDATE_SLOWER || !isnan(candidate->flops);
 }
 
-/* What the fastest takes at least where it pays to count another. */
+/* The least time of the fastest that makes counting another worthwhile. */
 static double count_time(const struct candidate *candidate)
 {
     return candidate->budgeted ? COUNT_IMAGES : laws_sums(candidate) ? 0 : COUNT_MIGRATIONS;
@@ -144,7 +144,7 @@ static double share_kept(const struct problem *problem, double sine)
     return all > 0 ? kept / all : 1;
 }
 
-/* The least sine that an error leaves room for; a little more, so that its three digits say it. */
+/* The least sine that an error leaves room for, rounded up to three digits. */
 static double sine_of(const struct problem *problem, double error)
 {
     const double sine = aperture_least(problem, error);
@@ -199,7 +199,7 @@ bool laws_open(const struct candidate *candidate)
     return candidate->verdict == CANDIDATE_SLOWER && !(candidate->error < INFINITY);
 }
 
-/* The setting of one that is called by its error. */
+/* Set the parameter `error` of a candidate that has it. */
 static bool budgeted_set(const struct setting *setting, struct candidate *c)
 {
     if (*c->settings || candidate_set_error(c, BUDGETED * setting->budget->error / fmax(setting->ratio, 1)))
@@ -237,7 +237,7 @@ enum status laws_fill(struct setting *setting, struct choice *choice)
     for (int k = 0; k < all && status == STATUS_OK; k++) {
         struct candidate *c = &choice->list[choice->count];
         *c = choice->list[k];
-        /* Without tables all are of the general engine, whether a setting says so or not. */
+        /* Without tables all are of the general engine, whatever the setting. */
         if (k > 0 && !first->forecast.tables && strstr(c->settings, "engine=general"))
             continue;
         c->sine = 1;

@@ -59,7 +59,7 @@ static struct formula formula_of(const struct claims *claims, const struct claim
                             .line = claim->line};
 }
 
-/* The list grows by one; without memory it stays, and the count says one less than were asked for. */
+/* The list grows by one; without memory it stays, and the count is one less than requested. */
 struct needs_list {
     struct claim *claim;
     bool failed;
@@ -84,7 +84,7 @@ static void need_keep(void *to, const char *scene, const char *spec)
     claim->needs[claim->need_count++] = (struct need){texts[0], texts[1]};
 }
 
-/* Check a claim's cells to their ends in both schemes, and collect what they ask for. */
+/* Check a claim's cells to their ends in both schemes, and collect their needs. */
 static enum status cells_check(const struct claims *claims, const struct csv *published, struct claim *claim)
 {
     const struct csv *csv = &claims->csv;
@@ -193,7 +193,7 @@ struct basis {
     char settings[900], scenes[1200], slices[40], tables[200];
 };
 
-/* A SPEC may go on behind a comma; one that ends has a blank behind it. */
+/* A SPEC may go on behind a comma; a blank follows a complete one. */
 static bool named(const char *list, const char *text)
 {
     size_t length = strlen(text);
@@ -204,8 +204,8 @@ static bool named(const char *list, const char *text)
     return false;
 }
 
-/* "bp22/table3 (c 1500 m/s, beam rect cut by the middle angle at 0.405)": what the papers do not print and the scene
-   assumes. */
+/* "bp22/table3 (c 1500 m/s, beam rect cut by the middle angle at 0.405)": what the scene assumes and papers do not
+   print. */
 static void scene_describe(const char *name, char *text, size_t size)
 {
     struct scene scene;

@@ -115,7 +115,7 @@ static enum status comparison_find(const struct formula *formula, const char *at
     return formula_error(formula, at, "there is no such comparison; %sundecided are accepted", accepted);
 }
 
-/* The comparison's expressions and the closing parenthesis. */
+/* Read the comparison's expressions and the closing parenthesis. */
 static enum status comparison_values(struct formula *formula, const struct comparison *comparison, struct values v[3])
 {
     if (!comparison->count) {
@@ -138,7 +138,7 @@ static enum status comparison_values(struct formula *formula, const struct compa
     return STATUS_OK;
 }
 
-/* What is not finite decides nothing. */
+/* Values that are not finite decide nothing. */
 static void finite_check(const struct formula *formula, const struct comparison *comparison, const struct values *v)
 {
     for (int k = 0; k < (comparison->count ? comparison->count : 1); k++)
@@ -147,7 +147,7 @@ static void finite_check(const struct formula *formula, const struct comparison 
                 measured_missing(formula->measured, "%s compares a number that is not finite", comparison->name);
 }
 
-/* What a part says: no if one comparison says no, else open if noise hides what one of them says. */
+/* A part's answer: no if one comparison's is no, else open if noise hides one's. */
 enum answer { ANSWER_NO, ANSWER_OPEN, ANSWER_YES };
 
 /* One call; its numbers and its answer go into `text`. */

@@ -48,7 +48,7 @@ static enum status scene_check(const struct formula *formula, const struct call 
                                call->text[k]);
 }
 
-/* It becomes that of the scheme. */
+/* Replace the SPEC by that of the scheme, and check it. */
 static enum status spec_check(struct formula *formula, struct call *call, int k)
 {
     struct spec spec;
@@ -136,8 +136,8 @@ static void used(struct formula *formula, enum use use, const char *text)
         formula->use(formula->to, use, text);
 }
 
-/* Scene and SPEC, the first texts: of a number that is measured, or is worked out without an image and then stands in
-   the evidence alone. */
+/* Collect scene and SPEC, the first texts of a call. A number worked out without an image needs them for the evidence
+   alone. */
 static void needed(struct formula *formula, const struct call *call, bool measured)
 {
     formula->measures = true;

@@ -1,4 +1,4 @@
-/* Measure what the papers' tables and claims rest on, set their numbers beside ours, and comparison what they say
+/* Measure what the papers' tables and claims rest on, set their numbers beside ours, and decide the claims
    (reproduce.h). */
 #include "claims/reproduce.h"
 
@@ -108,7 +108,7 @@ static enum status scene_measure(struct batch *batch, struct need *needs, int co
     return status;
 }
 
-/* What we write is named as what we read: the folder of the latter is none for the former. */
+/* Our files have the names of those that we read: the folder of the latter is refused. */
 static enum status directory_check(const char *directory)
 {
     char path[4200];
@@ -123,7 +123,7 @@ static enum status directory_check(const char *directory)
     return STATUS_OK;
 }
 
-/* All that the tables and claims asked for rest on. */
+/* All needs of the requested tables and claims. */
 static int needs_collect(const struct selection *selection, struct need needs[NEEDS_MAX])
 {
     int count = 0;

@@ -1,4 +1,4 @@
-/* What becomes of the papers' tables and claims: files in the folder, and text on the terminal (reproduce.h). */
+/* The papers' tables and claims as files in the folder, and as text on the terminal (reproduce.h). */
 #include "claims/reproduce.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 #include "files/text_file.h"
 #include "show/table.h"
 
-/* Ahead of what is worked out: where, when and with what it was measured. */
+/* The head of a file: where, when and with what it was measured. */
 static void head_write(FILE *file, const char *what, const struct measured *measured)
 {
     const struct csv *csv = &measured->measurements.csv;
@@ -142,7 +142,7 @@ static enum status verdicts_page(const char *directory, const struct verdicts *v
     return verdicts_write(path, head, verdicts);
 }
 
-/* Into claims.csv: the claims asked for, which are printed, too, and those that the folder can decide already. */
+/* Write claims.csv: the requested claims, which are printed, too, and those that the folder can decide already. */
 static enum status claims_report(const char *directory, const struct selection *selection, struct measured *measured)
 {
     char path[4200];
@@ -197,9 +197,8 @@ static void lines_keep(const struct selection *selection, struct reproduced *lin
     *count = kept;
 }
 
-/* A processor, over the last 15 minutes; 0 where the system does not tell it. What was evaluated before with the
-   same program keeps the load of that time: times that were measured on a busy machine do not get better on a quiet
-   one. */
+/* The load of a processor over the last 15 minutes; 0 where the system does not report it. What was evaluated before
+   with the same program keeps its load: times measured on a busy machine do not improve on a quiet one. */
 static double load_average(const char *directory, const struct measured *measured)
 {
     double loads[3], load = 0, before = 0;

@@ -10,8 +10,8 @@
 
 enum { NEEDS_MAX = 256, SETS_MAX = 12 };
 
-/* Of the papers that the sets are for, and of a scene, but of none of the full-size ones, which are for times, and of
-   none from seeds, which the sets do not change. */
+/* Is it of the papers that the sets are for, and of a scene? Full-size scenes are out, as they are for times, and
+   scenes from seeds, which the sets do not change. */
 static bool takes_part(const struct claim *claim)
 {
     bool scenes = claim->need_count > 0 || claim->phases || claim->scenes;
@@ -24,7 +24,7 @@ struct set_verdicts {
     enum claim_verdict of[SETS_MAX][CLAIMS_MAX][SCHEMES];
 };
 
-/* What the set changes of all that the claims ask for. */
+/* What the set changes of all needs of the claims. */
 static int needs_collect(const struct claims *claims, const struct assumptions *set, struct need needs[NEEDS_MAX])
 {
     int count = 0;

@@ -53,7 +53,7 @@ static enum status check_usage(const struct task *task)
     return output_check("filter", task->output);
 }
 
-/* The echoes as they are written: compressed, so without the pulse, and without the area, which has done its work. */
+/* The echoes to write: compressed, so without the pulse, and without the area, which is applied already. */
 static enum status filtered_write(const struct filtering *filtering, const struct echoes *from, const char *path,
                                   const char *description, struct kept *all)
 {

@@ -51,7 +51,7 @@ static void warnings_print(const struct condition *list, int count)
         }
 }
 
-/* What the image shows to be wrong. */
+/* Warn of errors that the image shows. */
 static void warn_of_image(const struct echoes *echoes, const struct image *image)
 {
     const struct darkness darkness = image_darkness(echoes, image);
@@ -78,7 +78,7 @@ static enum status execute(const struct spec *spec, struct imaging *imaging, con
     return status;
 }
 
-/* What `auto` stands for, by the echoes; its image is often there already. */
+/* Replace `auto` by its choice, from the echoes; its image is often formed already. */
 static enum status choose(const struct spec *asked, const struct budget *budget, const struct scene *scene,
                           const struct echoes *from, struct image *image, struct image_origin *origin)
 {
@@ -188,7 +188,7 @@ static enum status check_usage(const struct task *task)
     return output_is_picture(task->output) ? picture_check("image", task->output) : output_check("image", task->output);
 }
 
-/* With --grid the image of a scene is that one. */
+/* With --grid, the image of a scene has that grid. */
 static enum status scene_open(const struct task *task, struct scene *scene)
 {
     struct grid grid;
@@ -207,7 +207,7 @@ static enum status scene_open(const struct task *task, struct scene *scene)
     return status;
 }
 
-/* What is known of an image but for its engine. */
+/* The image's origin but for its engine. */
 static void origin_fill(const struct task *task, const struct scene *scene, struct image_origin *origin)
 {
     const struct spec *spec = &task->specs[0];
@@ -234,7 +234,7 @@ static enum status image_put(const struct task *task, const struct scene *scene,
     return picture_draw(task->output, true, image, title, range_db, scene);
 }
 
-/* What is known to be wrong with the scene, before the work begins. */
+/* Warn of faults of the scene before the work begins. */
 static void warn(const struct spec *spec, const struct scene *scene)
 {
     const struct problem problem = scene_problem(scene, spec->precision);

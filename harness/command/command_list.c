@@ -1,4 +1,4 @@
-/* The commands `list` and `info`: what the algorithm tables say of themselves. */
+/* The commands `list` and `info`: the algorithm tables, printed. */
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -65,7 +65,7 @@ static enum status file_info(const char *path)
     if (status == STATUS_OK && !echoes)
         status = image_file_is(path, &is_image);
     if (status == STATUS_OK && !is_image)
-        return inspect_echoes(path); /* of neither kind: says what echoes need */
+        return inspect_echoes(path); /* of neither kind: the message has what echoes need */
     if (status == STATUS_OK)
         status = image_file_open(path, &file);
     if (status != STATUS_OK)
@@ -91,7 +91,7 @@ enum status command_info(const struct task *task)
     if (has_extension(task->names[0], ".mat") || (!algorithm && access(task->names[0], F_OK) == 0))
         return file_info(task->names[0]);
     if (!algorithm) {
-        enum status status = spec_parse(task->names[0], &spec); /* says what is accepted */
+        enum status status = spec_parse(task->names[0], &spec); /* its message has what is accepted */
         if (status != STATUS_OK)
             return status;
         spec_free(&spec);

@@ -1,4 +1,4 @@
-/* The command `stability`: where images hold at the ends of what numbers can be. */
+/* The command `stability`: images at the ends of the range of numbers. */
 #include "stability/stability.h"
 
 #include "command/task.h"

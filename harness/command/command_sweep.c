@@ -15,7 +15,7 @@
 /* A point, speckle, and the two ends of the range. */
 static const char *const default_scenes[] = {"sweep/point", "sweep/speckle", "sweep/near", "sweep/far"};
 
-/* In the precision asked for, where one is and the SPEC does not say its own. */
+/* In the requested precision, if there is one and the SPEC has none of its own. */
 static enum status add(const struct task *task, const struct spec *spec, struct sweep_settings *settings)
 {
     struct spec fixed;
@@ -29,7 +29,7 @@ static enum status add(const struct task *task, const struct spec *spec, struct 
     return status;
 }
 
-/* The exact image's own cost comes first: what the others save, and what their PSLR and ISLR are compared with. */
+/* The exact image comes first: the others save its cost, and their PSLR and ISLR are compared with its. */
 static enum status settings_load(const struct task *task, struct sweep_settings *settings)
 {
     struct spec spec;
@@ -42,7 +42,7 @@ static enum status settings_load(const struct task *task, struct sweep_settings 
     return status;
 }
 
-/* Is there one that chooses by the machine's rates? */
+/* Does one of them choose by the machine's rates? */
 static bool settings_choose(const struct sweep_settings *settings)
 {
     for (int k = 0; k < settings->count; k++)

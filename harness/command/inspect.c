@@ -1,4 +1,4 @@
-/* What an echo file holds (inspect.h). */
+/* A description of an echo file (inspect.h). */
 #include "command/inspect.h"
 
 #include <math.h>
@@ -19,7 +19,7 @@ static double distance(struct vector a, struct vector b)
     return sqrt(pow(a.x - b.x, 2) + pow(a.y - b.y, 2) + pow(a.z - b.z, 2));
 }
 
-/* Ranges that every record holds whole echoes of: of the monostatic delay. False where they share none. */
+/* Ranges whose whole echoes lie in every record, by the monostatic delay. False where there are none. */
 static bool ranges_find(const struct acquisition *a, double *nearest, double *farthest)
 {
     *nearest = 0;
@@ -32,7 +32,7 @@ static bool ranges_find(const struct acquisition *a, double *nearest, double *fa
     return *farthest > *nearest;
 }
 
-/* Numbers as one writes them: two digits of a step. */
+/* A step, rounded down to two digits. */
 static double rounded(double value)
 {
     const double unit = pow(10, floor(log10(value)) - 1);
@@ -49,8 +49,7 @@ static void axis_make(double low, double high, double resolution, double *first,
     *first = round((middle - (*count - 1) / 2.0 * *step) / *step) * *step;
 }
 
-/* Azimuth resolution: half the element, or what the aperture, as long as the track or the beam lets it be, resolves at
-   a range. */
+/* Azimuth resolution at a range: that of half the element, or of the aperture, which the track or the beam limits. */
 static double azimuth_resolution(const struct acquisition *a, double range)
 {
     const double wavelength = a->sound_speed / a->fc;
@@ -63,7 +62,7 @@ static double azimuth_resolution(const struct acquisition *a, double range)
     return half_angle > 0 ? fmax(wavelength / 4, wavelength / (4 * sin(half_angle))) : wavelength;
 }
 
-/* Lower resolutions to those that the conditions find for a grid's places, its steps over which are their values. */
+/* Lower resolutions to those of the conditions at a grid's places, whose values are steps over resolutions. */
 static void resolutions_lower(const struct acquisition *a, const struct grid *grid, double *x, double *r)
 {
     struct condition list[CONDITIONS_SCENE];

@@ -103,11 +103,12 @@ static const struct command commands[] = {
 };
 
 #define IN_TASK(field) offsetof(struct task, field)
-/* Options with their value, which is a text of struct task at the offset; without one a flag there. */
+/* Options and their values: a value goes to the text of struct task at the offset, an option without one sets a flag
+   there. */
 static const struct named {
-    int letter; /* a small one can be given by itself */
+    int letter; /* a lower-case letter works by itself, too */
     const char *name, *value, *text;
-    size_t offset; /* 0: not kept there */
+    size_t offset; /* 0: not stored */
 } options[] = {
     {'o', "output", "PATH", "file or folder of the result", IN_TASK(output)},
     {'s', "scene", "SCENE", "a path, or a name below scenes/ without .cfg", IN_TASK(scene)},
@@ -137,7 +138,7 @@ static const struct named {
 enum { OPTIONS = sizeof options / sizeof *options };
 static const char exit_text[] = "\nExit status: 0 done, 1 a run failed or got worse, 2 bad usage or bad input.\n";
 
-/* One screen; what a command takes is said by its own help. */
+/* One screen; each command's help has its options. */
 static void help(void)
 {
     printf("sasbench compares imaging algorithms for multi-receiver synthetic aperture sonar\non identical echoes.\n\n"
@@ -173,7 +174,7 @@ static void help_command(const struct command *command)
     fputs(exit_text, stdout);
 }
 
-/* `text` NULL: as many as OpenMP would begin, by its own variable or the machine's processors. */
+/* `text` NULL: OpenMP's default, from its own variable or the machine's processors. */
 static enum status threads_parse(const char *text)
 {
     const char *variable = getenv("OMP_NUM_THREADS");
@@ -188,7 +189,7 @@ static enum status threads_parse(const char *text)
     return STATUS_OK;
 }
 
-/* Which of the command's options was meant by one that is none, or that its value stands without an option. */
+/* Suggest the option that an unknown one meant, or report that a value stands without its option. */
 static void option_meant(const struct command *command, int letter, const char *option, char meant[SUGGESTION_TEXT])
 {
     struct suggestion suggestion = suggestion_begin(option);
@@ -229,7 +230,7 @@ static enum status spec_add(struct task *task, const char *text)
 static void option_given(char *const *argv, int letter, char *text, size_t size)
 {
     const char *word = argv[optind - 1];
-    if (optarg && optarg == word) /* its value stands by itself */
+    if (optarg && optarg == word) /* its value is an argument of its own */
         word = argv[optind - 2];
     bool is_long = strncmp(word, "--", 2) == 0 && (letter != '?' || !optopt);
     for (const struct named *o = options; o < options + OPTIONS && letter == '?'; o++) /* one without a value has one */
@@ -281,7 +282,7 @@ static enum status parse(const struct command *command, int argc, char **argv, s
         }
         if (*(const char **)field)
             return option_refuse(command, given, "is given twice", ";");
-        if (!*optarg && !strchr("gt", letter)) /* which say themselves what they take */
+        if (!*optarg && !strchr("gt", letter)) /* whose messages list what they accept */
             return empty_refuse(command, given);
         *(const char **)field = optarg;
     }

@@ -1,4 +1,4 @@
-/* What -o and --range of commands accept, pictures, and what is said of an image. */
+/* -o and --range of commands, pictures, and an image's origin on the terminal. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

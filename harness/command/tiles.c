@@ -31,8 +31,8 @@ static enum status tile_parse(const char *text, struct tiles *tiles)
     return STATUS_OK;
 }
 
-/* Into memory of the precision, the pings that are read. Errors: STATUS_UNSUPPORTED where they do not fit it as they
-   are: by a power of two that is no other tile's. */
+/* Read into memory of the precision. Errors: STATUS_UNSUPPORTED where the pings do not fit it as they are: each tile
+   would have a power of two of its own. */
 static enum status samples_convert(const struct echoes *from, const bool *read, enum precision precision, void *to)
 {
     const struct acquisition *a = from->acquisition;
@@ -89,7 +89,7 @@ static enum status pings_read(const struct scene *scene, const struct imaging *i
     return status;
 }
 
-/* `whole`: of a scene that has them in memory. */
+/* `whole`: the echoes of a scene that has them in memory. */
 static enum status tile_form(const struct spec *spec, const struct scene *scene, const struct echoes *whole,
                              struct tiles *tiles, int number)
 {
@@ -124,7 +124,7 @@ static enum status tile_form(const struct spec *spec, const struct scene *scene,
     return status;
 }
 
-/* All that decides on pixels. */
+/* All settings that determine pixels. */
 static void settings_format(const struct task *task, const struct scene *scene, const struct image_origin *origin,
                             char *text, size_t size)
 {

@@ -1,4 +1,4 @@
-/* Echo files: how they are written. */
+/* Writing echo files. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

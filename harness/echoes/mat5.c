@@ -1,6 +1,5 @@
 /* The elements of a version 5 file ("MAT-File Format", MathWorks). libmatio reads as many bytes as a variable's
-   dimensions ask for, beyond its element or from memory that nothing was read into; so what an element holds is looked
-   at here first. */
+   dimensions ask for, beyond its element or from uninitialised memory; so an element's length is checked here first. */
 #include "echoes/matvar.h"
 
 #include <matio.h>
@@ -148,7 +147,7 @@ static size_t data_pass(struct source *source, const struct tag *tag)
     return found;
 }
 
-/* As far as the name, which must be the one that libmatio found: then its data follow. */
+/* Read up to the name, which must be the one that libmatio found: then its data follow. */
 static bool name_reach(struct source *source, const char *name)
 {
     struct tag tag;

@@ -1,6 +1,6 @@
-/* Where a version 7.3 file keeps its numbers. HDF5 fills up what is not there: with zeros where another file that holds
-   them is short or missing, from memory that nothing was read into where a chunk is short. MATLAB keeps everything in
-   the file itself, packed by gzip or not at all. */
+/* Where a version 7.3 file keeps its numbers. HDF5 fills in what is missing: with zeros where another file that has it
+   is short or missing, from uninitialised memory where a chunk is short. MATLAB keeps everything in the file itself,
+   packed by gzip or not at all. */
 #include "echoes/matfile.h"
 #include "echoes/matvar.h"
 
@@ -10,7 +10,7 @@
 
 enum { FILTERS_MOST = 3 };
 
-/* A data set as it lies in the file. What is open stays so: the process that reads ends soon. */
+/* A data set as it lies in the file. Its handles stay open: the process that reads ends soon. */
 struct data_set {
     hid_t file, id, type, settings;
     hsize_t dims[H5S_MAX_RANK], chunk[H5S_MAX_RANK];
@@ -120,7 +120,7 @@ static bool chunk_next(const struct data_set *set, hsize_t *place)
     return false;
 }
 
-/* Chunks that are not packed are whole or not there, unless somebody meant it otherwise: their sum tells. */
+/* Chunks that are not packed are whole or missing, unless somebody forged them: their checksum decides. */
 static enum status chunks_check(const char *path, const char *name, struct data_set *set)
 {
     hsize_t place[H5S_MAX_RANK] = {0};
@@ -129,7 +129,7 @@ static enum status chunks_check(const char *path, const char *name, struct data_
     }
     set->chunk_bytes = H5Tget_size(set->type);
     for (int k = 0; k < set->rank; k++) {
-        set->chunk_bytes *= set->chunk[k]; /* below 4 GiB, says HDF5 */
+        set->chunk_bytes *= set->chunk[k]; /* below 4 GiB by HDF5 */
     }
     size_t found = 0, needed = set->chunk_bytes;
     for (int k = 0; k < set->rank; k++) {

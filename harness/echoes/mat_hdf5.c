@@ -1,4 +1,4 @@
-/* What other programs write into HDF5 otherwise than MATLAB does, h5py above all, read as MATLAB's. */
+/* Reads as MATLAB's what other programs, h5py above all, write into HDF5 otherwise. */
 #include <hdf5.h>
 #include <string.h>
 

@@ -50,7 +50,7 @@ void image_axes_write(struct writer *writer, const struct grid *grid, int patch)
     }
 }
 
-/* What a file says of itself, each a text or a number of struct image_origin. */
+/* An image's origin, each a text or a number of struct image_origin. */
 static const struct {
     struct wanted wanted;
     size_t offset; /* of the field */
@@ -179,7 +179,7 @@ static enum status patch_add(const char *path, struct image_file *file, bool *mo
     if (status != STATUS_OK) {
         return status;
     }
-    /* Whether there is a further patch, its image says: the axes are then needed. */
+    /* The image decides whether there is a further patch: its axes are then needed. */
     *more = variables[IMAGE].values != NULL;
     for (int k = 0; k < IMAGE_VARIABLES; k++) {
         wanted[k].is_optional = k == IMAGE_ANGLE;
@@ -211,7 +211,7 @@ static enum status patch_add(const char *path, struct image_file *file, bool *mo
     return status;
 }
 
-/* As far as a file says them; other than plain signs become '?'. */
+/* As far as a file has them; other than plain characters become '?'. */
 static enum status sayings_read(const char *path, struct image_origin *origin)
 {
     struct wanted wanted[SAYINGS];

@@ -84,8 +84,8 @@ static bool class_write(hid_t set, const char *class)
     return written;
 }
 
-/* A variable of its full size, contiguous, allocated now and never filled: from now on its numbers lie in one place of
-   the file, and writing them there leaves all else as it is. */
+/* Create a variable of its full size, contiguous, allocated now and never filled: its numbers lie in one place of the
+   file, and writing them there leaves all else as it is. */
 static bool set_make(hid_t file, const char *name, hid_t type, const hsize_t dims[2], const char *class)
 {
     const hid_t space = H5Screate_simple(2, dims, NULL), settings = H5Pcreate(H5P_DATASET_CREATE);
@@ -161,7 +161,7 @@ static bool status_write(const struct tiles *tiles, const char *text)
     return write_at(tiles->file, codes, sizeof codes, tiles->status_at) && fdatasync(tiles->file) == 0;
 }
 
-/* The room is taken at once: a full disk shows before the work, and before HDF5, which crashes there. */
+/* Take the room at once: a full disk is found before the work, and before HDF5, which crashes there. */
 static bool room_take(const struct tiles *tiles)
 {
     const size_t bytes = (size_t)tiles->grid.x_count * (size_t)tiles->grid.r_count * precision_size(tiles->precision);
@@ -172,7 +172,7 @@ static bool room_take(const struct tiles *tiles)
     return errno == 0;
 }
 
-/* What is not written tile by tile. */
+/* Write what is not written tile by tile. */
 static bool sets_add(const char *path, void *with)
 {
     struct tiles *tiles = with;
@@ -238,7 +238,7 @@ enum status tiles_write(struct tiles *tiles, int number, const void *pixels)
     bool written = tile_move(tiles, number, true, turned) && fdatasync(tiles->file) == 0;
     const int length = snprintf(line, sizeof line, "done %d %08lx\n", number, sum_of(turned, bytes));
     free(turned);
-    /* Not before the numbers are there for sure. */
+    /* Only once the numbers are on the disk. */
     written =
         written && write_at(tiles->journal, line, (size_t)length, tiles->journal_end) && fdatasync(tiles->journal) == 0;
     if (!written)

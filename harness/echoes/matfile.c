@@ -64,8 +64,8 @@ static double scalar_or(const struct variable *variable, double missing)
     return variable->values ? creal(variable->values[0]) : missing;
 }
 
-/* Shapes that are meant otherwise and can only be meant so: one receiver without its dimension, which MATLAB and SciPy
-   leave out or squeeze away, and coordinates in rows [P x 3]. */
+/* Other shapes that have only one meaning: one receiver without its dimension, which MATLAB and SciPy leave out or
+   squeeze away, and coordinates in rows [P x 3]. */
 static enum status shapes_read(struct variable *v)
 {
     size_t *samples = v[SAMPLES].dims, *rx = v[RX].dims;
@@ -187,7 +187,7 @@ static enum status check_echo_values(const char *path, const struct variable *v)
         is_ours = creal(format->values[i]) == format_text[i];
     }
     if (!is_ours) {
-        char text[32] = ""; /* what stands there, as far as it is plain text */
+        char text[32] = ""; /* its value, as far as it is plain text */
         for (size_t i = 0; i < length && i < sizeof text - 1; i++) {
             double code = creal(format->values[i]);
             text[i] = code >= ' ' && code <= '~' ? (char)code : '?';
@@ -231,8 +231,8 @@ static enum status check_samples(const char *path, const struct pings *pings, co
     return STATUS_OK;
 }
 
-/* Compression divides by the pulse's energy. A pulse so small or large that squares of it leave the precision is
-   brought to 1 by a power of two, and the samples by the same, which leaves the compressed echoes as they are. */
+/* Compression divides by the pulse's energy. A pulse so small or large that its squares leave the precision is brought
+   to 1 by a power of two, and the samples by the same; the compressed echoes stay as they are. */
 static enum status normalise_pulse(const char *path, const struct pings *pings, const struct variable *v)
 {
     const size_t each = v[SAMPLES].dims[0] * v[SAMPLES].dims[1];
@@ -365,7 +365,7 @@ enum status echo_file_read(const char *path, struct acquisition *acquisition, st
 
 enum status echo_file_is(const char *path, bool *is)
 {
-    /* What lacks its format but has `t0` is one, whose reader says what is missing. */
+    /* A file with `t0` alone is one, too: its reader reports what is missing. */
     struct wanted either[] = {echo_variables[FORMAT], echo_variables[T0]};
     struct variable variables[2];
     either[0].is_optional = either[1].is_optional = true;

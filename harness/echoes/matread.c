@@ -1,8 +1,8 @@
 /* Reading MATLAB files through libmatio.
 
-   A damaged file can make libmatio and HDF5 crash, or allocate what a few bytes claim. So every file is read by a
-   child process under resource limits, which sends the variables that we want through a pipe; whatever happens to it,
-   the program itself only learns that the file is no good. */
+   A damaged file can make libmatio and HDF5 crash, or allocate what a few bytes claim. So a child process reads every
+   file under resource limits, and sends the variables that we want through a pipe. If the child fails, the program
+   refuses the file. */
 #include "echoes/matread.h"
 
 #include <errno.h>
@@ -101,7 +101,7 @@ static void limit_resource(__rlimit_resource_t resource, rlim_t wish)
     }
 }
 
-/* Allow the process `bytes` more than it has mapped now, and the time for that. */
+/* Allow the process `bytes` more than it has mapped now, and the time to read them. */
 static void limit_memory_and_time(size_t bytes)
 {
     limit_resource(RLIMIT_CPU, (rlim_t)(clock() / CLOCKS_PER_SEC) + 10 + bytes / 10000000);
@@ -166,7 +166,7 @@ static bool is_empty(const matvar_t *matvar)
     return empty;
 }
 
-/* Where the numbers of a variable are once it has been read: libmatio reports success for some that are not there. */
+/* Find the numbers of a variable that was read: libmatio reports success for some without numbers. */
 static bool variable_parts(const matvar_t *matvar, size_t count, mat_complex_split_t *parts)
 {
     size_t type = (size_t)matvar->data_type;
@@ -241,7 +241,7 @@ static enum status send_variable(const char *path, const struct wanted *wanted, 
     size_t count = variable_count(&packet.variable);
     const struct stored stored = {name, count, matvar->isComplex != 0, matvar->class_type == MAT_C_CHAR};
     const struct pings *pings = wanted[index].pings;
-    if (!pings || pings->count == 0 || place->file) /* else it was asked before */
+    if (!pings || pings->count == 0 || place->file) /* else it was checked before */
         status = place->file ? mat5_check(path, &stored, place) : mat73_check(path, &stored);
     if (status != STATUS_OK) {
         return status;
@@ -266,7 +266,7 @@ static enum status send_variable(const char *path, const struct wanted *wanted, 
     return STATUS_OK;
 }
 
-/* libmatio ends its list without a word at what it cannot read, and what follows is as if it were not there. */
+/* libmatio silently ends its list at what it cannot read, and what follows is as if it were not there. */
 static enum status rest_check(const char *path, const struct wanted *wanted, int count, const bool *sent,
                               struct mat5 *place)
 {
@@ -330,7 +330,7 @@ static enum status send_variables(const char *path, const struct wanted *wanted,
 _Noreturn void variables_send(const char *path, const struct wanted *wanted, int count, size_t file_size,
                               int descriptor)
 {
-    /* A crash ends the child quietly: not through handlers of the program, not with words of libraries on stderr. */
+    /* A crash ends the child quietly: without the program's handlers, and without messages of libraries on stderr. */
     static const int crashes[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU};
     for (size_t i = 0; i < sizeof crashes / sizeof *crashes; i++) {
         signal(crashes[i], SIG_DFL);

@@ -1,4 +1,4 @@
-/* Reading MATLAB files: the process that asks another for the variables (matread.c). */
+/* Reading MATLAB files: the process that gets the variables from another (matread.c). */
 #define _GNU_SOURCE /* pipe2, _Fork */
 #include "echoes/matread.h"
 

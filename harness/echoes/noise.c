@@ -11,7 +11,7 @@ enum { RECORDS_MOST = 64 };
 static const double BINS_LEAST = 4;  /* beyond the band, to either side */
 static const double TAPER = 3.0 / 8; /* of white noise's energy, what a raised cosine leaves */
 static const double TAPERED = 2;     /* bins that it smears the band's edge over */
-/* Times what a pulse has beyond its band is not taken for noise: tapers and cut records change it. */
+/* This many times a pulse's energy beyond its band is no noise: tapers and cut records change it. */
 static const double FLANKS = 2;
 
 /* The mean energy of a unit echo over some of the pings: those that do not see the target have none. */

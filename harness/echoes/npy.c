@@ -19,7 +19,7 @@ struct array {
     long long shape[2]; /* rows, columns */
 };
 
-/* What stands behind 'key': in the description; NULL where the key is not there. */
+/* The text behind 'key': in the description; NULL where the key is missing. */
 static const char *value_find(const char *description, const char *key)
 {
     const char *at = strstr(description, key);

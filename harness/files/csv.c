@@ -131,8 +131,7 @@ static enum status row_read(struct cursor *cursor, struct csv *csv, int *cell_co
     return STATUS_OK;
 }
 
-/* Texts go to terminals, web pages and gnuplot, where control characters are commands: none are accepted but line
-   ends. */
+/* Texts go to terminals, web pages and gnuplot, where control characters are commands: only line ends are accepted. */
 static enum status controls_refuse(const char *path, const char *text)
 {
     int line = 1;

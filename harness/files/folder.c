@@ -133,7 +133,7 @@ bool place_sync(int descriptor)
     return fsync(descriptor) == 0 || (errno != EIO && errno != ENOSPC && errno != EDQUOT);
 }
 
-/* A name that nobody foresees and that is not there yet; `try_name` makes it, or -1. */
+/* An unpredictable name that is not there yet; `try_name` makes it, or -1. */
 static int name_make(int folder, struct made *made, int (*try_name)(int folder, const struct made *made))
 {
     int result = -1;
@@ -198,7 +198,7 @@ void place_drop(const struct place *place, struct made *made)
     errno = reason;
 }
 
-/* Whether what we make in a folder belongs to whom the folder belongs to. */
+/* Does what we make in a folder belong to the folder's owner? */
 static bool folder_ours(int folder, const struct stat *info)
 {
     const struct place place = {.folder = folder};
@@ -260,7 +260,7 @@ static enum status name_check(const char *directory)
     return STATUS_OK;
 }
 
-/* One folder, which outlasts a power cut; false: errno says why not. */
+/* Make one folder that outlasts a power cut; false: errno has the reason. */
 static bool one_make(const char *path)
 {
     struct place place;
@@ -287,7 +287,7 @@ enum status directory_make(const char *directory)
     for (char *at = path; *at; at++) {
         if (*at == '/' && at != path) {
             *at = '\0';
-            one_make(path); /* the last one tells whether it went well */
+            one_make(path); /* the last one's status decides */
             *at = '/';
         }
     }
@@ -298,8 +298,8 @@ enum status directory_make(const char *directory)
     return status;
 }
 
-/* Where others put their files, too, what we make can be replaced by theirs. Root is trusted; as root, e.g. in a
-   container, any folder is meant. */
+/* In a folder where others may write, our files can be replaced by theirs. Root is trusted; as root, e.g. in a
+   container, any folder is accepted. */
 static enum status owner_check(const char *directory, int descriptor)
 {
     struct stat info;
@@ -321,7 +321,7 @@ static enum status owner_check(const char *directory, int descriptor)
 static enum status lock_get(const char *directory, int descriptor)
 {
     int taken = flock(descriptor, LOCK_EX | LOCK_NB);
-    for (int k = 0; k < RETRIES && taken != 0 && errno == EWOULDBLOCK; k++) { /* one that was killed is still ending */
+    for (int k = 0; k < RETRIES && taken != 0 && errno == EWOULDBLOCK; k++) { /* a killed program may still be ending */
         nanosleep(&(struct timespec){.tv_nsec = 50000000}, NULL);
         taken = flock(descriptor, LOCK_EX | LOCK_NB);
     }

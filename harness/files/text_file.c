@@ -16,8 +16,8 @@ static void text_file_free(struct text_file *file)
     free(file->path);
 }
 
-/* The standard stream that `info` is, by whatever name it was given (/dev/stdout, a file that it is led into), or -1:
-   to replace it would part it from what else is printed there. */
+/* The standard stream that `info` is, under any name (/dev/stdout, a file that it is redirected to), or -1: replacing
+   it would part it from what else is printed there. */
 static int standard_stream(const struct stat *info)
 {
     struct stat stream;
@@ -36,7 +36,7 @@ static FILE *made_open(struct text_file *file)
     return stream;
 }
 
-/* A folder would be found in the way only when all is written. */
+/* Find a folder in the way before all is written, not after. */
 static bool folder_in_the_way(const struct place *place)
 {
     struct stat info;
@@ -85,7 +85,7 @@ enum status text_file_open_named(const char *path, struct text_file *file)
     return file_open(path, true, file);
 }
 
-/* Why a file could not grow before: a full disk is one still, and its file is to be dropped. */
+/* The reason why a file could not grow before: a full disk is still full. The file is to be dropped. */
 static int reason_now(int descriptor)
 {
     struct stat info;
@@ -96,7 +96,7 @@ static int reason_now(int descriptor)
     return cut && (reason == ENOSPC || reason == EDQUOT || reason == EFBIG) ? reason : EIO;
 }
 
-/* Where an earlier write failed, errno has changed since: often what is left of it fails again, with the same. */
+/* After an earlier failed write errno has changed: often a retry of the rest fails again, with the same. */
 bool stream_flush(FILE *stream)
 {
     errno = 0;
@@ -116,7 +116,7 @@ bool stream_close(FILE *stream)
     return flushed && closed;
 }
 
-/* Whether all of it is on the disk, as far as it is a file that is. */
+/* Is all of it on the disk, if it is a file? */
 static enum status file_sync(struct text_file *file, enum status status)
 {
     if (status != STATUS_OK

@@ -24,7 +24,7 @@ static enum status reason_set(char *reason, enum status status, const char *form
     return status;
 }
 
-/* No more than the file's size, so that one that grows has an end. What the kernel makes up has size 0. */
+/* No more than the file's size, so that one that grows has an end. The kernel's own files have size 0. */
 static enum status descriptor_read(int descriptor, size_t most, char **text, size_t *length, char *reason)
 {
     struct stat info;

@@ -1,4 +1,4 @@
-/* Two programs side by side (ab.h): rounds of questions to both, and what their times say. */
+/* Two programs side by side (ab.h): rounds of questions to both, and verdicts from their times. */
 #include "gate/ab.h"
 
 #include <float.h>
@@ -239,7 +239,7 @@ static struct ab_interval part_interval(const struct unit *unit, int part, doubl
     return ab_interval_find(ratios, unit->rounds, miss);
 }
 
-/* Bonferroni: over all that is compared and all times that it is looked at; half on either side. */
+/* Bonferroni: over all comparisons and all times of looking; half on either side. */
 static double miss_probability(const struct contest *contest, const struct ab_effort *effort)
 {
     int comparisons = 0, looks = 1 + (effort->rounds_most - effort->rounds_least) / effort->rounds_step;

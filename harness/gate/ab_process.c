@@ -48,7 +48,7 @@ static void child_run(const char *path, int turn, int socket)
     _exit(126);
 }
 
-/* Why it said nothing more: its process has ended, or is about to, or has but closed its output. */
+/* Why it stopped answering: its process has ended, or is about to, or has only closed its output. */
 static enum status silence(struct ab_process *process, const char *question)
 {
     int state = 0;
@@ -60,7 +60,7 @@ static enum status silence(struct ab_process *process, const char *question)
     }
     char how[80] = "closed its output";
     if (ended > 0) {
-        kill(-process->pid, SIGKILL); /* what it may have left behind */
+        kill(-process->pid, SIGKILL); /* processes that it may have left */
         process->pid = 0;
         if (WIFSIGNALED(state))
             snprintf(how, sizeof how, "was ended by signal %d (%s)", WTERMSIG(state), strsignal(WTERMSIG(state)));

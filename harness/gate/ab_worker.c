@@ -1,5 +1,5 @@
-/* The other end of `compare --ab` (ab.c), which starts it and tells it what to run. Not for the
-   terminal. It says "sasbench measure 1", then answers each line of standard input by one of standard output:
+/* The other end of `compare --ab` (ab.c), which starts it and sends it requests. Not for the
+   terminal. It prints "sasbench measure 1", then answers each line of standard input by one of standard output:
 
        plan SPEC SCENE     planned JOB HASH        JOB from 0; HASH of the scene's content
                            refused REASON          unknown, invalid or unsupported

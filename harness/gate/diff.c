@@ -42,7 +42,7 @@ static double time_ratio(const struct measurement *old, const struct measurement
     return fabs(log(ratio)) < fabs(log(least)) ? ratio : least;
 }
 
-/* What two sides are compared with. */
+/* What a comparison of two sides needs. */
 struct comparing {
     struct diff *diff;
     struct diff_side *old, *new;
@@ -88,7 +88,7 @@ static int status_rank(const char *status)
     return strcmp(status, "ok") == 0 ? 0 : strcmp(status, "unsupported") == 0 ? 1 : 2;
 }
 
-/* Two rows' times; undefined on one side is no matter: a baseline has none. */
+/* Compare two rows' times. A time on one side only does not matter: a baseline has none. */
 static void time_compare(struct comparing *comparing, const struct row_key *key, const struct row_key *found,
                          const struct column *metric, struct finding *finding)
 {
@@ -242,7 +242,7 @@ static bool is_much(const struct finding *finding)
     return !(change <= CHANGED_SLACKS * finding->slack); /* a status has no numbers: always */
 }
 
-/* A fault can flatter as well as harm: the findings from `first` on that are better by much, or in many rows. */
+/* A fault can flatter as well as harm: mark the findings from `first` on that are better by much, or in many rows. */
 static void changes_find(struct diff *diff, int first, const struct column *columns)
 {
     for (const struct column *metric = metric_first(columns); metric; metric = metric_first(metric + 1)) {

@@ -1,4 +1,4 @@
-/* What findings are kept in (diff.h), and what they come to. */
+/* Where findings are kept (diff.h), and the status that follows from them. */
 #define _GNU_SOURCE /* vasprintf */
 #include <stdarg.h>
 #include <stdio.h>

@@ -86,7 +86,7 @@ const struct row_key *side_find_measurement(const struct diff_side *side, const 
     return bsearch(key, side->keys, (size_t)side->results.csv.row_count, sizeof *side->keys, key_order_measurement);
 }
 
-/* A name may hold anything, also what ends it: the hash is what the line has behind it. */
+/* A name may contain anything, also the colon that ends it: the hash is behind the line's last one. */
 const char *side_hash(const struct diff_side *side, const char *scene)
 {
     const struct csv *csv = &side->results.csv;
