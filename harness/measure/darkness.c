@@ -14,16 +14,16 @@
 #include "echoes/echo_data.h"
 #include "range_migration/rma_conditions.h"
 
-static const double NOISE_MOST = 2;       /* 1: echoes that do not know each other, but for the chance of few pixels */
-static const double EDGES_MOST = 4.0 / 3; /* 1 + a sixth of what only side lobes of a flat, narrow band have more */
-static const double GHOSTS_MOST = 0.5;    /* beside a target they cancel: a tenth is usual in wide images */
+static const double NOISE_MOST = 2;       /* 1: independent echoes, but for the scatter of few pixels */
+static const double EDGES_MOST = 4.0 / 3; /* 1 + a sixth of the excess of side lobes alone, of a flat, narrow band */
+static const double GHOSTS_MOST = 0.5;    /* beside a target ghosts cancel: a tenth is usual in wide images */
 enum { VISITS = 1 << 18, RECORDS_LEAST = 256 };
 
-/* The plastic number's first two powers below 1: points frac(n a), frac(n b) are spread evenly over a square, however
-   many there are, and over every band of its rows or columns. */
+/* The plastic number's first two powers below 1: points frac(n a), frac(n b) are spread evenly over a square, for
+   any number of them, and over every band of its rows or columns. */
 static const double SPREAD_R = 0.7548776662466927, SPREAD_X = 0.5698402909980532;
 
-/* Sums of |s|^2, and of the squares of differences between neighbours; and of |s|^2 where ghosts are made. */
+/* Sums of |s|^2, of the squares of differences between neighbours, and of the ghosts' |s|^2. */
 struct energies {
     double met, steps, ghosts;
 };
@@ -33,14 +33,14 @@ struct survey {
     const struct image *image;
     struct traces *traces;
     double pixels;           /* of all patches */
-    int records, pairs;      /* that are read, of so many */
+    int records, pairs;      /* number of those read; of all */
     int visits;              /* pixels of a record */
     double sine;             /* |sin theta_t| up to which a ping sees a pixel */
     double sampled;          /* and up to which azimuth transforms image it */
     double complex *scratch; /* [threads][2][samples]: a record, and compressed */
 };
 
-/* Of the image, in units of the samples as they are in memory. */
+/* The image's energy, in units of the samples in memory. */
 static double image_energy(const struct image *image, int exponent)
 {
     double sum = 0;
@@ -54,7 +54,7 @@ static double image_energy(const struct image *image, int exponent)
     return sum;
 }
 
-/* A record, compressed. */
+/* A compressed record. */
 static const double complex *record_read(const struct survey *survey, int pair)
 {
     const struct echoes *echoes = survey->echoes;
@@ -68,7 +68,7 @@ static const double complex *record_read(const struct survey *survey, int pair)
     return record + samples;
 }
 
-/* Of one pair at one pixel: of the samples on either side of its delay. */
+/* Add one pair at one pixel, from the samples on either side of its delay. */
 static void pair_add(const struct survey *survey, int pair, struct vector normal, struct vector pixel,
                      const double complex *record, struct energies *energies)
 {
@@ -98,7 +98,7 @@ static void energies_add(struct energies *to, const struct energies *from, doubl
     to->ghosts += weight * from->ghosts;
 }
 
-/* Of one record at all pixels, as far as some of them tell. */
+/* One record's energies at a sample of all pixels. */
 static struct energies record_energies(const struct survey *survey, int index)
 {
     const struct acquisition *a = survey->echoes->acquisition;
@@ -151,7 +151,7 @@ static double pulse_steps(const struct problem *problem)
     return steps / all;
 }
 
-/* Of a straight track; of others no transform images anything. */
+/* Of a straight track; no transform images other tracks. */
 static double sampled_sine(const struct acquisition *a)
 {
     struct straight_track track;

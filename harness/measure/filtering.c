@@ -49,7 +49,7 @@ void filtering_apply(const struct filtering *filtering, double complex *records)
     polar_filter_apply_double(filtering->filter, records);
 }
 
-/* Of samples less `off` (may be NULL), in units of `unit` squared, so that no square overflows. */
+/* Energy of samples less `off` (may be NULL), in units of `unit` squared, so that no square overflows. */
 static double energy(const double complex *samples, const double complex *off, size_t count, double unit)
 {
     double sum = 0;

@@ -1,4 +1,4 @@
-/* One algorithm on one scene: the row of measurements.csv, filled here alone (outcome.h). */
+/* One algorithm on one scene: the only place that fills the row of measurements.csv (outcome.h). */
 #include "measure/outcome.h"
 
 #include <math.h>
@@ -20,7 +20,7 @@ static const char *const axis_names[AXES] = {[AXIS_AZIMUTH] = "azimuth", [AXIS_R
 static const char *const definition_names[DEFINITIONS] = {
     [DEFINITION_NULL] = "null", [DEFINITION_3DB] = "3db", [DEFINITION_PIXEL] = "pixel"};
 
-/* The rows of one target, and its azimuth slice by the primary definition. Returns how many rows. */
+/* The rows of one target, and its azimuth slice by the primary definition. Returns the number of rows. */
 static int target_rows(const struct session *session, const struct image *image, int index,
                        const struct measurement *row, struct target_row *rows, struct slice_metrics *azimuth)
 {
@@ -44,7 +44,7 @@ static int target_rows(const struct session *session, const struct image *image,
     return count;
 }
 
-/* One more reason, behind those that are there. */
+/* Append a reason. */
 static void __attribute__((format(printf, 3, 4))) reason_add(char *reason, size_t size, const char *format, ...)
 {
     va_list arguments;
@@ -56,7 +56,7 @@ static void __attribute__((format(printf, 3, 4))) reason_add(char *reason, size_
     va_end(arguments);
 }
 
-/* Errors of the image and the medians over the targets into the row, and the rows of the targets. */
+/* Fill the row with the errors of the image and the medians over the targets, and the targets' rows. */
 static enum status quality_fill(const struct session *session, struct outcome *outcome)
 {
     struct measurement *row = &outcome->row;
@@ -199,7 +199,7 @@ static void warnings_add(const struct condition *list, int count, struct outcome
         }
 }
 
-/* What the settings promise, held against what was measured, but for rounding. */
+/* Check the settings' promise against the measurement, with room for rounding. */
 static void promise_hold(const struct spec *spec, struct outcome *outcome)
 {
     const struct measurement *row = &outcome->row;
@@ -213,8 +213,8 @@ static void promise_hold(const struct spec *spec, struct outcome *outcome)
     }
 }
 
-/* What fails without refusing: behind the other reasons, so that a table finds it there. Where there is no exact image,
-   this one tells how dark it is. */
+/* Warnings come behind the other reasons: a table finds them there. Without an exact image, this image's own
+   darkness is measured. */
 static void warnings_fill(const struct session *session, const struct spec *asked, const struct spec *spec,
                           const struct problem *problem, struct outcome *outcome)
 {
@@ -247,7 +247,7 @@ void outcome_round(struct session *session, const struct spec *spec, struct timi
     image_free(&image);
 }
 
-/* The row of a choice names what was chosen, and what by. */
+/* The row of a choice names the chosen setting and the error behind the choice. */
 static void choice_fill(const struct chosen *chosen, struct outcome *outcome)
 {
     const struct candidate *c = &chosen->choice.list[0];

@@ -1,5 +1,4 @@
-/* The scalar reference loop (scalar_loop.h). It must stay as it is: every speed-up that was ever quoted is relative to
-   it. */
+/* The scalar reference loop (scalar_loop.h). Do not change it: every speed-up ever quoted is relative to it. */
 #include "measure/scalar_loop.h"
 
 #include <complex.h>
@@ -8,7 +7,7 @@
 
 enum { PAIRS = 1 << 18, RUN = 1024 };
 
-/* A pixel and a record, by their numbers. */
+/* Indices of a pixel and a record. */
 struct scalar_pair {
     long long pair, pixel;
 };
@@ -28,8 +27,8 @@ static double sample_position(const struct acquisition *a, const struct grid *gr
     return (*tau - a->t0[ping]) * a->fs + 0.5;
 }
 
-/* One pixel after another for each of 256 evenly spaced pairs, as an image is formed; only those whose delay lies in
-   the record, which are what an image sums. Returns how many were found. */
+/* One pixel after another for each of 256 evenly spaced pairs, as an image is formed; only pairs whose delay lies in
+   the record, as an image sums them. Returns their number. */
 static int choose(const struct acquisition *a, const struct grid *grid, struct scalar_pair *chosen)
 {
     long long pairs = (long long)a->pings * a->receivers, pixels = (long long)grid->x_count * grid->r_count;

@@ -24,7 +24,7 @@ struct problem session_problem(const struct scene *scene, const struct algorithm
     return scene_problem(scene, precision);
 }
 
-/* Takes the message of a failure along, for it is asked for again. */
+/* Keeps the message of a failure, for later requests. */
 static void choose(const struct session *session, const struct spec *spec, const struct budget *budget,
                    struct chosen *chosen)
 {
@@ -85,7 +85,7 @@ enum status session_image(struct session *session, const struct spec *asked, str
     return imaging_form(spec, &problem, &session->echoes[spec->precision], image, NULL);
 }
 
-/* What refuses the exact image may well allow others. */
+/* A refusal of the exact image need not stop other algorithms. */
 static enum status form_reference(struct session *session)
 {
     struct spec spec;

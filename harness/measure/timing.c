@@ -15,7 +15,7 @@
 #include "echoes/echo_data.h"
 #include "imaging/imaging.h"
 
-#define THREADS_SLACK 1.1 /* of processor time over threads times run time, for clocks that tick apart */
+#define THREADS_SLACK 1.1 /* of processor time over threads times run time, for clocks that tick differently */
 
 static int compare_double(const void *a, const void *b)
 {
@@ -47,8 +47,8 @@ double timing_spread(const struct timing *timing)
     return (timing->run_q3_s - timing->run_q1_s) / timing->run_s;
 }
 
-/* s: how long threads of this process were ready to run and had no processor, all together; NAN where Linux does not
-   say. */
+/* s: how long threads of this process were ready to run without a processor, in total; NAN where Linux does not
+   report it. */
 static double waited_s(void)
 {
     DIR *threads = opendir("/proc/self/task");
@@ -69,18 +69,18 @@ static double waited_s(void)
     return sum;
 }
 
-/* s of the processors that the system had for this process. */
+/* s of processor time that the system used for this process. */
 static double system_s(void)
 {
     struct rusage usage;
     return getrusage(RUSAGE_SELF, &usage) == 0 ? usage.ru_stime.tv_sec + 1e-6 * usage.ru_stime.tv_usec : 0;
 }
 
-/* Runs that are held against each other: every other one images the negated echoes, into an image of NaN. */
+/* Runs that are compared: every other one images the negated echoes, into an image of NaN. */
 struct trial {
     struct imaging *imaging;
     struct echoes *echoes;
-    int runs;           /* so far; the echoes are negated while it is odd */
+    int runs;           /* so far; while odd, the echoes are negated */
     double complex sum; /* of the last image */
 };
 
@@ -99,7 +99,7 @@ static void image_spoil(const struct image *image)
     }
 }
 
-/* Of all pixels, with weights; the sum of the negated image is its negative, to the bit. */
+/* Weighted sum of all pixels; the sum of the negated image is its exact negative. */
 static double complex image_sum(const struct image *image)
 {
     double complex sum = 0;
@@ -113,7 +113,7 @@ static double complex image_sum(const struct image *image)
     return sum;
 }
 
-/* What the imaging leaves unwritten stays NaN, which imaging_finish refuses. */
+/* Pixels that the imaging leaves unwritten stay NaN, which imaging_finish refuses. */
 static enum status run_once(struct trial *trial, struct stages *stages, double *seconds)
 {
     image_spoil(&trial->imaging->image);
@@ -131,7 +131,7 @@ static enum status run_once(struct trial *trial, struct stages *stages, double *
     return status;
 }
 
-/* The echoes as they were, and their image. */
+/* Restore the echoes and their image. */
 static void trial_end(struct trial *trial)
 {
     if (trial->runs % 2 == 1)
@@ -140,7 +140,7 @@ static void trial_end(struct trial *trial)
         image_negate(&trial->imaging->image);
 }
 
-/* s of processors that the process had. */
+/* s of processor time that the process used. */
 static double busy_s(void)
 {
     struct timespec now;
@@ -149,24 +149,25 @@ static double busy_s(void)
 
 /* How long runs are repeated: by effort, and in one of several rounds. */
 static const struct budget {
-    int runs_fewest, runs_least; /* beyond seconds_most; within */
+    int runs_fewest, runs_least; /* number of runs beyond seconds_most; within it */
     double seconds_least, seconds_most;
     double first_counts,
-        single; /* s: a first run as long as that counts, for it warms up in passing; is the only one */
+        single; /* s: a first run of at least this counts, since it warms up meanwhile; is the only one */
 } budgets[] = {[EFFORT_BRIEF] = {2, 5, 0.04, 0.15, 0.04, 0.3}, [EFFORT_WHOLE] = {3, 5, 0.5, 3, 10, 10}},
   part = {1, 2, 0.5 / TIMING_ROUNDS, 3.0 / TIMING_ROUNDS, 10, 10};
 
-/* Of a first run: beyond it the system's gift of memory is what was timed. */
+/* Of a first run: beyond it, the time is mostly the system's allocation of memory. */
 static const double system_share_most = 0.25;
 
-/* Times of repeated runs, behind those of earlier rounds. */
+/* Append the times of repeated runs to those of earlier rounds. */
 static enum status repeat(struct trial *trial, const struct budget *budget, struct timing_samples *samples)
 {
     double first, begin = seconds_now(), elapsed = 0, waited = waited_s();
     const double system = system_s();
     struct stages stages;
     int runs = 0;
-    const int most = budget == &part ? samples->runs + TIMING_RUNS / TIMING_ROUNDS : TIMING_RUNS; /* a round's share */
+    const int most =
+        budget == &part ? samples->runs + TIMING_RUNS / TIMING_ROUNDS : TIMING_RUNS; /* one round's share */
     enum status status = run_once(trial, &stages, &first);
     const bool cold = system_s() - system > system_share_most * first;
     const bool single = first >= budget->single && !cold;
@@ -192,7 +193,7 @@ static enum status repeat(struct trial *trial, const struct budget *budget, stru
     return status;
 }
 
-/* Repeated runs, held against the threads that they were given. */
+/* Repeated runs, checked against their number of threads. */
 static enum status try_runs(struct trial *trial, const struct budget *budget, struct timing_samples *samples)
 {
     const int threads = omp_get_max_threads();
@@ -226,7 +227,7 @@ static void samples_evaluate(const struct timing_samples *samples, struct timing
     timing->stages = samples->stages[nearest];
 }
 
-/* The scalar reference loop's times join the samples; *least: the faster one. */
+/* Add the scalar reference loop's times to the samples; *least: the faster one. */
 static enum status control_sample(struct control *control, bool recent, struct timing_samples *samples, double *least)
 {
     enum status status = control_measure(control, recent, least);
@@ -281,9 +282,9 @@ enum status timing_measure(const struct spec *spec, const struct problem *proble
     return status;
 }
 
-static int waits = -1; /* Linux's account of the thread, when waiting is left out */
+static int waits = -1; /* Linux's account of the thread, while waiting is excluded */
 
-/* Its second number: ns that the thread was ready to run and had no processor. */
+/* Its second number: ns that the thread was ready to run without a processor. */
 static long long waited_ns(void)
 {
     char text[80];
@@ -294,7 +295,7 @@ static long long waited_ns(void)
     return waited;
 }
 
-/* s of the processor that the thread has had. */
+/* s of processor time that the thread used. */
 static double processor_s(void)
 {
     struct timespec now;
@@ -312,7 +313,7 @@ static double clock_without_waiting(void)
     double now = clock_monotonic();
     if (idle >= 0 && now - processor_s() - idle < while_s)
         return now - 1e-9 * (double)waited;
-    do { /* again when the processor was lost between the two clocks */
+    do { /* repeat if the thread lost the processor between the two clocks */
         waited = waited_ns();
         now = clock_monotonic();
         idle = now - processor_s();

@@ -7,7 +7,7 @@
 #include "metrics/interpolation.h"
 #include "metrics/metrics.h"
 
-#define ANGLE_TOLERANCE 1e-9 /* rad; axes of files are numbers that others computed */
+#define ANGLE_TOLERANCE 1e-9 /* rad; other programs compute the axes of files */
 
 /* Where a reference patch lies within the image. */
 struct offset {
@@ -18,7 +18,7 @@ struct offset {
 static int raster_offset(double first, double step, int count, double whole_first, double whole_step, int whole_count)
 {
     double begin = (first - whole_first) / whole_step, offset = round(begin);
-    double stretch = (count - 1) * (step / whole_step - 1); /* by which the last sample is off, beside the first */
+    double stretch = (count - 1) * (step / whole_step - 1); /* offset of the last sample, besides that of the first */
     double tolerance = raster_tolerance(fmax(fabs(first), fabs(whole_first)), whole_step);
     bool matches = fabs(begin - offset) <= tolerance && fabs(begin + stretch - offset) <= tolerance;
     return matches && offset >= 0 && offset + count <= whole_count ? (int)offset : -1;
@@ -63,8 +63,8 @@ enum status metrics_cover(const struct image *image, int count, const struct gri
     return STATUS_OK;
 }
 
-/* The sums over all pixels that the errors are made of. The gain and the peak come from a first pass, so that small
-   errors are summed directly and not as differences of large sums. */
+/* Sums over all pixels for the errors. The gain and the peak come from a first pass, so that small errors are summed
+   directly and not as differences of large sums. */
 struct error_sums {
     double image, reference, reference_peak; /* energies, and the largest |reference|^2 */
     double complex cross;                    /* sum of reference conj(image) */

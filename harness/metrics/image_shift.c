@@ -12,7 +12,7 @@ struct plane {
     fftw_complex *values;
 };
 
-/* The spectrum of a patch in zeros. */
+/* The spectrum of a patch, padded with zeros. */
 static void spectrum_make(const struct image *image, struct plane *plane)
 {
     const struct grid *grid = &image->patches[0];
@@ -33,7 +33,7 @@ static double power(const struct plane *plane, int row, int column)
     return magnitude * magnitude;
 }
 
-/* Of a parabola through three samples, the middle one the largest. */
+/* The peak of a parabola through three samples, the middle one the largest. */
 static double peak_offset(double before, double at, double after)
 {
     const double curve = before - 2 * at + after;

@@ -22,7 +22,7 @@ static double power_at(const double *power, int count, double index)
     return power[k] + (index - k) * (power[k + 1] - power[k]);
 }
 
-/* Trapezoid rule over [from, to]: of an interval that an edge cuts, the share that lies inside is counted. */
+/* Trapezoid rule over [from, to]; an interval cut by an edge counts by its share inside. */
 static double power_integral(const double *power, double from, double to)
 {
     double sum = 0;
@@ -42,8 +42,8 @@ static double parabola_extremum(const double *power, int k, double *value)
 }
 
 /* First minimum on the way from sample `peak` in direction `way` (+-1), as a fractional index; NAN if the slice ends
-   before the power rises again. Where samples lie so close that the power hardly changes between them, it goes up and
-   down by the error of the interpolation: less than RISE is none. */
+   before the power rises again. Densely sampled power goes up and down by the interpolation's error: a rise below
+   RISE does not count. */
 static double minimum_find(const double *power, int count, int peak, int way)
 {
     int lowest = peak, k = peak + way;
@@ -81,7 +81,7 @@ static double islr_of_lobe(const double *power, int count, double left, double r
     return 10 * log10(outside / power_integral(power, left, right));
 }
 
-/* The slice at the image's own pixels, target on a pixel: main lobe = the highest of them +-2, plain sums. */
+/* The slice at the image's own pixels, target on a pixel: main lobe = the highest pixel +-2, plain sums. */
 static void pixel_measure(const double *power, int count, double target, double stride, double left, double right,
                           struct slice_metrics *metrics)
 {
@@ -126,7 +126,7 @@ static int peak_find(const double *power, int count, double first, double step, 
     double reach = 2 * (right - left + 1), target = -first / step;
     int from = (int)fmax(0, ceil(target - reach)), to = (int)fmin(count - 1, floor(target + reach));
     int peak = from <= to ? maximum_find(power, from, to) : -1;
-    /* Equal targets must not turn on rounding. */
+    /* Rounding must not decide between equal targets. */
     if (peak < 0 || power[strongest] > power[peak] * (1 + 1e-6)) {
         snprintf(metrics->reason, sizeof metrics->reason, "the strongest peak lies %+.4g m from the target",
                  first + strongest * step);

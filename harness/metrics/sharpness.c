@@ -1,4 +1,4 @@
-/* How sharp an image is, without knowing what it shows (metrics.h). */
+/* How sharp an image is, whatever it shows (metrics.h). */
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -8,7 +8,7 @@
 
 enum { BUCKETS = 1 << 16 };
 
-/* What is done with each pixel's magnitude over the peak's. */
+/* Applied to each pixel's magnitude over the peak's. */
 typedef void (*pixel_function)(void *sums, double ratio);
 
 static void pixels_visit(const struct image *image, double peak, pixel_function function, void *sums)
@@ -54,9 +54,9 @@ static void moments_visit(void *sums, double ratio)
     moments->power_log += power > 0 ? power * log(power) : 0;
 }
 
-/* The median by its bits, for floats >= 0 are in the order of theirs: first the upper half, then the lower one. */
+/* The median by the bits of floats: floats >= 0 sort as their bits do. First the upper half, then the lower one. */
 struct histogram {
-    uint32_t upper; /* of the bits; BUCKETS: not yet known */
+    uint32_t upper; /* of the bits; BUCKETS: not yet found */
     uint64_t counts[BUCKETS];
 };
 
@@ -72,7 +72,7 @@ static void histogram_visit(void *sums, double ratio)
         histogram->counts[bits & (BUCKETS - 1)]++;
 }
 
-/* The bucket of the value of this rank, which is then the rank within the bucket. */
+/* The bucket of the value of this rank; the rank becomes that within the bucket. */
 static uint32_t bucket_find(const struct histogram *histogram, uint64_t *rank)
 {
     uint32_t bucket = 0;

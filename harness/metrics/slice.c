@@ -1,5 +1,5 @@
 /* Azimuth and range slices through point targets, interpolated finely (metrics.h). */
-#include <complex.h> /* before fftw3.h, whose numbers are then C's */
+#include <complex.h> /* before fftw3.h, which then uses C's complex numbers */
 #include <fftw3.h>
 #include <limits.h>
 #include <math.h>
@@ -55,7 +55,7 @@ static int slice_reach(const struct line *line, int fine)
     return (int)fmin(floor(reach * fine + RASTER_TOLERANCE), INT_MAX / 4);
 }
 
-/* Power at the places target + k step/fine, |k| <= half_count: there are `fine` different sets of taps. */
+/* Power at the places target + k step/fine, |k| <= half_count, from `fine` sets of taps. */
 static double *line_refine(const struct line *line, int fine, int half_count)
 {
     size_t bytes = (2 * (size_t)half_count + 1) * sizeof(double);
@@ -78,8 +78,7 @@ static double *line_refine(const struct line *line, int fine, int half_count)
     return power;
 }
 
-/* The line through a target that its slice is refined from; without samples, and with the reason, when there is
-   none. */
+/* The line through a target for its slice; without a line no samples, but the reason. */
 static struct line line_extract(const struct image *image, const struct acquisition *acquisition,
                                 const struct target *target, enum axis axis, char *reason, size_t size)
 {
@@ -91,7 +90,7 @@ static struct line line_extract(const struct image *image, const struct acquisit
     const struct grid *grid = place.grid;
     struct line line = axis == AXIS_AZIMUTH ? (struct line){NULL, grid->x_count, grid->x_step, place.column}
                                             : (struct line){NULL, grid->r_count, grid->r_step, place.row};
-    /* Azimuth slices on a range row need nothing from the other rows. */
+    /* Azimuth slices on a range row do not use the other rows. */
     double range_limit = acquisition->sound_speed / (2 * acquisition->bandwidth);
     if ((axis == AXIS_RANGE || place.row != floor(place.row)) && grid->r_step > range_limit * (1 + 1e-9)) {
         snprintf(reason, size, "range step %.4g m too coarse, c/(2B) = %.4g m at most", grid->r_step, range_limit);
@@ -101,7 +100,7 @@ static struct line line_extract(const struct image *image, const struct acquisit
         snprintf(reason, size, "the %s slice is shorter than 3 samples", axis == AXIS_AZIMUTH ? "azimuth" : "range");
         return line;
     }
-    const double bytes = (double)line.count * sizeof *line.samples; /* and a transform of it, with as much again */
+    const double bytes = (double)line.count * sizeof *line.samples; /* its transform takes twice as much again */
     if (memory_check(3 * bytes, "the slice") == STATUS_OK)
         line.samples = malloc((size_t)line.count * sizeof *line.samples);
     if (!line.samples) {

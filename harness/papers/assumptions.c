@@ -26,8 +26,7 @@ void assumptions_choose(const struct assumptions *assumptions)
     chosen = assumptions;
 }
 
-/* A target moves with the patch around it, and the pixels that are compared with the patch; those of one patch for
-   many, and scatterers, stay. */
+/* A target moves with its patch and the compared pixels; scatterers, and a patch shared by many targets, stay. */
 static bool target_move(struct scene *scene, int k, double way)
 {
     if (scene->patch_count != scene->point_count || way == 0)
@@ -65,7 +64,7 @@ static bool assume(struct scene *scene)
     return changed;
 }
 
-/* SQ18 and PF05 print what the sets change. */
+/* SQ18 and PF05 print the values that the sets change. */
 static bool is_printed(const char *name)
 {
     return strncmp(name, "sq18/", 5) == 0 || strncmp(name, "pf05/", 5) == 0;

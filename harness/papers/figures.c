@@ -21,16 +21,16 @@
 
 enum { SCENES_MAX = 6, METHODS_MAX = 5, PANELS_MAX = 6 };
 
-/* Figures of the same images. A method's SPEC NULL is the exact image, which stands for the papers' back projection. */
+/* Figures of the same images. A method's SPEC NULL is the exact image, in place of the papers' back projection. */
 struct figures {
-    const char *layout;                  /* ids; NULL: there is none. Where the targets lie */
+    const char *layout;                  /* ids; NULL: none. The layout of the targets */
     const char *images, *slices, *close; /* close: the slices near the peak */
-    double close_m;                      /* to either side */
+    double close_m;                      /* shown to either side */
     const char *title;
     int first; /* the papers' number of the first target of a layout */
     struct {
         const char *scene;
-        int targets;      /* how many of its targets, the first ones, are the papers' */
+        int targets;      /* number of its targets, from the first, that the papers have */
         const char *what; /* its panels' titles begin with this; may be NULL */
     } scenes[SCENES_MAX];
     struct {
@@ -120,7 +120,7 @@ enum { SETS = sizeof sets / sizeof *sets };
 struct drawing {
     const struct figures *set;
     const char *directory;
-    bool images, slices, close; /* asked for and not there */
+    bool images, slices, close; /* requested and missing */
     int panel_count, method_count;
     char titles[PANELS_MAX][120], footer[PROVENANCE_LINE];
     struct slice_line lines[PANELS_MAX][METHODS_MAX];
@@ -146,7 +146,7 @@ static void report(const struct drawing *drawing, enum status status)
     ++*drawing->undrawn;
 }
 
-/* Is there an id, is it asked for, and is its picture, or its last image, missing? */
+/* Is there an id, is it requested, and is its picture, or its last image, missing? */
 static bool wanted(const struct drawing *drawing, const char *id, bool asked, bool images)
 {
     char path[4200];
@@ -234,7 +234,7 @@ static enum status scene_use(struct drawing *drawing, int s, int first)
     return status;
 }
 
-/* One panel a target; `most_m`: only so far from the target. */
+/* One panel a target; `most_m`: distance from the target that is shown. */
 static void slices_draw(const struct drawing *drawing, const char *id, double most_m)
 {
     struct slice_line shown[PANELS_MAX * METHODS_MAX];
@@ -348,7 +348,7 @@ static bool is_drawn(const char *directory, enum step step, char path[4200])
     return place_is_file(path);
 }
 
-/* Records side by side, as an image over the transmitter's place and half the way of the sound. */
+/* Records side by side, as an image over the transmitter's place and half the sound's path. */
 static enum status records_draw(const struct acquisition *a, const double complex *records, const char *path,
                                 const char *title, int *undrawn)
 {

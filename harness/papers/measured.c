@@ -1,4 +1,4 @@
-/* A results folder as the papers' tables and claims look into it (measured.h). */
+/* A results folder as input of the papers' tables and claims (measured.h). */
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -50,7 +50,7 @@ void measured_free(struct measured *measured)
     csv_free(&measured->published);
 }
 
-/* Only the first is kept: it explains the others. */
+/* Only the first reason is kept: it explains the others. */
 double measured_missing(struct measured *measured, const char *format, ...)
 {
     va_list arguments;
@@ -61,7 +61,7 @@ double measured_missing(struct measured *measured, const char *format, ...)
     return NAN;
 }
 
-/* The row of a SPEC on a scene, however it went; NULL if there is none or the SPEC is none (*valid: false). */
+/* The row of a SPEC on a scene, of any status; NULL if there is none or the SPEC is invalid (*valid: false). */
 static const struct measurement *row_find(const struct measured *measured, const char *scene, const char *spec_text,
                                           bool *valid)
 {
@@ -87,7 +87,7 @@ const struct measurement *measured_row(const struct measured *measured, const ch
     return row && strcmp(row->status, "ok") == 0 ? row : NULL;
 }
 
-/* The measurement, if it is there and went well. */
+/* The measurement, if it exists and is ok. */
 static const struct measurement *measurement_find(struct measured *measured, const char *scene, const char *spec_text)
 {
     bool valid;

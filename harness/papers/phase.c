@@ -1,5 +1,5 @@
-/* How far each formula of the two-dimensional spectrum is from the exact one (LBF21 Figs 2 to
-   9), so that one sees before imaging whether LBF or PCA is good enough for a set-up. */
+/* How far each formula of the two-dimensional spectrum is from the exact one (LBF21 Figs 2 to 9). It shows before
+   imaging whether LBF or PCA is accurate enough for a set-up. */
 #include "papers/phase.h"
 
 #include <math.h>
@@ -53,7 +53,7 @@ struct study {
     double offset[RECEIVERS];                    /* m: of the first and the last receiver */
     int receiver[RECEIVERS];                     /* their numbers, from 1 */
     double frequency[FREQUENCIES];               /* Hz: f_tau of -B/2, 0, B/2 */
-    double nu_max;                               /* cycles/m: the transmitter's 1/D_tx, or where the spectrum ends */
+    double nu_max;                               /* cycles/m: the transmitter's 1/D_tx, or the end of the spectrum */
     double largest[RECEIVERS][FORMULAS][RANGES]; /* rad */
 };
 
@@ -94,7 +94,7 @@ static enum status study_begin(const struct scene *scene, struct study *study)
     return STATUS_OK;
 }
 
-/* All curves as CSV; finds the largest errors on the way. */
+/* All curves as CSV; finds the largest errors as well. */
 static enum status study_write(struct study *study, const char *path)
 {
     struct text_file text;
@@ -124,7 +124,7 @@ static enum status study_write(struct study *study, const char *path)
     return text_file_close(&text, STATUS_OK);
 }
 
-/* What LBF21 prints for a line of the study, and whether it is only a bound; 0 where it prints nothing. */
+/* The value that LBF21 prints for a line of the study, and whether it is only a bound; 0 where it prints none. */
 static double printed_find(const struct csv *published, const struct study *study, int receiver, int formula,
                            bool *bound)
 {

@@ -15,8 +15,8 @@
 #include "papers/tables.h"
 #include "scene/random_scene.h"
 
-enum { SCENES = 200, SEED_FIRST = 7001, SEEDS_MOST = 300 }; /* other seeds than the planner was made with */
-static const double budget = 0.1, twice = 2; /* error; f_s over the bandwidth, as BP22 section 3.3 takes it */
+enum { SCENES = 200, SEED_FIRST = 7001, SEEDS_MOST = 300 }; /* not the seeds that the planner was made with */
+static const double budget = 0.1, twice = 2;                /* error; f_s over the bandwidth, as in BP22 section 3.3 */
 
 /* ---- the rules ---- */
 
@@ -32,7 +32,7 @@ static int zp15_rate(const struct acquisition *a)
 
 static const struct {
     const char *algorithm, *param;
-    int inserted, most; /* the rate is the setting plus `inserted`; the algorithm takes up to `most` */
+    int inserted, most; /* the rate is the setting plus `inserted`; `most`: the algorithm's largest */
     int (*rate)(const struct acquisition *a);
 } rules[] = {{"bp_linear", "beta", 1, 1025, bp22_rate}, {"bp_zeropad", "factor", 0, 256, zp15_rate}};
 enum { RULES = sizeof rules / sizeof *rules };
@@ -44,7 +44,7 @@ const char *const rule_quantities[] = {"met", "met_2b", "error", "overpaid", NUL
 
 static const char header[] = "seed,rule,algorithm,options,oversampling,error_gain,rate,rate_enough";
 
-/* "beta=7" for so many samples in place of one. */
+/* The option for a rate: "beta=7". */
 static void options_format(int rule, int rate, char *text, size_t size)
 {
     snprintf(text, size, "%s=%d", rules[rule].param, rate - rules[rule].inserted);
@@ -71,10 +71,10 @@ static bool rate_suffices(const struct problem *problem, int rule, int rate)
     return within;
 }
 
-/* The least rate whose predicted error is within the budget; NAN where none is. */
+/* The least rate with a predicted error within the budget; NAN without one. */
 static double rate_enough(const struct problem *problem, int rule)
 {
-    int high = 1, low = 0; /* a rate that is enough, or none; one that is not */
+    int high = 1, low = 0; /* the least sufficient rate so far, or none; an insufficient one */
     while (!rate_suffices(problem, rule, high)) {
         if (high == rules[rule].most)
             return NAN;
@@ -121,7 +121,7 @@ static enum status rule_follow(struct session *session, int seed, int rule, FILE
     return STATUS_OK;
 }
 
-/* One scene; `path` is its file, written over. *count grows by one where its exact image holds anything. */
+/* One scene; `path` is its file, which is overwritten. *count grows by one where its exact image is not empty. */
 static enum status seed_follow(int seed, const char *path, FILE *file, int *count)
 {
     struct text_file drawn;

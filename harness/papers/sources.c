@@ -1,4 +1,4 @@
-/* Which measurement stands for a printed number (sources.h). */
+/* Which measurement corresponds to a printed number (sources.h). */
 #include "papers/sources.h"
 
 #include <math.h>
@@ -48,15 +48,15 @@ static const struct place {
     {"sq18_f3a", "T5", "sq18/squint_20", 4},     {"sq18_f3b", "T1", "sq18/squint_20", 0},
 };
 
-/* Plain engines are timed on a part of the task, and each stage scaled to all of it: back projection on some
-   columns, of which the sums depend and the compression does not; range migration with a sixth of the receivers, on
-   which the conversion depends twice (receivers and wavenumbers) and all else once. */
+/* Plain engines are timed on a part of the task, and each stage is scaled to all of it. Back projection uses some
+   columns: its sums grow with them, the compression does not. Range migration uses a sixth of the receivers: its
+   conversion grows with their square (receivers and wavenumbers), all else in proportion. */
 static const struct scaling bp22_columns = {48, "focus", 1}, lbf21_columns = {40, "focus", 1};
 static const struct scaling lbf21_part = {36, "bulk differential reconstruct", 6};
 
-/* What the papers call a method, in the tables named. `kind` tells methods of a table apart that are measured in
-   different ways: back projection by zero padding (b) or sinc (s), range migration by LBF (l) or a formula (r), omega-k
-   (w). */
+/* The papers' name of a method, in the tables named. `kind` distinguishes methods of a table that are measured in
+   different ways: back projection by zero padding (b) or sinc (s), range migration by LBF (l) or a formula (r),
+   omega-k (w). */
 static const struct method {
     const char *tables, *name;
     char kind;
@@ -131,7 +131,7 @@ static const struct way {
 enum { PLACES = sizeof places / sizeof *places, METHODS = sizeof methods / sizeof *methods };
 enum { WAYS = sizeof ways / sizeof *ways };
 
-/* Is the table one of those that the method is named for? No id is part of another. */
+/* Is the table one of the method's? No id is part of another. */
 static bool goes_with(const struct way *way, const struct method *method)
 {
     return strstr(method->tables, way->table) && (!way->kinds || strchr(way->kinds, method->kind));
@@ -190,7 +190,7 @@ int need_add(struct need *needs, int count, int room, struct need need)
     return count + 1;
 }
 
-/* Texts of needs live as long as the program: SPECs are put together once. */
+/* Texts of needs live as long as the program: each SPEC is made once. */
 static const char *spec_kept(const char *spec)
 {
     static char kept[64][200];
@@ -233,7 +233,7 @@ static double source_seconds(struct measured *measured, const struct source *sou
     return scaling->factor * scaled + scaling->rest * (seconds - scaled);
 }
 
-/* All methods but back projection have the same times where that is by sinc. */
+/* The definition for all methods but back projection: theirs are the same when back projection is by sinc. */
 static const char *definition_of_others(const char *definition)
 {
     return strcmp(definition, PLAIN_SINC) == 0  ? PLAIN_TIMES
@@ -288,7 +288,7 @@ double table_noise(const struct measured *measured, const char *id, const char *
     return noise;
 }
 
-/* The table whose times are divided by those of `base` is one of times. */
+/* A table has times if it divides them by those of `base`. */
 static bool table_has_times(const char *id)
 {
     for (const struct paper_table *table = paper_tables; table->id; table++)

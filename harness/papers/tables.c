@@ -1,5 +1,5 @@
-/* The papers' tables and figures (tables.h): for each printed number, which measurement stands for it, by every
-   definition that could be meant. */
+/* The papers' tables and figures (tables.h): for each printed number the corresponding measurement, by every
+   possible definition. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,7 +25,7 @@ struct lines {
     struct measured *measured;
     struct reproduced *line;
     int count, room;
-    bool failed; /* no memory */
+    bool failed; /* without memory */
 };
 
 /* "pixel", or "pixel, corrected" where the number is the corrected scheme's. Kept for the lines. */
@@ -43,7 +43,7 @@ static const char *label_of(const struct source *source, const char *definition)
     return labels[k];
 }
 
-/* A line for the printed number in `row`, with the value that was just asked for. */
+/* A line for the printed number in `row`, with the value just requested. */
 static void line_add(struct lines *lines, int row, const struct paper_table *table, const char *definition,
                      double paper, double ours)
 {
@@ -79,13 +79,13 @@ static bool source_is(const struct source *source, const struct paper_table *tab
     return strcmp(source->table, table->id) == 0 && strcmp(source->method, method) == 0;
 }
 
-/* PSLR, ISLR and the like: of the target that stands for the printed one. */
+/* PSLR, ISLR and the like, of the target that corresponds to the printed one. */
 static void lines_of_target(struct lines *lines, int row, const struct paper_table *table, double paper)
 {
     static const struct {
         const char *quantity, *definition, *label;
         size_t offset;
-        bool magnitude; /* is what the paper prints */
+        bool magnitude; /* the paper prints the magnitude */
     } kinds[] = {
         {"pslr_db", "null", "null", offsetof(struct target_row, pslr_db), false},
         {"pslr_db", "pixel", "pixel", offsetof(struct target_row, pslr_db), false},
@@ -115,7 +115,7 @@ static void lines_of_target(struct lines *lines, int row, const struct paper_tab
     }
 }
 
-/* Times, as ratios of both the paper's and ours to those of the table's base. */
+/* Times, the paper's and ours, as ratios to those of the table's base. */
 static void lines_of_time(struct lines *lines, int row, const struct paper_table *table, double paper)
 {
     struct measured *measured = lines->measured;
@@ -189,7 +189,7 @@ static void lines_of_phase(struct lines *lines, int row, const struct paper_tabl
             }
 }
 
-/* By the nominal resolution, and by the one that the scene of Table 3 has. */
+/* By the nominal resolution, and by that of Table 3's scene. */
 static void lines_of_rate(struct lines *lines, int row, const struct paper_table *table, double paper)
 {
     struct scene scene;
@@ -215,7 +215,7 @@ bool table_has_phases(const char *id)
     return has;
 }
 
-/* Does it take its numbers from plans? */
+/* Does the table take its numbers from plans? */
 static bool table_is_planned(const char *id)
 {
     struct source source;

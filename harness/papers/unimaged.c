@@ -1,4 +1,4 @@
-/* What scenes and plans carry and the polar-format filter keeps (unimaged.h). */
+/* Numbers of scenes, plans and the polar-format filter (unimaged.h). */
 #include "papers/unimaged.h"
 
 #include <math.h>
@@ -29,7 +29,7 @@ static bool is_kept(const struct measured *measured, const struct scene_number *
     return false;
 }
 
-/* The last place is used again where there are too many. */
+/* Without room, the last place is used again. */
 static void keep(struct measured *measured, const struct scene_number *asked, enum scene_quantity quantity,
                  double value)
 {
@@ -64,7 +64,7 @@ static enum status plan_find(struct measured *measured, const struct scene_numbe
     return STATUS_OK;
 }
 
-/* Upsampling, or both energies of a target. */
+/* The upsampling factor, or both energies of a target. */
 static enum status filter_find(struct measured *measured, const struct scene_number *asked, const struct scene *scene,
                                const struct spec *spec)
 {
@@ -132,8 +132,8 @@ const char *const scene_number_names[] = {
     "bin_m",           "wavelength_m",   "tx_length_m",        "recording_s",        "speed_m_s",
     "sound_speed_m_s", "edge_phase_rad", "linear_2_bound_rad", "linear_8_bound_rad", NULL};
 
-/* What linear upsampling by beta leaves at the edge of the band: the nearest of its points lies up to 1/(beta + 1)
-   of the way off that a nearest sample does, and a point's own phase, atan(t tan(edge)), is not the line's, t edge. */
+/* The error of linear upsampling by beta at the band's edge: the nearest of its points is up to 1/(beta + 1) as far
+   away as a nearest sample, and a point's own phase, atan(t tan(edge)), differs from the line's, t edge. */
 static double linear_bound_rad(double edge, int beta)
 {
     double bent = 0;
@@ -148,7 +148,8 @@ double scene_number_value(int place, const struct acquisition *a)
 {
     struct straight_track track;
     const bool straight = acquisition_is_straight(a, &track);
-    const double edge = acos(-1) * a->bandwidth / (2 * a->fs); /* what the nearest sample misses there, half a sample */
+    const double edge =
+        acos(-1) * a->bandwidth / (2 * a->fs); /* phase error of the nearest sample there, half a sample */
     const double numbers[] = {a->sound_speed / (2 * a->fs),
                               a->sound_speed / a->fc,
                               a->tx_length,

@@ -14,7 +14,7 @@
 
 /* --- Text ------------------------------------------------------------------------------------------------------ */
 
-/* The character at *text, which is then the next one. */
+/* Write the character at *text and advance to the next one. */
 static void character_write(struct page *page, const char **text)
 {
     static const struct {
@@ -119,7 +119,7 @@ void page_table_begin(struct page *page, int count, const struct page_column *co
     fputs("</tr></thead>\n<tbody>\n", page->stream);
 }
 
-/* A row's name, which may be a long SPEC: its parts may stand on lines of their own. */
+/* A row's name, which may be a long SPEC: it may break between its parts. */
 static void name_write(struct page *page, const char *name)
 {
     fputs("<th>", page->stream);
@@ -166,8 +166,8 @@ void page_table_end(struct page *page)
 
 /* --- Pictures -------------------------------------------------------------------------------------------------- */
 
-/* The file of a descriptor, which is closed; -1: the one at `path`. A picture lies in the folder itself: a link would
-   show another file's content, and a pipe would wait for a writer. */
+/* The file of a descriptor, which is closed; -1: the one at `path`. A picture must be in the folder itself: a link
+   would show another file's content, and a pipe would wait for a writer. */
 static enum status file_read(int descriptor, const char *path, char **bytes, size_t *size)
 {
     struct stat info;
@@ -194,7 +194,7 @@ static enum status file_read(int descriptor, const char *path, char **bytes, siz
     return status;
 }
 
-/* An SVG file's root element. Its names are unique within the file only: each gets the drawing's number in front. */
+/* An SVG file's root element. Its names are unique within the file only: each gets the drawing's number as prefix. */
 static void drawing_write(struct page *page, const char *svg)
 {
     static const char *const marks[] = {" id=\"", " id='", "href='#", "href=\"#", "url(#"};
@@ -272,7 +272,7 @@ void page_files(struct page *page, const char *before, int count, const char *co
     fputs("</p>\n", page->stream);
 }
 
-/* A picture of the type, a link around it where `link` is not NULL. */
+/* A picture of the type, inside a link where `link` is not NULL. */
 static enum status figure_write(struct page *page, int descriptor, const char *path, const char *type, const char *link,
                                 const char *caption)
 {

@@ -15,7 +15,7 @@
 
 /* --- Commands --------------------------------------------------------------------------------------------------- */
 
-/* As one word of a shell. */
+/* Quoted as one word of a shell. */
 static void word_append(char *text, size_t size, const char *word)
 {
     bool plain = *word && *word != '-';
@@ -43,7 +43,7 @@ void measured_again(const struct measurement *row, char *text, size_t size)
 
 /* --- Points and axes -------------------------------------------------------------------------------------------- */
 
-/* A point as gnuplot numbers its filled ones. */
+/* A point by gnuplot's number of its filled ones. */
 static void mark_write(FILE *stream, const struct family *family, bool open, double x, double y, double size)
 {
     static const char *const paths[] = {[1] = "M-1 0H1M0 -1V1",
@@ -62,7 +62,8 @@ static void mark_write(FILE *stream, const struct family *family, bool open, dou
             size, lines || open ? "#fff" : family->colour, family->colour, path);
 }
 
-/* Lines at powers of ten, on short axes also at 2 and 5 of them, with their texts; Relative costs are speed-up. */
+/* Lines at powers of ten, on short axes also at 2 and 5 of them, with their texts. Relative costs appear as
+   speed-up. */
 static void axis_write(FILE *stream, const struct chart *chart, bool vertical, double text_px)
 {
     const double low = vertical ? chart->error_low : chart->cost_low,
@@ -91,7 +92,7 @@ static void axis_write(FILE *stream, const struct chart *chart, bool vertical, d
         }
 }
 
-/* The front as steps: what is reached within a time. */
+/* The front as steps: the error reached within a time. */
 static void front_write(FILE *stream, const struct chart *chart, const struct points *points)
 {
     for (int k = 0; k < points->front_count; k++) {

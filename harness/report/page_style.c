@@ -1,4 +1,4 @@
-/* How an HTML page looks, on a screen, on a narrow one, and printed; and what its script does. */
+/* The look of an HTML page, on a screen, on a narrow one, and printed; and its script. */
 #include "report/page.h"
 
 const char page_style[] =
@@ -79,7 +79,7 @@ const char page_style[] =
     "}\n"
     "</style>\n";
 
-/* The title of the point that has the focus, below its chart, where it can be read and copied. */
+/* Show the title of the focused point below its chart, where it can be read and copied. */
 const char page_script[] =
     "<script>\n"
     "for (const chart of document.querySelectorAll('svg.chart')) {\n"

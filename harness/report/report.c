@@ -22,11 +22,11 @@ struct folder {
     struct points *points; /* [scene_count] */
     int scene_count;
     struct csv csvs[REPORT_TABLES]; /* column_count 0: not there */
-    struct dirent **files;          /* [file_count] PNG files of what was drawn of the whole, by name */
+    struct dirent **files;          /* [file_count] PNG files that belong to no single scene, by name */
     int file_count;
 };
 
-/* Has the folder measurements, or only what `stability` wrote? */
+/* Has the folder measurements, or only the files of `stability`? */
 static bool is_measured(const struct folder *folder)
 {
     return folder->results.csv.column_count > 0;
@@ -65,7 +65,7 @@ static enum status folder_read(const char *directory, struct folder *folder)
     char path[4096];
     *folder = (struct folder){.directory = directory};
     snprintf(path, sizeof path, "%s/measurements.csv", directory);
-    /* What `stability` wrote stands alone. */
+    /* The files of `stability` suffice. */
     const bool there = access(path, F_OK) == 0;
     enum status status = STATUS_OK;
     if (!there)
@@ -105,8 +105,7 @@ static void machine_show(struct page *page, const struct folder *folder)
     page_table_end(page);
 }
 
-/* What `phase` and `reproduce` drew as the papers do, and what `stability` and `sweep` drew: as SVG where that is
-   there. */
+/* The pictures of `phase`, `reproduce`, `stability` and `sweep`: as SVG where it exists. */
 static enum status figures_show(struct page *page, const struct folder *folder)
 {
     enum status status = STATUS_OK;

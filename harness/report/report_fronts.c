@@ -160,7 +160,7 @@ enum status report_fronts_show(struct page *page, const struct points *points, i
 
 /* --- The fastest for each power of ten -------------------------------------------------------------------------- */
 
-/* The setting, where the algorithm has several; time and speed-up. */
+/* The setting, if the algorithm has several; time and speed-up. */
 static void fastest_text(const struct points *points, const struct measurement *row, char *text, size_t size)
 {
     int k = 0;

@@ -10,7 +10,7 @@
 #include "show/table.h"
 
 enum { COLUMNS_MOST = 32, DERIVED = 4, WARNING_LENGTH = 600 };
-/* What stands ahead of the metrics. */
+/* Columns ahead of the metrics. */
 static const struct page_column derived_columns[DERIVED] = {
     {"algorithm", false}, {"run time", true}, {"speed-up", true}, {"plan", true}};
 
@@ -25,7 +25,7 @@ static bool is_warned(const struct measurement *row, const char *warning)
     return false;
 }
 
-/* Which images of the row's scene have a warning; empty where an earlier row has it and so told. */
+/* Which images of the row's scene have a warning; empty where an earlier row has it and has listed them. */
 static void warned_find(const struct results *results, int row, const char *warning, char *who, size_t size)
 {
     char spec[512];
@@ -77,7 +77,7 @@ void report_warnings_show(struct page *page, const struct results *results)
 
 /* --- Rows ------------------------------------------------------------------------------------------------------ */
 
-/* Does any image of it show that it has no targets? */
+/* Has the scene no targets, according to any of its images? */
 static bool scene_is_blind(const struct results *results, const char *scene)
 {
     bool blind = false;
@@ -92,7 +92,7 @@ static void note_add(char *note, size_t size, const char *text)
         text_append(note, size, "%s%s", *note ? "; " : "", text);
 }
 
-/* Engine, what was left out, and of the reason what is no warning. */
+/* Engine, left-out work, and the parts of the reason that are no warnings. */
 static void note_make(const struct measurement *row, char *note, size_t size)
 {
     char text[1200];
@@ -137,7 +137,7 @@ static void row_show(struct page *page, const struct measurement *row, bool blin
         page_row_note(page, "", note);
 }
 
-/* The columns of a table; titles of metrics with their units are kept in `titles`. */
+/* The columns of a table; `titles` keeps metrics' titles with their units. */
 static int columns_make(bool blind, struct page_column columns[COLUMNS_MOST], char titles[COLUMNS_MOST][48])
 {
     int count = DERIVED;

@@ -11,10 +11,10 @@
 #include "report/report.h"
 #include "report/thumbnails.h"
 
-/* Thumbnails: bytes in the page of all of them, shared by the scenes; their pixels, and how many more slices have. */
+/* Thumbnails: total bytes in the page, shared by the scenes; their pixels; factor of pixels of slices. */
 static const double BYTES_MOST = 2e6, PIXELS_LEAST = 1.2e4, PIXELS_MOST = 1e5, SLICES_LARGER = 2;
 
-/* Bytes in the page of a thumbnail, in base64, as measured between 1e4 and 1e5 pixels. */
+/* A thumbnail's bytes in the page, in base64, as measured between 1e4 and 1e5 pixels. */
 static double thumbnail_bytes(double pixels)
 {
     return 12.7e3 * pow(pixels / 1.05e4, 0.69);
@@ -31,7 +31,7 @@ static bool room_for(const struct page *page, const struct stat *info, double gr
 
 bool report_room(const struct page *page, const char *path, double growth, struct pictures_count *count)
 {
-    struct stat info; /* missing: not drawn, a sweep's images, a run without gnuplot */
+    struct stat info; /* missing: pictures not drawn, a sweep's images, a run without gnuplot */
     return lstat(path, &info) == 0 && room_for(page, &info, growth, count);
 }
 
@@ -96,7 +96,7 @@ static enum status pictures_find(const char *directory, const struct results *re
     return STATUS_OK;
 }
 
-/* How large a scene's thumbnails are within its share of the bytes, and how many images have one. */
+/* The size of a scene's thumbnails within its share of the bytes, and the number of images that have one. */
 static int thumbnails_choose(double share, int images, double *pixels)
 {
     *pixels = PIXELS_MOST;

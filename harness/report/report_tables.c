@@ -9,14 +9,14 @@
 #include "text/text_append.h"
 #include "show/plot.h"
 
-/* Empty where there is no such column. */
+/* Empty without such a column. */
 static const char *cell_of(const struct csv *csv, int row, const char *column)
 {
     const int index = csv_column(csv, column);
     return index < 0 ? "" : csv_cell(csv, row, index);
 }
 
-/* What was chosen, a line an image. */
+/* The chosen settings, a line an image. */
 static void plans_summary_show(struct page *page, const struct csv *csv)
 {
     enum { COLUMNS = 6 };
@@ -195,7 +195,7 @@ enum status report_table_read(const char *directory, const struct report_table *
     return status;
 }
 
-/* How a verdict looks; NULL for none of the verdicts. */
+/* The style of a verdict; NULL for other texts. */
 static const char *verdict_class(const char *verdict)
 {
     static const char *const classes[CLAIM_VERDICTS] = {[CLAIM_HOLDS] = "good",
@@ -209,7 +209,7 @@ static const char *verdict_class(const char *verdict)
     return NULL;
 }
 
-/* How many of each verdict there are, for each column of verdicts. */
+/* Counts of each verdict, for each column of verdicts. */
 static void verdicts_count_show(struct page *page, const struct report_table *table, const struct csv *csv)
 {
     for (int k = 0; k < REPORT_COLUMNS && table->columns[k].title; k++) {
@@ -260,7 +260,7 @@ static void rows_show(struct page *page, const struct report_table *table, const
     page_table_end(page);
 }
 
-/* What a group is called: a table of the papers by its title. */
+/* The title of a group: that of the paper's table. */
 static void group_title(const struct report_table *table, const char *group, char *title, size_t size)
 {
     snprintf(title, size, "%s", group);

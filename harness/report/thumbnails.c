@@ -9,7 +9,7 @@
 
 #include "files/folder.h"
 
-enum { SIDE_MOST = 6000 }; /* pixels: of a picture that is read */
+enum { SIDE_MOST = 6000 }; /* limit of a picture's sides, pixels */
 
 void thumbnails_begin(struct thumbnails *thumbnails)
 {
@@ -30,7 +30,7 @@ void thumbnails_end(struct thumbnails *thumbnails)
     *thumbnails = (struct thumbnails){.count = 0};
 }
 
-/* Width and height of a PNG file, from its first bytes; false for anything else. */
+/* Width and height of a PNG file, from its first bytes; false for other files. */
 static bool size_read(int file, int size[2])
 {
     static const char head[] = "\x89PNG\r\n\x1a\n";
@@ -73,7 +73,8 @@ void thumbnails_draw(struct thumbnails *thumbnails, const char *plots_directory)
     if (thumbnails->count == 0)
         return;
     fprintf(thumbnails->plot.preamble, "thumbnails = %d\n", thumbnails->count);
-    (void)plot_run(&thumbnails->plot, plots_directory, "thumbnails.gp"); /* those before a faulty one are there */
+    (void)plot_run(&thumbnails->plot, plots_directory,
+                   "thumbnails.gp"); /* thumbnails before a faulty picture are kept */
 }
 
 int thumbnails_file(const struct thumbnails *thumbnails, int number)

@@ -18,9 +18,9 @@
 #define T_METRIC(name, unit, better, ...)   METRIC(target_row, name, unit, better, CLASS_QUALITY, __VA_ARGS__, {NULL})
 /* clang-format on */
 
-/* Slacks of quality are about a hundred times what compilers and instruction sets make of the same source: rounding,
-   1e-8 of an error (results/README.md). Work is exact. Two runs at different times can only tell a factor in time;
-   `compare --ab` tells per cents. */
+/* Slacks of quality are about a hundred times the differences between compilers and instruction sets for the same
+   source: rounding, 1e-8 of an error (results/README.md). Work is exact. Two runs at different times resolve only a
+   factor in time; `compare --ab` resolves per cents. */
 const struct column measurement_columns[] = {
     M_COLUMN(TEXT, scene),
     M_COLUMN(TEXT, algorithm),

@@ -1,4 +1,5 @@
-/* What makes measurements comparable: the machine, the compiler, the libraries and this very program. */
+/* The origin of measurements: the machine, the compiler, the libraries and this very program. Rows are comparable
+   where they agree. */
 #include "results/provenance.h"
 
 #include <fftw3.h>
@@ -39,7 +40,7 @@ static void machine_fill(char *text, size_t size)
     snprintf(text, size, "%s, %ld cores, %.1f GiB", model, sysconf(_SC_NPROCESSORS_ONLN), gib);
 }
 
-/* FNV-1a over the running executable: rows of a program changed without a commit are not mixed with others. */
+/* FNV-1a over the running executable: a program changed without a commit does not mix its rows with others. */
 static void program_fill(char *text, size_t size)
 {
     unsigned char block[65536];

@@ -8,7 +8,7 @@
 #include "files/text_file.h"
 #include "results/rows.h"
 
-/* No figure may be made of a time that is none. */
+/* No invalid time may enter a figure. */
 static enum status times_check(const struct csv *csv, int row, const struct measurement *measurement)
 {
     const struct {

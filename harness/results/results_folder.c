@@ -1,4 +1,4 @@
-/* The results folder: two CSV files that are appended to row by row and taken up again after a cut. */
+/* The results folder: two CSV files, written row by row and continued after an interruption. */
 #define _GNU_SOURCE /* asprintf */
 #include "results/results_folder.h"
 
@@ -15,7 +15,7 @@
 #include "files/text_file.h"
 #include "results/rows.h"
 
-/* What tells one measurement from another; an algorithm of NULL stands for all of the scene. */
+/* Identifies a measurement; an algorithm of NULL stands for all of the scene. */
 struct key {
     const char *scene, *algorithm, *options, *precision;
 };
@@ -29,10 +29,10 @@ struct results_folder {
     int scene_count;
     struct csv earlier;       /* measurements.csv as the earlier run left it; rows point into it */
     struct measurement *rows; /* [earlier.row_count] */
-    bool *dropped;            /* [earlier.row_count] the scene's content has changed since, or it is replaced */
+    bool *dropped;            /* [earlier.row_count] the scene's content has changed since, or a new row replaces it */
 };
 
-/* A row that is done outlasts a power cut. */
+/* A finished row survives a power cut. */
 static enum status rows_done(FILE *file, const char *path)
 {
     if (!stream_flush(file) || !place_sync(fileno(file)))
@@ -71,8 +71,8 @@ static bool key_matches(const struct key *key, const char *scene, const char *al
                    && strcmp(key->precision, precision) == 0));
 }
 
-/* One file anew from the rows of `old`, without those of `except` (NULL: of none) and without rows of targets whose
-   measurement is missing, made beside the old file and renamed when whole; rows are then added to it. */
+/* Rewrite one file from the rows of `old`, without those of `except` (NULL: all stay) and without rows of targets
+   whose measurement is missing. It is made beside the old file and renamed when complete; later rows are appended. */
 static enum status file_rewrite(struct results_folder *folder, int kind, const struct csv old[KINDS],
                                 const struct key *except)
 {
@@ -99,8 +99,8 @@ static enum status file_rewrite(struct results_folder *folder, int kind, const s
     return text_file_keep(&text, &folder->files[kind]);
 }
 
-/* Both files anew. The measurements come first: a cut between the two leaves targets without a measurement, which the
-   next run drops. */
+/* Rewrite both files. The measurements come first: a cut between the two leaves targets without a measurement, which
+   the next run drops. */
 static enum status folder_rewrite(struct results_folder *folder, const struct csv old[KINDS], const struct key *except)
 {
     for (int k = 0; k < KINDS; k++) {
@@ -143,7 +143,7 @@ static enum status scene_hash_set(struct results_folder *folder, const char *sce
     return STATUS_OK;
 }
 
-/* The comments "scene NAME: HEX"; what does not read as one is no hash, and the scene's rows are measured again. */
+/* The comments "scene NAME: HEX". An unreadable one is no hash, and the scene's rows are measured again. */
 static enum status scene_hashes_read(struct results_folder *folder, const struct csv *csv)
 {
     enum status status = STATUS_OK;
@@ -208,7 +208,7 @@ static bool file_is(const struct results_folder *folder, const char *name)
     return fstatat(folder->lock, name, &info, AT_SYMLINK_NOFOLLOW) == 0;
 }
 
-/* Under another name; the file stays where it is until it is replaced, except where a file system knows no links. */
+/* Link the file under another name; it stays in place until it is replaced. File systems without links rename it. */
 static enum status file_keep(const struct results_folder *folder, int kind, const char *kept)
 {
     const int at = folder->lock;
@@ -219,7 +219,7 @@ static enum status file_keep(const struct results_folder *folder, int kind, cons
                       strerror(errno));
 }
 
-/* Keep the files under the next free number before they are begun anew, and tell why. */
+/* Keep the files under the next free number before they are begun anew, and report why. */
 static enum status files_keep(const struct results_folder *folder, const char *why)
 {
     char names[KINDS][64], told[KINDS * 64] = "";
@@ -245,7 +245,7 @@ static enum status files_keep(const struct results_folder *folder, const char *w
     return status;
 }
 
-/* Why the rows of the folder cannot be gone on with; empty when they can, or when there are none. */
+/* Why the rows of the folder cannot be continued; empty when they can, or when there are none. */
 static void resume_refusal(const struct results_folder *folder, const struct csv old[KINDS], char *why, size_t size)
 {
     *why = '\0';
@@ -280,7 +280,7 @@ static enum status folder_begin(struct results_folder *folder, const char *direc
         else if (old[k].path)
             status = header_check(&old[k], &row_kinds[k]);
     }
-    /* All of it is read before anything is written, so that a file with a fault is left as it is. */
+    /* Everything is read before anything is written, so that a faulty file stays unchanged. */
     folder->earlier = old[KIND_MEASUREMENTS];
     if (!status)
         status = scene_hashes_read(folder, &folder->earlier);
@@ -365,7 +365,7 @@ const struct measurement *results_folder_find(const struct results_folder *folde
     return row >= 0 && strcmp(folder->rows[row].status, "failed") != 0 ? &folder->rows[row] : NULL;
 }
 
-/* A row that an earlier run left gives way to a new one. */
+/* A new row replaces that of an earlier run. */
 static enum status earlier_replace(struct results_folder *folder, const struct key *key)
 {
     return earlier_find(folder, key) < 0 ? STATUS_OK : rows_drop(folder, key);

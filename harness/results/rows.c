@@ -17,11 +17,11 @@ const struct row_kind row_kinds[KINDS] = {
 static const struct {
     const char *key;
     size_t offset;
-    bool compared; /* rows of different values are not mixed */
+    bool compared; /* rows with different values are not mixed */
 } notes[] = {
     {"machine", offsetof(struct provenance, machine), true},
     {"isa", offsetof(struct provenance, isa), true},
-    {"compiler", offsetof(struct provenance, compiler), false}, /* the program's bytes tell */
+    {"compiler", offsetof(struct provenance, compiler), false}, /* the hash of the program covers it */
     {"flags", offsetof(struct provenance, flags), false},
     {"libraries", offsetof(struct provenance, libraries), true},
     {"commit", offsetof(struct provenance, commit), true},
@@ -47,7 +47,7 @@ void row_write(FILE *file, const struct column *columns, const void *row)
     fputc('\n', file);
 }
 
-/* A comment is one line, whatever a name holds. */
+/* A comment is one line, whatever characters a name contains. */
 static void comment_write(FILE *file, const char *key, const char *name, const char *value)
 {
     const char *parts[] = {"# ", key, name, ": ", value};

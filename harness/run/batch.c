@@ -12,8 +12,7 @@
 #include "run/visit.h"
 #include "show/table.h"
 
-/* A scene whose echoes cannot be made has a failed row for every algorithm that is missing, and the next one goes
-   on. */
+/* A scene whose echoes cannot be made gets a failed row for every missing algorithm, and the next scene follows. */
 static enum status fail_scene(struct batch *batch, const struct scene *scene, int spec_count, const struct spec *specs)
 {
     char reason[512];
@@ -74,7 +73,8 @@ const struct measurement *batch_find(const struct batch *batch, const struct sce
                                precision_name(spec->precision));
 }
 
-/* A patch costs back projection little and range migration as much as the whole swath: the heading says which it is. */
+/* A patch costs back projection little and range migration as much as the whole swath: the heading shows the share
+   of the ranges. */
 static void heading_print(const struct scene *scene)
 {
     const struct acquisition *a = &scene->acquisition;

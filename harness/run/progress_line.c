@@ -23,7 +23,7 @@ static struct {
     double told;  /* s: when a line was last written */
 } line = {.mutex = PTHREAD_MUTEX_INITIALIZER, .told = NAN};
 
-/* With the mutex. Written by itself, for a child that is forked meanwhile must find no lock of stdio's or malloc's. */
+/* With the mutex locked. Uses write(): a child forked meanwhile must find no lock of stdio or malloc. */
 static void tell(bool terminal)
 {
     char text[800], since[40] = "", share[20] = "";
@@ -34,13 +34,13 @@ static void tell(bool terminal)
         snprintf(share, sizeof share, ", %d %%", (int)(100 * done));
     struct winsize size;
     int room = sizeof line.text;
-    if (terminal && ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) /* or it would wrap */
+    if (terminal && ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) /* a longer line would wrap */
         room = (int)fmax(0, size.ws_col - 1.0 - (double)strlen(since) - (double)strlen(share));
     const int length =
         snprintf(text, sizeof text, terminal ? "\r\033[K%.*s%s%s\r" : "%.*s%s%s\n", room, line.text, since, share);
     line.told = now;
     if (write(STDERR_FILENO, text, (size_t)length) < 0)
-        return; /* nobody reads on */
+        return; /* nobody reads any more */
 }
 
 static void *tell_on(void *arguments)
@@ -58,7 +58,7 @@ static void *tell_on(void *arguments)
     return NULL;
 }
 
-/* One thread that signals leave alone; without it only the beginning is told. */
+/* Start one thread that ignores signals; without it only the beginning is shown. */
 static void start(void)
 {
     pthread_t thread;

@@ -1,4 +1,4 @@
-/* What a run found (run_summary.h). */
+/* The results of a run (run_summary.h). */
 #include "run/run_summary.h"
 
 #include <math.h>
@@ -72,8 +72,8 @@ static void none_format(const struct run *run, const char *scene, char *text, si
         snprintf(text, size, "no image");
 }
 
-/* A line of a scene, or of the titles: cells behind bars, in their columns, further left where the rest needs the room,
-   and on a next line where there is none. */
+/* A line of a scene, or of the titles: cells behind bars, in their columns; further left where the rest needs the
+   room, and on a next line without room. */
 static void line_print(FILE *stream, const char *scene, char cells[BOUNDS][LINE], int width, int first)
 {
     char line[LINE];
@@ -116,7 +116,7 @@ static void scene_print(FILE *stream, const struct run *run, const char *scene, 
 
 /* ---- what was refused ---- */
 
-/* "rma_" of an algorithm's name. */
+/* Length of "rma_" in an algorithm's name. */
 static int family_length(const char *name)
 {
     return (int)strcspn(name, "_") + (strchr(name, '_') != NULL);
@@ -136,7 +136,7 @@ static void refused_print(FILE *stream, const struct run *run)
     struct {
         const struct measurement *row, *last; /* the first and the latest */
         int scenes;
-        bool several; /* algorithms of the family */
+        bool several; /* several algorithms of the family */
     } list[REFUSALS_MOST];
     char text[1500] = "", name[2][80];
     int count = 0;
@@ -177,7 +177,7 @@ static void refused_print(FILE *stream, const struct run *run)
 
 /* ---- how good the times and the choices are ---- */
 
-/* A choice against the fastest of the others within the same error. */
+/* A choice compared with the fastest of the others within the same error. */
 static void auto_print(FILE *stream, const struct run *run)
 {
     const struct measurement *worst = NULL;

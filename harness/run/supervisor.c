@@ -19,7 +19,7 @@ enum { CRASHES_MAX = 256, TASK_MAX = 800 };
 static struct notes {
     volatile sig_atomic_t busy; /* within a task */
     char task[TASK_MAX];        /* the latest */
-    char folder[400];           /* what is measured is kept there */
+    char folder[400];           /* measurements are kept there */
     int crash_count;
     struct {
         char task[TASK_MAX], how[120];
@@ -62,7 +62,7 @@ static void forward(int number)
         kill((pid_t)child, number);
 }
 
-/* Is this the end of a process that went wrong, rather than one that somebody ended? */
+/* Did a fault end the process, and not a user? */
 static bool is_crash(int state)
 {
     static const int faults[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS, SIGTRAP, SIGKILL};
@@ -90,7 +90,7 @@ static void crash_note(int state)
     fprintf(stderr, ": %s; the run resumes without it\n", how);
 }
 
-/* The parent's part; returns when another child is wanted. */
+/* The parent's part; returns when another child is needed. */
 static void wait_for_child(void)
 {
     int state;
@@ -138,7 +138,7 @@ void supervisor_begin(void)
     }
     for (;;) {
         pid_t process = fork();
-        if (process <= 0) { /* the child; or nobody else is there to do the work */
+        if (process <= 0) { /* the child; or no other process can do the work */
             for (size_t k = 0; k < sizeof forwarded / sizeof *forwarded; k++)
                 sigaction(forwarded[k], &before[k], NULL);
             sigprocmask(SIG_SETMASK, &mask, NULL);

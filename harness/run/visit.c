@@ -18,8 +18,8 @@ void visit_close(struct visit *visit)
     session_close(&visit->session);
 }
 
-/* Begin what the supervisor knows by these words, without a SPEC the echoes and the exact image of a scene;
-   supervisor_leave ends it. How an earlier process crashed at it, which is not begun again; NULL: it did not. */
+/* Begin a task for the supervisor by this text; without a SPEC, the echoes and the exact image of a scene.
+   supervisor_leave ends it. Returns how an earlier process crashed at it (it is not begun again), or NULL. */
 static const char *task_begin(const struct scene *scene, const struct spec *spec)
 {
     char task[700];
@@ -79,7 +79,7 @@ struct measurement visit_failed_row(const struct batch *batch, const struct scen
     return row;
 }
 
-/* A measurement that crashed an earlier process of this run. */
+/* The row of a measurement that crashed an earlier process of this run. */
 static enum status add_crashed(struct batch *batch, const struct scene *scene, const struct spec *spec, const char *how)
 {
     struct measurement row = visit_failed_row(batch, scene, spec, how);

@@ -1,10 +1,10 @@
-/* An echo's phase is exp(-j 2 pi fc tau). Conjugated samples follow +j 2 pi fc tau: summed as they are, the strongest
-   echo of a record focuses nowhere on the pixels that share its delay, and with the other sign it does on one of them.
+/* An echo's phase is exp(-j 2 pi fc tau). Conjugated samples follow +j 2 pi fc tau: summed unchanged, the strongest
+   echo of a record focuses on none of the pixels that share its delay; with the other sign it focuses on one of them.
    Raw echoes may also be compressed to a spike by the conjugate of their pulse alone.
 
-   A short aperture sees the mirror image of a conjugated target as sharply: pixels are compared with their mirror
-   images, so that nothing is told there. An echo of a target beside the image focuses on no pixel with either sign, and
-   a part of its aperture with the wrong one: what focuses must be the better part of all that is summed. */
+   A short aperture sees the mirror image of a conjugated target as sharply. Pixels are therefore compared with their
+   mirror images, so that such apertures decide nothing. An echo of a target beside the image focuses on no pixel
+   with either sign, and with the wrong one on a part of its aperture: most of the sum must focus. */
 #include "scene/conjugated.h"
 
 #include <limits.h>
@@ -18,20 +18,20 @@ enum {
     UPSAMPLE = 2,
     LOOKED = 32,   /* records that are searched for the strongest echoes */
     SEEDS = 4,     /* of these echoes */
-    SUMMED = 128,  /* records that a seed is focused by */
-    WINDOWS = 4,   /* parts of the track that may see it, where the beam is unknown */
-    NODES = 9,     /* places on a line of pixels between which delays may pass the seed's once */
+    SUMMED = 128,  /* records that a seed's focus sums */
+    WINDOWS = 4,   /* parts of the track that may see it, without a given beam */
+    NODES = 9,     /* places on a line of pixels; between two of them delays may pass the seed's once */
     POINTS = 4096, /* pixels that share a seed's delay */
     BYTES_MOST = 1 << 26
 };
-static const double SHARPER = 2;                   /* an amplitude's factor that is no chance */
+static const double SHARPER = 2;                   /* a larger factor of amplitudes is no chance */
 static const double SPIKE = 1.5;                   /* of a record's largest samples by either pulse */
 static const double COHERENT = 0.6, BY_CHANCE = 4; /* of a sum over the sum of amplitudes; over sqrt(records) */
 
 /* What is conjugated. */
 enum fault { NOTHING, ALL, SAMPLES, PULSE, FAULTS };
 
-/* Records compressed as they are, or their conjugates by the same pulse. */
+/* Records compressed unchanged, or their conjugates compressed by the same pulse. */
 struct view {
     const struct acquisition *acquisition;
     const struct problem *problem;
@@ -50,7 +50,7 @@ struct seed {
     double delay, magnitude;
 };
 
-/* The largest sum, and what it must exceed to be one of a target. */
+/* The largest sum, and the least sum of a target. */
 struct focus {
     double peak, least;
 };
@@ -75,7 +75,7 @@ static struct vector line_place(const struct grid *g, bool along_x, int line, do
     return along_x ? grid_point(g, line, place) : grid_point(g, place, line);
 }
 
-/* Delays of a record between which the image lies, by some of its places. */
+/* Delays of a record between which the image lies, from some of its places. */
 static void delays_find(const struct view *view, size_t record, double *least, double *most)
 {
     *least = INFINITY;
@@ -89,8 +89,8 @@ static void delays_find(const struct view *view, size_t record, double *least, d
     }
 }
 
-/* The strongest echoes of the image, each in a record of its own, by falling magnitude. Returns the largest sample of
-   all records that are looked at. */
+/* The strongest echoes of the image, each in a record of its own, by falling magnitude. Returns the largest sample
+   of all searched records. */
 static double seeds_find(const struct view *view, struct seed seeds[SEEDS])
 {
     const struct acquisition *a = view->acquisition;
@@ -120,7 +120,7 @@ static double seeds_find(const struct view *view, struct seed seeds[SEEDS])
     return largest;
 }
 
-/* Places of a line of pixels that share a seed's delay, of those that its ping sees. */
+/* Places on a line of pixels that share a seed's delay and that its ping sees. */
 static void line_search(const struct view *view, const struct seed *seed, const struct grid *g, bool along_x, int line,
                         struct vector *points, int *count)
 {
@@ -158,7 +158,7 @@ static int points_find(const struct view *view, const struct seed *seed, struct 
     return count;
 }
 
-/* Records of some pings about the seed's: of those that may see what it does. */
+/* Records of some pings about the seed's that may see its target. */
 struct summed {
     size_t records[SUMMED];
     int count;
@@ -183,7 +183,7 @@ static struct summed summed_choose(const struct view *view, size_t seed, int pin
     return summed;
 }
 
-/* Sums at a place, as an image's and with the other sign of the phase. */
+/* Sums at a place, with the image's sign of the phase and with the other one. */
 struct sums {
     double complex plain, turned;
     double magnitudes, squares;
@@ -217,7 +217,7 @@ static void focus_add(const struct sums *sums, double complex sum, struct focus 
     focus->least = fmax(COHERENT * sums->magnitudes, BY_CHANCE * sqrt(sums->squares)); /* sum/sqrt(n) of n equal ones */
 }
 
-/* One seed by some pings about it: [0] as the samples are, [1] with the other sign. */
+/* One seed by some pings about it: [0] with the samples unchanged, [1] with the other sign. */
 static void seed_focus(const struct view *view, const struct summed *summed, const struct vector *points, int count,
                        struct focus focus[2])
 {
@@ -235,7 +235,8 @@ static void seed_focus(const struct view *view, const struct summed *summed, con
     }
 }
 
-/* How many pings about a seed's may see what its does, by the beam; without one the n-th part that is tried. */
+/* The number of pings about a seed's that may see its target, by the beam; without a given beam the n-th part that
+   is tried. */
 static int window_pings(const struct acquisition *a, const struct seed *seed, int n)
 {
     const int ping = (int)(seed->record / (size_t)a->receivers);
@@ -264,7 +265,7 @@ static void seeds_focus(const struct view *view, const struct seed seeds[SEEDS],
     }
 }
 
-/* By the records as they are, and where their conjugates are compressed to higher spikes by these. */
+/* By the records unchanged, and where the pulse compresses their conjugates to higher spikes, by these. */
 static void faults_focus(struct view *view, struct vector *points, struct focus focus[FAULTS])
 {
     struct seed seeds[2][SEEDS];

@@ -1,4 +1,4 @@
-/* The acquisition and the targets of a scene, made from its keys; the image is made in patches.c. */
+/* The acquisition and the targets of a scene, from its keys; patches.c makes the image. */
 #include "scene/contents.h"
 
 #include <math.h>
@@ -106,7 +106,7 @@ enum status scene_fill(struct reading *reading, config_setting_t *root)
     if (status == STATUS_OK) {
         status = targets_fill(reading);
     }
-    if (status == STATUS_OK && !*reading->echoes) { /* of recorded echoes it is measured */
+    if (status == STATUS_OK && !*reading->echoes) { /* with recorded echoes it is measured */
         struct scene *scene = &reading->scene;
         scene->acquisition.noise =
             noise_of_targets(&scene->acquisition, scene->target_count, scene->targets, scene->noise_std);

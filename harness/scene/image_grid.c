@@ -10,7 +10,7 @@
 #define BYTES_MAX      0x1p40 /* of a patch in double */
 #define ANGLE_MOST_DEG 89.9   /* as of a scene's image.angle */
 
-/* One "first:step:count"; returns where it ends, NULL if it is not one. */
+/* One "first:step:count"; returns its end, NULL if it is not one. */
 static const char *axis_parse(const char *text, double *first, double *step, int *count)
 {
     long long number = 0;
@@ -77,19 +77,19 @@ enum status grid_check(const struct grid *grid, const char *place)
     return STATUS_OK;
 }
 
-enum { BLOCKS_MOST = 1 << 22 }; /* that are looked at before a grid passes without proof: about a second */
+enum { BLOCKS_MOST = 1 << 22 }; /* searched before a grid passes without proof: about a second */
 
-/* One pair and one patch; the delays met on the way are kept for the message. */
+/* The search in one pair and one patch; it keeps the delays met for the message. */
 struct search {
     const struct acquisition *acquisition;
     const struct grid *grid;
     int ping;
     struct vector rx;
     double shortest_s, longest_s;
-    int blocks; /* looked at, of all pairs and patches */
+    int blocks; /* searched, of all pairs and patches */
 };
 
-/* The sample coordinate of the place in row i and column j, which need not be whole numbers. */
+/* The sample coordinate of the place in row i and column j, which may be fractional. */
 static double sample_at(struct search *search, double i, double j)
 {
     const struct acquisition *a = search->acquisition;
@@ -101,9 +101,9 @@ static double sample_at(struct search *search, double i, double j)
     return (tau - a->t0[search->ping]) * a->fs;
 }
 
-/* Does a pixel of rows i0..i1 and columns j0..j1 meet the record? A block is given up only when no delay in it can: the
-   delay is convex in the place (backprojection/pairs/pairs.c), so that none is longer than the longest at a corner, nor
-   shorter than the middle's by more than the longest is longer. That holds at any speed. */
+/* Does a pixel of rows i0..i1 and columns j0..j1 meet the record? A block is skipped only when no delay in it can.
+   The delay is convex in the place (backprojection/pairs/pairs.c): none is longer than the longest at a corner, nor
+   shorter than the middle's by more than the longest is longer. That is true at any speed. */
 static bool block_meets(struct search *search, int i0, int i1, int j0, int j1)
 {
     const double last = search->acquisition->samples - 1;

@@ -1,4 +1,4 @@
-/* What the keys of a scene file say about each other; the bounds of each by itself are in keys.c. */
+/* Checks of a scene file's keys against each other; the bounds of single keys are in keys.c. */
 #include <math.h>
 
 #include "scene/keys.h"
@@ -47,7 +47,7 @@ static enum status check_pulse(const struct reading *reading)
     return STATUS_OK;
 }
 
-/* The largest factor is named, for it is the one that was most likely meant otherwise; all of them are shown. */
+/* The message names the largest factor, the most likely mistake, and shows all of them. */
 static enum status check_sizes(const struct reading *reading)
 {
     const struct acquisition *a = &reading->scene.acquisition;
@@ -72,11 +72,11 @@ static enum status check_sizes(const struct reading *reading)
     return STATUS_OK;
 }
 
-/* Pings and receivers must stay where coordinates may be. */
+/* Pings and receivers must stay within the bounds of coordinates. */
 static enum status check_places(const struct reading *reading)
 {
     if (reading->poses) {
-        return STATUS_OK; /* measured, and checked as they were read */
+        return STATUS_OK; /* measured, and checked when read */
     }
     const struct acquisition *a = &reading->scene.acquisition;
     double last_offset = reading->first_offset_m + (a->receivers - 1) * reading->pitch_m;
@@ -106,7 +106,7 @@ static enum status check_places(const struct reading *reading)
     return STATUS_OK;
 }
 
-/* A target area is whole or left out. */
+/* A target area has all of its keys or none. */
 static enum status check_area(const struct reading *reading)
 {
     static const char *const names[] = {"x", "r", "half_x", "half_r"};
@@ -144,7 +144,7 @@ static enum status check_image_kind(const struct reading *reading)
     return STATUS_OK;
 }
 
-/* What recorded echoes leave no room for. */
+/* Keys that contradict recorded echoes. */
 static enum status check_recorded(const struct reading *reading)
 {
     if (key_member(reading->root, "x_offset")) {

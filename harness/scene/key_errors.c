@@ -1,4 +1,4 @@
-/* The one error of a key: where it is, what it is, what is accepted. */
+/* The one error of a key: its place, its value, and what is accepted. */
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -50,7 +50,7 @@ static void append_value(char *text, size_t size, const config_setting_t *settin
     }
 }
 
-/* The part of the text that a line is in. */
+/* The text piece that contains a line. */
 static const struct text_piece *piece_find(const struct reading *reading, unsigned line)
 {
     const struct text_piece *piece = reading->text.pieces + reading->text.piece_count - 1;

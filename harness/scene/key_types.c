@@ -1,4 +1,4 @@
-/* Types of keys: reading a setting into its field, and what a type accepts. */
+/* Types of keys: reading a setting into its field, and the values that a type accepts. */
 #include "scene/key_types.h"
 
 #include <complex.h>
@@ -101,7 +101,7 @@ static bool read_complex(const struct key *key, config_setting_t *setting, void 
     return good;
 }
 
-/* Where neither squares nor sums leave double; nothing at all is fine too. */
+/* Amplitudes whose squares and sums stay within double; 0 is accepted, too. */
 static bool is_level(double magnitude)
 {
     return magnitude == 0 || magnitude >= LEVEL_MIN;

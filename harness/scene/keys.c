@@ -19,7 +19,7 @@ const char *const truncation_names[] = {"none", "tx", "mid", "doppler", "sine", 
 #define POSITIVE        ABOVE_0, DBL_MAX
 #define AT(type, field) offsetof(struct type, field)
 
-/* All keys of all groups, and the only place where bounds are. "" is the file itself; "axis" serves every x and r. */
+/* All keys of all groups, with all bounds. "" is the file itself; "axis" serves every x and r. */
 static const struct key keys[] = {
     {"", "base", "", &GROUP, AT(reading, base), 0, 0, 0, NULL},
     {"", "description", "", &TEXT, AT(reading, description), 0, 0, 0, NULL},
@@ -176,7 +176,7 @@ enum status groups_read(struct reading *reading, config_setting_t *root)
     const struct {
         const char *name;
         config_setting_t **setting;
-        bool simulated, needed; /* left out with `echoes`; without it there must be one */
+        bool simulated, needed; /* left out with `echoes`; required without it */
     } groups[] = {
         {"sonar", &reading->sonar, true, true},   {"pulse", &reading->pulse, true, true},
         {"array", &reading->array, true, true},   {"track", &reading->track, true, true},

@@ -43,13 +43,12 @@ static bool has_controls(const char *text)
     return *text;
 }
 
-/* A scene has one name, however its path is written: below `directory` its path there, elsewhere that of its file. */
 enum status scene_names_fill(struct scene *scene, const char *path, const char *directory)
 {
     char *full_directory = realpath(directory, NULL);
     scene->path = realpath(path, NULL);
     if (!scene->path) {
-        scene->path = strdup(path); /* reading it tells what is wrong */
+        scene->path = strdup(path); /* reading it reports the error */
     }
     if (scene->path && full_directory && scene_has_extension(scene->path)) {
         scene->name = name_below(scene->path, full_directory);
@@ -59,7 +58,7 @@ enum status scene_names_fill(struct scene *scene, const char *path, const char *
         scene->name = name_of(scene->path, 1);
     }
     free(full_directory);
-    if (scene->path && has_controls(scene->path)) { /* it would go into tables and pictures */
+    if (scene->path && has_controls(scene->path)) { /* tables and pictures would show it */
         return status_set(STATUS_INVALID, "%s: the path of the scene holds control characters, must be plain text",
                           path);
     }

@@ -1,11 +1,11 @@
-/* The image of a scene: its patches, and where the exact image is formed, made from the keys. */
+/* The image of a scene from its keys: its patches, and the part where the exact image is formed. */
 #include "scene/contents.h"
 
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 
-/* One axis of a patch that has its target on the middle pixel. */
+/* One axis of a patch with its target on the middle pixel. */
 static enum status axis_around(const struct reading *reading, const char *half_key, double centre, double half,
                                double step, double *first, int *count)
 {
@@ -19,7 +19,7 @@ static enum status axis_around(const struct reading *reading, const char *half_k
     return STATUS_OK;
 }
 
-/* Where a target lies in the image's axes. */
+/* A target's place in the image's axes. */
 static struct vector target_place(const struct reading *reading, const struct target *target)
 {
     const struct grid axes = {.angle_rad = reading->angle_deg * M_PI / 180};

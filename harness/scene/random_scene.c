@@ -9,7 +9,7 @@ enum { PINGS_MOST = 90, SAMPLES_MOST = 1500, COLUMNS = 40, ROWS = 24, SPARE = 24
 
 static const double FASTEST = 0.005; /* of the speed of sound */
 
-/* What is drawn, and what follows from it. */
+/* Drawn values, and those that follow from them. */
 struct draw {
     double c, fc, bandwidth, fs, r; /* m/s, Hz, m */
     double element, pitch, spacing; /* m: the transmitter's length */
@@ -23,13 +23,13 @@ static double between(struct random *random, double least, double most)
     return least + (most - least) * random_uniform(random);
 }
 
-/* Evenly over the logarithm. */
+/* Uniform in the logarithm. */
 static double scale(struct random *random, double least, double most)
 {
     return least * pow(most / least, random_uniform(random));
 }
 
-/* Six digits, so that the text says all. */
+/* Rounded to six digits, so that the text is exact. */
 static double rounded(double value)
 {
     const double unit = pow(10, floor(log10(value)) - 5);
@@ -51,8 +51,8 @@ static struct draw draw_sonar(struct random *random)
     return d;
 }
 
-/* Pings half the array apart see a target through the main lobe, or as many of them as there may be. The record holds
-   what they see of the patch. */
+/* Pings half the array apart see a target through the main lobe, as many of them as allowed. The record contains
+   their echoes of the patch. */
 static void draw_track(struct random *random, struct draw *d)
 {
     const double sine = d->c / d->fc / d->element, tangent = sine / sqrt(1 - sine * sine);
@@ -64,7 +64,8 @@ static void draw_track(struct random *random, struct draw *d)
     const double half = COLUMNS / 2 * d->x_step, seen = 2 * (d->r * tangent + half) / d->spacing;
     d->pings = (int)fmin(PINGS_MOST, ceil(seen) + 2);
     d->x_first = -((d->pings - 1) * d->spacing + d->receivers * d->pitch / 2) / 2;
-    /* A ping must see the patch: where they are so far apart that it lies between beams, one is abreast of it. */
+    /* A ping must see the patch: where pings are so far apart that it lies between beams, one is placed abreast of
+       it. */
     const double nearest = remainder(d->x_first, d->spacing);
     if (fabs(nearest) > d->r * tangent + half)
         d->x_first -= nearest;
@@ -75,7 +76,7 @@ static void draw_track(struct random *random, struct draw *d)
     d->samples = (int)fmin(SAMPLES_MOST, ceil(late * d->fs) + 2 * SPARE + d->pulse);
 }
 
-/* Nine digits; whole numbers with a decimal point, for the numbers of a list are all of one type. */
+/* Nine digits; whole numbers get a decimal point, since the numbers of a list must all have one type. */
 static void range_write(FILE *stream, double first, double last)
 {
     fprintf(stream, first == round(first) ? "[%.1f, " : "[%.9g, ", first);

@@ -14,7 +14,7 @@
 #include "scene/names.h"
 #include "scene/simulate.h"
 
-/* Everything that the echo file says, so that the same content measures the same thing. */
+/* Hash everything in the echo file: the same content gives the same hash. */
 static void recording_hash(const struct scene *scene, uint64_t *hash)
 {
     const struct acquisition *a = &scene->acquisition;
@@ -34,7 +34,7 @@ static void recording_hash(const struct scene *scene, uint64_t *hash)
         {a->tx, pings * sizeof *a->tx},
         {a->rx, records * sizeof *a->rx},
         {a->velocity, pings * sizeof *a->velocity},
-        {&a->pri, a->pri > 0 ? sizeof a->pri : 0}, /* a file without it has the hash that it had before there was one */
+        {&a->pri, a->pri > 0 ? sizeof a->pri : 0}, /* a file without it keeps the hash of earlier versions */
         {&a->tx_length, sizeof a->tx_length},
         {&a->rx_length, sizeof a->rx_length},
         {&a->echo_sine, sizeof a->echo_sine},
@@ -97,7 +97,7 @@ enum status recorded_fill(struct reading *reading)
     return STATUS_OK;
 }
 
-/* All but the samples. What is measured on them is measured on some pings. */
+/* Read all but the samples. Measurements on samples use some pings only. */
 static enum status recording_open(const char *path, struct scene *scene)
 {
     struct acquisition again;

@@ -1,5 +1,5 @@
-/* Scene files: the text is put together in text.c, its keys are read in keys.c, the scene is made in contents.c. All
-   keys: scenes/README.md. */
+/* Scene files: text.c assembles the text, keys.c reads its keys, contents.c makes the scene. All keys:
+   scenes/README.md. */
 #define _GNU_SOURCE /* asprintf */
 #include "scene/scene.h"
 
@@ -37,7 +37,7 @@ static enum status file_read(struct reading *reading, const char *scene_director
     return status;
 }
 
-/* A name below the scenes that is none: what was meant, if one is near, or a SPEC. */
+/* The error of a name below the scenes that does not exist: suggests a near one, or a SPEC. */
 static enum status unknown_name(const char *scene, const char *path, const char *scene_directory)
 {
     char algorithm[40];

@@ -1,13 +1,14 @@
-/* What a scene must fulfil whichever algorithm images it (scene.h). */
+/* Conditions on a scene, whichever algorithm images it (scene.h). */
 #include <math.h>
 
 #include "contract/delay.h"
 #include "scene/conjugated.h"
 
-/* Recorded samples of a real signal were never turned into baseband; rounding leaves less of an imaginary part. */
+/* Recorded samples with a smaller imaginary part are a real signal that was never turned into baseband; rounding
+   leaves less. */
 static const double REAL_SHARE = 1e-9;
 
-/* rad, as of the formulas of range migration; more blurs. */
+/* rad, as for the formulas of range migration; more blurs. */
 static const double MOTION_MOST = 0.1;
 
 static double imaginary_share(const struct scene *scene)
@@ -29,7 +30,8 @@ struct motion {
     double count, squares, most;
 };
 
-/* What the true places of pings that see a pixel change in its phases, by the outermost receivers and a middle one. */
+/* Phase changes of a pixel between stated and true places of the pings that see it, for the outermost receivers and
+   a middle one. */
 static void motion_add(const struct scene *scene, struct vector pixel, struct motion *motion)
 {
     const struct acquisition *told = &scene->acquisition, *flown = scene->flown;

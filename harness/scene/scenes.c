@@ -35,7 +35,7 @@ enum status scenes_load(const char *command, int given_count, const char *const 
                     status_set(STATUS_INVALID, "%s: scene %s is given twice, must be named once", command, list[k]);
             } else if (strcmp((*scenes)[before].name, (*scenes)[*count].name) == 0) {
                 status = scenes_tell_apart(&(*scenes)[before], &(*scenes)[*count]);
-                before = -1; /* the longer names may be those of others */
+                before = -1; /* the longer names may collide with others */
             }
             if (status != STATUS_OK)
                 scene_free(&(*scenes)[*count]);

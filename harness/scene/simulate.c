@@ -44,8 +44,8 @@ struct angles {
     double tx, rx, mid;
 };
 
-/* A point at the element itself lies in no direction: it is seen as on the axis, sine 0. `along` counts from the point
-   to the element, backwards. */
+/* An element has no direction to a point at its own place: it is seen as on the axis, sine 0. `along` counts from
+   the point to the element, backwards. */
 static double sine(const struct acquisition *a, double along, double across)
 {
     double distance = hypot(along, across);
@@ -74,7 +74,7 @@ static double angles_weight(const struct scene *scene, const struct angles *angl
     const struct beam *beam = &scene->beam;
     double elements = frequency / a->sound_speed; /* 1/lambda */
     double tx = a->tx_length * elements * angles->tx, rx = a->rx_length * elements * angles->rx;
-    double edge = beam->limit * (1 + 1e-12); /* an edge that is met exactly counts as inside */
+    double edge = beam->limit * (1 + 1e-12); /* an edge met exactly counts as inside */
     if ((beam->truncation == TRUNCATION_TX && fabs(tx) > edge)
         || (beam->truncation == TRUNCATION_SINE && fabs(angles->tx) > edge)
         || (beam->truncation == TRUNCATION_MID && fabs(a->tx_length * elements * angles->mid) > edge)
@@ -101,9 +101,9 @@ double beam_sine(const struct scene *scene)
     return scene->beam.limit * a->sound_speed / lowest / a->tx_length;
 }
 
-/* What all pairs share: the spectrum that is delayed, on `length` bins, and where the record lies in its period. */
+/* Shared by all pairs: the spectrum to delay, on `length` bins, and the place of the record in its period. */
 struct replica {
-    int length, lead;         /* lead: samples before the record, so that echoes under way at t0 are whole */
+    int length, lead;         /* lead: samples before the record, so that echoes that begin before t0 are complete */
     double *frequency;        /* [length] Hz, -fs/2 < f <= fs/2 */
     double complex *spectrum; /* [length] scaled for an unnormalised inverse FFT */
     double scale;             /* of amplitudes and noise, a power of two */
@@ -120,14 +120,14 @@ static void replica_free(struct replica *replica)
     *replica = (struct replica){0};
 }
 
-/* Bins of the transforms of a record and what lies ahead of it. */
+/* Bins of the transforms of a record and its lead. */
 static int transform_length(const struct scene *scene)
 {
     const struct acquisition *a = &scene->acquisition;
     return scene->pulse_kind == PULSE_FLAT ? a->samples : fft_length(a->samples + 2LL * a->pulse_length);
 }
 
-/* The echoes, the replica, a transform for each thread, and as much again as FFTW's plans may hold. */
+/* The echoes, the replica, a transform for each thread, and as much again for FFTW's plans. */
 static enum status check_memory(const struct scene *scene)
 {
     const struct acquisition *a = &scene->acquisition;
@@ -257,14 +257,14 @@ static void simulate_pair(const struct scene *scene, const struct replica *repli
 
 static bool is_finite(const double complex *record, int samples)
 {
-    double sum = 0; /* one sample that is not finite leaves NaN */
+    double sum = 0; /* a sample that is not finite leaves NaN */
     for (int n = 0; n < samples; n++)
         sum += 0 * creal(record[n]) + 0 * cimag(record[n]);
     return sum == 0;
 }
 
-/* The power of two by which the echoes are divided: 0 unless the largest amplitude lies so far out that sums of echoes,
-   or squares of the image, could leave double. */
+/* The power of two by which the echoes are divided: 0 unless the largest amplitude is so extreme that sums of
+   echoes, or squares of the image, could leave double. */
 static int amplitude_exponent(const struct scene *scene)
 {
     double largest = scene->noise_std;

@@ -1,5 +1,5 @@
-/* A scene file and all that it includes as one text for libconfig. libconfig 1.5 itself finds includes in one folder
-   only, ends the program when it is to include a folder, and wraps integers beyond int without a word. */
+/* A scene file and all its includes as one text for libconfig. libconfig 1.5 itself finds includes in one folder
+   only, ends the program on including a folder, and silently wraps integers beyond int. */
 #define _GNU_SOURCE /* asprintf */
 #include <errno.h>
 #include <limits.h>
@@ -11,12 +11,12 @@
 #include "files/text_read.h"
 #include "scene/text.h"
 
-#define INCLUDE_DEPTH 10                /* also ends files that include themselves */
-#define TEXT_MAX      ((size_t)1 << 26) /* bytes with all includes: few files can name each other very often */
+#define INCLUDE_DEPTH 10                /* also stops files that include themselves */
+#define TEXT_MAX      ((size_t)1 << 26) /* bytes with all includes: a few files can include each other very often */
 
 struct source {
     const char *path;
-    int line, depth; /* where its reading stands; number of files that include it in turn */
+    int line, depth; /* the current line; depth of includes */
 };
 
 static enum status file_expand(struct scene_text *text, const char *path, const struct source *asked_by);
@@ -27,7 +27,7 @@ static void character_add(struct scene_text *text, char c)
     text->line += c == '\n';
 }
 
-/* What is added from here on begins a line, and is that of `source`. */
+/* Begin a line of text that comes from `source`. */
 static enum status piece_begin(struct scene_text *text, const struct source *source)
 {
     if (text->length > 0 && text->text[text->length - 1] != '\n') {
@@ -55,7 +55,7 @@ static char *path_join(const char *folder, size_t folder_length, const char *nam
     return length < 0 ? NULL : path;
 }
 
-/* The path of what @include calls `name`: absolute, beside `asked_by`, or shipped; NULL without memory. */
+/* The path of the file `name` in @include: absolute, beside `asked_by`, or shipped; NULL without memory. */
 static char *path_find(const char *name, size_t length, const char *asked_by, const char *scene_directory)
 {
     const char *slash = *name == '/' ? NULL : strrchr(asked_by, '/');
@@ -69,13 +69,13 @@ static char *path_find(const char *name, size_t length, const char *asked_by, co
     return found ? shipped : beside;
 }
 
-/* Of a piece of the file that a message shows. */
+/* Length of a piece of the file in a message. */
 static int shown(size_t length)
 {
     return length < 60 ? (int)length : 60;
 }
 
-/* `c` stands on @include in `content`; *length becomes that of @include "FILE". */
+/* `c` is at @include in `content`; *length becomes that of @include "FILE". */
 static enum status include_expand(struct scene_text *text, const struct source *source, const char *content,
                                   const char *c, size_t *length)
 {
@@ -107,7 +107,7 @@ static enum status include_expand(struct scene_text *text, const struct source *
     return status == STATUS_OK ? piece_begin(text, source) : status;
 }
 
-/* `c` stands on a number of `length` characters. */
+/* `c` is at a number of `length` characters. */
 static enum status number_check(const struct source *source, const char *c, size_t length)
 {
     const char *digits = c + strspn(c, "+-");
@@ -174,7 +174,7 @@ static enum status content_expand(struct scene_text *text, struct source *source
 /* Make room for a file of `length` characters. */
 static enum status room_make(struct scene_text *text, size_t length, const char *path)
 {
-    text->room += length + sizeof "\n\n"; /* a line's end before the file, and one after it */
+    text->room += length + sizeof "\n\n"; /* a line's end before the file and one after it */
     if (text->room > TEXT_MAX) {
         return status_set(STATUS_INVALID,
                           "%.300s: the scene is too long with this file, must have at most %zu bytes "

@@ -1,4 +1,4 @@
-/* Where the platform was at each ping: evenly along x, or as measured, with motion errors that the imager knows of or
+/* The platform's place at each ping: evenly along x, or as measured, with motion errors that the imager knows or
    not. */
 #include <math.h>
 #include <stdio.h>
@@ -95,7 +95,7 @@ static enum status mat_poses(struct reading *reading, const char *path)
     return status;
 }
 
-/* By differences of neighbouring places, where they are not measured. */
+/* By differences of neighbouring places, if not measured. */
 static void velocity_add(struct pose *poses, const struct vector *places, int count, double pri)
 {
     for (int p = 0; p < count && count > 1; p++) {
@@ -250,7 +250,7 @@ static void poses_put(const struct reading *reading, const struct pose *poses, s
             const double offset = reading->first_offset_m + m * reading->pitch_m;
             struct vector *rx = &a->rx[(size_t)p * (size_t)a->receivers + (size_t)m];
             *rx = a->tx[p];
-            /* An even track has the same bits as ever. */
+            /* Keep an even track the same to the bit. */
             rx->x =
                 sine == 0 ? a->tx[p].x + reading->first_offset_m + m * reading->pitch_m : a->tx[p].x + offset * cosine;
             rx->y += offset * sine;

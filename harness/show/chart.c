@@ -49,7 +49,7 @@ double chart_y(const struct chart *chart, double error)
     return chart->height * log(chart->error_high / error) / log(chart->error_high / chart->error_low);
 }
 
-/* Is the label's place inside of the chart and free of points and of the labels ahead of it? */
+/* Is the label's place inside the chart and free of points and of earlier labels? */
 static bool is_free(const struct chart *chart, const struct points *points, const struct chart_label *labels, int count,
                     const struct chart_label *label)
 {
@@ -67,7 +67,7 @@ static bool is_free(const struct chart *chart, const struct points *points, cons
     return free;
 }
 
-/* Beside its point, or on wider and wider rings around it; false where there is no room. */
+/* Beside its point, or on wider and wider rings around it; false without room. */
 static bool label_place(const struct chart *chart, const struct points *points, const struct chart_label *labels,
                         int count, int rings, struct chart_label *label)
 {
@@ -98,7 +98,7 @@ static void label_text(const struct points *points, int point, char *text, size_
         snprintf(text, size, "%.9g", points->list[point].setting.value);
 }
 
-/* The front ahead of the ends of series, these ahead of the rest. */
+/* The front first, then the ends of series, then the rest. */
 static int rank_of(const struct points *points, int point)
 {
     const struct series *series = &points->series[points->list[point].series];

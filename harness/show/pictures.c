@@ -10,7 +10,7 @@
 #include "text/shown_text.h"
 #include "files/paths.h"
 
-/* A label of NULL: the slices. */
+/* The slices' path with a label of NULL. */
 static void path_make(const char *directory, const char *scene, const char *label, char *path, size_t size)
 {
     char name[700];
@@ -25,7 +25,7 @@ bool picture_exists(const char *directory, const char *scene, const char *label)
     return place_is_file(path);
 }
 
-/* A picture that cannot be drawn is reported, but does not fail what was measured. */
+/* A picture that cannot be drawn is reported; the measurement does not fail. */
 static void tell(void *to)
 {
     struct pictures *pictures = to;
@@ -59,7 +59,7 @@ void pictures_free(struct pictures *pictures)
     *pictures = (struct pictures){0};
 }
 
-/* The exact image where it has all pixels of the picture; NULL otherwise, and for the exact image itself. */
+/* The exact image if it has all pixels of the picture; NULL otherwise, and for the exact image itself. */
 static const struct image *pictures_exact(const struct pictures *pictures, const struct image *image)
 {
     const struct image *exact = pictures->exact;
@@ -131,7 +131,7 @@ void pictures_draw(struct pictures *pictures)
                                                .line_count = count / panels,
                                                .panel_titles = titles,
                                                .lines = lines};
-        for (int svg = 0; svg < 2; svg++) { /* curves are for papers, too */
+        for (int svg = 0; svg < 2; svg++) { /* papers use curves, too */
             if (pictures->queue.count == PLOT_QUEUE_MOST)
                 plot_queue_draw(&pictures->queue, tell, pictures);
             if (plot_slices_later(&pictures->queue, path, PLOT_DIRECTORY, &picture) != STATUS_OK)

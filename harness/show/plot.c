@@ -6,9 +6,9 @@
 
 #include "show/plot_script.h"
 
-static const double floor_db = -200; /* stands for zero power, far below what is shown */
+static const double floor_db = -200; /* stands for zero power, far below the shown range */
 
-/* What slices show: all lines out to the last place where one is above -30 dB, with a dozen points a line. */
+/* The extent of slices: all lines out to the last place where one is above -30 dB, with a dozen points a line. */
 static double slices_extent(const struct slice_line *lines, int count)
 {
     double reach = 0;
@@ -51,7 +51,7 @@ static void line_write(FILE *file, const struct slice_line *line, int index, dou
     fprintf(file, "END\n");
 }
 
-/* `slices`: they are cut to what they show. */
+/* `slices`: cut them to their extent. */
 static void lines_write(const struct plot *plot, const struct slices_picture *picture, bool slices)
 {
     const int shown = picture->panel_count < PANELS_MAX ? picture->panel_count : PANELS_MAX;

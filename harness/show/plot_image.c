@@ -1,5 +1,5 @@
-/* An image in decibels, and beside it its difference to the exact one (plot.h). A patch of one or two rows or columns
-   is drawn as curves. */
+/* An image in decibels, and beside it its difference from the exact one (plot.h). A patch of one or two rows or
+   columns is drawn as curves. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -9,14 +9,14 @@
 #include "show/plot_script.h"
 
 enum {
-    PIXELS_MAX = 900, /* of a panel, along each axis: about what the screen shows */
+    PIXELS_MAX = 900, /* of a panel, along each axis: about a screen's resolution */
     THIN = 2,         /* rows or columns that are drawn as curves */
-    NAMES_MAX = 30    /* targets of a panel that are named; more would lie on each other */
+    NAMES_MAX = 30    /* labelled targets of a panel; more would overlap */
 };
 static const char image_script[] = "image.gp";
-static const double floor_db = -200; /* stands for zero power, far below what is shown */
+static const double floor_db = -200; /* stands for zero power, far below the shown range */
 
-/* One axis of a patch as it is drawn: blocks of pixels. */
+/* One axis of a patch as drawn: blocks of pixels. */
 struct drawn_axis {
     int count, pixels, block; /* drawn values; pixels of the image; pixels of a drawn value */
     double first, step;       /* m */
@@ -33,7 +33,7 @@ static struct drawn_axis axis_reduce(double first, double step, int pixels)
         .step = block * step,
     };
     if (axis.count == 1) {
-        /* gnuplot demands two values: the one pixel as two halves. */
+        /* gnuplot needs two values: the one pixel as two halves. */
         axis.count = 2;
         axis.first -= 0.25 * axis.step;
         axis.step *= 0.5;
@@ -47,7 +47,7 @@ static int axis_pixel(const struct drawn_axis *axis, int k)
     return axis->pixels == 1 ? 0 : k * axis->block;
 }
 
-/* What is drawn: an image, or its difference to another on the same pixels. */
+/* The drawn data: an image, or its difference from another on the same pixels. */
 struct layer {
     const struct image *image, *minus; /* minus NULL: nothing */
     double zero_db;                    /* power */
@@ -61,7 +61,7 @@ static double pixel_power(const struct layer *layer, int patch, int i, int j)
     return creal(z) * creal(z) + cimag(z) * cimag(z);
 }
 
-/* Largest power of all, and how many pixels are not finite. */
+/* Largest power of all, and the number of pixels that are not finite. */
 static double layer_peak(const struct layer *layer, long *not_finite)
 {
     const struct image *image = layer->image;
@@ -99,14 +99,15 @@ static float block_db(const struct layer *layer, int patch, const struct drawn_a
     return (float)decibels(layer, largest);
 }
 
-/* What is taken off the places of an axis, which gnuplot's matrices hold as floats: 0 unless these lose pixels. */
+/* Offset subtracted from the places of an axis, which gnuplot's matrices store as floats: 0 unless floats lose
+   pixels. */
 static double axis_origin(const struct drawn_axis *axis)
 {
     const double farthest = fmax(fabs(axis->first), fabs(axis->first + axis->count * axis->step));
     return farthest > 0x1p18 * axis->step ? axis->first : 0;
 }
 
-/* As gnuplot's `binary matrix`. */
+/* In the format of gnuplot's `binary matrix`. */
 static void matrix_write(FILE *file, const struct layer *layer, int patch)
 {
     const struct grid *grid = &layer->image->patches[patch];
@@ -171,7 +172,7 @@ static double share(double place, double first, double step, int count)
     return (place - (first - 0.5 * step)) / (count * step);
 }
 
-/* Targets within a patch as "x r name"; returns how many. */
+/* Targets within a patch as "x r name"; returns their number. */
 static int targets_write(FILE *file, const struct image_picture *picture, int patch)
 {
     const struct grid *grid = &picture->image->patches[patch];
@@ -190,7 +191,7 @@ static int targets_write(FILE *file, const struct image_picture *picture, int pa
     return written;
 }
 
-/* The numbers of a patch: its edges in m, what is taken off its places, how many curves, how many targets. */
+/* The numbers of a patch: its edges in m, the offset of its places, how many curves, how many targets. */
 static void numbers_write(FILE *preamble, const struct grid *grid, int patch, int target_count)
 {
     const enum shape shape = shape_of(grid);

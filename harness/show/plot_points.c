@@ -27,7 +27,7 @@ static struct setting setting_read(const char *options)
     return setting;
 }
 
-/* Beta points are inserted between two, zero padding multiplies them, the nearest sample alone is rate 1. */
+/* Beta points are inserted between two samples, zero padding multiplies them, the nearest sample alone is rate 1. */
 static double setting_rate(const char *algorithm, const struct setting *setting)
 {
     if (strcmp(setting->name, "beta") == 0)
@@ -37,8 +37,8 @@ static double setting_rate(const char *algorithm, const struct setting *setting)
     return strcmp(algorithm, "bp_nearest") == 0 ? 1 : NAN;
 }
 
-/* Measured, with time and error, and no image of only a part of the scene (exact ones); most_pairs: of any of its
-   rows. */
+/* Measured, with time and error, and not an exact image of only a part of the scene; most_pairs: the most of any of
+   its rows. */
 static bool row_is_point(const struct measurement *row, double most_pairs)
 {
     bool partial = row->pairs > 0 && row->pairs < 0.999 * most_pairs;
@@ -131,7 +131,7 @@ static bool settings_vary(const struct point *a, const struct point *b)
     return strcmp(a->setting.rest, b->setting.rest) != 0 || strcmp(a->setting.name, b->setting.name) != 0;
 }
 
-/* The number of a point's series, which may be a new one. */
+/* The index of a point's series, which may be a new one. */
 static int series_find(struct points *points, const struct point *point)
 {
     for (int k = 0; k < points->count; k++) {
@@ -146,8 +146,8 @@ static int series_find(struct points *points, const struct point *point)
     return points->series_count++;
 }
 
-/* Of sorted points: where the series are, and which of their algorithm's they are; both precisions of one setting are
-   one. */
+/* From sorted points: the range of each series, and its index among its algorithm's; both precisions of one setting
+   are one. */
 static void series_number(struct points *points)
 {
     for (int k = points->count - 1; k >= 0; k--) {
@@ -186,7 +186,7 @@ static int number_order(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Front and median, from room for a number and an error for each point. */
+/* Front and median; costs and errors have room for each point. */
 static void points_judge(struct points *points, double *costs, double *errors)
 {
     int known = 0;

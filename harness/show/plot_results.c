@@ -34,7 +34,7 @@ static void line_write(FILE *file, int count, const double *numbers)
         fprintf(file, isfinite(numbers[k]) ? "%.9g%c" : "NaN%.0g%c", numbers[k], k < count - 1 ? ' ' : '\n');
 }
 
-/* $rows: a block for each series of run_s error low high rate islr; and what its series are. */
+/* $rows: a block for each series of run_s error low high rate islr; and a description of each series. */
 static void points_write(FILE *file, const struct points *points)
 {
     fputs("$rows << END\n", file);
@@ -63,7 +63,7 @@ static void points_write(FILE *file, const struct points *points)
     }
 }
 
-/* Both of a picture's formats, into DIR/NAME.png and .svg; `write` writes what `of` it shows. */
+/* Both formats of a picture, DIR/NAME.png and .svg; `write` writes its data, from `of`. */
 static void draw(struct drawer *drawer, const char *scene, const char *name, const char *script,
                  enum status (*write)(FILE *file, const void *of), const void *of)
 {
@@ -94,8 +94,8 @@ static void draw(struct drawer *drawer, const char *scene, const char *name, con
 
 enum { PANEL_WIDTH = 865, PANEL_HEIGHT = 520, SIGN = 8 }; /* px */
 
-/* $labels: left end and middle of each name, its series, and where its line ends (NaN: none); the point is the other
-   end. */
+/* $labels: left end and middle of each name, its series, and the end of its line (NaN: none); the line begins at the
+   point. */
 static enum status labels_write(FILE *file, const struct points *points, const struct chart *chart)
 {
     struct chart_label *labels = calloc((size_t)points->count + 1, sizeof *labels);
@@ -150,7 +150,7 @@ struct upsampling {
     const struct points *points;
 };
 
-/* Does a series of three change it? */
+/* Does a series of three points change the rate? */
 static bool rates_vary(const struct points *points)
 {
     bool vary = false;
@@ -204,7 +204,7 @@ static void slopes_write(FILE *file, const struct csv *csv, const char *scene)
     fprintf(file, "has_slopes = %d\n", count > 0);
 }
 
-/* The rates that the papers' rules ask for, and the constants of the error laws; 0 where unknown. */
+/* The rates of the papers' rules, and the constants of the error laws; 0 where there are none. */
 static void rules_write(FILE *file, const struct csv *csv, const char *scene)
 {
     static const char *const names[][2] = {{"bp22_eq20_rate", "bp22_rate"},
@@ -300,13 +300,13 @@ static enum status overview_write(FILE *file, const void *of)
     return STATUS_OK;
 }
 
-/* The overview of those that have points. */
+/* The overview of scenes with points. */
 static enum status overview_draw(struct drawer *drawer, const struct results *results, struct points *scenes, int count)
 {
     struct overview overview = {.scenes = scenes, .names = calloc((size_t)results->csv.row_count + 1, sizeof(char *))};
     for (int s = 0; s < count; s++)
         if (scenes[s].count > 0) {
-            const struct points points = scenes[s]; /* those without points go behind */
+            const struct points points = scenes[s]; /* scenes without points go last */
             scenes[s] = scenes[overview.count];
             scenes[overview.count++] = points;
         }

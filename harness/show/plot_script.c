@@ -24,9 +24,9 @@
 /* ---- gnuplot as a process ---- */
 
 double plot_seconds_most = 60;
-static bool hung; /* it took too long once: it would on every further picture */
+static bool hung; /* a picture took too long: every further one would, too */
 
-/* The first line of `log` that tells what is wrong, for a message. */
+/* The first line of `log` that names a fault, for a message. */
 static void gnuplot_complaint(int log, char *text, size_t size)
 {
     snprintf(text, size, "no message");
@@ -55,8 +55,8 @@ static void gnuplot_complaint(int log, char *text, size_t size)
     fclose(file);
 }
 
-/* In the child, which ends with this program, by whatever ends it. A group of its own, so that what it starts can be
-   ended with it. --default-settings: the user's own gnuplot start-up files stay out. */
+/* In the child, which ends with this program, however that ends. It has a group of its own, so that its own children
+   end with it. --default-settings: ignores the user's gnuplot start-up files. */
 static _Noreturn void child_run(pid_t parent, const char *script, int picture, int log)
 {
     const int nothing = open("/dev/null", O_RDONLY);
@@ -146,8 +146,8 @@ enum status plot_file_flush(const struct plot *plot, FILE *file)
     return stream_flush(file) ? STATUS_OK : file_failed(plot->path);
 }
 
-/* A gnuplot string: nothing but the single quote is special between single quotes. Two of them are one in its manual,
-   but not at the beginning of a string (5.4). */
+/* A gnuplot string: between single quotes only the single quote is special. In the manual two of them are one, but
+   not at the beginning of a string (5.4). */
 static void text_write(FILE *file, const char *text)
 {
     fputc('\'', file);
@@ -202,7 +202,6 @@ enum status plot_begin(struct plot *plot, const char *path, bool named)
     return hung ? hung_status(path) : file_open(plot, &plot->preamble);
 }
 
-/* Removes what is left; accepts a plot whose beginning failed. */
 void plot_end(struct plot *plot)
 {
     for (int k = 0; k < plot->file_count; k++)
@@ -267,7 +266,7 @@ enum status plot_run(struct plot *plot, const char *plots_directory, const char 
     return status;
 }
 
-/* Whether a picture reaches its end: gnuplot does not notice where it cannot write. */
+/* Is the picture complete? gnuplot does not notice failed writes. */
 static bool picture_is_whole(const struct plot *plot, off_t size)
 {
     static const char png[] = "\0\0\0\0IEND\xae\x42\x60\x82", svg[] = "</svg>";
@@ -348,7 +347,7 @@ enum status plot_finish(struct plot *plot, enum status status, struct plot_queue
     return status;
 }
 
-/* One step of a picture: it is started, asked whether it is ready, put into its place. */
+/* One step of a picture: start it, check whether it is ready, put it into its place. */
 static enum status advance(struct queued_plot *queued)
 {
     bool ended = false;

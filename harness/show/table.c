@@ -15,20 +15,20 @@
 #include "imaging/spec.h"
 
 enum { WIDTH_WIDE = 110, WIDTH_LEAST = 80 };
-enum { REFUSALS = 8 }; /* reasons of one scene that are told apart */
+enum { REFUSALS = 8 }; /* distinct reasons of one scene */
 
 /* There is one terminal, and so one table. */
 static struct {
     int width, spec_width;
     bool brief;      /* one line a scene */
-    bool titled;     /* the columns have their names */
+    bool titled;     /* the column titles are printed */
     char scene[256]; /* of the rows since its heading */
-    bool blind;      /* the last titles were those of a scene without targets */
+    bool blind;      /* the last titles were for a scene without targets */
     int images, refused, failed;
     struct {
         char reason[600], names[300];
     } refusals[REFUSALS]; /* of the scene, the reason without the algorithm's name */
-    char warned[4000];    /* the scene's warnings so far, each with a line's end */
+    char warned[4000];    /* the scene's warnings so far, each with a newline */
 } table = {.width = WIDTH_WIDE, .spec_width = 34};
 
 struct cell cell_significant(double value, const char *unit)
@@ -69,7 +69,7 @@ struct cell cell_place(double place, double step)
     return cell;
 }
 
-/* Algorithms that sum pairs are rated by pairs, the others by operations. */
+/* The rate is in pairs for algorithms that sum pairs, in operations for the others. */
 static struct cell cell_rate(const struct measurement *row)
 {
     return row->pairs > 0 ? cell_significant(1e-9 * row->pairs / row->run_s, " Gp/s")
@@ -115,7 +115,7 @@ static void print_wrapped(FILE *stream, int indent, const char *text)
     wrapped_print(stream, table.width, indent, text);
 }
 
-/* How wide a metric stands; 0: it does not. */
+/* The width of a metric's column; 0: not shown. */
 static int metric_width(const struct column *column, bool blind)
 {
     if (!column->shown.brief || !column_is_shown(column, !blind) || (column->shown.wide && table.width < WIDTH_WIDE))
@@ -123,7 +123,7 @@ static int metric_width(const struct column *column, bool blind)
     return column->shown.of == SHOWN_OF_ALL ? 7 : 6;
 }
 
-/* What stands ahead of the metrics: SPEC, time, speed-up and, where there is room, rate. */
+/* The columns ahead of the metrics: SPEC, time, speed-up and, where there is room, rate. */
 static void line_begin(FILE *stream, const char *spec, const char *time, const char *speed_up, const char *rate)
 {
     fprintf(stream, "  %-*s %8s %8s", table.spec_width, spec, time, speed_up);
@@ -131,7 +131,7 @@ static void line_begin(FILE *stream, const char *spec, const char *time, const c
         fprintf(stream, " %9s", rate);
 }
 
-/* The metrics of a row; without one their units, or their titles, of a blind scene only those that differ. */
+/* The metrics of a row. Without a row, their units or titles; of a blind scene only those that differ. */
 static void line_end(FILE *stream, bool blind, const struct measurement *row, bool units)
 {
     for (const struct column *column = measurement_columns; column->name; column++) {
@@ -151,7 +151,7 @@ static void titles_print(FILE *stream)
     line_end(stream, false, NULL, true);
 }
 
-/* Columns of the terminal: what COLUMNS says, what the terminal says, or those of a wide table where there is none. */
+/* Columns of the terminal: from COLUMNS, else from the terminal, else those of a wide table. */
 int table_width(FILE *stream)
 {
     const char *given = getenv("COLUMNS");
@@ -212,7 +212,7 @@ static void text_print(FILE *stream, const char *before, const char *text)
     print_wrapped(stream, 4, shown);
 }
 
-/* "warning: condition ghost: ..." is named ghost. */
+/* "warning: condition ghost: ..." becomes ghost. */
 static void warned_names(char *text, size_t size)
 {
     static const char condition[] = OUTCOME_WARNING "condition ";
@@ -293,7 +293,7 @@ bool warning_next(const char **at, char *text, size_t size)
     return false;
 }
 
-/* Those that were not said. */
+/* Print the warnings that were not printed yet. */
 static void warnings_print(FILE *stream, const char *reason)
 {
     char text[1024];
@@ -323,7 +323,7 @@ static void ok_print(FILE *stream, const struct measurement *row, const char *sp
     warnings_print(stream, row->reason);
 }
 
-/* What several algorithms refuse for one reason is said once, below the scene's rows, and without the cure. */
+/* A reason for which several algorithms refuse is printed once, below the scene's rows, without the cure. */
 static void refusal_keep(const struct measurement *row, const char *spec)
 {
     const size_t name = strlen(row->algorithm);
@@ -341,7 +341,7 @@ static void refusal_keep(const struct measurement *row, const char *spec)
     memcpy(table.refusals[k].reason, kept, sizeof kept);
 }
 
-/* A SPEC without what it has by default. */
+/* A SPEC without default values. */
 static void spec_shown(const struct measurement *row, char *text, size_t size)
 {
     struct spec usual;

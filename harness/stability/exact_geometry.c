@@ -1,4 +1,4 @@
-/* Geometry in extended precision (exact_geometry.h). Every constant is a long double: one that is not would make its
+/* Geometry in extended precision (exact_geometry.h). Every constant is a long double: a double one would make its
    whole expression double. */
 #include "stability/exact_geometry.h"
 
@@ -74,8 +74,8 @@ static long double sinc(long double z)
     return fabsl(z) < 1e-12L ? 1.0L : sinl(exact_pi * z) / (exact_pi * z);
 }
 
-/* Off the beam's axis, which points `squint` ahead; `along` counts backwards. What lies behind the beam is as far off
-   as can be. */
+/* The sine off the beam's axis, which points `squint` ahead; `along` counts backwards. Behind the beam it has its
+   largest value. */
 static long double sine_of(long double along, long double across, long double squint)
 {
     const long double distance = hypotl(along, across), sine = along * cosl(squint) + across * sinl(squint);

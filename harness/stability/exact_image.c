@@ -47,7 +47,7 @@ const char *exact_ideal_excludes(const struct scene *scene)
     return scene->beam.per_frequency ? "a beam that depends on the frequency" : NULL;
 }
 
-/* The spectrum has bins -h .. h of fs/N; those that meet the band's edge weigh one half. */
+/* The spectrum has bins -h .. h of fs/N; bins at the band's edge weigh one half. */
 long double exact_echo(const struct acquisition *a, long double t)
 {
     const long double n = a->samples, half = (long double)a->bandwidth * n / a->fs / 2.0L;
@@ -57,7 +57,7 @@ long double exact_echo(const struct acquisition *a, long double t)
     return fabsl(turn) * bins < 1e-9L ? 1.0L : sinl(bins * turn) / (bins * bottom);
 }
 
-/* One target as one record has it. */
+/* One target's echo in one record. */
 struct echo {
     long double delay, re, im; /* amplitude; 0 beyond the beam or the record */
 };
@@ -75,13 +75,14 @@ static void echoes_fill(const struct scene *scene, struct exact_pair pair, struc
     }
 }
 
-/* s: what double may get wrong of a delay and of the record's end: either may be the later one within it. */
+/* s: the rounding error that double may make in a delay and in the record's end: within it, either may be the later
+   one. */
 static long double rounding_of(const struct exact_pair *pair, long double delay)
 {
     return 4.0L * 0x1p-53L * (fabsl(delay) + fabsl(pair->t0));
 }
 
-/* A pair whose delay is at the record's end: it may be summed or not. */
+/* A pair whose delay is at the record's end: it may or may not be summed. */
 struct bounds {
     bool inside, tied;
 };
@@ -158,7 +159,7 @@ struct gauss {
     long double point[24], weight[24];
 };
 
-/* One record and what its reading needs. */
+/* One record and the data for reading it. */
 struct trace {
     const double complex *samples;
     int count;
@@ -166,7 +167,7 @@ struct trace {
     const struct exact_reading *reading;
     struct gauss gauss;                                  /* of polynomials */
     long double lower[EXACT_TAPS_MOST][EXACT_TAPS_MOST]; /* of fitted taps: Cholesky's factor of the normal equations */
-    long double level; /* rms of the samples: what a transform's rounding is relative to */
+    long double level; /* rms of the samples: a transform's rounding is relative to it */
 };
 
 struct value {
@@ -221,8 +222,8 @@ static long double legendre(int n, long double z)
     return now;
 }
 
-/* Gauss's points in [-1, 1] and their weights, by Newton's method: what they leave of a polynomial of the degree
-   times a signal of half a cycle is below 1e-17. */
+/* Gauss's points in [-1, 1] and their weights, by Newton's method. For a polynomial of the degree times a signal of
+   half a cycle, the quadrature's error is below 1e-17. */
 static struct gauss gauss_make(int degree)
 {
     struct gauss gauss = {.count = degree + 7};
@@ -302,7 +303,7 @@ static void normal_factor(const struct exact_reading *reading, struct trace *tra
         }
 }
 
-/* Solved anew for each position. */
+/* Solved again for each position. */
 static struct value read_fitted(const struct trace *trace, long double fine)
 {
     const struct exact_reading *reading = trace->reading;
@@ -327,7 +328,7 @@ static struct value read_fitted(const struct trace *trace, long double fine)
             add_tap(trace, at, w[i], &value);
             continue;
         }
-        const long double q = at / reading->upsample; /* the record's period holds it all */
+        const long double q = at / reading->upsample; /* the record's period contains all samples */
         const struct value s = read_band(trace, q - trace->count * floorl(q / trace->count));
         value.re += w[i] * s.re;
         value.im += w[i] * s.im;
@@ -336,7 +337,7 @@ static struct value read_fitted(const struct trace *trace, long double fine)
     return value;
 }
 
-/* At a position in upsampled samples, rounded already where the method rounds. */
+/* At a position in upsampled samples that is already rounded, if the method rounds. */
 static struct value read_position(const struct trace *trace, long double position)
 {
     struct value value = {0};
@@ -360,7 +361,7 @@ static struct value read_position(const struct trace *trace, long double positio
     return value;
 }
 
-/* At `fine` in upsampled samples, with the positions rounded as the method rounds them to `whole` of `steps`. */
+/* At `fine` in upsampled samples, rounded as the method rounds positions, to `whole` of `steps`. */
 static struct value read_rounded(const struct trace *trace, long double fine, long double whole)
 {
     if (trace->reading->kind == EXACT_POLYNOMIAL)
@@ -368,7 +369,7 @@ static struct value read_rounded(const struct trace *trace, long double fine, lo
     return read_position(trace, whole / trace->reading->phases);
 }
 
-/* Add a pair: its value, and what becomes of it at the other side of a tie. */
+/* Add a pair: its value, and the value on the other side of a tie. */
 static void add_pair(const struct trace *trace, const struct acquisition *a, const struct exact_pair *pair,
                      long double delay, struct exact_sum *sum)
 {
@@ -399,7 +400,7 @@ static void add_pair(const struct trace *trace, const struct acquisition *a, con
     }
 }
 
-/* False for a record that is zero throughout: it adds nothing. */
+/* False for an all-zero record: it adds nothing. */
 static bool trace_open(const struct acquisition *a, const double complex *samples, struct trace *trace)
 {
     long double sum = 0.0L;

@@ -17,7 +17,7 @@ static double option_value(const struct spec *spec, const char *name, double mis
 }
 
 /* Error laws at fs = 2 B, measured over 52 extreme scenes, with room (docs/stability.md). Range migration promises
- * 0.12. */
+   0.12. */
 static const struct {
     const char *name;
     int kind;
@@ -30,8 +30,8 @@ static const struct {
 enum { LAWS = sizeof laws / sizeof *laws };
 
 static const double ERROR_MOST = 0.12, ERROR_KAISER = 0.005;
-/* Range migration cuts swath and band at whole cells. Rounding may choose the next one, which moves the image by 2e-6
- * at most. */
+/* Range migration cuts swath and band at whole cells. Rounding may choose the next cell, which changes the image by
+   at most 2e-6. */
 static const double CHOICES = 1e-7;
 
 /* General engine, backprojection/general/sum.h: the limit L, lowered where a step between positions is long; 2.5e-6 rad
@@ -57,10 +57,10 @@ struct method method_of(const struct spec *spec, const char *engine, const struc
             method.reading.kind = laws[k].kind;
             method.error_most = laws[k].error_most;
         }
-    if (!method.has_reading) /* what is asked for, where that is a setting, with room */
+    if (!method.has_reading) /* the error setting, if there is one, with room */
         method.error_most = fmin(1.5 * option_value(spec, "error", ERROR_MOST), ERROR_MOST);
     if (option_value(spec, "preemphasis", 0) != 0)
-        method.has_reading = false; /* no filter in extended precision */
+        method.has_reading = false; /* extended precision has no such filter */
     if (!method.has_reading)
         return method;
     method.weight = 0;

@@ -14,7 +14,8 @@ struct method {
     double weight;     /* and of a sample's weight: tabulated kernels */
 };
 
-/* `engine` is the plan's text (struct work). Other methods than ours have no reading, and the widest error. */
+/* `engine` is the plan's text (struct work). A method without an error law of its own has no reading, and the widest
+   error. */
 struct method method_of(const struct spec *spec, const char *engine, const struct problem *problem);
 
 #endif

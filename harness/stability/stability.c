@@ -14,7 +14,7 @@
 #include "show/plot.h"
 #include "stability/stability_table.h"
 
-/* Beside every algorithm as it is by default: the plain paths, and the engine that small images do not choose. */
+/* In addition to every default algorithm: the plain paths, and the engine that is not chosen for small images. */
 static const char *const settings[] = {"bp_nearest:exact=true", "bp_nearest:engine=invariant",
                                        "bp_sinc:window=kaiser,exact=true"};
 enum { SETTINGS = sizeof settings / sizeof *settings };
@@ -27,7 +27,7 @@ static const char *const quick_scenes[] = {"base",         "near_r_lt_array", "r
                                            "amp_denormal", "near_equal",      "outside_record", "all_zero"};
 enum { QUICK_SCENES = sizeof quick_scenes / sizeof *quick_scenes, QUICK_MODES = 2 };
 
-/* What is run: names and specs, and where the rows go. */
+/* The scenes and specs of a run, and the place of its rows. */
 struct run {
     int scene_count, spec_count, mode_count;
     char **scenes; /* [scene_count] */
@@ -46,7 +46,7 @@ static void run_free(struct run *run)
     free(run->rows);
 }
 
-/* What a scene says may be refused, and is then a row; a file that is not there is a mistake. */
+/* A scene may be refused, which becomes a row; a missing file is a mistake. */
 static enum status scene_find(const char *name)
 {
     char path[4096];
@@ -106,7 +106,7 @@ static enum status spec_add(struct run *run, const struct spec *spec)
     return status;
 }
 
-/* `auto` is a choice among the others, and no method of its own. */
+/* `auto` is a choice among the others, not a method of its own. */
 static enum status spec_take(struct run *run, const struct spec *spec, bool asked)
 {
     if (spec->algorithm->plan)
@@ -140,7 +140,7 @@ static enum status specs_choose(const struct stability_request *request, struct 
     return status;
 }
 
-/* A scene that is refused is refused for every SPEC. */
+/* A refused scene is refused for every SPEC. */
 static enum status scene_check(struct run *run, int index)
 {
     struct stability_row *rows = run->rows + index * run->spec_count;
@@ -179,7 +179,7 @@ static enum status run_open(const struct stability_request *request, struct run 
     return status;
 }
 
-/* The files of the folder. The picture is worth no failure. */
+/* The files of the folder. A picture that cannot be drawn is no failure. */
 static enum status run_write(const struct run *run, const char *directory)
 {
     char measured[4096], expected[4096], picture[4096], footer[PROVENANCE_LINE];
@@ -196,7 +196,7 @@ static enum status run_write(const struct run *run, const char *directory)
     return status;
 }
 
-/* Rows against those expected, in words. */
+/* Compare rows with the expected ones, in words. */
 static enum status run_compare(const struct run *run, const char *expected, const char *directory)
 {
     int differ, unknown, count = run->scene_count * run->spec_count;

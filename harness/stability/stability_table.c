@@ -1,4 +1,4 @@
-/* Tables of stability (table.h). */
+/* Tables of stability (stability_table.h). */
 #include "stability/stability_table.h"
 
 #include <math.h>
@@ -20,7 +20,7 @@ void stability_table_head(void)
            DIGITS_MOST, "scene", "images", "digits", "of", "refused by");
 }
 
-/* What some of a scene's SPECs have in common: the condition that refuses, or "degrade". */
+/* Common to some SPECs of a scene: the condition that refuses, or "degrade". */
 struct reason {
     char name[WORD];
     int count;
@@ -122,7 +122,7 @@ enum status stability_write(const char *path, int mode_count, int count, const s
     return text_file_close(&file, STATUS_OK);
 }
 
-/* What is committed: promises as they are, what degrades with a quarter of room. */
+/* The committed bound: promises unchanged, the error of a degraded image with a quarter of room. */
 static double bound_of(const struct stability_verdict *verdict)
 {
     double bound = verdict->kind == VERDICT_DEGRADES ? 1.25 * verdict->error : verdict->error_most;
@@ -159,7 +159,7 @@ enum { SCENE, ALGORITHM, OPTIONS, PRECISION, VERDICT, ERROR_BOUND, DIGITS_BOUND,
 static const char *const column_names[COLUMNS] = {"scene",   "algorithm",   "options",     "precision",
                                                   "verdict", "error_bound", "digits_bound"};
 
-/* The row of the file that is about the same image, -1 if there is none. */
+/* The row of the file for the same image, -1 without one. */
 static int row_find(const struct csv *csv, const int *columns, const struct stability_row *row)
 {
     for (int k = 0; k < csv->row_count; k++)
@@ -171,7 +171,7 @@ static int row_find(const struct csv *csv, const int *columns, const struct stab
     return -1;
 }
 
-/* What of a row is not as expected, into *fault; false: nothing. */
+/* How a row differs from the expected one, into *fault; false: not at all. */
 static bool row_differs(const struct csv *csv, const int *columns, int expected, const struct stability_row *row,
                         char *fault, size_t size)
 {

@@ -21,7 +21,7 @@ void stability_table_line(int spec_count, const struct stability_row *rows);
 enum status stability_write(const char *path, int mode_count, int count, const struct stability_row *rows);
 enum status stability_expected_write(const char *path, int count, const struct stability_row *rows);
 
-/* Print every row that differs from `path`. *differ: their number; *unknown: the number of rows missing in the file,
+/* Print every row that differs from `path`. *differ: their number; *unknown: the number of rows that the file lacks,
    which only must not fail. Errors: STATUS_INVALID for a file that is not ours. */
 enum status stability_compare(const char *path, int count, const struct stability_row *rows, int *differ, int *unknown);
 

@@ -1,5 +1,5 @@
-/* Verdicts (stability_verdict.h). Norms are in long double, which neither overflows nor underflows on what double
-   holds. */
+/* Verdicts (stability_verdict.h). Norms are in long double, which neither overflows nor underflows for values of
+   double. */
 #include "stability/stability_verdict.h"
 
 #include <fenv.h>
@@ -64,7 +64,7 @@ static double relative(const struct scene *scene, struct view a, struct view b)
     return worst;
 }
 
-/* What rounding may change of a pair's phase, rad. */
+/* Largest rounding error of a pair's phase, rad. */
 static double phase_rounding(const struct scene *scene)
 {
     const struct acquisition *a = &scene->acquisition;
@@ -119,8 +119,8 @@ static int double_of(const struct trial *trial, int spec)
     return -1;
 }
 
-/* Against the method's own sum where there is one. Otherwise float is compared with double of the same mode, and double
-   with itself in the usual mode. */
+/* Compare with the method's own sum if there is one. Otherwise compare float with double of the same mode, and
+   double with itself in the usual mode. */
 static void digits_check(const struct trial *trial, int spec, const struct method *method,
                          struct stability_verdict *verdict)
 {
@@ -145,14 +145,14 @@ static void __attribute__((format(printf, 2, 3))) fail(struct stability_verdict 
 {
     va_list arguments;
     if (verdict->kind == VERDICT_FAILS)
-        return; /* the first reason stands */
+        return; /* keep the first reason */
     verdict->kind = VERDICT_FAILS;
     va_start(arguments, format);
     vsnprintf(verdict->why, sizeof verdict->why, format, arguments);
     va_end(arguments);
 }
 
-/* What the image must be whatever its error. */
+/* Faults of an image whatever its error. */
 static void flaws_check(struct stability_verdict *verdict)
 {
     const struct {
@@ -168,8 +168,8 @@ static void flaws_check(struct stability_verdict *verdict)
         fail(verdict, "digits");
 }
 
-/* The name of a condition in a message: "condition NAME:", "key 'NAME'", a phrase that stands for one, or else what
-   follows the place, as it is. */
+/* The name of the condition in a message: "condition NAME:", "key 'NAME'", a phrase for it, or else the text behind
+   the place, unchanged. */
 static void name_find(const char *message, char *name, size_t size)
 {
     static const struct {
@@ -194,7 +194,7 @@ static void name_find(const char *message, char *name, size_t size)
     snprintf(name, size, "%.60s", message);
 }
 
-/* Before anything is measured. */
+/* A verdict before any measurement. */
 static struct stability_verdict verdict_empty(enum verdict_kind kind)
 {
     return (struct stability_verdict){.kind = kind,
@@ -216,7 +216,7 @@ struct stability_verdict refusal_verdict(const char *message)
     return verdict;
 }
 
-/* The same status in all modes, or why not; true when there are images. */
+/* Do all modes have the same status? Otherwise record why not; true when there are images. */
 static bool statuses_check(const struct trial *trial, int spec, struct stability_verdict *verdict)
 {
     const struct attempt *usual = trial_attempt(trial, 0, spec);
@@ -239,7 +239,7 @@ static bool statuses_check(const struct trial *trial, int spec, struct stability
     return usual->status == STATUS_OK;
 }
 
-/* What pairs at a record's end may change of the right image, worst patch. */
+/* Possible change of the right image by pairs at a record's end, worst patch. */
 static double ties_of(const struct trial *trial)
 {
     double worst = 0;
@@ -255,7 +255,7 @@ static double ties_of(const struct trial *trial)
     return worst;
 }
 
-/* The right image: the closed form's, or reference's where there is none. */
+/* The right image: the closed form's, or reference's without a closed form. */
 static struct view ideal_of(const struct trial *trial)
 {
     if (!trial->ideal_excludes)
@@ -292,7 +292,7 @@ struct stability_verdict trial_verdict(const struct trial *trial, int spec)
     }
     digits_check(trial, spec, &method, &verdict);
     if (method.reading.kind == EXACT_BAND && verdict.conditioning > 0)
-        verdict.error_most += pow(10, DIGITS_MOST) * verdict.conditioning; /* what is exact errs by rounding alone */
+        verdict.error_most += pow(10, DIGITS_MOST) * verdict.conditioning; /* exact methods err by rounding alone */
     flaws_check(&verdict);
     verdict.error_most += ties_of(trial);
     if (verdict.error > fmax(0.5, verdict.error_most))

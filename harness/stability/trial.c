@@ -1,5 +1,4 @@
-/* Processes of a trial (trial.h). The parent never starts a thread of OpenMP: it could not be forked from afterwards.
- */
+/* Processes of a trial (trial.h). The parent never starts an OpenMP thread: it could not be forked afterwards. */
 #define _GNU_SOURCE /* MAP_ANONYMOUS */
 #include "stability/trial.h"
 
@@ -54,7 +53,7 @@ static enum status echoes_make(struct trial *trial, int unused)
     return STATUS_OK;
 }
 
-/* The image with so many threads, and what plan and execute raised. */
+/* Form the image with a number of threads; record exceptions of plan and execute. */
 static enum status image_form(const struct scene *scene, const struct echoes *echoes, const struct spec *spec,
                               int threads, struct image *image, struct attempt *attempt)
 {
@@ -95,7 +94,7 @@ static void attempt_make(const struct scene *scene, const struct echoes *echoes,
     attempt->done = true;
 }
 
-/* All specs that are not done yet. */
+/* All specs that are not finished yet. */
 static enum status mode_run(struct trial *trial, int mode)
 {
     const struct echoes shared = {&trial->scene->acquisition, PRECISION_DOUBLE, trial->samples, trial->note->exponent};
@@ -114,7 +113,7 @@ static enum status mode_run(struct trial *trial, int mode)
     return STATUS_OK;
 }
 
-/* To the samples as they were recorded. */
+/* Scale to the samples as recorded. */
 static void sums_scale(const struct trial *trial, struct exact_sum *sums)
 {
     for (size_t i = 0; i < trial->pixels; i++) {
@@ -124,7 +123,7 @@ static void sums_scale(const struct trial *trial, struct exact_sum *sums)
     }
 }
 
-/* The right image, and each method's own where it made one. */
+/* The right image, and each method's own sum where it made an image. */
 static enum status exact_make(struct trial *trial, int unused)
 {
     (void)unused;
@@ -145,7 +144,7 @@ static enum status exact_make(struct trial *trial, int unused)
 
 /* ---- the parent ---- */
 
-/* Run `work` in a process of its own; *state is what waitpid says of it. */
+/* Run `work` in a process of its own; *state is the one from waitpid. */
 static enum status process_run(struct trial *trial, enum status (*work)(struct trial *, int), int argument, int *state)
 {
     fflush(NULL);
@@ -154,7 +153,7 @@ static enum status process_run(struct trial *trial, enum status (*work)(struct t
         return status_set(STATUS_FAILED, "%s: no process can be started", trial->scene->name);
     if (child == 0) {
         for (size_t k = 0; k < sizeof crashes / sizeof *crashes; k++)
-            signal(crashes[k], SIG_DFL); /* whatever the parent does about its own */
+            signal(crashes[k], SIG_DFL); /* reset the parent's handlers */
         prctl(PR_SET_PDEATHSIG, SIGKILL);
         alarm(PATIENCE_S);
         trial->note->status = work(trial, argument);
@@ -167,7 +166,7 @@ static enum status process_run(struct trial *trial, enum status (*work)(struct t
     return STATUS_OK;
 }
 
-/* A process that must come to its end: echoes, exact images. */
+/* A process that must succeed: echoes, exact images. */
 static enum status process_need(struct trial *trial, enum status (*work)(struct trial *, int), const char *what)
 {
     int state;
@@ -180,7 +179,7 @@ static enum status process_need(struct trial *trial, enum status (*work)(struct 
     return trial->note->status == STATUS_OK ? STATUS_OK : status_set(trial->note->status, "%s", trial->note->message);
 }
 
-/* A spec that ends its process is noted, and another process takes the rest. */
+/* A spec that crashes its process is recorded, and another process continues with the rest. */
 static enum status mode_trial(struct trial *trial, int mode)
 {
     for (;;) {

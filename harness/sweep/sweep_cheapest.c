@@ -1,4 +1,4 @@
-/* Which setting is enough: cheapest.csv of a sweep (sweep_group.h). */
+/* The cheapest sufficient setting: cheapest.csv of a sweep (sweep_group.h). */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -9,7 +9,7 @@
 
 enum { TIES_TOLD = 3 };
 
-/* Families by the beginning of the name; that of all algorithms is the first. */
+/* Families by the beginning of the name; the first is that of all algorithms. */
 static const struct {
     const char *name, *begins, *title;
 } families[] = {
@@ -24,7 +24,7 @@ static bool is_candidate(const struct group *group, int k, double below, const c
     return group->error[k] <= below && strncmp(group->points.list[k].row->algorithm, begins, strlen(begins)) == 0;
 }
 
-/* The cheapest row with an error up to `below`, of equal ones the fastest; -1 if no row comes that far. */
+/* The cheapest row with an error up to `below`, of equal ones the fastest; -1 without such a row. */
 static int cheapest_find(const struct group *group, int c, double below, const char *begins)
 {
     int best = -1;
@@ -36,7 +36,7 @@ static int cheapest_find(const struct group *group, int c, double below, const c
     return best;
 }
 
-/* The settings whose interval overlaps the cheapest one's, separated by "; "; returns how many. */
+/* The settings whose interval overlaps the cheapest one's, separated by "; "; returns their number. */
 static int ties_find(const struct group *group, int best, double below, const char *begins, char *text, size_t size)
 {
     int count = 0;
@@ -76,7 +76,7 @@ static void row_tell(const struct measurement *row, const char *threshold, const
     table_text(stdout, 52, tied);
 }
 
-/* Is a family worth its own lines on the terminal: only one of several, and by run time? */
+/* Does the terminal show the family: only one of several, and by run time? */
 static bool is_told(const struct group *group, size_t family, int c)
 {
     bool others = false;
@@ -88,7 +88,7 @@ static bool is_told(const struct group *group, size_t family, int c)
     return group->told && (family == 0 || (others && c == SWEEP_RUN_TIME));
 }
 
-/* For each decade from 1 down to the last that any setting of the family reaches. */
+/* For each decade from 1 down to the smallest that any setting of the family reaches. */
 static void family_write(struct group *group, size_t family, int c, FILE *file)
 {
     const char *begins = families[family].begins;

@@ -12,7 +12,7 @@ void settings_free(struct sweep_settings *settings)
     *settings = (struct sweep_settings){0};
 }
 
-/* Takes over what *spec owns. */
+/* Takes ownership of what *spec owns. */
 static enum status settings_append(struct sweep_settings *settings, struct spec *spec)
 {
     struct spec *specs = realloc(settings->specs, ((size_t)settings->count + 1) * sizeof *specs);

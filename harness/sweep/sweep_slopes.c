@@ -70,8 +70,8 @@ static void slope_write(const struct group *group, const struct point *points, c
            fit.last, fit.residual_log10);
 }
 
-/* The parts of each series: where the error falls and the floor; without a floor the finest half, for the order that
-   the method tends to. Settings that upsample nothing count by themselves. */
+/* The parts of each series: the falling error and the floor; without a floor the finest half, for the method's
+   asymptotic order. Settings without upsampling count by themselves. */
 void slopes_write(struct group *group, FILE *file)
 {
     if (group->told)

@@ -29,7 +29,7 @@ static const char *decimal_end(const char *text)
 const char *number_read(const char *text, double *value)
 {
     const char *end = decimal_end(text);
-    if (!end || *end == 'x' || *end == 'X') /* strtod would go on behind the 0 */
+    if (!end || *end == 'x' || *end == 'X') /* strtod would read on behind the 0 */
         return NULL;
     double number = strtod(text, NULL);
     if (!isfinite(number))

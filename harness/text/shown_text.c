@@ -1,4 +1,4 @@
-/* What may be shown of a text (shown_text.h). */
+/* Which parts of a text may be shown (shown_text.h). */
 #include "text/shown_text.h"
 
 #include <ctype.h>
@@ -94,8 +94,8 @@ void shown_note(const char *text)
     }
 }
 
-/* What a sign of ASCII becomes; NULL: it stays. Links are made of bare addresses, too, and neither a backslash nor an
-   entity keeps @NAME from calling that person, or #1 from leading somewhere: a blank without width does. */
+/* The escape of an ASCII character; NULL: unchanged. Bare addresses become links, too. Neither a backslash nor an
+   entity keeps @NAME from notifying that person, or #1 from becoming a link: a zero-width blank does. */
 static const char *markdown_escape(const char *start, const char *at)
 {
     static const struct {

@@ -1,4 +1,4 @@
-/* What was probably meant (suggestion.h): the words that take the fewest edits. */
+/* A suggestion for a mistyped word (suggestion.h): the words with the fewest edits. */
 #include "text/suggestion.h"
 
 #include <ctype.h>
@@ -21,7 +21,7 @@ static bool same(char a, char b)
     return tolower((unsigned char)a) == tolower((unsigned char)b);
 }
 
-/* Letters to change, add, leave out, or swap with the next; small and large ones are the same. */
+/* Letters to change, add, leave out, or swap with the next, without regard to case. */
 static int edits(const char *a, const char *b)
 {
     int rows[3][LETTERS_MOST + 1];
@@ -45,8 +45,8 @@ static bool begins(const char *text, const char *with)
     return *with && strncasecmp(text, with, strlen(with)) == 0;
 }
 
-/* From what was given to a word or to its rest behind a '/' or '_': the edits, at most `most`, or as one where the word
-   is cut short or has something behind it; INT_MAX where it is far. */
+/* Edits from the given word to a word or to its rest behind a '/' or '_', at most `most`. A word that is cut short
+   or continued counts as one edit; INT_MAX for others. */
 static int distance(const char *given, const char *word, int most)
 {
     int nearest = begins(given, word) ? 1 : INT_MAX;
