@@ -138,7 +138,7 @@ static void kind_fill(int engine, enum reading_kind kind, const struct probe *wi
     values_solve(units[0], units[1], values, &rates->unit[engine][kind], &rates->unit_value[engine][kind]);
 }
 
-/* What pairs that share no loads take more than others, where those of few values and of many do. */
+/* What pairs without shared loads take more than others, of few values and of many. */
 static void apart_fill(enum reading_kind kind, const struct probe *few, const struct probe *many, struct rates *rates)
 {
     const struct probe *of[2] = {few, many};
@@ -191,7 +191,7 @@ static double determinant(const double a[3], const double b[3], const double c[3
     return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
-/* What the records take: compress = FLOPs c of transforms + FLOPs f of filters + values p, of few and many taps and of
+/* The time of records: compress = FLOPs c of transforms + FLOPs f of filters + values p, of few and many taps and of
    many branches in the general engine; in the invariant engine another p. None is below 0. */
 static void records_fill(const struct probes *probes, struct rates *rates)
 {
@@ -213,7 +213,7 @@ static void records_fill(const struct probes *probes, struct rates *rates)
     rates->put[1] = fmax(rest, 0) / f->record_values;
 }
 
-/* Images of subapertures, beside the pairs that they are summed from; at least a tenth of all. */
+/* The time of subapertures' images, beside the pairs that they are summed from; at least a tenth of all. */
 static void image_fill(const struct probe *probe, struct rates *rates)
 {
     const struct forecast *f = &probe->forecast;

@@ -129,7 +129,7 @@ struct candidate *laws_next(struct choice *choice)
 
 /* ---- an aperture limit ---- */
 
-/* The share of the pings that a sine keeps, of those that an image's middle has. */
+/* The share of an image's middle's pings that a sine limit keeps. */
 static double share_kept(const struct problem *problem, double sine)
 {
     const struct acquisition *a = problem->acquisition;

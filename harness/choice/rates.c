@@ -26,12 +26,12 @@ static struct rates rates = {
     .noise = 0.02,
 };
 
-/* Taps beyond eight that are no whole vectors of eight take the invariant engine as long as so many more: measured,
-   4 to 5. */
+/* Above eight, a number of taps that is no multiple of eight takes the invariant engine as long as so many more:
+   measured, 4 to 5. */
 enum { VECTOR = 8, PART = 5 };
 
-/* In the invariant engine a pair takes the longer, the fewer columns there are from ping to ping, of which neighbours
-   share loads of the same sample: 1 + ALONE/columns. Measured on one column and on RATES_COLUMNS. */
+/* In the invariant engine a pair takes longer where fewer columns lie from ping to ping, whose neighbours share loads
+   of the same sample: 1 + ALONE/columns. Measured on one column and on RATES_COLUMNS. */
 static const double ALONE[READ_KINDS] = {
     [READ_NEAREST] = 0.8, [READ_LINE] = 0.8, [READ_TAPS] = 0.5, [READ_BRANCHES] = 4.4};
 
@@ -41,9 +41,9 @@ static double alone(const struct forecast *f)
     return f->tables ? (1 + ALONE[f->kind] / fmin(f->residues, most)) / (1 + ALONE[f->kind] / most) : 1;
 }
 
-/* Of padded records neighbours no longer share loads, and what a row reads outgrows the caches: nearest's sums take so
-   much longer, 1 + GROWTH (factor - 1)^POWER, and those of branches in tables, 1.2 to 1.6 with a factor of 2. Measured
-   on images of 5e8 to 5e10 pairs. [general and invariant engine] */
+/* On padded records neighbours no longer share loads, and a row's samples outgrow the caches. Nearest's sums take 1 +
+   GROWTH (factor - 1)^POWER times as long; those of branches in tables, 1.2 to 1.6 with a factor of 2. Measured on
+   images of 5e8 to 5e10 pairs. [general and invariant engine] */
 static const double GROWTH[2] = {0.7, 0.35}, POWER[2] = {0.25, 0.72};
 
 static double spread(const struct forecast *f)

@@ -182,7 +182,7 @@ static enum status target_metric(struct formula *formula, struct call *call, str
     return STATUS_OK;
 }
 
-/* What a plan carries, or of each target what a filter keeps or changes. */
+/* A number of a plan, or, of each target, what a filter keeps or changes. */
 static enum status unimaged(struct formula *formula, struct call *call, struct values *values)
 {
     const enum scene_quantity first = call->first < 0 ? QUANTITY_SIZE_FACTOR : QUANTITY_KEPT_DB;
@@ -374,7 +374,7 @@ static enum status one_read(struct formula *formula, const struct lookup *lookup
     return status == STATUS_OK ? lookup->read(formula, call, values) : status;
 }
 
-/* The difference of a call's two methods, "A - B", or what it stands for. */
+/* The difference of a call's two methods, "A - B", or the number of its only one. */
 static enum status difference_read(struct formula *formula, const struct lookup *lookup, struct call *call,
                                    struct values *values)
 {

@@ -1,5 +1,4 @@
-/* The language of claims.csv (quantity.h): names, sums, products and what takes lists. What looks numbers up is in
-   lookup.c. */
+/* The language of claims.csv (quantity.h): names, sums, products and functions of lists. lookup.c looks numbers up. */
 #include "claims/quantity.h"
 
 #include <ctype.h>
@@ -239,7 +238,7 @@ static enum status number_of_row(struct formula *formula, int row, struct values
     return status;
 }
 
-/* What begins with a word. */
+/* A factor that begins with a word. */
 static enum status word_read(struct formula *formula, struct values *values)
 {
     const char *at = formula->at;

@@ -136,7 +136,7 @@ static int needs_collect(const struct selection *selection, struct need needs[NE
     return count;
 }
 
-/* Is the phase study asked for: a figure of it, or a claim about it? */
+/* Is the phase study needed, by a figure of it, or by a claim about it? */
 static bool phases_asked(const struct selection *selection)
 {
     bool asked = false;

@@ -125,7 +125,7 @@ static void claim_print(const struct claim *claim, const struct evaluation evalu
                claim_verdict_names[evaluations[scheme].verdict], evaluations[scheme].evidence);
 }
 
-/* Where all claims were asked for: how many have each verdict, as a page. */
+/* If all claims are requested: how many have each verdict, as a page. */
 static enum status verdicts_page(const char *directory, const struct verdicts *verdicts,
                                  const struct measured *measured)
 {
@@ -180,7 +180,7 @@ static enum status claims_report(const char *directory, const struct selection *
     return status == STATUS_OK ? verdicts_page(directory, &verdicts, measured) : status;
 }
 
-/* Lines of tables that were not asked for stay if the folder has all of them. */
+/* Lines of tables that were not requested stay if the folder has all of them. */
 static void lines_keep(const struct selection *selection, struct reproduced *lines, int *count)
 {
     int kept = 0;

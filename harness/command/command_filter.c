@@ -1,4 +1,4 @@
-/* The command `filter`: the polar-format spatial filter, echoes to echoes, with a table of what it does to each
+/* The command `filter`: the polar-format spatial filter, echoes to echoes, with a table of its effect on each
    target. */
 #include <complex.h>
 #include <math.h>

@@ -21,7 +21,7 @@ static enum status check_twice(const struct task *task)
     return STATUS_OK;
 }
 
-/* What was measured, in half a terminal. */
+/* A short table of the measurements, half a terminal long. */
 static enum status summary_print(const struct batch *batch, int scene_count, const struct scene *scenes, int spec_count,
                                  const struct spec *specs, bool tables)
 {

@@ -44,7 +44,7 @@ double noise_of_targets(const struct acquisition *a, int target_count, const str
     return noise / (noise + echoes * a->fs / a->bandwidth);
 }
 
-/* What a record's echoes have at its frequencies, by the pulse. */
+/* What the pulse predicts of a record's echoes at its frequencies. */
 struct expected {
     int first;     /* bins [first, samples - first] lie beyond the band */
     double beyond; /* of their energy, the share that lies there */

@@ -31,7 +31,7 @@ static struct taken *taken_now;
 
 /* --- Ways -------------------------------------------------------------------------------------------------------- */
 
-/* What follows a folder's name in a path; NULL when that does not lead into it. */
+/* The rest of a path behind a folder's name; NULL when the path does not lead into it. */
 static const char *rest_of(const char *path, const char *directory)
 {
     size_t length = strlen(directory);
@@ -58,7 +58,7 @@ static const struct taken *taken_find(const char *path, const char **rest)
 }
 
 /* The folder of the last name on a way that begins in `folder` and follows no link: `folder` itself, or one to be
-   closed. -1: errno says why. */
+   closed. -1: errno has the reason. */
 static int way_walk(int folder, const char *rest, const char **name)
 {
     int at = folder;
@@ -350,7 +350,7 @@ static enum status taken_add(const char *directory, int descriptor)
 static enum status take(const char *directory, bool ours, int *lock)
 {
     *lock = -1;
-    /* The folder itself is what is locked. Programs that we start do not inherit it. */
+    /* The folder itself is locked. Programs that we start do not inherit the lock. */
     int descriptor = place_read(directory, O_DIRECTORY);
     if (descriptor < 0)
         return status_set(STATUS_INVALID, "%s: cannot be opened: %s; a folder is needed", directory, strerror(errno));

@@ -19,8 +19,7 @@
 /* 8 rounds decide between identical programs on a quiet machine. */
 const struct ab_effort ab_usual = {8, 4, 64, 240, 600};
 
-/* What is run where nothing is asked for: small, yet every stage of back projection and range migration holds much of
-   the time somewhere. */
+/* The default set: small, yet every stage of back projection and range migration holds much of the time somewhere. */
 static const struct {
     const char *scene;
     const char *specs[8]; /* none: every algorithm */
@@ -216,7 +215,7 @@ static double part_seconds(const struct unit *unit, int side, int part)
     return median(seconds, unit->rounds * AB_BLOCKS);
 }
 
-/* The total, and stages that both programs know and that hold enough of the time of either. */
+/* The total, and the stages of both programs that take enough of the time of either. */
 static bool part_counts(const struct unit *unit, int part)
 {
     double share = 0;

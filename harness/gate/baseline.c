@@ -118,7 +118,7 @@ static enum status specs_make(struct spec **specs, int *count)
     return status;
 }
 
-/* What an algorithm refuses by default it refuses with other settings for the same reason. */
+/* A refusal by default applies to other settings for the same reason. */
 static bool adds_nothing(const struct measurement *row, const struct measurement *before, int count)
 {
     for (int k = 0; k < count; k++)

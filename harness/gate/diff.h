@@ -1,5 +1,5 @@
-/* What got worse between two states of the program: findings, from results (diff.c) or from both programs run side by
-   side (ab.c), and how they are shown (diff_show.c). */
+/* Findings about two states of the program, from results (diff.c) or from both programs run side by side (ab.c), and
+   how they are shown (diff_show.c). */
 #ifndef SASBENCH_GATE_DIFF_H
 #define SASBENCH_GATE_DIFF_H
 
@@ -74,9 +74,8 @@ void diff_free(struct diff *diff);
 void diff_print(const struct diff *diff, FILE *stream);
 /* The same for a comment of a CI, as Markdown; at most 100 findings, the worst first. Errors: of text_file. */
 enum status diff_markdown(const struct diff *diff, const char *path);
-/* What trackers of benchmarks read (github-action-benchmark's customSmallerIsBetter): [{"name", "unit", "value",
-   "range"}] of every defined value of NEW that is better when it is smaller; range is the slack. Errors: of
-   text_file. */
+/* For trackers of benchmarks (github-action-benchmark's customSmallerIsBetter): [{"name", "unit", "value", "range"}] of
+   every defined value of NEW that is better when it is smaller; range is the slack. Errors: of text_file. */
 enum status diff_json(const struct diff *diff, const char *path);
 
 #endif

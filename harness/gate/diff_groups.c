@@ -21,7 +21,7 @@ static void cause_make(const char *spec, char *cause, size_t size)
     snprintf(cause, size, "%.*s", (int)length, spec);
 }
 
-/* How far it changed: in slacks or, where there are none, relatively; what is gone is farthest. */
+/* The size of the change: in slacks or, without them, relative; a row that is gone has the largest. */
 static double distance(const struct finding *f)
 {
     const double moved = fabs(f->after - f->before);

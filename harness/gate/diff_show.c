@@ -17,7 +17,7 @@ struct cell {
     char text[200];
 };
 
-/* Three digits, or as many as it takes to tell it from the other value. */
+/* Three digits, or as many as distinguish it from the other value. */
 static struct cell cell_value(double value, double other, const char *text)
 {
     struct cell cell = {""}, beside = {""};
@@ -90,7 +90,7 @@ static void line_write(FILE *stream, const char *text)
     fputc('\n', stream);
 }
 
-/* What is better, new or too noisy to tell is counted only. */
+/* Better, new and noisy findings are only counted. */
 static bool is_folded(enum verdict verdict)
 {
     return verdict == VERDICT_NOISY || verdict == VERDICT_BETTER || verdict == VERDICT_NEW;

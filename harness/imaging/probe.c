@@ -93,8 +93,8 @@ static struct segment *segments_sorted(const struct image *pilot, const struct r
     return list;
 }
 
-/* How many are drawn up to a rank in order of brightness: half of them evenly over the ranks, for errors lie where the
-   pilot is dark as well, half evenly over their logarithm, for what it shows fades by powers of the rank. */
+/* How many are drawn up to a rank in order of brightness: half of them evenly over the ranks, since errors lie also
+   where the pilot is dark, half evenly over their logarithm, since brightness falls by powers of the rank. */
 static double drawn_until(double rank, double count)
 {
     return DRAWN / 2.0 * (log(rank / BRIGHT) / log(count / BRIGHT) + (rank - BRIGHT) / (count - BRIGHT));
@@ -212,7 +212,7 @@ void probe_free(struct probe *probe)
     *probe = (struct probe){0};
 }
 
-/* What is compared: an image of the whole, or of the segments alone. */
+/* The compared images: of the whole, or of the segments alone. */
 struct compared {
     const struct probe *probe;
     const struct image *image;
