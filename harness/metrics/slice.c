@@ -100,7 +100,7 @@ static struct line line_extract(const struct image *image, const struct acquisit
         snprintf(reason, size, "the %s slice is shorter than 3 samples", axis == AXIS_AZIMUTH ? "azimuth" : "range");
         return line;
     }
-    const double bytes = (double)line.count * sizeof *line.samples; /* its transform takes twice as much again */
+    const double bytes = (double)line.count * sizeof *line.samples; /* with its transform, three times as much */
     if (memory_check(3 * bytes, "the slice") == STATUS_OK)
         line.samples = malloc((size_t)line.count * sizeof *line.samples);
     if (!line.samples) {

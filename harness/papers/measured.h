@@ -43,7 +43,7 @@ void measured_free(struct measured *measured);
 /* The requested value is not there: keep the reason unless there is one already. Returns NAN. */
 double measured_missing(struct measured *measured, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* The successful measurement of `spec` (SPEC text) on `scene`, else NULL, which sets nothing missing. */
+/* The successful measurement of `spec` (SPEC text) on `scene`, else NULL; `missing` stays unchanged. */
 const struct measurement *measured_row(const struct measured *measured, const char *scene, const char *spec);
 
 /* A field of the measurement of `spec` (SPEC text) on `scene`: MEASURED(measured, scene, spec, error). */

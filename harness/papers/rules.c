@@ -40,7 +40,7 @@ enum { RULES = sizeof rules / sizeof *rules };
 const char *const rule_names[] = {"bp22_eq20", "zp15_eighth", NULL};
 const char *const rule_quantities[] = {"met", "met_2b", "error", "overpaid", NULL};
 
-/* ---- following them ---- */
+/* ---- following the rules ---- */
 
 static const char header[] = "seed,rule,algorithm,options,oversampling,error_gain,rate,rate_enough";
 
@@ -165,7 +165,7 @@ enum status rules_study(const char *directory)
     return text_file_close(&file, status);
 }
 
-/* ---- what came of it ---- */
+/* ---- results ---- */
 
 double rule_value(struct measured *measured, const char *rule, const char *quantity, double number)
 {

@@ -17,8 +17,8 @@ bool scheme_spec(enum scheme scheme, const char *text, char *spec, size_t size);
    printed; corrected, both are Eq. (5) with theta at F. Returns whether the name depends on the scheme. */
 bool scheme_formula(enum scheme scheme, const char *name, const char **formula);
 
-/* Engines and settings that stand for the papers' methods; LBF by the scheme that is evaluated. PCA's
-   and Wu's correction follows range by interpolation (LBF21 V-A), for which blocks that blend stand. */
+/* Engines and settings that correspond to the papers' methods; LBF by the evaluated scheme. PCA's and Wu's
+   correction follows range by interpolation (LBF21 V-A); blending blocks take its place. */
 #define NEAREST   "bp_nearest"
 #define LINEAR_2  "bp_linear:beta=2"
 #define LINEAR_8  "bp_linear:beta=8"
@@ -85,8 +85,8 @@ const char *source_place(const char *table, const char *target, int *index);
 double table_seconds(struct measured *measured, enum scheme scheme, const char *id, const char *method,
                      const char *definition);
 /* How far apart two times of a table may lie by chance, relative: the largest of a tenth, the scatter of one
-   method's runs, that of the scalar reference loop beside the methods of one scene, and the share of other work on
-   the machine. */
+   method's runs, that of the scalar reference loop beside the methods of one scene, and the machine's load above one
+   a processor. */
 double table_noise(const struct measured *measured, const char *id, const char *definition);
 
 /* Is there such a time? -1, or which of the three texts (from 0) does not exist; `accepted` then lists those that

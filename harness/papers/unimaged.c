@@ -14,7 +14,7 @@ const char *const planned_names[] = {
     [QUANTITY_SIZE_FACTOR] = "size_factor", [QUANTITY_UPSAMPLING] = "upsampling", NULL};
 const char *const energy_names[] = {"kept_db", "changed_db", NULL};
 
-/* ---- what was worked out ---- */
+/* ---- numbers already computed ---- */
 
 static bool is_kept(const struct measured *measured, const struct scene_number *asked, double *value)
 {
@@ -40,7 +40,7 @@ static void keep(struct measured *measured, const struct scene_number *asked, en
     measured->numbers[k].value = value;
 }
 
-/* ---- working it out ---- */
+/* ---- computing numbers ---- */
 
 /* FLOPs of a plan, or its size factor. */
 static enum status plan_find(struct measured *measured, const struct scene_number *asked, const struct scene *scene,

@@ -40,9 +40,9 @@ struct column {
     size_t offset; /* of the field in struct measurement or target_row */
     /* Of a metric, a real number that is compared: */
     const char *unit;                                                       /* NULL: no metric */
-    enum { BETTER_NONE, BETTER_LOWER, BETTER_HIGHER, BETTER_SMALL } better; /* small: of small magnitude */
+    enum { BETTER_NONE, BETTER_LOWER, BETTER_HIGHER, BETTER_SMALL } better; /* small: a smaller magnitude */
     enum metric_class { CLASS_QUALITY, CLASS_WORK, CLASS_TIME } class;
-    double absolute_slack[2]; /* by enum precision; a change within either slack is none */
+    double absolute_slack[2]; /* by enum precision; a change within either slack does not count */
     double relative_slack;
     /* Of a metric in tables: */
     struct {

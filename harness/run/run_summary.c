@@ -114,7 +114,7 @@ static void scene_print(FILE *stream, const struct run *run, const char *scene, 
     line_print(stream, scene, cells, width, first);
 }
 
-/* ---- what was refused ---- */
+/* ---- refusals ---- */
 
 /* Length of "rma_" in an algorithm's name. */
 static int family_length(const char *name)
@@ -175,7 +175,7 @@ static void refused_print(FILE *stream, const struct run *run)
         table_text(stream, 0, text);
 }
 
-/* ---- how good the times and the choices are ---- */
+/* ---- quality of times and choices ---- */
 
 /* A choice compared with the fastest of the others within the same error. */
 static void auto_print(FILE *stream, const struct run *run)

@@ -30,11 +30,10 @@ struct scene {
     char *path;        /* of the file, absolute and without links */
     bool shipped;      /* it lies below scenes/ */
     char *description; /* one line, from the file */
-    uint64_t hash;     /* FNV-1a of the content after @include: scenes of the same text have the same hash */
+    uint64_t hash;     /* FNV-1a of the content after @include: the same content has the same hash */
     struct acquisition acquisition;
-    struct acquisition *flown; /* the platform's true motion; NULL: that of `acquisition`, which the imager uses */
-    double complex
-        *recorded; /* [pings][receivers][samples] of an echo file; NULL: simulate from pulse, beam, targets and noise */
+    struct acquisition *flown;  /* the platform's true motion; NULL: that of `acquisition`, which the imager uses */
+    double complex *recorded;   /* [pings][receivers][samples] of an echo file; NULL: the echoes are simulated */
     char *recording;            /* the echo file, if its samples stay in it; else NULL */
     enum pulse_kind pulse_kind; /* flat: the echoes are compressed */
     double pulse_duration;      /* s; lfm and lfm_time */

@@ -1,5 +1,5 @@
-/* The platform's place at each ping: evenly along x, or as measured, with motion errors that the imager knows or
-   not. */
+/* The platform's place at each ping: evenly along x, or as measured, with motion errors that the imager uses or
+   ignores. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

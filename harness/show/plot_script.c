@@ -56,7 +56,7 @@ static void gnuplot_complaint(int log, char *text, size_t size)
 }
 
 /* In the child, which ends with this program, however that ends. It has a group of its own, so that its own children
-   end with it. --default-settings: ignores the user's gnuplot start-up files. */
+   can be ended with it. --default-settings: ignores the user's gnuplot start-up files. */
 static _Noreturn void child_run(pid_t parent, const char *script, int picture, int log)
 {
     const int nothing = open("/dev/null", O_RDONLY);

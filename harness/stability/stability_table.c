@@ -153,7 +153,7 @@ enum status stability_expected_write(const char *path, int count, const struct s
     return text_file_close(&file, STATUS_OK);
 }
 
-/* ---- against what is expected ---- */
+/* ---- comparison with the expected rows ---- */
 
 enum { SCENE, ALGORITHM, OPTIONS, PRECISION, VERDICT, ERROR_BOUND, DIGITS_BOUND, COLUMNS };
 static const char *const column_names[COLUMNS] = {"scene",   "algorithm",   "options",     "precision",
