@@ -27,8 +27,8 @@ void check_scene(const struct scene *scene, struct check_found *found);
 /* Add the conditions of one SPEC; *refused is set where no plan can be made. Errors: STATUS_FAILED without memory. */
 enum status check_algorithm(const struct scene *scene, const struct spec *spec, struct check_found *found,
                             bool *refused);
-/* Print how many can image the scene, then the conditions that are violated or near their limit, with the cure, or
-   `all`. */
+/* Print how many can image the scene, then the conditions that are violated or near their limit, or `all`, with the
+   cure. */
 void check_print(FILE *stream, const struct scene *scene, const struct check_found *found, bool all);
 
 /* The effect of a small error of one quantity on a pair of ping and receiver. */

@@ -23,7 +23,7 @@ void planned_free(struct planned *planned);
 int planned_precision(const struct planned *planned);
 
 extern const char *const plan_verdict_names[]; /* by enum verdict */
-/* Is candidate k, over the budget or refused, the one nearest to it of an algorithm without any within it? */
+/* Is candidate k, over the budget or refused, the best of an algorithm that has none within the budget? */
 bool planned_nearest(const struct choice *choice, int k);
 /* A line for each thing that the chosen setting leaves out, with what it adds to the error. */
 void planned_left_out(const struct problem *problem, const struct candidate *chosen,

@@ -79,7 +79,7 @@ static enum status scene_predict(const struct results *results, const char *name
     return status;
 }
 
-/* Of all algorithms with NULL. Nothing for one that has none. */
+/* `algorithm` NULL: all of them. Writes nothing without predictions. */
 static void summary_write(const struct predictions *predictions, const struct algorithm *algorithm, double *ratios,
                           FILE *file)
 {

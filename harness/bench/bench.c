@@ -21,7 +21,7 @@
 struct bench {
     const char *directory;
     int count;
-    struct bench_line *lines; /* [count] those of one scene stand together */
+    struct bench_line *lines; /* [count] those of one scene in a row */
     FILE *file;               /* of bench.csv */
 };
 
@@ -105,7 +105,7 @@ static void line_write(const struct bench *bench, const struct bench_line *line)
     fflush(stdout);
 }
 
-/* The lines from one on that stand together for one scene, and that this machine can measure. */
+/* The lines from one on that follow one another for one scene, and that this machine can measure. */
 static enum status scene_measure(struct bench *bench, int first, int count)
 {
     struct scene scene;

@@ -10,7 +10,7 @@ struct bench_line {
     const char *name, *scene; /* borrowed; no name: none is printed */
     struct spec spec;
     const char *isa; /* borrowed; "": the processor's best */
-    int threads;     /* from here on, once measured, what was measured */
+    int threads;     /* this and what follows: as measured, once it is */
     double pair_flops;
     bool measured;
     struct timing_samples *samples;  /* while it is measured */

@@ -18,7 +18,7 @@
 
 /* From this ratio of measured errors to their laws on, `reference` forms the exact image. */
 static const double DARK = 3;
-/* A setting of less than this share of the chosen one's time is worth a look. */
+/* A setting of less than this share of the chosen one's time is measured, too. */
 static const double PAYS = 0.8;
 enum { LOOKS = 2 };
 
@@ -28,7 +28,7 @@ struct trial {
     struct choice *choice;
     struct probe probe; /* made of the first image */
     bool probed, dark, limited;
-    double exact; /* the error by law of what stands for the exact image; 0 of `reference` */
+    double exact; /* the error by law of the stand-in for the exact image; 0 of `reference` */
 };
 
 void candidate_name(const struct candidate *candidate, char text[CANDIDATE_NAME])

@@ -54,7 +54,7 @@ enum status choice_make(const struct problem *problem, const struct echoes *echo
                         struct choice *choice);
 void choice_free(struct choice *choice);
 
-/* Does the SPEC leave the choice to choice_make? Its budget. */
+/* Does the SPEC leave the choice to choice_make? *budget is then its own. */
 bool choice_asked(const struct spec *spec, struct budget *budget);
 /* The chosen setting as a SPEC of the same precision, freed with spec_free. Errors: STATUS_UNSUPPORTED naming the least
    error where nothing was found, STATUS_FAILED. */

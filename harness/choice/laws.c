@@ -129,7 +129,7 @@ struct candidate *laws_next(struct choice *choice)
 
 /* ---- an aperture limit ---- */
 
-/* The share of an image's middle's pings that a sine limit keeps. */
+/* Of the pings of an image's middle, the share that a sine limit keeps. */
 static double share_kept(const struct problem *problem, double sine)
 {
     const struct acquisition *a = problem->acquisition;

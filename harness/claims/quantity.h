@@ -27,7 +27,7 @@ enum use { USE_SCENE, USE_SETTING, USE_SLICE, USE_TABLE };
 enum { NAMES_MAX = 48 };
 struct formula {
     struct measured *measured; /* NULL: only check */
-    enum scheme scheme;        /* what LBF means */
+    enum scheme scheme;        /* the scheme of LBF */
     bool by_scheme;            /* LBF was named: the other scheme may give other numbers */
     bool phases;               /* the phase study is needed */
     bool rules;                /* the rules' study is needed */
@@ -76,7 +76,7 @@ void formula_begin(struct formula *formula, const char *column, const char *text
 void formula_blanks(struct formula *formula);
 bool formula_take(struct formula *formula, char character);
 void formula_word(struct formula *formula, char *word, size_t size);
-/* An error where `at` points: "FILE: line N: column C, character K: 'what stands there': MESSAGE". */
+/* An error at `at`: "FILE: line N: column C, character K: 'what stands there': MESSAGE". */
 enum status formula_error(const struct formula *formula, const char *at, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 

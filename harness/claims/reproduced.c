@@ -61,7 +61,7 @@ static enum status reproduced_write(const char *directory, const struct measured
     return text_file_close(&file, STATUS_OK);
 }
 
-/* One table: a line for each number and definition. A note stands once, ahead of the numbers of its target. */
+/* One table: a line for each number and definition. A note is printed once, ahead of the numbers of its target. */
 static void table_print(const struct paper_table *table, const struct reproduced *lines, int count)
 {
     char text[1000];

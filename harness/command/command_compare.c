@@ -22,7 +22,7 @@ static enum status compare_sides(const struct task *task, struct diff *diff)
     return diff_results(names[0], names[1], diff);
 }
 
-/* Two image files: how far the first lies from the second. */
+/* Two image files: the difference of the first from the second. */
 static enum status compare_images(const struct task *task)
 {
     struct image_file files[2] = {{.patches = NULL}, {.patches = NULL}};

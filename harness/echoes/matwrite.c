@@ -21,7 +21,7 @@ static enum status write_failed(struct writer *writer)
                status_set(STATUS_INVALID, "%s: cannot be written: %s; " ACCEPTED, writer->path, strerror(reason));
 }
 
-/* The place that a path stands for, through symbolic links. */
+/* The place of a path, through symbolic links. */
 static enum status place_find(const char *path, struct place *place)
 {
     struct stat old;
@@ -111,7 +111,7 @@ void write_text(struct writer *writer, const char *name, const char *text)
                    0);
 }
 
-/* libmatio wants real and imaginary parts apart. */
+/* libmatio needs real and imaginary parts apart. */
 void write_complex(struct writer *writer, const char *name, const size_t dims[3], enum precision precision,
                    const void *values, size_t rows, size_t columns)
 {

@@ -36,7 +36,7 @@ static enum status file_load(const char *path, char **text)
     return status == STATUS_OK ? STATUS_OK : status_set(status, "%s: %s; a readable CSV file is needed", path, reason);
 }
 
-/* Where the parser stands. Fields are unquoted in place: what is written never overtakes what is read. */
+/* The parser's state. Fields are unquoted in place: what is written never overtakes what is read. */
 struct cursor {
     const char *path;
     char *at;

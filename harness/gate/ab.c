@@ -329,7 +329,7 @@ static enum status scene_check(const char *name)
     return status;
 }
 
-/* Every scene with every SPEC; specs[] has texts, and without any every algorithm is meant. */
+/* Every scene with every SPEC; specs[] has texts, and without any it is every algorithm. */
 static enum status scene_units(struct contest *contest, const char *scene, const char *const *specs, int spec_count)
 {
     enum status status = scene_check(scene);

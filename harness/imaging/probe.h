@@ -9,7 +9,7 @@
 /* The most pixels that are compared; an image of up to twice as many is taken whole. */
 #define PROBE_PIXELS 1024
 
-/* Where a segment lies in the image: columns from `column` on of one row of a patch. */
+/* The place of a segment: columns from `column` on of one row of a patch. */
 struct probe_place {
     int patch, row, column;
     double stands_for; /* segments of the image, 1 or more */
