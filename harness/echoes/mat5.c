@@ -169,7 +169,7 @@ static bool name_reach(struct source *source, const char *name)
     return strcmp(text, name) == 0;
 }
 
-/* Bytes of a number as it is stored; 0 for types that libmatio reads nothing of. */
+/* Bytes of a number as it is stored; 0 for types that libmatio cannot read. */
 static size_t number_size(uint32_t type, bool is_text)
 {
     const bool is_code = type == MAT_T_UINT8 || type == MAT_T_UINT16 || type == MAT_T_UTF8 || type == MAT_T_UTF16;

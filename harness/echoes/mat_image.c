@@ -163,7 +163,7 @@ static enum status patch_fill(const char *path, const struct wanted *wanted, con
     return STATUS_OK;
 }
 
-/* The patch of this number, one more than there are so far; *more is false where the file has none. */
+/* Read the patch of the next number; *more is false where the file has none. */
 static enum status patch_add(const char *path, struct image_file *file, bool *more)
 {
     struct wanted wanted[IMAGE_VARIABLES];

@@ -80,7 +80,7 @@ static enum status expected_make(const struct acquisition *a, struct expected *e
     return STATUS_OK;
 }
 
-/* Energies of some records: all, and what a taper leaves beyond the band. */
+/* Energies of some records: in all, and beyond the band after a taper. */
 struct energies {
     double all, beyond;
 };
@@ -98,7 +98,7 @@ static void record_add(const double complex *values, double most, int samples, i
         sum->beyond += creal(record[k] * conj(record[k])) / TAPER;
 }
 
-/* The share of the compressed echoes, whose energies are the sums of echoes and noise. */
+/* The share of noise in the compressed echoes, from energies that are sums of echoes and noise. */
 static double share_of(const struct energies *sum, const struct expected *expected, int samples)
 {
     const double bins = samples - 2 * expected->first + 1;

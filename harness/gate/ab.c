@@ -67,7 +67,7 @@ static enum status answer_wrong(const struct ab_process *process, const char *qu
                       answer, question, needed);
 }
 
-/* In the first round, what only one program can plan is a finding, and is left out from then on. */
+/* In the first round, a unit that only one program can plan is a finding; later rounds leave it out. */
 static enum status unit_plan(struct contest *contest, struct unit *unit, bool first)
 {
     static const char refused[] = "refused ";
@@ -248,7 +248,7 @@ static double miss_probability(const struct contest *contest, const struct ab_ef
     return ERROR_PROBABILITY / 2 / fmax(1, comparisons) / looks;
 }
 
-/* Marks the units of which all is decided, or something is worse, and returns how many are left. */
+/* Marks the units that are fully decided, or worse in something, and returns how many are left. */
 static int contest_look(struct contest *contest, const struct ab_effort *effort)
 {
     double miss = miss_probability(contest, effort);

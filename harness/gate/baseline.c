@@ -118,7 +118,7 @@ static enum status specs_make(struct spec **specs, int *count)
     return status;
 }
 
-/* A refusal by default applies to other settings for the same reason. */
+/* Does it repeat a refusal for the same reason? Other settings of a refused algorithm often do. */
 static bool adds_nothing(const struct measurement *row, const struct measurement *before, int count)
 {
     for (int k = 0; k < count; k++)

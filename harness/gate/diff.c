@@ -28,8 +28,8 @@ static enum verdict values_compare(const struct column *metric, double before, d
     return improved && metric->better != BETTER_NONE ? VERDICT_BETTER : VERDICT_WORSE;
 }
 
-/* How much longer NEW takes, each side divided by the scalar reference loop measured beside it: of the median and the
-   least time, the ratio nearer to 1. What load does to a few runs seldom moves both. NAN when it cannot be reported. */
+/* NEW's time over OLD's, each divided by the scalar reference loop measured beside it: of the median and the
+   least time, the ratio nearer to 1. Load on a few runs seldom moves both. NAN when it cannot be reported. */
 static double time_ratio(const struct measurement *old, const struct measurement *new)
 {
     double control = old->control_s / new->control_s, ratio = new->run_s / old->run_s *control;
@@ -314,7 +314,7 @@ static const char *path_in(struct diff *diff, const char *path, const char *name
     return is_folder(path) ? diff_text(diff, "%s/%s", path, name) : path;
 }
 
-/* A folder has the file of the same kind as the other side, which is a file. */
+/* The name of a folder's file of the same kind as the other side, a file. */
 static enum status kind_of(const char *const given[2], const char **name)
 {
     const char *file = is_folder(given[0]) ? given[1] : given[0];

@@ -28,7 +28,7 @@ static int segments_of_row(const struct grid *grid)
     return (grid->x_count + LENGTH - 1) / LENGTH;
 }
 
-/* First column of the k-th segment of a row; of that behind the last, the number of columns. */
+/* First column of the k-th segment of a row; behind the last segment, the number of columns. */
 static int segment_first(const struct grid *grid, int k)
 {
     return (int)((long long)k * grid->x_count / segments_of_row(grid));

@@ -23,7 +23,7 @@ static const struct param precision_param = {
     .choices = precision_names,
 };
 
-/* Names for a message: "a, b, c", and which of them was meant. Truncates where the message would anyway. */
+/* Names for a message, "a, b, c", and the one that was probably meant. Truncates where the message would anyway. */
 struct name_list {
     char text[512], meant[SUGGESTION_TEXT];
     struct suggestion suggestion;
