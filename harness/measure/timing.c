@@ -166,8 +166,7 @@ static enum status repeat(struct trial *trial, const struct budget *budget, stru
     const double system = system_s();
     struct stages stages;
     int runs = 0;
-    const int most =
-        budget == &part ? samples->runs + TIMING_RUNS / TIMING_ROUNDS : TIMING_RUNS; /* one round's share */
+    const int most = budget == &part ? samples->runs + TIMING_RUNS / TIMING_ROUNDS : TIMING_RUNS; /* a round's share */
     enum status status = run_once(trial, &stages, &first);
     const bool cold = system_s() - system > system_share_most * first;
     const bool single = first >= budget->single && !cold;

@@ -132,7 +132,7 @@ const char *const scene_number_names[] = {
     "bin_m",           "wavelength_m",   "tx_length_m",        "recording_s",        "speed_m_s",
     "sound_speed_m_s", "edge_phase_rad", "linear_2_bound_rad", "linear_8_bound_rad", NULL};
 
-/* The error of linear upsampling by beta at the band's edge: the nearest of its points is up to 1/(beta + 1) as far
+/* The error of linear upsampling by beta at the band's edge: the nearest of its points is at most 1/(beta + 1) as far
    away as a nearest sample, and a point's own phase, atan(t tan(edge)), differs from the line's, t edge. */
 static double linear_bound_rad(double edge, int beta)
 {
@@ -148,8 +148,7 @@ double scene_number_value(int place, const struct acquisition *a)
 {
     struct straight_track track;
     const bool straight = acquisition_is_straight(a, &track);
-    const double edge =
-        acos(-1) * a->bandwidth / (2 * a->fs); /* phase error of the nearest sample there, half a sample */
+    const double edge = acos(-1) * a->bandwidth / (2 * a->fs); /* the nearest sample's error, half a sample */
     const double numbers[] = {a->sound_speed / (2 * a->fs),
                               a->sound_speed / a->fc,
                               a->tx_length,

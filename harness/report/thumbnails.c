@@ -73,8 +73,7 @@ void thumbnails_draw(struct thumbnails *thumbnails, const char *plots_directory)
     if (thumbnails->count == 0)
         return;
     fprintf(thumbnails->plot.preamble, "thumbnails = %d\n", thumbnails->count);
-    (void)plot_run(&thumbnails->plot, plots_directory,
-                   "thumbnails.gp"); /* thumbnails before a faulty picture are kept */
+    (void)plot_run(&thumbnails->plot, plots_directory, "thumbnails.gp"); /* those before a faulty one stay */
 }
 
 int thumbnails_file(const struct thumbnails *thumbnails, int number)
